@@ -1,0 +1,75 @@
+//! Least-squares similarity (rotation, scale, shift) between two point sets of equal length, in closed form with
+//! complex numbers: with both sets centred, the best factor is r = Σ w conj(p) q / Σ w |p|².
+
+use super::Point;
+
+/// q = rotate-and-scale(p − source) + target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Similarity {
+    /// Complex factor: length is the scale, argument the turn from x towards y.
+    pub factor: Point,
+    /// Centre of the source points.
+    pub source: Point,
+    /// Centre of the target points.
+    pub target: Point,
+}
+
+impl Similarity {
+    /// The map that leaves every point where it is.
+    pub const IDENTITY: Self = Self { factor: Point::X, source: Point::ZERO, target: Point::ZERO };
+
+    /// The similarity that best takes `from` to `to` (paired by index). A set without extent gives a pure shift.
+    pub fn fit(from: &[Point], to: &[Point]) -> Self {
+        assert_eq!(from.len(), to.len(), "a similarity is fitted to pairs of points");
+        let (source, target) = (super::polygon::center(from), super::polygon::center(to));
+        let mut numerator = Point::ZERO;
+        let mut denominator = 0.0;
+        for (&p, &q) in from.iter().zip(to) {
+            let (p, q) = (p - source, q - target);
+            numerator += Point::new(p.dot(q), p.perp_dot(q));
+            denominator += p.length_squared();
+        }
+        let factor = if denominator > 1e-12 { numerator / denominator } else { Point::X };
+        Self { factor, source, target }
+    }
+
+    /// Image of a point.
+    pub fn apply(&self, p: Point) -> Point {
+        self.factor.rotate(p - self.source) + self.target
+    }
+
+    /// Scale factor (≥ 0).
+    pub fn scale(&self) -> f64 {
+        self.factor.length()
+    }
+
+    /// Turn in radians, from x towards y.
+    pub fn angle(&self) -> f64 {
+        self.factor.to_angle()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_similarity_is_recovered() {
+        let from = [Point::new(1.0, 2.0), Point::new(5.0, -1.0), Point::new(3.0, 7.0)];
+        let turn = Point::from_angle(2.5) * 1.7;
+        let to = from.map(|p| turn.rotate(p) + Point::new(10.0, -4.0));
+        let fitted = Similarity::fit(&from, &to);
+        assert!((fitted.angle() - 2.5).abs() < 1e-12);
+        assert!((fitted.scale() - 1.7).abs() < 1e-12);
+        for (&p, &q) in from.iter().zip(&to) {
+            assert!(fitted.apply(p).distance(q) < 1e-12);
+        }
+    }
+
+    #[test]
+    fn coincident_points_give_a_shift() {
+        let fitted = Similarity::fit(&[Point::ONE; 3], &[Point::new(4.0, 0.0); 3]);
+        assert_eq!(fitted.apply(Point::ONE), Point::new(4.0, 0.0));
+        assert_eq!(fitted.scale(), 1.0);
+    }
+}

@@ -1,0 +1,26 @@
+//! Rototoon's core: contour capture for drawn animation.
+//!
+//! # Reading order
+//!
+//! 1. [`scene`]: what the stages hand to each other (footage, parts, pictures, progress).
+//! 2. [`image`]: pictures from files and what is computed on them.
+//! 3. [`track`]: contours from key frames to every frame.
+//! 4. [`snap`]: contours onto the drawn ink.
+//! 5. [`project`]: the document that holds all of it.
+//! 6. [`pipeline`]: the stages joined.
+//!
+//! [`geometry`] and [`numeric`] serve them all.
+//!
+//! # Coordinates
+//!
+//! Pixels, x right, y down, origin at the outer top-left corner of the picture: a pixel's centre lies at +0.5.
+//! Hosts convert at their border.
+
+pub mod geometry;
+pub mod image;
+pub mod numeric;
+pub mod pipeline;
+pub mod project;
+pub mod scene;
+pub mod snap;
+pub mod track;

@@ -1,0 +1,78 @@
+//! A part: one contour of a character that is followed through the frames.
+
+use super::FrameNumber;
+use crate::geometry::Point;
+use std::collections::BTreeMap;
+
+/// A contour with its key frames, the artist's corrections, and what tracking and snapping found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Part {
+    /// Unique name.
+    pub name: String,
+    /// Whether the last control point joins the first.
+    pub closed: bool,
+    /// Larger is nearer to the viewer; equal depths have no order.
+    pub depth: f64,
+    /// The artist's control points by frame; the same number on each.
+    pub keys: BTreeMap<FrameNumber, Vec<Point>>,
+    /// Control points the artist moved on frames between keys, by frame and point index.
+    pub pins: BTreeMap<FrameNumber, BTreeMap<usize, Point>>,
+    /// Part centres (mean of the control points) the artist corrected, by frame.
+    pub centers: BTreeMap<FrameNumber, Point>,
+    /// Tracked control points on every frame from the first to the last key, keys included.
+    pub tracks: BTreeMap<FrameNumber, Vec<Point>>,
+    /// How sure each tracked point is, 0 to 1.
+    pub confidence: BTreeMap<FrameNumber, Vec<f64>>,
+    /// Snapped pixel paths: by frame, one path a segment.
+    pub curves: BTreeMap<FrameNumber, Vec<Vec<Point>>>,
+}
+
+/// The frames between two neighbouring keys of a part, keys included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Span {
+    /// Frame of the earlier key.
+    pub first: FrameNumber,
+    /// Frame of the later key.
+    pub last: FrameNumber,
+}
+
+impl Span {
+    /// All frames, keys included.
+    pub fn frames(&self) -> impl DoubleEndedIterator<Item = FrameNumber> + use<> {
+        self.first..=self.last
+    }
+
+    /// Number of frames, keys included.
+    pub fn len(&self) -> usize {
+        (self.last - self.first + 1) as usize
+    }
+
+    /// Never: a span has at least its two keys.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// The frames between the keys.
+    pub fn between(&self) -> impl DoubleEndedIterator<Item = FrameNumber> + use<> {
+        self.first + 1..self.last
+    }
+}
+
+impl Part {
+    /// The spans between neighbouring keys, in time order. None where there are fewer than two keys.
+    pub fn spans(&self) -> Vec<Span> {
+        let frames: Vec<_> = self.keys.keys().copied().collect();
+        frames.windows(2).map(|pair| Span { first: pair[0], last: pair[1] }).collect()
+    }
+
+    /// Number of control points; 0 without a key.
+    pub fn point_count(&self) -> usize {
+        self.keys.values().next().map_or(0, Vec::len)
+    }
+
+    /// Number of segments between neighbouring control points.
+    pub fn segment_count(&self) -> usize {
+        let n = self.point_count();
+        if self.closed && n > 1 { n } else { n.saturating_sub(1) }
+    }
+}
