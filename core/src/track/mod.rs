@@ -7,8 +7,12 @@
 //! - [`job`]: what a solver is given and what it returns
 //! - [`tracker`]: order, memory and progress of the jobs
 
+pub mod edge_maps;
+pub mod energy;
 pub mod job;
+pub mod region;
 pub mod tracker;
+pub mod zhou2011;
 
 pub use job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
 pub use tracker::{Preset, TrackError, TrackOptions, Tracker, Tracking};
