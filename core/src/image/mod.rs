@@ -1,1 +1,7 @@
-//! (see lib.rs)
+//! Pictures.
+pub mod colour;
+pub mod flow;
+pub mod gaussian;
+pub mod pixel;
+pub mod resize;
+pub mod sample;
