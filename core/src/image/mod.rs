@@ -4,6 +4,7 @@
 //! - [`colour`]: sRGB, luma and CIE Lab
 //! - [`distance_transform`]: Manhattan distance to the nearest edge
 //! - [`gaussian`]: separable blur
+//! - [`mean_shift`]: the filter that flattens colours and keeps edges
 //! - [`pixel`]: what a pixel is to the filters
 //! - [`pyramid`]: a picture at halved sizes
 //! - [`resize`]: area reduction and bilinear enlargement
@@ -13,6 +14,7 @@ pub mod canny;
 pub mod colour;
 pub mod distance_transform;
 pub mod gaussian;
+pub mod mean_shift;
 pub mod pixel;
 pub mod pyramid;
 pub mod resize;
