@@ -145,7 +145,7 @@ class Session:
 
     def document(self) -> Document:
         """The document as it stands, tracks and snapped curves included."""
-        return json.loads(self._handle.text("rototoon_session_document"))
+        return json.loads(self._handle.give(handles.Text, "rototoon_session_document"))
 
     def set_document(self, document: Mapping[str, Any]) -> None:
         """Puts another document in place of this one, keeping what is known of pictures and solved spans.
@@ -166,7 +166,7 @@ class Session:
 
     def parts(self) -> list[str]:
         """Names of the parts in the document's order."""
-        return json.loads(self._handle.text("rototoon_session_parts"))
+        return json.loads(self._handle.give(handles.Text, "rototoon_session_parts"))
 
     def add_part(self, part: Mapping[str, Any]) -> None:
         """Adds a part, given as the document holds it (``name``, ``closed``, ``depth``, ``keys``, ...), at the end."""
@@ -231,24 +231,24 @@ class Session:
 
     def tracks(self, part: str) -> Track:
         """The tracked control points of a part."""
-        track = self._handle.track(*_text(part))
-        return Track(track.frames(), track.points())
+        frames, points, _ = self._handle.give(handles.TrackArrays, "rototoon_session_track_of", *_text(part))
+        return Track(frames, points)
 
     def confidence(self, part: str) -> memoryview:
         """How sure each point of `tracks` is, 0 to 1: float64, shape (F, N); 1 on keys."""
-        return self._handle.track(*_text(part)).confidence()
+        return self._handle.give(handles.TrackArrays, "rototoon_session_track_of", *_text(part))[2]
 
     def curves(self, part: str, frame: int) -> list[memoryview]:
         """The snapped paths of a part on a frame: for each segment between control points float64 of shape (M, 2).
 
         Empty where the frame has not been snapped.
         """
-        return self._handle.curves(*_text(part), frame)
+        return self._handle.give(handles.CurveArrays, "rototoon_session_curves_of", *_text(part), frame)
 
     def weakest_frame(self) -> WeakestFrame | None:
         """The frame, neither a part's key nor beside one, where the next key helps most; `None` if there is none."""
         return json.loads(
-            self._handle.text("rototoon_session_weakest_frame"),
+            self._handle.give(handles.Text, "rototoon_session_weakest_frame"),
             object_hook=lambda found: WeakestFrame(found["frame"], found["score"]),
         )
 
@@ -272,7 +272,7 @@ class Session:
     def _long(self, name: str, options: Mapping[str, Any], progress: Progress | None) -> Any:
         """Makes a call that reports progress; an exception of `progress` cancels it and comes out here."""
         with handles.progress_callback(progress) as callback:
-            return json.loads(self._handle.text(name, *_json(options), callback, None))
+            return json.loads(self._handle.give(handles.Text, name, *_json(options), callback, None))
 
 
 def match_contours(request: Mapping[str, Any]) -> Any:
@@ -280,17 +280,17 @@ def match_contours(request: Mapping[str, Any]) -> Any:
 
     The request is plain JSON data, as is the answer; see ``rototoon_match_contours`` in ``rototoon.h``.
     """
-    return json.loads(handles.Text.make("rototoon_match_contours", *_json(request)).read())
+    return json.loads(handles.take(handles.Text, "rototoon_match_contours", *_json(request)))
 
 
 def parameters() -> Any:
     """Every parameter: id, label, kind, range, default, help. Hosts build their panels from it."""
-    return json.loads(handles.Text.make("rototoon_parameters").read())
+    return json.loads(handles.take(handles.Text, "rototoon_parameters"))
 
 
 def version() -> str:
     """Version of the native library."""
-    return handles.Text.make("rototoon_version").read()
+    return handles.take(handles.Text, "rototoon_version")
 
 
 def library_path() -> Path:
