@@ -6,9 +6,12 @@
 //!
 //! - [`job`]: what a solver is given and what it returns
 //! - [`tracker`]: order, memory and progress of the jobs
+//! - [`weakest`]: where the next key helps most
 
 pub mod job;
 pub mod tracker;
+pub mod weakest;
 
 pub use job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
 pub use tracker::{Preset, TrackError, TrackOptions, Tracker, Tracking};
+pub use weakest::{WeakestFrame, weakest_frame};
