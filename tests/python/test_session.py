@@ -127,13 +127,21 @@ def test_second_call_at_once_is_refused(session):
     messages = []
 
     def progress(_fraction, _step):
-        for call in (session.document, session.close):
-            with pytest.raises(RototoonError) as caught:
-                call()
-            messages.append(str(caught.value))
+        with pytest.raises(RototoonError) as caught:
+            session.document()
+        messages.append(str(caught.value))
 
     session.track(progress=progress)
     assert messages and all("in use by another call" in message for message in messages)
+
+
+def test_session_closed_during_a_call_is_freed_after_it(document, folder):
+    session = Session.from_document(document, folder)
+    summary = session.track(progress=lambda _fraction, _step: session.close())
+    assert summary.solved == 4
+    assert session._handle._pointer is None
+    with pytest.raises(RototoonError, match="the session is closed"):
+        session.document()
 
 
 def test_snap_follows_segments_and_is_dropped_where_the_track_changes(session):
@@ -279,10 +287,10 @@ def test_contours_are_matched_whatever_their_start_and_direction():
     turned = [[x + 1, y + 1] for x, y in reversed(target[1:] + target[:1])]
     far = [[x + 40, y + 30] for x, y in target]
     request = {
-        "from": [{"closed": True, "points": target}, {"closed": True, "points": far}],
-        "to": [{"closed": True, "points": far}, {"closed": True, "points": turned}],
+        "references": [{"closed": True, "points": target}, {"closed": True, "points": far}],
+        "drawn": [{"closed": True, "points": far}, {"closed": True, "points": turned}],
     }
     matches = match_contours(request)["matches"]
-    assert [match["to"] for match in matches] == [1, 0]
+    assert [(match["reference"], match["drawn"]) for match in matches] == [(0, 1), (1, 0)]
     for match, source in zip(matches, (target, far), strict=True):
         assert all(max(abs(a - b) for a, b in zip(p, q)) < 1.5 for p, q in zip(match["points"], source, strict=True))
