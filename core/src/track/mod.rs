@@ -6,6 +6,7 @@
 //!
 //! - [`job`]: what a solver is given and what it returns
 //! - [`tracker`]: order, memory and progress of the jobs
+//! - [`weakest`]: where the next key helps most
 //!
 //! The default preset:
 //! - [`rototoon`]: its pieces joined
@@ -26,6 +27,8 @@ pub mod rototoon;
 pub mod select;
 pub mod store;
 pub mod tracker;
+pub mod weakest;
 
 pub use job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
 pub use tracker::{JobReport, PartTrack, Preset, TrackError, TrackOptions, Tracker, Tracking};
+pub use weakest::{WeakestFrame, weakest_frame};
