@@ -1,10 +1,12 @@
 //! Numerical methods that know nothing of pictures or contours.
 //!
+//! - [`banded`]: Cholesky factorisation of symmetric band matrices
 //! - [`cholesky`]: sparse Cholesky factorisation with the symbolic half kept
 //! - [`normal_equations`]: JᵀJ and Jᵀr of a sparse Jacobian of fixed pattern
 //! - [`sparse_least_squares`]: Levenberg–Marquardt on such problems
 //! - [`gradient_check`]: an analytic Jacobian against differences
 
+pub mod banded;
 pub mod cholesky;
 pub mod gradient_check;
 pub mod normal_equations;
