@@ -75,7 +75,7 @@ pub struct Edge {
 
 impl Edge {
     /// f_Segdist of the segment `a`–`b` on a frame, and its derivatives by `a` and by `b`.
-    fn segment(&self, field: &DistanceField, a: Point, b: Point) -> (f64, Point, Point) {
+    pub(super) fn segment(&self, field: &DistanceField, a: Point, b: Point) -> (f64, Point, Point) {
         let mut sum = (0.0, Point::ZERO, Point::ZERO);
         for k in 0..self.samples {
             let share = (k as f64 + 0.5) / self.samples as f64;
