@@ -267,3 +267,165 @@ fn termination(of_solver: LmTermination) -> Termination {
         LmTermination::IterationLimit => Termination::IterationLimit,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Cancelled, Colour, FrameError, FrameNumber, Silent, Span};
+    use crate::track::job::Correction;
+    use std::collections::BTreeMap;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    const SIZE: (usize, usize) = (160, 120);
+
+    /// A box with a bright corner that goes along a bow from (40, 60) to (110, 60).
+    struct Bow;
+
+    fn middle(frame: FrameNumber) -> Point {
+        let share = f64::from(frame) / 6.0;
+        Point::new(40.0 + 70.0 * share, 60.0 - 24.0 * (share * std::f64::consts::PI).sin()).round()
+    }
+
+    impl FrameSource for Bow {
+        fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
+            let middle = middle(frame);
+            Ok(Arc::new(Raster::from_fn(SIZE.0, SIZE.1, |x, y| {
+                let p = Point::new(x as f64 + 0.5, y as f64 + 0.5) - middle;
+                match (p.x.abs() < 14.0 && p.y.abs() < 10.0, p.x > 4.0 && p.y > 0.0) {
+                    (false, _) => [0.9, 0.9, 0.85],
+                    (true, false) => [0.2, 0.3, 0.6],
+                    (true, true) => [0.95, 0.6, 0.1],
+                }
+            })))
+        }
+    }
+
+    fn outline(frame: FrameNumber) -> Vec<Point> {
+        let corners = [(-14.0, -10.0), (0.0, -10.0), (14.0, -10.0), (14.0, 10.0), (0.0, 10.0), (-14.0, 10.0)];
+        corners.map(|(x, y)| middle(frame) + Point::new(x, y)).to_vec()
+    }
+
+    fn job(keys: [Vec<Point>; 2], closed: bool, span: Span) -> Job {
+        Job {
+            name: "box".into(),
+            closed,
+            span,
+            keys,
+            corrections: BTreeMap::new(),
+            occluders: vec![Vec::new(); span.len()],
+            size: SIZE,
+        }
+    }
+
+    const SPAN: Span = Span { first: 0, last: 6 };
+
+    fn solve(job: &Job) -> SpanTrack {
+        let track = Zhou2011::default().solve(job, &Bow, &Silent).unwrap();
+        assert_eq!((track.points.len(), track.confidence.len()), (job.span.len(), job.span.len()));
+        for (curve, confidence) in track.points.iter().zip(&track.confidence) {
+            assert_eq!((curve.len(), confidence.len()), (job.keys[0].len(), job.keys[0].len()));
+            assert!(curve.iter().all(|p| p.is_finite()));
+            assert!(confidence.iter().all(|c| (0.0..=1.0).contains(c)));
+        }
+        assert!(track.summary.final_cost <= track.summary.initial_cost || !track.summary.initial_cost.is_finite());
+        track
+    }
+
+    #[test]
+    fn a_part_is_followed_along_a_bow() {
+        let track = solve(&job([outline(0), outline(6)], true, SPAN));
+        for frame in 1..6 {
+            for (found, truth) in track.points[frame as usize].iter().zip(outline(frame)) {
+                assert!(found.distance(truth) < 2.0, "frame {frame}: {found} for {truth}");
+            }
+        }
+        assert_eq!((&track.points[0], &track.points[6]), (&outline(0), &outline(6)));
+    }
+
+    #[test]
+    fn pins_and_centres_hold_exactly() {
+        let mut job = job([outline(0), outline(6)], true, SPAN);
+        let pin = Point::new(31.0, 22.5);
+        job.corrections.insert(2, Correction { pins: BTreeMap::from([(0, pin)]), center: None });
+        let center = Point::new(70.0, 50.0);
+        job.corrections.insert(3, Correction { pins: BTreeMap::new(), center: Some(center) });
+        job.corrections.insert(5, Correction { pins: BTreeMap::from([(1, pin)]), center: Some(center) });
+        let everything = outline(4).into_iter().enumerate().collect();
+        job.corrections.insert(4, Correction { pins: everything, center: Some(center) });
+        let track = solve(&job);
+        assert_eq!((track.points[2][0], track.points[5][1]), (pin, pin));
+        assert_eq!(track.confidence[2][0], 1.0);
+        for frame in [3, 5] {
+            assert!(polygon::center(&track.points[frame]).distance(center) < 1e-9);
+        }
+        assert_eq!(track.points[4], outline(4));
+        let free = solve(&Job { corrections: BTreeMap::new(), ..job.clone() });
+        assert!(free.points[1][0].distance(track.points[1][0]) > 0.5, "a pin draws the neighbouring frames");
+    }
+
+    #[test]
+    fn open_short_flat_and_distant_parts_are_tracked_without_nonsense() {
+        let shift = |points: &[Point], by: f64| points.iter().map(|&p| p + Point::splat(by)).collect::<Vec<_>>();
+        let flat = vec![Point::new(20.0, 20.0); 5];
+        let line = [20.0, 40.0, 60.0].map(|x| Point::new(x, 60.0)).to_vec();
+        for closed in [true, false] {
+            for key in [outline(0), outline(0)[..1].to_vec(), outline(0)[..2].to_vec(), flat.clone(), line.clone()] {
+                for by in [0.0, 30.0, -500.0, 1e6] {
+                    solve(&job([key.clone(), shift(&key, by)], closed, SPAN));
+                    solve(&job([shift(&key, by), shift(&key, by)], closed, SPAN));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn spans_without_frames_between_and_parts_without_points_are_nothing_to_solve() {
+        let short = solve(&job([outline(0), outline(1)], true, Span { first: 0, last: 1 }));
+        assert_eq!(short.summary.termination, Termination::NothingToSolve);
+        assert_eq!(short.points, [outline(0), outline(1)]);
+        let none = solve(&job([Vec::new(), Vec::new()], true, SPAN));
+        assert_eq!(none.summary.termination, Termination::NothingToSolve);
+    }
+
+    #[test]
+    fn what_is_kept_of_pictures_changes_nothing() {
+        let solver = Zhou2011::default();
+        let job = job([outline(0), outline(6)], true, SPAN);
+        let first = solver.solve(&job, &Bow, &Silent).unwrap();
+        assert_eq!(solver.solve(&job, &Bow, &Silent).unwrap(), first);
+        solver.forget_pictures();
+        assert_eq!(solver.solve(&job, &Bow, &Silent).unwrap(), first);
+    }
+
+    /// Stops at the `at`-th report; holds that reports never fall.
+    struct StopAt {
+        at: usize,
+        reports: AtomicUsize,
+        highest: std::sync::Mutex<f64>,
+    }
+
+    impl Progress for StopAt {
+        fn report(&self, _step: &str, done: f64) -> Result<(), Cancelled> {
+            let mut highest = self.highest.lock().unwrap();
+            assert!((*highest..=1.0).contains(&done), "{done} after {highest}");
+            *highest = done;
+            if self.reports.fetch_add(1, Ordering::Relaxed) == self.at { Err(Cancelled) } else { Ok(()) }
+        }
+    }
+
+    #[test]
+    fn every_report_can_cancel() {
+        let job = job([outline(0), outline(6)], true, SPAN);
+        let run = |at: usize| {
+            let progress = StopAt { at, reports: AtomicUsize::new(0), highest: std::sync::Mutex::new(0.0) };
+            let result = Zhou2011::default().solve(&job, &Bow, &progress);
+            (result, progress.reports.into_inner())
+        };
+        let (result, reports) = run(usize::MAX);
+        assert!(result.is_ok() && reports > 11, "{reports} reports");
+        for at in [0, 4, 5, 9, 10, reports - 1] {
+            assert_eq!(run(at).0, Err(TrackError::Cancelled(Cancelled)));
+        }
+    }
+}
