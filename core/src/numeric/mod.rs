@@ -1,5 +1,6 @@
 //! Numerical methods that know nothing of pictures or contours.
 //!
+//! - [`assignment`]: pairs of least total cost
 //! - [`banded`]: Cholesky factorisation of symmetric band matrices
 //! - [`cholesky`]: sparse Cholesky factorisation with the symbolic half kept
 //! - [`correlation`]: correlation of pictures by the fast Fourier transform
@@ -7,6 +8,7 @@
 //! - [`normal_equations`]: JᵀJ and Jᵀr of a sparse Jacobian of fixed pattern
 //! - [`sparse_least_squares`]: Levenberg–Marquardt on such problems
 
+pub mod assignment;
 pub mod banded;
 pub mod cholesky;
 pub mod correlation;

@@ -1,10 +1,12 @@
 //! The types that stages hand to each other.
 //!
 //! - [`raster`]: a rectangle of pixels
+//! - [`correspondence`]: contours drawn afresh, matched to the parts
 //! - [`footage`]: which frames there are and where their pictures come from
 //! - [`part`]: a tracked contour with its keys, corrections and results
 //! - [`progress`]: how long work reports and is cancelled
 
+pub mod correspondence;
 pub mod footage;
 pub mod part;
 pub mod progress;
