@@ -153,8 +153,8 @@ impl<'a> Features<'a> {
         let kernels = &self.kernels[kind as usize];
         match kind {
             Kind::Edge => {
-                let channels = [0, 1, 2]
-                    .map(|c| Channel::new(kernels.derivatives(window, |x, y| self.picture.clamped(x, y)[c])));
+                let channels =
+                    [0, 1, 2].map(|c| Channel::new(kernels.derivatives(window, |x, y| self.picture.clamped(x, y)[c])));
                 inner_pixels().map(|at| edge_at(&channels, at)).collect()
             }
             Kind::Line => {
