@@ -3,7 +3,7 @@
 //! `%d` is the plain number, `%0Nd` fills it with zeros to N characters, a minus sign included; longer numbers are
 //! written in full. `%%` stands for a percent sign. The number may stand in the name of a file or of a folder.
 
-use crate::scene::FrameNumber;
+use super::FrameNumber;
 use std::fmt::Write;
 use std::io;
 use std::path::{Component, Path, PathBuf};
@@ -21,13 +21,13 @@ pub struct FramePattern {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PatternError {
     /// There is no place for the number.
-    #[error("footage pattern {pattern:?} has no frame number: expected one %d or %0Nd")]
+    #[error("pattern {pattern:?} has no frame number: expected one %d or %0Nd")]
     NoNumber {
         /// The text.
         pattern: String,
     },
     /// There is more than one place for the number.
-    #[error("footage pattern {pattern:?} has {found} frame numbers: expected one %d or %0Nd")]
+    #[error("pattern {pattern:?} has {found} frame numbers: expected one %d or %0Nd")]
     SeveralNumbers {
         /// The text.
         pattern: String,
@@ -35,9 +35,7 @@ pub enum PatternError {
         found: usize,
     },
     /// A percent sign begins something else.
-    #[error(
-        "footage pattern {pattern:?} has {found:?} in it: expected %d, %0Nd with N from 1 to 99, or %% for a percent sign"
-    )]
+    #[error("pattern {pattern:?} has {found:?} in it: expected %d, %0Nd with N from 1 to 99, or %% for a percent sign")]
     Unknown {
         /// The text.
         pattern: String,
