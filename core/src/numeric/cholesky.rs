@@ -24,6 +24,8 @@ pub struct SparseCholesky {
     symbolic: SymbolicCholesky<usize>,
     factor: Vec<f64>,
     scratch: MemBuffer,
+    /// Right-hand sides that the scratch memory suffices for.
+    width: usize,
 }
 
 impl SparseCholesky {
@@ -40,11 +42,9 @@ impl SparseCholesky {
             CholeskySymbolicParams::default(),
         )
         .expect("memory for the pattern of the factor");
-        let needed = symbolic
-            .factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default())
-            .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
         let factor = vec![0.0; symbolic.len_val()];
-        Self { pattern, symbolic, factor, scratch: MemBuffer::new(needed) }
+        let scratch = scratch_for(&symbolic, 1);
+        Self { pattern, symbolic, factor, scratch, width: 1 }
     }
 
     /// Factors the matrix whose lower triangle holds `values`, in the order of the pattern.
@@ -64,10 +64,16 @@ impl SparseCholesky {
             .map_err(|_| NotPositiveDefinite)
     }
 
-    /// Replaces `b` by the solution x of Ax = b, A the matrix factored last.
+    /// Replaces each right-hand side b by the solution x of Ax = b, A the matrix factored last. `b` holds any number of
+    /// right-hand sides of `n` values one after the other; many at once are much faster than one by one.
     pub fn solve(&mut self, b: &mut [f64]) {
-        let n = b.len();
-        let b = MatMut::from_column_major_slice_mut(b, n, 1);
+        let n = self.pattern.nrows();
+        let count = b.len().checked_div(n).unwrap_or(0);
+        if count > self.width {
+            self.scratch = scratch_for(&self.symbolic, count);
+            self.width = count;
+        }
+        let b = MatMut::from_column_major_slice_mut(b, n, count);
         LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
             Conj::No,
             b,
@@ -82,6 +88,11 @@ impl SparseCholesky {
     }
 }
 
+fn scratch_for(symbolic: &SymbolicCholesky<usize>, right_hand_sides: usize) -> MemBuffer {
+    let solve = symbolic.solve_in_place_scratch::<f64>(right_hand_sides, Par::Seq);
+    MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()).or(solve))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -91,10 +102,11 @@ mod tests {
         let mut solver = SparseCholesky::new(3, vec![0, 2, 4, 5], vec![0, 1, 1, 2, 2]);
         for scale in [1.0, 10.0] {
             solver.factor(&[4.0 * scale, scale, 3.0 * scale, -scale, 5.0 * scale]).unwrap();
-            let mut x = [5.0 * scale, 3.0 * scale, 4.0 * scale];
+            let mut x = [5.0, 3.0, 4.0, 10.0, 6.0, 8.0].map(|value| scale * value);
             solver.solve(&mut x);
-            for value in x {
-                assert!((value - 1.0).abs() < 1e-14, "{x:?}");
+            for (k, value) in x.into_iter().enumerate() {
+                let expected = if k < 3 { 1.0 } else { 2.0 };
+                assert!((value - expected).abs() < 1e-14, "{x:?}");
             }
         }
     }

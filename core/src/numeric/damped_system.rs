@@ -22,8 +22,8 @@ const DIAGONAL_FLOOR: f64 = 1e-10;
 pub struct DampedSystem {
     cholesky: SparseCholesky,
     damped: Vec<f64>,
-    /// Z, one column a long row.
-    spread: Vec<Vec<f64>>,
+    /// Z, one column a long row, one after the other.
+    spread: Vec<f64>,
     /// Of I + UZ.
     small: DenseCholesky,
 }
@@ -52,15 +52,15 @@ impl DampedSystem {
         self.cholesky.factor(&self.damped)?;
         self.spread.clear();
         for (columns, values) in equations.long_rows() {
-            let mut column = vec![0.0; n];
-            columns.iter().zip(values).for_each(|(&j, &value)| column[j as usize] = value);
-            self.cholesky.solve(&mut column);
-            self.spread.push(column);
+            let start = self.spread.len();
+            self.spread.resize(start + n, 0.0);
+            columns.iter().zip(values).for_each(|(&j, &value)| self.spread[start + j as usize] = value);
         }
+        self.cholesky.solve(&mut self.spread);
         let mut matrix: Vec<Vec<f64>> = equations
             .long_rows()
             .enumerate()
-            .map(|(i, row)| self.spread[..=i].iter().map(|column| product(row, column)).collect())
+            .map(|(i, row)| self.spread.chunks_exact(n).take(i + 1).map(|column| product(row, column)).collect())
             .collect();
         matrix.iter_mut().enumerate().for_each(|(i, row)| row[i] += 1.0);
         self.small = DenseCholesky::factor(matrix)?;
@@ -75,7 +75,7 @@ impl DampedSystem {
         }
         let mut shares: Vec<f64> = equations.long_rows().map(|row| product(row, b)).collect();
         self.small.solve(&mut shares);
-        for (column, share) in self.spread.iter().zip(shares) {
+        for (column, share) in self.spread.chunks_exact(b.len()).zip(shares) {
             b.iter_mut().zip(column).for_each(|(b, c)| *b -= share * c);
         }
     }

@@ -7,7 +7,7 @@
 //! would become dense, and handed on as they are ([`NormalEquations::long_rows`]); gradient and diagonal include them.
 
 /// Entries above which a row is kept out of the triangle.
-pub const LONG_ROW: usize = 48;
+pub const LONG_ROW: usize = 96;
 
 /// Lower triangle of JᵀJ without the long rows (compressed columns) and Jᵀr, refilled for each new set of
 /// values.

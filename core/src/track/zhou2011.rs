@@ -379,8 +379,8 @@ mod tests {
             for key in [outline(0), outline(0)[..1].to_vec(), outline(0)[..2].to_vec(), flat.clone(), line.clone()] {
                 for by in [0.0, 30.0, -500.0, 1e6] {
                     solve(&job([key.clone(), shift(&key, by)], closed, SPAN));
-                    solve(&job([shift(&key, by), shift(&key, by)], closed, SPAN));
                 }
+                solve(&job([shift(&key, -500.0), shift(&key, -500.0)], closed, SPAN));
             }
         }
     }
