@@ -87,6 +87,12 @@ impl<'a> Stage<'a> {
         }
     }
 
+    /// The key whose drawing this is, as the artist drew it: frames held from a key have its very points.
+    pub fn key_of(&self, drawing: usize) -> Option<Vec<Point>> {
+        let last = self.drawings.len() - 1;
+        (drawing == 0 || drawing == last).then(|| self.job.keys[usize::from(drawing != 0)].clone())
+    }
+
     /// Width of the picture in working pixels.
     pub fn width(&self) -> f64 {
         self.job.size.0 as f64 / self.scale

@@ -138,7 +138,12 @@ pub struct Tracker {
 impl Tracker {
     /// A tracker that knows nothing yet.
     pub fn new(options: TrackOptions) -> Self {
-        Self { solver: options.preset.solver(), footage: None, known: BTreeMap::new() }
+        Self::with_solver(options.preset.solver())
+    }
+
+    /// A tracker with a solver of the caller's.
+    pub fn with_solver(solver: Box<dyn SpanSolver>) -> Self {
+        Self { solver, footage: None, known: BTreeMap::new() }
     }
 
     /// Tracks every part of `scene` between its first and its last key. Runs on the caller's rayon pool.
