@@ -235,6 +235,7 @@ fn confidences(job: &Job, index: usize, curve: &[Point], energy: &Energy, found:
     let layout = Layout::new(job.span.len(), curve.len(), job.closed);
     let correction = job.corrections.get(&index);
     let is_key = index == 0 || index + 1 == job.span.len();
+    let scale = CALIBRATED_LINES / job.size.1.max(1) as f64;
     let mut sums = vec![(0.0, 0); curve.len()];
     for (a, b) in layout.segments() {
         let distance = energy.edge_distance(index, curve[a], curve[b]);
@@ -246,17 +247,22 @@ fn confidences(job: &Job, index: usize, curve: &[Point], energy: &Energy, found:
         if is_key || correction.is_some_and(|correction| correction.pins.contains_key(&j)) {
             return 1.0;
         }
-        found.map_or(0.0, |found| confidence(found.difference, sum / f64::from(count.max(1))))
+        found.map_or(0.0, |found| confidence(found.difference, scale * sum / f64::from(count.max(1))))
     };
     sums.iter().enumerate().map(point).collect()
 }
 
 /// The confidence of a point whose part differs by `difference` (root mean square of colours, 0 to 1) at the centre found,
-/// and whose segments lie `distance` px from edges on average. A logistic curve, fitted to sequences with known truth.
+/// and whose segments lie `distance` px from edges on average, at 540 lines. Logistic regression of "within 2 px of the
+/// true contour" on six animated sequences with known truth, each of equal weight; in every tenth from 0 to 1 the share of
+/// such points is within 0.09 of the confidence given.
 fn confidence(difference: f64, distance: f64) -> f64 {
-    let z = 1.0 - 10.0 * difference - 0.5 * distance;
+    let z = 3.87 - 4.58 * difference.sqrt() - 2.47 * distance.ln_1p();
     1.0 / (1.0 + (-z).exp())
 }
+
+/// Height in pixels of the pictures that [`confidence`] was fitted on.
+const CALIBRATED_LINES: f64 = 540.0;
 
 fn termination(of_solver: LmTermination) -> Termination {
     match of_solver {
