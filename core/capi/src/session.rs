@@ -6,6 +6,7 @@ use crate::work;
 use rototoon::image::sequence::Sequence;
 use rototoon::project::Document;
 use rototoon::scene::{FrameNumber, Part, Progress, Scene};
+use rototoon::snap::{SnapError, SnapOptions, snap_scene};
 use rototoon::track::{JobReport, Preset, Termination, TrackError, TrackOptions, Tracker, Tracking, weakest_frame};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -185,6 +186,23 @@ impl Session {
         let summary = summary(scene, &tracking.jobs);
         store(&mut self.document.scene, tracking);
         Ok(summary)
+    }
+
+    /// Snaps the contours to the ink; returns a summary as JSON.
+    pub fn snap(&mut self, options: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
+        let request: SnapRequest = request(options)?;
+        let (scene, pictures) = (&self.document.scene, pictures(&mut self.pictures, &self.document, &self.folder)?);
+        let found = work::run(request.threads, go_on, |progress: &dyn Progress| {
+            snap_scene(scene, pictures, &SnapOptions::default(), progress).map_err(|error| match error {
+                SnapError::Cancelled(_) => Failure::Cancelled,
+                other => Failure::error(other),
+            })
+        })?;
+        let frames: usize = found.iter().map(|curves| curves.len()).sum();
+        for (part, curves) in self.document.scene.parts.iter_mut().zip(found) {
+            part.curves = curves;
+        }
+        Ok(serde_json::json!({"frames": frames}).to_string())
     }
 
     /// Forgets pictures and solved spans: after a panic they may be half-written.
