@@ -3,6 +3,7 @@
 //! - [`canny`]: edges of the luma
 //! - [`colour`]: sRGB, luma and CIE Lab
 //! - [`distance_transform`]: Manhattan distance to the nearest edge
+//! - [`flow`]: dense optical flow by inverse search
 //! - [`gaussian`]: separable blur
 //! - [`mean_shift`]: the filter that flattens colours and keeps edges
 //! - [`pixel`]: what a pixel is to the filters
@@ -13,6 +14,7 @@
 pub mod canny;
 pub mod colour;
 pub mod distance_transform;
+pub mod flow;
 pub mod gaussian;
 pub mod mean_shift;
 pub mod pixel;
