@@ -29,8 +29,8 @@ const TILE: usize = 64;
 /// steps of aliased drawings.
 const EDGE_SIGMA: f64 = 0.8;
 
-/// Standard deviation in pixels, at [`REFERENCE_LINES`] lines, of the line filter: finds lines of 1 to 6 px.
-const LINE_SIGMA: f64 = 1.3;
+/// Standard deviation in pixels, at [`REFERENCE_LINES`] lines, of the line filter: finds lines of 1 to 5 px.
+const LINE_SIGMA: f64 = 1.0;
 
 /// Picture height that pixel measures are given for; they grow with larger pictures.
 pub(super) const REFERENCE_LINES: f64 = 540.0;
@@ -42,7 +42,7 @@ const EDGE_FLOOR: f32 = 0.008;
 const LINE_FLOOR: f32 = 0.006;
 
 /// Slope (luma per pixel) that a valley's two sides have at least, a pixel from the middle.
-const SLOPE_FLOOR: f32 = 0.001;
+const SLOPE_FLOOR: f32 = 0.01;
 
 /// Farthest place of a feature from its pixel's centre, in pixels, that is believed.
 const MAX_OFFSET: f32 = 1.0;
@@ -153,8 +153,8 @@ impl<'a> Features<'a> {
         let kernels = &self.kernels[kind as usize];
         match kind {
             Kind::Edge => {
-                let channels = [0, 1, 2]
-                    .map(|c| Channel::new(kernels.derivatives(window, |x, y| self.picture.clamped(x, y)[c])));
+                let channels =
+                    [0, 1, 2].map(|c| Channel::new(kernels.derivatives(window, |x, y| self.picture.clamped(x, y)[c])));
                 inner_pixels().map(|at| edge_at(&channels, at)).collect()
             }
             Kind::Line => {

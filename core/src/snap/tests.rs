@@ -122,9 +122,8 @@ fn ends_beside_the_ink_are_kept_and_the_path_joins_it() {
 fn where_nothing_can_be_followed_the_segment_stays() {
     let blank = Raster::new(50, 40, PAPER);
     let (a, b) = (Point::new(5.0, 5.0), Point::new(40.0, 30.0));
-    let straight = |picture: &Raster<Colour>, contour: &[Point]| {
-        snap_contour(picture, contour, false, &SnapOptions::default())
-    };
+    let straight =
+        |picture: &Raster<Colour>, contour: &[Point]| snap_contour(picture, contour, false, &SnapOptions::default());
     assert_eq!(straight(&blank, &[a, b]), [[a, b]]);
     assert_eq!(straight(&blank, &[a, a]), [[a, a]]);
     let drawn = drawing(50, 40, |p| if p.x < 25.0 { INK } else { PAPER });
