@@ -215,7 +215,7 @@ impl Session {
 /// The frame source, opened at first use.
 fn pictures<'a>(slot: &'a mut Option<Sequence>, document: &Document, folder: &Path) -> Result<&'a Sequence, Failure> {
     if slot.is_none() {
-        *slot = Some(Sequence::open(&document.scene.footage, folder).map_err(Failure::error)?);
+        *slot = Some(Sequence::new(&document.scene.footage, folder).map_err(Failure::error)?);
     }
     slot.as_ref().ok_or_else(|| Failure::Error("no pictures".into()))
 }

@@ -79,12 +79,7 @@ fn pin(session: *const RototoonSession, part: &str, frame: i32, point: i32) -> (
     outcome(|error| unsafe { rototoon_session_pin(session, part.as_ptr(), part.len(), frame, point, 9.0, 8.0, error) })
 }
 
-fn track(
-    session: &Owned,
-    options: &str,
-    progress: RototoonProgress,
-    user: *mut c_void,
-) -> (RototoonStatus, String) {
+fn track(session: &Owned, options: &str, progress: RototoonProgress, user: *mut c_void) -> (RototoonStatus, String) {
     let mut summary = null_mut();
     // SAFETY: a living session, a text with its length, a callback that fits `user`, a local.
     let found = outcome(|error| unsafe {
@@ -166,10 +161,7 @@ fn misaligned_oversize_and_undecodable_arguments_are_refused() {
             (key(numbers.as_ptr(), usize::MAX), "points: length 18446744073709551615 is more than"),
             (key(numbers.as_ptr(), MAX_BYTES / 8 + 1), "is more than"),
             (pin(odd.cast(), "near arm", 3, 1), "session: no such handle"),
-            (
-                outcome(|error| rototoon_session_remove_part(session.0, [0xFF_u8].as_ptr(), 1, error)),
-                "part: not UTF-8",
-            ),
+            (outcome(|error| rototoon_session_remove_part(session.0, [0xFF_u8].as_ptr(), 1, error)), "part: not UTF-8"),
         ];
         for ((status, message), expected) in cases {
             assert_eq!(status, BadArgument);
