@@ -8,7 +8,6 @@
 //! - [`gaussian`]: separable blur
 //! - [`holds`]: which frames show the same drawing
 //! - [`mean_shift`]: the filter that flattens colours and keeps edges
-//! - [`pattern`]: file names of a numbered sequence
 //! - [`pixel`]: what a pixel is to the filters
 //! - [`pyramid`]: a picture at halved sizes
 //! - [`resize`]: area reduction and bilinear enlargement
@@ -23,7 +22,6 @@ pub mod flow;
 pub mod gaussian;
 pub mod holds;
 pub mod mean_shift;
-pub mod pattern;
 pub mod pixel;
 pub mod pyramid;
 pub mod resize;
@@ -32,5 +30,4 @@ pub mod sequence;
 
 pub use decode::{DecodeError, decode, probe};
 pub use holds::{HoldError, HoldOptions, Holds, find_holds};
-pub use pattern::{FramePattern, PatternError};
 pub use sequence::Sequence;

@@ -6,8 +6,7 @@
 //! it, which costs time but can never deadlock within a pool of threads.
 
 use super::decode::{DecodeError, decode};
-use super::pattern::{FramePattern, PatternError};
-use crate::scene::{Colour, Footage, FrameError, FrameNumber, FrameSource, Raster};
+use crate::scene::{Colour, Footage, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Raster};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
