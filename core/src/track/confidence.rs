@@ -12,7 +12,7 @@
 use super::features::Features;
 use super::lattice::texture::{Cover, WORST, difference};
 use super::propagate::Model;
-use super::rototoon::Hypothesis;
+use super::pool::Hypothesis;
 
 /// A, B and C of the module's formula.
 const INTERCEPT: f64 = -1.28;
