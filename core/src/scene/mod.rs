@@ -2,11 +2,15 @@
 //!
 //! - [`raster`]: a rectangle of pixels
 //! - [`footage`]: which frames there are and where their pictures come from
+//! - [`palette`]: colours that tell parts apart
+//! - [`parameters`]: what a user may set, described once
 //! - [`part`]: a tracked contour with its keys, corrections and results
 //! - [`pattern`]: file names of a numbered sequence
 //! - [`progress`]: how long work reports and is cancelled
 
 pub mod footage;
+pub mod palette;
+pub mod parameters;
 pub mod part;
 pub mod pattern;
 pub mod progress;
