@@ -1,6 +1,7 @@
 //! The types that stages hand to each other.
 //!
 //! - [`raster`]: a rectangle of pixels
+//! - [`correspondence`]: contours drawn afresh, matched to the parts
 //! - [`footage`]: which frames there are and where their pictures come from
 //! - [`palette`]: colours that tell parts apart
 //! - [`parameters`]: what a user may set, described once
@@ -8,6 +9,7 @@
 //! - [`pattern`]: file names of a numbered sequence
 //! - [`progress`]: how long work reports and is cancelled
 
+pub mod correspondence;
 pub mod footage;
 pub mod palette;
 pub mod parameters;
