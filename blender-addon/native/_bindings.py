@@ -2,7 +2,7 @@
 
 import ctypes
 
-HEADER_HASH = 0x13e4a768d9a97619
+HEADER_HASH = 0x2917d3691edab071
 
 ROTOTOON_ABI_VERSION = 1
 ROTOTOON_STATUS_OK = 0
@@ -18,13 +18,23 @@ RototoonProgress = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_do
 def declare(library: ctypes.CDLL) -> None:
     """Sets result and argument types of every function."""
     library.rototoon_abi_version.restype = ctypes.c_uint32
-    library.rototoon_abi_version.argtypes = [
-    ]
+    library.rototoon_abi_version.argtypes = []
     library.rototoon_header_hash.restype = ctypes.c_uint64
-    library.rototoon_header_hash.argtypes = [
-    ]
+    library.rototoon_header_hash.argtypes = []
     library.rototoon_version.restype = ctypes.c_int32
     library.rototoon_version.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_parameters.restype = ctypes.c_int32
+    library.rototoon_parameters.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_match_contours.restype = ctypes.c_int32
+    library.rototoon_match_contours.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
         ctypes.c_void_p,
         ctypes.c_void_p,
     ]
@@ -66,13 +76,23 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_void_p,
     ]
     library.rototoon_abi_version.restype = ctypes.c_uint32
-    library.rototoon_abi_version.argtypes = [
-    ]
+    library.rototoon_abi_version.argtypes = []
     library.rototoon_header_hash.restype = ctypes.c_uint64
-    library.rototoon_header_hash.argtypes = [
-    ]
+    library.rototoon_header_hash.argtypes = []
     library.rototoon_version.restype = ctypes.c_int32
     library.rototoon_version.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_parameters.restype = ctypes.c_int32
+    library.rototoon_parameters.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_match_contours.restype = ctypes.c_int32
+    library.rototoon_match_contours.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
         ctypes.c_void_p,
         ctypes.c_void_p,
     ]

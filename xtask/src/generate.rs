@@ -110,6 +110,10 @@ fn bindings(header: &str) -> Result<String> {
             }
             Declaration::Function { name, result, parameters } => {
                 writeln!(functions, "    library.{name}.restype = {}", result.0)?;
+                if parameters.is_empty() {
+                    writeln!(functions, "    library.{name}.argtypes = []")?;
+                    continue;
+                }
                 writeln!(functions, "    library.{name}.argtypes = [")?;
                 for parameter in parameters {
                     writeln!(functions, "        {},", parameter.0)?;

@@ -85,6 +85,20 @@ uint64_t rototoon_header_hash(void);
 // The version of Rototoon, such as "0.1.0".
 RototoonStatus rototoon_version(struct RototoonText **version, struct RototoonText **error);
 
+// Every parameter as a JSON list: `id`, `label`, `help`, `stage`, and what values it takes.
+RototoonStatus rototoon_parameters(struct RototoonText **parameters, struct RototoonText **error);
+
+// Finds which drawn contour is which known one, whatever their order, direction, start and number of points.
+//
+// `request` is JSON: `{"references": [contour], "drawn": [contour]}`, a contour being `{"closed": bool, "points":
+// [[x, y]]}` in pixels, with its `"color": [r, g, b]` (sRGB, 0 to 1) where it has one. `matches` is JSON: `{"matches":
+// [{"reference": index, "drawn": index, "points": [[x, y]], "cost": number}]}`, rising by reference: `points` are the
+// reference's control points on the drawn line; the cost is 0 for equal contours. What has no counterpart is left out.
+RototoonStatus rototoon_match_contours(const uint8_t *request,
+                                       size_t request_length,
+                                       struct RototoonText **matches,
+                                       struct RototoonText **error);
+
 // The bytes of a text (UTF-8, not terminated); they live as long as the handle.
 RototoonStatus rototoon_text_read(const struct RototoonText *text,
                                   const uint8_t **data,
@@ -126,6 +140,20 @@ uint64_t rototoon_header_hash(void);
 
 // The version of Rototoon, such as "0.1.0".
 RototoonStatus rototoon_version(struct RototoonText **version, struct RototoonText **error);
+
+// Every parameter as a JSON list: `id`, `label`, `help`, `stage`, and what values it takes.
+RototoonStatus rototoon_parameters(struct RototoonText **parameters, struct RototoonText **error);
+
+// Finds which drawn contour is which known one, whatever their order, direction, start and number of points.
+//
+// `request` is JSON: `{"references": [contour], "drawn": [contour]}`, a contour being `{"closed": bool, "points":
+// [[x, y]]}` in pixels, with its `"color": [r, g, b]` (sRGB, 0 to 1) where it has one. `matches` is JSON: `{"matches":
+// [{"reference": index, "drawn": index, "points": [[x, y]], "cost": number}]}`, rising by reference: `points` are the
+// reference's control points on the drawn line; the cost is 0 for equal contours. What has no counterpart is left out.
+RototoonStatus rototoon_match_contours(const uint8_t *request,
+                                       size_t request_length,
+                                       struct RototoonText **matches,
+                                       struct RototoonText **error);
 
 // The bytes of a text (UTF-8, not terminated); they live as long as the handle.
 RototoonStatus rototoon_text_read(const struct RototoonText *text,
@@ -189,7 +217,7 @@ RototoonStatus rototoon_session_set_document(const struct RototoonSession *sessi
                                              struct RototoonText **error);
 
 // Writes the document to a file, whole or not at all. In another folder than the session's, a relative footage pattern
-// is written absolute.
+// is rewritten so that it names the same files.
 RototoonStatus rototoon_session_save(const struct RototoonSession *session,
                                      const uint8_t *path,
                                      size_t path_length,
@@ -271,8 +299,8 @@ RototoonStatus rototoon_session_clear_center(const struct RototoonSession *sessi
 
 // Tracks every part between its keys and stores `tracks` and `confidence` in the document.
 //
-// `options` is JSON: `preset` ("rototoon" or "zhou2011"), `threads` (0: one a core); each may be missing, and so may all
-// (length 0). The threads do not change the result. Spans that nothing touched since they were last solved are reused.
+// `options` is JSON of the parameters of the stages "track" and "run" (see `rototoon_parameters`), such as
+// `{"preset": "zhou2011", "threads": 2}`; each may be missing, and so may all (length 0). The threads do not change the result. Spans that nothing touched since they were last solved are reused.
 // Snapped curves of frames whose track changed are dropped.
 //
 // `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
@@ -288,7 +316,7 @@ RototoonStatus rototoon_session_track(const struct RototoonSession *session,
 
 // Lays the contours along the drawn ink and stores `curves` in the document.
 //
-// `options` is JSON: `threads` as for tracking. `summary` is JSON: `{"frames": number of snapped frames, parts added up}`.
+// `options` is JSON of the parameters of the stages "snap" and "run" (see `rototoon_parameters`). `summary` is JSON: `{"frames": number of snapped frames, parts added up}`.
 RototoonStatus rototoon_session_snap(const struct RototoonSession *session,
                                      const uint8_t *options,
                                      size_t options_length,
@@ -347,7 +375,7 @@ RototoonStatus rototoon_session_set_document(const struct RototoonSession *sessi
                                              struct RototoonText **error);
 
 // Writes the document to a file, whole or not at all. In another folder than the session's, a relative footage pattern
-// is written absolute.
+// is rewritten so that it names the same files.
 RototoonStatus rototoon_session_save(const struct RototoonSession *session,
                                      const uint8_t *path,
                                      size_t path_length,
@@ -429,8 +457,8 @@ RototoonStatus rototoon_session_clear_center(const struct RototoonSession *sessi
 
 // Tracks every part between its keys and stores `tracks` and `confidence` in the document.
 //
-// `options` is JSON: `preset` ("rototoon" or "zhou2011"), `threads` (0: one a core); each may be missing, and so may all
-// (length 0). The threads do not change the result. Spans that nothing touched since they were last solved are reused.
+// `options` is JSON of the parameters of the stages "track" and "run" (see `rototoon_parameters`), such as
+// `{"preset": "zhou2011", "threads": 2}`; each may be missing, and so may all (length 0). The threads do not change the result. Spans that nothing touched since they were last solved are reused.
 // Snapped curves of frames whose track changed are dropped.
 //
 // `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
@@ -446,7 +474,7 @@ RototoonStatus rototoon_session_track(const struct RototoonSession *session,
 
 // Lays the contours along the drawn ink and stores `curves` in the document.
 //
-// `options` is JSON: `threads` as for tracking. `summary` is JSON: `{"frames": number of snapped frames, parts added up}`.
+// `options` is JSON of the parameters of the stages "snap" and "run" (see `rototoon_parameters`). `summary` is JSON: `{"frames": number of snapped frames, parts added up}`.
 RototoonStatus rototoon_session_snap(const struct RototoonSession *session,
                                      const uint8_t *options,
                                      size_t options_length,
