@@ -13,6 +13,7 @@
 //! - [`resize`]: area reduction and bilinear enlargement
 //! - [`sample`]: bilinear reading with derivatives
 //! - [`sequence`]: the pictures of a footage, decoded in parallel and kept for a while
+//! - `vector`: hot loops compiled for the machine they run on
 
 pub mod canny;
 pub mod colour;
@@ -27,6 +28,7 @@ pub mod pyramid;
 pub mod resize;
 pub mod sample;
 pub mod sequence;
+mod vector;
 
 pub use decode::{DecodeError, decode, probe};
 pub use holds::{HoldError, HoldOptions, Holds, find_holds};
