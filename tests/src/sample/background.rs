@@ -184,9 +184,9 @@ fn tree(canvas: &mut Pixmap, dice: &mut Dice, x: f64, y: f64, size: f64, softnes
             );
         }
     }
-    for _ in 0..26 {
+    for _ in 0..80 {
         let tone = mix([0.50, 0.69, 0.42], [0.70, 0.82, 0.48], dice.roll(0.0, 1.0));
-        let place = at(dice.roll(-26.0, 28.0), dice.roll(7.0, 17.0));
+        let place = at(dice.roll(-26.0, 28.0), dice.roll(9.0, 17.0));
         dab(&mut sheet, place, [size * 10.0, size * 2.2], dice.roll(-105.0, -65.0), tone, 0.8, None);
     }
     blur(&mut sheet, softness);
