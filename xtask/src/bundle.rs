@@ -71,7 +71,10 @@ fn stage(library: &Path) -> Result<PathBuf> {
     let staged = target().join("bundle/rototoon");
     empty_folder(&staged)?;
     let keep = |name: &str| {
-        !name.starts_with('.') && !["__pycache__", "tests"].contains(&name) && !name.ends_with(".pyc") && !name.ends_with(".so")
+        !name.starts_with('.')
+            && !["__pycache__", "tests"].contains(&name)
+            && !name.ends_with(".pyc")
+            && !name.ends_with(".so")
     };
     copy_folder(&root().join("blender-addon"), &staged, &keep)?;
     std::fs::create_dir_all(staged.join("native"))?;
@@ -80,14 +83,22 @@ fn stage(library: &Path) -> Result<PathBuf> {
     let manifest = std::fs::read_to_string(staged.join("blender_manifest.toml")).context("blender_manifest.toml")?;
     // Blender's validator accepts platform names that no Blender has.
     let platforms = manifest.lines().find(|line| line.starts_with("platforms")).unwrap_or_default();
-    ensure!(platforms.contains("[\"linux-x64\"]"), "blender_manifest.toml: {platforms:?}, expected platforms = [\"linux-x64\"]");
+    ensure!(
+        platforms.contains("[\"linux-x64\"]"),
+        "blender_manifest.toml: {platforms:?}, expected platforms = [\"linux-x64\"]"
+    );
     Ok(staged)
 }
 
 fn pack(packager: &Packager, staged: &Path) -> Result<PathBuf> {
     let out = target().join("bundle/out");
     empty_folder(&out)?;
-    run(packager.command()?.args(["build", "--split-platforms", "--source-dir"]).arg(staged).arg("--output-dir").arg(&out))?;
+    run(packager
+        .command()?
+        .args(["build", "--split-platforms", "--source-dir"])
+        .arg(staged)
+        .arg("--output-dir")
+        .arg(&out))?;
     let built: Vec<PathBuf> = std::fs::read_dir(&out)?.map(|e| Ok(e?.path())).collect::<Result<_>>()?;
     let [zip] = built.as_slice() else { bail!("the packager left {built:?}, expected one zip") };
     run(packager.command()?.arg("validate").arg(zip))?;

@@ -15,8 +15,10 @@ const PICTURES: usize = 12;
 
 /// Builds and installs the extension, lets it track and snap, and leaves what came out in `target/demo`.
 pub fn demo(project: Option<PathBuf>, blender: Option<PathBuf>) -> Result<()> {
-    let blender = blender.map(|path| path.canonicalize().with_context(|| format!("no Blender at {path:?}"))).transpose()?;
-    let project = project.map(|path| path.canonicalize().with_context(|| format!("no project at {path:?}"))).transpose()?;
+    let blender =
+        blender.map(|path| path.canonicalize().with_context(|| format!("no Blender at {path:?}"))).transpose()?;
+    let project =
+        project.map(|path| path.canonicalize().with_context(|| format!("no project at {path:?}"))).transpose()?;
     let packager = match blender {
         Some(binary) => Packager::Blender(binary),
         None => Packager::from_wheel()?,
@@ -71,7 +73,10 @@ fn script(packager: &Packager) -> Command {
         }
         Packager::Blender(binary) => {
             let mut start = command(binary);
-            start.args(["--background", "--factory-startup", "--python-exit-code", "1", "--python"]).arg(script).arg("--");
+            start
+                .args(["--background", "--factory-startup", "--python-exit-code", "1", "--python"])
+                .arg(script)
+                .arg("--");
             start
         }
     };
@@ -106,7 +111,8 @@ fn contact_sheet(report: &Value, tracked: &Value, out: &Path) -> Result<()> {
 
 /// Times, and accuracy where a truth document lies beside the project.
 fn table(project: &Path, tracked: &Value, report: &Value) -> Result<String> {
-    let mut text = format!("Blender {}\n\n| step | seconds |\n| --- | ---: |\n", report["blender"].as_str().unwrap_or("?"));
+    let mut text =
+        format!("Blender {}\n\n| step | seconds |\n| --- | ---: |\n", report["blender"].as_str().unwrap_or("?"));
     for (step, seconds) in report["seconds"].as_object().context("report.json: no seconds")? {
         writeln!(text, "| {step} | {:.2} |", seconds.as_f64().unwrap_or(f64::NAN))?;
     }

@@ -97,7 +97,9 @@ pub fn any_blender_venv() -> Result<(Wheel, PathBuf)> {
             return Ok((wheel, python));
         }
     }
-    bail!("Blender's wheels need Python 3.11 or 3.13, and neither was found; install one, for example: apt-get install python3.11 python3.11-venv")
+    bail!(
+        "Blender's wheels need Python 3.11 or 3.13, and neither was found; install one, for example: apt-get install python3.11 python3.11-venv"
+    )
 }
 
 #[cfg(test)]

@@ -38,8 +38,7 @@ pub fn run(command: &mut Command) -> Result<()> {
 
 /// Runs a command and returns what it printed; an error holds what it said on standard error.
 pub fn capture(command: &mut Command) -> Result<String> {
-    let output =
-        command.stdin(Stdio::null()).output().with_context(|| format!("cannot start {}", shown(command)))?;
+    let output = command.stdin(Stdio::null()).output().with_context(|| format!("cannot start {}", shown(command)))?;
     if !output.status.success() {
         let said = String::from_utf8_lossy(&output.stderr);
         bail!("{} ended with {}: {}", shown(command), output.status, said.trim());
@@ -93,7 +92,12 @@ mod tests {
     fn errors_name_the_command() {
         let error = run(command("false").arg("quietly")).unwrap_err().to_string();
         assert!(error.contains("false quietly"), "{error}");
-        assert!(capture(command("no-such-program-here").arg("x")).unwrap_err().to_string().contains("no-such-program-here x"));
+        assert!(
+            capture(command("no-such-program-here").arg("x"))
+                .unwrap_err()
+                .to_string()
+                .contains("no-such-program-here x")
+        );
     }
 
     #[test]
@@ -105,7 +109,8 @@ mod tests {
         for file in ["a/one.py", "a/inner/two.py", "a/inner/two.pyc", "a/__pycache__/three.py"] {
             std::fs::write(folder.join(file), file).unwrap();
         }
-        copy_folder(&folder.join("a"), &folder.join("b"), &|name| name != "__pycache__" && !name.ends_with(".pyc")).unwrap();
+        copy_folder(&folder.join("a"), &folder.join("b"), &|name| name != "__pycache__" && !name.ends_with(".pyc"))
+            .unwrap();
         let exists = |file: &str| folder.join(file).exists();
         assert!(exists("b/one.py") && exists("b/inner/two.py"));
         assert!(!exists("b/inner/two.pyc") && !exists("b/__pycache__"));

@@ -1,0 +1,84 @@
+//! From a chain of pixels to a path along the ink with sub-pixel places.
+//!
+//! Each pixel that the edge or line passes is moved to the feature's own place, across its direction (parabola through the
+//! gradient magnitude for an edge, the middle between both edges for a line); the others stay at their centre. Binomial smoothing along
+//! the path takes out the staircase of those that stayed and joins fixed ends that lie a pixel or two beside the ink
+//! without a kink. It moves a curve of radius r by about 1/2r px, which is below a tenth of a pixel for radii above 5.
+//!
+//! The path stays on its side of an ink line: a wire of the edge kind pays for a gradient that turns round, and a pixel is
+//! moved to the extremum of its own gradient.
+
+use super::corridor::Corridor;
+use crate::geometry::Point;
+
+/// Binomial passes (¼, ½, ¼); each adds ½ px² of variance on a path of one point a pixel.
+const PASSES: usize = 2;
+
+/// Points nearer than this to their predecessor are dropped, in pixels.
+const LEAST_STEP: f64 = 0.3;
+
+/// The path through `pixels` of the corridor, from exactly `a` to exactly `b`; `place` is where the feature lies that
+/// passes through a pixel.
+pub(super) fn refine(
+    pixels: &[usize],
+    corridor: &Corridor,
+    place: impl Fn(usize) -> Option<Point>,
+    a: Point,
+    b: Point,
+) -> Vec<Point> {
+    let mut path: Vec<Point> = pixels
+        .iter()
+        .map(|&i| {
+            let (x, y) = corridor.pixel(i);
+            place(i).unwrap_or(Point::new(x as f64 + 0.5, y as f64 + 0.5))
+        })
+        .collect();
+    let last = path.len() - 1;
+    if last == 0 {
+        return vec![a, b];
+    }
+    path[0] = a;
+    path[last] = b;
+    for _ in 0..PASSES {
+        let mut before = path[0];
+        for k in 1..last {
+            let here = path[k];
+            path[k] = 0.25 * before + 0.5 * here + 0.25 * path[k + 1];
+            before = here;
+        }
+    }
+    thin(&path)
+}
+
+/// The path without points that hardly leave their predecessor or the end; both ends are kept.
+fn thin(path: &[Point]) -> Vec<Point> {
+    let end = path[path.len() - 1];
+    let mut kept = vec![path[0]];
+    for &p in &path[1..path.len() - 1] {
+        if p.distance(kept[kept.len() - 1]) >= LEAST_STEP && p.distance(end) >= LEAST_STEP {
+            kept.push(p);
+        }
+    }
+    kept.push(end);
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_are_kept_and_bunched_points_dropped() {
+        let path = [0.0, 0.1, 0.5, 0.6, 1.4, 1.9, 2.0].map(|x| Point::new(x, 0.0));
+        let kept: Vec<f64> = thin(&path).iter().map(|p| p.x).collect();
+        assert_eq!(kept, [0.0, 0.5, 1.4, 2.0]);
+        assert_eq!(thin(&path[..2]).len(), 2);
+    }
+
+    #[test]
+    fn a_path_of_one_pixel_is_its_two_ends() {
+        let (a, b) = (Point::new(3.1, 3.2), Point::new(3.8, 3.7));
+        let corridor = Corridor::new(a, b, 4.0, (8, 8));
+        assert_eq!(refine(&[corridor.index(a)], &corridor, |_| None, a, b), [a, b]);
+    }
+}
