@@ -29,8 +29,8 @@ const TILE: usize = 64;
 /// steps of aliased drawings.
 const EDGE_SIGMA: f64 = 0.8;
 
-/// Standard deviation in pixels, at [`REFERENCE_LINES`] lines, of the line filter: finds lines of 1 to 6 px.
-const LINE_SIGMA: f64 = 1.3;
+/// Standard deviation in pixels, at [`REFERENCE_LINES`] lines, of the line filter: finds lines of 1 to 5 px.
+const LINE_SIGMA: f64 = 1.0;
 
 /// Picture height that pixel measures are given for; they grow with larger pictures.
 pub(super) const REFERENCE_LINES: f64 = 540.0;
@@ -42,7 +42,7 @@ const EDGE_FLOOR: f32 = 0.008;
 const LINE_FLOOR: f32 = 0.006;
 
 /// Slope (luma per pixel) that a valley's two sides have at least, a pixel from the middle.
-const SLOPE_FLOOR: f32 = 0.001;
+const SLOPE_FLOOR: f32 = 0.01;
 
 /// Farthest place of a feature from its pixel's centre, in pixels, that is believed.
 const MAX_OFFSET: f32 = 1.0;
@@ -226,7 +226,7 @@ fn edge_at(channels: &[Channel; 3], at: usize) -> Feature {
         }
     }
     let here = channel.magnitude[at];
-    if !(here >= EDGE_FLOOR) {
+    if !here.is_finite() || here < EDGE_FLOOR {
         return Feature { offset: f32::NAN, ..Feature::default() };
     }
     let (nx, ny) = (channel.x[at] / here, channel.y[at] / here);
@@ -245,7 +245,7 @@ fn line_at(d: &Derivatives, at: usize) -> Feature {
     let half_trace = 0.5 * (xx + yy);
     let root = (0.5 * (xx - yy)).hypot(xy);
     let bend = half_trace + root;
-    if !(bend >= LINE_FLOOR) {
+    if !bend.is_finite() || bend < LINE_FLOOR {
         return Feature { offset: f32::NAN, ..Feature::default() };
     }
     // The principal direction of the larger curvature points across the valley.
