@@ -4,7 +4,9 @@
 //! when cancelled, not at all.
 
 use crate::export::{SvgOptions, svg};
+use crate::geometry::Point;
 use crate::image::Sequence;
+use crate::project::save::DECIMALS;
 use crate::project::{Document, Problems, WriteError, output, validate, write_whole};
 use crate::render::{self, EncodeError, Format, OverlayOptions};
 use crate::scene::{Cancelled, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
@@ -83,9 +85,20 @@ pub fn store(scene: &mut Scene, tracking: &Tracking) {
     for (part, found) in scene.parts.iter_mut().zip(&tracking.parts) {
         let before = std::mem::replace(&mut part.tracks, found.tracks.clone());
         let now = &part.tracks;
-        part.curves.retain(|frame, _| now.contains_key(frame) && now.get(frame) == before.get(frame));
+        part.curves.retain(|frame, _| match (now.get(frame), before.get(frame)) {
+            (Some(now), Some(before)) => same_contour(now, before),
+            // Snapped from a key that had no track.
+            (Some(now), None) => part.keys.get(frame).is_some_and(|key| same_contour(now, key)),
+            _ => false,
+        });
         part.confidence = found.confidence.clone();
     }
+}
+
+/// Whether contours differ by no more than what a document's rounding makes of them.
+fn same_contour(a: &[Point], b: &[Point]) -> bool {
+    let tolerance = 10f64.powi(-DECIMALS);
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (*a - *b).abs().max_element() <= tolerance)
 }
 
 /// Snaps every contour of a document that lies in `folder` to the ink. Runs on the caller's rayon pool.
