@@ -52,7 +52,6 @@ def _arc(path: np.ndarray) -> np.ndarray:
 def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, mapper: Mapper) -> int:
     """Writes snapped paths, by part number and scene frame, in pixels; returns the number of strokes."""
     layer = gp.layer(ob, ob.rototoon.snapped_layer)
-    _below(ob, layer)
     own = {frame for frame, (_, kind) in gp.drawings(layer).items() if kind != gp.GENERATED}
     old = {frame for frame in gp.drawings(layer) if frame not in own}
     parts = sorted((part for part in found.parts if part.keys), key=lambda part: part.depth)
@@ -72,11 +71,6 @@ def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, 
         gp.replace_made(drawings[frame][0], _rows(strokes))
         written += len(strokes)
     return written
-
-
-def _below(ob, layer) -> None:
-    """A new layer comes on top; Blender shows it over the contours, where the artist sees it."""
-    layer.use_lights = False
 
 
 def _plane_points(ob, found: Contours) -> dict[int, np.ndarray]:
