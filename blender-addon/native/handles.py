@@ -1,0 +1,197 @@
+"""Owned handles: each is freed once, by `close` or when it is collected, and every failure becomes an exception."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import threading
+from collections.abc import Callable, Iterator
+from typing import Any, ClassVar, Self
+
+from . import _bindings, library
+from .errors import Cancelled, RototoonError
+
+
+def call(name: str, *arguments: Any) -> None:
+    """Calls a function whose last parameter is the error text; raises what it reports."""
+    error = ctypes.c_void_p()
+    status = getattr(library.load().functions, name)(*arguments, ctypes.byref(error))
+    message = ""
+    if error:
+        text = Text(error)
+        message = text.read()
+        text.close()
+    if status == _bindings.ROTOTOON_STATUS_CANCELLED:
+        raise Cancelled(message)
+    if status != _bindings.ROTOTOON_STATUS_OK:
+        raise RototoonError(message or f"{name} failed with status {status}")
+
+
+class Handle:
+    """A pointer that the library gave and that is freed with the `_free` of its type."""
+
+    _free: ClassVar[str]
+
+    def __init__(self, pointer: ctypes.c_void_p) -> None:
+        self._pointer: ctypes.c_void_p | None = pointer
+
+    @classmethod
+    def make(cls, name: str, *arguments: Any) -> Self:
+        """The handle that a function gives through its last parameter before the error."""
+        pointer = ctypes.c_void_p()
+        call(name, *arguments, ctypes.byref(pointer))
+        return cls(pointer)
+
+    @property
+    def closed(self) -> bool:
+        """Whether it was freed."""
+        return self._pointer is None
+
+    def pointer(self) -> ctypes.c_void_p:
+        """The pointer; an error once closed."""
+        if self._pointer is None:
+            raise RototoonError(f"the {type(self).__name__.lower()} is closed")
+        return self._pointer
+
+    def read(self) -> Any:
+        """What it holds, as Python objects that outlive it."""
+        raise NotImplementedError
+
+    def close(self) -> None:
+        """Frees it; a second time does nothing."""
+        pointer, self._pointer = self._pointer, None
+        if pointer is not None:
+            getattr(library.load().functions, self._free)(pointer)
+
+    def __del__(self) -> None:
+        # Not set where __init__ was never reached; nothing can be raised from here.
+        if getattr(self, "_pointer", None) is not None:
+            with contextlib.suppress(Exception):
+                Handle.close(self)
+
+
+class Text(Handle):
+    """UTF-8 text of the library."""
+
+    _free = "rototoon_text_free"
+
+    def read(self) -> str:
+        """The text."""
+        # Not through `call`: that reads error texts with this very method.
+        data, length = ctypes.c_void_p(), ctypes.c_size_t()
+        read = library.load().functions.rototoon_text_read
+        status = read(self.pointer(), ctypes.byref(data), ctypes.byref(length), None)
+        if status != _bindings.ROTOTOON_STATUS_OK:
+            raise RototoonError(f"rototoon_text_read failed with status {status}")
+        return _copy(data, length.value).decode()
+
+
+class TrackArrays(Handle):
+    """Frames, points and confidence of a part."""
+
+    _free = "rototoon_track_free"
+
+    def read(self) -> tuple[memoryview, memoryview, memoryview]:
+        """Frames (F,) int32, points (F, N, 2) float64, confidence (F, N) float64: copies that outlive the handle."""
+        frame_count, point_count = ctypes.c_size_t(), ctypes.c_size_t()
+        frames, points, confidence = ctypes.c_void_p(), ctypes.c_void_p(), ctypes.c_void_p()
+        out = (frame_count, point_count, frames, points, confidence)
+        call("rototoon_track_read", self.pointer(), *map(ctypes.byref, out))
+        f, n = frame_count.value, point_count.value
+        return view(frames, "i", f), view(points, "d", f, n, 2), view(confidence, "d", f, n)
+
+
+class CurveArrays(Handle):
+    """Snapped paths of a part on a frame."""
+
+    _free = "rototoon_curves_free"
+
+    def read(self) -> list[memoryview]:
+        """Each path (M, 2) float64: copies that outlive the handle."""
+        path_count, offsets, points = ctypes.c_size_t(), ctypes.c_void_p(), ctypes.c_void_p()
+        call("rototoon_curves_read", self.pointer(), *map(ctypes.byref, (path_count, offsets, points)))
+        bounds = view(offsets, "i", path_count.value + 1).tolist()
+        size = 2 * ctypes.sizeof(ctypes.c_double)
+        start = points.value or 0
+        return [view(ctypes.c_void_p(start + a * size), "d", b - a, 2) for a, b in zip(bounds, bounds[1:])]
+
+
+class Session(Handle):
+    """A session of the library, guarded: a call during another one is refused, so nothing is freed while in use."""
+
+    _free = "rototoon_session_free"
+
+    def __init__(self, pointer: ctypes.c_void_p) -> None:
+        super().__init__(pointer)
+        self._guard = threading.Lock()
+
+    @contextlib.contextmanager
+    def _alone(self) -> Iterator[None]:
+        if not self._guard.acquire(blocking=False):
+            raise RototoonError("the session is in use by another call; it may be used from one thread at a time")
+        try:
+            yield
+        finally:
+            self._guard.release()
+
+    def call(self, name: str, *arguments: Any) -> None:
+        """Calls a function of the session."""
+        with self._alone():
+            call(name, self.pointer(), *arguments)
+
+    def give(self, kind: type[Handle], name: str, *arguments: Any) -> Any:
+        """What a handle reads that a function of the session gives."""
+        with self._alone():
+            return take(kind, name, self.pointer(), *arguments)
+
+    def close(self) -> None:
+        """Frees the session; refused during a call."""
+        with self._alone():
+            super().close()
+
+
+def take(kind: type[Handle], name: str, *arguments: Any) -> Any:
+    """What the handle reads that a function gives; the handle is freed."""
+    handle = kind.make(name, *arguments)
+    try:
+        return handle.read()
+    finally:
+        handle.close()
+
+
+def view(data: ctypes.c_void_p, kind: str, *shape: int) -> memoryview:
+    """A read-only copy of an array as a memoryview; one-dimensional where it is empty (Python knows no other way)."""
+    count = 1
+    for length in shape:
+        count *= length
+    size = {"i": ctypes.sizeof(ctypes.c_int32), "d": ctypes.sizeof(ctypes.c_double)}[kind]
+    flat = memoryview(_copy(data, count * size))
+    return flat.cast(kind, shape) if count else flat.cast(kind)
+
+
+def _copy(data: ctypes.c_void_p, size: int) -> bytes:
+    return ctypes.string_at(data, size) if size else b""
+
+
+@contextlib.contextmanager
+def progress_callback(progress: Callable[[float, str], bool | None] | None) -> Iterator[Any]:
+    """The C callback for a Python one; what the Python one raises cancels the work and is raised at the end."""
+    if progress is None:
+        yield _bindings.RototoonProgress()
+        return
+    raised: list[BaseException] = []
+
+    def report(_user: int | None, fraction: float, step: int | None, length: int) -> int:
+        try:
+            return int(progress(fraction, _copy(ctypes.c_void_p(step), length).decode()) is False)
+        except BaseException as error:  # noqa: BLE001 - also KeyboardInterrupt must not be lost in the library
+            raised.append(error)
+            return 1
+
+    try:
+        yield _bindings.RototoonProgress(report)
+    except Cancelled:
+        if not raised:
+            raise
+    if raised:
+        raise raised[0]

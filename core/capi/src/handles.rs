@@ -1,0 +1,160 @@
+//! What calls hand out: text and arrays, owned by the caller until freed. They never change and may be shared by threads.
+
+use crate::entry::{clear, entry, free, handle};
+use crate::status::RototoonStatus;
+use rototoon::geometry::Point;
+use rototoon::scene::Part;
+
+/// UTF-8 text: an error message or a JSON document.
+pub struct RototoonText(String);
+
+/// The track of a part: frame numbers, points, confidence.
+pub struct RototoonTrack {
+    frames: Vec<i32>,
+    point_count: usize,
+    points: Vec<f64>,
+    confidence: Vec<f64>,
+}
+
+/// The snapped paths of a part on one frame.
+pub struct RototoonCurves {
+    offsets: Vec<i32>,
+    points: Vec<f64>,
+}
+
+impl RototoonText {
+    /// A text.
+    pub fn new(text: impl Into<String>) -> Self {
+        Self(text.into())
+    }
+}
+
+impl RototoonTrack {
+    /// The track of a part; empty where it was not tracked.
+    pub fn of(part: &Part) -> Self {
+        let point_count = part.tracks.values().next().map_or(0, Vec::len);
+        let mut track = Self { frames: Vec::new(), point_count, points: Vec::new(), confidence: Vec::new() };
+        for (frame, points) in &part.tracks {
+            track.frames.push(*frame);
+            track.points.extend(points.iter().flat_map(|p| p.to_array()));
+            // A document written by hand may have tracks alone, and keys are sure in any case.
+            let known = part.confidence.get(frame).filter(|known| known.len() == points.len());
+            let otherwise = if part.keys.contains_key(frame) { 1.0 } else { 0.0 };
+            match known {
+                Some(known) => track.confidence.extend(known),
+                None => track.confidence.extend(std::iter::repeat_n(otherwise, points.len())),
+            }
+        }
+        track
+    }
+}
+
+impl RototoonCurves {
+    /// Paths one after the other.
+    pub fn of(paths: &[Vec<Point>]) -> Self {
+        let mut curves = Self { offsets: vec![0], points: Vec::new() };
+        for path in paths {
+            curves.points.extend(path.iter().flat_map(|p| p.to_array()));
+            curves.offsets.push((curves.points.len() / 2) as i32);
+        }
+        curves
+    }
+}
+
+/// The bytes of a text (UTF-8, not terminated); they live as long as the handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_text_read(
+    text: *const RototoonText,
+    data: *mut *const u8,
+    length: *mut usize,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract; out parameters are written only after `clear` accepted them.
+    unsafe {
+        entry(error, || {
+            clear(data, std::ptr::null(), "data")?;
+            clear(length, 0, "length")?;
+            let text = handle(text, "text")?;
+            data.write(text.0.as_ptr());
+            length.write(text.0.len());
+            Ok(())
+        })
+    }
+}
+
+/// Frees a text; null is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_text_free(text: *mut RototoonText) {
+    // SAFETY: the crate's contract.
+    unsafe { free(text) }
+}
+
+/// The arrays of a track, which live as long as the handle: `frame_count` frame numbers (rising), `frame_count` ×
+/// `point_count` × 2 coordinates (x, y in pixels), `frame_count` × `point_count` confidences (0 to 1).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_track_read(
+    track: *const RototoonTrack,
+    frame_count: *mut usize,
+    point_count: *mut usize,
+    frames: *mut *const i32,
+    points: *mut *const f64,
+    confidence: *mut *const f64,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract; out parameters are written only after `clear` accepted them.
+    unsafe {
+        entry(error, || {
+            clear(frame_count, 0, "frame_count")?;
+            clear(point_count, 0, "point_count")?;
+            clear(frames, std::ptr::null(), "frames")?;
+            clear(points, std::ptr::null(), "points")?;
+            clear(confidence, std::ptr::null(), "confidence")?;
+            let track = handle(track, "track")?;
+            frame_count.write(track.frames.len());
+            point_count.write(track.point_count);
+            frames.write(track.frames.as_ptr());
+            points.write(track.points.as_ptr());
+            confidence.write(track.confidence.as_ptr());
+            Ok(())
+        })
+    }
+}
+
+/// Frees a track; null is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_track_free(track: *mut RototoonTrack) {
+    // SAFETY: the crate's contract.
+    unsafe { free(track) }
+}
+
+/// The arrays of snapped paths, which live as long as the handle: path `i` has the points `offsets[i]` to
+/// `offsets[i + 1]` (excluded) of `points` (x, y in pixels); there are `path_count` + 1 offsets.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_curves_read(
+    curves: *const RototoonCurves,
+    path_count: *mut usize,
+    offsets: *mut *const i32,
+    points: *mut *const f64,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract; out parameters are written only after `clear` accepted them.
+    unsafe {
+        entry(error, || {
+            clear(path_count, 0, "path_count")?;
+            clear(offsets, std::ptr::null(), "offsets")?;
+            clear(points, std::ptr::null(), "points")?;
+            let curves = handle(curves, "curves")?;
+            path_count.write(curves.offsets.len() - 1);
+            offsets.write(curves.offsets.as_ptr());
+            points.write(curves.points.as_ptr());
+            Ok(())
+        })
+    }
+}
+
+/// Frees snapped paths; null is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_curves_free(curves: *mut RototoonCurves) {
+    // SAFETY: the crate's contract.
+    unsafe { free(curves) }
+}

@@ -1,0 +1,176 @@
+//! Long work with a progress callback that is always called on the caller's own thread.
+//!
+//! The core reports from whichever thread has finished something. A foreign callback should not be called from there:
+//! hosts allow their API on one thread only, and every worker would wait for the interpreter lock. So the work runs on a
+//! thread of its own, leaves its reports in one place, and the calling thread looks there at a steady pace and calls
+//! back. Steady calls, also without news, let a host notice a keypress or a signal during a long step.
+
+use crate::status::Failure;
+use rototoon::scene::{Cancelled, Progress, Silent};
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::time::Duration;
+
+/// Between two calls of the callback: often enough to feel immediate, seldom enough to cost nothing.
+const PACE: Duration = Duration::from_millis(50);
+
+/// More threads than any machine has are a mistake of the caller, and each costs a stack.
+const MAX_THREADS: usize = 1024;
+
+/// The latest report of the work, and the caller's wish.
+#[derive(Default)]
+struct Board {
+    done: f64,
+    step: String,
+    cancelled: bool,
+    finished: bool,
+}
+
+#[derive(Default)]
+struct Shared {
+    board: Mutex<Board>,
+    finished: Condvar,
+}
+
+impl Shared {
+    fn board(&self) -> std::sync::MutexGuard<'_, Board> {
+        self.board.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Progress for Shared {
+    fn report(&self, step: &str, done: f64) -> Result<(), Cancelled> {
+        let mut board = self.board();
+        if done >= board.done {
+            board.done = done.min(1.0);
+            step.clone_into(&mut board.step);
+        }
+        if board.cancelled { Err(Cancelled) } else { Ok(()) }
+    }
+}
+
+/// Says that the work has ended, also where it ends in a panic.
+struct Finish<'a>(&'a Shared);
+
+impl Drop for Finish<'_> {
+    fn drop(&mut self) {
+        self.0.board().finished = true;
+        self.0.finished.notify_all();
+    }
+}
+
+/// Runs `work` on `threads` threads (0: one a core). `go_on(done, step)` is called on this thread, at least once before
+/// the work begins and once after it ended well; once it has returned false, what the work returned is dropped.
+pub fn run<T: Send>(
+    threads: usize,
+    go_on: Option<&mut dyn FnMut(f64, &str) -> bool>,
+    work: impl FnOnce(&dyn Progress) -> Result<T, Failure> + Send,
+) -> Result<T, Failure> {
+    let pool = match threads {
+        0 => None,
+        1..=MAX_THREADS => Some(rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::error)?),
+        _ => return Err(Failure::Error(format!("threads: found {threads}, expected at most {MAX_THREADS}"))),
+    };
+    let in_pool = |progress: &dyn Progress| match &pool {
+        Some(pool) => pool.install(|| work(progress)),
+        None => work(progress),
+    };
+    let Some(go_on) = go_on else { return in_pool(&Silent) };
+    if !go_on(0.0, "starting") {
+        return Err(Failure::Cancelled);
+    }
+    let shared = Shared::default();
+    let result = std::thread::scope(|scope| {
+        let worker = scope.spawn(|| {
+            let _finish = Finish(&shared);
+            in_pool(&shared)
+        });
+        watch(&shared, go_on);
+        worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    });
+    if shared.board().cancelled {
+        return Err(Failure::Cancelled);
+    }
+    let result = result?;
+    if go_on(1.0, "done") { Ok(result) } else { Err(Failure::Cancelled) }
+}
+
+/// Calls back at a steady pace until the work has ended.
+fn watch(shared: &Shared, go_on: &mut dyn FnMut(f64, &str) -> bool) {
+    loop {
+        let waiting = shared.finished.wait_timeout_while(shared.board(), PACE, |board| !board.finished);
+        let (board, _) = waiting.unwrap_or_else(PoisonError::into_inner);
+        if board.finished {
+            return;
+        }
+        let (done, step, cancelled) = (board.done, board.step.clone(), board.cancelled);
+        drop(board);
+        if !cancelled && !go_on(done, &step) {
+            shared.board().cancelled = true;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    #[test]
+    fn callback_runs_on_the_calling_thread_and_never_falls() {
+        let caller = std::thread::current().id();
+        let mut seen = Vec::new();
+        let mut go_on = |done: f64, _: &str| {
+            assert_eq!(std::thread::current().id(), caller);
+            seen.push(done);
+            true
+        };
+        let answer = run(2, Some(&mut go_on), |progress| {
+            assert_ne!(std::thread::current().id(), caller);
+            progress.report("late", 0.7)?;
+            progress.report("early", 0.3)?;
+            std::thread::sleep(3 * PACE);
+            Ok(42)
+        });
+        assert_eq!(answer, Ok(42));
+        assert!(seen.is_sorted(), "{seen:?}");
+        assert_eq!((seen.first(), seen.last()), (Some(&0.0), Some(&1.0)));
+        assert!(seen.contains(&0.7), "{seen:?}");
+    }
+
+    #[test]
+    fn refused_at_the_start_never_begins() {
+        let begun = AtomicBool::new(false);
+        let answer = run(0, Some(&mut |_, _| false), |_| {
+            begun.store(true, Ordering::Relaxed);
+            Ok(())
+        });
+        assert_eq!(answer, Err(Failure::Cancelled));
+        assert!(!begun.into_inner());
+    }
+
+    #[test]
+    fn cancelled_work_is_told_and_its_result_dropped() {
+        let answer = run(0, Some(&mut |done, _| done < 0.5), |progress| {
+            while progress.report("working", 0.5).is_ok() {
+                std::thread::sleep(PACE / 10);
+            }
+            Ok(())
+        });
+        assert_eq!(answer, Err(Failure::Cancelled));
+        assert_eq!(run(0, Some(&mut |done, _| done < 1.0), |_| Ok(())), Err(Failure::Cancelled));
+    }
+
+    #[test]
+    fn panics_of_the_work_come_out_of_the_call() {
+        let caught = std::panic::catch_unwind(|| {
+            run(0, Some(&mut |_, _| true), |_| -> Result<(), Failure> { panic!("broken") })
+        });
+        assert_eq!(caught.unwrap_err().downcast_ref::<&str>(), Some(&"broken"));
+    }
+
+    #[test]
+    fn unreasonable_thread_counts_are_refused() {
+        let answer = run(MAX_THREADS + 1, None, |_| Ok(()));
+        assert_eq!(answer, Err(Failure::Error("threads: found 1025, expected at most 1024".into())));
+    }
+}
