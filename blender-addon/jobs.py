@@ -34,6 +34,10 @@ class Worker:
         """Whether the work has ended."""
         return not self._thread.is_alive()
 
+    def wait(self) -> None:
+        """Gives the thread a moment."""
+        self._thread.join(0.05)
+
     def join(self) -> None:
         """Waits for the end."""
         self._thread.join()
@@ -78,6 +82,9 @@ class Stepper:
         except Exception as error:  # noqa: BLE001 - reported by the operator
             self.error = error
             return True
+
+    def wait(self) -> None:
+        """Nothing to wait for."""
 
     def join(self) -> None:
         """Nothing runs between steps."""

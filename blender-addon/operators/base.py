@@ -129,9 +129,8 @@ class Long:
         manager = context.window_manager
         manager.progress_begin(0, 100)
         try:
-            if hasattr(self._work, "result"):
-                self._work.join()
             while not self._work.advance():
+                self._work.wait()
                 manager.progress_update(int(100 * self._work.fraction))
         except KeyboardInterrupt:
             self._work.cancel()
