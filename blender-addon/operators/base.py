@@ -80,9 +80,14 @@ class Long:
 
     _work = None
     _timer = None
+    _picked = False
+    """Whether a file browser was opened: its end calls `execute`, and the window is there to follow the work."""
 
     def execute(self, context):
         """Called by Blender: waits for the work."""
+        if self._picked:
+            self._picked = False
+            return self._follow(context)
         try:
             self._work = self.begin(context)
             self._work.start()
@@ -96,6 +101,9 @@ class Long:
         """Called by Blender: follows the work with a timer."""
         if bpy.app.background or context.window is None:
             return self.execute(context)
+        return self._follow(context)
+
+    def _follow(self, context):
         try:
             self._work = self.begin(context)
         except (Problem, RototoonError) as problem:

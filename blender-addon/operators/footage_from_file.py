@@ -51,13 +51,12 @@ class ROTOTOON_OT_footage_from_file(FilePicker, FootageOperator, bpy.types.Opera
     bl_description = "Choose the footage by one of its pictures; the sequence around it is found. Movies work too"
     bl_options = {"REGISTER", "UNDO"}
 
-    _picked = False
-
     @classmethod
     def poll(cls, context):
         return drawing_poll(cls, context)
 
-    def invoke(self, context, event):
+    def invoke(self, context, _event):
+        self._picked = True
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 

@@ -27,7 +27,8 @@ class ROTOTOON_OT_setup(FilePicker, FootageOperator, bpy.types.Operator):
             return False
         return True
 
-    def invoke(self, context, event):
+    def invoke(self, context, _event):
+        self._picked = True
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 

@@ -26,7 +26,10 @@ class ROTOTOON_OT_weakest_frame(Guarded, bpy.types.Operator):
 
 
 def weakest(found: contours.Contours) -> tuple[int, float]:
-    """Scene frame and its doubt: per part the mean of 1 - confidence, summed over parts, smoothed over three frames."""
+    """Scene frame and its doubt: per part the mean of 1 - confidence, summed over parts, smoothed over three frames.
+
+    Frames beside a key are taken only if there are no others.
+    """
     doubts: dict[int, float] = {}
     for part in found.parts:
         for frame, stroke in part.made.items():
@@ -38,6 +41,9 @@ def weakest(found: contours.Contours) -> tuple[int, float]:
         frame: (doubts.get(frame - 1, 0.0) + 2 * doubt + doubts.get(frame + 1, 0.0)) / 4
         for frame, doubt in doubts.items()
     }
+    keys = {frame for part in found.parts for frame in part.keys}
+    beside = {frame + step for frame in keys for step in (-1, 0, 1)}
+    smooth = {frame: doubt for frame, doubt in smooth.items() if frame not in beside} or smooth
     frame = max(sorted(smooth), key=lambda number: smooth[number])
     return frame, doubts[frame] / max(sum(frame in part.made for part in found.parts), 1)
 
