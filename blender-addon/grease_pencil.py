@@ -129,9 +129,12 @@ def remove_frames(layer: bpy.types.bpy_struct, numbers: Iterable[int]) -> None:
 
 def offsets(drawing: bpy.types.bpy_struct) -> np.ndarray:
     """Where each stroke's points begin, and the number of points at the end: int32 (strokes + 1)."""
-    found = np.zeros(max(len(drawing.curve_offsets), 1), np.int32)
-    if len(drawing.curve_offsets):
-        drawing.curve_offsets.foreach_get("value", found)
+    position = drawing.attributes.get("position")
+    if position is None or not len(position.data):
+        # Of an empty drawing Blender claims one offset and refuses to hand it out.
+        return np.zeros(1, np.int32)
+    found = np.empty(len(drawing.curve_offsets), np.int32)
+    drawing.curve_offsets.foreach_get("value", found)
     return found
 
 

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import contours
+from .. import contours, document, identity
 from .. import grease_pencil as gp
 from ..errors import Problem
 from .base import Guarded, contours_poll
@@ -27,22 +27,20 @@ class ROTOTOON_OT_new_key(Guarded, bpy.types.Operator):
     def run(self, context) -> str:
         ob, frame = context.object, context.scene.frame_current
         found = contours.read(ob)
-        layers = [ob.data.layers[name] for name in found.layer_names]
+        # Copies must know which part they are, so strokes drawn since the last time are identified first.
+        decisions = identity.decide(found, document.mapper_of(ob, found), ob.rototoon.next_number)
         wanted = self._wanted(ob, found)
-        plain = {s.frame for s in found.loose}
-        if not wanted and (not found.loose or frame in plain):
+        if not wanted:
             raise Problem(f"Frame {frame} is a key already")
+        identity.write(ob, found, decisions)
         made = 0
-        for index, layer in enumerate(layers):
-            sources = {}
+        for index, name in enumerate(found.layer_names):
+            sources: dict[int, list[contours.Stroke]] = {}
             for part in wanted:
                 stroke = _source(part, frame)
                 if stroke.layer == index:
                     sources.setdefault(stroke.frame, []).append(stroke)
-            if not found.parts or frame not in plain:
-                for stroke in _latest_loose(found, index, frame):
-                    sources.setdefault(stroke.frame, []).append(stroke)
-            made += _make_key(layer, sources, frame)
+            made += _make_key(ob.data.layers[name], sources, frame)
         ob.data.update_tag()
         return f"Key on frame {frame}: {made} contours"
 
@@ -63,12 +61,6 @@ def _source(part: contours.Part, frame: int) -> contours.Stroke:
     strokes = part.keys or part.made
     before = [number for number in strokes if number < frame]
     return strokes[max(before) if before else min(strokes)]
-
-
-def _latest_loose(found: contours.Contours, layer: int, frame: int) -> list[contours.Stroke]:
-    """Strokes that are not parts yet, on the layer's last frame before this one that has some."""
-    frames = [s.frame for s in found.loose if s.layer == layer and s.frame < frame]
-    return [s for s in found.loose if s.layer == layer and frames and s.frame == max(frames)]
 
 
 def _make_key(layer, sources: dict[int, list[contours.Stroke]], frame: int) -> int:

@@ -130,21 +130,23 @@ def segments(points, closed):
 
 
 def match_contours(request):
-    """Nearest centres; the cyclic shift and direction with the least distance after resampling by arc length."""
-    left = set(range(len(request["drawn"])))
-    matches = []
+    """Best pairs first: shapes alike after the best shift and direction, and not far from each other."""
+    options = []
     for number, reference in enumerate(request["references"]):
         goal = np.array(reference["points"])
-        if not left:
-            break
         centre = goal.mean(0)
-        who = min(left, key=lambda i: np.linalg.norm(np.mean(request["drawn"][i]["points"], 0) - centre))
-        drawn = np.array(request["drawn"][who]["points"])
-        if np.linalg.norm(drawn.mean(0) - centre) > 60:
-            continue
-        left.discard(who)
-        points = best(goal - centre, drawn, reference["closed"])
-        matches.append({"reference": number, "drawn": who, "points": points.tolist()})
+        for who, contour in enumerate(request["drawn"]):
+            drawn = np.array(contour["points"])
+            far = np.linalg.norm(drawn.mean(0) - centre)
+            cost, points = best(goal - centre, drawn, reference["closed"])
+            if far < 80:
+                options.append((cost + 0.1 * far, number, who, points))
+    matches, references, contours = [], set(), set()
+    for _, number, who, points in sorted(options, key=lambda option: option[:3]):
+        if number not in references and who not in contours:
+            references.add(number)
+            contours.add(who)
+            matches.append({"reference": number, "drawn": who, "points": points.tolist()})
     return {"matches": matches}
 
 
@@ -155,7 +157,8 @@ def best(goal, drawn, closed):
         for start in starts:
             points = resample(np.roll(line, -start, 0), goal, closed)
             options.append((np.linalg.norm(points - points.mean(0) - goal), len(options), points))
-    return min(options, key=lambda option: option[:2])[2]
+    cost, _, points = min(options, key=lambda option: option[:2])
+    return cost, points
 
 
 def resample(line, goal, closed):
