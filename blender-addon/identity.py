@@ -44,7 +44,7 @@ def decide(found: Contours, mapper: Mapper, next_number: int) -> Decisions:
             decisions.created.append(part)
     for part in found.parts:
         for stroke in part.keys.values():
-            if len(stroke.points) == part.count and stroke.made is False and not stroke.control.any() and part.count > 1:
+            if part.count > 1 and len(stroke.points) == part.count and not stroke.control.any():
                 decisions.strokes.append((stroke, part, correspondence.identity(part.count)))
     _check_names(found)
     return decisions
@@ -58,8 +58,8 @@ def _recount(part: Part, decisions: Decisions) -> None:
     if len(stroke.points) != part.count:
         part.count = len(stroke.points)
         part.made.clear()
-        stroke.where = np.arange(part.count, dtype=np.float64)
-        decisions.strokes.append((stroke, part, correspondence.identity(part.count)))
+        stroke.where, stroke.control = np.arange(part.count, dtype=np.float64), correspondence.identity(part.count)
+        decisions.strokes.append((stroke, part, stroke.control))
 
 
 def _recognise(
@@ -140,7 +140,7 @@ def _depth(found: Contours, layer: int) -> float:
 
 
 def _assign(stroke: Stroke, part: Part, control: np.ndarray, decisions: Decisions) -> None:
-    stroke.part = part.number
+    stroke.part, stroke.control = part.number, control
     stroke.where = correspondence.invert(control, part.count, part.closed)
     if stroke.where is None:
         stroke.where = np.arange(part.count, dtype=np.float64)
