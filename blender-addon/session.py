@@ -260,7 +260,10 @@ class Session:
         return self._handle.closed
 
     def close(self) -> None:
-        """Frees the pictures and all else; further calls raise `RototoonError`. Closing twice does nothing."""
+        """Frees the pictures and all else; further calls raise `RototoonError`. Closing twice does nothing.
+
+        A call that is running in another thread goes on to its end, and then all is freed.
+        """
         self._handle.close()
 
     def __enter__(self) -> Session:
@@ -276,9 +279,12 @@ class Session:
 
 
 def match_contours(request: Mapping[str, Any]) -> Any:
-    """Finds which contour of one drawing is which of another, whatever their order, direction, start and point count.
+    """Finds which drawn contour is which known one, whatever their order, direction, start and number of points.
 
-    The request is plain JSON data, as is the answer; see ``rototoon_match_contours`` in ``rototoon.h``.
+    The request is ``{"references": [contour, ...], "drawn": [contour, ...]}``, each contour being
+    ``{"closed": bool, "points": [[x, y], ...]}``. The answer is ``{"matches": [{"reference": index, "drawn": index,
+    "points": [[x, y], ...]}, ...]}``, rising by reference: `points` are the reference's control points on the drawn line.
+    Contours that have no counterpart are not mentioned.
     """
     return json.loads(handles.take(handles.Text, "rototoon_match_contours", *_json(request)))
 

@@ -124,30 +124,45 @@ class Session(Handle):
     def __init__(self, pointer: ctypes.c_void_p) -> None:
         super().__init__(pointer)
         self._guard = threading.Lock()
+        self._unwanted = False
+
+    @property
+    def closed(self) -> bool:
+        """Whether `close` was called."""
+        return self._unwanted
 
     @contextlib.contextmanager
-    def _alone(self) -> Iterator[None]:
+    def _alone(self) -> Iterator[ctypes.c_void_p]:
+        if self._unwanted:
+            raise RototoonError("the session is closed")
         if not self._guard.acquire(blocking=False):
             raise RototoonError("the session is in use by another call; it may be used from one thread at a time")
         try:
-            yield
+            yield self.pointer()
         finally:
             self._guard.release()
+            if self._unwanted:
+                self.close()
 
     def call(self, name: str, *arguments: Any) -> None:
         """Calls a function of the session."""
-        with self._alone():
-            call(name, self.pointer(), *arguments)
+        with self._alone() as pointer:
+            call(name, pointer, *arguments)
 
     def give(self, kind: type[Handle], name: str, *arguments: Any) -> Any:
         """What a handle reads that a function of the session gives."""
-        with self._alone():
-            return take(kind, name, self.pointer(), *arguments)
+        with self._alone() as pointer:
+            return take(kind, name, pointer, *arguments)
 
     def close(self) -> None:
-        """Frees the session; refused during a call."""
-        with self._alone():
-            super().close()
+        """Frees the session, or has the call free it that is running on it. No call can begin any more."""
+        # The wish comes first: whoever holds the guard looks for it after letting go, so one of both frees.
+        self._unwanted = True
+        if self._guard.acquire(blocking=False):
+            try:
+                super().close()
+            finally:
+                self._guard.release()
 
 
 def take(kind: type[Handle], name: str, *arguments: Any) -> Any:

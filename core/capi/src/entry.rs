@@ -6,6 +6,9 @@ use crate::status::{Failure, RototoonStatus};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+/// No argument is longer: an object of Rust cannot be.
+pub const MAX_BYTES: usize = isize::MAX as usize;
+
 /// Runs `body`, turns failures and panics into a status, and leaves the text in `error`.
 ///
 /// A panic must not cross into the caller (that would be undefined), so it is caught here and nowhere else.
@@ -64,7 +67,7 @@ pub unsafe fn slice<'a, T>(data: *const T, length: usize, name: &str) -> Result<
         let alignment = align_of::<T>();
         return Err(Failure::BadArgument(format!("{name}: pointer is not aligned to {alignment} bytes")));
     }
-    if length > isize::MAX as usize / size_of::<T>() {
+    if length > MAX_BYTES / size_of::<T>() {
         return Err(Failure::BadArgument(format!("{name}: length {length} is more than memory can hold")));
     }
     // SAFETY: not null, aligned, no longer than an object may be, readable by this function's contract.
@@ -87,7 +90,10 @@ pub unsafe fn text<'a>(data: *const u8, length: usize, name: &str) -> Result<&'a
 /// `handle` is null or came from [`give`] and is not freed during `'a`.
 pub unsafe fn handle<'a, T>(handle: *const T, name: &str) -> Result<&'a T, Failure> {
     if handle.is_null() || !handle.is_aligned() {
-        return Err(Failure::BadArgument(format!("{name}: {} handle", if handle.is_null() { "null" } else { "no such" })));
+        return Err(Failure::BadArgument(format!(
+            "{name}: {} handle",
+            if handle.is_null() { "null" } else { "no such" }
+        )));
     }
     // SAFETY: not null and aligned, alive by this function's contract; handles are only ever shared, never `&mut`.
     Ok(unsafe { &*handle })

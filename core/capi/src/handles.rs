@@ -32,9 +32,10 @@ impl RototoonText {
 impl RototoonTrack {
     /// The track of a part; empty where it was not tracked.
     pub fn of(part: &Part) -> Self {
-        let point_count = part.tracks.values().next().map_or(0, Vec::len);
+        let point_count = part.point_count();
         let mut track = Self { frames: Vec::new(), point_count, points: Vec::new(), confidence: Vec::new() };
-        for (frame, points) in &part.tracks {
+        // Tracks of another number of points belong to keys that are gone.
+        for (frame, points) in part.tracks.iter().filter(|(_, points)| points.len() == point_count) {
             track.frames.push(*frame);
             track.points.extend(points.iter().flat_map(|p| p.to_array()));
             // A document written by hand may have tracks alone, and keys are sure in any case.

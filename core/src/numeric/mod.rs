@@ -1,1 +1,5 @@
-//! (see lib.rs)
+//! Numerical tools.
+//!
+//! - [`banded`]: Cholesky factorisation of symmetric band matrices
+
+pub mod banded;

@@ -3,15 +3,18 @@
 //! - [`raster`]: a rectangle of pixels
 //! - [`footage`]: which frames there are and where their pictures come from
 //! - [`part`]: a tracked contour with its keys, corrections and results
+//! - [`pattern`]: file names with a place for the frame number
 //! - [`progress`]: how long work reports and is cancelled
 
 pub mod footage;
 pub mod part;
+pub mod pattern;
 pub mod progress;
 pub mod raster;
 
 pub use footage::{Footage, FrameError, FrameNumber, FrameSource};
 pub use part::{Part, Span};
+pub use pattern::{Pattern, PatternError};
 pub use progress::{Cancelled, Progress, Silent};
 pub use raster::{Colour, Raster};
 

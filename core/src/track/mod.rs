@@ -6,9 +6,29 @@
 //!
 //! - [`job`]: what a solver is given and what it returns
 //! - [`tracker`]: order, memory and progress of the jobs
+//! - [`weakest`]: where the next key helps most
+//!
+//! The default preset:
+//! - [`rototoon`]: its pieces joined
+//! - [`features`], [`store`]: what is computed once from pictures, and kept
+//! - [`drawings`]: held frames are worked on once
+//! - [`lattice`]: a part's look at a key on a lattice that bends
+//! - [`propagate`]: motion from a neighbour
+//! - [`select`]: which hypothesis to follow
+//! - [`confidence`]: how sure a point is
 
+pub mod confidence;
+pub mod drawings;
+pub mod features;
 pub mod job;
+pub mod lattice;
+pub mod propagate;
+pub mod rototoon;
+pub mod select;
+pub mod store;
 pub mod tracker;
+pub mod weakest;
 
 pub use job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
-pub use tracker::{Preset, TrackError, TrackOptions, Tracker, Tracking};
+pub use tracker::{JobReport, PartTrack, Preset, TrackError, TrackOptions, Tracker, Tracking};
+pub use weakest::{WeakestFrame, weakest_frame};

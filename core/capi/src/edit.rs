@@ -1,0 +1,338 @@
+//! The artist's edits, on the scene. Each either does all that it says or changes nothing.
+
+use rototoon::geometry::Point;
+use rototoon::scene::{FrameNumber, Part, Scene};
+
+/// Beyond this, in pixels, a coordinate is taken for a mistake of the caller.
+const MAX_COORDINATE: f64 = 1e6;
+
+/// Why an edit was refused; the scene is as it was.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EditError {
+    /// No part of that name.
+    #[error("no part {name:?}; the document has {known}")]
+    NoSuchPart {
+        /// The name asked for.
+        name: String,
+        /// The names that there are.
+        known: String,
+    },
+    /// The part has no key on that frame.
+    #[error("part {part:?}: no key on frame {frame}")]
+    NoSuchKey {
+        /// The part.
+        part: String,
+        /// The frame asked for.
+        frame: FrameNumber,
+    },
+    /// A key with another number of points than the part's other keys, or without any.
+    #[error("part {part:?}, key on frame {frame}: found {found} points, expected {expected}")]
+    PointCount {
+        /// The part.
+        part: String,
+        /// The key's frame.
+        frame: FrameNumber,
+        /// Points given.
+        found: usize,
+        /// Points needed.
+        expected: String,
+    },
+    /// Half a point.
+    #[error(
+        "part {part:?}, key on frame {frame}: found {found} coordinates, expected an even number (x, y, x, y, ...)"
+    )]
+    OddCoordinates {
+        /// The part.
+        part: String,
+        /// The key's frame.
+        frame: FrameNumber,
+        /// Values given.
+        found: usize,
+    },
+    /// A coordinate that is not finite, or very large.
+    #[error("part {part:?}, frame {frame}, point {index}: found ({x}, {y}), expected pixels within ±{MAX_COORDINATE}")]
+    Coordinate {
+        /// The part.
+        part: String,
+        /// The frame.
+        frame: FrameNumber,
+        /// Index of the point; 0 for a centre.
+        index: usize,
+        /// Found.
+        x: f64,
+        /// Found.
+        y: f64,
+    },
+    /// A control point that the part does not have.
+    #[error("part {part:?}: no point {index}; it has {count}, counted from 0")]
+    NoSuchPoint {
+        /// The part.
+        part: String,
+        /// The index asked for.
+        index: i64,
+        /// Points of the part.
+        count: usize,
+    },
+    /// A correction on a frame that is not between keys.
+    #[error("part {part:?}: frame {frame} is {what}; corrections go on frames between its keys")]
+    NotBetweenKeys {
+        /// The part.
+        part: String,
+        /// The frame asked for.
+        frame: FrameNumber,
+        /// What the frame is.
+        what: &'static str,
+    },
+    /// A key where the footage has no picture.
+    #[error("part {part:?}: frame {frame} is outside the footage, which has frames {first} to {last}")]
+    OutsideFootage {
+        /// The part.
+        part: String,
+        /// The frame asked for.
+        frame: FrameNumber,
+        /// First frame of the footage.
+        first: FrameNumber,
+        /// Last frame of the footage.
+        last: FrameNumber,
+    },
+}
+
+/// Index of the part of a name.
+pub fn part_index(scene: &Scene, name: &str) -> Result<usize, EditError> {
+    scene.parts.iter().position(|part| part.name == name).ok_or_else(|| {
+        let names: Vec<String> = scene.parts.iter().map(|part| format!("{:?}", part.name)).collect();
+        let known = if names.is_empty() { "no parts".into() } else { names.join(", ") };
+        EditError::NoSuchPart { name: name.into(), known }
+    })
+}
+
+fn part_mut<'a>(scene: &'a mut Scene, name: &str) -> Result<&'a mut Part, EditError> {
+    let index = part_index(scene, name)?;
+    Ok(&mut scene.parts[index])
+}
+
+/// Sets the artist's contour on a frame. `coordinates` are x, y, x, y, ...
+///
+/// Corrections on the frame give way. A part whose only key changes its number of points loses its corrections and
+/// results, as they speak of points that are no more.
+pub fn set_key(scene: &mut Scene, name: &str, frame: FrameNumber, coordinates: &[f64]) -> Result<(), EditError> {
+    let (first, last) = (scene.footage.first, scene.footage.last);
+    let part = part_mut(scene, name)?;
+    if !(first..=last).contains(&frame) {
+        return Err(EditError::OutsideFootage { part: name.into(), frame, first, last });
+    }
+    let points = key_points(part, frame, coordinates)?;
+    if points.len() != part.point_count() {
+        part.pins.clear();
+        part.centers.clear();
+        forget_results(part, |_| true);
+    }
+    part.pins.remove(&frame);
+    part.centers.remove(&frame);
+    part.curves.remove(&frame);
+    if let Some(track) = part.tracks.get_mut(&frame) {
+        track.clone_from(&points);
+        part.confidence.insert(frame, vec![1.0; points.len()]);
+    }
+    part.keys.insert(frame, points);
+    Ok(())
+}
+
+fn key_points(part: &Part, frame: FrameNumber, coordinates: &[f64]) -> Result<Vec<Point>, EditError> {
+    let name = || part.name.clone();
+    let (pairs, rest) = coordinates.as_chunks::<2>();
+    if !rest.is_empty() {
+        return Err(EditError::OddCoordinates { part: name(), frame, found: coordinates.len() });
+    }
+    let points: Vec<Point> = pairs.iter().map(|&pair| Point::from(pair)).collect();
+    let others = part.keys.iter().find(|(other, _)| **other != frame).map(|(other, key)| (other, key.len()));
+    let expected = match others {
+        _ if points.is_empty() => "at least 1".into(),
+        Some((other, count)) if count != points.len() => format!("{count} as on frame {other}"),
+        _ => String::new(),
+    };
+    if !expected.is_empty() {
+        return Err(EditError::PointCount { part: name(), frame, found: points.len(), expected });
+    }
+    for (index, point) in points.iter().enumerate() {
+        check_point(part, frame, index, *point)?;
+    }
+    Ok(points)
+}
+
+fn check_point(part: &Part, frame: FrameNumber, index: usize, point: Point) -> Result<(), EditError> {
+    // Written so that NaN is refused too.
+    if point.x.abs() <= MAX_COORDINATE && point.y.abs() <= MAX_COORDINATE {
+        return Ok(());
+    }
+    Err(EditError::Coordinate { part: part.name.clone(), frame, index, x: point.x, y: point.y })
+}
+
+/// Removes a key; results on frames that are no longer between keys go with it.
+pub fn remove_key(scene: &mut Scene, name: &str, frame: FrameNumber) -> Result<(), EditError> {
+    let part = part_mut(scene, name)?;
+    part.keys.remove(&frame).ok_or_else(|| EditError::NoSuchKey { part: name.into(), frame })?;
+    let range = part.keys.keys().next().copied().zip(part.keys.keys().next_back().copied());
+    forget_results(part, |frame| range.is_none_or(|(first, last)| frame < first || frame > last));
+    Ok(())
+}
+
+fn forget_results(part: &mut Part, forget: impl Fn(FrameNumber) -> bool) {
+    part.tracks.retain(|frame, _| !forget(*frame));
+    part.confidence.retain(|frame, _| !forget(*frame));
+    part.curves.retain(|frame, _| !forget(*frame));
+}
+
+fn check_between_keys(part: &Part, frame: FrameNumber) -> Result<(), EditError> {
+    let what = if part.keys.contains_key(&frame) {
+        "a key, which is changed itself"
+    } else if part.keys.range(..frame).next().is_none() {
+        "before the first key"
+    } else if part.keys.range(frame..).next().is_none() {
+        "after the last key"
+    } else {
+        return Ok(());
+    };
+    Err(EditError::NotBetweenKeys { part: part.name.clone(), frame, what })
+}
+
+/// Fixes a control point on a frame between keys.
+pub fn pin(scene: &mut Scene, name: &str, frame: FrameNumber, index: i64, point: Point) -> Result<(), EditError> {
+    let part = part_mut(scene, name)?;
+    check_between_keys(part, frame)?;
+    let count = part.point_count();
+    let known = usize::try_from(index).ok().filter(|index| *index < count);
+    let known = known.ok_or_else(|| EditError::NoSuchPoint { part: name.into(), index, count })?;
+    check_point(part, frame, known, point)?;
+    part.pins.entry(frame).or_default().insert(known, point);
+    Ok(())
+}
+
+/// Releases a control point, or with index −1 all of the frame. Nothing happens where none is fixed.
+pub fn unpin(scene: &mut Scene, name: &str, frame: FrameNumber, index: i64) -> Result<(), EditError> {
+    let part = part_mut(scene, name)?;
+    let count = part.point_count();
+    if index < -1 || index >= count as i64 {
+        return Err(EditError::NoSuchPoint { part: name.into(), index, count });
+    }
+    if let Some(pins) = part.pins.get_mut(&frame) {
+        pins.retain(|pinned, _| index >= 0 && *pinned as i64 != index);
+        if pins.is_empty() {
+            part.pins.remove(&frame);
+        }
+    }
+    Ok(())
+}
+
+/// Fixes the mean of the control points on a frame between keys.
+pub fn set_center(scene: &mut Scene, name: &str, frame: FrameNumber, center: Point) -> Result<(), EditError> {
+    let part = part_mut(scene, name)?;
+    check_between_keys(part, frame)?;
+    check_point(part, frame, 0, center)?;
+    part.centers.insert(frame, center);
+    Ok(())
+}
+
+/// Releases the centre. Nothing happens where none is fixed.
+pub fn clear_center(scene: &mut Scene, name: &str, frame: FrameNumber) -> Result<(), EditError> {
+    part_mut(scene, name)?.centers.remove(&frame);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon::scene::Footage;
+
+    const KEY: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
+
+    fn scene() -> Scene {
+        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 25.0, width: 8, height: 8 };
+        let points = vec![Point::new(0.0, 0.0), Point::new(4.0, 0.0)];
+        let keys = [(0, points.clone()), (8, points.clone())].into();
+        let tracks = (0..=8).map(|frame| (frame, points.clone())).collect();
+        let confidence = (0..=8).map(|frame| (frame, vec![0.5; 2])).collect();
+        let part = Part { name: "arm".into(), keys, tracks, confidence, ..Part::default() };
+        Scene { footage, parts: vec![part] }
+    }
+
+    /// The message of a refused edit, which must have changed nothing.
+    fn refused(edit: impl Fn(&mut Scene) -> Result<(), EditError>) -> String {
+        let mut edited = scene();
+        let message = edit(&mut edited).unwrap_err().to_string();
+        assert_eq!(edited, scene());
+        message
+    }
+
+    #[test]
+    fn key_replaces_corrections_and_track_of_its_frame() {
+        let mut scene = scene();
+        pin(&mut scene, "arm", 4, 1, Point::ONE).unwrap();
+        set_center(&mut scene, "arm", 4, Point::ONE).unwrap();
+        set_key(&mut scene, "arm", 4, &KEY).unwrap();
+        let part = &scene.parts[0];
+        let points = vec![Point::new(1.0, 2.0), Point::new(3.0, 4.0)];
+        assert_eq!((&part.keys[&4], &part.tracks[&4], &part.confidence[&4]), (&points, &points, &vec![1.0; 2]));
+        assert!(part.pins.is_empty() && part.centers.is_empty());
+    }
+
+    #[test]
+    fn removed_key_takes_results_outside_the_keys_along() {
+        let mut scene = scene();
+        set_key(&mut scene, "arm", 4, &KEY).unwrap();
+        remove_key(&mut scene, "arm", 8).unwrap();
+        assert_eq!(scene.parts[0].tracks.keys().copied().collect::<Vec<_>>(), [0, 1, 2, 3, 4]);
+        remove_key(&mut scene, "arm", 0).unwrap();
+        remove_key(&mut scene, "arm", 4).unwrap();
+        assert!(scene.parts[0].tracks.is_empty() && scene.parts[0].confidence.is_empty());
+    }
+
+    #[test]
+    fn pins_come_and_go() {
+        let mut scene = scene();
+        for index in 0..2 {
+            pin(&mut scene, "arm", 3, index, Point::ONE).unwrap();
+        }
+        unpin(&mut scene, "arm", 3, 0).unwrap();
+        assert_eq!(scene.parts[0].pins[&3].keys().copied().collect::<Vec<_>>(), [1]);
+        pin(&mut scene, "arm", 3, 0, Point::ONE).unwrap();
+        unpin(&mut scene, "arm", 3, -1).unwrap();
+        unpin(&mut scene, "arm", 3, -1).unwrap();
+        assert!(scene.parts[0].pins.is_empty());
+    }
+
+    #[test]
+    fn only_key_may_change_its_number_of_points() {
+        let mut scene = scene();
+        remove_key(&mut scene, "arm", 8).unwrap();
+        set_key(&mut scene, "arm", 0, &[1.0, 2.0]).unwrap();
+        assert_eq!(scene.parts[0].point_count(), 1);
+        assert!(scene.parts[0].tracks.is_empty());
+    }
+
+    #[test]
+    fn refusals_name_part_frame_and_expectation() {
+        let cases = [
+            (refused(|s| set_key(s, "leg", 0, &KEY)), r#"no part "leg"; the document has "arm""#),
+            (refused(|s| set_key(s, "arm", 10, &KEY)), "frame 10 is outside the footage, which has frames 0 to 9"),
+            (refused(|s| set_key(s, "arm", 4, &KEY[..2])), "key on frame 4: found 1 points, expected 2 as on frame 0"),
+            (refused(|s| set_key(s, "arm", 4, &[])), "found 0 points, expected at least 1"),
+            (refused(|s| set_key(s, "arm", 4, &KEY[..3])), "found 3 coordinates, expected an even number"),
+            (refused(|s| set_key(s, "arm", 4, &[0.0, 0.0, f64::NAN, 0.0])), "frame 4, point 1: found (NaN, 0)"),
+            (refused(|s| remove_key(s, "arm", 4)), "no key on frame 4"),
+            (refused(|s| pin(s, "arm", 8, 0, Point::ONE)), "frame 8 is a key, which is changed itself"),
+            (refused(|s| pin(s, "arm", 9, 0, Point::ONE)), "frame 9 is after the last key"),
+            (refused(|s| pin(s, "arm", -1, 0, Point::ONE)), "frame -1 is before the first key"),
+            (refused(|s| pin(s, "arm", 4, 2, Point::ONE)), "no point 2; it has 2, counted from 0"),
+            (refused(|s| pin(s, "arm", 4, -1, Point::ONE)), "no point -1"),
+            (refused(|s| pin(s, "arm", 4, 0, Point::INFINITY)), "found (inf, inf), expected pixels"),
+            (refused(|s| unpin(s, "arm", 4, -2)), "no point -2"),
+            (refused(|s| set_center(s, "arm", 0, Point::ONE)), "frame 0 is a key"),
+            (refused(|s| set_center(s, "arm", 4, Point::NAN)), "found (NaN, NaN)"),
+            (refused(|s| clear_center(s, "leg", 4)), r#"no part "leg""#),
+        ];
+        for (message, expected) in cases {
+            assert!(message.contains(expected), "{message:?} should say {expected:?}");
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Functions that need no session.
+
+use crate::entry::{clear, entry, give, text};
+use crate::handles::RototoonText;
+use crate::status::{Failure, RototoonStatus};
+
+/// Rises with every change that an old caller would not survive.
+pub const ROTOTOON_ABI_VERSION: u32 = 1;
+
+/// The header that callers of this build see.
+const HEADER: &[u8] = include_bytes!("../include/rototoon.h");
+
+/// FNV-1a, 64 bits (Fowler, Noll, Vo): short enough for a compile-time function; it guards against mix-ups, not attacks.
+const fn fnv_1a(bytes: &[u8]) -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325;
+    let mut index = 0;
+    while index < bytes.len() {
+        hash = (hash ^ bytes[index] as u64).wrapping_mul(0x0100_0000_01b3);
+        index += 1;
+    }
+    hash
+}
+
+const HEADER_HASH: u64 = fnv_1a(HEADER);
+
+/// `ROTOTOON_ABI_VERSION` as the library was built with it. Compare before any other call.
+#[unsafe(no_mangle)]
+pub extern "C" fn rototoon_abi_version() -> u32 {
+    ROTOTOON_ABI_VERSION
+}
+
+/// FNV-1a hash (64 bits) of the bytes of the `rototoon.h` that the library was built with.
+#[unsafe(no_mangle)]
+pub extern "C" fn rototoon_header_hash() -> u64 {
+    HEADER_HASH
+}
+
+/// The version of Rototoon, such as "0.1.0".
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_version(
+    version: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(version, std::ptr::null_mut(), "version")?;
+            give(version, RototoonText::new(env!("CARGO_PKG_VERSION")));
+            Ok(())
+        })
+    }
+}

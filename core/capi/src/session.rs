@@ -1,0 +1,273 @@
+//! A document with its pictures and with what tracking remembers: what a session handle points to.
+
+use crate::edit::part_index;
+use crate::status::Failure;
+use crate::work;
+use rototoon::image::sequence::Sequence;
+use rototoon::project::Document;
+use rototoon::scene::{FrameNumber, Part, Progress, Scene};
+use rototoon::snap::{SnapError, SnapOptions, snap_scene};
+use rototoon::track::{JobReport, Preset, Termination, TrackError, TrackOptions, Tracker, Tracking, weakest_frame};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// How messages call a document that came as text.
+const ORIGIN: &str = "document";
+
+/// Told the finished share and the step; returns whether to go on.
+pub type GoOn<'a> = Option<&'a mut dyn FnMut(f64, &str) -> bool>;
+
+/// A document in work.
+pub struct Session {
+    document: Document,
+    folder: PathBuf,
+    pictures: Option<Sequence>,
+    trackers: BTreeMap<&'static str, Tracker>,
+}
+
+/// Options of tracking, as callers write them.
+#[derive(Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct TrackRequest {
+    preset: String,
+    threads: usize,
+}
+
+impl Default for TrackRequest {
+    fn default() -> Self {
+        Self { preset: "rototoon".into(), threads: 0 }
+    }
+}
+
+/// Options of snapping, as callers write them.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct SnapRequest {
+    threads: usize,
+}
+
+/// What tracking did, as callers read it.
+#[derive(Debug, Serialize)]
+struct Summary<'a> {
+    jobs: Vec<JobSummary<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct JobSummary<'a> {
+    part: &'a str,
+    first: FrameNumber,
+    last: FrameNumber,
+    solved: bool,
+    termination: &'static str,
+    iterations: usize,
+    initial_cost: f64,
+    final_cost: f64,
+}
+
+impl Session {
+    /// The session of a JSON document; a relative footage pattern is relative to `folder`.
+    pub fn new(json: &str, folder: &Path) -> Result<Self, Failure> {
+        let document = Document::parse(json, ORIGIN).map_err(Failure::error)?;
+        Ok(Self::of(document, folder))
+    }
+
+    /// The session of a project file.
+    pub fn open(path: &Path) -> Result<Self, Failure> {
+        let document = Document::load(path).map_err(Failure::error)?;
+        Ok(Self::of(document, path.parent().unwrap_or(Path::new(""))))
+    }
+
+    fn of(document: Document, folder: &Path) -> Self {
+        // Absolute, so that a change of the working directory changes nothing.
+        let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+        Self { document, folder, pictures: None, trackers: BTreeMap::new() }
+    }
+
+    /// The document as it stands.
+    pub fn document(&self) -> String {
+        self.document.to_json()
+    }
+
+    /// Writes the document. In another folder than the session's, a relative footage pattern is written absolute, so
+    /// that the pictures are still found.
+    pub fn save(&self, path: &Path) -> Result<(), Failure> {
+        let folder = std::path::absolute(path).map_err(Failure::error)?;
+        let mut document = self.document.clone();
+        let pattern = &mut document.scene.footage.pattern;
+        if folder.parent() != Some(&self.folder) && Path::new(pattern).is_relative() {
+            *pattern = self.folder.join(&*pattern).to_string_lossy().into_owned();
+        }
+        document.save(path).map_err(Failure::error)
+    }
+
+    /// Replaces the document; what is known of pictures and spans stays where it still holds.
+    pub fn set_document(&mut self, json: &str) -> Result<(), Failure> {
+        let document = Document::parse(json, ORIGIN).map_err(Failure::error)?;
+        self.put(document);
+        Ok(())
+    }
+
+    fn put(&mut self, document: Document) {
+        if document.scene.footage != self.document.scene.footage {
+            self.pictures = None;
+        }
+        self.document = document;
+    }
+
+    /// Replaces the footage, given as JSON.
+    pub fn set_footage(&mut self, json: &str) -> Result<(), Failure> {
+        let footage = value(json, "footage")?;
+        self.rewrite(|document| {
+            document["footage"] = footage;
+        })
+    }
+
+    /// Adds a part, given as JSON, at the end.
+    pub fn add_part(&mut self, json: &str) -> Result<(), Failure> {
+        let part = value(json, "part")?;
+        self.rewrite(|document| {
+            if let Some(parts) = document["parts"].as_array_mut() {
+                parts.push(part);
+            }
+        })
+    }
+
+    /// Changes the document's JSON, so that what is added goes through the same checks as a file, and fields that this
+    /// version does not know stay.
+    fn rewrite(&mut self, change: impl FnOnce(&mut serde_json::Value)) -> Result<(), Failure> {
+        let mut document = value(&self.document.to_json(), ORIGIN)?;
+        change(&mut document);
+        self.set_document(&document.to_string())
+    }
+
+    /// Removes a part and all that belongs to it.
+    pub fn remove_part(&mut self, name: &str) -> Result<(), Failure> {
+        let index = part_index(&self.document.scene, name).map_err(Failure::error)?;
+        self.document.scene.parts.remove(index);
+        Ok(())
+    }
+
+    /// The parts' names as a JSON list.
+    pub fn part_names(&self) -> String {
+        let names: Vec<&str> = self.document.scene.parts.iter().map(|part| part.name.as_str()).collect();
+        serde_json::json!(names).to_string()
+    }
+
+    /// A part by name.
+    pub fn part(&self, name: &str) -> Result<&Part, Failure> {
+        let index = part_index(&self.document.scene, name).map_err(Failure::error)?;
+        Ok(&self.document.scene.parts[index])
+    }
+
+    /// The scene, to edit.
+    pub fn scene_mut(&mut self) -> &mut Scene {
+        &mut self.document.scene
+    }
+
+    /// The frame where the next key helps most as JSON `{"frame", "score"}`, or `null`.
+    pub fn weakest_frame(&self) -> String {
+        let found = weakest_frame(&self.document.scene.parts);
+        found.map_or(serde_json::Value::Null, |w| serde_json::json!({"frame": w.frame, "score": w.score})).to_string()
+    }
+
+    /// Tracks the parts; returns the summary as JSON.
+    pub fn track(&mut self, options: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
+        let request: TrackRequest = request(options)?;
+        let (preset, id) = preset(&request.preset)?;
+        let (scene, pictures) = (&self.document.scene, pictures(&mut self.pictures, &self.document, &self.folder)?);
+        let tracker = self.trackers.entry(id).or_insert_with(|| Tracker::new(TrackOptions { preset }));
+        let tracking = work::run(request.threads, go_on, |progress: &dyn Progress| {
+            tracker.track(scene, pictures, progress).map_err(|error| match error {
+                TrackError::Cancelled(_) => Failure::Cancelled,
+                other => Failure::error(other),
+            })
+        })?;
+        let summary = summary(scene, &tracking.jobs);
+        store(&mut self.document.scene, tracking);
+        Ok(summary)
+    }
+
+    /// Snaps the contours to the ink; returns a summary as JSON.
+    pub fn snap(&mut self, options: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
+        let request: SnapRequest = request(options)?;
+        let (scene, pictures) = (&self.document.scene, pictures(&mut self.pictures, &self.document, &self.folder)?);
+        let found = work::run(request.threads, go_on, |progress: &dyn Progress| {
+            snap_scene(scene, pictures, &SnapOptions::default(), progress).map_err(|error| match error {
+                SnapError::Cancelled(_) => Failure::Cancelled,
+                other => Failure::error(other),
+            })
+        })?;
+        let frames: usize = found.iter().map(|curves| curves.len()).sum();
+        for (part, curves) in self.document.scene.parts.iter_mut().zip(found) {
+            part.curves = curves;
+        }
+        Ok(serde_json::json!({"frames": frames}).to_string())
+    }
+
+    /// Forgets pictures and solved spans: after a panic they may be half-written.
+    pub fn forget(&mut self) {
+        self.pictures = None;
+        self.trackers.clear();
+    }
+}
+
+/// The frame source, opened at first use.
+fn pictures<'a>(slot: &'a mut Option<Sequence>, document: &Document, folder: &Path) -> Result<&'a Sequence, Failure> {
+    if slot.is_none() {
+        *slot = Some(Sequence::open(&document.scene.footage, folder).map_err(Failure::error)?);
+    }
+    slot.as_ref().ok_or_else(|| Failure::Error("no pictures".into()))
+}
+
+fn value(json: &str, what: &str) -> Result<serde_json::Value, Failure> {
+    serde_json::from_str(json).map_err(|error| Failure::Error(format!("{what}: not JSON: {error}")))
+}
+
+fn request<'de, T: Deserialize<'de> + Default>(json: &'de str) -> Result<T, Failure> {
+    if json.is_empty() {
+        return Ok(T::default());
+    }
+    serde_json::from_str(json).map_err(|error| Failure::Error(format!("options: {error}")))
+}
+
+fn preset(id: &str) -> Result<(Preset, &'static str), Failure> {
+    Preset::ALL.iter().copied().find(|(_, known)| *known == id).ok_or_else(|| {
+        let known: Vec<&str> = Preset::ALL.iter().map(|(_, id)| *id).collect();
+        Failure::Error(format!("options: preset {id:?}, expected one of {}", known.join(", ")))
+    })
+}
+
+fn summary(scene: &Scene, jobs: &[JobReport]) -> String {
+    let jobs = jobs.iter().map(|job| JobSummary {
+        part: &scene.parts[job.part].name,
+        first: job.span.first,
+        last: job.span.last,
+        solved: job.solved,
+        termination: termination_id(job.summary.termination),
+        iterations: job.summary.iterations,
+        initial_cost: job.summary.initial_cost,
+        final_cost: job.summary.final_cost,
+    });
+    serde_json::json!(Summary { jobs: jobs.collect() }).to_string()
+}
+
+fn termination_id(termination: Termination) -> &'static str {
+    match termination {
+        Termination::NothingToSolve => "nothing_to_solve",
+        Termination::CostConverged => "cost_converged",
+        Termination::StepConverged => "step_converged",
+        Termination::NoDescent => "no_descent",
+        Termination::IterationLimit => "iteration_limit",
+    }
+}
+
+/// Puts the tracks into the scene. Snapped paths stay where they belong to the same contour as before.
+fn store(scene: &mut Scene, tracking: Tracking) {
+    for (part, found) in scene.parts.iter_mut().zip(tracking.parts) {
+        let before = &part.tracks;
+        part.curves.retain(|frame, _| found.tracks.contains_key(frame) && found.tracks.get(frame) == before.get(frame));
+        part.tracks = found.tracks;
+        part.confidence = found.confidence;
+    }
+}

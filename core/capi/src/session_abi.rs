@@ -1,0 +1,492 @@
+//! The session's functions.
+
+use crate::edit;
+use crate::entry::{clear, entry, free, give, handle, slice, text};
+use crate::handles::{RototoonCurves, RototoonText, RototoonTrack};
+use crate::session::{GoOn, Session};
+use crate::status::{Failure, RototoonStatus};
+use rototoon::geometry::Point;
+use std::ffi::c_void;
+use std::path::Path;
+use std::ptr::null_mut;
+use std::sync::{Mutex, TryLockError};
+
+/// A document with its pictures and with what tracking remembers.
+pub struct RototoonSession(Mutex<Session>);
+
+/// Told the finished share of the work (0 to 1, never falling) and the name of the step (UTF-8, not terminated), about
+/// twenty times a second; returns 0 to go on, anything else to cancel. Null is allowed: nobody is told.
+pub type RototoonProgress =
+    Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64, step: *const u8, step_length: usize) -> i32>;
+
+impl RototoonSession {
+    fn new(session: Session) -> Self {
+        Self(Mutex::new(session))
+    }
+
+    /// Runs `body` alone on the session, or fails at once where another call is on it.
+    pub(crate) fn with<T>(&self, body: impl FnOnce(&mut Session) -> Result<T, Failure>) -> Result<T, Failure> {
+        let mut session = match self.0.try_lock() {
+            Ok(session) => session,
+            Err(TryLockError::WouldBlock) => return Err(Failure::Busy),
+            Err(TryLockError::Poisoned(poisoned)) => {
+                // A call panicked. Documents are replaced only as a whole; caches may be half-written.
+                let mut session = poisoned.into_inner();
+                session.forget();
+                self.0.clear_poison();
+                session
+            }
+        };
+        body(&mut session)
+    }
+
+    fn edit<E: std::fmt::Display>(
+        &self,
+        change: impl FnOnce(&mut rototoon::scene::Scene) -> Result<(), E>,
+    ) -> Result<(), Failure> {
+        self.with(|session| change(session.scene_mut()).map_err(Failure::error))
+    }
+}
+
+/// Calls `body` with the caller's callback as a Rust one.
+///
+/// # Safety
+/// `progress` is null or may be called with `user` during the call.
+unsafe fn with_progress<T>(progress: RototoonProgress, user: *mut c_void, body: impl FnOnce(GoOn<'_>) -> T) -> T {
+    let Some(progress) = progress else { return body(None) };
+    let mut go_on = |fraction: f64, step: &str| {
+        // SAFETY: this function's contract; the text is alive during the call.
+        unsafe { progress(user, fraction, step.as_ptr(), step.len()) == 0 }
+    };
+    body(Some(&mut go_on))
+}
+
+/// A session of a JSON document. A relative footage pattern is relative to `folder`. Pictures are read when needed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_new(
+    document: *const u8,
+    document_length: usize,
+    folder: *const u8,
+    folder_length: usize,
+    session: *mut *mut RototoonSession,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(session, null_mut(), "session")?;
+            let document = text(document, document_length, "document")?;
+            let folder = text(folder, folder_length, "folder")?;
+            let value = RototoonSession::new(Session::new(document, Path::new(folder))?);
+            give(session, value);
+            Ok(())
+        })
+    }
+}
+
+/// A session of a project file; footage is relative to its folder.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_open(
+    path: *const u8,
+    path_length: usize,
+    session: *mut *mut RototoonSession,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(session, null_mut(), "session")?;
+            let path = text(path, path_length, "path")?;
+            let value = RototoonSession::new(Session::open(Path::new(path))?);
+            give(session, value);
+            Ok(())
+        })
+    }
+}
+
+/// Frees a session; null is allowed. No call may be running on it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_free(session: *mut RototoonSession) {
+    // SAFETY: the crate's contract.
+    unsafe { free(session) }
+}
+
+/// The document as JSON, results included.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_document(
+    session: *const RototoonSession,
+    document: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(document, null_mut(), "document")?;
+            let session = handle(session, "session")?;
+            let value = session.with(|session| Ok(RototoonText::new(session.document())))?;
+            give(document, value);
+            Ok(())
+        })
+    }
+}
+
+/// Puts another document in place, keeping what is known of pictures and solved spans: tracking solves what differs.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_set_document(
+    session: *const RototoonSession,
+    document: *const u8,
+    document_length: usize,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let document = text(document, document_length, "document")?;
+            session.with(|session| session.set_document(document))
+        })
+    }
+}
+
+/// Writes the document to a file, whole or not at all. In another folder than the session's, a relative footage pattern
+/// is written absolute.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_save(
+    session: *const RototoonSession,
+    path: *const u8,
+    path_length: usize,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let path = text(path, path_length, "path")?;
+            session.with(|session| session.save(Path::new(path)))
+        })
+    }
+}
+
+/// Replaces the footage: JSON with the fields of the document's `footage`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_set_footage(
+    session: *const RototoonSession,
+    footage: *const u8,
+    footage_length: usize,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let footage = text(footage, footage_length, "footage")?;
+            session.with(|session| session.set_footage(footage))
+        })
+    }
+}
+
+/// The names of the parts: a JSON list in the document's order.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_parts(
+    session: *const RototoonSession,
+    names: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(names, null_mut(), "names")?;
+            let session = handle(session, "session")?;
+            let value = session.with(|session| Ok(RototoonText::new(session.part_names())))?;
+            give(names, value);
+            Ok(())
+        })
+    }
+}
+
+/// Adds a part at the end: JSON as in the document's `parts`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_add_part(
+    session: *const RototoonSession,
+    part: *const u8,
+    part_length: usize,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let part = text(part, part_length, "part")?;
+            session.with(|session| session.add_part(part))
+        })
+    }
+}
+
+/// Removes a part, by name, and all that belongs to it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_remove_part(
+    session: *const RototoonSession,
+    part: *const u8,
+    part_length: usize,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let part = text(part, part_length, "part")?;
+            session.with(|session| session.remove_part(part))
+        })
+    }
+}
+
+/// Sets the artist's contour of a part on a frame. `points` are `value_count` numbers x, y, x, y, ...: as many points as
+/// the part's other keys have. Pins and a corrected centre on the frame give way.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_set_key(
+    session: *const RototoonSession,
+    part: *const u8,
+    part_length: usize,
+    frame: i32,
+    points: *const f64,
+    value_count: usize,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let part = text(part, part_length, "part")?;
+            let points = slice(points, value_count, "points")?;
+            session.edit(|scene| edit::set_key(scene, part, frame, points))
+        })
+    }
+}
+
+/// Removes the key of a part on a frame; an error where there is none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_remove_key(
+    session: *const RototoonSession,
+    part: *const u8,
+    part_length: usize,
+    frame: i32,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let part = text(part, part_length, "part")?;
+            session.edit(|scene| edit::remove_key(scene, part, frame))
+        })
+    }
+}
+
+/// Fixes control point `point` (from 0) of a part on a frame between its keys.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_pin(
+    session: *const RototoonSession,
+    part: *const u8,
+    part_length: usize,
+    frame: i32,
+    point: i32,
+    x: f64,
+    y: f64,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let part = text(part, part_length, "part")?;
+            session.edit(|scene| edit::pin(scene, part, frame, point.into(), Point::new(x, y)))
+        })
+    }
+}
+
+/// Releases control point `point`, or with -1 all of the frame; nothing happens where none is fixed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_unpin(
+    session: *const RototoonSession,
+    part: *const u8,
+    part_length: usize,
+    frame: i32,
+    point: i32,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let part = text(part, part_length, "part")?;
+            session.edit(|scene| edit::unpin(scene, part, frame, point.into()))
+        })
+    }
+}
+
+/// Fixes the mean of the control points of a part on a frame between its keys.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_set_center(
+    session: *const RototoonSession,
+    part: *const u8,
+    part_length: usize,
+    frame: i32,
+    x: f64,
+    y: f64,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let part = text(part, part_length, "part")?;
+            session.edit(|scene| edit::set_center(scene, part, frame, Point::new(x, y)))
+        })
+    }
+}
+
+/// Releases the centre of a part on a frame; nothing happens where none is fixed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_clear_center(
+    session: *const RototoonSession,
+    part: *const u8,
+    part_length: usize,
+    frame: i32,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let part = text(part, part_length, "part")?;
+            session.edit(|scene| edit::clear_center(scene, part, frame))
+        })
+    }
+}
+
+/// Tracks every part between its keys and stores `tracks` and `confidence` in the document.
+///
+/// `options` is JSON: `preset` ("rototoon" or "zhou2011"), `threads` (0: one a core); each may be missing, and so may all
+/// (length 0). The threads do not change the result. Spans that nothing touched since they were last solved are reused.
+/// Snapped curves of frames whose track changed are dropped.
+///
+/// `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
+/// "final_cost"}]}`, one job for each part and span; `solved` is false where the job was reused; `termination` is one of
+/// nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_track(
+    session: *const RototoonSession,
+    options: *const u8,
+    options_length: usize,
+    progress: RototoonProgress,
+    user: *mut c_void,
+    summary: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(summary, null_mut(), "summary")?;
+            let session = handle(session, "session")?;
+            let options = text(options, options_length, "options")?;
+            let track = |go_on: GoOn<'_>| session.with(|session| session.track(options, go_on));
+            let value = RototoonText::new(with_progress(progress, user, track)?);
+            give(summary, value);
+            Ok(())
+        })
+    }
+}
+
+/// Lays the contours along the drawn ink and stores `curves` in the document.
+///
+/// `options` is JSON: `threads` as for tracking. `summary` is JSON: `{"frames": number of snapped frames, parts added up}`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_snap(
+    session: *const RototoonSession,
+    options: *const u8,
+    options_length: usize,
+    progress: RototoonProgress,
+    user: *mut c_void,
+    summary: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(summary, null_mut(), "summary")?;
+            let session = handle(session, "session")?;
+            let options = text(options, options_length, "options")?;
+            let snap = |go_on: GoOn<'_>| session.with(|session| session.snap(options, go_on));
+            let value = RototoonText::new(with_progress(progress, user, snap)?);
+            give(summary, value);
+            Ok(())
+        })
+    }
+}
+
+/// The track of a part; empty where it was not tracked.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_track_of(
+    session: *const RototoonSession,
+    part: *const u8,
+    part_length: usize,
+    track: *mut *mut RototoonTrack,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(track, null_mut(), "track")?;
+            let session = handle(session, "session")?;
+            let part = text(part, part_length, "part")?;
+            let value = session.with(|session| Ok(RototoonTrack::of(session.part(part)?)))?;
+            give(track, value);
+            Ok(())
+        })
+    }
+}
+
+/// The snapped paths of a part on a frame, one for each segment between control points; none where it was not snapped.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_curves_of(
+    session: *const RototoonSession,
+    part: *const u8,
+    part_length: usize,
+    frame: i32,
+    curves: *mut *mut RototoonCurves,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(curves, null_mut(), "curves")?;
+            let session = handle(session, "session")?;
+            let part = text(part, part_length, "part")?;
+            let value = session.with(|session| {
+                Ok(RototoonCurves::of(session.part(part)?.curves.get(&frame).map_or(&[], Vec::as_slice)))
+            })?;
+            give(curves, value);
+            Ok(())
+        })
+    }
+}
+
+/// Where the next key helps most: JSON `{"frame", "score"}`, or `null` where nothing was tracked or all frames are at or
+/// beside keys. The score is the sum over parts of the mean of 1 - confidence, smoothed over time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_weakest_frame(
+    session: *const RototoonSession,
+    weakest: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(weakest, null_mut(), "weakest")?;
+            let session = handle(session, "session")?;
+            let value = session.with(|session| Ok(RototoonText::new(session.weakest_frame())))?;
+            give(weakest, value);
+            Ok(())
+        })
+    }
+}

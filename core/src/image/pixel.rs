@@ -1,0 +1,60 @@
+//! What a pixel is to the filters: a few `f32` channels that lie side by side.
+//!
+//! A filter that treats all channels alike runs over the flat channels of a row, where the compiler vectorises it,
+//! whether the picture is grey or coloured.
+
+/// A pixel made of `f32` channels.
+pub trait Pixel: Copy + Send + Sync + 'static {
+    /// Number of channels.
+    const CHANNELS: usize;
+    /// All channels zero.
+    const ZERO: Self;
+
+    /// The channels of the pixels, one after the other.
+    fn flat(pixels: &[Self]) -> &[f32];
+
+    /// The channels of the pixels, one after the other, to change.
+    fn flat_mut(pixels: &mut [Self]) -> &mut [f32];
+
+    /// `self + weight * other`, channel by channel.
+    fn plus(self, weight: f32, other: Self) -> Self;
+}
+
+impl Pixel for f32 {
+    const CHANNELS: usize = 1;
+    const ZERO: Self = 0.0;
+
+    fn flat(pixels: &[Self]) -> &[f32] {
+        pixels
+    }
+
+    fn flat_mut(pixels: &mut [Self]) -> &mut [f32] {
+        pixels
+    }
+
+    #[inline]
+    fn plus(self, weight: f32, other: Self) -> Self {
+        self + weight * other
+    }
+}
+
+impl<const N: usize> Pixel for [f32; N] {
+    const CHANNELS: usize = N;
+    const ZERO: Self = [0.0; N];
+
+    fn flat(pixels: &[Self]) -> &[f32] {
+        pixels.as_flattened()
+    }
+
+    fn flat_mut(pixels: &mut [Self]) -> &mut [f32] {
+        pixels.as_flattened_mut()
+    }
+
+    #[inline]
+    fn plus(mut self, weight: f32, other: Self) -> Self {
+        for channel in 0..N {
+            self[channel] += weight * other[channel];
+        }
+        self
+    }
+}

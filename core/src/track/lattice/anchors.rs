@@ -1,0 +1,131 @@
+//! Places that the artist fixed, as linear constraints on a lattice's nodes.
+
+use super::mesh::Mesh;
+use crate::geometry::{Point, similarity::Similarity};
+use crate::numeric::banded::BandCholesky;
+use crate::track::job::Correction;
+
+/// Stiffness left to a constraint: several control points in one cell may contradict its bilinear map, and then all
+/// give way a little. Against the lattice's own stiffness (about 1) the constraints are hard.
+const YIELD: f64 = 1e-4;
+
+/// One constraint: a weighted sum of nodes lies at a place.
+#[derive(Clone, Debug)]
+struct Anchor {
+    terms: Vec<(usize, f64)>,
+    place: Point,
+}
+
+impl Anchor {
+    fn missing(&self, nodes: &[Point]) -> Point {
+        self.place - self.terms.iter().map(|&(n, w)| nodes[n] * w).sum::<Point>()
+    }
+}
+
+/// The constraints of one frame. Places are in working pixels.
+#[derive(Clone, Debug, Default)]
+pub struct Anchors {
+    anchors: Vec<Anchor>,
+}
+
+impl Anchors {
+    /// The constraints of a correction; `scale` is the number of picture pixels in a working pixel.
+    pub fn new(mesh: &Mesh, correction: &Correction, scale: f64) -> Self {
+        let pin = |(&j, &p): (&usize, &Point)| {
+            let binding = mesh.control[j];
+            Anchor { terms: binding.nodes.into_iter().zip(binding.weights).collect(), place: p / scale }
+        };
+        let mut anchors: Vec<Anchor> = correction.pins.iter().map(pin).collect();
+        if let Some(center) = correction.center {
+            let mut weights = vec![0.0; mesh.rest.len()];
+            for binding in &mesh.control {
+                for (n, w) in binding.nodes.into_iter().zip(binding.weights) {
+                    weights[n] += w / mesh.control.len() as f64;
+                }
+            }
+            let terms = weights.into_iter().enumerate().filter(|(_, w)| *w != 0.0).collect();
+            anchors.push(Anchor { terms, place: center / scale });
+        }
+        Self { anchors }
+    }
+
+    /// Whether nothing is fixed.
+    pub fn is_empty(&self) -> bool {
+        self.anchors.is_empty()
+    }
+
+    /// Moves a pose as a whole so that it comes near its anchors: one anchor shifts it, several shift and turn it.
+    pub fn approach(&self, nodes: &[Point]) -> Vec<Point> {
+        let from: Vec<Point> = self.anchors.iter().map(|a| a.place - a.missing(nodes)).collect();
+        let to: Vec<Point> = self.anchors.iter().map(|a| a.place).collect();
+        let mut motion = Similarity::fit(&from, &to);
+        motion.factor = motion.factor.normalize_or(Point::X);
+        nodes.iter().map(|&p| motion.apply(p)).collect()
+    }
+
+    /// Changes the step of a solved linear system so that the anchors hold after it.
+    ///
+    /// `factor` holds H, `step` the x of H x = b. Among all steps with C x = c the one of least energy is
+    /// x − H⁻¹Cᵀ (C H⁻¹ Cᵀ)⁻¹ (C x − c): a small dense system with a row for each anchor and axis.
+    pub fn constrain(&self, factor: &BandCholesky, nodes: &[Point], step: &mut [f64]) {
+        let rows: Vec<(usize, usize)> = (0..self.anchors.len()).flat_map(|a| [(a, 0), (a, 1)]).collect();
+        let count = rows.len();
+        let apply = |(a, axis): (usize, usize), x: &[f64]| -> f64 {
+            self.anchors[a].terms.iter().map(|&(n, w)| w * x[2 * n + axis]).sum()
+        };
+        let responses: Vec<Vec<f64>> = rows
+            .iter()
+            .map(|&(a, axis)| {
+                let mut column = vec![0.0; step.len()];
+                for &(n, w) in &self.anchors[a].terms {
+                    column[2 * n + axis] += w;
+                }
+                factor.solve_in_place(&mut column);
+                column
+            })
+            .collect();
+        let mut matrix = crate::numeric::banded::BandMatrix::zeros(count, count.saturating_sub(1));
+        for i in 0..count {
+            for j in 0..=i {
+                matrix.add(i, j, apply(rows[i], &responses[j]) + if i == j { YIELD } else { 0.0 });
+            }
+        }
+        let mut multipliers: Vec<f64> =
+            rows.iter().map(|&row| self.anchors[row.0].missing(nodes)[row.1] - apply(row, step)).collect();
+        let Ok(small) = matrix.factor() else { return };
+        small.solve_in_place(&mut multipliers);
+        for (multiplier, response) in multipliers.iter().zip(&responses) {
+            step.iter_mut().zip(response).for_each(|(x, r)| *x += multiplier * r);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::track::lattice::align;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn a_lattice_without_texture_follows_its_anchors_rigidly() {
+        let bar: Vec<Point> =
+            [(0.0, 0.0), (90.0, 0.0), (90.0, 20.0), (0.0, 20.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+        let mesh = Mesh::new(&bar, true);
+        let pins = BTreeMap::from([(0, Point::new(50.0, 0.0)), (1, Point::new(50.0, 90.0))]);
+        let anchors = Anchors::new(&mesh, &Correction { pins, center: None }, 1.0);
+        let found = mesh.control_points(&align::settle(&mesh, &mesh.rest, &anchors));
+        for (p, want) in found.iter().zip([(50.0, 0.0), (50.0, 90.0), (30.0, 90.0), (30.0, 0.0)]) {
+            assert!(p.distance(Point::new(want.0, want.1)) < 0.1, "{p}");
+        }
+    }
+
+    #[test]
+    fn a_corrected_center_shifts_the_part() {
+        let square: Vec<Point> = [(0.0, 0.0), (30.0, 0.0), (30.0, 30.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+        let mesh = Mesh::new(&square, true);
+        let correction = Correction { pins: BTreeMap::new(), center: Some(Point::new(220.0, 110.0)) };
+        let anchors = Anchors::new(&mesh, &correction, 1.0);
+        let found = mesh.control_points(&align::settle(&mesh, &mesh.rest, &anchors));
+        assert!(found[0].distance(Point::new(200.0, 100.0)) < 0.1, "{found:?}");
+    }
+}

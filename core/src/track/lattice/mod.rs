@@ -1,0 +1,13 @@
+//! Deformable texture lattices: a part's look at a key, on a lattice that bends with the part.
+//!
+//! - [`mesh`]: cells, nodes, and points bound to them
+//! - [`shape`]: how much a lattice is bent
+//! - [`anchors`]: places that the artist fixed
+//! - [`texture`]: colours of the key on the lattice, and how well a pose explains a picture
+//! - [`align`]: the pose that explains a picture best, by Gauss–Newton
+
+pub mod align;
+pub mod anchors;
+pub mod mesh;
+pub mod shape;
+pub mod texture;

@@ -1,0 +1,131 @@
+//! A part's colours at a key, sampled over its lattice, and how well a pose of the lattice explains a picture.
+
+use super::mesh::{Binding, Mesh};
+use super::shape;
+use crate::geometry::Point;
+use crate::scene::Raster;
+use crate::track::features::{Features, LEVELS, Sample, WORKING_LINES};
+
+/// Weight of samples in the band around the contour. They hold the ink line's outer side; being background in part,
+/// they count for less than the inside.
+const BAND_WEIGHT: f32 = 0.6;
+/// Samples of a level at the most.
+const MOST_SAMPLES: usize = 700;
+/// Samples of the finer levels that a region is divided into.
+const FINE_SAMPLES: f64 = 1200.0;
+/// Squared colour difference (three channels of 0 to 1) beyond which a sample is simply wrong.
+pub const WORST: f32 = 0.15;
+/// Weight of the shape energy beside the mean colour difference, and the shape energy beyond which it stops to count.
+const SHAPE: (f64, f64) = (0.02, 2.0);
+/// Level (index in [`LEVELS`]) whose samples measure a pose.
+const MEASURED_LEVEL: usize = 1;
+
+/// Where nearer parts hide the picture, by working pixels of 2 × 2.
+#[derive(Clone, Debug)]
+pub struct Cover {
+    hidden: Raster<bool>,
+}
+
+impl Cover {
+    const PIXEL: f64 = 2.0;
+
+    /// The cover by closed contours (working pixels) over a picture of `width` working pixels.
+    pub fn new(contours: &[Vec<Point>], width: f64) -> Self {
+        let pixels = |length: f64| (length / Self::PIXEL).ceil().max(1.0) as usize;
+        let mut hidden = Raster::new(pixels(width), pixels(WORKING_LINES), false);
+        for contour in contours {
+            let scaled: Vec<Point> = contour.iter().map(|&p| p / Self::PIXEL).collect();
+            let (width, height) = (hidden.width(), hidden.height());
+            crate::geometry::polygon::for_each_span(&scaled, width, height, |y, x0, x1| {
+                hidden.row_mut(y)[x0..x1].fill(true);
+            });
+        }
+        Self { hidden }
+    }
+
+    /// Whether a nearer part hides the picture at `p`; outside the picture, what its nearest edge says.
+    pub fn hides(&self, p: Point) -> bool {
+        self.hidden.clamped((p.x / Self::PIXEL).floor() as isize, (p.y / Self::PIXEL).floor() as isize)
+    }
+}
+
+/// One sample of the key.
+#[derive(Clone, Debug)]
+pub struct Texel {
+    /// Where it lies in the lattice.
+    pub binding: Binding,
+    /// Colour and gradients of the key.
+    pub key: Sample,
+    /// 1 inside the contour, less in the band.
+    pub weight: f32,
+    /// The cell it lies in.
+    pub cell: usize,
+}
+
+/// A lattice with the key's colours at each level of the pyramid.
+#[derive(Clone, Debug)]
+pub struct Texture {
+    /// The lattice.
+    pub mesh: Mesh,
+    /// Samples by level, from coarse to fine, in the order of their cells.
+    pub texels: [Vec<Texel>; 3],
+}
+
+impl Texture {
+    /// Samples the key's picture over the lattice, but where a nearer part hides it or the picture ends.
+    pub fn new(mesh: Mesh, key: &Features, cover: &Cover, width: f64) -> Self {
+        let texels = std::array::from_fn(|level| sample_level(&mesh, key, cover, width, level));
+        Self { mesh, texels }
+    }
+
+    /// How badly a pose explains a picture: mean colour difference (at most [`WORST`]) plus a little for bending.
+    pub fn energy(&self, picture: &Features, nodes: &[Point]) -> f64 {
+        let level = picture.level(MEASURED_LEVEL);
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for texel in &self.texels[MEASURED_LEVEL] {
+            let colour = level.colour(texel.binding.at(nodes));
+            sum += f64::from(texel.weight * difference(&colour, &texel.key).min(WORST));
+            weights += f64::from(texel.weight);
+        }
+        let look = if weights > 0.0 { sum / weights } else { f64::from(WORST) };
+        look + SHAPE.0 * shape::energy(&self.mesh, nodes).min(SHAPE.1)
+    }
+}
+
+/// Squared difference of two colours: the first three values of each.
+pub fn difference(a: &[f32], b: &[f32]) -> f32 {
+    (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum()
+}
+
+fn sample_level(mesh: &Mesh, key: &Features, cover: &Cover, width: f64, level: usize) -> Vec<Texel> {
+    let pixel = LEVELS[level] as f64;
+    let wanted = if level == 0 { (mesh.area() / FINE_SAMPLES).sqrt().max(pixel) } else { 0.75 * pixel };
+    let step = wanted.min(mesh.side / 2.5).max(1.5).max((mesh.area() / 20_000.0).sqrt());
+    let (low, high) = mesh.bounds();
+    let mut texels = Vec::new();
+    let count = |length: f64| (length / step).ceil() as usize;
+    for j in 0..count(high.y - low.y) {
+        for i in 0..count(high.x - low.x) {
+            let p = low + Point::new(i as f64 + 0.5, j as f64 + 0.5) * step;
+            let seen = p.x >= 0.0 && p.y >= 0.0 && p.x < width && p.y < WORKING_LINES && !cover.hides(p);
+            let (belongs, inside) = if seen { mesh.region(p) } else { (false, false) };
+            if belongs {
+                let (cell, binding) = mesh.bind_in_cell(p);
+                let weight = if inside { 1.0 } else { BAND_WEIGHT };
+                texels.push(Texel { binding, key: key.level(level).sample(p), weight, cell });
+            }
+        }
+    }
+    let mut texels = thin(texels);
+    texels.sort_by_key(|texel| texel.cell);
+    texels
+}
+
+/// Every k-th sample, so that at most [`MOST_SAMPLES`] are left.
+fn thin(texels: Vec<Texel>) -> Vec<Texel> {
+    let count = texels.len();
+    if count <= MOST_SAMPLES {
+        return texels;
+    }
+    (0..MOST_SAMPLES).map(|k| texels[k * (count - 1) / (MOST_SAMPLES - 1)].clone()).collect()
+}

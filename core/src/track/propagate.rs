@@ -1,0 +1,152 @@
+//! Motion from a neighbour: a pose carried from one drawing to the next.
+//!
+//! A pose starts on the next drawing from where it was, shifted by the flow below it (node by node, and as a whole by
+//! the median), and shifted by what it moved last. Each start is aligned coarsely, kept with its unaligned self, and the
+//! best two are polished. The colours are always those of the key, so nothing drifts from drawing to drawing.
+
+use super::TrackError;
+use super::features::Features;
+use super::lattice::align::{Aligner, Target, settle};
+use super::lattice::anchors::Anchors;
+use super::lattice::texture::{Cover, Texture};
+use super::store::FLOW_LEVEL;
+use crate::geometry::Point;
+use crate::image::flow::Flow;
+
+/// Weight of a node's samples below which the flow of the samples says nothing about it.
+const LEAST_FLOW_WEIGHT: f64 = 0.3;
+
+/// A part's texture at one key, ready to be aligned.
+pub struct Model {
+    /// The key's colours on the lattice.
+    pub texture: Texture,
+    /// Aligns it.
+    pub aligner: Aligner,
+}
+
+/// A drawing that poses are looked for on.
+pub struct Scenery<'a> {
+    /// Its picture.
+    pub features: &'a Features,
+    /// What hides the part.
+    pub cover: &'a Cover,
+    /// The artist's corrections, for the lattice of the model in use.
+    pub anchors: &'a Anchors,
+}
+
+/// Where a model may be on a drawing, and how badly that explains the picture.
+#[derive(Clone, Debug)]
+pub struct Pose {
+    /// Places of the lattice's nodes, in working pixels.
+    pub nodes: Vec<Point>,
+    /// See [`Texture::energy`].
+    pub energy: f64,
+}
+
+impl Model {
+    /// Aligns each start on the coarsest level, and polishes the best two.
+    pub fn best_of(&self, scenery: &Scenery, starts: Vec<Vec<Point>>) -> Pose {
+        let target = scenery.target();
+        let mut poses = Vec::new();
+        for start in starts {
+            let start = settle(&self.texture.mesh, &start, scenery.anchors);
+            let aligned = self.aligner.align(&self.texture, target, &start, &[0]);
+            poses.push(self.measured(scenery, aligned));
+            poses.push(self.measured(scenery, start));
+        }
+        poses.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+        poses.truncate(2);
+        let polished = poses.iter().map(|pose| {
+            let nodes = self.aligner.align(&self.texture, target, &pose.nodes, &[1]);
+            self.measured(scenery, nodes)
+        });
+        let best = polished.min_by(|a, b| a.energy.total_cmp(&b.energy));
+        let nodes = best.map_or_else(|| self.texture.mesh.rest.clone(), |pose| pose.nodes);
+        self.measured(scenery, self.aligner.align(&self.texture, target, &nodes, &[2]))
+    }
+
+    /// A pose with its energy.
+    pub fn measured(&self, scenery: &Scenery, nodes: Vec<Point>) -> Pose {
+        Pose { energy: self.texture.energy(scenery.features, &nodes), nodes }
+    }
+
+    /// Carries `pose` to another drawing; `moved` is what its nodes moved by last.
+    pub fn carry(&self, pose: &[Point], flow: &Flow, moved: Option<&[Point]>, scenery: &Scenery) -> Pose {
+        let add = |shift: &dyn Fn(usize) -> Point| (0..pose.len()).map(|n| pose[n] + shift(n)).collect();
+        let mut starts: Vec<Vec<Point>> = vec![pose.to_vec()];
+        if let Some((shifts, median)) = self.flow_below(pose, flow) {
+            starts.push(add(&|n| shifts[n]));
+            starts.push(add(&|_| median));
+        }
+        if let Some(moved) = moved {
+            starts.push(add(&|n| moved[n]));
+        }
+        self.best_of(scenery, starts)
+    }
+
+    /// The flow below a pose: its mean at each node, and its median over the part. Nothing where no sample is inside.
+    fn flow_below(&self, pose: &[Point], flow: &Flow) -> Option<(Vec<Point>, Point)> {
+        let pixel = super::features::LEVELS[FLOW_LEVEL] as f64;
+        let inside: Vec<_> = self.texture.texels[1].iter().filter(|texel| texel.weight == 1.0).collect();
+        if inside.len() <= 3 {
+            return None;
+        }
+        let mut sums = vec![(Point::ZERO, 0.0); pose.len()];
+        let mut all = Vec::with_capacity(inside.len());
+        for texel in inside {
+            let at = texel.binding.at(pose) / pixel;
+            let [u, v] = flow.clamped(at.x.floor() as isize, at.y.floor() as isize);
+            let shift = Point::new(f64::from(u), f64::from(v)) * pixel;
+            all.push(shift);
+            for (n, w) in texel.binding.nodes.into_iter().zip(texel.binding.weights) {
+                sums[n].0 += shift * w;
+                sums[n].1 += w;
+            }
+        }
+        let known: Vec<usize> = (0..sums.len()).filter(|&n| sums[n].1 >= LEAST_FLOW_WEIGHT).collect();
+        let rest = &self.texture.mesh.rest;
+        let nearest = |n: usize| {
+            known
+                .iter()
+                .copied()
+                .min_by(|&a, &b| rest[a].distance_squared(rest[n]).total_cmp(&rest[b].distance_squared(rest[n])))
+        };
+        let shift_of = |n: usize| sums[n].0 / sums[n].1;
+        let shifts = (0..sums.len()).map(|n| nearest(n).map_or(Point::ZERO, shift_of)).collect();
+        Some((shifts, median(&all)))
+    }
+}
+
+impl Scenery<'_> {
+    /// What the aligner needs of the drawing.
+    pub fn target(&self) -> Target<'_> {
+        Target { picture: self.features, cover: self.cover, anchors: self.anchors }
+    }
+}
+
+/// Median along each axis.
+fn median(shifts: &[Point]) -> Point {
+    let along = |axis: usize| {
+        let mut values: Vec<f64> = shifts.iter().map(|s| s[axis]).collect();
+        values.sort_by(f64::total_cmp);
+        0.5 * (values[(values.len() - 1) / 2] + values[values.len() / 2])
+    };
+    Point::new(along(0), along(1))
+}
+
+/// Carries a pose through drawings in the order given; the pose on each, by `step(pose, moved, position)`.
+pub fn chain(
+    start: Vec<Point>,
+    count: usize,
+    mut step: impl FnMut(&[Point], Option<&[Point]>, usize) -> Result<Pose, TrackError>,
+) -> Result<Vec<Pose>, TrackError> {
+    let mut poses: Vec<Pose> = Vec::with_capacity(count);
+    let mut moved: Option<Vec<Point>> = None;
+    for position in 0..count {
+        let before = poses.last().map_or(&start, |pose| &pose.nodes);
+        let pose = step(before, moved.as_deref(), position)?;
+        moved = Some(pose.nodes.iter().zip(before).map(|(a, b)| *a - *b).collect());
+        poses.push(pose);
+    }
+    Ok(poses)
+}

@@ -1,0 +1,296 @@
+"""The bpy-free Python API against the built library."""
+
+import array
+import gc
+import json
+import threading
+
+import pytest
+from conftest import LAST, square
+from rototoon.session import Cancelled, RototoonError, Session, WeakestFrame, match_contours, parameters, version
+
+FRAMES = list(range(LAST + 1))
+
+
+def test_track_fills_every_frame_and_keeps_keys(session, document):
+    summary = session.track()
+    assert [(job.part, job.first, job.last) for job in summary.jobs] == [
+        ("red", 0, 6),
+        ("red", 6, 12),
+        ("blau ü", 0, 6),
+        ("blau ü", 6, 12),
+    ]
+    assert (summary.solved, summary.reused) == (4, 0)
+    for index, name in enumerate(session.parts()):
+        track = session.tracks(name)
+        assert (track.frames.format, track.frames.tolist()) == ("i", FRAMES)
+        assert (track.points.format, track.points.shape) == ("d", (13, 4, 2))
+        assert session.confidence(name).shape == (13, 4)
+        points = track.points.tolist()
+        for frame in (0, 6, 12):
+            assert points[frame] == square(frame, index)
+            assert session.confidence(name).tolist()[frame] == [1.0] * 4
+    written = session.document()["parts"][0]
+    assert written["tracks"]["5"] == session.tracks("red").points.tolist()[5]
+
+
+def test_only_touched_spans_are_solved_again(session):
+    session.track()
+    before = {name: session.tracks(name).points.tolist() for name in session.parts()}
+    assert (session.track().solved, session.track().reused) == (0, 4)
+
+    session.pin("red", 9, 2, (41.0, 27.5))
+    summary = session.track()
+    assert [(job.part, job.first) for job in summary.jobs if job.solved] == [("red", 6)]
+    assert summary.reused == 3
+    after = session.tracks("red").points.tolist()
+    assert after[9][2] == [41.0, 27.5]
+    assert after[:7] == before["red"][:7]
+    assert session.tracks("blau ü").points.tolist() == before["blau ü"]
+
+    session.set_center("blau ü", 3, (30.0, 46.0))
+    assert [(job.part, job.first) for job in session.track().jobs if job.solved] == [("blau ü", 0)]
+    points = session.tracks("blau ü").points.tolist()[3]
+    assert [sum(p[axis] for p in points) / 4 for axis in (0, 1)] == pytest.approx([30.0, 46.0], abs=1e-9)
+
+    session.unpin("red", 9)
+    session.clear_center("blau ü", 3)
+    session.track()
+    assert {name: session.tracks(name).points.tolist() for name in session.parts()} == before
+
+
+def test_set_document_keeps_what_is_known(session):
+    session.track()
+    document = session.document()
+    document["parts"][0]["pins"] = {"3": {"0": [20.0, 7.0]}}
+    session.set_document(document)
+    assert (session.track().solved, session.tracks("red").points[3, 0, 0]) == (1, 20.0)
+
+
+def test_new_key_splits_a_span(session):
+    session.track()
+    session.set_key("red", 3, square(3, 0))
+    jobs = session.track().jobs
+    assert [(job.first, job.last) for job in jobs if job.solved] == [(0, 3), (3, 6)]
+    assert session.tracks("red").points.tolist()[3] == square(3, 0)
+    session.remove_key("red", 3)
+    session.remove_key("red", 12)
+    session.track()
+    assert session.tracks("red").frames.tolist() == list(range(7))
+
+
+def test_result_does_not_depend_on_threads(document, folder):
+    def tracked(threads):
+        with Session.from_document(document, folder) as session:
+            session.track(threads=threads)
+            return session.tracks("red").points.tobytes()
+
+    assert tracked(1) == tracked(2) == tracked(0)
+
+
+@pytest.mark.parametrize("work", ["track", "snap"])
+def test_progress_rises_on_the_calling_thread(session, work):
+    seen = []
+    getattr(session, work)(progress=lambda fraction, step: seen.append((fraction, step, threading.get_ident())))
+    fractions = [fraction for fraction, _, _ in seen]
+    assert fractions == sorted(fractions)
+    assert (fractions[0], fractions[-1]) == (0.0, 1.0)
+    assert all(isinstance(step, str) and step for _, step, _ in seen)
+    assert {thread for _, _, thread in seen} == {threading.get_ident()}
+
+
+@pytest.mark.parametrize("work", ["track", "snap"])
+@pytest.mark.parametrize("limit", [0.0, 1.0], ids=["at the start", "at the end"])
+def test_cancel_changes_nothing(session, work, limit):
+    before = session.document()
+    with pytest.raises(Cancelled):
+        getattr(session, work)(progress=lambda fraction, _: fraction < limit)
+    assert session.document() == before
+
+
+def test_exception_in_progress_cancels_and_comes_out(session):
+    before = session.document()
+
+    class Mine(Exception):
+        pass
+
+    def progress(_fraction, _step):
+        raise Mine("stop")
+
+    with pytest.raises(Mine, match="stop"):
+        session.track(progress=progress)
+    assert session.document() == before
+    assert session.track().solved == 4
+
+
+def test_second_call_at_once_is_refused(session):
+    messages = []
+
+    def progress(_fraction, _step):
+        with pytest.raises(RototoonError) as caught:
+            session.document()
+        messages.append(str(caught.value))
+
+    session.track(progress=progress)
+    assert messages and all("in use by another call" in message for message in messages)
+
+
+def test_session_closed_during_a_call_is_freed_after_it(document, folder):
+    session = Session.from_document(document, folder)
+    summary = session.track(progress=lambda _fraction, _step: session.close())
+    assert summary.solved == 4
+    assert session._handle._pointer is None
+    with pytest.raises(RototoonError, match="the session is closed"):
+        session.document()
+
+
+def test_snap_follows_segments_and_is_dropped_where_the_track_changes(session):
+    session.track()
+    session.snap()
+    for frame in FRAMES:
+        paths = session.curves("red", frame)
+        assert len(paths) == 4
+        assert all(path.format == "d" and path.shape[1] == 2 and path.shape[0] >= 2 for path in paths)
+    session.pin("red", 9, 0, (35.0, 9.0))
+    session.track()
+    assert session.curves("red", 9) == []
+    assert len(session.curves("red", 3)) == 4
+    assert len(session.curves("blau ü", 9)) == 4
+
+
+def test_arrays_outlive_the_session(document, folder):
+    session = Session.from_document(document, folder)
+    session.track()
+    track = session.tracks("red")
+    expected = track.points.tolist()
+    session.close()
+    del session
+    gc.collect()
+    assert track.points.tolist() == expected
+    assert track.points.readonly
+
+
+def test_numpy_takes_arrays_without_copying(session):
+    numpy = pytest.importorskip("numpy")
+    session.track()
+    track = session.tracks("red")
+    points = numpy.asarray(track.points)
+    assert (points.dtype, points.shape) == (numpy.float64, (13, 4, 2))
+    assert numpy.shares_memory(points, numpy.frombuffer(track.points, dtype=numpy.float64))
+    assert numpy.asarray(track.frames).dtype == numpy.int32
+    session.set_key("red", 3, points[3] + 1)
+    assert session.document()["parts"][0]["keys"]["3"] == (points[3] + 1).tolist()
+
+
+def test_key_from_a_buffer(session):
+    values = [value + 0.25 for point in square(2, 0) for value in point]
+    session.set_key("red", 2, memoryview(array.array("d", values)).cast("B").cast("d", (4, 2)))
+    assert session.document()["parts"][0]["keys"]["2"][0] == values[:2]
+    with pytest.raises(RototoonError, match=r"expected float64 of shape \(N, 2\), found f"):
+        session.set_key("red", 2, memoryview(array.array("f", values)))
+
+
+def test_untracked_part_is_empty(session):
+    track = session.tracks("red")
+    assert (len(track.frames), len(track.points), len(session.confidence("red"))) == (0, 0, 0)
+    assert session.curves("red", 0) == []
+    assert session.weakest_frame() is None
+
+
+def test_weakest_frame_is_in_the_doubtful_stretch(session, document):
+    tracked = {str(frame): square(frame, 0) for frame in FRAMES}
+    doubt = {str(frame): [0.1 if frame in (8, 9, 10) else 1.0] * 4 for frame in FRAMES}
+    document["parts"][0].update(tracks=tracked, confidence=doubt)
+    session.set_document(document)
+    weakest = session.weakest_frame()
+    assert isinstance(weakest, WeakestFrame)
+    assert weakest.frame == 9
+    assert weakest.score == pytest.approx(0.9 * 14 / 16)
+
+
+def test_files_and_folders(session, document, folder, tmp_path):
+    beside, elsewhere = folder / "shot.json", tmp_path / "moved é.json"
+    session.save(beside)
+    assert json.loads(beside.read_text("utf-8"))["footage"]["pattern"] == "frame_%03d.png"
+    session.save(elsewhere)
+    with Session.open(elsewhere) as moved:
+        assert moved.parts() == ["red", "blau ü"]
+        assert moved.track().solved == 4
+    with pytest.raises(RototoonError, match="nowhere"):
+        session.save(tmp_path / "nowhere" / "shot.json")
+    with pytest.raises(RototoonError, match="nothing.json"):
+        Session.open(tmp_path / "nothing.json")
+    beside.unlink()
+
+
+def test_parts_and_footage_can_be_changed(session, document, folder):
+    session.add_part({"name": "dot", "closed": False, "depth": 0, "keys": {"0": [[1, 1]], "2": [[2, 2]]}})
+    assert session.parts() == ["red", "blau ü", "dot"]
+    session.remove_part("red")
+    assert session.parts() == ["blau ü", "dot"]
+    session.set_footage(document["footage"] | {"last": 40})
+    assert session.document()["footage"]["last"] == 40
+    with pytest.raises(RototoonError, match="width"):
+        session.set_footage(document["footage"] | {"width": 0})
+    assert session.document()["footage"]["width"] == 80
+
+
+def test_missing_frame_is_named(document, tmp_path):
+    with Session.from_document(document, tmp_path) as session:
+        with pytest.raises(RototoonError, match=r"frame_0\d\d\.png"):
+            session.track()
+        assert "tracks" not in session.document()["parts"][0] or not session.document()["parts"][0]["tracks"]
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda s: s.tracks("green"), 'no part "green"; the document has "red", "blau ü"'),
+        (lambda s: s.pin("red", 0, 0, (1, 1)), "frame 0 is a key"),
+        (lambda s: s.pin("red", 3, 4, (1, 1)), "no point 4; it has 4"),
+        (lambda s: s.pin("red", 3, 0, (float("nan"), 1)), "found (NaN, 1)"),
+        (lambda s: s.set_key("red", 3, [(1, 1)]), "found 1 points, expected 4 as on frame 0"),
+        (lambda s: s.set_key("red", 99, square(0, 0)), "frame 99 is outside the footage"),
+        (lambda s: s.remove_key("red", 3), "no key on frame 3"),
+        (lambda s: s.track("best"), 'preset "best", expected one of'),
+        (lambda s: s.track(threads=10**6), "expected at most 1024"),
+        (lambda s: s.set_document({"rototoon": 1}), "footage"),
+        (lambda s: s.set_document({"rototoon": 99, "footage": {}, "parts": []}), "99"),
+        (lambda s: s.set_document({"rototoon": float("nan")}), "not a JSON document"),
+    ],
+)
+def test_errors_say_what_is_wrong_and_change_nothing(session, call, message):
+    before = session.document()
+    with pytest.raises(RototoonError) as caught:
+        call(session)
+    assert message in str(caught.value)
+    assert session.document() == before
+
+
+def test_closed_session_refuses(document, folder):
+    session = Session.from_document(document, folder)
+    session.close()
+    session.close()
+    assert session.closed
+    with pytest.raises(RototoonError, match="the session is closed"):
+        session.parts()
+
+
+def test_functions_without_a_session():
+    assert version().count(".") == 2
+    ids = [parameter["id"] for parameter in parameters()]
+    assert ids and len(set(ids)) == len(ids)
+
+
+def test_contours_are_matched_whatever_their_start_and_direction():
+    target = square(0, 0)
+    turned = [[x + 1, y + 1] for x, y in reversed(target[1:] + target[:1])]
+    far = [[x + 40, y + 30] for x, y in target]
+    request = {
+        "references": [{"closed": True, "points": target}, {"closed": True, "points": far}],
+        "drawn": [{"closed": True, "points": far}, {"closed": True, "points": turned}],
+    }
+    matches = match_contours(request)["matches"]
+    assert [(match["reference"], match["drawn"]) for match in matches] == [(0, 1), (1, 0)]
+    for match, source in zip(matches, (target, far), strict=True):
+        assert all(max(abs(a - b) for a, b in zip(p, q)) < 1.5 for p, q in zip(match["points"], source, strict=True))
