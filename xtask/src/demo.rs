@@ -80,7 +80,7 @@ fn script(packager: &Packager) -> Command {
             start
         }
     };
-    start.env("BLENDER_USER_RESOURCES", target().join("demo/blender-user"));
+    start.env("BLENDER_USER_RESOURCES", target().join("demo/blender-user")).env_remove("ROTOTOON_LIBRARY");
     start
 }
 

@@ -125,7 +125,9 @@ fn blender_tests(wheel: Wheel, built: Option<&Bundle>) -> Result<Option<String>>
         .env("ROTOTOON_ZIP", &built.zip)
         .env("ROTOTOON_CLI", &built.cli)
         .env("ROTOTOON_ROOT", root())
-        .env("BLENDER_USER_RESOURCES", resources))?;
+        .env("BLENDER_USER_RESOURCES", resources)
+        // The library of the zip is what is tested.
+        .env_remove("ROTOTOON_LIBRARY"))?;
     Ok(None)
 }
 
