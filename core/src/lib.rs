@@ -6,8 +6,9 @@
 //! 2. [`image`]: pictures from files and what is computed on them.
 //! 3. [`track`]: contours from key frames to every frame.
 //! 4. [`snap`]: contours onto the drawn ink.
-//! 5. [`project`]: the document that holds all of it.
-//! 6. [`pipeline`]: the stages joined.
+//! 5. [`render`]: pictures of what was found. [`export`]: the same for other programs.
+//! 6. [`project`]: the document that holds all of it.
+//! 7. [`pipeline`]: the stages joined.
 //!
 //! [`geometry`] and [`numeric`] serve them all.
 //!
@@ -16,11 +17,13 @@
 //! Pixels, x right, y down, origin at the outer top-left corner of the picture: a pixel's centre lies at +0.5.
 //! Hosts convert at their border.
 
+pub mod export;
 pub mod geometry;
 pub mod image;
 pub mod numeric;
 pub mod pipeline;
 pub mod project;
+pub mod render;
 pub mod scene;
 pub mod snap;
 pub mod track;

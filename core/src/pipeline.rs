@@ -1,1 +1,263 @@
-//! The stages joined.
+//! The stages joined: from a document and the folder of its footage to a fuller document, pictures or text.
+//!
+//! This is the only file that knows all stages. A stage's result enters the document as a whole or, after an error or
+//! when cancelled, not at all.
+
+use crate::export::{SvgOptions, svg};
+use crate::geometry::Point;
+use crate::image::Sequence;
+use crate::project::save::DECIMALS;
+use crate::project::{Document, Problems, WriteError, output, validate, write_whole};
+use crate::render::{self, EncodeError, Format, OverlayOptions};
+use crate::scene::{Cancelled, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
+use crate::snap::{SnapError, SnapOptions, snap_scene};
+use crate::track::{TrackError, TrackOptions, Tracker, Tracking};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+/// Why the pipeline stopped. The document is as it was.
+#[derive(Debug, thiserror::Error)]
+pub enum PipelineError {
+    /// The footage's pattern is none.
+    #[error("footage: {0}")]
+    Pattern(#[from] PatternError),
+    /// Tracking failed.
+    #[error(transparent)]
+    Track(#[from] TrackError),
+    /// Snapping failed.
+    #[error(transparent)]
+    Snap(#[from] SnapError),
+    /// A frame could not be read.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A picture could not be encoded.
+    #[error("frame {frame}: {source}")]
+    Encode {
+        /// The frame.
+        frame: FrameNumber,
+        /// What the encoder said.
+        source: EncodeError,
+    },
+    /// What was asked for does not fit the document.
+    #[error("{0}")]
+    Request(String),
+}
+
+/// The pictures of a document that lies in `folder`.
+pub fn frames(document: &Document, folder: &Path) -> Result<Sequence, PipelineError> {
+    Ok(Sequence::new(&document.scene.footage, folder)?)
+}
+
+/// Tracks every part of a document that lies in `folder`. Runs on the caller's rayon pool.
+pub fn track(
+    document: &mut Document,
+    folder: &Path,
+    options: &TrackOptions,
+    progress: &dyn Progress,
+) -> Result<Tracking, PipelineError> {
+    let frames = frames(document, folder)?;
+    let tracking = Tracker::new(*options).track(&in_effect(&document.scene), &frames, progress)?;
+    store(&mut document.scene, &tracking);
+    Ok(tracking)
+}
+
+/// The scene with those corrections alone that act: others are kept in the document, but no stage needs to know them.
+pub fn in_effect(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    for part in &mut scene.parts {
+        let (mut pins, mut centers) = (std::mem::take(&mut part.pins), std::mem::take(&mut part.centers));
+        pins.retain(|frame, _| validate::acts(part, *frame));
+        centers.retain(|frame, _| validate::acts(part, *frame));
+        (part.pins, part.centers) = (pins, centers);
+    }
+    scene
+}
+
+/// Puts tracks into the scene. Snapped paths stay on frames whose contour is as before.
+pub fn store(scene: &mut Scene, tracking: &Tracking) {
+    for (part, found) in scene.parts.iter_mut().zip(&tracking.parts) {
+        let before = std::mem::replace(&mut part.tracks, found.tracks.clone());
+        let now = &part.tracks;
+        part.curves.retain(|frame, _| match (now.get(frame), before.get(frame)) {
+            (Some(now), Some(before)) => same_contour(now, before),
+            // Snapped from a key that had no track.
+            (Some(now), None) => part.keys.get(frame).is_some_and(|key| same_contour(now, key)),
+            _ => false,
+        });
+        part.confidence = found.confidence.clone();
+    }
+}
+
+/// Whether contours differ by no more than what a document's rounding makes of them.
+fn same_contour(a: &[Point], b: &[Point]) -> bool {
+    let tolerance = 10f64.powi(-DECIMALS);
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (*a - *b).abs().max_element() <= tolerance)
+}
+
+/// Snaps every contour of a document that lies in `folder` to the ink. Runs on the caller's rayon pool.
+pub fn snap(
+    document: &mut Document,
+    folder: &Path,
+    options: &SnapOptions,
+    progress: &dyn Progress,
+) -> Result<(), PipelineError> {
+    let frames = frames(document, folder)?;
+    let curves = snap_scene(&document.scene, &frames, options, progress)?;
+    for (part, curves) in document.scene.parts.iter_mut().zip(curves) {
+        part.curves = curves;
+    }
+    Ok(())
+}
+
+/// Which picture is made of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Picture {
+    /// Contours over the footage.
+    Overlay(OverlayOptions),
+    /// Coverage of the closed parts.
+    Matte,
+}
+
+/// What to render.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderJob {
+    /// The picture.
+    pub picture: Picture,
+    /// The frames; none for the whole footage.
+    pub frames: Option<RangeInclusive<FrameNumber>>,
+    /// Names of the parts; none for all.
+    pub parts: Option<Vec<String>>,
+    /// Files: a pattern with one `%d` or `%0Nd`, or for one frame a plain name. Ends in `.png` or `.exr`.
+    pub output: String,
+}
+
+/// A render job that fits the document.
+struct Rendering {
+    frames: Vec<(FrameNumber, PathBuf)>,
+    parts: Option<Vec<usize>>,
+    format: Format,
+}
+
+/// Renders frames of a document that lies in `folder`; returns the files. Each appears whole or not at all. Runs on the
+/// caller's rayon pool.
+pub fn render(
+    document: &Document,
+    folder: &Path,
+    job: &RenderJob,
+    progress: &dyn Progress,
+) -> Result<Vec<PathBuf>, PipelineError> {
+    let sequence = frames(document, folder)?;
+    let plan = plan(document, &sequence, job)?;
+    let mut done = 0;
+    progress.report("Rendering", 0.0)?;
+    for batch in plan.frames.chunks(rayon::current_num_threads().max(1)) {
+        let results: Vec<Result<(), PipelineError>> = batch
+            .par_iter()
+            .map(|(frame, path)| Ok(write_whole(path, &picture(document, &sequence, job, &plan, *frame)?)?))
+            .collect();
+        results.into_iter().collect::<Result<(), _>>()?;
+        done += batch.len();
+        progress.report("Rendering", done as f64 / plan.frames.len() as f64)?;
+    }
+    Ok(plan.frames.into_iter().map(|(_, path)| path).collect())
+}
+
+fn picture(
+    document: &Document,
+    sequence: &Sequence,
+    job: &RenderJob,
+    plan: &Rendering,
+    frame: FrameNumber,
+) -> Result<Vec<u8>, PipelineError> {
+    let parts = plan.parts.as_deref();
+    let bytes = match &job.picture {
+        Picture::Matte => render::encode::matte(&render::matte(&document.scene, frame, parts), plan.format),
+        Picture::Overlay(options) => {
+            let below = sequence.picture(frame)?;
+            render::encode::colours(&render::overlay(&document.scene, frame, &below, parts, options), plan.format)
+        }
+    };
+    bytes.map_err(|source| PipelineError::Encode { frame, source })
+}
+
+fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Rendering, PipelineError> {
+    let footage = &document.scene.footage;
+    let format = Format::of(Path::new(&job.output))
+        .ok_or_else(|| PipelineError::Request(format!("{}: expected a name that ends in .png or .exr", job.output)))?;
+    let range = job.frames.clone().unwrap_or(footage.first..=footage.last);
+    if range.is_empty() || !(footage.first..=footage.last).contains(range.start()) || *range.end() > footage.last {
+        let (first, last) = (range.start(), range.end());
+        let own = format!("{} to {}", footage.first, footage.last);
+        return Err(PipelineError::Request(format!("frames {first} to {last}: expected frames of the footage, {own}")));
+    }
+    let frames: Vec<(FrameNumber, PathBuf)> = match FramePattern::parse(&job.output) {
+        Ok(pattern) => range.map(|frame| (frame, pattern.path(frame))).collect(),
+        Err(PatternError::NoNumber { .. }) if range.start() == range.end() => {
+            vec![(*range.start(), PathBuf::from(&job.output))]
+        }
+        Err(error) => return Err(PipelineError::Request(format!("output {error}"))),
+    };
+    for (frame, path) in &frames {
+        let own = std::fs::canonicalize(path).ok();
+        if own.is_some() && own == std::fs::canonicalize(sequence.path(*frame)).ok() {
+            let path = path.display();
+            return Err(PipelineError::Request(format!(
+                "frame {frame}: {path} is the footage itself, expected another"
+            )));
+        }
+    }
+    Ok(Rendering {
+        frames,
+        parts: job.parts.as_ref().map(|names| indices(&document.scene, names)).transpose()?,
+        format,
+    })
+}
+
+fn indices(scene: &Scene, names: &[String]) -> Result<Vec<usize>, PipelineError> {
+    let index = |name: &String| {
+        scene.parts.iter().position(|part| part.name == *name).ok_or_else(|| {
+            let known: Vec<_> = scene.parts.iter().map(|part| format!("{:?}", part.name)).collect();
+            PipelineError::Request(format!("no part {name:?}: the document has {}", known.join(", ")))
+        })
+    };
+    names.iter().map(index).collect()
+}
+
+/// The document as an animated SVG.
+pub fn export_svg(document: &Document, options: &SvgOptions) -> String {
+    svg(&document.scene, options)
+}
+
+/// Everything that is wrong with a document that lies in `folder` and with its frames: each is read.
+pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Result<Problems, PipelineError> {
+    let mut problems = document.problems();
+    let sequence = Sequence::keeping(&document.scene.footage, folder, 0)?;
+    let numbers: Vec<FrameNumber> = (document.scene.footage.first..=document.scene.footage.last).collect();
+    let mut done = 0;
+    progress.report("Reading frames", 0.0)?;
+    for batch in numbers.chunks(rayon::current_num_threads().max(1)) {
+        let errors: Vec<Option<FrameError>> = batch.par_iter().map(|&frame| sequence.picture(frame).err()).collect();
+        for error in errors.into_iter().flatten() {
+            problems.error("footage", error.to_string());
+        }
+        done += batch.len();
+        progress.report("Reading frames", done as f64 / numbers.len() as f64)?;
+    }
+    Ok(problems)
+}
+
+/// Rewrites a relative footage pattern of a document that moves from folder `from` to folder `to`, so that it names the
+/// same files: relative where there is a way from one folder to the other, else absolute.
+pub fn relocate(document: &mut Document, from: &Path, to: &Path) {
+    let pattern = &mut document.scene.footage.pattern;
+    if Path::new(pattern).is_relative() {
+        *pattern = output::moved_pattern(pattern, from, to);
+    }
+}

@@ -1,7 +1,7 @@
 //! Holds the direction of dependencies in the core:
 //!
 //! `numeric ← geometry ← scene ← {image, track, snap, render, export, project} ← pipeline`,
-//! where track and snap may read pictures with image, and never import each other.
+//! where track, snap and render may use image, and track and snap never import each other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -15,7 +15,7 @@ const ALLOWED: [(&str, &[&str]); 10] = [
     ("image", &["numeric", "geometry", "scene"]),
     ("track", &["numeric", "geometry", "scene", "image"]),
     ("snap", &["numeric", "geometry", "scene", "image"]),
-    ("render", &["numeric", "geometry", "scene"]),
+    ("render", &["numeric", "geometry", "scene", "image"]),
     ("export", &["numeric", "geometry", "scene"]),
     ("project", &["numeric", "geometry", "scene"]),
     ("pipeline", &["numeric", "geometry", "scene", "image", "track", "snap", "render", "export", "project"]),

@@ -92,7 +92,7 @@ fn all_errors_are_reported_at_once() {
         errors(json),
         [
             "p.json: footage: the field \"height\" is missing",
-            "p.json: footage.pattern: found \"a.png\" with 0 places for the frame number, expected one %d or %0Nd such as %04d",
+            "p.json: footage.pattern: pattern \"a.png\" has no frame number: expected one %d or %0Nd",
             "p.json: footage.width: found 0, expected 1 to 65535",
             "p.json: footage.fps: found 0, expected more than 0",
             "p.json: footage.last: found 2, expected at least the first frame, 5",
@@ -108,7 +108,7 @@ fn all_errors_are_reported_at_once() {
 #[test]
 fn footage_that_cannot_be_is_refused() {
     for (field, value, message) in [
-        ("\"f_%03d.png\"", "\"%d/%d.png\"", "with 2 places for the frame number"),
+        ("\"f_%03d.png\"", "\"%d/%d.png\"", "pattern \"%d/%d.png\" has 2 frame numbers: expected one %d or %0Nd"),
         ("12.5", "-1", "footage.fps: found -1, expected more than 0"),
         ("64", "1.5", "footage.width: found 1.5, expected a whole number"),
         ("48", "70000", "footage.height: found 70000, expected 1 to 65535"),
@@ -261,7 +261,7 @@ fn a_document_of_many_points_is_read_and_written() {
     assert_eq!(parse(&document.to_json()).unwrap().scene, document.scene);
 }
 
-fn point() -> impl Strategy<Value = Point> {
+fn point() -> impl Strategy<Value = Point> + Clone {
     (-1e6..1e6, -1e6..1e6).prop_map(|(x, y)| Point::new(x, y))
 }
 

@@ -149,7 +149,7 @@ pub unsafe extern "C" fn rototoon_session_set_document(
 }
 
 /// Writes the document to a file, whole or not at all. In another folder than the session's, a relative footage pattern
-/// is written absolute.
+/// is rewritten so that it names the same files.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_save(
     session: *const RototoonSession,
@@ -366,8 +366,8 @@ pub unsafe extern "C" fn rototoon_session_clear_center(
 
 /// Tracks every part between its keys and stores `tracks` and `confidence` in the document.
 ///
-/// `options` is JSON: `preset` ("rototoon" or "zhou2011"), `threads` (0: one a core); each may be missing, and so may all
-/// (length 0). The threads do not change the result. Spans that nothing touched since they were last solved are reused.
+/// `options` is JSON of the parameters of the stages "track" and "run" (see `rototoon_parameters`), such as
+/// `{"preset": "zhou2011", "threads": 2}`; each may be missing, and so may all (length 0). The threads do not change the result. Spans that nothing touched since they were last solved are reused.
 /// Snapped curves of frames whose track changed are dropped.
 ///
 /// `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
@@ -399,7 +399,7 @@ pub unsafe extern "C" fn rototoon_session_track(
 
 /// Lays the contours along the drawn ink and stores `curves` in the document.
 ///
-/// `options` is JSON: `threads` as for tracking. `summary` is JSON: `{"frames": number of snapped frames, parts added up}`.
+/// `options` is JSON of the parameters of the stages "snap" and "run" (see `rototoon_parameters`). `summary` is JSON: `{"frames": number of snapped frames, parts added up}`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_snap(
     session: *const RototoonSession,

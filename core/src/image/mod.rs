@@ -2,22 +2,32 @@
 //!
 //! - [`canny`]: edges of the luma
 //! - [`colour`]: sRGB, luma and CIE Lab
+//! - [`decode`]: a picture from a file
 //! - [`distance_transform`]: Manhattan distance to the nearest edge
 //! - [`flow`]: dense optical flow by inverse search
 //! - [`gaussian`]: separable blur
+//! - [`holds`]: which frames show the same drawing
 //! - [`mean_shift`]: the filter that flattens colours and keeps edges
 //! - [`pixel`]: what a pixel is to the filters
 //! - [`pyramid`]: a picture at halved sizes
 //! - [`resize`]: area reduction and bilinear enlargement
 //! - [`sample`]: bilinear reading with derivatives
+//! - [`sequence`]: the pictures of a footage, decoded in parallel and kept for a while
 
 pub mod canny;
 pub mod colour;
+pub mod decode;
 pub mod distance_transform;
 pub mod flow;
 pub mod gaussian;
+pub mod holds;
 pub mod mean_shift;
 pub mod pixel;
 pub mod pyramid;
 pub mod resize;
 pub mod sample;
+pub mod sequence;
+
+pub use decode::{DecodeError, decode, probe};
+pub use holds::{HoldError, HoldOptions, Holds, find_holds};
+pub use sequence::Sequence;

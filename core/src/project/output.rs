@@ -35,7 +35,7 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if existing.as_ref().is_some_and(|data| data.permissions().readonly()) {
         return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
     }
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = parent(&target);
     let mut builder = tempfile::Builder::new();
     builder.prefix(".rototoon-");
     #[cfg(unix)]
@@ -55,6 +55,47 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
         let _ = folder.sync_all();
     }
     Ok(())
+}
+
+/// Whether a file could be written at `path`, as far as that can be known beforehand: before hours of work, not after.
+pub fn check_writable(path: &Path) -> Result<(), WriteError> {
+    let probe = || match fs::metadata(path) {
+        Ok(data) if data.is_dir() => Err(io::Error::other("it is a folder, expected a file")),
+        Ok(data) if !data.is_file() => Ok(()),
+        Ok(data) if data.permissions().readonly() => {
+            Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"))
+        }
+        Ok(_) => tempfile::tempfile_in(parent(&fs::canonicalize(path)?)).map(drop),
+        Err(_) => tempfile::tempfile_in(parent(path)).map(drop),
+    };
+    probe().map_err(|source| WriteError { path: path.to_owned(), source })
+}
+
+fn parent(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// A relative frame pattern of folder `from` as folder `to` names it; absolute where no relative path leads there.
+pub fn moved_pattern(pattern: &str, from: &Path, to: &Path) -> String {
+    let real = |folder: &Path| {
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        fs::canonicalize(folder).or_else(|_| std::path::absolute(folder)).unwrap_or_else(|_| folder.to_owned())
+    };
+    let (from, to) = (real(from), real(to));
+    if from == to {
+        return pattern.to_owned();
+    }
+    let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
+    let way: PathBuf = match shared {
+        0 => from,
+        _ => {
+            let up = to.components().skip(shared).map(|_| std::path::Component::ParentDir);
+            up.chain(from.components().skip(shared)).collect()
+        }
+    };
+    // A percent sign in a folder's name must not become a place for the number.
+    let way = way.to_string_lossy().replace('%', "%%");
+    Path::new(&way).join(pattern).to_string_lossy().into_owned()
 }
 
 #[cfg(test)]
@@ -106,5 +147,25 @@ mod tests {
         let error = write_whole(Path::new("/dev/full"), b"one").unwrap_err();
         assert_eq!(error.source.kind(), io::ErrorKind::StorageFull);
         assert!(!fs::metadata("/dev/full").unwrap().is_file());
+    }
+
+    #[test]
+    fn a_pattern_follows_its_document() {
+        let root = tempfile::tempdir().unwrap();
+        let (a, b) = (root.path().join("100% a"), root.path().join("b/c"));
+        fs::create_dir_all(&a).unwrap();
+        fs::create_dir_all(&b).unwrap();
+        assert_eq!(moved_pattern("f_%d.png", &a, &a.join("../100% a")), "f_%d.png");
+        assert_eq!(moved_pattern("f/f_%d.png", &a, &b), "../../100%% a/f/f_%d.png");
+        assert_eq!(moved_pattern("f_%d.png", &b, root.path()), "b/c/f_%d.png");
+    }
+
+    #[test]
+    fn what_cannot_be_written_is_known_beforehand() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(check_writable(&folder.path().join("a.json")).is_ok());
+        assert!(check_writable(&folder.path().join("none/a.json")).is_err());
+        assert!(check_writable(folder.path()).is_err());
+        assert!(names(folder.path()).is_empty());
     }
 }

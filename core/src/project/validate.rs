@@ -7,7 +7,7 @@ use super::problem::Problems;
 use super::schema::{MAX_COORDINATE, MAX_FRAME_NUMBER, MAX_FRAMES, MAX_SIZE};
 use super::shape::part_place;
 use crate::geometry::{Point, polygon};
-use crate::scene::{Footage, FrameNumber, Part, Pattern, Scene};
+use crate::scene::{Footage, FrameNumber, FramePattern, Part, Scene};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Everything that is wrong with a scene.
@@ -41,7 +41,7 @@ impl RawFootage {
     /// The footage where all fields fit; calls `error(field, message)` for each that does not.
     pub fn checked(self, mut error: impl FnMut(&'static str, String)) -> Option<Footage> {
         let pattern = self.pattern.filter(|pattern| {
-            let parsed = Pattern::parse(pattern);
+            let parsed = FramePattern::parse(pattern);
             if let Err(problem) = &parsed {
                 error("pattern", problem.to_string());
             }

@@ -1,12 +1,18 @@
 //! The types that stages hand to each other.
 //!
 //! - [`raster`]: a rectangle of pixels
+//! - [`correspondence`]: contours drawn afresh, matched to the parts
 //! - [`footage`]: which frames there are and where their pictures come from
+//! - [`palette`]: colours that tell parts apart
+//! - [`parameters`]: what a user may set, described once
 //! - [`part`]: a tracked contour with its keys, corrections and results
-//! - [`pattern`]: file names with a place for the frame number
+//! - [`pattern`]: file names of a numbered sequence
 //! - [`progress`]: how long work reports and is cancelled
 
+pub mod correspondence;
 pub mod footage;
+pub mod palette;
+pub mod parameters;
 pub mod part;
 pub mod pattern;
 pub mod progress;
@@ -14,7 +20,7 @@ pub mod raster;
 
 pub use footage::{Footage, FrameError, FrameNumber, FrameSource};
 pub use part::{Part, Span};
-pub use pattern::{Pattern, PatternError};
+pub use pattern::{FramePattern, PatternError};
 pub use progress::{Cancelled, Progress, Silent};
 pub use raster::{Colour, Raster};
 

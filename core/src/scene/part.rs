@@ -65,6 +65,31 @@ impl Part {
         frames.windows(2).map(|pair| Span { first: pair[0], last: pair[1] }).collect()
     }
 
+    /// The control points on a frame: tracked, or the artist's key.
+    pub fn points_at(&self, frame: FrameNumber) -> Option<&Vec<Point>> {
+        self.tracks.get(&frame).or_else(|| self.keys.get(&frame))
+    }
+
+    /// The contour on a frame as a polyline: the snapped paths joined where they are there and complete, else the
+    /// control points. Of a closed part the last point is not the first again.
+    pub fn outline(&self, frame: FrameNumber) -> Option<Vec<Point>> {
+        let points = self.points_at(frame)?;
+        let Some(paths) = self.complete_curves(frame) else { return Some(points.clone()) };
+        let mut outline: Vec<Point> = paths.concat();
+        outline.dedup();
+        if self.closed && outline.len() > 1 && outline.first() == outline.last() {
+            outline.pop();
+        }
+        Some(outline)
+    }
+
+    /// The snapped paths of a frame where there is one, not empty, for each segment between its control points.
+    pub fn complete_curves(&self, frame: FrameNumber) -> Option<&Vec<Vec<Point>>> {
+        let paths = self.curves.get(&frame)?;
+        (!paths.is_empty() && paths.len() == self.segment_count() && paths.iter().all(|path| !path.is_empty()))
+            .then_some(paths)
+    }
+
     /// Number of control points; 0 without a key.
     pub fn point_count(&self) -> usize {
         self.keys.values().next().map_or(0, Vec::len)
@@ -74,5 +99,25 @@ impl Part {
     pub fn segment_count(&self) -> usize {
         let n = self.point_count();
         if self.closed && n > 1 { n } else { n.saturating_sub(1) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_outline_joins_snapped_paths_or_takes_the_control_points() {
+        let p = |x: f64, y: f64| Point::new(x, y);
+        let mut part = Part { closed: true, ..Part::default() };
+        part.keys.insert(3, vec![p(0.0, 0.0), p(2.0, 0.0)]);
+        assert_eq!(part.outline(2), None);
+        assert_eq!(part.outline(3), Some(part.keys[&3].clone()));
+        let there = vec![p(0.0, 0.0), p(1.0, 1.0), p(2.0, 0.0)];
+        let back = vec![p(2.0, 0.0), p(1.0, -1.0), p(0.0, 0.0)];
+        part.curves.insert(3, vec![there.clone(), back]);
+        assert_eq!(part.outline(3), Some(vec![p(0.0, 0.0), p(1.0, 1.0), p(2.0, 0.0), p(1.0, -1.0)]));
+        part.curves.insert(3, vec![there]);
+        assert_eq!(part.outline(3), Some(part.keys[&3].clone()), "a segment has no path");
     }
 }

@@ -1,9 +1,29 @@
-//! How sure a tracked point is.
+//! How sure a tracked point is: the probability that it lies within 2 working pixels of the drawn contour.
+//!
+//! Two things tell: how well the key's colours near the point fit the picture (e, mean squared colour difference of the
+//! samples around it, near ones counting more), and how far from each other the models of the two keys put the point
+//! (d, working pixels). Both fail in their own way, so together they tell more than either. The probability is logistic
+//! in their logarithms: logit p = A + B ln(e + 0.001) + C ln(d + 0.5).
+//!
+//! A, B and C are fitted by weighted maximum likelihood, each sequence counting the same. Fitted to five of six
+//! sequences and tried on the sixth, of the points given 0.85 to 0.95 (mean 0.91) 93 % are within 2 px, of those given
+//! more (mean 0.99) 97 %; below 0.5 it is too careful by 0.2.
 
 use super::features::Features;
 use super::lattice::texture::{Cover, WORST, difference};
 use super::propagate::Model;
-use super::rototoon::Hypothesis;
+use super::pool::Hypothesis;
+
+/// A, B and C of the module's formula.
+const INTERCEPT: f64 = -1.28;
+const LOOK_SLOPE: f64 = -1.02;
+const AGREEMENT_SLOPE: f64 = -0.84;
+/// Distance between the models beyond which more says nothing more, in working pixels.
+const FURTHEST_APART: f64 = 50.0;
+/// Weight of a sample that lies under a nearer part.
+const COVERED_WEIGHT: f64 = 0.2;
+/// Level (index in `LEVELS`) whose samples are compared.
+const LEVEL: usize = 2;
 
 /// Confidence of each control point of a chosen hypothesis, 0 to 1.
 pub fn of_drawing(
@@ -14,29 +34,31 @@ pub fn of_drawing(
     chosen: usize,
 ) -> Vec<f64> {
     let own = &pool[chosen];
-    let texture = &models[own.model].texture;
-    let level = features.level(2);
-    let count = own.points.len();
-    let reach = texture.mesh.side.max(6.0);
-    let mut look = vec![(0.0f64, 0.0f64); count];
-    for texel in &texture.texels[2] {
-        let place = texel.binding.at(&own.pose.nodes);
-        let error = f64::from(difference(&level.colour(place), &texel.key).min(WORST));
-        let seen = if cover.hides(place) { 0.2 } else { 1.0 };
-        for (j, p) in own.points.iter().enumerate() {
-            let w = seen * (-place.distance_squared(*p) / (reach * reach)).exp();
-            look[j].0 += w * error;
-            look[j].1 += w;
-        }
-    }
+    let errors = local_errors(&models[own.model], features, cover, own);
     let apart = |j: usize| {
         let others = pool.iter().filter(|h| h.model != own.model);
-        others.map(|h| h.points[j].distance(own.points[j])).fold(f64::INFINITY, f64::min).min(50.0)
+        others.map(|h| h.points[j].distance(own.points[j])).fold(FURTHEST_APART, f64::min)
     };
-    (0..count)
-        .map(|j| {
-            let error = if look[j].1 > 1e-6 { look[j].0 / look[j].1 } else { f64::from(WORST) };
-            1.0 / (1.0 + (error / 0.02).powi(2) + (apart(j) / 4.0).powi(2) * 0.5)
-        })
-        .collect()
+    let probability = |(j, error): (usize, f64)| {
+        let logit = INTERCEPT + LOOK_SLOPE * (error + 0.001).ln() + AGREEMENT_SLOPE * (apart(j) + 0.5).ln();
+        1.0 / (1.0 + (-logit).exp())
+    };
+    errors.into_iter().enumerate().map(probability).collect()
+}
+
+/// Mean colour difference around each control point; the worst where no sample is near.
+fn local_errors(model: &Model, features: &Features, cover: &Cover, hypothesis: &Hypothesis) -> Vec<f64> {
+    let level = features.level(LEVEL);
+    let reach = model.texture.mesh.side.max(6.0);
+    let mut sums = vec![(0.0f64, 0.0f64); hypothesis.points.len()];
+    for texel in &model.texture.texels[LEVEL] {
+        let place = texel.binding.at(&hypothesis.pose.nodes);
+        let error = f64::from(difference(&level.colour(place), &texel.key).min(WORST));
+        let seen = if cover.hides(place) { COVERED_WEIGHT } else { 1.0 };
+        for (sum, p) in sums.iter_mut().zip(&hypothesis.points) {
+            let weight = seen * (-place.distance_squared(*p) / (reach * reach)).exp();
+            *sum = (sum.0 + weight * error, sum.1 + weight);
+        }
+    }
+    sums.into_iter().map(|(sum, weight)| if weight > 1e-6 { sum / weight } else { f64::from(WORST) }).collect()
 }

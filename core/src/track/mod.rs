@@ -13,7 +13,10 @@
 //! - [`features`], [`store`]: what is computed once from pictures, and kept
 //! - [`drawings`]: held frames are worked on once
 //! - [`lattice`]: a part's look at a key on a lattice that bends
+//! - [`stage`]: what a job is solved with
 //! - [`propagate`]: motion from a neighbour
+//! - [`search`]: motion from nowhere, by comparing everywhere
+//! - [`pool`]: the hypotheses of both
 //! - [`select`]: which hypothesis to follow
 //! - [`confidence`]: how sure a point is
 
@@ -23,8 +26,11 @@ pub mod features;
 pub mod job;
 pub mod lattice;
 pub mod propagate;
+pub mod pool;
 pub mod rototoon;
+pub mod search;
 pub mod select;
+pub mod stage;
 pub mod store;
 pub mod tracker;
 pub mod weakest;

@@ -65,6 +65,13 @@ impl Model {
         self.measured(scenery, self.aligner.align(&self.texture, target, &nodes, &[2]))
     }
 
+    /// A rough pose, brought to its anchors and aligned on the two finer levels.
+    pub fn polished(&self, scenery: &Scenery, start: &[Point]) -> Pose {
+        let start = settle(&self.texture.mesh, start, scenery.anchors);
+        let nodes = self.aligner.align(&self.texture, scenery.target(), &start, &[1, 2]);
+        self.measured(scenery, nodes)
+    }
+
     /// A pose with its energy.
     pub fn measured(&self, scenery: &Scenery, nodes: Vec<Point>) -> Pose {
         Pose { energy: self.texture.energy(scenery.features, &nodes), nodes }

@@ -250,7 +250,7 @@ mod tests {
     #[test]
     fn the_band_of_the_equations_follows_the_shorter_side() {
         let mesh = Mesh::new(&bar(), true);
-        let turned: Vec<Point> = bar().into_iter().map(|p| p.yx()).collect();
+        let turned: Vec<Point> = bar().into_iter().map(|p| Point::new(p.y, p.x)).collect();
         assert_eq!(mesh.half, Mesh::new(&turned, true).half);
         assert!(mesh.half < mesh.rest.len());
     }

@@ -1,0 +1,156 @@
+//! The linear assignment problem: rows to columns at the least total cost.
+//!
+//! Shortest augmenting paths with potentials (the Hungarian method in the form of Jonker & Volgenant 1987, without their
+//! heuristics for the start): rows enter one by one, each by a Dijkstra search over reduced costs. O(r² c) for r ≤ c. Of
+//! equally good columns the one of smaller index is taken, so the result is the same everywhere.
+
+/// Why an assignment was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum AssignmentError {
+    /// The table does not fit its size.
+    #[error("an assignment of {rows} rows to {columns} columns needs {} costs, but {found} are given", rows * columns)]
+    Size {
+        /// Number of rows.
+        rows: usize,
+        /// Number of columns.
+        columns: usize,
+        /// Costs given.
+        found: usize,
+    },
+    /// A cost is infinite or no number.
+    #[error("the cost of row {row} in column {column} is not a finite number")]
+    NotFinite {
+        /// The row.
+        row: usize,
+        /// The column.
+        column: usize,
+    },
+}
+
+/// The column of each row so that the sum of costs is least and no column is taken twice; `costs` holds the rows one after
+/// the other. Every row gets a column where there are enough; otherwise every column gets a row.
+pub fn assign(costs: &[f64], rows: usize, columns: usize) -> Result<Vec<Option<usize>>, AssignmentError> {
+    if rows.checked_mul(columns) != Some(costs.len()) {
+        return Err(AssignmentError::Size { rows, columns, found: costs.len() });
+    }
+    if let Some(i) = costs.iter().position(|c| !c.is_finite()) {
+        return Err(AssignmentError::NotFinite { row: i / columns, column: i % columns });
+    }
+    if rows <= columns {
+        return Ok(solve(rows, columns, |r, c| costs[r * columns + c]).into_iter().map(Some).collect());
+    }
+    let mut result = vec![None; rows];
+    for (column, row) in solve(columns, rows, |c, r| costs[r * columns + c]).into_iter().enumerate() {
+        result[row] = Some(column);
+    }
+    Ok(result)
+}
+
+/// The column of each row, for `rows` ≤ `columns`.
+fn solve(rows: usize, columns: usize, cost: impl Fn(usize, usize) -> f64) -> Vec<usize> {
+    const FREE: usize = usize::MAX;
+    let mut row_of = vec![FREE; columns];
+    let (mut row_price, mut column_price) = (vec![0.0; rows], vec![0.0; columns]);
+    for entering in 0..rows {
+        // Shortest path over reduced costs from the entering row to a free column.
+        let mut distance = vec![f64::INFINITY; columns];
+        let mut previous = vec![FREE; columns];
+        let mut done = vec![false; columns];
+        let (mut row, mut reached, mut last) = (entering, 0.0, FREE);
+        loop {
+            let mut nearest = FREE;
+            for c in (0..columns).filter(|&c| !done[c]) {
+                let through = reached + cost(row, c) - row_price[row] - column_price[c];
+                if through < distance[c] {
+                    distance[c] = through;
+                    previous[c] = last;
+                }
+                if nearest == FREE || distance[c] < distance[nearest] {
+                    nearest = c;
+                }
+            }
+            done[nearest] = true;
+            reached = distance[nearest];
+            last = nearest;
+            match row_of[nearest] {
+                FREE => break,
+                taken => row = taken,
+            }
+        }
+        // Prices that keep all reduced costs non-negative and make those on the path zero.
+        row_price[entering] += reached;
+        for c in (0..columns).filter(|&c| done[c] && c != last) {
+            row_price[row_of[c]] += reached - distance[c];
+            column_price[c] -= reached - distance[c];
+        }
+        while previous[last] != FREE {
+            row_of[last] = row_of[previous[last]];
+            last = previous[last];
+        }
+        row_of[last] = entering;
+    }
+    let mut column_of = vec![FREE; rows];
+    for (column, &row) in row_of.iter().enumerate().filter(|(_, row)| **row != FREE) {
+        column_of[row] = column;
+    }
+    column_of
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Least total by trying every choice.
+    fn naive(costs: &[f64], columns: usize, row: usize, taken: &mut Vec<bool>, skips: usize) -> f64 {
+        if row * columns == costs.len() {
+            return 0.0;
+        }
+        let mut best = f64::INFINITY;
+        if skips > 0 {
+            best = naive(costs, columns, row + 1, taken, skips - 1);
+        }
+        for c in 0..columns {
+            if !taken[c] {
+                taken[c] = true;
+                best = best.min(costs[row * columns + c] + naive(costs, columns, row + 1, taken, skips));
+                taken[c] = false;
+            }
+        }
+        best
+    }
+
+    proptest! {
+        #[test]
+        fn the_total_is_the_least(rows in 1usize..6, columns in 1usize..6, values in prop::collection::vec(-5i32..9, 25)) {
+            let costs: Vec<f64> = values[..rows * columns].iter().map(|&v| f64::from(v)).collect();
+            let found = assign(&costs, rows, columns).unwrap();
+            let mut taken = vec![false; columns];
+            let mut total = 0.0;
+            for (row, column) in found.iter().enumerate() {
+                if let Some(c) = *column {
+                    prop_assert!(!std::mem::replace(&mut taken[c], true));
+                    total += costs[row * columns + c];
+                }
+            }
+            prop_assert_eq!(found.iter().flatten().count(), rows.min(columns));
+            let skips = rows.saturating_sub(columns);
+            prop_assert_eq!(total, naive(&costs, columns, 0, &mut vec![false; columns], skips));
+        }
+    }
+
+    #[test]
+    fn equal_costs_keep_the_order() {
+        assert_eq!(assign(&[1.0; 9], 3, 3), Ok(vec![Some(0), Some(1), Some(2)]));
+        assert_eq!(assign(&[], 0, 5), Ok(vec![]));
+        assert_eq!(assign(&[], 2, 0), Ok(vec![None, None]));
+    }
+
+    #[test]
+    fn bad_tables_are_refused() {
+        let error = assign(&[1.0, f64::NAN, 0.0, 2.0], 2, 2).unwrap_err();
+        assert_eq!(error.to_string(), "the cost of row 0 in column 1 is not a finite number");
+        let error = assign(&[1.0], 2, 2).unwrap_err();
+        assert_eq!(error.to_string(), "an assignment of 2 rows to 2 columns needs 4 costs, but 1 are given");
+    }
+}

@@ -1,0 +1,237 @@
+//! What a user may set, described once: command line, add-on and other hosts read [`ALL`] and build their options and
+//! panels from it. An id is unique among all stages and never used again for something else.
+
+use serde::Serialize;
+
+/// Where a parameter acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stage {
+    /// All long work.
+    Run,
+    /// Tracking.
+    Track,
+    /// Snapping to the ink.
+    Snap,
+    /// Pictures of the result.
+    Render,
+    /// Files for other programs.
+    Export,
+}
+
+/// One of several values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Choice {
+    /// The value.
+    pub id: &'static str,
+    /// For people.
+    pub label: &'static str,
+}
+
+/// Which values a parameter takes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "type", rename_all = "lowercase")]
+pub enum Kind {
+    /// One of the choices.
+    Choice {
+        /// Id of the default choice.
+        default: &'static str,
+        /// All choices.
+        choices: &'static [Choice],
+    },
+    /// A whole number.
+    Integer {
+        /// Default.
+        default: i64,
+        /// Least value.
+        min: i64,
+        /// Greatest value.
+        max: i64,
+    },
+    /// A number.
+    Number {
+        /// Default.
+        default: f64,
+        /// Least value.
+        min: f64,
+        /// Greatest value.
+        max: f64,
+        /// Unit, for people; may be empty.
+        unit: &'static str,
+    },
+    /// On or off.
+    Flag {
+        /// Default.
+        default: bool,
+    },
+}
+
+/// A parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Unique id.
+    pub id: &'static str,
+    /// A few words, for people.
+    pub label: &'static str,
+    /// One sentence, for people.
+    pub help: &'static str,
+    /// Where it acts.
+    pub stage: Stage,
+    /// Which values it takes.
+    #[serde(flatten)]
+    pub kind: Kind,
+}
+
+const fn choice(id: &'static str, label: &'static str) -> Choice {
+    Choice { id, label }
+}
+
+/// Every parameter, by stage.
+pub const ALL: [Parameter; 12] = [
+    Parameter {
+        id: "threads",
+        label: "Threads",
+        help: "Number of threads; 0 takes one for each core. The result does not depend on it.",
+        stage: Stage::Run,
+        kind: Kind::Integer { default: 0, min: 0, max: 1024 },
+    },
+    Parameter {
+        id: "preset",
+        label: "Method",
+        help: "The method that tracks.",
+        stage: Stage::Track,
+        kind: Kind::Choice {
+            default: "rototoon",
+            choices: &[choice("rototoon", "Rototoon"), choice("zhou2011", "Zhou & Xiao 2011")],
+        },
+    },
+    Parameter {
+        id: "follow",
+        label: "Follow",
+        help: "What snapped paths stick to.",
+        stage: Stage::Snap,
+        kind: Kind::Choice {
+            default: "auto",
+            choices: &[
+                choice("auto", "What the points lie on"),
+                choice("edge", "Border between two colours"),
+                choice("line", "Centre of the ink"),
+            ],
+        },
+    },
+    Parameter {
+        id: "corridor_share",
+        label: "Corridor",
+        help: "How far a snapped path may leave its segment, as a share of the segment's length.",
+        stage: Stage::Snap,
+        kind: Kind::Number { default: 0.3, min: 0.0, max: 2.0, unit: "" },
+    },
+    Parameter {
+        id: "corridor_least",
+        label: "Least corridor",
+        help: "Least distance that a snapped path may leave its segment, at 540 lines.",
+        stage: Stage::Snap,
+        kind: Kind::Number { default: 4.0, min: 1.5, max: 100.0, unit: "px" },
+    },
+    Parameter {
+        id: "corridor_most",
+        label: "Greatest corridor",
+        help: "Greatest distance that a snapped path may leave its segment, at 540 lines.",
+        stage: Stage::Snap,
+        kind: Kind::Number { default: 40.0, min: 1.5, max: 500.0, unit: "px" },
+    },
+    Parameter {
+        id: "what",
+        label: "What",
+        help: "The picture that is made: contours over the footage, or the coverage of the closed parts.",
+        stage: Stage::Render,
+        kind: Kind::Choice {
+            default: "overlay",
+            choices: &[choice("overlay", "Contours over the footage"), choice("matte", "Matte of the closed parts")],
+        },
+    },
+    Parameter {
+        id: "line_width",
+        label: "Line width",
+        help: "Width of the overlay's lines, at 540 lines.",
+        stage: Stage::Render,
+        kind: Kind::Number { default: 2.0, min: 0.5, max: 50.0, unit: "px" },
+    },
+    Parameter {
+        id: "points",
+        label: "Control points",
+        help: "Whether the overlay shows the control points.",
+        stage: Stage::Render,
+        kind: Kind::Flag { default: true },
+    },
+    Parameter {
+        id: "confidence",
+        label: "Confidence",
+        help: "Whether the overlay shows by colour and opacity how sure each tracked point is.",
+        stage: Stage::Render,
+        kind: Kind::Flag { default: true },
+    },
+    Parameter {
+        id: "motion",
+        label: "Motion",
+        help: "How an exported path goes from one frame to the next.",
+        stage: Stage::Export,
+        kind: Kind::Choice {
+            default: "hold",
+            choices: &[choice("hold", "Holds each frame"), choice("linear", "Moves evenly")],
+        },
+    },
+    Parameter {
+        id: "spacing",
+        label: "Spacing",
+        help: "Distance between the points of an exported snapped path, in pixels of the footage.",
+        stage: Stage::Export,
+        kind: Kind::Number { default: 2.0, min: 0.25, max: 100.0, unit: "px" },
+    },
+];
+
+/// The parameter of an id.
+pub fn find(id: &str) -> Option<&'static Parameter> {
+    ALL.iter().find(|parameter| parameter.id == id)
+}
+
+/// The parameters of a stage.
+pub fn of(stage: Stage) -> impl Iterator<Item = &'static Parameter> {
+    ALL.iter().filter(move |parameter| parameter.stage == stage)
+}
+
+/// The list as JSON.
+pub fn to_json() -> String {
+    serde_json::json!(ALL).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn ids_are_unique_and_defaults_are_allowed() {
+        let ids: BTreeSet<_> = ALL.iter().map(|parameter| parameter.id).collect();
+        assert_eq!(ids.len(), ALL.len());
+        for parameter in &ALL {
+            match parameter.kind {
+                Kind::Choice { default, choices } => assert!(choices.iter().any(|choice| choice.id == default)),
+                Kind::Integer { default, min, max } => assert!((min..=max).contains(&default)),
+                Kind::Number { default, min, max, .. } => assert!((min..=max).contains(&default)),
+                Kind::Flag { .. } => {}
+            }
+        }
+    }
+
+    #[test]
+    fn hosts_read_the_list_as_json() {
+        let list: serde_json::Value = serde_json::from_str(&to_json()).unwrap();
+        let threads = &list[0];
+        assert_eq!(
+            (&threads["id"], &threads["type"], &threads["max"]),
+            (&"threads".into(), &"integer".into(), &1024.into())
+        );
+        assert_eq!(list[1]["choices"][1]["id"], "zhou2011");
+    }
+}

@@ -1,0 +1,181 @@
+//! The pool of hypotheses on each drawing of a span, and the path through them.
+//!
+//! 1. Each key's model is carried through the span from its own key.
+//! 2. Where the two chains disagree, both models are searched over the whole picture.
+//! 3. A path is chosen; each chosen pose is carried to its neighbours once more, since what the search found on one
+//!    drawing is worth trying on the next; the path is chosen again.
+
+use super::TrackError;
+use super::lattice::texture::Cover;
+use super::propagate::{Pose, chain};
+use super::search::Templates;
+use super::select::{Candidate, best_path};
+use super::stage::Stage;
+use crate::geometry::Point;
+use rayon::prelude::*;
+
+/// Mean distance of the chains' control points (working pixels) from which on both models are searched for.
+const DISAGREEMENT: f64 = 4.0;
+/// Mean distance (working pixels) below which a carried pose adds nothing to the pool.
+const KNOWN_PLACE: f64 = 1.0;
+
+/// A hypothesis of the pool of a drawing.
+#[derive(Clone, Debug)]
+pub struct Hypothesis {
+    /// Which key's model it poses: 0 or 1.
+    pub model: usize,
+    /// The pose.
+    pub pose: Pose,
+    /// Where it puts the control points, in working pixels.
+    pub points: Vec<Point>,
+    /// Index of the neighbouring drawing's hypothesis that it was carried from, and whether that is the drawing before.
+    origin: Option<(usize, bool)>,
+}
+
+/// The hypotheses of each drawing. Those of the keys are single.
+pub type Pools = Vec<Vec<Hypothesis>>;
+
+impl Hypothesis {
+    fn candidate(&self) -> Candidate<'_> {
+        Candidate { energy: self.pose.energy, points: &self.points }
+    }
+
+    /// Mean distance of the control points.
+    pub fn distance(&self, other: &Self) -> f64 {
+        let sum: f64 = self.points.iter().zip(&other.points).map(|(a, b)| a.distance(*b)).sum();
+        sum / self.points.len().max(1) as f64
+    }
+}
+
+/// The hypotheses of all drawings and the index of the chosen one on each.
+pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>), TrackError> {
+    let mut pools = chains(stage)?;
+    let found: Vec<Vec<Hypothesis>> = searched(stage, &pools)?;
+    pools.iter_mut().zip(found).for_each(|(pool, more)| pool.extend(more));
+    let path = choose(stage, &pools);
+    let (forwards, backwards) = rayon::join(|| sweep(stage, &pools, &path, true), || sweep(stage, &pools, &path, false));
+    for more in [forwards?, backwards?] {
+        for (pool, hypothesis) in pools.iter_mut().zip(more) {
+            if let Some(new) = hypothesis.filter(|new| is_new(pool, new)) {
+                pool.push(new);
+            }
+        }
+    }
+    let path = choose(stage, &pools);
+    Ok((pools, path))
+}
+
+fn hypothesis(stage: &Stage, model: usize, pose: Pose, origin: Option<(usize, bool)>) -> Hypothesis {
+    let points = stage.models[model].texture.mesh.control_points(&pose.nodes);
+    Hypothesis { model, pose, points, origin }
+}
+
+fn choose(stage: &Stage, pools: &Pools) -> Vec<usize> {
+    let candidates: Vec<Vec<Candidate>> =
+        pools.iter().map(|pool| pool.iter().map(Hypothesis::candidate).collect()).collect();
+    best_path(&candidates, stage.models[0].texture.mesh.size)
+}
+
+/// The poses of both models, carried from their keys: two hypotheses on each drawing, the first key's first.
+fn chains(stage: &Stage) -> Result<Pools, TrackError> {
+    let (forwards, backwards) = rayon::join(|| carried(stage, 0), || carried(stage, 1));
+    let at_key = |model: usize| {
+        let nodes = stage.models[model].texture.mesh.rest.clone();
+        vec![hypothesis(stage, model, Pose { nodes, energy: 0.0 }, None)]
+    };
+    let mut pools = vec![at_key(0)];
+    let last = stage.drawings.len() - 1;
+    for (i, (first, second)) in forwards?.into_iter().zip(backwards?).enumerate() {
+        let from = [0, usize::from(i + 2 < last)];
+        pools.push(vec![
+            hypothesis(stage, 0, first, Some((from[0], true))),
+            hypothesis(stage, 1, second, Some((from[1], false))),
+        ]);
+    }
+    pools.push(at_key(1));
+    Ok(pools)
+}
+
+fn carried(stage: &Stage, model: usize) -> Result<Vec<Pose>, TrackError> {
+    let last = stage.drawings.len() - 1;
+    let drawing = |position: usize| if model == 0 { position } else { last - position };
+    let start = stage.models[model].texture.mesh.rest.clone();
+    let mut poses = chain(start, last - 1, |pose, moved, position| {
+        stage.carry(model, pose, moved, drawing(position), drawing(position + 1))
+    })?;
+    if model == 1 {
+        poses.reverse();
+    }
+    Ok(poses)
+}
+
+/// Hypotheses from searching the whole picture, on each drawing where the chains disagree.
+fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
+    let lost: Vec<bool> =
+        pools.iter().map(|pool| matches!(&pool[..], [a, b] if a.distance(b) >= DISAGREEMENT)).collect();
+    if !lost.contains(&true) {
+        return Ok(vec![Vec::new(); pools.len()]);
+    }
+    let last = stage.drawings.len() - 1;
+    let ends = [0, last];
+    let contours = ends.map(|d| &pools[d][0].points);
+    let templates: Vec<Option<Templates>> = (0..2)
+        .into_par_iter()
+        .map(|key| {
+            let (features, cover): (_, &Cover) = (&stage.features[ends[key]], &stage.covers[ends[key]]);
+            Templates::new(&stage.models[key], features, cover, contours[key], stage.width())
+        })
+        .collect();
+    lost.par_iter()
+        .enumerate()
+        .map(|(drawing, &lost)| {
+            let mut found = Vec::new();
+            for (key, templates) in templates.iter().enumerate() {
+                let (true, Some(templates)) = (lost, templates) else { continue };
+                stage.progress.report("Searching", 0.0)?;
+                let (model, scenery) = (&stage.models[key], stage.scenery(key, drawing));
+                for start in templates.find(&stage.features[drawing], model, contours[key]) {
+                    found.push(hypothesis(stage, key, model.polished(&scenery, &start), None));
+                }
+            }
+            Ok(found)
+        })
+        .collect()
+}
+
+/// Carries the chosen poses to the next drawing (or the one before), and what comes of it further while it is better
+/// than what was chosen there.
+fn sweep(
+    stage: &Stage,
+    pools: &Pools,
+    path: &[usize],
+    forwards: bool,
+) -> Result<Vec<Option<Hypothesis>>, TrackError> {
+    let last = pools.len() - 1;
+    let mut found: Vec<Option<Hypothesis>> = vec![None; pools.len()];
+    let mut carried: Option<Hypothesis> = None;
+    for step in 1..last {
+        let (to, from) = if forwards { (step, step - 1) } else { (last - step, last - step + 1) };
+        if from == 0 || from == last {
+            continue;
+        }
+        let origin = Some((path[from], forwards));
+        let (source, fresh) = match &carried {
+            Some(better) => (better, true),
+            None => (&pools[from][path[from]], false),
+        };
+        if !fresh && pools[to].iter().any(|h| h.origin == origin) {
+            continue;
+        }
+        let pose = stage.carry(source.model, &source.pose.nodes, None, from, to)?;
+        let new = hypothesis(stage, source.model, pose, if fresh { None } else { origin });
+        let better = new.pose.energy < pools[to][path[to]].pose.energy;
+        found[to] = is_new(&pools[to], &new).then(|| new.clone());
+        carried = better.then_some(new);
+    }
+    Ok(found)
+}
+
+fn is_new(pool: &[Hypothesis], new: &Hypothesis) -> bool {
+    pool.iter().filter(|h| h.model == new.model).all(|h| h.distance(new) > KNOWN_PLACE)
+}
