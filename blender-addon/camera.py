@@ -72,15 +72,14 @@ class Mapping:
     def to_layer(self, pixels: np.ndarray) -> np.ndarray:
         """Pixels (..., 2) to points (..., 3) of the drawing plane in layer space."""
         uv = (np.asarray(pixels, np.float64) - self.view.to_pixel[:, 2]) @ self.linear_inverse.T
-        ones = np.ones(uv.shape[:-1] + (1,))
         rotation, shift = self.from_view[:3, :3], self.from_view[:3, 3]
         if self.view.perspective:
             origin = shift
-            direction = np.concatenate([uv, -ones], -1) @ rotation.T
+            direction = uv @ rotation[:, :2].T - rotation[:, 2]
         else:
-            origin = np.concatenate([uv, 0 * ones], -1) @ rotation.T + shift
-            direction = np.broadcast_to(-rotation[:, 2], origin.shape)
-        along = direction @ self.normal
+            origin = uv @ rotation[:, :2].T + shift
+            direction = -rotation[:, 2]
+        along = np.asarray(direction @ self.normal)
         if (np.abs(along) <= 1e-9 * np.linalg.norm(direction, axis=-1)).any():
             raise Problem("The drawing plane is seen edge-on: turn the Grease Pencil object towards the camera")
         reach = ((self.point - origin) @ self.normal) / along

@@ -55,11 +55,15 @@ class Drawing:
     handle: object
     kind: str
     strokes: list[Stroke] = field(default_factory=list)
+    _values: dict[str, np.ndarray] = field(default_factory=dict)
 
     def value(self, name: str) -> np.ndarray:
-        """An attribute, defaults where it is missing."""
-        count = len(self.points) if gp.TYPES[name][1] == "POINT" else len(self.starts) - 1
-        return gp.value(self.handle, name, count)
+        """An attribute as it was when first asked for, defaults where it is missing; not to be changed."""
+        if name not in self._values:
+            count = len(self.points) if gp.TYPES[name][1] == "POINT" else len(self.starts) - 1
+            self._values[name] = gp.value(self.handle, name, count)
+            self._values[name].flags.writeable = False
+        return self._values[name]
 
 
 @dataclass
@@ -103,9 +107,10 @@ def read(ob) -> Contours:
     for index, layer in enumerate(layers):
         for frame, (handle, kind) in gp.drawings(layer).items():
             found.drawings[index, frame] = read_drawing(handle, kind, index, frame)
+    by_number = {part.number: part for part in parts}
     for place in sorted(found.drawings, key=lambda place: (place[1], place[0])):
         for stroke in found.drawings[place].strokes:
-            _file(found, stroke)
+            _file(found, stroke, by_number.get(stroke.part))
     return found
 
 
@@ -126,9 +131,8 @@ def read_drawing(handle, kind: str, layer: int, frame: int) -> Drawing:
     return drawing
 
 
-def _file(found: Contours, stroke: Stroke) -> None:
+def _file(found: Contours, stroke: Stroke, part: Part | None) -> None:
     """Gives a stroke to its part, if it is the first of the part on its frame."""
-    part = found.part(stroke.part) if stroke.part else None
     if part is None or len(stroke.points) == 0:
         if not stroke.made and len(stroke.points):
             stroke.part = 0

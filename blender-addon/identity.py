@@ -178,7 +178,7 @@ def write(ob, found: Contours, decisions: Decisions) -> None:
 
 def _write_drawing(found: Contours, place: tuple[int, int], entries: list) -> None:
     drawing = found.drawings[place]
-    numbers, made, control = drawing.value(gp.PART), drawing.value(gp.MADE), drawing.value(gp.CONTROL)
+    numbers, made, control = (drawing.value(name).copy() for name in (gp.PART, gp.MADE, gp.CONTROL))
     for stroke in drawing.strokes:
         if not stroke.made:
             made[stroke.index] = False

@@ -76,6 +76,8 @@ def _point_style(part: Part, stroke: Stroke, drawing: Drawing, name: str) -> np.
 
 def blend(values: np.ndarray, frames: list[int], wanted: np.ndarray) -> np.ndarray:
     """Styles (K, …) of key frames, blended linearly at `wanted`."""
+    if (values == values[0]).all():
+        return np.broadcast_to(values[0], (len(wanted), *values.shape[1:]))
     after = np.clip(np.searchsorted(frames, wanted, side="right"), 1, max(len(frames) - 1, 1))
     after = np.minimum(after, len(frames) - 1)
     before = np.maximum(after - 1, 0)
