@@ -1,2 +1,53 @@
-//! Command line of Rototoon.
-fn main() {}
+//! Command line of Rototoon: one file a subcommand.
+//!
+//! - [`arguments`]: options made from the core's list of parameters
+//! - [`progress`]: a bar on a terminal, and Ctrl-C
+//! - [`failure`]: errors and exit statuses
+//! - [`track`], [`snap`], [`render`], [`export`], [`check`]: the subcommands
+//!
+//! Exit status: 0 done, 1 failed, 2 wrong use.
+
+mod arguments;
+mod check;
+mod export;
+mod failure;
+mod progress;
+mod project;
+mod render;
+mod snap;
+mod track;
+
+use clap::{ArgMatches, Command};
+use failure::Failure;
+use std::process::ExitCode;
+
+/// What a subcommand does with its arguments.
+type Run = fn(&ArgMatches) -> Result<(), Failure>;
+
+/// Each subcommand with what it does.
+fn subcommands() -> [(Command, Run); 5] {
+    [
+        (track::command(), track::run),
+        (snap::command(), snap::run),
+        (render::command(), render::run),
+        (export::command(), export::run),
+        (check::command(), check::run),
+    ]
+}
+
+fn main() -> ExitCode {
+    let commands = subcommands();
+    let top = Command::new("rototoon")
+        .about("Tracks drawn contours from key frames to every frame")
+        .version(env!("CARGO_PKG_VERSION"))
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommands(commands.iter().map(|(command, _)| command.clone()));
+    let matches = top.get_matches();
+    let Some((name, arguments)) = matches.subcommand() else { return ExitCode::from(failure::WRONG_USE) };
+    let run = commands.iter().find(|(command, _)| command.get_name() == name).map(|(_, run)| run);
+    match run.map_or(Ok(()), |run| run(arguments)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}

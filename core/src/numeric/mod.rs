@@ -1,9 +1,17 @@
-//! Numerical methods that know nothing of pictures.
+//! Numerical methods that know nothing of pictures or contours.
 //!
-//! - [`assignment`]: rows to columns at the least total cost
+//! - [`assignment`]: pairs of least total cost
 //! - [`banded`]: Cholesky factorisation of symmetric band matrices
+//! - [`cholesky`]: sparse Cholesky factorisation with the symbolic half kept
 //! - [`correlation`]: correlation of pictures by the fast Fourier transform
+//! - [`gradient_check`]: an analytic Jacobian against differences
+//! - [`normal_equations`]: JᵀJ and Jᵀr of a sparse Jacobian of fixed pattern
+//! - [`sparse_least_squares`]: Levenberg–Marquardt on such problems
 
 pub mod assignment;
 pub mod banded;
+pub mod cholesky;
 pub mod correlation;
+pub mod gradient_check;
+pub mod normal_equations;
+pub mod sparse_least_squares;

@@ -226,7 +226,7 @@ fn edge_at(channels: &[Channel; 3], at: usize) -> Feature {
         }
     }
     let here = channel.magnitude[at];
-    if !(here >= EDGE_FLOOR) {
+    if !here.is_finite() || here < EDGE_FLOOR {
         return Feature { offset: f32::NAN, ..Feature::default() };
     }
     let (nx, ny) = (channel.x[at] / here, channel.y[at] / here);
@@ -245,7 +245,7 @@ fn line_at(d: &Derivatives, at: usize) -> Feature {
     let half_trace = 0.5 * (xx + yy);
     let root = (0.5 * (xx - yy)).hypot(xy);
     let bend = half_trace + root;
-    if !(bend >= LINE_FLOOR) {
+    if !bend.is_finite() || bend < LINE_FLOOR {
         return Feature { offset: f32::NAN, ..Feature::default() };
     }
     // The principal direction of the larger curvature points across the valley.

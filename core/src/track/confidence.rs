@@ -11,8 +11,8 @@
 
 use super::features::Features;
 use super::lattice::texture::{Cover, WORST, difference};
-use super::propagate::Model;
 use super::pool::Hypothesis;
+use super::propagate::Model;
 
 /// A, B and C of the module's formula.
 const INTERCEPT: f64 = -1.28;

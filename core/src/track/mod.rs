@@ -19,14 +19,23 @@
 //! - [`pool`]: the hypotheses of both
 //! - [`select`]: which hypothesis to follow
 //! - [`confidence`]: how sure a point is
+//!
+//! The preset of Zhou & Xiao 2011:
+//! - [`zhou2011`]: its pieces joined
+//! - [`edge_maps`]: edges of frames and distances to them, kept
+//! - [`region`]: where a part's centre lies between keys
+//! - [`energy`]: the space-time energy, a file a term
 
 pub mod confidence;
 pub mod drawings;
+pub mod edge_maps;
+pub mod energy;
 pub mod features;
 pub mod job;
 pub mod lattice;
-pub mod propagate;
 pub mod pool;
+pub mod propagate;
+pub mod region;
 pub mod rototoon;
 pub mod search;
 pub mod select;
@@ -34,6 +43,7 @@ pub mod stage;
 pub mod store;
 pub mod tracker;
 pub mod weakest;
+pub mod zhou2011;
 
 pub use job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
 pub use tracker::{JobReport, PartTrack, Preset, TrackError, TrackOptions, Tracker, Tracking};

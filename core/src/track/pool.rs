@@ -53,7 +53,8 @@ pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>), TrackError> {
     let found: Vec<Vec<Hypothesis>> = searched(stage, &pools)?;
     pools.iter_mut().zip(found).for_each(|(pool, more)| pool.extend(more));
     let path = choose(stage, &pools);
-    let (forwards, backwards) = rayon::join(|| sweep(stage, &pools, &path, true), || sweep(stage, &pools, &path, false));
+    let (forwards, backwards) =
+        rayon::join(|| sweep(stage, &pools, &path, true), || sweep(stage, &pools, &path, false));
     for more in [forwards?, backwards?] {
         for (pool, hypothesis) in pools.iter_mut().zip(more) {
             if let Some(new) = hypothesis.filter(|new| is_new(pool, new)) {
@@ -145,12 +146,7 @@ fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
 
 /// Carries the chosen poses to the next drawing (or the one before), and what comes of it further while it is better
 /// than what was chosen there.
-fn sweep(
-    stage: &Stage,
-    pools: &Pools,
-    path: &[usize],
-    forwards: bool,
-) -> Result<Vec<Option<Hypothesis>>, TrackError> {
+fn sweep(stage: &Stage, pools: &Pools, path: &[usize], forwards: bool) -> Result<Vec<Option<Hypothesis>>, TrackError> {
     let last = pools.len() - 1;
     let mut found: Vec<Option<Hypothesis>> = vec![None; pools.len()];
     let mut carried: Option<Hypothesis> = None;

@@ -57,7 +57,9 @@ pub(super) fn keys_only(job: &Job) -> SpanTrack {
 fn blended(pool: &[Hypothesis], chosen: usize, share: f64) -> Vec<Point> {
     let own = &pool[chosen];
     let others = pool.iter().filter(|h| h.model != own.model);
-    let Some(other) = others.min_by(|a, b| a.distance(own).total_cmp(&b.distance(own))) else { return own.points.clone() };
+    let Some(other) = others.min_by(|a, b| a.distance(own).total_cmp(&b.distance(own))) else {
+        return own.points.clone();
+    };
     if other.pose.energy >= 1.5 * own.pose.energy + 0.005 {
         return own.points.clone();
     }

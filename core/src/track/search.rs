@@ -71,7 +71,8 @@ impl Templates {
         let level = usize::from(size <= SMALL);
         let source = key.level(level);
         let cut = Cut { model, source, cover, center: polygon::center(contour), width };
-        let angles = (-TURN_REACH..=TURN_REACH).step_by(TURN_STEP as usize).map(|degrees| f64::from(degrees).to_radians());
+        let angles =
+            (-TURN_REACH..=TURN_REACH).step_by(TURN_STEP as usize).map(|degrees| f64::from(degrees).to_radians());
         let cuts: Vec<_> = angles.filter_map(|angle| cut.turned(angle, contour)).collect();
         let widest = cuts.iter().map(|(_, _, colours)| colours.width()).max()?;
         let highest = cuts.iter().map(|(_, _, colours)| colours.height()).max()?;
@@ -191,7 +192,18 @@ impl Cut<'_> {
         let seen = p.x >= 0.0 && p.y >= 0.0 && p.x < self.width && p.y < WORKING_LINES && !self.cover.hides(p);
         let (belongs, inside) = if seen { self.model.texture.mesh.region(p) } else { (false, false) };
         let [r, g, b] = self.source.colour(p);
-        [r, g, b, if inside { 1.0 } else if belongs { BAND_WEIGHT } else { 0.0 }]
+        [
+            r,
+            g,
+            b,
+            if inside {
+                1.0
+            } else if belongs {
+                BAND_WEIGHT
+            } else {
+                0.0
+            },
+        ]
     }
 }
 

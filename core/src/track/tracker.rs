@@ -9,6 +9,7 @@
 
 use super::job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack};
 use super::rototoon::Rototoon;
+use super::zhou2011::Zhou2011;
 use crate::geometry::Point;
 use crate::scene::{Cancelled, Footage, FrameError, FrameNumber, FrameSource, Part, Progress, Scene, Span};
 use rayon::prelude::*;
@@ -37,7 +38,7 @@ impl Preset {
     fn solver(self) -> Box<dyn SpanSolver> {
         match self {
             Self::Rototoon => Box::new(Rototoon::default()),
-            Self::Zhou2011 => Box::new(Rototoon::default()),
+            Self::Zhou2011 => Box::new(Zhou2011::default()),
         }
     }
 }

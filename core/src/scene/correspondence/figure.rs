@@ -220,12 +220,12 @@ impl<'a> Figures<'a> {
         let Some(part) = &self.parts[i] else { return *whole };
         let mut known = Vec::new();
         for (k, choice) in chosen.iter().enumerate() {
-            if let (true, Some(other), Some(choice)) = (k != i, &self.parts[k], choice) {
-                if let Some(drawn) = &self.centres[choice.drawn] {
-                    let near = NEIGHBOURHOOD * self.radius;
-                    let weight = near * near / (part.centre.distance_squared(other.centre) + near * near);
-                    known.push((weight, other.centre, drawn.centre));
-                }
+            if let (true, Some(other), Some(choice)) = (k != i, &self.parts[k], choice)
+                && let Some(drawn) = &self.centres[choice.drawn]
+            {
+                let near = NEIGHBOURHOOD * self.radius;
+                let weight = near * near / (part.centre.distance_squared(other.centre) + near * near);
+                known.push((weight, other.centre, drawn.centre));
             }
         }
         let total: f64 = known.iter().map(|k| k.0).sum();

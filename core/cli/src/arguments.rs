@@ -1,0 +1,89 @@
+//! Options made from the core's list of parameters, and the values given for them.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use rototoon::scene::parameters::{Kind, Parameter, Stage, find, of};
+use std::path::{Path, PathBuf};
+
+/// The project document.
+pub fn project() -> Arg {
+    Arg::new("project")
+        .value_name("PROJECT")
+        .help("The project document")
+        .required(true)
+        .value_parser(value_parser!(PathBuf))
+}
+
+/// The file or files to write.
+pub fn output(name: &'static str, help: &'static str) -> Arg {
+    Arg::new("output")
+        .short('o')
+        .long("output")
+        .value_name(name)
+        .help(help)
+        .required(true)
+        .value_parser(value_parser!(PathBuf))
+}
+
+/// One option for each parameter of a stage.
+pub fn of_stage(stage: Stage) -> impl Iterator<Item = Arg> {
+    of(stage).map(option)
+}
+
+fn option(parameter: &'static Parameter) -> Arg {
+    let arg = Arg::new(parameter.id).long(parameter.id.replace('_', "-")).help(parameter.help);
+    match parameter.kind {
+        Kind::Choice { default, choices } => {
+            let values = choices.iter().map(|choice| PossibleValue::new(choice.id).help(choice.label));
+            arg.default_value(default).value_parser(PossibleValuesParser::new(values))
+        }
+        Kind::Integer { default, min, max } => {
+            arg.value_name("N").default_value(default.to_string()).value_parser(value_parser!(i64).range(min..=max))
+        }
+        Kind::Number { default, min, max, unit } => {
+            let parse = move |text: &str| match text.parse::<f64>() {
+                Ok(value) if (min..=max).contains(&value) => Ok(value),
+                _ => Err(format!("expected a number from {min} to {max}")),
+            };
+            let name = if unit.is_empty() { "NUMBER".to_owned() } else { unit.to_uppercase() };
+            arg.value_name(name).default_value(default.to_string()).value_parser(parse)
+        }
+        Kind::Flag { default } => {
+            let parser = PossibleValuesParser::new(["on", "off"]).map(|text| text == "on");
+            arg.value_name("on|off")
+                .hide_possible_values(true)
+                .default_value(if default { "on" } else { "off" })
+                .value_parser(parser)
+                .action(ArgAction::Set)
+        }
+    }
+}
+
+/// The path given for the project or the output.
+pub fn path<'a>(arguments: &'a ArgMatches, id: &str) -> &'a Path {
+    arguments.get_one::<PathBuf>(id).map_or(Path::new(""), PathBuf::as_path)
+}
+
+/// The id of the choice given for a parameter.
+pub fn choice<'a>(arguments: &'a ArgMatches, id: &str) -> &'a str {
+    arguments.get_one::<String>(id).map_or("", String::as_str)
+}
+
+/// The number given for a parameter.
+pub fn number(arguments: &ArgMatches, id: &str) -> f64 {
+    let default = match find(id).map(|parameter| parameter.kind) {
+        Some(Kind::Number { default, .. }) => default,
+        _ => 0.0,
+    };
+    arguments.get_one::<f64>(id).copied().unwrap_or(default)
+}
+
+/// Whether a flag is on.
+pub fn flag(arguments: &ArgMatches, id: &str) -> bool {
+    arguments.get_one::<bool>(id).copied().unwrap_or(false)
+}
+
+/// The number of threads given; 0 for one a core.
+pub fn threads(arguments: &ArgMatches) -> usize {
+    arguments.get_one::<i64>("threads").and_then(|n| usize::try_from(*n).ok()).unwrap_or(0)
+}

@@ -1,0 +1,35 @@
+//! `rototoon export`: files for other programs.
+
+use crate::failure::Failure;
+use crate::{arguments, project};
+use clap::{ArgMatches, Command};
+use rototoon::export::{Motion, SvgOptions};
+use rototoon::pipeline;
+use rototoon::project::write_whole;
+use rototoon::scene::parameters::Stage;
+
+/// The subcommand.
+pub fn command() -> Command {
+    Command::new("export")
+        .about("Writes the result as an animated SVG, or as a document")
+        .arg(arguments::project())
+        .arg(arguments::output("FILE", "FILE.svg or FILE.json"))
+        .args(arguments::of_stage(Stage::Export))
+}
+
+/// Runs it.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
+    let extension = to.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
+    if !["svg", "json"].contains(&extension.as_str()) {
+        return Err(Failure::Use(format!("{}: expected a name that ends in .svg or .json", to.display())));
+    }
+    let document = project::load(from)?;
+    if extension == "json" {
+        return project::save(document, from, to);
+    }
+    let id = arguments::choice(given, "motion");
+    let motion = Motion::from_id(id).ok_or_else(|| Failure::Use(format!("no motion {id:?}")))?;
+    let options = SvgOptions { motion, spacing: arguments::number(given, "spacing") };
+    Ok(write_whole(to, pipeline::export_svg(&document, &options).as_bytes())?)
+}

@@ -1,0 +1,56 @@
+//! Long work: a bar on standard error where that is a terminal, the wanted number of threads, and Ctrl-C, which ends
+//! the work in order, so that nothing is half-written. A second Ctrl-C ends it at once.
+
+use crate::failure::Failure;
+use indicatif::{ProgressBar, ProgressStyle};
+use rototoon::scene::{Cancelled, Progress};
+use std::io::IsTerminal;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Steps of the bar.
+const STEPS: u64 = 1000;
+/// Exit status of a process that Ctrl-C ended, as shells give it.
+const INTERRUPTED: i32 = 130;
+
+static STOP: AtomicBool = AtomicBool::new(false);
+
+struct Bar(ProgressBar);
+
+impl Progress for Bar {
+    fn report(&self, step: &str, done: f64) -> Result<(), Cancelled> {
+        if STOP.load(Ordering::Relaxed) {
+            return Err(Cancelled);
+        }
+        let position = (done.clamp(0.0, 1.0) * STEPS as f64) as u64;
+        if !self.0.is_hidden() && position >= self.0.position() {
+            self.0.set_message(step.to_owned());
+            self.0.set_position(position);
+        }
+        Ok(())
+    }
+}
+
+/// Runs `work` on `threads` threads, 0 for one a core.
+pub fn run<T: Send>(
+    threads: usize,
+    work: impl FnOnce(&dyn Progress) -> Result<T, Failure> + Send,
+) -> Result<T, Failure> {
+    let interrupt = || {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED);
+        }
+    };
+    ctrlc::set_handler(interrupt).map_err(|error| Failure::Other(format!("cannot listen to Ctrl-C: {error}")))?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|error| Failure::Other(format!("cannot start {threads} threads: {error}")))?;
+    let bar = if std::io::stderr().is_terminal() { ProgressBar::new(STEPS) } else { ProgressBar::hidden() };
+    if let Ok(style) = ProgressStyle::with_template("{msg:20} [{bar:40}] {percent:>3} % {eta}") {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    let bar = Bar(bar);
+    let result = pool.install(|| work(&bar));
+    bar.0.finish_and_clear();
+    result
+}

@@ -1,0 +1,89 @@
+//! `rototoon render`: pictures of the result.
+
+use crate::failure::Failure;
+use crate::{arguments, progress, project};
+use clap::{Arg, ArgMatches, Command};
+use rototoon::pipeline::{self, Picture, RenderJob};
+use rototoon::project::output::check_writable;
+use rototoon::render::OverlayOptions;
+use rototoon::scene::FrameNumber;
+use rototoon::scene::parameters::Stage;
+use std::ops::RangeInclusive;
+
+/// The subcommand.
+pub fn command() -> Command {
+    Command::new("render")
+        .about("Draws contours over the footage, or the parts' matte")
+        .arg(arguments::project())
+        .arg(arguments::output("PATTERN", "Files such as out.%04d.exr or out.%04d.png; a plain name for one frame"))
+        .args(arguments::of_stage(Stage::Render))
+        .arg(
+            Arg::new("frames")
+                .long("frames")
+                .value_name("A-B")
+                .help("First and last frame, or one frame; else the whole footage")
+                .allow_hyphen_values(true)
+                .value_parser(range),
+        )
+        .arg(
+            Arg::new("parts")
+                .long("parts")
+                .value_name("NAME")
+                .help("Only the part of this name; may be given several times")
+                .action(clap::ArgAction::Append),
+        )
+        .args(arguments::of_stage(Stage::Run))
+}
+
+/// Runs it.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let from = arguments::path(given, "project");
+    let output = arguments::path(given, "output");
+    let output = output.to_str().ok_or_else(|| Failure::Use(format!("{}: expected UTF-8 text", output.display())))?;
+    let job = RenderJob {
+        picture: match arguments::choice(given, "what") {
+            "matte" => Picture::Matte,
+            _ => Picture::Overlay(OverlayOptions {
+                line_width: arguments::number(given, "line_width"),
+                points: arguments::flag(given, "points"),
+                confidence: arguments::flag(given, "confidence"),
+            }),
+        },
+        frames: given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned(),
+        parts: given.get_many::<String>("parts").map(|names| names.cloned().collect()),
+        output: output.to_owned(),
+    };
+    let document = project::load(from)?;
+    check_writable(output.as_ref())?;
+    progress::run(arguments::threads(given), |bar| Ok(pipeline::render(&document, project::folder(from), &job, bar)?))?;
+    Ok(())
+}
+
+/// Frames as `A-B` or `A`; either may be negative.
+fn range(text: &str) -> Result<RangeInclusive<FrameNumber>, String> {
+    let wrong = || "expected frames such as 3-9, or one such as 3".to_owned();
+    // The first character is a sign or a digit, so a dash after it separates.
+    let at = text.char_indices().skip(1).find(|(_, c)| *c == '-').map(|(at, _)| at);
+    let (first, last) = at.map_or((text, text), |at| (&text[..at], &text[at + 1..]));
+    let (first, last) = (first.parse().map_err(|_| wrong())?, last.parse().map_err(|_| wrong())?);
+    if first > last {
+        Err(format!("expected a first frame before the last, found {first} and {last}"))
+    } else {
+        Ok(first..=last)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges() {
+        for (text, expected) in [("3", 3..=3), ("3-9", 3..=9), ("-5--1", -5..=-1), ("-5-2", -5..=2), ("-4", -4..=-4)] {
+            assert_eq!(range(text), Ok(expected), "{text}");
+        }
+        for text in ["", "a", "3-", "-", "9-3", "1-2-3", "é-1"] {
+            assert!(range(text).is_err(), "{text}");
+        }
+    }
+}

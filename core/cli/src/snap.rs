@@ -1,0 +1,47 @@
+//! `rototoon snap`: contours onto the drawn ink.
+
+use crate::failure::Failure;
+use crate::{arguments, progress, project};
+use clap::{ArgMatches, Command};
+use rototoon::pipeline;
+use rototoon::project::output::check_writable;
+use rototoon::scene::parameters::Stage;
+use rototoon::snap::{CorridorWidth, Follow, SnapOptions};
+
+/// The subcommand.
+pub fn command() -> Command {
+    Command::new("snap")
+        .about("Snaps every contour to the drawn ink")
+        .arg(arguments::project())
+        .arg(arguments::output("OUT", "The document to write, with curves"))
+        .args(arguments::of_stage(Stage::Snap))
+        .args(arguments::of_stage(Stage::Run))
+}
+
+/// Runs it.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
+    let options = options(given)?;
+    let mut document = project::load(from)?;
+    check_writable(to)?;
+    let document = progress::run(arguments::threads(given), |bar| {
+        pipeline::snap(&mut document, project::folder(from), &options, bar)?;
+        Ok(document)
+    })?;
+    project::save(document, from, to)
+}
+
+fn options(given: &ArgMatches) -> Result<SnapOptions, Failure> {
+    let follow = match arguments::choice(given, "follow") {
+        "auto" => Follow::Auto,
+        "edge" => Follow::Edge,
+        "line" => Follow::Line,
+        other => return Err(Failure::Use(format!("nothing to follow is called {other:?}"))),
+    };
+    let corridor = CorridorWidth {
+        share: arguments::number(given, "corridor_share"),
+        least: arguments::number(given, "corridor_least"),
+        most: arguments::number(given, "corridor_most"),
+    };
+    Ok(SnapOptions { follow, corridor })
+}

@@ -1,0 +1,108 @@
+//! Sparse Cholesky factorisation A = LLᵀ of symmetric positive definite matrices that share one pattern.
+//!
+//! Iterative methods factor the same pattern many times with other values. The order of elimination and the pattern of L
+//! depend on the pattern of A alone, so they are found once ([`SparseCholesky::new`]); each
+//! [`factor`](SparseCholesky::factor) fills in numbers. The work is faer's (approximate minimum degree ordering;
+//! supernodal or simplicial, whichever its flop count favours), always on the calling thread: a factor that depended on
+//! the number of threads would break the promise of equal bytes.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
+use faer::{Conj, MatMut, Par, Side};
+
+/// The matrix is not positive definite to working precision (or holds a value that is not finite).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the matrix is not positive definite")]
+pub struct NotPositiveDefinite;
+
+/// Factors matrices of one pattern and solves with the latest factor.
+pub struct SparseCholesky {
+    pattern: SymbolicSparseColMat<usize>,
+    symbolic: SymbolicCholesky<usize>,
+    factor: Vec<f64>,
+    scratch: MemBuffer,
+}
+
+impl SparseCholesky {
+    /// Prepares for symmetric `n` × `n` matrices given by their lower triangle in compressed columns: column `j` holds
+    /// rows `row_indices[column_starts[j]..column_starts[j + 1]]`, rising, all ≥ `j`.
+    ///
+    /// Panics where the arrays do not describe such a triangle, or where memory does not suffice for the factor.
+    pub fn new(n: usize, column_starts: Vec<usize>, row_indices: Vec<usize>) -> Self {
+        let pattern = SymbolicSparseColMat::new_checked(n, n, column_starts, None, row_indices);
+        let symbolic = factorize_symbolic_cholesky(
+            pattern.as_ref(),
+            Side::Lower,
+            SymmetricOrdering::Amd,
+            CholeskySymbolicParams::default(),
+        )
+        .expect("memory for the pattern of the factor");
+        let needed = symbolic
+            .factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default())
+            .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        let factor = vec![0.0; symbolic.len_val()];
+        Self { pattern, symbolic, factor, scratch: MemBuffer::new(needed) }
+    }
+
+    /// Factors the matrix whose lower triangle holds `values`, in the order of the pattern.
+    pub fn factor(&mut self, values: &[f64]) -> Result<(), NotPositiveDefinite> {
+        let matrix = SparseColMatRef::new(self.pattern.as_ref(), values);
+        self.symbolic
+            .factorize_numeric_llt(
+                &mut self.factor,
+                matrix,
+                Side::Lower,
+                Default::default(),
+                Par::Seq,
+                MemStack::new(&mut self.scratch),
+                Default::default(),
+            )
+            .map(|_| ())
+            .map_err(|_| NotPositiveDefinite)
+    }
+
+    /// Replaces `b` by the solution x of Ax = b, A the matrix factored last.
+    pub fn solve(&mut self, b: &mut [f64]) {
+        let n = b.len();
+        let b = MatMut::from_column_major_slice_mut(b, n, 1);
+        LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
+            Conj::No,
+            b,
+            Par::Seq,
+            MemStack::new(&mut self.scratch),
+        );
+    }
+
+    /// Number of values kept for the factor.
+    pub fn factor_len(&self) -> usize {
+        self.factor.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_second_matrix_of_the_pattern_is_solved_without_a_new_analysis() {
+        let mut solver = SparseCholesky::new(3, vec![0, 2, 4, 5], vec![0, 1, 1, 2, 2]);
+        for scale in [1.0, 10.0] {
+            solver.factor(&[4.0 * scale, scale, 3.0 * scale, -scale, 5.0 * scale]).unwrap();
+            let mut x = [5.0 * scale, 3.0 * scale, 4.0 * scale];
+            solver.solve(&mut x);
+            for value in x {
+                assert!((value - 1.0).abs() < 1e-14, "{x:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_indefinite_matrix_is_refused() {
+        let mut solver = SparseCholesky::new(2, vec![0, 2, 3], vec![0, 1, 1]);
+        assert_eq!(solver.factor(&[1.0, 2.0, 1.0]), Err(NotPositiveDefinite));
+        assert_eq!(solver.factor(&[f64::NAN, 0.0, 1.0]), Err(NotPositiveDefinite));
+    }
+}
