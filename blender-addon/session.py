@@ -287,9 +287,9 @@ def match_contours(request: Mapping[str, Any]) -> Any:
 
     The request is ``{"references": [contour, ...], "drawn": [contour, ...]}``, each contour being
     ``{"closed": bool, "points": [[x, y], ...]}``. The answer is ``{"matches": [{"reference": index, "drawn": index,
-    "points": [[x, y], ...], "cost": number}, ...]}``, rising by reference: `points` are the reference's control points on
-    the drawn line; the cost is 0 for equal contours. What has no counterpart is left out. Contours may have a ``"color":
-    [r, g, b]``, sRGB from 0 to 1, which is compared where both have one.
+    "points": [[x, y], ...], "cost": number}, ...]}``, rising by reference: `points` are the reference's control points
+    on the drawn line; the cost is 0 for equal contours. What has no counterpart is left out. Contours may have a
+    ``"color": [r, g, b]``, sRGB from 0 to 1, which is compared where both have one.
     """
     return json.loads(handles.take(handles.Text, "rototoon_match_contours", *_json(request)))
 

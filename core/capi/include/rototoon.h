@@ -68,8 +68,8 @@ typedef struct RototoonText RototoonText;
 // The track of a part: frame numbers, points, confidence.
 typedef struct RototoonTrack RototoonTrack;
 
-// Told the finished share of the work (0 to 1, never falling) and the name of the step (UTF-8, not terminated), about
-// twenty times a second; returns 0 to go on, anything else to cancel. Null is allowed: nobody is told.
+// Told the finished share of the work (0 to 1, never falling) and the name of the step (UTF-8, not terminated),
+// about twenty times a second; returns 0 to go on, anything else to cancel. Null is allowed: nobody is told.
 typedef int32_t (*RototoonProgress)(void *user, double fraction, const uint8_t *step, size_t step_length);
 
 #ifdef __cplusplus
@@ -216,8 +216,8 @@ RototoonStatus rototoon_session_set_document(const struct RototoonSession *sessi
                                              size_t document_length,
                                              struct RototoonText **error);
 
-// Writes the document to a file, whole or not at all. In another folder than the session's, a relative footage pattern
-// is rewritten so that it names the same files.
+// Writes the document to a file, whole or not at all. In another folder than the session's, a relative footage
+// pattern is rewritten so that it names the same files.
 RototoonStatus rototoon_session_save(const struct RototoonSession *session,
                                      const uint8_t *path,
                                      size_t path_length,
@@ -246,8 +246,8 @@ RototoonStatus rototoon_session_remove_part(const struct RototoonSession *sessio
                                             size_t part_length,
                                             struct RototoonText **error);
 
-// Sets the artist's contour of a part on a frame. `points` are `value_count` numbers x, y, x, y, ...: as many points as
-// the part's other keys have. Pins and a corrected centre on the frame give way.
+// Sets the artist's contour of a part on a frame. `points` are `value_count` numbers x, y, x, y, ...: as many points
+// as the part's other keys have. Pins and a corrected centre on the frame give way.
 RototoonStatus rototoon_session_set_key(const struct RototoonSession *session,
                                         const uint8_t *part,
                                         size_t part_length,
@@ -300,12 +300,13 @@ RototoonStatus rototoon_session_clear_center(const struct RototoonSession *sessi
 // Tracks every part between its keys and stores `tracks` and `confidence` in the document.
 //
 // `options` is JSON of the parameters of the stages "track" and "run" (see `rototoon_parameters`), such as
-// `{"preset": "zhou2011", "threads": 2}`; each may be missing, and so may all (length 0). The threads do not change the result. Spans that nothing touched since they were last solved are reused.
-// Snapped curves of frames whose track changed are dropped.
+// `{"preset": "zhou2011", "threads": 2}`; each may be missing, and so may all (length 0). The threads do not change
+// the result. Spans that nothing touched since they were last solved are reused. Snapped curves of frames whose
+// track changed are dropped.
 //
 // `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
-// "final_cost"}]}`, one job for each part and span; `solved` is false where the job was reused; `termination` is one of
-// nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit.
+// "final_cost"}]}`, one job for each part and span; `solved` is false where the job was reused; `termination` is one
+// of nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit.
 RototoonStatus rototoon_session_track(const struct RototoonSession *session,
                                       const uint8_t *options,
                                       size_t options_length,
@@ -316,7 +317,8 @@ RototoonStatus rototoon_session_track(const struct RototoonSession *session,
 
 // Lays the contours along the drawn ink and stores `curves` in the document.
 //
-// `options` is JSON of the parameters of the stages "snap" and "run" (see `rototoon_parameters`). `summary` is JSON: `{"frames": number of snapped frames, parts added up}`.
+// `options` is JSON of the parameters of the stages "snap" and "run" (see `rototoon_parameters`). `summary` is JSON:
+// `{"frames": number of snapped frames, parts added up}`.
 RototoonStatus rototoon_session_snap(const struct RototoonSession *session,
                                      const uint8_t *options,
                                      size_t options_length,
@@ -332,7 +334,8 @@ RototoonStatus rototoon_session_track_of(const struct RototoonSession *session,
                                          struct RototoonTrack **track,
                                          struct RototoonText **error);
 
-// The snapped paths of a part on a frame, one for each segment between control points; none where it was not snapped.
+// The snapped paths of a part on a frame, one for each segment between control points; none where it was not
+// snapped.
 RototoonStatus rototoon_session_curves_of(const struct RototoonSession *session,
                                           const uint8_t *part,
                                           size_t part_length,
@@ -340,8 +343,8 @@ RototoonStatus rototoon_session_curves_of(const struct RototoonSession *session,
                                           struct RototoonCurves **curves,
                                           struct RototoonText **error);
 
-// Where the next key helps most: JSON `{"frame", "score"}`, or `null` where nothing was tracked or all frames are at or
-// beside keys. The score is the sum over parts of the mean of 1 - confidence, smoothed over time.
+// Where the next key helps most: JSON `{"frame", "score"}`, or `null` where nothing was tracked or all frames are at
+// or beside keys. The score is the sum over parts of the mean of 1 - confidence, smoothed over time.
 RototoonStatus rototoon_session_weakest_frame(const struct RototoonSession *session,
                                               struct RototoonText **weakest,
                                               struct RototoonText **error);
@@ -374,8 +377,8 @@ RototoonStatus rototoon_session_set_document(const struct RototoonSession *sessi
                                              size_t document_length,
                                              struct RototoonText **error);
 
-// Writes the document to a file, whole or not at all. In another folder than the session's, a relative footage pattern
-// is rewritten so that it names the same files.
+// Writes the document to a file, whole or not at all. In another folder than the session's, a relative footage
+// pattern is rewritten so that it names the same files.
 RototoonStatus rototoon_session_save(const struct RototoonSession *session,
                                      const uint8_t *path,
                                      size_t path_length,
@@ -404,8 +407,8 @@ RototoonStatus rototoon_session_remove_part(const struct RototoonSession *sessio
                                             size_t part_length,
                                             struct RototoonText **error);
 
-// Sets the artist's contour of a part on a frame. `points` are `value_count` numbers x, y, x, y, ...: as many points as
-// the part's other keys have. Pins and a corrected centre on the frame give way.
+// Sets the artist's contour of a part on a frame. `points` are `value_count` numbers x, y, x, y, ...: as many points
+// as the part's other keys have. Pins and a corrected centre on the frame give way.
 RototoonStatus rototoon_session_set_key(const struct RototoonSession *session,
                                         const uint8_t *part,
                                         size_t part_length,
@@ -458,12 +461,13 @@ RototoonStatus rototoon_session_clear_center(const struct RototoonSession *sessi
 // Tracks every part between its keys and stores `tracks` and `confidence` in the document.
 //
 // `options` is JSON of the parameters of the stages "track" and "run" (see `rototoon_parameters`), such as
-// `{"preset": "zhou2011", "threads": 2}`; each may be missing, and so may all (length 0). The threads do not change the result. Spans that nothing touched since they were last solved are reused.
-// Snapped curves of frames whose track changed are dropped.
+// `{"preset": "zhou2011", "threads": 2}`; each may be missing, and so may all (length 0). The threads do not change
+// the result. Spans that nothing touched since they were last solved are reused. Snapped curves of frames whose
+// track changed are dropped.
 //
 // `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
-// "final_cost"}]}`, one job for each part and span; `solved` is false where the job was reused; `termination` is one of
-// nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit.
+// "final_cost"}]}`, one job for each part and span; `solved` is false where the job was reused; `termination` is one
+// of nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit.
 RototoonStatus rototoon_session_track(const struct RototoonSession *session,
                                       const uint8_t *options,
                                       size_t options_length,
@@ -474,7 +478,8 @@ RototoonStatus rototoon_session_track(const struct RototoonSession *session,
 
 // Lays the contours along the drawn ink and stores `curves` in the document.
 //
-// `options` is JSON of the parameters of the stages "snap" and "run" (see `rototoon_parameters`). `summary` is JSON: `{"frames": number of snapped frames, parts added up}`.
+// `options` is JSON of the parameters of the stages "snap" and "run" (see `rototoon_parameters`). `summary` is JSON:
+// `{"frames": number of snapped frames, parts added up}`.
 RototoonStatus rototoon_session_snap(const struct RototoonSession *session,
                                      const uint8_t *options,
                                      size_t options_length,
@@ -490,7 +495,8 @@ RototoonStatus rototoon_session_track_of(const struct RototoonSession *session,
                                          struct RototoonTrack **track,
                                          struct RototoonText **error);
 
-// The snapped paths of a part on a frame, one for each segment between control points; none where it was not snapped.
+// The snapped paths of a part on a frame, one for each segment between control points; none where it was not
+// snapped.
 RototoonStatus rototoon_session_curves_of(const struct RototoonSession *session,
                                           const uint8_t *part,
                                           size_t part_length,
@@ -498,8 +504,8 @@ RototoonStatus rototoon_session_curves_of(const struct RototoonSession *session,
                                           struct RototoonCurves **curves,
                                           struct RototoonText **error);
 
-// Where the next key helps most: JSON `{"frame", "score"}`, or `null` where nothing was tracked or all frames are at or
-// beside keys. The score is the sum over parts of the mean of 1 - confidence, smoothed over time.
+// Where the next key helps most: JSON `{"frame", "score"}`, or `null` where nothing was tracked or all frames are at
+// or beside keys. The score is the sum over parts of the mean of 1 - confidence, smoothed over time.
 RototoonStatus rototoon_session_weakest_frame(const struct RototoonSession *session,
                                               struct RototoonText **weakest,
                                               struct RototoonText **error);

@@ -12,7 +12,7 @@ pub const ROTOTOON_ABI_VERSION: u32 = 1;
 /// The header that callers of this build see.
 const HEADER: &[u8] = include_bytes!("../include/rototoon.h");
 
-/// FNV-1a, 64 bits (Fowler, Noll, Vo): short enough for a compile-time function; it guards against mix-ups, not attacks.
+/// FNV-1a, 64 bits (Fowler, Noll, Vo): short enough for a compile-time function. It guards against mix-ups alone.
 const fn fnv_1a(bytes: &[u8]) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325;
     let mut index = 0;

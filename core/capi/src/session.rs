@@ -3,7 +3,7 @@
 use crate::edit::part_index;
 use crate::options::Options;
 use crate::status::Failure;
-use crate::work;
+use crate::work::{self, GoOn};
 use rototoon::image::sequence::Sequence;
 use rototoon::pipeline;
 use rototoon::project::Document;
@@ -18,9 +18,6 @@ use std::path::{Path, PathBuf};
 
 /// How messages call a document that came as text.
 const ORIGIN: &str = "document";
-
-/// Told the finished share and the step; returns whether to go on.
-pub type GoOn<'a> = Option<&'a mut dyn FnMut(f64, &str) -> bool>;
 
 /// A document in work.
 pub struct Session {
