@@ -8,11 +8,12 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use rototoon::geometry::Point;
-use rototoon::numeric::cholesky::SparseCholesky;
+use rototoon::numeric::damped_system::DampedSystem;
 use rototoon::numeric::normal_equations::NormalEquations;
 use rototoon::numeric::sparse_least_squares::Problem;
 use rototoon::track::energy::edge::DistanceField;
 use rototoon::track::energy::{Energy, Given, Layout, Weights};
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
@@ -57,19 +58,18 @@ struct Iteration {
     residuals: Vec<f64>,
     jacobian: Vec<f64>,
     equations: NormalEquations,
-    cholesky: SparseCholesky,
+    system: DampedSystem,
 }
 
 impl Iteration {
     fn new(energy: Energy) -> Self {
         let pattern = energy.pattern();
         let equations = NormalEquations::new(energy.residuals(), energy.variables(), &pattern);
-        let (starts, rows) = (equations.column_starts().to_vec(), equations.row_indices().to_vec());
         Self {
             x: energy.initial(),
             residuals: vec![0.0; energy.residuals()],
             jacobian: vec![0.0; pattern.len()],
-            cholesky: SparseCholesky::new(energy.variables(), starts, rows),
+            system: DampedSystem::new(&equations),
             equations,
             energy,
         }
@@ -80,43 +80,46 @@ impl Iteration {
         self.equations.assemble(&self.jacobian, &self.residuals);
     }
 
-    fn damped(&self) -> Vec<f64> {
-        let mut values = self.equations.values().to_vec();
-        let starts = self.equations.column_starts();
-        starts[..self.x.len()].iter().for_each(|&start| values[start] *= 1.0 + DAMPING);
-        values
-    }
-
-    fn solve(&mut self, matrix: &[f64]) -> Vec<f64> {
-        self.cholesky.factor(matrix).expect("damped normal equations are definite");
+    fn solve(&mut self) -> Vec<f64> {
+        self.system.factor(&self.equations, DAMPING).expect("damped normal equations are definite");
         let mut step: Vec<f64> = self.equations.gradient().iter().map(|g| -g).collect();
-        self.cholesky.solve(&mut step);
+        self.system.solve(&self.equations, &mut step);
         step
     }
 
     fn run(&mut self) -> f64 {
         self.assemble();
-        let matrix = self.damped();
-        let step = self.solve(&matrix);
+        let step = self.solve();
         let there: Vec<f64> = self.x.iter().zip(&step).map(|(x, d)| x + d).collect();
         self.energy.evaluate(&there, &mut self.residuals);
         self.residuals.iter().map(|r| r * r).sum()
     }
 
-    /// Lower triangle and right-hand side, the right-hand side as a comment line of numbers.
+    /// Lower triangle of the whole matrix, long rows included, and the right-hand side as a comment line of numbers.
     fn dump(&mut self, path: &Path) -> std::io::Result<()> {
         self.assemble();
-        let matrix = self.damped();
+        let mut entries = BTreeMap::new();
         let (starts, rows) = (self.equations.column_starts(), self.equations.row_indices());
+        for column in 0..self.x.len() {
+            for k in starts[column]..starts[column + 1] {
+                entries.insert((column, rows[k]), self.equations.values()[k]);
+            }
+            *entries.entry((column, column)).or_insert(0.0) += DAMPING * self.equations.diagonal()[column];
+        }
+        for (columns, values) in self.equations.long_rows() {
+            for (k, (&row, a)) in columns.iter().zip(values).enumerate() {
+                for (&column, b) in columns[..=k].iter().zip(values) {
+                    *entries.entry((column as usize, row as usize)).or_insert(0.0) += a * b;
+                }
+            }
+        }
         let mut out = std::io::BufWriter::new(std::fs::File::create(path)?);
         writeln!(out, "%%MatrixMarket matrix coordinate real symmetric")?;
         let rhs: Vec<String> = self.equations.gradient().iter().map(|g| (-g).to_string()).collect();
         writeln!(out, "%rhs {}", rhs.join(" "))?;
-        writeln!(out, "{n} {n} {}", matrix.len(), n = self.x.len())?;
-        for column in 0..self.x.len() {
-            for k in starts[column]..starts[column + 1] {
-                writeln!(out, "{} {} {:e}", rows[k] + 1, column + 1, matrix[k])?;
-            }
+        writeln!(out, "{n} {n} {}", entries.len(), n = self.x.len())?;
+        for ((column, row), value) in entries {
+            writeln!(out, "{} {} {value:e}", row + 1, column + 1)?;
         }
         out.flush()
     }
@@ -134,8 +137,7 @@ fn iterations(criterion: &mut Criterion) {
         }
         group.bench_function(BenchmarkId::new("iteration", &name), |b| b.iter(|| iteration.run()));
         iteration.assemble();
-        let matrix = iteration.damped();
-        group.bench_function(BenchmarkId::new("factor and solve", &name), |b| b.iter(|| iteration.solve(&matrix)));
+        group.bench_function(BenchmarkId::new("factor and solve", &name), |b| b.iter(|| iteration.solve()));
         group.bench_function(BenchmarkId::new("linearise and assemble", &name), |b| b.iter(|| iteration.assemble()));
     }
     group.finish();

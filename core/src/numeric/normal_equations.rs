@@ -1,10 +1,16 @@
 //! The normal equations JᵀJ d = −Jᵀr of a sparse Jacobian whose pattern never changes.
 //!
 //! Row k of J adds the products of all pairs of its entries to JᵀJ. Which place of the triangle a pair goes to depends on
-//! the pattern alone: it is looked up once, and an assembly is one pass of multiply-adds over a list of places. A row of
-//! m entries costs m(m + 1)/2, so a few rows may be long, not all.
+//! the pattern alone: it is looked up once, and an assembly is one pass of multiply-adds over a list of places.
+//!
+//! A row of m entries gives m(m + 1)/2 products. Rows of more than [`LONG_ROW`] entries are left out of the triangle, which
+//! would become dense, and handed on as they are ([`NormalEquations::long_rows`]); gradient and diagonal include them.
 
-/// Lower triangle of JᵀJ (compressed columns) and Jᵀr, refilled for each new set of values.
+/// Entries above which a row is kept out of the triangle.
+pub const LONG_ROW: usize = 48;
+
+/// Lower triangle of JᵀJ without the long rows (compressed columns) and Jᵀr, refilled for each new set of
+/// values.
 pub struct NormalEquations {
     variables: usize,
     /// Entries of row k, repeated columns merged: `columns[row_starts[k]..row_starts[k + 1]]`, rising.
@@ -18,6 +24,7 @@ pub struct NormalEquations {
     row_indices: Vec<usize>,
     merged: Vec<f64>,
     values: Vec<f64>,
+    diagonal: Vec<f64>,
     gradient: Vec<f64>,
 }
 
@@ -32,6 +39,9 @@ impl NormalEquations {
         let mut places = Vec::new();
         for row in row_starts.windows(2) {
             let entries = &columns[row[0]..row[1]];
+            if entries.len() > LONG_ROW {
+                continue;
+            }
             for (k, &a) in entries.iter().enumerate() {
                 for &b in &entries[..=k] {
                     let start = column_starts[b as usize];
@@ -45,6 +55,7 @@ impl NormalEquations {
             variables,
             merged: vec![0.0; columns.len()],
             values: vec![0.0; row_indices.len()],
+            diagonal: vec![0.0; variables],
             gradient: vec![0.0; variables],
             row_starts,
             columns,
@@ -62,12 +73,17 @@ impl NormalEquations {
             self.merged[slot as usize] += value;
         }
         self.values.fill(0.0);
+        self.diagonal.fill(0.0);
         self.gradient.fill(0.0);
         let mut places = self.places.as_slice();
         for (row, &residual) in self.row_starts.windows(2).zip(residuals) {
             let entries = &self.merged[row[0]..row[1]];
             for (k, (&a, &column)) in entries.iter().zip(&self.columns[row[0]..row[1]]).enumerate() {
                 self.gradient[column as usize] += a * residual;
+                self.diagonal[column as usize] += a * a;
+                if entries.len() > LONG_ROW {
+                    continue;
+                }
                 let (now, later) = places.split_at(k + 1);
                 places = later;
                 for (&place, &b) in now.iter().zip(entries) {
@@ -92,7 +108,18 @@ impl NormalEquations {
         &self.row_indices
     }
 
-    /// Values of the lower triangle of JᵀJ.
+    /// The rows of J that are not in the triangle: columns, rising, and values.
+    pub fn long_rows(&self) -> impl Iterator<Item = (&[u32], &[f64])> {
+        let ranges = self.row_starts.windows(2).map(|pair| pair[0]..pair[1]);
+        ranges.filter(|range| range.len() > LONG_ROW).map(|range| (&self.columns[range.clone()], &self.merged[range]))
+    }
+
+    /// The diagonal of JᵀJ, long rows included.
+    pub fn diagonal(&self) -> &[f64] {
+        &self.diagonal
+    }
+
+    /// Values of the lower triangle of JᵀJ without the long rows.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -144,6 +171,9 @@ fn product_pattern(variables: usize, row_starts: &[usize], columns: &[u32]) -> (
         seen[column] = column;
         for &row in rows {
             let range = row_starts[row as usize]..row_starts[row as usize + 1];
+            if range.len() > LONG_ROW {
+                continue;
+            }
             for &other in columns[range].iter().rev().take_while(|&&other| other as usize > column) {
                 if seen[other as usize] != column {
                     seen[other as usize] = column;

@@ -7,14 +7,14 @@
 //! ```
 //!
 //! and takes the step where it lowers E; otherwise λ grows and the same equations are solved again (Marquardt 1963;
-//! Nocedal & Wright, *Numerical Optimization*, 2006, §10.3). The left matrix M is factored by sparse Cholesky, its symbolic
-//! half once for all iterations. μ comes from the small dense system (C M⁻¹ Cᵀ) μ = −C M⁻¹ Jᵀr: one more back substitution
+//! Nocedal & Wright, *Numerical Optimization*, 2006, §10.3). The left matrix M is factored by
+//! sparse Cholesky, its symbolic half once for all iterations ([`DampedSystem`]). μ comes from the small dense system (C M⁻¹ Cᵀ) μ = −C M⁻¹ Jᵀr: one more back substitution
 //! a constraint, so these should be few. A start that satisfies the constraints keeps them to rounding.
 //!
 //! λ follows the gain ratio ρ between the decrease of E and the decrease that the linear model promised (Nielsen 1999):
 //! after a good step λ shrinks by max(1/3, 1 − (2ρ − 1)³), after each refusal in a row it grows by 2, 4, 8, ….
 
-use super::cholesky::SparseCholesky;
+use super::damped_system::{DampedSystem, DenseCholesky};
 use super::normal_equations::NormalEquations;
 use std::ops::ControlFlow;
 
@@ -92,8 +92,6 @@ pub struct LmSummary {
 
 /// Damping at which a step is shorter than anything that matters, so that the search for a descent is given up.
 pub const MAX_DAMPING: f64 = 1e12;
-/// Added to the diagonal, as a share of its mean, so that a variable without any residual keeps M definite.
-const DIAGONAL_FLOOR: f64 = 1e-10;
 
 /// Minimises from `x`, which is replaced by the best point found. `each` is told the iteration and its cost before every
 /// linear system and may stop.
@@ -155,12 +153,11 @@ struct Step {
 /// The problem linearised at the present point, and the memory that iterations share.
 struct State {
     equations: NormalEquations,
-    cholesky: SparseCholesky,
+    system: DampedSystem,
     constraints: Vec<Vec<(usize, f64)>>,
     jacobian: Vec<f64>,
     residuals: Vec<f64>,
     trial_residuals: Vec<f64>,
-    damped: Vec<f64>,
     trial: Vec<f64>,
     cost: f64,
 }
@@ -171,17 +168,15 @@ impl State {
         assert_eq!(x.len(), n, "the start must have a value for each variable");
         let pattern = problem.pattern();
         let equations = NormalEquations::new(m, n, &pattern);
-        let cholesky = SparseCholesky::new(n, equations.column_starts().to_vec(), equations.row_indices().to_vec());
         let mut state = Self {
             constraints: problem.constraints(),
             jacobian: vec![0.0; pattern.len()],
             residuals: vec![0.0; m],
             trial_residuals: vec![0.0; m],
-            damped: vec![0.0; equations.values().len()],
             trial: vec![0.0; n],
             cost: 0.0,
+            system: DampedSystem::new(&equations),
             equations,
-            cholesky,
         };
         state.linearise(problem, x);
         state.cost = squared_norm(&state.residuals);
@@ -213,27 +208,18 @@ impl State {
 
     /// −2 dᵀJᵀr − dᵀJᵀJd; along the step, dᵀJᵀJd = −dᵀJᵀr − λ dᵀDd.
     fn promised(&self, step: &[f64], damping: f64) -> f64 {
-        let starts = self.equations.column_starts();
-        let mut decrease = 0.0;
-        for (j, (&d, &gradient)) in step.iter().zip(self.equations.gradient()).enumerate() {
-            decrease += damping * self.equations.values()[starts[j]] * d * d - d * gradient;
-        }
-        decrease
+        let coefficients = self.equations.diagonal().iter().zip(self.equations.gradient());
+        step.iter()
+            .zip(coefficients)
+            .map(|(&d, (&diagonal, &gradient))| damping * diagonal * d * d - d * gradient)
+            .sum()
     }
 
     /// The damped step; `None` where the matrix cannot be factored.
     fn solve(&mut self, damping: f64) -> Option<Vec<f64>> {
-        let starts = self.equations.column_starts();
-        let n = self.equations.variables();
-        self.damped.copy_from_slice(self.equations.values());
-        let floor = DIAGONAL_FLOOR * (0..n).map(|j| self.damped[starts[j]]).sum::<f64>() / n as f64;
-        for j in 0..n {
-            let diagonal = &mut self.damped[starts[j]];
-            *diagonal += damping * *diagonal + floor.max(f64::MIN_POSITIVE);
-        }
-        self.cholesky.factor(&self.damped).ok()?;
+        self.system.factor(&self.equations, damping).ok()?;
         let mut step: Vec<f64> = self.equations.gradient().iter().map(|g| -g).collect();
-        self.cholesky.solve(&mut step);
+        self.system.solve(&self.equations, &mut step);
         self.restrict(&mut step)?;
         step.iter().all(|d| d.is_finite()).then_some(step)
     }
@@ -247,43 +233,20 @@ impl State {
             .map(|k| {
                 let mut column = vec![0.0; step.len()];
                 self.constraints[k].iter().for_each(|&(j, c)| column[j] = c);
-                self.cholesky.solve(&mut column);
+                self.system.solve(&self.equations, &mut column);
                 column
             })
             .collect();
         let along = |row: &[(usize, f64)], v: &[f64]| row.iter().map(|&(j, c)| c * v[j]).sum::<f64>();
-        let matrix = self.constraints.iter().map(|row| columns.iter().map(|v| along(row, v)).collect()).collect();
-        let violation = self.constraints.iter().map(|row| along(row, step)).collect();
-        let multipliers = solve_dense_spd(matrix, violation)?;
+        let lower = self.constraints.iter().enumerate();
+        let matrix = lower.map(|(i, row)| columns[..=i].iter().map(|v| along(row, v)).collect()).collect();
+        let mut multipliers: Vec<f64> = self.constraints.iter().map(|row| along(row, step)).collect();
+        DenseCholesky::factor(matrix).ok()?.solve(&mut multipliers);
         for (column, multiplier) in columns.iter().zip(multipliers) {
             step.iter_mut().zip(column).for_each(|(d, c)| *d -= multiplier * c);
         }
         Some(())
     }
-}
-
-/// Solves a small symmetric positive definite system by elimination without pivoting; `None` where it is not definite.
-fn solve_dense_spd(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
-    let n = b.len();
-    for k in 0..n {
-        if !(a[k][k] > 0.0) {
-            return None;
-        }
-        for i in k + 1..n {
-            let share = a[i][k] / a[k][k];
-            for j in k..n {
-                a[i][j] -= share * a[k][j];
-            }
-            b[i] -= share * b[k];
-        }
-    }
-    for k in (0..n).rev() {
-        for j in k + 1..n {
-            b[k] -= a[k][j] * b[j];
-        }
-        b[k] /= a[k][k];
-    }
-    Some(b)
 }
 
 fn squared_norm(values: &[f64]) -> f64 {

@@ -1,0 +1,184 @@
+//! The damped normal equations (JᵀJ + λ diag(JᵀJ)) d = b, factored so that a few long rows of J stay cheap.
+//!
+//! A row of J that touches many variables fills a dense block of JᵀJ, and the factor with it. [`NormalEquations`] leaves
+//! such rows out of its triangle; here they come back as a correction of low rank. With S the sparse part, damping
+//! included, and U the long rows,
+//!
+//! ```text
+//! (S + UᵀU)⁻¹ b = z − Z (I + U Z)⁻¹ U z,   z = S⁻¹ b,  Z = S⁻¹ Uᵀ
+//! ```
+//!
+//! (Sherman–Morrison–Woodbury). S is factored by sparse Cholesky, I + UZ by dense Cholesky.
+//!
+//! Limit: where S alone is nearly singular the correction loses digits; every variable should have short rows too.
+
+use super::cholesky::{NotPositiveDefinite, SparseCholesky};
+use super::normal_equations::NormalEquations;
+
+/// Added to the diagonal, as a share of its mean, so that a variable without any residual keeps the matrix definite.
+const DIAGONAL_FLOOR: f64 = 1e-10;
+
+/// Factors the damped normal equations of one pattern and solves them.
+pub struct DampedSystem {
+    cholesky: SparseCholesky,
+    damped: Vec<f64>,
+    /// Z, one column a long row.
+    spread: Vec<Vec<f64>>,
+    /// Of I + UZ.
+    small: DenseCholesky,
+}
+
+impl DampedSystem {
+    /// Analyses the pattern of the equations.
+    pub fn new(equations: &NormalEquations) -> Self {
+        let (starts, rows) = (equations.column_starts().to_vec(), equations.row_indices().to_vec());
+        Self {
+            damped: vec![0.0; rows.len()],
+            cholesky: SparseCholesky::new(equations.variables(), starts, rows),
+            spread: Vec::new(),
+            small: DenseCholesky::default(),
+        }
+    }
+
+    /// Factors JᵀJ + `damping` · diag(JᵀJ).
+    pub fn factor(&mut self, equations: &NormalEquations, damping: f64) -> Result<(), NotPositiveDefinite> {
+        let n = equations.variables();
+        let starts = equations.column_starts();
+        self.damped.copy_from_slice(equations.values());
+        let floor = DIAGONAL_FLOOR * equations.diagonal().iter().sum::<f64>() / n.max(1) as f64;
+        for (&start, diagonal) in starts.iter().zip(equations.diagonal()) {
+            self.damped[start] += damping * diagonal + floor.max(f64::MIN_POSITIVE);
+        }
+        self.cholesky.factor(&self.damped)?;
+        self.spread.clear();
+        for (columns, values) in equations.long_rows() {
+            let mut column = vec![0.0; n];
+            columns.iter().zip(values).for_each(|(&j, &value)| column[j as usize] = value);
+            self.cholesky.solve(&mut column);
+            self.spread.push(column);
+        }
+        let mut matrix: Vec<Vec<f64>> = equations
+            .long_rows()
+            .enumerate()
+            .map(|(i, row)| self.spread[..=i].iter().map(|column| product(row, column)).collect())
+            .collect();
+        matrix.iter_mut().enumerate().for_each(|(i, row)| row[i] += 1.0);
+        self.small = DenseCholesky::factor(matrix)?;
+        Ok(())
+    }
+
+    /// Replaces `b` by the solution for the equations factored last.
+    pub fn solve(&mut self, equations: &NormalEquations, b: &mut [f64]) {
+        self.cholesky.solve(b);
+        if self.spread.is_empty() {
+            return;
+        }
+        let mut shares: Vec<f64> = equations.long_rows().map(|row| product(row, b)).collect();
+        self.small.solve(&mut shares);
+        for (column, share) in self.spread.iter().zip(shares) {
+            b.iter_mut().zip(column).for_each(|(b, c)| *b -= share * c);
+        }
+    }
+}
+
+fn product((columns, values): (&[u32], &[f64]), dense: &[f64]) -> f64 {
+    columns.iter().zip(values).map(|(&j, value)| value * dense[j as usize]).sum()
+}
+
+/// Cholesky factor of a small dense matrix, as rows of its lower triangle.
+#[derive(Clone, Debug, Default)]
+pub struct DenseCholesky {
+    rows: Vec<Vec<f64>>,
+}
+
+impl DenseCholesky {
+    /// Factors the symmetric matrix whose row `i` holds its first `i` + 1 entries.
+    pub fn factor(mut rows: Vec<Vec<f64>>) -> Result<Self, NotPositiveDefinite> {
+        for i in 0..rows.len() {
+            let (done, rest) = rows.split_at_mut(i);
+            let row = &mut rest[0];
+            for j in 0..=i {
+                let (before, from_j) = row.split_at_mut(j);
+                let other = if j < i { &done[j][..j] } else { &*before };
+                let value = from_j[0] - before.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
+                if j < i {
+                    from_j[0] = value / done[j][j];
+                } else if value > 0.0 {
+                    from_j[0] = value.sqrt();
+                } else {
+                    return Err(NotPositiveDefinite);
+                }
+            }
+        }
+        Ok(Self { rows })
+    }
+
+    /// Replaces `b` by the solution.
+    pub fn solve(&self, b: &mut [f64]) {
+        for (i, row) in self.rows.iter().enumerate() {
+            let known: f64 = row[..i].iter().zip(&*b).map(|(l, b)| l * b).sum();
+            b[i] = (b[i] - known) / row[i];
+        }
+        for (i, row) in self.rows.iter().enumerate().rev() {
+            b[i] /= row[i];
+            let here = b[i];
+            row[..i].iter().zip(&mut *b).for_each(|(l, b)| *b -= l * here);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::normal_equations::LONG_ROW;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn long_rows_count_as_any_other(
+            long in prop::collection::vec(-1.0f64..1.0, 2 * (LONG_ROW + 5)),
+            b in prop::collection::vec(-1.0f64..1.0, LONG_ROW + 5),
+            damping in 0.0f64..2.0,
+        ) {
+            // A chain of differences, held at its start, and two rows over everything.
+            let n = LONG_ROW + 5;
+            let mut pattern = vec![(0, 0)];
+            let mut values = vec![1.0];
+            for j in 1..n {
+                pattern.extend([(j, j - 1), (j, j)]);
+                values.extend([-1.0, 1.5]);
+            }
+            for (k, &value) in long.iter().enumerate() {
+                pattern.push((n + k / n, k % n));
+                values.push(value);
+            }
+            let mut equations = NormalEquations::new(n + 2, n, &pattern);
+            prop_assert_eq!(equations.long_rows().count(), 2);
+            equations.assemble(&values, &vec![0.0; n + 2]);
+            let mut system = DampedSystem::new(&equations);
+            prop_assert!(system.factor(&equations, damping).is_ok());
+            let mut x = b.clone();
+            system.solve(&equations, &mut x);
+
+            let mut jacobian = vec![vec![0.0; n]; n + 2];
+            for (&(row, column), &value) in pattern.iter().zip(&values) {
+                jacobian[row][column] += value;
+            }
+            let product: Vec<f64> = jacobian.iter().map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect();
+            for j in 0..n {
+                let diagonal: f64 = jacobian.iter().map(|row| row[j] * row[j]).sum();
+                let left: f64 = jacobian.iter().zip(&product).map(|(row, p)| row[j] * p).sum();
+                prop_assert!((left + damping * diagonal * x[j] - b[j]).abs() < 1e-6, "{} for {}", left, b[j]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_small_dense_system_is_solved() {
+        let factor = DenseCholesky::factor(vec![vec![4.0], vec![2.0, 5.0], vec![-2.0, 1.0, 6.0]]).unwrap();
+        let mut b = [4.0, 8.0, 5.0];
+        factor.solve(&mut b);
+        assert!(b.iter().all(|x| (x - 1.0).abs() < 1e-14), "{b:?}");
+        assert_eq!(DenseCholesky::factor(vec![vec![0.0]]).unwrap_err(), NotPositiveDefinite);
+    }
+}
