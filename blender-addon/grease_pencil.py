@@ -96,8 +96,12 @@ def layers(ob: bpy.types.Object, name: str) -> list[bpy.types.bpy_struct]:
 
 
 def layer(ob: bpy.types.Object, name: str) -> bpy.types.bpy_struct:
-    """The layer called `name`, made on top if there is none."""
-    return ob.data.layers.get(name) or ob.data.layers.new(name)
+    """The layer called `name`, made on top if there is none; unlit, since in a scene without lamps ink would be black."""
+    found = ob.data.layers.get(name)
+    if found is None:
+        found = ob.data.layers.new(name)
+        found.use_lights = False
+    return found
 
 
 def drawings(layer: bpy.types.bpy_struct) -> dict[int, tuple[bpy.types.bpy_struct, str]]:
