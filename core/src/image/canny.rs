@@ -85,12 +85,7 @@ pub fn canny(picture: &Raster<Colour>, options: &CannyOptions) -> Raster<bool> {
 
 /// The edges of an 8-bit grey picture.
 pub fn canny_luma(grey: &Raster<u8>, options: &CannyOptions) -> Raster<bool> {
-    edges_of(
-        grey,
-        options,
-        #[inline(always)]
-        |level| f32::from(level),
-    )
+    edges_of(grey, options, f32::from)
 }
 
 /// Pixels that are passed over together where none is strong enough.

@@ -112,7 +112,7 @@ fn lab_piece(table: &[f32], pixels: &[Colour], out: &mut [[f32; 3]]) {
         let mut lows = [0i32; 3 * GROUP];
         let mut shares = [0.0f32; 3 * GROUP];
         for (i, value) in values.as_flattened().iter().enumerate() {
-            let place = value.max(0.0).min(1.0) * TABLE as f32;
+            let place = value.clamp(0.0, 1.0) * TABLE as f32;
             lows[i] = place as i32;
             shares[i] = place - lows[i] as f32;
         }

@@ -54,7 +54,7 @@ const LEAST_BORDER: i32 = 16;
 
 /// The picture filtered, at 8 bits a channel.
 pub fn mean_shift(picture: &Raster<Colour>, options: &MeanShiftOptions) -> Raster<Colour> {
-    let round = |v: f32| (255.0 * v.max(0.0).min(1.0) + 0.5) as i32 as u8;
+    let round = |v: f32| (255.0 * v.clamp(0.0, 1.0) + 0.5) as i32 as u8;
     let levels = converted(picture, round);
     converted(&mean_shift_levels(&levels, options), |v| v as f32 / 255.0)
 }

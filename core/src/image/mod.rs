@@ -2,6 +2,7 @@
 //!
 //! - [`canny`]: edges of the luma
 //! - [`colour`]: sRGB, luma and CIE Lab
+//! - [`correlation`]: correlation by the fast Fourier transform
 //! - [`decode`]: a picture from a file
 //! - [`distance_transform`]: Manhattan distance to the nearest edge
 //! - [`flow`]: dense optical flow by inverse search
@@ -17,6 +18,7 @@
 
 pub mod canny;
 pub mod colour;
+pub mod correlation;
 pub mod decode;
 pub mod distance_transform;
 pub mod flow;
