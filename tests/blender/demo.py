@@ -1,7 +1,8 @@
 """The main job in one Blender: install the zip, import a project, track, snap, save, render.
 
 Started by `cargo xtask demo`, either by the Python of a `bpy` wheel or by Blender itself with `--background --python`.
-Writes into --out: demo.blend, tracked.json, renders/*.png (strokes on nothing) and report.json.
+Writes into --out: demo.blend, tracked.json, renders/*.png (strokes on nothing), report.json, and blender.log with what
+Blender says meanwhile.
 """
 
 import argparse
@@ -9,6 +10,7 @@ import json
 import os
 import sys
 import time
+import traceback
 from pathlib import Path
 
 import bpy
@@ -27,6 +29,16 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args(words)
 
 
+def quiet(log: Path):
+    """Sends what Blender prints to a file; returns where our own words go."""
+    sys.stdout.flush()
+    own = os.fdopen(os.dup(1), "w", buffering=1)
+    file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
+    os.dup2(file, 1)
+    os.dup2(file, 2)
+    return own
+
+
 def install(path: Path) -> None:
     """Installs and enables the extension; Blender says FINISHED even if that failed, so the module is looked at."""
     import addon_utils
@@ -34,17 +46,17 @@ def install(path: Path) -> None:
     addon_utils.enable("bl_pkg")
     bpy.ops.extensions.package_install_files(filepath=str(path), repo="user_default", enable_on_install=True)
     if MODULE not in bpy.context.preferences.addons:
-        raise SystemExit(f"{path} was not installed and enabled")
+        raise RuntimeError(f"{path} was not installed and enabled")
 
 
-def timed(seconds: dict[str, float], step: str, operator, **parameters) -> None:
+def timed(own, seconds: dict[str, float], step: str, operator, **parameters) -> None:
     """Calls an operator; anything but FINISHED ends the demo."""
     start = time.perf_counter()
     result = operator(**parameters)
     seconds[step] = time.perf_counter() - start
     if result != {"FINISHED"}:
-        raise SystemExit(f"{step}: {result}")
-    print(f"{step}: {seconds[step]:.2f} s", flush=True)
+        raise RuntimeError(f"{step}: {result}")
+    print(f"{step}: {seconds[step]:.2f} s", file=own)
 
 
 def prepare_rendering(scene: bpy.types.Scene) -> None:
@@ -75,17 +87,17 @@ def render(scene: bpy.types.Scene, out: Path, count: int, seconds: dict[str, flo
     return files
 
 
-def main() -> None:
+def main(options: argparse.Namespace, out: Path, own) -> None:
     """The whole job."""
-    options, seconds = arguments(), {}
-    out = options.out.resolve()
-    timed(seconds, "install", lambda: install(options.zip.resolve()) or {"FINISHED"})
+    seconds: dict[str, float] = {}
+    timed(own, seconds, "install", lambda: install(options.zip.resolve()) or {"FINISHED"})
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    timed(seconds, "import", bpy.ops.rototoon.import_document, filepath=str(options.project.resolve()), keep_numbers=True)
-    timed(seconds, "track", bpy.ops.rototoon.track)
-    timed(seconds, "snap", bpy.ops.rototoon.snap)
-    timed(seconds, "export", bpy.ops.rototoon.export_document, filepath=str(out / "tracked.json"), check_existing=False)
-    timed(seconds, "save", bpy.ops.wm.save_as_mainfile, filepath=str(out / "demo.blend"), compress=True)
+    project, tracked = str(options.project.resolve()), str(out / "tracked.json")
+    timed(own, seconds, "import", bpy.ops.rototoon.import_document, filepath=project, keep_numbers=True)
+    timed(own, seconds, "track", bpy.ops.rototoon.track)
+    timed(own, seconds, "snap", bpy.ops.rototoon.snap)
+    timed(own, seconds, "export", bpy.ops.rototoon.export_document, filepath=tracked, check_existing=False)
+    timed(own, seconds, "save", bpy.ops.wm.save_as_mainfile, filepath=str(out / "demo.blend"), compress=True)
     scene = bpy.context.scene
     prepare_rendering(scene)
     renders = render(scene, out, options.pictures, seconds)
@@ -93,8 +105,22 @@ def main() -> None:
     (out / "report.json").write_text(json.dumps(report, indent=1), encoding="utf-8")
 
 
+def run() -> int:
+    """Runs the job; returns the exit status."""
+    options = arguments()
+    out = options.out.resolve()
+    own = quiet(out / "blender.log")
+    try:
+        main(options, out, own)
+    except Exception:  # told on the real output, which Blender no longer has
+        traceback.print_exc(file=own)
+        print(f"what Blender said is in {out / 'blender.log'}", file=own)
+        return 1
+    finally:
+        own.flush()
+    return 0
+
+
 if __name__ == "__main__":
-    main()
-    sys.stdout.flush()
     # Blender 4.5 may never return from its exit once something was undone.
-    os._exit(0)
+    os._exit(run())

@@ -58,7 +58,10 @@ fn build() -> Result<(PathBuf, PathBuf)> {
     let versioned = format!("{TRIPLE}.{}.{}", GLIBC.0, GLIBC.1);
     run(command(bin.join("cargo-zigbuild"))
         .args(["zigbuild", "--quiet", "--release", "-p", "rototoon-capi", "-p", "rototoon-cli", "--target", &versioned])
-        .env("PATH", path))?;
+        .env("PATH", path)
+        // The zip is downloaded by artists: no line tables.
+        .env("CARGO_PROFILE_RELEASE_DEBUG", "none")
+        .env("CARGO_PROFILE_RELEASE_STRIP", "symbols"))?;
     let built = target().join(TRIPLE).join("release");
     let (library, cli) = (built.join(LIBRARY), built.join("rototoon"));
     elf::assert_glibc(&library, GLIBC)?;

@@ -42,9 +42,9 @@ pub const HEIGHT: u32 = 540;
 pub const FRAMES: usize = 24;
 /// Frames that each drawing is held.
 pub const HOLD: usize = 2;
-/// Frames on which the artist has keyed the body: start, crouch and end.
-const BODY_KEYS: [usize; 3] = [0, 12, 23];
-/// Frames on which the artist has keyed what swings: the body's, the other contact of the walk, and the landing.
+/// Frames on which the artist has keyed the body: start, crouch, landing and end.
+const BODY_KEYS: [usize; 4] = [0, 12, 18, 23];
+/// Frames on which the artist has keyed what swings: the body's, and the other contact of the walk.
 const LIMB_KEYS: [usize; 5] = [0, 6, 12, 18, 23];
 
 /// One drawing: its picture and the outlines in it, from the farthest part to the nearest.
