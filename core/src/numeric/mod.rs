@@ -3,6 +3,7 @@
 //! - [`assignment`]: pairs of least total cost
 //! - [`banded`]: Cholesky factorisation of symmetric band matrices
 //! - [`cholesky`]: sparse Cholesky factorisation with the symbolic half kept
+//! - [`damped_system`]: damped normal equations, long rows as a correction of low rank
 //! - [`gradient_check`]: an analytic Jacobian against differences
 //! - [`normal_equations`]: JᵀJ and Jᵀr of a sparse Jacobian of fixed pattern
 //! - [`sparse_least_squares`]: Levenberg–Marquardt on such problems
@@ -10,6 +11,7 @@
 pub mod assignment;
 pub mod banded;
 pub mod cholesky;
+pub mod damped_system;
 pub mod gradient_check;
 pub mod normal_equations;
 pub mod sparse_least_squares;
