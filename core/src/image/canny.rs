@@ -24,7 +24,7 @@ use super::colour::luma;
 use super::gaussian::{Border, Kernel, convolve_row};
 use super::vector::vectorised;
 use crate::scene::{Colour, Raster};
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
 use std::ops::Range;
 
 /// Length of the gradient.

@@ -12,7 +12,7 @@
 
 use super::vector::vectorised;
 use crate::scene::{Colour, Raster};
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSlice, ParallelSliceMut};
 use std::sync::LazyLock;
 
 /// Light, linear, to an sRGB-encoded value.

@@ -13,7 +13,7 @@
 use super::pixel::Pixel;
 use super::vector::vectorised;
 use crate::scene::Raster;
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
 
 /// How many σ the kernel reaches to each side.
 const REACH: f64 = 3.0;

@@ -21,7 +21,7 @@
 
 use super::vector::vectorised;
 use crate::scene::{Colour, Raster};
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSlice, ParallelSliceMut};
 
 /// How to filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,7 +14,7 @@
 use super::pixel::Pixel;
 use super::vector::vectorised;
 use crate::scene::Raster;
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
 
 /// How one axis is resampled: for each pixel of the result its first source pixel and the weights from there on.
 struct Axis {

@@ -196,8 +196,7 @@ impl State {
         }
         problem.evaluate(&self.trial, &mut self.trial_residuals);
         let cost = squared_norm(&self.trial_residuals);
-        // Written so that a cost that is not a number is refused too.
-        if !(cost < self.cost) {
+        if cost >= self.cost || cost.is_nan() {
             return None;
         }
         x.copy_from_slice(&self.trial);

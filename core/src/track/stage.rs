@@ -12,7 +12,7 @@ use super::propagate::{Model, Pose, Scenery};
 use super::store::Store;
 use crate::geometry::Point;
 use crate::scene::{FrameNumber, FrameSource, Progress};
-use rayon::prelude::*;
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator, ParallelSlice};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -12,7 +12,7 @@ use super::rototoon::Rototoon;
 use super::zhou2011::Zhou2011;
 use crate::geometry::Point;
 use crate::scene::{Cancelled, Footage, FrameError, FrameNumber, FrameSource, Part, Progress, Scene, Span};
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
