@@ -144,7 +144,7 @@ class Session:
         return cls(handle)
 
     def document(self) -> Document:
-        """The document as it stands, tracks and snapped curves included."""
+        """The document as it stands, tracks and snapped curves included; results are rounded to 0.0001 pixels."""
         return json.loads(self._handle.give(handles.Text, "rototoon_session_document"))
 
     def set_document(self, document: Mapping[str, Any]) -> None:
@@ -155,7 +155,10 @@ class Session:
         self._handle.call("rototoon_session_set_document", *_json(document))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the document; the file appears whole or not at all."""
+        """Writes the document; the file appears whole or not at all.
+
+        In another folder than the session's, a relative footage pattern is rewritten so that it names the same files.
+        """
         self._handle.call("rototoon_session_save", *_text(os.fspath(path)))
 
     def set_footage(self, footage: Mapping[str, Any]) -> None:
@@ -220,12 +223,13 @@ class Session:
         summary = self._long("rototoon_session_track", options, progress)
         return Summary([Job(**job) for job in summary["jobs"]])
 
-    def snap(self, progress: Progress | None = None, *, threads: int = 0) -> None:
+    def snap(self, progress: Progress | None = None, *, threads: int = 0, **options: Any) -> None:
         """Lays the tracked contours along the drawn ink and stores ``curves`` in the document.
 
-        Keys are snapped too. Raises `Cancelled`, the document unchanged.
+        Keys are snapped too. `options` are parameters of the stage ``snap`` by id, such as ``follow="line"``; see
+        `parameters`. Raises `Cancelled`, the document unchanged.
         """
-        self._long("rototoon_session_snap", {"threads": threads}, progress)
+        self._long("rototoon_session_snap", {"threads": threads, **options}, progress)
 
     # -- results -------------------------------------------------------------------------------------------------
 
@@ -283,8 +287,9 @@ def match_contours(request: Mapping[str, Any]) -> Any:
 
     The request is ``{"references": [contour, ...], "drawn": [contour, ...]}``, each contour being
     ``{"closed": bool, "points": [[x, y], ...]}``. The answer is ``{"matches": [{"reference": index, "drawn": index,
-    "points": [[x, y], ...]}, ...]}``, rising by reference: `points` are the reference's control points on the drawn line.
-    Contours that have no counterpart are not mentioned.
+    "points": [[x, y], ...], "cost": number}, ...]}``, rising by reference: `points` are the reference's control points
+    on the drawn line; the cost is 0 for equal contours. What has no counterpart is left out. Contours may have a
+    ``"color": [r, g, b]``, sRGB from 0 to 1, which is compared where both have one.
     """
     return json.loads(handles.take(handles.Text, "rototoon_match_contours", *_json(request)))
 

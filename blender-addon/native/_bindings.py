@@ -1,0 +1,467 @@
+"""Prototypes and constants of the C ABI. Generated from rototoon.h by `cargo xtask generate`; do not edit."""
+
+import ctypes
+
+HEADER_HASH = 0x52a0cd0e2ed96e87
+
+ROTOTOON_ABI_VERSION = 1
+ROTOTOON_STATUS_OK = 0
+ROTOTOON_STATUS_ERROR = 1
+ROTOTOON_STATUS_CANCELLED = 2
+ROTOTOON_STATUS_PANIC = 3
+ROTOTOON_STATUS_BAD_ARGUMENT = 4
+ROTOTOON_STATUS_BUSY = 5
+
+RototoonProgress = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p, ctypes.c_size_t)
+
+
+def declare(library: ctypes.CDLL) -> None:
+    """Sets result and argument types of every function."""
+    library.rototoon_abi_version.restype = ctypes.c_uint32
+    library.rototoon_abi_version.argtypes = []
+    library.rototoon_header_hash.restype = ctypes.c_uint64
+    library.rototoon_header_hash.argtypes = []
+    library.rototoon_version.restype = ctypes.c_int32
+    library.rototoon_version.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_parameters.restype = ctypes.c_int32
+    library.rototoon_parameters.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_match_contours.restype = ctypes.c_int32
+    library.rototoon_match_contours.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_text_read.restype = ctypes.c_int32
+    library.rototoon_text_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_text_free.restype = None
+    library.rototoon_text_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_track_read.restype = ctypes.c_int32
+    library.rototoon_track_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_track_free.restype = None
+    library.rototoon_track_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_curves_read.restype = ctypes.c_int32
+    library.rototoon_curves_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_curves_free.restype = None
+    library.rototoon_curves_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_abi_version.restype = ctypes.c_uint32
+    library.rototoon_abi_version.argtypes = []
+    library.rototoon_header_hash.restype = ctypes.c_uint64
+    library.rototoon_header_hash.argtypes = []
+    library.rototoon_version.restype = ctypes.c_int32
+    library.rototoon_version.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_parameters.restype = ctypes.c_int32
+    library.rototoon_parameters.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_match_contours.restype = ctypes.c_int32
+    library.rototoon_match_contours.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_text_read.restype = ctypes.c_int32
+    library.rototoon_text_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_text_free.restype = None
+    library.rototoon_text_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_track_read.restype = ctypes.c_int32
+    library.rototoon_track_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_track_free.restype = None
+    library.rototoon_track_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_curves_read.restype = ctypes.c_int32
+    library.rototoon_curves_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_curves_free.restype = None
+    library.rototoon_curves_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_new.restype = ctypes.c_int32
+    library.rototoon_session_new.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_open.restype = ctypes.c_int32
+    library.rototoon_session_open.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_free.restype = None
+    library.rototoon_session_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_document.restype = ctypes.c_int32
+    library.rototoon_session_document.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_set_document.restype = ctypes.c_int32
+    library.rototoon_session_set_document.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_save.restype = ctypes.c_int32
+    library.rototoon_session_save.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_set_footage.restype = ctypes.c_int32
+    library.rototoon_session_set_footage.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_parts.restype = ctypes.c_int32
+    library.rototoon_session_parts.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_add_part.restype = ctypes.c_int32
+    library.rototoon_session_add_part.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_remove_part.restype = ctypes.c_int32
+    library.rototoon_session_remove_part.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_set_key.restype = ctypes.c_int32
+    library.rototoon_session_set_key.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_remove_key.restype = ctypes.c_int32
+    library.rototoon_session_remove_key.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_pin.restype = ctypes.c_int32
+    library.rototoon_session_pin.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_int32,
+        ctypes.c_double,
+        ctypes.c_double,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_unpin.restype = ctypes.c_int32
+    library.rototoon_session_unpin.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_int32,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_set_center.restype = ctypes.c_int32
+    library.rototoon_session_set_center.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_double,
+        ctypes.c_double,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_clear_center.restype = ctypes.c_int32
+    library.rototoon_session_clear_center.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_track.restype = ctypes.c_int32
+    library.rototoon_session_track.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_snap.restype = ctypes.c_int32
+    library.rototoon_session_snap.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_track_of.restype = ctypes.c_int32
+    library.rototoon_session_track_of.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_curves_of.restype = ctypes.c_int32
+    library.rototoon_session_curves_of.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_weakest_frame.restype = ctypes.c_int32
+    library.rototoon_session_weakest_frame.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_new.restype = ctypes.c_int32
+    library.rototoon_session_new.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_open.restype = ctypes.c_int32
+    library.rototoon_session_open.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_free.restype = None
+    library.rototoon_session_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_document.restype = ctypes.c_int32
+    library.rototoon_session_document.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_set_document.restype = ctypes.c_int32
+    library.rototoon_session_set_document.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_save.restype = ctypes.c_int32
+    library.rototoon_session_save.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_set_footage.restype = ctypes.c_int32
+    library.rototoon_session_set_footage.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_parts.restype = ctypes.c_int32
+    library.rototoon_session_parts.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_add_part.restype = ctypes.c_int32
+    library.rototoon_session_add_part.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_remove_part.restype = ctypes.c_int32
+    library.rototoon_session_remove_part.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_set_key.restype = ctypes.c_int32
+    library.rototoon_session_set_key.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_remove_key.restype = ctypes.c_int32
+    library.rototoon_session_remove_key.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_pin.restype = ctypes.c_int32
+    library.rototoon_session_pin.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_int32,
+        ctypes.c_double,
+        ctypes.c_double,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_unpin.restype = ctypes.c_int32
+    library.rototoon_session_unpin.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_int32,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_set_center.restype = ctypes.c_int32
+    library.rototoon_session_set_center.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_double,
+        ctypes.c_double,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_clear_center.restype = ctypes.c_int32
+    library.rototoon_session_clear_center.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_track.restype = ctypes.c_int32
+    library.rototoon_session_track.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_snap.restype = ctypes.c_int32
+    library.rototoon_session_snap.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_track_of.restype = ctypes.c_int32
+    library.rototoon_session_track_of.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_curves_of.restype = ctypes.c_int32
+    library.rototoon_session_curves_of.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_weakest_frame.restype = ctypes.c_int32
+    library.rototoon_session_weakest_frame.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]

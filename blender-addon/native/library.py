@@ -73,7 +73,8 @@ def _check(path: Path, functions: ctypes.CDLL) -> None:
     header_hash.restype, header_hash.argtypes = ctypes.c_uint64, []
     if abi_version() != _bindings.ROTOTOON_ABI_VERSION:
         expected = _bindings.ROTOTOON_ABI_VERSION
-        raise LibraryError(f"{path} has ABI version {abi_version()}, this package expects {expected}; install both anew")
+        found = abi_version()
+        raise LibraryError(f"{path} has ABI version {found}, this package expects {expected}; install both anew")
     if header_hash() != _bindings.HEADER_HASH:
         found, expected = f"{header_hash():016x}", f"{_bindings.HEADER_HASH:016x}"
         raise LibraryError(f"{path} was built with header {found}, this package expects {expected}; install both anew")

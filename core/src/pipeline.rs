@@ -4,7 +4,9 @@
 //! when cancelled, not at all.
 
 use crate::export::{SvgOptions, svg};
+use crate::geometry::Point;
 use crate::image::Sequence;
+use crate::project::save::DECIMALS;
 use crate::project::{Document, Problems, WriteError, output, validate, write_whole};
 use crate::render::{self, EncodeError, Format, OverlayOptions};
 use crate::scene::{Cancelled, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
@@ -83,9 +85,20 @@ pub fn store(scene: &mut Scene, tracking: &Tracking) {
     for (part, found) in scene.parts.iter_mut().zip(&tracking.parts) {
         let before = std::mem::replace(&mut part.tracks, found.tracks.clone());
         let now = &part.tracks;
-        part.curves.retain(|frame, _| now.contains_key(frame) && now.get(frame) == before.get(frame));
+        part.curves.retain(|frame, _| match (now.get(frame), before.get(frame)) {
+            (Some(now), Some(before)) => same_contour(now, before),
+            // Snapped from a key that had no track.
+            (Some(now), None) => part.keys.get(frame).is_some_and(|key| same_contour(now, key)),
+            _ => false,
+        });
         part.confidence = found.confidence.clone();
     }
+}
+
+/// Whether contours differ by no more than what a document's rounding makes of them.
+fn same_contour(a: &[Point], b: &[Point]) -> bool {
+    let tolerance = 10f64.powi(-DECIMALS);
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (*a - *b).abs().max_element() <= tolerance)
 }
 
 /// Snaps every contour of a document that lies in `folder` to the ink. Runs on the caller's rayon pool.
@@ -246,5 +259,45 @@ pub fn relocate(document: &mut Document, from: &Path, to: &Path) {
     let pattern = &mut document.scene.footage.pattern;
     if Path::new(pattern).is_relative() {
         *pattern = output::moved_pattern(pattern, from, to);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::Motion;
+    use crate::scene::parameters::{Kind, find};
+    use crate::snap::CorridorWidth;
+    use crate::track::Preset;
+
+    fn choices(id: &str) -> Vec<&'static str> {
+        let Kind::Choice { choices, .. } = find(id).unwrap().kind else { panic!("{id} is no choice") };
+        choices.iter().map(|choice| choice.id).collect()
+    }
+
+    fn default(id: &str) -> f64 {
+        let Kind::Number { default, .. } = find(id).unwrap().kind else { panic!("{id} is no number") };
+        default
+    }
+
+    #[test]
+    fn the_parameters_describe_the_stages() {
+        assert_eq!(choices("preset"), Preset::ALL.map(|(_, id)| id));
+        assert_eq!(choices("motion"), Motion::ALL.map(|(_, id)| id));
+        let CorridorWidth { share, least, most } = CorridorWidth::default();
+        assert_eq!([share, least, most], ["corridor_share", "corridor_least", "corridor_most"].map(default));
+        assert_eq!(OverlayOptions::default().line_width, default("line_width"));
+        assert_eq!(SvgOptions::default().spacing, default("spacing"));
+    }
+
+    #[test]
+    fn corrections_without_effect_reach_no_stage() {
+        let json = r#"{"rototoon": 1, "footage": {"pattern": "%d", "first": 0, "last": 9, "fps": 1, "width": 9, "height": 9},
+            "parts": [{"name": "a", "keys": {"2": [[1, 1]], "6": [[2, 2]]},
+            "pins": {"2": {"0": [0, 0]}, "3": {"0": [0, 0]}, "8": {"0": [0, 0]}}, "centers": {"1": [0, 0], "4": [0, 0]}}]}"#;
+        let document = Document::parse(json, "p").unwrap();
+        let scene = in_effect(&document.scene);
+        assert_eq!(scene.parts[0].pins.keys().collect::<Vec<_>>(), [&3]);
+        assert_eq!(scene.parts[0].centers.keys().collect::<Vec<_>>(), [&4]);
     }
 }

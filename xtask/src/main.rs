@@ -1,11 +1,20 @@
 //! Development commands of Rototoon.
 
+mod bless;
+mod bundle;
+mod demo;
+mod elf;
 mod generate;
+mod photograph;
+mod python;
+mod shell;
+mod test;
 
 use clap::{Parser, Subcommand};
+use std::path::PathBuf;
 
 #[derive(Parser)]
-#[command(name = "cargo xtask")]
+#[command(name = "cargo xtask", about = "Development commands of Rototoon")]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -13,16 +22,38 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Show the main job in real Blender: install, import, track, snap, render. Results are in target/demo.
+    Demo {
+        /// A project document; the sample cartoon where none is given.
+        #[arg(long)]
+        project: Option<PathBuf>,
+        /// An installed Blender; the `bpy` wheel from PyPI where none is given.
+        #[arg(long)]
+        blender: Option<PathBuf>,
+    },
+    /// Run every check, in Blender too, and say what could not be run.
+    Test,
+    /// Build and validate the extension's zip.
+    Bundle,
     /// Write the C header and the Python bindings.
     Generate {
         /// Change nothing; fail where a file is stale.
         #[arg(long)]
         check: bool,
     },
+    /// Accept the golden pictures that the tests last drew.
+    Bless,
+    /// Photograph the panel in a real Blender window (Debian sid in a chroot; needs root and debootstrap).
+    Photograph,
 }
 
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
+        Command::Demo { project, blender } => demo::demo(project, blender),
+        Command::Test => test::test(),
+        Command::Bundle => bundle::bundle(&bundle::Packager::from_wheel()?).map(|_| ()),
         Command::Generate { check } => generate::generate(check),
+        Command::Bless => bless::bless(),
+        Command::Photograph => photograph::photograph(),
     }
 }

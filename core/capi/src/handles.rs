@@ -1,4 +1,4 @@
-//! What calls hand out: text and arrays, owned by the caller until freed. They never change and may be shared by threads.
+//! What calls hand out: text and arrays, owned by the caller until freed. They never change, so threads may share them.
 
 use crate::entry::{clear, entry, free, handle};
 use crate::status::RototoonStatus;

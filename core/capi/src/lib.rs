@@ -2,7 +2,8 @@
 //!
 //! The header `include/rototoon.h` is generated from this crate and the Python bindings from the header
 //! (`cargo xtask generate`). Layers, from the outside: the exported functions ([`session_abi`], [`functions`],
-//! [`handles`]) read their arguments through [`entry`]; below them all is safe Rust ([`session`], [`edit`], [`work`]).
+//! [`handles`]) read their arguments through [`entry`]; below them all is safe Rust ([`session`], [`edit`], [`options`],
+//! [`matching`], [`work`]).
 //!
 //! # Contract
 //!
@@ -37,6 +38,8 @@ pub mod edit;
 pub mod entry;
 pub mod functions;
 pub mod handles;
+pub mod matching;
+pub mod options;
 pub mod session;
 pub mod session_abi;
 pub mod status;

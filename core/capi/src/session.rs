@@ -1,21 +1,23 @@
 //! A document with its pictures and with what tracking remembers: what a session handle points to.
 
 use crate::edit::part_index;
+use crate::options::Options;
 use crate::status::Failure;
-use crate::work;
+use crate::work::{self, GoOn};
 use rototoon::image::sequence::Sequence;
+use rototoon::pipeline;
 use rototoon::project::Document;
+use rototoon::scene::parameters::Stage;
 use rototoon::scene::{FrameNumber, Part, Progress, Scene};
-use rototoon::track::{JobReport, Preset, Termination, TrackError, TrackOptions, Tracker, Tracking, weakest_frame};
-use serde::{Deserialize, Serialize};
+use rototoon::snap::{CorridorWidth, Follow, SnapError, SnapOptions, snap_scene};
+use rototoon::track::{JobReport, Preset, Termination, TrackError, TrackOptions, Tracker, weakest_frame};
+use serde::Serialize;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// How messages call a document that came as text.
 const ORIGIN: &str = "document";
-
-/// Told the finished share and the step; returns whether to go on.
-pub type GoOn<'a> = Option<&'a mut dyn FnMut(f64, &str) -> bool>;
 
 /// A document in work.
 pub struct Session {
@@ -23,27 +25,6 @@ pub struct Session {
     folder: PathBuf,
     pictures: Option<Sequence>,
     trackers: BTreeMap<&'static str, Tracker>,
-}
-
-/// Options of tracking, as callers write them.
-#[derive(Debug, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct TrackRequest {
-    preset: String,
-    threads: usize,
-}
-
-impl Default for TrackRequest {
-    fn default() -> Self {
-        Self { preset: "rototoon".into(), threads: 0 }
-    }
-}
-
-/// Options of snapping, as callers write them.
-#[derive(Debug, Default, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct SnapRequest {
-    threads: usize,
 }
 
 /// What tracking did, as callers read it.
@@ -88,15 +69,12 @@ impl Session {
         self.document.to_json()
     }
 
-    /// Writes the document. In another folder than the session's, a relative footage pattern is written absolute, so
-    /// that the pictures are still found.
+    /// Writes the document. In another folder than the session's, a relative footage pattern is rewritten so that it names
+    /// the same files.
     pub fn save(&self, path: &Path) -> Result<(), Failure> {
-        let folder = std::path::absolute(path).map_err(Failure::error)?;
+        let target = std::path::absolute(path).map_err(Failure::error)?;
         let mut document = self.document.clone();
-        let pattern = &mut document.scene.footage.pattern;
-        if folder.parent() != Some(&self.folder) && Path::new(pattern).is_relative() {
-            *pattern = self.folder.join(&*pattern).to_string_lossy().into_owned();
-        }
+        pipeline::relocate(&mut document, &self.folder, target.parent().unwrap_or(&self.folder));
         document.save(path).map_err(Failure::error)
     }
 
@@ -133,11 +111,17 @@ impl Session {
     }
 
     /// Changes the document's JSON, so that what is added goes through the same checks as a file, and fields that this
-    /// version does not know stay.
-    fn rewrite(&mut self, change: impl FnOnce(&mut serde_json::Value)) -> Result<(), Failure> {
-        let mut document = value(&self.document.to_json(), ORIGIN)?;
-        change(&mut document);
-        self.set_document(&document.to_string())
+    /// version does not know stay. The parts themselves are kept as they are in memory: JSON rounds results.
+    fn rewrite(&mut self, change: impl FnOnce(&mut Value)) -> Result<(), Failure> {
+        let mut json = value(&self.document.to_json(), ORIGIN)?;
+        change(&mut json);
+        let mut document = Document::parse(&json.to_string(), ORIGIN).map_err(Failure::error)?;
+        let (parts, before) = (&mut document.scene.parts, &self.document.scene.parts);
+        for (part, same) in parts.iter_mut().zip(before) {
+            part.clone_from(same);
+        }
+        self.put(document);
+        Ok(())
     }
 
     /// Removes a part and all that belongs to it.
@@ -150,7 +134,7 @@ impl Session {
     /// The parts' names as a JSON list.
     pub fn part_names(&self) -> String {
         let names: Vec<&str> = self.document.scene.parts.iter().map(|part| part.name.as_str()).collect();
-        serde_json::json!(names).to_string()
+        json!(names).to_string()
     }
 
     /// A part by name.
@@ -167,24 +151,43 @@ impl Session {
     /// The frame where the next key helps most as JSON `{"frame", "score"}`, or `null`.
     pub fn weakest_frame(&self) -> String {
         let found = weakest_frame(&self.document.scene.parts);
-        found.map_or(serde_json::Value::Null, |w| serde_json::json!({"frame": w.frame, "score": w.score})).to_string()
+        found.map_or(Value::Null, |w| json!({"frame": w.frame, "score": w.score})).to_string()
     }
 
     /// Tracks the parts; returns the summary as JSON.
     pub fn track(&mut self, options: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
-        let request: TrackRequest = request(options)?;
-        let (preset, id) = preset(&request.preset)?;
-        let (scene, pictures) = (&self.document.scene, pictures(&mut self.pictures, &self.document, &self.folder)?);
+        let options = Options::parse(options, Stage::Track)?;
+        let (preset, id) = preset(options.choice("preset"))?;
+        let pictures = pictures(&mut self.pictures, &self.document, &self.folder)?;
+        let scene = pipeline::in_effect(&self.document.scene);
         let tracker = self.trackers.entry(id).or_insert_with(|| Tracker::new(TrackOptions { preset }));
-        let tracking = work::run(request.threads, go_on, |progress: &dyn Progress| {
-            tracker.track(scene, pictures, progress).map_err(|error| match error {
+        let tracking = work::run(options.number("threads") as usize, go_on, |progress: &dyn Progress| {
+            tracker.track(&scene, pictures, progress).map_err(|error| match error {
                 TrackError::Cancelled(_) => Failure::Cancelled,
                 other => Failure::error(other),
             })
         })?;
-        let summary = summary(scene, &tracking.jobs);
-        store(&mut self.document.scene, tracking);
-        Ok(summary)
+        pipeline::store(&mut self.document.scene, &tracking);
+        Ok(summary(&scene, &tracking.jobs))
+    }
+
+    /// Snaps the contours to the ink; returns a summary as JSON.
+    pub fn snap(&mut self, options: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
+        let options = Options::parse(options, Stage::Snap)?;
+        let snapping = snap_options(&options)?;
+        let pictures = pictures(&mut self.pictures, &self.document, &self.folder)?;
+        let scene = &self.document.scene;
+        let found = work::run(options.number("threads") as usize, go_on, |progress: &dyn Progress| {
+            snap_scene(scene, pictures, &snapping, progress).map_err(|error| match error {
+                SnapError::Cancelled(_) => Failure::Cancelled,
+                other => Failure::error(other),
+            })
+        })?;
+        let frames: usize = found.iter().map(|curves| curves.len()).sum();
+        for (part, curves) in self.document.scene.parts.iter_mut().zip(found) {
+            part.curves = curves;
+        }
+        Ok(json!({"frames": frames}).to_string())
     }
 
     /// Forgets pictures and solved spans: after a panic they may be half-written.
@@ -197,20 +200,28 @@ impl Session {
 /// The frame source, opened at first use.
 fn pictures<'a>(slot: &'a mut Option<Sequence>, document: &Document, folder: &Path) -> Result<&'a Sequence, Failure> {
     if slot.is_none() {
-        *slot = Some(Sequence::open(&document.scene.footage, folder).map_err(Failure::error)?);
+        *slot = Some(Sequence::new(&document.scene.footage, folder).map_err(Failure::error)?);
     }
     slot.as_ref().ok_or_else(|| Failure::Error("no pictures".into()))
 }
 
-fn value(json: &str, what: &str) -> Result<serde_json::Value, Failure> {
+fn value(json: &str, what: &str) -> Result<Value, Failure> {
     serde_json::from_str(json).map_err(|error| Failure::Error(format!("{what}: not JSON: {error}")))
 }
 
-fn request<'de, T: Deserialize<'de> + Default>(json: &'de str) -> Result<T, Failure> {
-    if json.is_empty() {
-        return Ok(T::default());
-    }
-    serde_json::from_str(json).map_err(|error| Failure::Error(format!("options: {error}")))
+fn snap_options(options: &Options) -> Result<SnapOptions, Failure> {
+    let follow = match options.choice("follow") {
+        "auto" => Follow::Auto,
+        "edge" => Follow::Edge,
+        "line" => Follow::Line,
+        other => return Err(Failure::Error(format!("options: nothing to follow is called {other:?}"))),
+    };
+    let corridor = CorridorWidth {
+        share: options.number("corridor_share"),
+        least: options.number("corridor_least"),
+        most: options.number("corridor_most"),
+    };
+    Ok(SnapOptions { follow, corridor })
 }
 
 fn preset(id: &str) -> Result<(Preset, &'static str), Failure> {
@@ -231,7 +242,7 @@ fn summary(scene: &Scene, jobs: &[JobReport]) -> String {
         initial_cost: job.summary.initial_cost,
         final_cost: job.summary.final_cost,
     });
-    serde_json::json!(Summary { jobs: jobs.collect() }).to_string()
+    json!(Summary { jobs: jobs.collect() }).to_string()
 }
 
 fn termination_id(termination: Termination) -> &'static str {
@@ -241,15 +252,5 @@ fn termination_id(termination: Termination) -> &'static str {
         Termination::StepConverged => "step_converged",
         Termination::NoDescent => "no_descent",
         Termination::IterationLimit => "iteration_limit",
-    }
-}
-
-/// Puts the tracks into the scene. Snapped paths stay where they belong to the same contour as before.
-fn store(scene: &mut Scene, tracking: Tracking) {
-    for (part, found) in scene.parts.iter_mut().zip(tracking.parts) {
-        let before = &part.tracks;
-        part.curves.retain(|frame, _| found.tracks.contains_key(frame) && found.tracks.get(frame) == before.get(frame));
-        part.tracks = found.tracks;
-        part.confidence = found.confidence;
     }
 }

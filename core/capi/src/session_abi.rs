@@ -3,8 +3,9 @@
 use crate::edit;
 use crate::entry::{clear, entry, free, give, handle, slice, text};
 use crate::handles::{RototoonCurves, RototoonText, RototoonTrack};
-use crate::session::{GoOn, Session};
+use crate::session::Session;
 use crate::status::{Failure, RototoonStatus};
+use crate::work::GoOn;
 use rototoon::geometry::Point;
 use std::ffi::c_void;
 use std::path::Path;
@@ -14,8 +15,8 @@ use std::sync::{Mutex, TryLockError};
 /// A document with its pictures and with what tracking remembers.
 pub struct RototoonSession(Mutex<Session>);
 
-/// Told the finished share of the work (0 to 1, never falling) and the name of the step (UTF-8, not terminated), about
-/// twenty times a second; returns 0 to go on, anything else to cancel. Null is allowed: nobody is told.
+/// Told the finished share of the work (0 to 1, never falling) and the name of the step (UTF-8, not terminated),
+/// about twenty times a second; returns 0 to go on, anything else to cancel. Null is allowed: nobody is told.
 pub type RototoonProgress =
     Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64, step: *const u8, step_length: usize) -> i32>;
 
@@ -50,8 +51,7 @@ impl RototoonSession {
 
 /// Calls `body` with the caller's callback as a Rust one.
 ///
-/// # Safety
-/// `progress` is null or may be called with `user` during the call.
+/// # Safety `progress` is null or may be called with `user` during the call.
 unsafe fn with_progress<T>(progress: RototoonProgress, user: *mut c_void, body: impl FnOnce(GoOn<'_>) -> T) -> T {
     let Some(progress) = progress else { return body(None) };
     let mut go_on = |fraction: f64, step: &str| {
@@ -148,8 +148,8 @@ pub unsafe extern "C" fn rototoon_session_set_document(
     }
 }
 
-/// Writes the document to a file, whole or not at all. In another folder than the session's, a relative footage pattern
-/// is written absolute.
+/// Writes the document to a file, whole or not at all. In another folder than the session's, a relative footage
+/// pattern is rewritten so that it names the same files.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_save(
     session: *const RototoonSession,
@@ -240,8 +240,8 @@ pub unsafe extern "C" fn rototoon_session_remove_part(
     }
 }
 
-/// Sets the artist's contour of a part on a frame. `points` are `value_count` numbers x, y, x, y, ...: as many points as
-/// the part's other keys have. Pins and a corrected centre on the frame give way.
+/// Sets the artist's contour of a part on a frame. `points` are `value_count` numbers x, y, x, y, ...: as many points
+/// as the part's other keys have. Pins and a corrected centre on the frame give way.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_set_key(
     session: *const RototoonSession,
@@ -366,13 +366,14 @@ pub unsafe extern "C" fn rototoon_session_clear_center(
 
 /// Tracks every part between its keys and stores `tracks` and `confidence` in the document.
 ///
-/// `options` is JSON: `preset` ("rototoon" or "zhou2011"), `threads` (0: one a core); each may be missing, and so may all
-/// (length 0). The threads do not change the result. Spans that nothing touched since they were last solved are reused.
-/// Snapped curves of frames whose track changed are dropped.
+/// `options` is JSON of the parameters of the stages "track" and "run" (see `rototoon_parameters`), such as
+/// `{"preset": "zhou2011", "threads": 2}`; each may be missing, and so may all (length 0). The threads do not change
+/// the result. Spans that nothing touched since they were last solved are reused. Snapped curves of frames whose
+/// track changed are dropped.
 ///
 /// `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
-/// "final_cost"}]}`, one job for each part and span; `solved` is false where the job was reused; `termination` is one of
-/// nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit.
+/// "final_cost"}]}`, one job for each part and span; `solved` is false where the job was reused; `termination` is one
+/// of nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_track(
     session: *const RototoonSession,
@@ -399,7 +400,8 @@ pub unsafe extern "C" fn rototoon_session_track(
 
 /// Lays the contours along the drawn ink and stores `curves` in the document.
 ///
-/// `options` is JSON: `threads` as for tracking. `summary` is JSON: `{"frames": number of snapped frames, parts added up}`.
+/// `options` is JSON of the parameters of the stages "snap" and "run" (see `rototoon_parameters`). `summary` is JSON:
+/// `{"frames": number of snapped frames, parts added up}`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_snap(
     session: *const RototoonSession,
@@ -446,7 +448,8 @@ pub unsafe extern "C" fn rototoon_session_track_of(
     }
 }
 
-/// The snapped paths of a part on a frame, one for each segment between control points; none where it was not snapped.
+/// The snapped paths of a part on a frame, one for each segment between control points; none where it was not
+/// snapped.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_curves_of(
     session: *const RototoonSession,
@@ -471,8 +474,8 @@ pub unsafe extern "C" fn rototoon_session_curves_of(
     }
 }
 
-/// Where the next key helps most: JSON `{"frame", "score"}`, or `null` where nothing was tracked or all frames are at or
-/// beside keys. The score is the sum over parts of the mean of 1 - confidence, smoothed over time.
+/// Where the next key helps most: JSON `{"frame", "score"}`, or `null` where nothing was tracked or all frames are at
+/// or beside keys. The score is the sum over parts of the mean of 1 - confidence, smoothed over time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_weakest_frame(
     session: *const RototoonSession,

@@ -1,14 +1,17 @@
 //! Long work with a progress callback that is always called on the caller's own thread.
 //!
 //! The core reports from whichever thread has finished something. A foreign callback should not be called from there:
-//! hosts allow their API on one thread only, and every worker would wait for the interpreter lock. So the work runs on a
-//! thread of its own, leaves its reports in one place, and the calling thread looks there at a steady pace and calls
+//! hosts allow their API on one thread only, and every worker would wait for the interpreter lock. So the work runs on
+//! a thread of its own, leaves its reports in one place, and the calling thread looks there at a steady pace and calls
 //! back. Steady calls, also without news, let a host notice a keypress or a signal during a long step.
 
 use crate::status::Failure;
 use rototoon::scene::{Cancelled, Progress, Silent};
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::Duration;
+
+/// Told the finished share and the step; returns whether to go on.
+pub type GoOn<'a> = Option<&'a mut dyn FnMut(f64, &str) -> bool>;
 
 /// Between two calls of the callback: often enough to feel immediate, seldom enough to cost nothing.
 const PACE: Duration = Duration::from_millis(50);
@@ -62,7 +65,7 @@ impl Drop for Finish<'_> {
 /// the work begins and once after it ended well; once it has returned false, what the work returned is dropped.
 pub fn run<T: Send>(
     threads: usize,
-    go_on: Option<&mut dyn FnMut(f64, &str) -> bool>,
+    go_on: GoOn<'_>,
     work: impl FnOnce(&dyn Progress) -> Result<T, Failure> + Send,
 ) -> Result<T, Failure> {
     let pool = match threads {

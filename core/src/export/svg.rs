@@ -128,7 +128,7 @@ fn animate(out: &mut String, attribute: &str, seconds: f64, motion: Motion, valu
 /// Number of points of each segment, its end left out; nothing where the part has no snapped paths.
 fn counts(part: &Part, spacing: f64) -> Vec<usize> {
     let mut counts = Vec::new();
-    for (&frame, _) in &part.curves {
+    for &frame in part.curves.keys() {
         let Some(paths) = part.complete_curves(frame) else { continue };
         counts.resize(paths.len(), 1);
         for (count, path) in counts.iter_mut().zip(paths) {

@@ -46,7 +46,7 @@ pub fn for_each_span(points: &[Point], width: usize, height: usize, mut span: im
     let Some((low, high)) = bounds(points) else { return };
     let first = (low.y - 0.5).ceil().max(0.0);
     let last = (high.y - 0.5).floor().min(height as f64 - 1.0);
-    if !(first <= last) || width == 0 {
+    if first > last || width == 0 {
         return;
     }
     let mut crossings = Vec::new();

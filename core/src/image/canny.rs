@@ -21,9 +21,11 @@
 //! repeated for the derivative). σ above about 10 px is coarse, see [`Kernel::exact`].
 
 use super::colour::luma;
-use super::gaussian::{Border, Kernel, convolve};
+use super::gaussian::{Border, Kernel, convolve_row};
+use super::vector::vectorised;
 use crate::scene::{Colour, Raster};
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
+use std::ops::Range;
 
 /// Length of the gradient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,52 +75,84 @@ enum Mark {
 
 /// The edges of a picture, from its luma.
 pub fn canny(picture: &Raster<Colour>, options: &CannyOptions) -> Raster<bool> {
-    let mut grey = Raster::new(picture.width(), picture.height(), 0.0f32);
-    let width = picture.width().max(1);
-    grey.data_mut().par_chunks_mut(width).zip(picture.data().par_chunks(width)).for_each(|(out, pixels)| {
-        for (out, &colour) in out.iter_mut().zip(pixels) {
-            // The cast rounds as `round` would, and is much faster.
-            *out = ((255.0 * luma(colour)).clamp(0.0, 255.0) + 0.5) as i32 as f32;
-        }
-    });
-    edges_of(&grey, options)
+    edges_of(
+        picture,
+        options,
+        #[inline(always)]
+        |colour| ((255.0 * luma(colour)).clamp(0.0, 255.0) + 0.5).floor(),
+    )
 }
 
 /// The edges of an 8-bit grey picture.
 pub fn canny_luma(grey: &Raster<u8>, options: &CannyOptions) -> Raster<bool> {
-    edges_of(&grey.map(f32::from), options)
+    edges_of(grey, options, f32::from)
 }
 
-/// Rows that one task works on.
-const BAND: usize = 32;
+/// Pixels that are passed over together where none is strong enough.
+const GROUP: usize = 32;
 
-fn edges_of(grey: &Raster<f32>, options: &CannyOptions) -> Raster<bool> {
-    let (width, height) = (grey.width(), grey.height());
+/// Rows that one task works on, from the picture to the marks, so that nothing between leaves the cache.
+const BAND: usize = 64;
+
+/// Rows beyond the band that its magnitudes need: one for the neighbours, one for their derivatives.
+const HALO: usize = 2;
+
+fn edges_of<T: Copy + Sync>(
+    picture: &Raster<T>,
+    options: &CannyOptions,
+    grey: impl Fn(T) -> f32 + Copy + Sync,
+) -> Raster<bool> {
+    let (width, height) = (picture.width(), picture.height());
     if width == 0 || height == 0 {
         return Raster::new(width, height, false);
     }
-    let levels = blurred_levels(grey, options.sigma);
+    let kernel = Kernel::exact(options.sigma);
     let thresholds = Thresholds::new(options);
     let mut marks = vec![Mark::None; width * height];
     marks.par_chunks_mut(width * BAND).enumerate().for_each(|(band, marks)| {
-        suppress_band(&levels, options.norm, &thresholds, band * BAND, marks);
+        vectorised(
+            #[inline(always)]
+            || {
+                let first = band * BAND;
+                let from = first.saturating_sub(HALO);
+                let to = (first + marks.len() / width + HALO).min(height);
+                let levels = blurred_levels(picture, from..to, &kernel, grey);
+                suppress_band(&levels, options.norm, &thresholds, first - from, marks);
+            },
+        );
     });
     hysteresis(width, height, marks)
 }
 
-/// The grey levels blurred, in sixteenths.
-fn blurred_levels(grey: &Raster<f32>, sigma: f64) -> Raster<i16> {
-    let kernel = Kernel::exact(sigma);
-    let total = kernel.weight(0) + 2.0 * (1..=kernel.radius()).map(|i| kernel.weight(i)).sum::<f32>();
-    let scale = if kernel.radius() == 0 { PARTS as f32 } else { PARTS as f32 / (total * total) };
-    let blurred = if kernel.radius() == 0 { None } else { Some(convolve(grey, &kernel, Border::Reflect101)) };
-    let mut levels = Raster::new(grey.width(), grey.height(), 0i16);
-    let rows = levels.data_mut().par_chunks_mut(grey.width());
-    rows.zip(blurred.as_ref().unwrap_or(grey).data().par_chunks(grey.width())).for_each(|(levels, blurred)| {
-        for (level, &b) in levels.iter_mut().zip(blurred) {
-            *level = (b * scale + 0.5) as i16;
+/// Some rows of the grey levels blurred, in sixteenths.
+#[inline(always)]
+fn blurred_levels<T: Copy>(
+    picture: &Raster<T>,
+    rows: Range<usize>,
+    kernel: &Kernel,
+    grey: impl Fn(T) -> f32,
+) -> Raster<i16> {
+    const BORDER: Border = Border::Reflect101;
+    let (width, radius) = (picture.width(), kernel.radius());
+    // With the rows that the kernel reaches, so that it never sees their border but the picture's.
+    let mut source = Raster::new(width, rows.len() + 2 * radius, 0.0f32);
+    for j in 0..source.height() {
+        let y = BORDER.index((rows.start + j) as isize - radius as isize, picture.height());
+        for (out, &pixel) in source.row_mut(j).iter_mut().zip(picture.row(y)) {
+            *out = grey(pixel);
         }
-    });
+    }
+    let total = kernel.total() * kernel.total();
+    let scale = PARTS as f32 / total;
+    let mut levels = Raster::new(width, rows.len(), 0i16);
+    let mut padded = vec![0.0f32; width + 2 * radius];
+    let mut blurred = vec![0.0f32; width];
+    for j in 0..rows.len() {
+        convolve_row(&source, kernel, BORDER, j + radius, &mut padded, &mut blurred);
+        for (level, &b) in levels.row_mut(j).iter_mut().zip(&blurred) {
+            *level = (b * scale + 0.5) as i32 as i16;
+        }
+    }
     levels
 }
 
@@ -152,6 +186,7 @@ impl GradientRow {
     }
 
     /// Row `y`; beyond the picture the magnitude is 0.
+    #[inline(always)]
     fn fill(&mut self, levels: &Raster<i16>, norm: GradientNorm, y: isize, scratch: &mut [Vec<i16>; 2]) {
         if y < 0 || y >= levels.height() as isize {
             self.magnitude.fill(0);
@@ -191,7 +226,8 @@ impl GradientRow {
     }
 }
 
-/// Non-maximum suppression on rows `first` and on, as many as `marks` holds.
+/// Non-maximum suppression on rows `first` of `levels` and on, as many as `marks` holds.
+#[inline(always)]
 fn suppress_band(levels: &Raster<i16>, norm: GradientNorm, thresholds: &Thresholds, first: usize, marks: &mut [Mark]) {
     let width = levels.width();
     let mut scratch = [vec![0; width + 2], vec![0; width + 2]];
@@ -207,26 +243,31 @@ fn suppress_band(levels: &Raster<i16>, norm: GradientNorm, thresholds: &Threshol
 }
 
 /// Non-maximum suppression on row `y`; `rows` are those above, at and below it.
+#[inline(always)]
 fn suppress_row(levels: &Raster<i16>, rows: &[GradientRow; 3], thresholds: &Thresholds, y: usize, marks: &mut [Mark]) {
     let width = marks.len();
     let here = &rows[1];
     let (gxs, gys, magnitudes) = (&here.gx[..width], &here.gy[..width], &here.magnitude[1..=width]);
-    for x in 0..width {
-        let magnitude = magnitudes[x];
-        if magnitude <= thresholds.low {
+    for (group, some) in magnitudes.chunks(GROUP).enumerate() {
+        // Most of a drawing is flat.
+        if some.iter().fold(0, |most, &m| most.max(m)) <= thresholds.low {
             continue;
         }
-        let (gx, gy) = (gxs[x] as i32, gys[x] as i32);
-        let (dx, dy) = direction(gx, gy);
-        let level = levels.get(x, y);
-        // A neighbour as strong as the pixel itself wins if it is darker.
-        let beaten = |dx: isize, dy: isize| {
-            let other = rows[(1 + dy) as usize].magnitude[(x as isize + 1 + dx) as usize];
-            other > magnitude
-                || (other == magnitude && levels.get((x as isize + dx) as usize, (y as isize + dy) as usize) < level)
-        };
-        if !beaten(dx, dy) && !beaten(-dx, -dy) {
-            marks[x] = if magnitude > thresholds.high { Mark::Strong } else { Mark::Weak };
+        for x in (group * GROUP..).take(some.len()).filter(|&x| magnitudes[x] > thresholds.low) {
+            let magnitude = magnitudes[x];
+            let (gx, gy) = (gxs[x] as i32, gys[x] as i32);
+            let (dx, dy) = direction(gx, gy);
+            let level = levels.get(x, y);
+            // A neighbour as strong as the pixel itself wins if it is darker.
+            let beaten = |dx: isize, dy: isize| {
+                let other = rows[(1 + dy) as usize].magnitude[(x as isize + 1 + dx) as usize];
+                other > magnitude
+                    || (other == magnitude
+                        && levels.get((x as isize + dx) as usize, (y as isize + dy) as usize) < level)
+            };
+            if !beaten(dx, dy) && !beaten(-dx, -dy) {
+                marks[x] = if magnitude > thresholds.high { Mark::Strong } else { Mark::Weak };
+            }
         }
     }
 }

@@ -10,8 +10,9 @@
 //! iteration, which vectorises and, unlike a system's mathematical library, gives the same bits everywhere. It agrees
 //! with the exact [`lab`] to 0.01.
 
+use super::vector::vectorised;
 use crate::scene::{Colour, Raster};
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSlice, ParallelSliceMut};
 use std::sync::LazyLock;
 
 /// Light, linear, to an sRGB-encoded value.
@@ -61,11 +62,7 @@ const TANGENT: f32 = 24389.0 / 27.0 / 116.0;
 /// An encoded colour in CIE Lab: L 0 to 100, a, b.
 pub fn lab(colour: Colour) -> [f32; 3] {
     let f = |t: f32| if t > KNEE { t.cbrt() } else { TANGENT * t + 16.0 / 116.0 };
-    lab_of_light(colour.map(decode), f)
-}
-
-#[inline]
-fn lab_of_light(light: [f32; 3], f: impl Fn(f32) -> f32) -> [f32; 3] {
+    let light = colour.map(decode);
     let [x, y, z] = TO_XYZ.map(|row| f(row[0] * light[0] + row[1] * light[1] + row[2] * light[2]));
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
@@ -77,17 +74,8 @@ const TABLE: usize = 2040;
 static DECODED: LazyLock<Vec<f32>> =
     LazyLock::new(|| (0..=TABLE + 1).map(|i| decode((i as f64 / TABLE as f64) as f32)).collect());
 
-/// [`decode`] read from the table; values are held to 0 to 1.
-#[inline]
-fn decode_fast(table: &[f32], value: f32) -> f32 {
-    let place = value.clamp(0.0, 1.0) * TABLE as f32;
-    let low = (place as usize).min(TABLE);
-    let share = place - low as f32;
-    table[low] + share * (table[low + 1] - table[low])
-}
-
 /// Cube root of a positive number: an estimate from the exponent, then two steps of Halley's iteration.
-#[inline]
+#[inline(always)]
 fn cbrt_fast(t: f32) -> f32 {
     let mut root = f32::from_bits(t.to_bits() / 3 + 0x2a51_1cd0);
     for _ in 0..2 {
@@ -100,20 +88,53 @@ fn cbrt_fast(t: f32) -> f32 {
 /// A picture in CIE Lab, colours held to 0 to 1: within 0.01 of [`lab`].
 pub fn lab_picture(picture: &Raster<Colour>) -> Raster<[f32; 3]> {
     let table = DECODED.as_slice();
-    let f = |t: f32| if t > KNEE { cbrt_fast(t) } else { TANGENT * t + 16.0 / 116.0 };
     let mut out = Raster::new(picture.width(), picture.height(), [0.0; 3]);
     let pieces = out.data_mut().par_chunks_mut(PIECE).zip(picture.data().par_chunks(PIECE));
     pieces.for_each(|(out, pixels)| {
-        // Drawings are flat: the pixel to the left is often the same.
-        let mut last = (Colour::default(), lab_of_light([0.0; 3], f));
-        for (out, &colour) in out.iter_mut().zip(pixels) {
-            if colour != last.0 {
-                last = (colour, lab_of_light(colour.map(|v| decode_fast(table, v)), f));
-            }
-            *out = last.1;
-        }
+        vectorised(
+            #[inline(always)]
+            || lab_piece(table, pixels, out),
+        )
     });
     out
+}
+
+/// Pixels whose channels are worked on side by side.
+const GROUP: usize = 64;
+
+/// The table is read one by one; all before and after runs in vectors.
+#[inline(always)]
+fn lab_piece(table: &[f32], pixels: &[Colour], out: &mut [[f32; 3]]) {
+    let mut values = [[0.0f32; 3]; GROUP];
+    let mut light = [[0.0f32; GROUP]; 3];
+    for (pixels, out) in pixels.chunks(GROUP).zip(out.chunks_mut(GROUP)) {
+        values[..pixels.len()].copy_from_slice(pixels);
+        let mut lows = [0i32; 3 * GROUP];
+        let mut shares = [0.0f32; 3 * GROUP];
+        for (i, value) in values.as_flattened().iter().enumerate() {
+            let place = value.clamp(0.0, 1.0) * TABLE as f32;
+            lows[i] = place as i32;
+            shares[i] = place - lows[i] as f32;
+        }
+        for i in 0..GROUP {
+            for c in 0..3 {
+                let low = lows[3 * i + c] as usize;
+                light[c][i] = table[low] + shares[3 * i + c] * (table[low + 1] - table[low]);
+            }
+        }
+        let mut curved = [[0.0f32; GROUP]; 3];
+        for (curved, row) in curved.iter_mut().zip(TO_XYZ) {
+            for i in 0..GROUP {
+                let t = row[0] * light[0][i] + row[1] * light[1][i] + row[2] * light[2][i];
+                let (root, tangent) = (cbrt_fast(t), TANGENT * t + 16.0 / 116.0);
+                curved[i] = if t > KNEE { root } else { tangent };
+            }
+        }
+        let [x, y, z] = &curved;
+        for (i, out) in out.iter_mut().enumerate() {
+            *out = [116.0 * y[i] - 16.0, 500.0 * (x[i] - y[i]), 200.0 * (y[i] - z[i])];
+        }
+    }
 }
 
 #[cfg(test)]

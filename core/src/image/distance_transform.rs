@@ -10,7 +10,7 @@
 //! than any edge of the picture could be, yet finite, so that an energy that reads it stays finite and has no slope.
 
 use crate::scene::Raster;
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSlice, ParallelSliceMut};
 
 /// The distance in a picture of this size that has no edge: width + height.
 pub fn without_edge(width: usize, height: usize) -> f32 {

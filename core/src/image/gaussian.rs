@@ -11,8 +11,9 @@
 //! Limits: the kernel ends at 3 σ, where the Gaussian has fallen to 1 % of its height; 0.3 % of its mass is beyond.
 
 use super::pixel::Pixel;
+use super::vector::vectorised;
 use crate::scene::Raster;
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
 
 /// How many σ the kernel reaches to each side.
 const REACH: f64 = 3.0;
@@ -78,6 +79,11 @@ impl Kernel {
         self.weights.len() - 1
     }
 
+    /// Sum of all weights along one axis.
+    pub fn total(&self) -> f32 {
+        self.weights[0] + 2.0 * self.weights[1..].iter().sum::<f32>()
+    }
+
     /// The weight at a distance from the centre, in pixels, up to the radius.
     pub fn weight(&self, distance: usize) -> f32 {
         self.weights[distance]
@@ -105,22 +111,38 @@ pub fn convolve<T: Pixel>(picture: &Raster<T>, kernel: &Kernel, border: Border) 
     if width == 0 || height == 0 || (kernel.radius() == 0 && kernel.weight(0) == 1.0) {
         return picture.clone();
     }
-    let radius = kernel.radius();
     let mut out = Raster::new(width, height, T::ZERO);
-    let padded = || vec![T::ZERO; width + 2 * radius];
-    out.data_mut().par_chunks_mut(width).enumerate().for_each_init(padded, |padded, (y, out_row)| {
-        let middle = &mut padded[radius..radius + width];
-        sum_rows(picture, kernel, border, y, T::flat_mut(middle));
-        for i in 1..=radius as isize {
-            padded[radius - i as usize] = padded[radius + border.index(-i, width)];
-            padded[radius + width - 1 + i as usize] = padded[radius + border.index(width as isize - 1 + i, width)];
-        }
-        filter_row(T::flat(padded), T::CHANNELS, kernel, T::flat_mut(out_row));
+    let padded = || vec![T::ZERO; width + 2 * kernel.radius()];
+    out.data_mut().par_chunks_mut(width).enumerate().for_each_init(padded, |padded, (y, out)| {
+        vectorised(
+            #[inline(always)]
+            || convolve_row(picture, kernel, border, y, padded, out),
+        );
     });
     out
 }
 
+/// Row `y` of [`convolve`]; `padded` is room for the row and the kernel's radius at each end.
+#[inline(always)]
+pub(super) fn convolve_row<T: Pixel>(
+    picture: &Raster<T>,
+    kernel: &Kernel,
+    border: Border,
+    y: usize,
+    padded: &mut [T],
+    out: &mut [T],
+) {
+    let (width, radius) = (out.len(), kernel.radius());
+    sum_rows(picture, kernel, border, y, T::flat_mut(&mut padded[radius..radius + width]));
+    for i in 1..=radius as isize {
+        padded[radius - i as usize] = padded[radius + border.index(-i, width)];
+        padded[radius + width - 1 + i as usize] = padded[radius + border.index(width as isize - 1 + i, width)];
+    }
+    filter_row(T::flat(padded), T::CHANNELS, kernel, T::flat_mut(out));
+}
+
 /// The weighted sum of the rows around row `y`.
+#[inline(always)]
 fn sum_rows<T: Pixel>(picture: &Raster<T>, kernel: &Kernel, border: Border, y: usize, out: &mut [f32]) {
     let row = |y: isize| T::flat(picture.row(border.index(y, picture.height())));
     let centre = kernel.weight(0);
@@ -137,6 +159,7 @@ fn sum_rows<T: Pixel>(picture: &Raster<T>, kernel: &Kernel, border: Border, y: u
 }
 
 /// Filters along a row; `padded` has `radius` pixels more at each end than `out`.
+#[inline(always)]
 fn filter_row(padded: &[f32], channels: usize, kernel: &Kernel, out: &mut [f32]) {
     let (radius, len) = (kernel.radius(), out.len());
     let shifted = |pixels: usize| &padded[pixels * channels..pixels * channels + len];

@@ -15,7 +15,7 @@
 //! Frames are read in a stream, a few ahead in parallel; see [`HoldOptions::ahead`].
 
 use crate::scene::{Cancelled, Colour, FrameError, FrameNumber, FrameSource, Progress, Raster};
-use rayon::prelude::*;
+use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::sync::Arc;
 
 /// How to find holds.

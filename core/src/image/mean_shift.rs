@@ -19,8 +19,9 @@
 //! Limits: colours are rounded to 8 bits, values outside 0 to 1 are cut; the range is at most 100 levels and the
 //! spatial radius at most 60 pixels (16 bits hold no more), larger ones are cut.
 
+use super::vector::vectorised;
 use crate::scene::{Colour, Raster};
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSlice, ParallelSliceMut};
 
 /// How to filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,8 +54,30 @@ const LEAST_BORDER: i32 = 16;
 
 /// The picture filtered, at 8 bits a channel.
 pub fn mean_shift(picture: &Raster<Colour>, options: &MeanShiftOptions) -> Raster<Colour> {
-    let levels = picture.map(|c| c.map(|v| (255.0 * v.clamp(0.0, 1.0)).round() as u8));
-    mean_shift_levels(&levels, options).map(|c| c.map(|v| v as f32 / 255.0))
+    let round = |v: f32| (255.0 * v.clamp(0.0, 1.0) + 0.5) as i32 as u8;
+    let levels = converted(picture, round);
+    converted(&mean_shift_levels(&levels, options), |v| v as f32 / 255.0)
+}
+
+/// Every channel of every pixel converted.
+fn converted<A, B>(picture: &Raster<[A; 3]>, convert: impl Fn(A) -> B + Sync) -> Raster<[B; 3]>
+where
+    A: Copy + Sync,
+    B: Copy + Default + Send,
+{
+    let mut out = Raster::new(picture.width(), picture.height(), [B::default(); 3]);
+    let pieces = out.data_mut().par_chunks_mut(PIECE).zip(picture.data().par_chunks(PIECE));
+    pieces.for_each(|(out, pixels)| {
+        vectorised(
+            #[inline(always)]
+            || {
+                for (out, &value) in out.as_flattened_mut().iter_mut().zip(pixels.as_flattened()) {
+                    *out = convert(value);
+                }
+            },
+        );
+    });
+    out
 }
 
 /// The picture of 8-bit levels filtered.
@@ -62,30 +85,33 @@ pub fn mean_shift_levels(picture: &Raster<Levels>, options: &MeanShiftOptions) -
     if picture.data().is_empty() {
         return picture.clone();
     }
-    let mut sizes = vec![picture.clone()];
-    for _ in 0..options.levels {
-        let last = &sizes[sizes.len() - 1];
+    let mut halves: Vec<Raster<Levels>> = Vec::new();
+    while halves.len() < options.levels {
+        let last = halves.last().unwrap_or(picture);
         if last.width() < 2 || last.height() < 2 {
             break;
         }
         let half = halve(last);
-        sizes.push(half);
+        halves.push(half);
     }
     let range = options.range.min(100) as i32;
-    let mut result: Option<Raster<Levels>> = None;
-    for (level, source) in sizes.iter().enumerate().rev() {
+    let walk = |level: usize, source| {
         let radius = (options.radius as f64 / (1u64 << level.min(60)) as f64).round_ties_even() as usize;
-        let walk = Walk::new(source, radius.clamp(1, 60), range, options.steps);
-        result = Some(match result {
-            None => walk.filter(None),
-            Some(coarse) => {
-                let near = near_borders(&coarse, source.width(), source.height(), range);
-                walk.filter(Some((&double(&coarse, source.width(), source.height()), &near)))
-            }
-        });
+        Walk::new(source, radius.clamp(1, 60), range, options.steps)
+    };
+    let top = halves.len();
+    let mut result = walk(top, halves.last().unwrap_or(picture)).filter(None);
+    for level in (0..top).rev() {
+        let source = if level == 0 { picture } else { &halves[level - 1] };
+        let near = near_borders(&result, source.width(), source.height(), range);
+        let enlarged = double(&result, source.width(), source.height());
+        result = walk(level, source).filter(Some((enlarged, &near)));
     }
-    result.unwrap_or_else(|| picture.clone())
+    result
 }
+
+/// Pixels that one task converts.
+const PIECE: usize = 1 << 14;
 
 /// Pixels in a lane group.
 const LANES: usize = 16;
@@ -130,21 +156,28 @@ impl<'a> Walk<'a> {
     }
 
     /// Walks from every pixel, or only from those marked, the others keeping the colour given.
-    fn filter(&self, known: Option<(&Raster<Levels>, &Raster<bool>)>) -> Raster<Levels> {
-        let (width, height) = (self.source.width(), self.source.height());
-        let mut out = known.map_or_else(|| self.source.clone(), |(colours, _)| colours.clone());
-        debug_assert_eq!((out.width(), out.height()), (width, height));
-        out.data_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
-            for (x, colour) in row.iter_mut().enumerate() {
-                if known.is_none_or(|(_, marked)| marked.get(x, y)) {
-                    *colour = self.end_of(x, y);
-                }
-            }
+    fn filter(&self, known: Option<(Raster<Levels>, &Raster<bool>)>) -> Raster<Levels> {
+        let (mut out, marked) = match known {
+            Some((colours, marked)) => (colours, Some(marked)),
+            None => (self.source.clone(), None),
+        };
+        out.data_mut().par_chunks_mut(self.source.width()).enumerate().for_each(|(y, row)| {
+            vectorised(
+                #[inline(always)]
+                || {
+                    for (x, colour) in row.iter_mut().enumerate() {
+                        if marked.is_none_or(|marked| marked.get(x, y)) {
+                            *colour = self.end_of(x, y);
+                        }
+                    }
+                },
+            );
         });
         out
     }
 
     /// The colour where the walk from a pixel ends.
+    #[inline(always)]
     fn end_of(&self, x: usize, y: usize) -> Levels {
         let (mut x, mut y) = (x as i32, y as i32);
         let mut colour = self.source.get(x as usize, y as usize).map(i32::from);
@@ -170,6 +203,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Sums over the pixels around (`x`, `y`) that are near to `colour`.
+    #[inline(always)]
     fn window(&self, x: usize, y: usize, colour: [i32; 3]) -> Sums {
         let side = 2 * self.radius + 1;
         let colour = colour.map(|v| v as i16);
@@ -221,6 +255,7 @@ impl LaneSums {
         sums
     }
 
+    #[inline(always)]
     fn add_to(&self, sums: &mut Sums, start: i32) {
         for i in 0..LANES {
             let count = self.count[i] as i32;
@@ -247,57 +282,71 @@ fn halve(picture: &Raster<Levels>) -> Raster<Levels> {
     let (width, height) = (picture.width(), picture.height());
     let mut out = Raster::new(width.div_ceil(2), height.div_ceil(2), [0; 3]);
     let small = out.width();
-    let scratch = || vec![[0i32; 3]; width];
+    // Two pixels more at each end, mirrored.
+    let scratch = || vec![[0i32; 3]; width + 4];
     out.data_mut().par_chunks_mut(small).enumerate().for_each_init(scratch, |sums, (y, out)| {
-        sums.fill([0; 3]);
-        for (k, weight) in KERNEL.iter().enumerate() {
-            let row = picture.row(mirrored(2 * y as isize + k as isize - 2, height));
-            for (sum, colour) in sums.iter_mut().zip(row) {
-                for c in 0..3 {
-                    sum[c] += weight * colour[c] as i32;
+        let rows = [-2, -1, 0, 1, 2].map(|k| picture.row(mirrored(2 * y as isize + k, height)).as_flattened());
+        vectorised(
+            #[inline(always)]
+            || {
+                let middle = &mut sums[2..width + 2];
+                for (i, sum) in middle.as_flattened_mut().iter_mut().enumerate() {
+                    *sum = (0..5).map(|k| KERNEL[k] * rows[k][i] as i32).sum();
                 }
-            }
-        }
-        for (x, out) in out.iter_mut().enumerate() {
-            let taps = [-2, -1, 0, 1, 2].map(|k| sums[mirrored(2 * x as isize + k, width)]);
-            for c in 0..3 {
-                let sum: i32 = (0..5).map(|k| KERNEL[k] * taps[k][c]).sum();
-                out[c] = ((sum + 128) >> 8) as u8;
-            }
-        }
+                for i in [-2, -1, width as isize, width as isize + 1] {
+                    sums[(i + 2) as usize] = sums[2 + mirrored(i, width)];
+                }
+                for (taps, out) in sums.windows(5).step_by(2).zip(out) {
+                    for c in 0..3 {
+                        let sum: i32 = (0..5).map(|k| KERNEL[k] * taps[k][c]).sum();
+                        out[c] = ((sum + 128) >> 8) as u8;
+                    }
+                }
+            },
+        );
     });
     out
 }
 
-/// The taps of the pyramid's kernel on the coarser axis for a finer pixel: even ones lie on a coarse pixel, odd ones
-/// between two. Weights sum to 8.
+/// The coarser row left of (or above), at and right of a finer one that lies on a coarse one; of one between two, the
+/// two, the first of them twice. With the kernel's weights, which sum to 8.
 fn taps(index: usize, coarse: usize) -> [(usize, i32); 3] {
     let centre = (index / 2).min(coarse - 1);
     let next = (centre + 1).min(coarse - 1);
     if index % 2 == 1 {
-        return [(centre, 4), (next, 4), (centre, 0)];
+        return [(centre, 0), (centre, 4), (next, 4)];
     }
     [(mirrored(centre as isize - 1, coarse), 1), (centre, 6), (next, 1)]
 }
 
 /// Enlarged to the given size, twice its own or one less, by the pyramid's kernel.
 fn double(picture: &Raster<Levels>, width: usize, height: usize) -> Raster<Levels> {
+    let coarse = picture.width();
     let mut out = Raster::new(width, height, [0; 3]);
-    out.data_mut().par_chunks_mut(width).enumerate().for_each(|(y, out)| {
-        let rows = taps(y, picture.height());
-        for (x, out) in out.iter_mut().enumerate() {
-            let columns = taps(x, picture.width());
-            let mut sum = [32i32; 3];
-            for (j, v) in rows {
-                for (i, u) in columns {
-                    let colour = picture.get(i, j);
+    // One pixel more at each end.
+    let scratch = || vec![[0i32; 3]; coarse + 2];
+    out.data_mut().par_chunks_mut(width).enumerate().for_each_init(scratch, |sums, (y, out)| {
+        let rows = taps(y, picture.height()).map(|(row, weight)| (picture.row(row).as_flattened(), weight));
+        vectorised(
+            #[inline(always)]
+            || {
+                let middle = &mut sums[1..=coarse];
+                for (i, sum) in middle.as_flattened_mut().iter_mut().enumerate() {
+                    *sum = rows.iter().map(|(row, weight)| weight * row[i] as i32).sum();
+                }
+                sums[0] = sums[1 + mirrored(-1, coarse)];
+                sums[coarse + 1] = sums[coarse];
+                for (near, pair) in sums.windows(3).zip(out.chunks_mut(2)) {
                     for c in 0..3 {
-                        sum[c] += u * v * colour[c] as i32;
+                        let on = near[0][c] + 6 * near[1][c] + near[2][c];
+                        let between = 4 * (near[1][c] + near[2][c]);
+                        for (out, sum) in pair.iter_mut().zip([on, between]) {
+                            out[c] = ((sum + 32) >> 6) as u8;
+                        }
                     }
                 }
-            }
-            *out = sum.map(|s| (s >> 6) as u8);
-        }
+            },
+        );
     });
     out
 }
@@ -308,13 +357,13 @@ fn near_borders(coarse: &Raster<Levels>, width: usize, height: usize, range: i32
     let limit = (range * range).max(LEAST_BORDER);
     let mut marked = Raster::new(width, height, false);
     for y in 0..coarse.height() {
-        let rows = y.saturating_sub(1)..(y + 2).min(coarse.height());
         for x in 0..coarse.width() {
-            let here = coarse.get(x, y);
-            let columns = x.saturating_sub(1)..(x + 2).min(coarse.width());
-            let far = |colour: &Levels| distance(*colour, here) >= limit;
-            if rows.clone().any(|j| coarse.row(j)[columns.clone()].iter().any(far)) {
-                mark_around(&mut marked, 2 * x, 2 * y);
+            // Each pair of neighbours once.
+            for (i, j) in [(x + 1, y), (x.wrapping_sub(1), y + 1), (x, y + 1), (x + 1, y + 1)] {
+                if i < coarse.width() && j < coarse.height() && distance(coarse.get(x, y), coarse.get(i, j)) >= limit {
+                    mark_around(&mut marked, 2 * x, 2 * y);
+                    mark_around(&mut marked, 2 * i, 2 * j);
+                }
             }
         }
     }

@@ -2,6 +2,7 @@
 //!
 //! - [`canny`]: edges of the luma
 //! - [`colour`]: sRGB, luma and CIE Lab
+//! - [`correlation`]: correlation by the fast Fourier transform
 //! - [`decode`]: a picture from a file
 //! - [`distance_transform`]: Manhattan distance to the nearest edge
 //! - [`flow`]: dense optical flow by inverse search
@@ -13,9 +14,11 @@
 //! - [`resize`]: area reduction and bilinear enlargement
 //! - [`sample`]: bilinear reading with derivatives
 //! - [`sequence`]: the pictures of a footage, decoded in parallel and kept for a while
+//! - `vector`: hot loops compiled for the machine they run on
 
 pub mod canny;
 pub mod colour;
+pub mod correlation;
 pub mod decode;
 pub mod distance_transform;
 pub mod flow;
@@ -27,6 +30,7 @@ pub mod pyramid;
 pub mod resize;
 pub mod sample;
 pub mod sequence;
+mod vector;
 
 pub use decode::{DecodeError, decode, probe};
 pub use holds::{HoldError, HoldOptions, Holds, find_holds};

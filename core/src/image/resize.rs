@@ -12,8 +12,9 @@
 //! mean of the part of its area that lies in the picture.
 
 use super::pixel::Pixel;
+use super::vector::vectorised;
 use crate::scene::Raster;
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
 
 /// How one axis is resampled: for each pixel of the result its first source pixel and the weights from there on.
 struct Axis {
@@ -105,16 +106,10 @@ fn resample<T: Pixel>(picture: &Raster<T>, columns: &Axis, rows: &Axis) -> Raste
     let mut out = Raster::new(columns.len(), rows.len(), T::ZERO);
     let scratch = || vec![T::ZERO; picture.width()];
     out.data_mut().par_chunks_mut(columns.len()).enumerate().for_each_init(scratch, |sum, (y, out_row)| {
-        let (start, weights) = rows.taps(y);
-        let flat = T::flat_mut(sum);
-        for (i, &weight) in weights.iter().enumerate() {
-            let row = T::flat(picture.row(start + i));
-            if i == 0 {
-                flat.iter_mut().zip(row).for_each(|(s, &v)| *s = weight * v);
-            } else {
-                flat.iter_mut().zip(row).for_each(|(s, &v)| *s += weight * v);
-            }
-        }
+        vectorised(
+            #[inline(always)]
+            || sum_rows(picture, rows.taps(y), T::flat_mut(sum)),
+        );
         for (x, out) in out_row.iter_mut().enumerate() {
             let (start, weights) = columns.taps(x);
             let taps = sum[start..start + weights.len()].iter().zip(weights);
@@ -122,6 +117,19 @@ fn resample<T: Pixel>(picture: &Raster<T>, columns: &Axis, rows: &Axis) -> Raste
         }
     });
     out
+}
+
+/// The weighted sum of rows from a start on.
+#[inline(always)]
+fn sum_rows<T: Pixel>(picture: &Raster<T>, (start, weights): (usize, &[f32]), sum: &mut [f32]) {
+    for (i, &weight) in weights.iter().enumerate() {
+        let row = T::flat(picture.row(start + i));
+        if i == 0 {
+            sum.iter_mut().zip(row).for_each(|(s, &v)| *s = weight * v);
+        } else {
+            sum.iter_mut().zip(row).for_each(|(s, &v)| *s += weight * v);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 
 use super::decode::{DecodeError, decode};
 use crate::scene::{Colour, Footage, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Raster};
-use rayon::prelude::*;
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -67,7 +67,7 @@ impl BandMatrix {
                 row[at] = (row[at] - dot(mine, theirs)) / above[j * width + half];
             }
             let pivot = row[half] - dot(&row[first + half - i..half], &row[first + half - i..half]);
-            if !(pivot > 0.0) {
+            if pivot <= 0.0 || pivot.is_nan() {
                 return Err(Indefinite { row: i });
             }
             row[half] = pivot.sqrt();

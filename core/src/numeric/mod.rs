@@ -3,16 +3,14 @@
 //! - [`assignment`]: pairs of least total cost
 //! - [`banded`]: Cholesky factorisation of symmetric band matrices
 //! - [`cholesky`]: sparse Cholesky factorisation with the symbolic half kept
-//! - [`correlation`]: correlation of pictures by the fast Fourier transform
-//! - [`gradient_check`]: an analytic Jacobian against differences
 //! - [`damped_system`]: damped normal equations, long rows as a correction of low rank
+//! - [`gradient_check`]: an analytic Jacobian against differences
 //! - [`normal_equations`]: JᵀJ and Jᵀr of a sparse Jacobian of fixed pattern
 //! - [`sparse_least_squares`]: Levenberg–Marquardt on such problems
 
 pub mod assignment;
 pub mod banded;
 pub mod cholesky;
-pub mod correlation;
 pub mod damped_system;
 pub mod gradient_check;
 pub mod normal_equations;

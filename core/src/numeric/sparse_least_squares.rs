@@ -196,7 +196,7 @@ impl State {
         }
         problem.evaluate(&self.trial, &mut self.trial_residuals);
         let cost = squared_norm(&self.trial_residuals);
-        if cost.is_nan() || cost >= self.cost {
+        if cost >= self.cost || cost.is_nan() {
             return None;
         }
         x.copy_from_slice(&self.trial);

@@ -8,7 +8,7 @@ pub fn distinct(index: usize) -> Colour {
     const GOLDEN: f64 = 0.618_033_988_749_895;
     const START: f64 = 0.03;
     let hue = (START + index as f64 * GOLDEN).fract();
-    let (saturation, value) = [(0.85, 1.0), (0.95, 0.75), (0.6, 0.95)][index % 3];
+    let (saturation, value) = [(0.85, 1.0), (0.95, 0.85), (0.6, 1.0)][index % 3];
     [5.0, 3.0, 1.0].map(|n| {
         let k = (n + hue * 6.0) % 6.0;
         (value * (1.0 - saturation * k.min(4.0 - k).clamp(0.0, 1.0))) as f32

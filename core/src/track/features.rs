@@ -76,7 +76,7 @@ impl Level {
                 let value = |i: usize, j: usize| neighbours[j][i][k % 3];
                 let read = match k / 3 {
                     0 => value(1, 1),
-                    1 => scharr(|along, across| value(along, across)),
+                    1 => scharr(value),
                     _ => scharr(|along, across| value(across, along)),
                 };
                 (read * UNIT).round().clamp(-UNIT, UNIT) as i16

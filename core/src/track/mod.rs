@@ -48,3 +48,6 @@ pub mod zhou2011;
 pub use job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
 pub use tracker::{JobReport, PartTrack, Preset, TrackError, TrackOptions, Tracker, Tracking};
 pub use weakest::{WeakestFrame, weakest_frame};
+
+#[cfg(test)]
+mod tests;

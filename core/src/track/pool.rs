@@ -12,7 +12,7 @@ use super::search::Templates;
 use super::select::{Candidate, best_path};
 use super::stage::Stage;
 use crate::geometry::Point;
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 /// Mean distance of the chains' control points (working pixels) from which on both models are searched for.
 const DISAGREEMENT: f64 = 4.0;

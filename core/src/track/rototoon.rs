@@ -80,7 +80,7 @@ fn track(stage: &Stage, pools: &Pools, path: &[usize]) -> SpanTrack {
         let confidence =
             confidence::of_drawing(&stage.models, &stage.features[d], &stage.covers[d], &pools[d], path[d]);
         for index in drawing.first..=drawing.last {
-            let mut on_frame: Vec<Point> = found.iter().map(|&p| p * stage.scale).collect();
+            let mut on_frame = stage.key_of(d).unwrap_or_else(|| found.iter().map(|&p| p * stage.scale).collect());
             stage.job.enforce(index, &mut on_frame);
             points.push(on_frame);
             sure.push(if index == 0 || index == last { vec![1.0; found.len()] } else { confidence.clone() });

@@ -11,7 +11,7 @@ use super::features::{Features, LEVELS, Level, WORKING_LINES};
 use super::lattice::texture::Cover;
 use super::propagate::Model;
 use crate::geometry::{Point, polygon};
-use crate::numeric::correlation::{Correlator, Spectrum};
+use crate::image::correlation::{Correlator, Spectrum};
 use crate::scene::Raster;
 
 /// Step and reach of the turns tried, in degrees.

@@ -12,7 +12,7 @@ use super::propagate::{Model, Pose, Scenery};
 use super::store::Store;
 use crate::geometry::Point;
 use crate::scene::{FrameNumber, FrameSource, Progress};
-use rayon::prelude::*;
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator, ParallelSlice};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -85,6 +85,12 @@ impl<'a> Stage<'a> {
             cover: &self.covers[drawing],
             anchors: &self.anchors[model][drawing],
         }
+    }
+
+    /// The key whose drawing this is, as the artist drew it: frames held from a key have its very points.
+    pub fn key_of(&self, drawing: usize) -> Option<Vec<Point>> {
+        let last = self.drawings.len() - 1;
+        (drawing == 0 || drawing == last).then(|| self.job.keys[usize::from(drawing != 0)].clone())
     }
 
     /// Width of the picture in working pixels.

@@ -12,7 +12,7 @@ use super::rototoon::Rototoon;
 use super::zhou2011::Zhou2011;
 use crate::geometry::Point;
 use crate::scene::{Cancelled, Footage, FrameError, FrameNumber, FrameSource, Part, Progress, Scene, Span};
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
@@ -138,7 +138,12 @@ pub struct Tracker {
 impl Tracker {
     /// A tracker that knows nothing yet.
     pub fn new(options: TrackOptions) -> Self {
-        Self { solver: options.preset.solver(), footage: None, known: BTreeMap::new() }
+        Self::with_solver(options.preset.solver())
+    }
+
+    /// A tracker with a solver of the caller's.
+    pub fn with_solver(solver: Box<dyn SpanSolver>) -> Self {
+        Self { solver, footage: None, known: BTreeMap::new() }
     }
 
     /// Tracks every part of `scene` between its first and its last key. Runs on the caller's rayon pool.

@@ -16,7 +16,7 @@ const SHAPE: f64 = 2.0;
 /// Weight of the squared turn, in rad², of a part against the figure.
 const TURN: f64 = 0.15;
 /// Weight of the squared turn, in rad², where a matched part's points are placed: decides for discs only.
-const SLIDE: f64 = 0.003;
+const SLIDE: f64 = 0.03;
 /// Weight of the squared logarithm of a part's growth against the figure's.
 const SIZE: f64 = 1.0;
 /// Weight of the squared logarithm of a length's growth against the size's.
@@ -88,7 +88,7 @@ pub(super) struct Figures<'a> {
 pub(super) struct Chosen {
     pub drawn: usize,
     pub cost: f64,
-    /// How much the part is expected to have turned, in radians.
+    /// How much the figure has turned, in radians.
     pub turn: f64,
 }
 
@@ -189,6 +189,9 @@ impl<'a> Figures<'a> {
                 break;
             }
         }
+        // A neighbour that swings turns what is fitted around it, but no more than that: the figure's turn is surer.
+        let turn = self.fit(&best.1, movement, |_, _| 1.0).turn;
+        best.1.iter_mut().flatten().for_each(|choice| choice.turn = turn);
         best
     }
 
@@ -218,26 +221,35 @@ impl<'a> Figures<'a> {
     /// The movement that the matched neighbours of part `i` make, held by the whole figure's where they are few.
     fn around(&self, i: usize, chosen: &[Option<Chosen>], whole: &Movement) -> Movement {
         let Some(part) = &self.parts[i] else { return *whole };
+        let near = (NEIGHBOURHOOD * self.radius).powi(2);
+        self.fit(
+            chosen,
+            whole,
+            |k, other| {
+                if k == i { 0.0 } else { near / (part.centre.distance_squared(other.centre) + near) }
+            },
+        )
+    }
+
+    /// The movement of matched parts, weighted by index and outline, held by another movement.
+    fn fit(&self, chosen: &[Option<Chosen>], held: &Movement, weight: impl Fn(usize, &Outline) -> f64) -> Movement {
         let mut known = Vec::new();
         for (k, choice) in chosen.iter().enumerate() {
-            if let (true, Some(other), Some(choice)) = (k != i, &self.parts[k], choice)
+            if let (Some(part), Some(choice)) = (&self.parts[k], choice)
                 && let Some(drawn) = &self.centres[choice.drawn]
             {
-                let near = NEIGHBOURHOOD * self.radius;
-                let weight = near * near / (part.centre.distance_squared(other.centre) + near * near);
-                known.push((weight, other.centre, drawn.centre));
+                known.push((weight(k, part), part.centre, drawn.centre));
             }
         }
         let total: f64 = known.iter().map(|k| k.0).sum();
-        if known.len() < 2 || total <= 0.0 {
-            return *whole;
+        if known.iter().filter(|k| k.0 > 0.0).count() < 2 {
+            return *held;
         }
         let source = known.iter().map(|k| k.0 * k.1).sum::<Point>() / total;
         let target = known.iter().map(|k| k.0 * k.2).sum::<Point>() / total;
-        // The whole figure's movement counts as one more pair, at the figure's radius.
-        let held = self.radius * self.radius;
-        let mut numerator = Point::from_angle(whole.turn) * (whole.scale * held);
-        let mut denominator = held;
+        // The other movement counts as one more pair, at the figure's radius.
+        let mut denominator = self.radius * self.radius;
+        let mut numerator = Point::from_angle(held.turn) * (held.scale * denominator);
         for (weight, p, q) in known {
             let (p, q) = (p - source, q - target);
             numerator += weight * Point::new(p.dot(q), p.perp_dot(q));

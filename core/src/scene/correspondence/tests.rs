@@ -24,7 +24,7 @@ fn line(points: &[(f64, f64)]) -> DrawnContour {
 /// Ten parts; arms, legs, and eyes are nearly equal.
 fn figure() -> Vec<DrawnContour> {
     vec![
-        oval((200.0, 80.0), (40.0, 50.0), 14),
+        oval((200.0, 80.0), (34.0, 54.0), 14),
         limb((200.0, 130.0), (200.0, 260.0), 45.0, 30.0, 16),
         limb((160.0, 145.0), (100.0, 220.0), 12.0, 8.0, 12),
         limb((240.0, 145.0), (300.0, 220.0), 12.0, 8.0, 12),

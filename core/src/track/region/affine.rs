@@ -43,7 +43,7 @@ impl Affine {
             qy += q * p.y;
         }
         let determinant = xx * yy - xy * xy;
-        if determinant.is_nan() || determinant <= 1e-6 * (xx + yy) * (xx + yy) {
+        if determinant <= 1e-6 * (xx + yy) * (xx + yy) || determinant.is_nan() {
             let factor = Similarity::fit(from, to).factor;
             return Self { x: factor, y: factor.perp(), source, target };
         }

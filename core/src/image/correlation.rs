@@ -86,7 +86,7 @@ fn transpose(from: &[Complex32], to: &mut [Complex32], width: usize) {
 fn smooth(n: usize) -> usize {
     let is_smooth = |mut k: usize| {
         for p in [2, 3, 5] {
-            while k % p == 0 {
+            while k.is_multiple_of(p) {
                 k /= p;
             }
         }

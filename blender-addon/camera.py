@@ -1,0 +1,200 @@
+"""Footage pixels ↔ the drawing plane, through the camera or a reference image; the one border of coordinates.
+
+A view is a coordinate system in the world, a picture plane in it with coordinates (u, v), and rays: through a perspective
+camera they meet in the origin and the picture plane is at distance 1; through an orthographic camera or a reference
+image they run along -z. An affine map takes (u, v) to footage pixels. All steps can be inverted, so a pixel goes to the
+drawing plane and back to the same pixel; everything is computed in double precision from Blender's single precision
+settings.
+
+Footage pixels: x right, y down, origin at the outer top-left corner of the picture.
+
+The camera's frame follows Blender's own rules: the sensor side that fits (auto: the longer side after pixel aspect)
+measures `sensor_width` or `sensor_height`, shift is in units of that side. A camera background image lies in the frame
+as its settings say (stretch, fit, crop, offset, rotation, scale, flips).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .errors import Problem
+
+
+@dataclass(frozen=True)
+class Placement:
+    """How footage lies in a camera's frame: the settings of a camera background image."""
+
+    method: str = "FIT"
+    offset: tuple[float, float] = (0.0, 0.0)
+    rotation: float = 0.0
+    scale: float = 1.0
+    flip_x: bool = False
+    flip_y: bool = False
+
+
+@dataclass(frozen=True)
+class View:
+    """Where the rays of the footage's pixels run."""
+
+    to_view: np.ndarray
+    """World to view, 4×4."""
+    perspective: bool
+    to_pixel: np.ndarray
+    """(u, v, 1) to footage pixels, 2×3."""
+
+
+class Mapping:
+    """Pixels of the footage ↔ points of a layer, on one frame."""
+
+    def __init__(self, view: View, layer_to_world: np.ndarray, plane: tuple[np.ndarray, np.ndarray] | None = None):
+        """`plane`: a point and a normal in layer space; by default the layer's own XZ plane, Blender's front view."""
+        self.view = view
+        self.to_view = view.to_view @ layer_to_world
+        self.from_view = np.linalg.inv(self.to_view)
+        self.point, self.normal = plane or (np.zeros(3), np.array([0.0, 1.0, 0.0]))
+        self.linear_inverse = np.linalg.inv(view.to_pixel[:, :2])
+
+    def to_pixels(self, points: np.ndarray) -> np.ndarray:
+        """Layer points (..., 3) to pixels (..., 2)."""
+        points = np.asarray(points, np.float64)
+        local = points @ self.to_view[:3, :3].T + self.to_view[:3, 3]
+        uv = local[..., :2]
+        if self.view.perspective:
+            depth = -local[..., 2:]
+            if (depth <= 0).any():
+                raise Problem("Some strokes lie behind the camera: move them in front of it, or choose another camera")
+            uv = uv / depth
+        return uv @ self.view.to_pixel[:, :2].T + self.view.to_pixel[:, 2]
+
+    def to_layer(self, pixels: np.ndarray) -> np.ndarray:
+        """Pixels (..., 2) to points (..., 3) of the drawing plane in layer space."""
+        uv = (np.asarray(pixels, np.float64) - self.view.to_pixel[:, 2]) @ self.linear_inverse.T
+        rotation, shift = self.from_view[:3, :3], self.from_view[:3, 3]
+        if self.view.perspective:
+            origin = shift
+            direction = uv @ rotation[:, :2].T - rotation[:, 2]
+        else:
+            origin = uv @ rotation[:, :2].T + shift
+            direction = -rotation[:, 2]
+        along = np.asarray(direction @ self.normal)
+        if (np.abs(along) <= 1e-9 * np.linalg.norm(direction, axis=-1)).any():
+            raise Problem("The drawing plane is seen edge-on: turn the Grease Pencil object towards the camera")
+        reach = ((self.point - origin) @ self.normal) / along
+        return origin + direction * reach[..., None]
+
+
+def plane_of(points: np.ndarray, view_normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The plane on which an artist drew `points` (N, 3) in layer space: a point and its normal.
+
+    Blender draws on the XZ plane (front), or facing the view through the object's origin; either is taken exactly if the
+    points lie on it. Otherwise the plane that fits best, or the plane that faces the view through the points' mean
+    where they lie on a line.
+    """
+    front = np.zeros(3), np.array([0.0, 1.0, 0.0])
+    if not len(points):
+        return front
+    points = np.asarray(points, np.float64)
+    mean = points.mean(0)
+    spread = points - mean
+    extent = np.abs(spread).max()
+    tolerance = max(1e-4 * extent, 1e-7)
+    for point, normal in (front, (np.zeros(3), view_normal)):
+        if np.abs((points - point) @ normal).max() <= tolerance:
+            return point, normal
+    _, sizes, axes = np.linalg.svd(spread[:: max(len(spread) // 4096, 1)], full_matrices=False)
+    if len(sizes) < 3 or sizes[1] <= 1e-3 * sizes[0] or abs(axes[2] @ view_normal) < 0.05:
+        return mean, view_normal
+    return mean, axes[2]
+
+
+def camera_view(scene, camera, width: int, height: int, placement: Placement) -> View:
+    """The view through a camera whose frame shows footage of `width` × `height` pixels as `placement` says."""
+    data = camera.data
+    if data.type not in {"PERSP", "ORTHO"}:
+        raise Problem(f'Camera "{camera.name}" is of type {data.type}: only perspective and orthographic ones are known')
+    left, bottom, frame_width, frame_height = camera_frame(scene.render, data)
+    half = _frame_half_size(placement.method, width / height, frame_width, frame_height)
+    half *= placement.scale * np.array([-1 if placement.flip_x else 1, -1 if placement.flip_y else 1])
+    centre = np.array([left + frame_width / 2, bottom + frame_height / 2])
+    centre += _frame_offset(placement.offset, data, width / height, frame_width, frame_height)
+    cos, sin = math.cos(-placement.rotation), math.sin(-placement.rotation)
+    turn = np.array([[cos, -sin], [sin, cos]])
+    # Pixel to (u, v): to -1..1 with y up, then scaled, turned, moved.
+    unit = np.array([[2 / width, 0, -1], [0, -2 / height, 1], [0, 0, 1]])
+    place = np.eye(3)
+    place[:2, :2] = turn * half
+    place[:2, 2] = centre
+    matrix = np.array(camera.matrix_world.normalized(), np.float64)
+    return View(np.linalg.inv(matrix), data.type == "PERSP", np.linalg.inv(place @ unit)[:2])
+
+
+def camera_frame(render, data) -> tuple[float, float, float, float]:
+    """Left, bottom, width and height of the frame on the picture plane (at distance 1 for perspective)."""
+    width, height = render.resolution_x, render.resolution_y
+    aspect = render.pixel_aspect_y / render.pixel_aspect_x
+    fit = data.sensor_fit
+    if fit == "AUTO":
+        horizontal, sensor = width * render.pixel_aspect_x >= height * render.pixel_aspect_y, data.sensor_width
+    else:
+        horizontal = fit == "HORIZONTAL"
+        sensor = data.sensor_width if horizontal else data.sensor_height
+    side = width if horizontal else height * aspect
+    unit = (data.ortho_scale if data.type == "ORTHO" else sensor / data.lens) / side
+    left = (data.shift_x * side - width / 2) * unit
+    bottom = (data.shift_y * side - height * aspect / 2) * unit
+    return left, bottom, width * unit, height * aspect * unit
+
+
+def _frame_half_size(method: str, image: float, width: float, height: float) -> np.ndarray:
+    frame = width / height
+    if method == "STRETCH":
+        return np.array([width, height]) / 2
+    wider = image > frame
+    if (method == "FIT") == wider:
+        return np.array([width, width / image]) / 2
+    return np.array([height * image, height]) / 2
+
+
+def _frame_offset(offset, data, image: float, width: float, height: float) -> np.ndarray:
+    """Blender's own rule for the offset of a background image, in units of the picture plane.
+
+    Blender measures in units of the side that the sensor fits.
+    """
+    frame = width / height
+    unit = {"AUTO": max(width, height), "HORIZONTAL": width, "VERTICAL": height}[data.sensor_fit]
+    x = offset[0] * unit * min(1.0, frame)
+    y = offset[1] * unit / (max(1.0, frame) * (image / frame))
+    return np.array([x, y])
+
+
+def reference_view(empty, width: int, height: int) -> View:
+    """The view of a reference image: rays along the image's normal, pixels where the empty shows them."""
+    image = empty.data
+    aspect_x, aspect_y = image.display_aspect if image is not None else (1.0, 1.0)
+    shown_width, shown_height = width * aspect_x, height * aspect_y
+    unit = empty.empty_display_size / max(shown_width, shown_height)
+    offset = empty.empty_image_offset
+    place = np.array(
+        [
+            [unit * aspect_x, 0, unit * shown_width * offset[0]],
+            [0, -unit * aspect_y, unit * shown_height * (1 + offset[1])],
+            [0, 0, 1],
+        ]
+    )
+    matrix = np.array(empty.matrix_world, np.float64)
+    return View(np.linalg.inv(matrix), False, np.linalg.inv(place)[:2])
+
+
+def layer_to_world(ob, layer) -> np.ndarray:
+    """4×4: a layer's points to the world, its parent included."""
+    parent = layer.parent
+    base = ob.matrix_world
+    if parent is not None:
+        base = parent.matrix_world
+        if parent.type == "ARMATURE" and layer.parent_bone in parent.pose.bones:
+            base = base @ parent.pose.bones[layer.parent_bone].matrix
+        base = base @ layer.matrix_parent_inverse
+    return np.array(base, np.float64) @ np.array(layer.matrix_local, np.float64)

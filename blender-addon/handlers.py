@@ -1,0 +1,67 @@
+"""What happens when files are opened and saved: sessions are forgotten, footage paths stay true."""
+
+from __future__ import annotations
+
+import os
+
+import bpy
+from bpy.app.handlers import persistent
+
+from . import footage, sessions
+
+_FIELDS = ("pattern", "movie")
+
+
+@persistent
+def _loaded(*_args) -> None:
+    sessions.clear()
+
+
+@persistent
+def _saving(path: str = "", *_args) -> None:
+    """Footage paths become relative to where the file is going, as Blender does with its own."""
+    if path and bpy.context.preferences.filepaths.use_relative_paths:
+        _rebase(bpy.data.filepath, path)
+
+
+@persistent
+def _saved(path: str = "", *_args) -> None:
+    """After saving a copy, the open file is still the old one."""
+    if path and bpy.data.filepath and os.path.abspath(path) != os.path.abspath(bpy.data.filepath):
+        _rebase(path, bpy.data.filepath)
+
+
+def _rebase(old: str, new: str) -> None:
+    for ob in bpy.data.objects:
+        if ob.library is not None:
+            continue
+        for name in _FIELDS:
+            value = getattr(ob.rototoon, name)
+            if not value or (value.startswith("//") and not old):
+                continue
+            absolute = os.path.normpath(os.path.join(os.path.dirname(old), value[2:])) if value[:2] == "//" else value
+            based = footage.relative(absolute, new)
+            if based != value:
+                setattr(ob.rototoon, name, based)
+
+
+_HOOKS = (
+    ("load_post", _loaded),
+    ("save_pre", _saving),
+    ("save_post", _saved),
+)
+
+
+def register() -> None:
+    """Starts listening."""
+    for name, hook in _HOOKS:
+        getattr(bpy.app.handlers, name).append(hook)
+
+
+def unregister() -> None:
+    """Stops listening, and forgets the sessions."""
+    for name, hook in _HOOKS:
+        hooks = getattr(bpy.app.handlers, name)
+        if hook in hooks:
+            hooks.remove(hook)
+    sessions.clear()

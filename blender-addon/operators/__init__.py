@@ -1,0 +1,37 @@
+"""The operators `bpy.ops.rototoon.*`, one a file."""
+
+from . import (
+    clear_generated,
+    export_document,
+    footage_from_camera,
+    footage_from_file,
+    footage_from_reference,
+    import_document,
+    match_contours,
+    new_key,
+    release_pins,
+    setup,
+    show_confidence,
+    snap,
+    track,
+    weakest_frame,
+)
+
+_MODULES = (
+    setup,
+    footage_from_file,
+    footage_from_camera,
+    footage_from_reference,
+    new_key,
+    match_contours,
+    track,
+    release_pins,
+    snap,
+    show_confidence,
+    weakest_frame,
+    clear_generated,
+    import_document,
+    export_document,
+)
+
+CLASSES = tuple(cls for module in _MODULES for cls in module.CLASSES)

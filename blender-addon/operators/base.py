@@ -1,0 +1,170 @@
+"""What operators share: reasons, reports, and long work."""
+
+from __future__ import annotations
+
+import bpy
+
+from .. import grease_pencil as gp
+from ..errors import Problem
+from ..native.errors import Cancelled, RototoonError
+
+NAVIGATION = {
+    "MIDDLEMOUSE",
+    "WHEELUPMOUSE",
+    "WHEELDOWNMOUSE",
+    "WHEELINMOUSE",
+    "WHEELOUTMOUSE",
+    "TRACKPADPAN",
+    "TRACKPADZOOM",
+    "MOUSEROTATE",
+    "NDOF_MOTION",
+    "MOUSEMOVE",
+    "INBETWEEN_MOUSEMOVE",
+    "WINDOW_DEACTIVATE",
+}
+"""Events that go on to the window while work runs: looking around changes nothing."""
+
+
+def drawing_poll(cls, context) -> bool:
+    """Poll: the active object is a Grease Pencil object."""
+    if not gp.is_drawing(context.object):
+        cls.poll_message_set("Make a Grease Pencil object active first, or use Set Up")
+        return False
+    if context.object.library is not None or context.object.data.library is not None:
+        cls.poll_message_set("The Grease Pencil object is linked from another file and cannot be changed")
+        return False
+    return True
+
+
+def footage_poll(cls, context) -> bool:
+    """Poll: the active Grease Pencil object has footage."""
+    if not drawing_poll(cls, context):
+        return False
+    if not context.object.rototoon.pattern:
+        cls.poll_message_set("Choose the footage first, in the panel Footage")
+        return False
+    return True
+
+
+def contours_poll(cls, context) -> bool:
+    """Poll: there are strokes to work with."""
+    if not footage_poll(cls, context):
+        return False
+    ob = context.object
+    if not any(len(layer.frames) for layer in gp.layers(ob, ob.rototoon.contours_layer)):
+        cls.poll_message_set(f'Draw contours on the layer "{ob.rototoon.contours_layer}" first')
+        return False
+    return True
+
+
+class Guarded:
+    """An operator whose `run(context)` returns a message (or `None`), and may raise a `Problem`."""
+
+    def execute(self, context):
+        """Called by Blender."""
+        try:
+            message = self.run(context)
+        except (Problem, RototoonError) as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        if message:
+            self.report({"INFO"}, message)
+        return {"FINISHED"}
+
+
+class Long:
+    """An operator with long work: `begin(context)` makes a `Worker` or `Stepper`, `finish(context, work)` writes.
+
+    Until `finish` nothing is changed, so that Esc leaves all as it was.
+    """
+
+    _work = None
+    _timer = None
+    _picked = False
+    """Whether a file browser was opened: its end calls `execute`, and the window is there to follow the work."""
+
+    def execute(self, context):
+        """Called by Blender: waits for the work."""
+        if self._picked:
+            self._picked = False
+            return self._follow(context)
+        try:
+            self._work = self.begin(context)
+            self._work.start()
+            self._wait(context)
+        except (Problem, RototoonError) as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        return self._end(context)
+
+    def invoke(self, context, _event):
+        """Called by Blender: follows the work with a timer."""
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        return self._follow(context)
+
+    def _follow(self, context):
+        try:
+            self._work = self.begin(context)
+        except (Problem, RototoonError) as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        self._work.start()
+        self._timer = context.window_manager.event_timer_add(0.05, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        """Called by Blender."""
+        if event.type == "ESC" and event.value == "PRESS":
+            self._work.cancel()
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
+        if not self._work.advance():
+            share = f"{self._work.fraction:4.0%}"
+            context.workspace.status_text_set(f"{self.bl_label}: {self._work.step}  {share}   (Esc: stop)")
+            return {"RUNNING_MODAL"}
+        self._close(context)
+        return self._end(context)
+
+    def cancel(self, context):
+        """Called by Blender when a file is loaded or the program ends meanwhile."""
+        self._work.cancel()
+        self._work.join()
+        self._close(context)
+
+    def _wait(self, context) -> None:
+        manager = context.window_manager
+        manager.progress_begin(0, 100)
+        try:
+            while not self._work.advance():
+                self._work.wait()
+                manager.progress_update(int(100 * self._work.fraction))
+        except KeyboardInterrupt:
+            self._work.cancel()
+            self._work.join()
+        finally:
+            manager.progress_end()
+
+    def _close(self, context) -> None:
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+            self._timer = None
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+
+    def _end(self, context):
+        error = self._work.error
+        if self._work.cancelled or isinstance(error, Cancelled):
+            self.report({"WARNING"}, f"{self.bl_label}: stopped, nothing was changed")
+            return {"CANCELLED"}
+        try:
+            if error is not None:
+                raise error
+            message = self.finish(context, self._work)
+        except (Problem, RototoonError) as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        if message:
+            self.report({"INFO"}, message)
+        return {"FINISHED"}

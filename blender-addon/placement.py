@@ -1,0 +1,129 @@
+"""From an object's settings to the mapping between pixels and layer points, frame by frame.
+
+A camera or object that stands still has one mapping for all frames; where one of them moves, the scene is set to each
+frame in turn and set back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import bpy
+import numpy as np
+
+from . import camera as cameras
+from . import footage
+from . import grease_pencil as gp
+from .errors import Problem
+
+
+class Mapper:
+    """Mappings of an object's contour layers (or one other layer) on the frames of its footage."""
+
+    def __init__(self, ob: bpy.types.Object, frames: Iterable[int], points: dict[int, np.ndarray], names: list[str]):
+        """`points`: the artist's points by layer index, which show on what plane was drawn; `names`: the layers."""
+        self._mappings: dict[tuple[int, int | None], cameras.Mapping] = {}
+        self._moves = _moves(ob)
+        self._points = points
+        layers = [ob.data.layers[name] for name in names]
+        if not self._moves:
+            self._add(ob, layers, None)
+            return
+        scene = bpy.context.scene
+        current, sub = scene.frame_current, scene.frame_subframe
+        try:
+            for frame in sorted(set(frames)):
+                scene.frame_set(frame)
+                self._add(ob, layers, frame)
+        finally:
+            scene.frame_set(current, subframe=sub)
+
+    def at(self, layer: int, frame: int) -> cameras.Mapping:
+        """The mapping of a layer on a scene frame."""
+        return self._mappings[layer, frame if self._moves else None]
+
+    @property
+    def still(self) -> bool:
+        """Whether all frames share one mapping."""
+        return not self._moves
+
+    def _add(self, ob, layers, frame: int | None) -> None:
+        view = view_of(ob)
+        for index, layer in enumerate(layers):
+            matrix = cameras.layer_to_world(ob, layer)
+            # The view's z axis in layer space: the normal of a plane that faces the view.
+            normal = (view.to_view @ matrix)[2, :3]
+            normal = normal / np.linalg.norm(normal)
+            plane = cameras.plane_of(self._points.get(index, np.zeros((0, 3))), normal)
+            self._mappings[index, frame] = cameras.Mapping(view, matrix, plane)
+
+
+def view_of(ob: bpy.types.Object) -> cameras.View:
+    """The view that the object's settings name, on the current frame."""
+    settings = ob.rototoon
+    width, height = settings.width, settings.height
+    if not width or not height:
+        raise Problem("No footage chosen: choose it in the panel Footage")
+    if settings.plane == "REFERENCE":
+        empty = settings.reference
+        if empty is None or empty.empty_display_type != "IMAGE":
+            raise Problem("No reference image chosen: choose the empty that shows the footage")
+        return cameras.reference_view(empty, width, height)
+    found = camera_of(ob)
+    if found is None:
+        raise Problem("The scene has no camera: add one, or choose one in the panel Footage")
+    return cameras.camera_view(bpy.context.scene, found, width, height, placement_in(found, ob))
+
+
+def camera_of(ob: bpy.types.Object) -> bpy.types.Object | None:
+    """The camera that shows the footage."""
+    return ob.rototoon.camera or bpy.context.scene.camera
+
+
+def placement_in(camera: bpy.types.Object, ob: bpy.types.Object) -> cameras.Placement:
+    """How the camera's background image with the object's footage lies in the frame; fitted if there is none."""
+    try:
+        source, entry = footage.background_source(camera)
+    except Problem:
+        return cameras.Placement()
+    if not _shows(source, ob.rototoon):
+        return cameras.Placement()
+    return cameras.Placement(
+        entry.frame_method,
+        tuple(entry.offset),
+        entry.rotation,
+        entry.scale,
+        entry.use_flip_x,
+        entry.use_flip_y,
+    )
+
+
+def _shows(source: footage.Source, settings) -> bool:
+    if source.movie:
+        return bool(settings.movie) and bpy.path.abspath(settings.movie) == source.path
+    number = footage.number_of(source.path)
+    if number is None:
+        return False
+    return footage.picture(bpy.path.abspath(settings.pattern), number) == source.path
+
+
+def _moves(ob: bpy.types.Object) -> bool:
+    """Whether the object, the layers' parents or what shows the footage can differ from frame to frame."""
+    settings = ob.rototoon
+    objects = [ob, settings.reference if settings.plane == "REFERENCE" else camera_of(ob)]
+    objects += [layer.parent for layer in gp.layers(ob, settings.contours_layer)]
+    return any(_animated(each) for each in objects)
+
+
+def _animated(ob: bpy.types.Object | None) -> bool:
+    while ob is not None:
+        owners = [ob] + ([ob.data] if ob.type in {"CAMERA", "EMPTY"} and ob.data is not None else [])
+        if any(_has_motion(owner) for owner in owners) or len(ob.constraints):
+            return True
+        ob = ob.parent
+    return False
+
+
+def _has_motion(owner) -> bool:
+    data = getattr(owner, "animation_data", None)
+    return data is not None and (data.action is not None or len(data.drivers) > 0 or len(data.nla_tracks) > 0)

@@ -1,0 +1,61 @@
+"""What holds for all files: threads, and the cache of movie frames."""
+
+from __future__ import annotations
+
+import os
+
+import bpy
+
+
+class RototoonPreferences(bpy.types.AddonPreferences):
+    """Settings of the extension."""
+
+    bl_idname = __package__
+
+    threads: bpy.props.IntProperty(
+        name="Threads", description="Threads that track and snap; 0 takes one for each core", min=0, max=256, default=0
+    )
+    cache_folder: bpy.props.StringProperty(
+        name="Cache Folder",
+        description="Where the frames of movies are kept; empty takes the extension's own folder",
+        subtype="DIR_PATH",
+        default="",
+    )
+    cache_limit: bpy.props.IntProperty(
+        name="Cache Limit",
+        description="Size in megabytes above which the movies used longest ago are removed from the cache",
+        min=10,
+        soft_max=1_000_000,
+        default=4096,
+    )
+
+    def draw(self, _context) -> None:
+        """Called by Blender."""
+        column = self.layout.column()
+        column.use_property_split = True
+        column.prop(self, "threads")
+        column.prop(self, "cache_folder")
+        column.prop(self, "cache_limit")
+
+
+def preferences() -> RototoonPreferences:
+    """The extension's settings."""
+    return bpy.context.preferences.addons[__package__].preferences
+
+
+def threads() -> int:
+    """Threads to use; 0 for one a core."""
+    return preferences().threads
+
+
+def cache_folder() -> str:
+    """The cache's folder, made if need be."""
+    chosen = preferences().cache_folder
+    if not chosen:
+        return bpy.utils.extension_path_user(__package__, path="movies", create=True)
+    folder = bpy.path.abspath(chosen)
+    os.makedirs(folder, exist_ok=True)
+    return folder
+
+
+CLASSES = (RototoonPreferences,)

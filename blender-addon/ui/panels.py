@@ -1,0 +1,121 @@
+"""The panels, in the order of the work: footage, parts, track, snap, document."""
+
+import bpy
+
+from .. import grease_pencil as gp
+
+
+class _Panel:
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Rototoon"
+
+
+def _settings(context):
+    return context.object.rototoon if gp.is_drawing(context.object) else None
+
+
+class ROTOTOON_PT_footage(_Panel, bpy.types.Panel):
+    bl_idname = "ROTOTOON_PT_footage"
+    bl_label = "Footage"
+
+    def draw(self, context):
+        layout, settings = self.layout, _settings(context)
+        layout.operator("rototoon.setup", icon="ADD")
+        if settings is None:
+            layout.label(text="No Grease Pencil object active", icon="INFO")
+            return
+        column = layout.column(align=True)
+        column.operator("rototoon.footage_from_file", text="From File", icon="FILE_FOLDER")
+        column.operator("rototoon.footage_from_camera", text="From Camera", icon="CAMERA_DATA")
+        column.operator("rototoon.footage_from_reference", text="From Reference Image", icon="IMAGE_REFERENCE")
+        if not settings.pattern:
+            return
+        column = layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.prop(settings, "pattern", text="Pictures")
+        row = column.row(align=True)
+        row.prop(settings, "first", text="First, Last")
+        row.prop(settings, "last", text="")
+        column.prop(settings, "frame_offset")
+        column.prop(settings, "plane")
+        column.prop(settings, "reference" if settings.plane == "REFERENCE" else "camera")
+        layout.label(text=f"{settings.width} x {settings.height} pixels")
+
+
+class ROTOTOON_PT_parts(_Panel, bpy.types.Panel):
+    bl_idname = "ROTOTOON_PT_parts"
+    bl_label = "Parts"
+
+    @classmethod
+    def poll(cls, context):
+        return _settings(context) is not None
+
+    def draw(self, context):
+        layout, settings = self.layout, _settings(context)
+        layout.use_property_decorate = False
+        layout.template_list("ROTOTOON_UL_parts", "", settings, "parts", settings, "active_part", rows=4)
+        if not settings.parts:
+            layout.label(text=f'Draw contours on the layer "{settings.contours_layer}"', icon="INFO")
+        layout.prop(settings, "contours_layer", text="Layer")
+        column = layout.column(align=True)
+        column.operator("rototoon.new_key", icon="KEY_HLT")
+        column.operator("rototoon.match_contours", icon="UV_SYNC_SELECT")
+
+
+class ROTOTOON_PT_track(_Panel, bpy.types.Panel):
+    bl_idname = "ROTOTOON_PT_track"
+    bl_label = "Track"
+
+    @classmethod
+    def poll(cls, context):
+        return _settings(context) is not None
+
+    def draw(self, context):
+        layout, settings = self.layout, _settings(context)
+        layout.prop(settings, "preset", text="")
+        row = layout.row()
+        row.scale_y = 1.5
+        row.operator("rototoon.track", icon="TRACKING_FORWARDS")
+        column = layout.column(align=True)
+        column.operator("rototoon.weakest_frame", icon="FRAME_NEXT")
+        icon = "HIDE_OFF" if settings.show_confidence else "HIDE_ON"
+        column.operator("rototoon.show_confidence", icon=icon, depress=settings.show_confidence)
+        layout.prop(settings, "show_pins")
+        row = layout.row(align=True)
+        row.operator_menu_enum("rototoon.release_pins", "which", text="Release Pins", icon="UNPINNED")
+        layout.operator("rototoon.clear_generated", icon="TRASH")
+
+
+class ROTOTOON_PT_snap(_Panel, bpy.types.Panel):
+    bl_idname = "ROTOTOON_PT_snap"
+    bl_label = "Snap"
+
+    @classmethod
+    def poll(cls, context):
+        return _settings(context) is not None
+
+    def draw(self, context):
+        settings = _settings(context)
+        self.layout.operator("rototoon.snap", icon="SNAP_ON")
+        self.layout.prop(settings, "snapped_layer", text="Layer")
+
+
+class ROTOTOON_PT_document(_Panel, bpy.types.Panel):
+    bl_idname = "ROTOTOON_PT_document"
+    bl_label = "Document"
+
+    def draw(self, _context):
+        row = self.layout.row(align=True)
+        row.operator("rototoon.import_document", text="Import", icon="IMPORT")
+        row.operator("rototoon.export_document", text="Export", icon="EXPORT")
+
+
+CLASSES = (
+    ROTOTOON_PT_footage,
+    ROTOTOON_PT_parts,
+    ROTOTOON_PT_track,
+    ROTOTOON_PT_snap,
+    ROTOTOON_PT_document,
+)

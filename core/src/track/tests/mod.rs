@@ -1,0 +1,5 @@
+//! The tracker as a whole: order and memory of jobs with a solver that only records, and the default solver on a small
+//! drawn scene of known motion.
+
+mod memory;
+mod scene;

@@ -1,0 +1,171 @@
+//! The default solver on drawn scenes of known motion.
+
+use crate::geometry::{Point, polygon, polyline};
+use crate::scene::{Colour, Footage, FrameError, FrameNumber, FrameSource, Part, Raster, Scene, Silent};
+use crate::track::{TrackOptions, Tracker, Tracking};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+const WIDTH: usize = 240;
+const HEIGHT: usize = 180;
+const LAST: FrameNumber = 6;
+
+/// An outlined shape of one colour, and where it is on each frame.
+struct Shape {
+    rest: Vec<Point>,
+    colour: Colour,
+    motion: fn(f64) -> (Point, f64),
+}
+
+impl Shape {
+    fn contour(&self, frame: FrameNumber) -> Vec<Point> {
+        // On twos: frame 1 shows the drawing of frame 0.
+        let (shift, degrees) = (self.motion)(f64::from(frame / 2 * 2));
+        let turn = Point::from_angle(degrees.to_radians());
+        self.rest.iter().map(|&p| turn.rotate(p) + shift).collect()
+    }
+
+    fn part(&self, name: &str, depth: f64) -> Part {
+        let keys = [0, LAST].map(|f| (f, self.contour(f)));
+        Part { name: name.into(), closed: true, depth, keys: keys.into(), ..Part::default() }
+    }
+}
+
+/// Later shapes are nearer.
+struct Drawn(Vec<Shape>);
+
+impl Drawn {
+    /// Colour at a point: the fill of the nearest shape, its outline 2 px wide, or paper.
+    fn colour_at(&self, frame: FrameNumber, p: Point) -> Colour {
+        for shape in self.0.iter().rev() {
+            let contour = shape.contour(frame);
+            if polyline::distance(p, &contour, true) <= 1.0 {
+                return [0.05; 3];
+            }
+            if polygon::contains(&contour, p) {
+                return shape.colour;
+            }
+        }
+        [0.95, 0.93, 0.9]
+    }
+
+    fn scene(&self, parts: Vec<Part>) -> Scene {
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: LAST, fps: 12.0, width: WIDTH, height: HEIGHT };
+        Scene { footage, parts }
+    }
+}
+
+impl FrameSource for Drawn {
+    fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
+        let offsets = [0.17, 0.5, 0.83];
+        let picture = Raster::from_fn(WIDTH, HEIGHT, |x, y| {
+            let mut sum = [0.0f32; 3];
+            for dy in offsets {
+                for dx in offsets {
+                    let colour = self.colour_at(frame, Point::new(x as f64 + dx, y as f64 + dy));
+                    (0..3).for_each(|k| sum[k] += colour[k] / 9.0);
+                }
+            }
+            sum
+        });
+        Ok(Arc::new(picture))
+    }
+}
+
+fn points(list: &[(f64, f64)]) -> Vec<Point> {
+    list.iter().map(|&(x, y)| Point::new(x, y)).collect()
+}
+
+/// A limb that turns by 90° while it travels, and a ball that passes in front of it.
+fn limb_and_ball() -> Drawn {
+    let limb = Shape {
+        rest: points(&[(-30.0, -8.0), (0.0, -10.0), (34.0, -6.0), (36.0, 8.0), (0.0, 9.0), (-30.0, 8.0)]),
+        colour: [0.85, 0.3, 0.2],
+        motion: |t| (Point::new(70.0 + 12.0 * t, 90.0 - 3.0 * t), 15.0 * t),
+    };
+    let ball = Shape {
+        rest: (0..10).map(|k| Point::from_angle(f64::from(k) * 0.628) * Point::new(14.0, 11.0)).collect(),
+        colour: [0.2, 0.4, 0.8],
+        motion: |t| (Point::new(190.0 - 18.0 * t, 60.0 + 4.0 * t), 0.0),
+    };
+    Drawn(vec![limb, ball])
+}
+
+fn track(drawn: &Drawn, scene: &Scene) -> Tracking {
+    Tracker::new(TrackOptions::default()).track(scene, drawn, &Silent).unwrap()
+}
+
+#[test]
+fn turning_and_crossing_shapes_are_followed_on_held_drawings() {
+    let drawn = limb_and_ball();
+    let scene = drawn.scene(vec![drawn.0[0].part("limb", 0.0), drawn.0[1].part("ball", 1.0)]);
+    let tracking = track(&drawn, &scene);
+    for (shape, part) in drawn.0.iter().zip(&tracking.parts) {
+        for frame in 0..=LAST {
+            let worst = shape
+                .contour(frame)
+                .iter()
+                .zip(&part.tracks[&frame])
+                .map(|(want, got)| want.distance(*got))
+                .fold(0.0, f64::max);
+            assert!(worst < 1.5, "frame {frame}: {worst} px");
+        }
+        assert_eq!(part.tracks[&0], part.tracks[&1], "a held drawing keeps its contour");
+        assert!(part.confidence[&2].iter().sum::<f64>() / part.confidence[&2].len() as f64 > 0.8);
+    }
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let drawn = limb_and_ball();
+    let scene = drawn.scene(vec![drawn.0[0].part("limb", 0.0), drawn.0[1].part("ball", 1.0)]);
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| track(&drawn, &scene))
+    };
+    assert_eq!(with(1), with(4));
+}
+
+#[test]
+fn pins_and_centers_hold_exactly_and_neighbours_follow() {
+    let drawn = limb_and_ball();
+    let mut limb = drawn.0[0].part("limb", 0.0);
+    let pin = drawn.0[0].contour(3)[2] + Point::new(6.0, -5.0);
+    limb.pins.insert(3, BTreeMap::from([(2, pin)]));
+    let center = polygon::center(&drawn.0[0].contour(4)) + Point::new(3.0, 3.0);
+    limb.centers.insert(4, center);
+    let tracking = track(&drawn, &drawn.scene(vec![limb]));
+    let tracks = &tracking.parts[0].tracks;
+    assert_eq!(tracks[&3][2], pin);
+    assert_eq!(tracking.parts[0].confidence[&3][2], 1.0);
+    assert!(polygon::center(&tracks[&4]).distance(center) < 1e-9);
+    // Frame 2 holds the drawing of frame 3: the correction is the drawing's.
+    assert!(tracks[&2][2].distance(pin) < 0.5);
+}
+
+#[test]
+fn odd_parts_give_finite_tracks() {
+    let drawn = limb_and_ball();
+    let part = |name: &str, closed: bool, shape: &[(f64, f64)]| {
+        let moved = |dx: f64| points(shape).iter().map(|&p| p + Point::new(dx, 0.0)).collect();
+        let keys = BTreeMap::from([(0, moved(0.0)), (LAST, moved(10.0))]);
+        Part { name: name.into(), closed, keys, ..Part::default() }
+    };
+    let parts = vec![
+        part("point", true, &[(50.0, 50.0)]),
+        part("pair", false, &[(50.0, 50.0), (90.0, 60.0)]),
+        part("line", false, &[(40.0, 80.0), (70.0, 82.0), (100.0, 90.0)]),
+        part("without area", true, &[(50.0, 50.0), (90.0, 50.0), (70.0, 50.0)]),
+        part("on one spot", true, &[(50.0, 50.0); 4]),
+        part("off the picture", true, &[(-500.0, -500.0), (-400.0, -500.0), (-450.0, -420.0)]),
+        part("half outside", true, &[(-30.0, 60.0), (40.0, 60.0), (40.0, 120.0), (-30.0, 120.0)]),
+        part("larger than the picture", true, &[(-90.0, -90.0), (900.0, -90.0), (900.0, 900.0), (-90.0, 900.0)]),
+    ];
+    let tracking = track(&drawn, &drawn.scene(parts.clone()));
+    for (part, track) in parts.iter().zip(&tracking.parts) {
+        assert_eq!(track.tracks.len(), LAST as usize + 1, "{}", part.name);
+        assert!(track.tracks.values().flatten().all(|p| p.is_finite()), "{}", part.name);
+        assert!(track.confidence.values().flatten().all(|c| (0.0..=1.0).contains(c)), "{}", part.name);
+    }
+}

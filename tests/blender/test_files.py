@@ -1,0 +1,158 @@
+"""Documents in and out, and Blender files saved, opened and moved."""
+
+import json
+import shutil
+
+import bpy
+import numpy as np
+import pytest
+import shots
+
+
+def project(folder):
+    """A document with everything that a document can hold, and more."""
+    shots.draw_sequence(folder / "frames", first=0)
+    tracks = {str(f): (shots.square(f) + 0.25 * (f == 3)).tolist() for f in range(9)}
+    tracks["0"], tracks["8"] = shots.square(0).tolist(), shots.square(8).tolist()
+    return {
+        "rototoon": 1,
+        "studio": {"shot": "sc_010"},
+        "footage": {
+            "pattern": "frames/shot_%03d.png", "first": 0, "last": 8, "fps": 25, "width": 160, "height": 90, "lens": 35
+        },
+        "parts": [
+            {
+                "name": "box", "closed": True, "depth": 13, "colour": "red",
+                "keys": {"0": shots.square(0).tolist(), "8": shots.square(8).tolist()},
+                "pins": {"3": {"2": tracks["3"][2]}},
+                "centers": {"6": np.mean(tracks["6"], 0).tolist()},
+                "tracks": tracks,
+                "confidence": {f: [1.0 if f in "08" else 0.5] * 4 for f in tracks},
+                "curves": {
+                    f: [np.linspace(p[i], p[(i + 1) % 4], 7).tolist() for i in range(4)] for f, p in tracks.items()
+                },
+            },
+            {"name": "line", "closed": False, "depth": 2.5, "keys": {"2": [[5.0, 6.0], [40.0, 9.5], [80.0, 7.0]]}},
+        ],
+    }  # fmt: skip
+
+
+def close(a, b, tolerance=2e-3, place=""):
+    """Equal but for single precision."""
+    if isinstance(a, dict):
+        assert list(a) == list(b), place
+        for name in a:
+            close(a[name], b[name], tolerance, f"{place}.{name}")
+    elif isinstance(a, list):
+        assert len(a) == len(b), place
+        for index, pair in enumerate(zip(a, b)):
+            close(*pair, tolerance, f"{place}[{index}]")
+    elif isinstance(a, float) or isinstance(b, float):
+        assert abs(a - b) <= tolerance, place
+    else:
+        assert a == b, place
+
+
+def sorted_keys(value):
+    return json.loads(json.dumps(value, sort_keys=True))
+
+
+def test_document_in_and_out(addon, tmp_path):
+    source = project(tmp_path)
+    (tmp_path / "in.json").write_text(json.dumps(source))
+    bpy.context.scene.frame_start = 101
+    bpy.ops.rototoon.import_document(filepath=str(tmp_path / "in.json"))
+    ob = bpy.context.object
+    assert ob.rototoon.frame_offset == 101
+    assert [(p.name, p.depth, p.closed) for p in ob.rototoon.parts] == [("box", 13.0, True), ("line", 2.5, False)]
+    kinds = {f.frame_number: f.keyframe_type for f in shots.layer_of(ob).frames}
+    assert kinds == {f: "KEYFRAME" if f in (101, 103, 109) else "GENERATED" for f in range(101, 110)}
+    bpy.ops.rototoon.export_document(filepath=str(tmp_path / "out.json"))
+    result = json.loads((tmp_path / "out.json").read_text())
+    close(sorted_keys(source), sorted_keys(result))
+    assert not list(tmp_path.glob("*.unfinished"))
+
+
+def test_import_into_the_active_object(addon, tmp_path):
+    (tmp_path / "in.json").write_text(json.dumps(project(tmp_path)))
+    bpy.ops.rototoon.import_document(filepath=str(tmp_path / "in.json"))
+    count = len(bpy.data.objects)
+    bpy.ops.rototoon.import_document(filepath=str(tmp_path / "in.json"), into="ACTIVE", keep_numbers=True)
+    ob = bpy.context.object
+    assert len(bpy.data.objects) == count and len(ob.rototoon.parts) == 2
+    assert [f.frame_number for f in shots.layer_of(ob).frames] == list(range(9))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda d: d.update(rototoon=2), "version 2"),
+        (lambda d: d.pop("rototoon"), "not a project document"),
+        (lambda d: d["footage"].pop("width"), "footage.width"),
+        (lambda d: d["parts"][1]["keys"].update({"5": [[1, 2]]}), "different numbers of points"),
+        (lambda d: d["parts"][1]["keys"].update({"x": [[1, 2]]}), "not a frame number"),
+        (lambda d: d["parts"][1].update(name="box"), "name of another part"),
+        (lambda d: d["parts"][1]["keys"]["2"].append(["a", None]), r"parts\[1\].keys\[2\]"),
+        (lambda d: d["footage"].update(pattern="gone/f_%d.png"), "footage is not there"),
+    ],
+)
+def test_bad_documents_are_named(addon, tmp_path, change, message):
+    document = project(tmp_path)
+    change(document)
+    (tmp_path / "bad.json").write_text(json.dumps(document))
+    before = len(bpy.data.objects)
+    with pytest.raises(RuntimeError, match=message):
+        bpy.ops.rototoon.import_document(filepath=str(tmp_path / "bad.json"))
+    assert len(bpy.data.objects) == before
+
+
+def test_cut_short_document(addon, tmp_path):
+    (tmp_path / "short.json").write_text(json.dumps(project(tmp_path))[:300])
+    with pytest.raises(RuntimeError, match="not a project document"):
+        bpy.ops.rototoon.import_document(filepath=str(tmp_path / "short.json"))
+
+
+def test_export_to_a_folder_that_is_not_there(addon, fake, tmp_path):
+    shots.two_keys(addon, tmp_path)
+    with pytest.raises(RuntimeError, match="Cannot write"):
+        bpy.ops.rototoon.export_document(filepath=str(tmp_path / "no/such/out.json"))
+
+
+def test_save_move_and_open(addon, fake, tmp_path):
+    home = tmp_path / "home"
+    ob = shots.two_keys(addon, home)
+    bpy.ops.rototoon.track()
+    shots.move(addon, ob, 4, 2, (5.0, -3.0), which=[1])
+    bpy.ops.rototoon.track()
+    shots.move(addon, ob, 6, 1, (9.0, 4.0))
+    bpy.ops.wm.save_as_mainfile(filepath=str(home / "shot.blend"))
+    assert ob.rototoon.pattern == "//frames/shot_%03d.png"
+    before = shots.snapshot(ob)
+    shutil.move(home, tmp_path / "elsewhere")
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "elsewhere/shot.blend"))
+    ob = bpy.context.object
+    assert shots.snapshot(ob) == before
+    assert addon("sessions").known(ob) is None
+    bpy.ops.rototoon.track()
+    state = addon("sessions").known(ob).session.state
+    assert state["footage"]["pattern"] == str(tmp_path / "elsewhere/frames/shot_%03d.png")
+    assert list(state["parts"][1]["pins"]) == ["4"]
+    assert list(state["parts"][0]["centers"]) == ["6"]
+
+
+def test_footage_that_is_gone(addon, fake, tmp_path):
+    shots.two_keys(addon, tmp_path)
+    shutil.rmtree(tmp_path / "frames")
+    with pytest.raises(RuntimeError, match="footage was moved or renamed"):
+        bpy.ops.rototoon.track()
+
+
+def test_saved_copy_leaves_the_open_file_right(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    (tmp_path / "deep/copies").mkdir(parents=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "deep/copies/copy.blend"), copy=True)
+    assert ob.rototoon.pattern == "//frames/shot_%03d.png"
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "deep/copies/copy.blend"))
+    assert bpy.context.object.rototoon.pattern == "//../../frames/shot_%03d.png"
+    bpy.ops.rototoon.track()

@@ -1,0 +1,194 @@
+"""Where the pictures are, from files, images, clips and movies."""
+
+import shutil
+
+import bpy
+import numpy as np
+import pytest
+import shots
+
+
+def touch(folder, *names):
+    for name in names:
+        (folder / name).write_bytes(b"")
+
+
+def test_sequence_around_a_file(addon, tmp_path):
+    footage = addon("footage")
+    touch(tmp_path, "a_008.png", "a_009.png", "a_010.png", "a_011.png", "a_020.png", "b_010.png", "a_010.jpg", "a_10.png")
+    found = footage.sequence_around(str(tmp_path / "a_010.png"))
+    assert found.pattern == str(tmp_path / "a_%03d.png")
+    assert (found.first, found.last, found.picked, found.missing) == (8, 11, 10, 1)
+
+
+def test_sequence_without_padding(addon, tmp_path):
+    footage = addon("footage")
+    touch(tmp_path, *(f"s2_{n}.png" for n in range(7, 13)))
+    found = footage.sequence_around(str(tmp_path / "s2_9.png"))
+    assert found.pattern == str(tmp_path / "s2_%d.png")
+    assert (found.first, found.last) == (7, 12)
+
+
+def test_numbers_that_outgrow_their_padding(addon, tmp_path):
+    footage = addon("footage")
+    touch(tmp_path, "f098.png", "f099.png", "f100.png", "f999.png", "f1000.png")
+    found = footage.sequence_around(str(tmp_path / "f099.png"))
+    assert (found.pattern, found.first, found.last) == (str(tmp_path / "f%03d.png"), 98, 100)
+
+
+def test_names_that_cannot_be(addon, tmp_path):
+    footage, problem = addon("footage"), addon("errors").Problem
+    touch(tmp_path, "still.png")
+    with pytest.raises(problem, match="no number in its name"):
+        footage.sequence_around(str(tmp_path / "still.png"))
+    with pytest.raises(problem, match="No file"):
+        footage.sequence_around(str(tmp_path / "gone_1.png"))
+
+
+def test_from_file_shows_the_first_picture_on_the_first_frame(addon, tmp_path):
+    bpy.context.scene.frame_start = 11
+    picked = shots.draw_sequence(tmp_path, first=100)
+    ob = shots.set_up(tmp_path / "other", match_scene=False)
+    bpy.ops.rototoon.footage_from_file(filepath=str(picked.with_name("shot_104.png")))
+    settings = ob.rototoon
+    assert (settings.first, settings.last, settings.width, settings.height) == (100, 108, 160, 90)
+    assert settings.frame_offset == 11 - 100
+    bpy.ops.rototoon.footage_from_file(filepath=str(picked), at_scene_start=False, frame=5)
+    assert settings.frame_offset == 5 - 100
+
+
+def test_from_camera_background_with_its_timing(addon, tmp_path):
+    ob = shots.set_up(tmp_path)
+    entry = bpy.context.scene.camera.data.background_images[0]
+    entry.image_user.frame_start, entry.image_user.frame_offset = 21, 3
+    bpy.ops.rototoon.footage_from_camera()
+    # Picture 4 is shown on frame 21.
+    assert ob.rototoon.frame_offset == 17
+    assert (ob.rototoon.first, ob.rototoon.last) == (1, 9)
+
+
+def test_from_a_movie_clip_in_the_background(addon, tmp_path):
+    ob = shots.set_up(tmp_path)
+    entry = bpy.context.scene.camera.data.background_images[0]
+    entry.source = "MOVIE_CLIP"
+    entry.use_camera_clip = False
+    entry.clip = bpy.data.movieclips.load(str(tmp_path / "frames/shot_003.png"))
+    entry.clip.frame_start = 30
+    bpy.ops.rototoon.footage_from_camera()
+    assert ob.rototoon.frame_offset == 27
+
+
+def test_from_reference_image(addon, tmp_path):
+    ob = shots.set_up(tmp_path, plane="REFERENCE")
+    empty = ob.rototoon.reference
+    ob.rototoon.reference = None
+    empty.image_user.frame_start = 7
+    empty.select_set(True)
+    bpy.ops.rototoon.footage_from_reference()
+    assert ob.rototoon.reference == empty and ob.rototoon.plane == "REFERENCE"
+    assert ob.rototoon.frame_offset == 6
+    corners = np.array([[0.0, 0.0], [160.0, 90.0]])
+    world = np.array(ob.matrix_world)
+    points = shots.mapping(addon, ob).to_layer(corners) @ world[:3, :3].T + world[:3, 3]
+    assert np.abs(points - [[-5, 0, 2.8125], [5, 0, -2.8125]]).max() < 1e-5
+
+
+def test_object_fills_an_existing_camera(addon, tmp_path):
+    data = bpy.data.cameras.new("c")
+    camera = bpy.data.objects.new("c", data)
+    camera.location, camera.rotation_euler = (3, -5, 2), (1.2, 0.1, 0.4)
+    data.shift_x = 0.2
+    bpy.context.scene.collection.objects.link(camera)
+    bpy.context.scene.camera = camera
+    bpy.context.view_layer.update()
+    ob = shots.set_up(tmp_path)
+    points = shots.mapping(addon, ob).to_layer(np.array([[0.0, 0.0], [160.0, 0.0], [160.0, 90.0], [80.0, 45.0]]))
+    assert np.linalg.norm(points[1] - points[0]) == pytest.approx(10, abs=1e-4)
+    assert np.abs(points[3]).max() < 1e-5
+    assert points[0][0] < points[1][0] and points[2][2] < points[1][2]
+
+
+def make_movie(path, frames):
+    """Renders a picture sequence to a movie with Blender itself."""
+    scene = bpy.data.scenes.new("maker")
+    strips = scene.sequence_editor_create().strips
+    strip = strips.new_image("pictures", str(frames[0]), 1, 1)
+    for frame in frames[1:]:
+        strip.elements.append(frame.name)
+    render = scene.render
+    render.resolution_x, render.resolution_y = shots.SIZE
+    render.fps = 12
+    scene.view_settings.view_transform = "Standard"
+    scene.frame_start, scene.frame_end = 1, len(frames)
+    if hasattr(render.image_settings, "media_type"):
+        render.image_settings.media_type = "VIDEO"
+    render.image_settings.file_format = "FFMPEG"
+    render.ffmpeg.format, render.ffmpeg.codec = "MPEG4", "H264"
+    render.ffmpeg.constant_rate_factor = "PERC_LOSSLESS"
+    render.filepath = str(path)
+    bpy.ops.render.render(animation=True, scene=scene.name)
+    bpy.data.scenes.remove(scene)
+
+
+def read_pixels(path):
+    image = bpy.data.images.load(str(path))
+    pixels = np.empty(image.size[0] * image.size[1] * 4, np.float32)
+    image.pixels.foreach_get(pixels)
+    size = tuple(image.size)
+    bpy.data.images.remove(image)
+    return pixels.reshape(size[1], size[0], 4)[::-1, :, :3]
+
+
+def test_movie_becomes_a_sequence_in_the_cache(addon, tmp_path):
+    first = shots.draw_sequence(tmp_path / "frames")
+    frames = sorted(first.parent.iterdir())
+    movie_path = tmp_path / "shot.mp4"
+    make_movie(movie_path, frames)
+    addon("preferences").preferences().cache_folder = str(tmp_path / "cache")
+    shutil.rmtree(tmp_path / "cache", ignore_errors=True)
+    scenes = len(bpy.data.scenes)
+    bpy.ops.rototoon.setup(filepath=str(movie_path))
+    settings = bpy.context.object.rototoon
+    assert (settings.first, settings.last, settings.fps) == (1, 9, 12.0)
+    assert (settings.width, settings.height) == shots.SIZE
+    assert len(bpy.data.scenes) == scenes
+    for number in (1, 5, 9):
+        got, want = read_pixels(bpy.path.abspath(settings.pattern) % number), read_pixels(frames[number - 1])
+        assert np.abs(got - want).mean() < 0.03, number
+    made = [path.stat().st_mtime_ns for path in (tmp_path / "cache").rglob("*.png")]
+    bpy.ops.rototoon.footage_from_file(filepath=str(movie_path))
+    assert made == [path.stat().st_mtime_ns for path in (tmp_path / "cache").rglob("*.png")]
+    addon("preferences").preferences().cache_folder = ""
+
+
+def test_broken_off_movie_leaves_nothing(addon, tmp_path):
+    first = shots.draw_sequence(tmp_path / "frames")
+    movie_path = tmp_path / "shot.mp4"
+    make_movie(movie_path, sorted(first.parent.iterdir()))
+    movie = addon("movie")
+    steps = movie.extract(str(movie_path), str(tmp_path / "cache"))
+    next(steps)
+    steps.close()
+    assert list((tmp_path / "cache").iterdir()) == []
+    assert movie.cached(str(movie_path), str(tmp_path / "cache")) is None
+
+
+def test_not_a_movie(addon, tmp_path):
+    bpy.ops.rototoon.setup(filepath=str(shots.draw_sequence(tmp_path / "frames")))
+    (tmp_path / "broken.mp4").write_bytes(b"no movie")
+    addon("preferences").preferences().cache_folder = str(tmp_path / "cache")
+    with pytest.raises(RuntimeError, match="Cannot read the movie"):
+        bpy.ops.rototoon.footage_from_file(filepath=str(tmp_path / "broken.mp4"))
+    addon("preferences").preferences().cache_folder = ""
+
+
+def test_cache_keeps_its_limit(addon, tmp_path):
+    import os
+
+    movie = addon("movie")
+    for age, name in enumerate(("new", "middle", "old", "used")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "frame_000001.png").write_bytes(b"x" * 100)
+        os.utime(tmp_path / name, (1_000_000 - age, 1_000_000 - age))
+    assert movie.shrink(str(tmp_path), 250, {"used"}) == 2
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["new", "used"]

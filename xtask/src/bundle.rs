@@ -1,0 +1,143 @@
+//! `bundle`: the extension as a zip that Blender installs.
+//!
+//! The native library is built against an old glibc with zig as the linker (cargo-zigbuild and ziglang from PyPI, in an
+//! environment under `target/`), so that it loads on every Linux that Blender itself runs on; the symbol versions it needs are
+//! read back to make sure. Blender's own packager builds the zip and validates it.
+
+use crate::shell::{capture, command, copy_folder, empty_folder, root, run, target};
+use crate::{elf, python};
+use anyhow::{Context, Result, bail, ensure};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The newest glibc the library may need: that of the systems Blender's own builds support (VFX platform CY2023 on).
+const GLIBC: (u32, u32) = (2, 28);
+const TRIPLE: &str = "x86_64-unknown-linux-gnu";
+const LIBRARY: &str = "librototoon_capi.so";
+
+/// What `bundle` leaves behind.
+#[derive(Clone, Debug)]
+pub struct Bundle {
+    /// The extension.
+    pub zip: PathBuf,
+    /// The native library.
+    pub library: PathBuf,
+    /// The command line, built with it.
+    pub cli: PathBuf,
+}
+
+/// What packs the extension: Blender's packager from a wheel, or an installed Blender.
+#[derive(Clone, Debug)]
+pub enum Packager {
+    /// Interpreter of an environment that holds the `bpy` wheel.
+    Wheel(PathBuf),
+    /// A Blender binary.
+    Blender(PathBuf),
+}
+
+/// Builds, packs and validates.
+pub fn bundle(packager: &Packager) -> Result<Bundle> {
+    let (library, cli) = build()?;
+    let staged = stage(&library)?;
+    let zip = pack(packager, &staged)?;
+    println!("bundle: {}", zip.display());
+    Ok(Bundle { zip, library, cli })
+}
+
+/// Builds library and command line; both need only [`GLIBC`].
+fn build() -> Result<(PathBuf, PathBuf)> {
+    ensure!(cfg!(all(target_os = "linux", target_arch = "x86_64")), "the bundle is built on Linux x86-64 only");
+    let tools = python::venv("venv-build", &python::find_any()?, &["cargo-zigbuild", "ziglang"])?;
+    let bin = tools.parent().context("an interpreter lies in a folder")?;
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths(std::iter::once(bin.to_path_buf()).chain(std::env::split_paths(&path)))?;
+    if !capture(command("rustup").args(["target", "list", "--installed"])).is_ok_and(|list| list.contains(TRIPLE)) {
+        // Without rustup the host's own standard library serves.
+        let _ = capture(command("rustup").args(["target", "add", TRIPLE]));
+    }
+    let versioned = format!("{TRIPLE}.{}.{}", GLIBC.0, GLIBC.1);
+    run(command(bin.join("cargo-zigbuild"))
+        .args(["zigbuild", "--quiet", "--release", "-p", "rototoon-capi", "-p", "rototoon-cli", "--target", &versioned])
+        .env("PATH", path)
+        // The zip is downloaded by artists: no line tables.
+        .env("CARGO_PROFILE_RELEASE_DEBUG", "none")
+        .env("CARGO_PROFILE_RELEASE_STRIP", "symbols"))?;
+    let built = target().join(TRIPLE).join("release");
+    let (library, cli) = (built.join(LIBRARY), built.join("rototoon"));
+    elf::assert_glibc(&library, GLIBC)?;
+    elf::assert_glibc(&cli, GLIBC)?;
+    Ok((library, cli))
+}
+
+/// The extension's folder as it is packed: the add-on's files, the library, the licence.
+fn stage(library: &Path) -> Result<PathBuf> {
+    let staged = target().join("bundle/rototoon");
+    empty_folder(&staged)?;
+    let keep = |name: &str| {
+        !name.starts_with('.')
+            && !["__pycache__", "tests"].contains(&name)
+            && !name.ends_with(".pyc")
+            && !name.ends_with(".so")
+    };
+    copy_folder(&root().join("blender-addon"), &staged, &keep)?;
+    std::fs::create_dir_all(staged.join("native"))?;
+    std::fs::copy(library, staged.join("native").join(LIBRARY)).with_context(|| format!("cannot copy {library:?}"))?;
+    std::fs::copy(root().join("LICENSE"), staged.join("LICENSE"))?;
+    let manifest = std::fs::read_to_string(staged.join("blender_manifest.toml")).context("blender_manifest.toml")?;
+    // Blender's validator accepts platform names that no Blender has.
+    let platforms = manifest.lines().find(|line| line.starts_with("platforms")).unwrap_or_default();
+    ensure!(
+        platforms.contains("[\"linux-x64\"]"),
+        "blender_manifest.toml: {platforms:?}, expected platforms = [\"linux-x64\"]"
+    );
+    Ok(staged)
+}
+
+fn pack(packager: &Packager, staged: &Path) -> Result<PathBuf> {
+    let out = target().join("bundle/out");
+    empty_folder(&out)?;
+    run(packager
+        .command()?
+        .args(["build", "--split-platforms", "--source-dir"])
+        .arg(staged)
+        .arg("--output-dir")
+        .arg(&out))?;
+    let built: Vec<PathBuf> = std::fs::read_dir(&out)?.map(|e| Ok(e?.path())).collect::<Result<_>>()?;
+    let [zip] = built.as_slice() else { bail!("the packager left {built:?}, expected one zip") };
+    run(packager.command()?.arg("validate").arg(zip))?;
+    let place = target().join(zip.file_name().context("the zip has a name")?);
+    std::fs::rename(zip, &place).with_context(|| format!("cannot move {zip:?} to {place:?}"))?;
+    Ok(place)
+}
+
+impl Packager {
+    /// The oldest Blender wheel whose Python is here.
+    pub fn from_wheel() -> Result<Self> {
+        Ok(Self::Wheel(python::any_blender_venv()?.1))
+    }
+
+    fn command(&self) -> Result<Command> {
+        Ok(match self {
+            Self::Wheel(interpreter) => {
+                let mut command = command(interpreter);
+                command.arg(blender_ext(interpreter)?);
+                command
+            }
+            Self::Blender(binary) => {
+                let mut command = command(binary);
+                command.args(["--background", "--factory-startup", "--command", "extension"]);
+                command
+            }
+        })
+    }
+}
+
+/// Blender's packager inside the wheel: `bpy/<version>/scripts/addons_core/bl_pkg/cli/blender_ext.py`.
+fn blender_ext(interpreter: &Path) -> Result<PathBuf> {
+    let find = "import sysconfig; print(sysconfig.get_paths()['platlib'])";
+    let bpy = Path::new(&capture(command(interpreter).args(["-c", find]))?).join("bpy");
+    let entries = std::fs::read_dir(&bpy).with_context(|| format!("no bpy wheel at {bpy:?}"))?;
+    let script = "scripts/addons_core/bl_pkg/cli/blender_ext.py";
+    let mut found = entries.flatten().map(|entry| entry.path().join(script)).filter(|path| path.exists());
+    found.next().with_context(|| format!("no {script} in {bpy:?}"))
+}

@@ -1,0 +1,139 @@
+//! `photograph`: a picture of the panel in a real Blender window.
+//!
+//! The `bpy` wheels have no windows. Debian sid packages a current Blender: it is unpacked into a folder of its own
+//! (debootstrap), started there under a virtual screen (Xvfb) and photographed. Sid moves, and the job needs root: where it
+//! cannot be done, that is said and nothing fails.
+
+use crate::bundle::{Packager, bundle};
+use crate::shell::{capture, command, root, run, target, works};
+use anyhow::{Context, Result, bail};
+use rototoon_tests::sample;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What the picture needs from Debian.
+const PACKAGES: [&str; 10] = [
+    "blender",
+    "xvfb",
+    "imagemagick",
+    "xdotool",
+    "python3-numpy",
+    "libgl1-mesa-dri",
+    "libegl-mesa0",
+    "python3-cattr",
+    "python3-requests",
+    "ca-certificates",
+];
+
+/// Starts Blender under Xvfb, waits until the script says that the tab is drawn, and takes the picture.
+const SESSION: &str = r#"
+set -u
+cd /photograph
+export DISPLAY=:77 LIBGL_ALWAYS_SOFTWARE=1 HOME=/photograph BLENDER_USER_RESOURCES=/photograph/resources
+rm -f ready panel.png
+Xvfb :77 -screen 0 1600x900x24 >xvfb.log 2>&1 &
+screen=$!
+sleep 2
+blender --window-geometry 0 0 1600 900 --python photograph.py -- rototoon.zip sample/project.json ready >blender.log 2>&1 &
+blender=$!
+for second in $(seq 600); do
+  [ -f ready ] && break
+  kill -0 "$blender" 2>/dev/null || break
+  sleep 1
+done
+[ -f ready ] && sleep 1 && import -window root panel.png
+kill "$blender" "$screen" 2>/dev/null
+cat ready 2>/dev/null || { echo "Blender ended early:"; tail -n 20 blender.log; }
+"#;
+
+/// Leaves `target/photograph/panel.png`, or says why it can't.
+pub fn photograph() -> Result<()> {
+    if let Some(reason) = cannot() {
+        println!("photograph: not done: {reason}");
+        return Ok(());
+    }
+    let bundle = bundle(&Packager::from_wheel()?)?;
+    let folder = target().join("photograph");
+    let system = folder.join("debian");
+    if let Err(reason) = install(&system) {
+        println!("photograph: not done: {reason:#}");
+        return Ok(());
+    }
+    let stage = system.join("photograph");
+    std::fs::create_dir_all(&stage)?;
+    std::fs::copy(&bundle.zip, stage.join("rototoon.zip"))?;
+    std::fs::copy(root().join("tests/blender/photograph.py"), stage.join("photograph.py"))?;
+    sample::write(&stage.join("sample"))?;
+    let said = {
+        let _proc = Mount::proc(&system)?;
+        capture(chroot(&system).args(["sh", "-c", SESSION]))?
+    };
+    let picture = stage.join("panel.png");
+    if said.trim() != "ready" || !picture.exists() {
+        bail!("no picture was taken: {said}");
+    }
+    let place = folder.join("panel.png");
+    std::fs::copy(&picture, &place)?;
+    println!("photograph: {}", place.display());
+    Ok(())
+}
+
+/// Why this machine can't, if it can't.
+fn cannot() -> Option<String> {
+    if !capture(command("id").arg("-u")).is_ok_and(|id| id == "0") {
+        return Some("it needs root for chroot".into());
+    }
+    if !works("debootstrap", &["--version"]) {
+        return Some("debootstrap is missing; install it: apt-get install debootstrap".into());
+    }
+    None
+}
+
+/// Debian sid with Blender in a folder, made once.
+fn install(system: &Path) -> Result<()> {
+    let stamp = system.join("photograph-installed");
+    if stamp.exists() {
+        return Ok(());
+    }
+    if system.exists() {
+        std::fs::remove_dir_all(system)?;
+    }
+    std::fs::create_dir_all(system)?;
+    let mut bootstrap = command("debootstrap");
+    bootstrap.args(["--variant=minbase", "sid"]).arg(system);
+    // Another mirror than debootstrap's own.
+    bootstrap.args(std::env::var_os("DEBIAN_MIRROR"));
+    run(&mut bootstrap)?;
+    let _proc = Mount::proc(system)?;
+    let apt = |words: &[&str]| run(chroot(system).env("DEBIAN_FRONTEND", "noninteractive").arg("apt-get").args(words));
+    apt(&["-qq", "update"])?;
+    let mut words = vec!["-qq", "install", "--yes", "--no-install-recommends"];
+    words.extend(PACKAGES);
+    apt(&words)?;
+    std::fs::write(&stamp, "").context("cannot write into the new system")
+}
+
+fn chroot(system: &Path) -> Command {
+    let mut start = command("chroot");
+    start.arg(system).env("PATH", "/usr/sbin:/usr/bin:/sbin:/bin").env("LC_ALL", "C.UTF-8");
+    start
+}
+
+/// `/proc` inside the folder, for as long as this lives.
+struct Mount(PathBuf);
+
+impl Mount {
+    fn proc(system: &Path) -> Result<Self> {
+        let place = system.join("proc");
+        run(command("mount").args(["--bind", "/proc"]).arg(&place))?;
+        Ok(Self(place))
+    }
+}
+
+impl Drop for Mount {
+    fn drop(&mut self) {
+        if let Err(error) = run(command("umount").arg("--lazy").arg(&self.0)) {
+            eprintln!("{error:#}");
+        }
+    }
+}

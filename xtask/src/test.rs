@@ -1,0 +1,153 @@
+//! `test`: everything that is checked, each step to its end, and a summary that hides nothing.
+
+use crate::bundle::{Bundle, Packager, bundle};
+use crate::generate::generate;
+use crate::python::{self, WHEELS, Wheel};
+use crate::shell::{cargo, command, empty_folder, root, run, target, works};
+use anyhow::{Result, bail};
+use std::time::Instant;
+
+/// How a step ended.
+enum Outcome {
+    Passed,
+    Failed(String),
+    NotRun(String),
+}
+
+/// The steps done so far.
+#[derive(Default)]
+struct Report {
+    steps: Vec<(String, Outcome, f64)>,
+}
+
+impl Report {
+    /// Runs a step; `Ok(Some(reason))` says that it could not be run here.
+    fn step(&mut self, name: &str, body: impl FnOnce() -> Result<Option<String>>) -> bool {
+        println!("\n=== {name}");
+        let start = Instant::now();
+        let outcome = match body() {
+            Ok(None) => Outcome::Passed,
+            Ok(Some(reason)) => Outcome::NotRun(reason),
+            Err(error) => {
+                eprintln!("{error:#}");
+                Outcome::Failed(format!("{error:#}"))
+            }
+        };
+        let passed = matches!(outcome, Outcome::Passed);
+        self.steps.push((name.to_owned(), outcome, start.elapsed().as_secs_f64()));
+        passed
+    }
+
+    fn print(&self) {
+        println!("\n=== Summary");
+        for (name, outcome, seconds) in &self.steps {
+            let (word, reason) = match outcome {
+                Outcome::Passed => ("passed", String::new()),
+                Outcome::Failed(reason) => ("FAILED", format!(": {}", reason.lines().next().unwrap_or_default())),
+                Outcome::NotRun(reason) => ("NOT RUN", format!(": {reason}")),
+            };
+            println!("{word:<8} {name} ({seconds:.0} s){reason}");
+        }
+    }
+
+    fn finish(&self) -> Result<()> {
+        self.print();
+        let count = |f: fn(&Outcome) -> bool| self.steps.iter().filter(|(_, outcome, _)| f(outcome)).count();
+        let failed = count(|o| matches!(o, Outcome::Failed(_)));
+        let not_run = count(|o| matches!(o, Outcome::NotRun(_)));
+        if not_run > 0 {
+            println!("{not_run} of {} steps could not be run here", self.steps.len());
+        }
+        if failed > 0 {
+            bail!("{failed} of {} steps failed", self.steps.len());
+        }
+        Ok(())
+    }
+}
+
+/// Runs all checks. Fails where one fails; what could not be run is said, and fails nothing.
+pub fn test() -> Result<()> {
+    if !works("cc", &["--version"]) {
+        bail!("no C compiler (cc) was found; install one, for example: apt-get install gcc");
+    }
+    let mut report = Report::default();
+    report.step("format", || component("fmt", "rustfmt", &["fmt", "--all", "--check"]));
+    report.step("clippy", || {
+        component("clippy", "clippy", &["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"])
+    });
+    report.step("Rust tests", || run(cargo().args(["test", "--quiet", "--workspace"])).map(|()| None));
+    report.step("generated files are current", || generate(true).map(|()| None));
+    let mut built = None;
+    report.step("extension bundle", || {
+        built = Some(bundle(&Packager::from_wheel()?)?);
+        Ok(None)
+    });
+    report.step("Python tests", || python_tests(built.as_ref()));
+    for wheel in WHEELS {
+        report.step(&format!("Blender {}", wheel.blender), || blender_tests(wheel, built.as_ref()));
+    }
+    report.finish()
+}
+
+/// A cargo subcommand that comes as a component of the toolchain; added by rustup where it is missing.
+fn component(subcommand: &str, name: &str, arguments: &[&str]) -> Result<Option<String>> {
+    let there = || run(cargo().args([subcommand, "--version"]).stdout(std::process::Stdio::null())).is_ok();
+    if !there() {
+        let _ = run(command("rustup").args(["component", "add", name]));
+    }
+    if !there() {
+        return Ok(Some(format!("cargo {subcommand} is missing; install it: rustup component add {name}")));
+    }
+    run(cargo().args(arguments)).map(|()| None)
+}
+
+/// pytest without Blender, on the packed library.
+fn python_tests(built: Option<&Bundle>) -> Result<Option<String>> {
+    let Some(built) = built else { return Ok(Some("the bundle failed".into())) };
+    let python = python::venv("venv-python", &python::find_any()?, &["pytest", "numpy"])?;
+    run(command(python)
+        .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/python"])
+        .env("ROTOTOON_LIBRARY", &built.library)
+        .env("ROTOTOON_CLI", &built.cli))?;
+    Ok(None)
+}
+
+/// pytest inside one Blender, with the zip installed in a configuration of its own.
+fn blender_tests(wheel: Wheel, built: Option<&Bundle>) -> Result<Option<String>> {
+    let Some(built) = built else { return Ok(Some("the bundle failed".into())) };
+    let Some(python) = python::blender_venv(wheel)? else {
+        return Ok(Some(format!("it needs Python {}, which was not found", wheel.python)));
+    };
+    let resources = target().join(format!("blender-user-{}", wheel.blender));
+    empty_folder(&resources)?;
+    run(command(python)
+        .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/blender"])
+        .env("ROTOTOON_ZIP", &built.zip)
+        .env("ROTOTOON_CLI", &built.cli)
+        .env("ROTOTOON_ROOT", root())
+        .env("BLENDER_USER_RESOURCES", resources)
+        // The library of the zip is what is tested.
+        .env_remove("ROTOTOON_LIBRARY"))?;
+    Ok(None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_step_fails_the_whole_and_the_others_go_on() {
+        let mut report = Report::default();
+        assert!(report.step("a", || Ok(None)));
+        assert!(!report.step("b", || bail!("broken")));
+        assert!(!report.step("c", || Ok(Some("no such machine".into()))));
+        assert_eq!(report.finish().unwrap_err().to_string(), "1 of 3 steps failed");
+    }
+
+    #[test]
+    fn what_could_not_be_run_fails_nothing() {
+        let mut report = Report::default();
+        report.step("a", || Ok(Some("no such machine".into())));
+        report.finish().unwrap();
+    }
+}
