@@ -10,7 +10,7 @@ from pathlib import Path
 import addon_utils
 import bpy
 
-ZIP, PROJECT, READY = (Path(word) for word in sys.argv[sys.argv.index("--") + 1 :][:3])
+ZIP, PROJECT, READY = (Path(word).absolute() for word in sys.argv[sys.argv.index("--") + 1 :][:3])
 MODULE = "bl_ext.user_default.rototoon"
 TAB = "Rototoon"
 _started = time.monotonic()
