@@ -41,7 +41,8 @@ for second in $(seq 600); do
   kill -0 "$blender" 2>/dev/null || break
   sleep 1
 done
-[ -f ready ] && sleep 1 && import -window root panel.png
+# The first start asks for a quick set-up in front of everything: a click beside it sends it away.
+[ -f ready ] && xdotool mousemove 300 720 click 1 && sleep 2 && import -window root panel.png
 kill "$blender" "$screen" 2>/dev/null
 cat ready 2>/dev/null || { echo "Blender ended early:"; tail -n 20 blender.log; }
 "#;
