@@ -5,7 +5,8 @@
 //! solved, so that after an edit only those are solved again whose keys, corrections or occluders changed.
 //!
 //! - [`job`]: what a solver is given and what it returns
-//! - [`tracker`]: order, memory and progress of the jobs
+//! - [`tracker`]: what is asked, and who answers
+//! - [`part_by_part`]: order and memory of jobs that are solved singly
 //! - [`weakest`]: where the next key helps most
 //!
 //! The default preset:
@@ -27,12 +28,16 @@
 //! - [`energy`]: the space-time energy, a file a term
 
 pub mod confidence;
+mod corrected;
 pub mod drawings;
 pub mod edge_maps;
 pub mod energy;
 pub mod features;
+mod finish;
 pub mod job;
+pub mod joint;
 pub mod lattice;
+pub mod part_by_part;
 pub mod pool;
 pub mod propagate;
 pub mod region;
@@ -41,13 +46,23 @@ pub mod search;
 pub mod select;
 pub mod stage;
 pub mod store;
+mod tasks;
 pub mod tracker;
 pub mod weakest;
 pub mod zhou2011;
 
 pub use job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
-pub use tracker::{JobReport, PartTrack, Preset, TrackError, TrackOptions, Tracker, Tracking};
+pub use tracker::{JobReport, PartTrack, Preset, SceneSolver, TrackError, TrackOptions, Tracker, Tracking};
 pub use weakest::{WeakestFrame, weakest_frame};
 
 #[cfg(test)]
 mod tests;
+
+/// Research knob.
+#[macro_export]
+macro_rules! knob {
+    ($name:expr, $default:expr) => {{
+        static VALUE: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
+        *VALUE.get_or_init(|| std::env::var($name).ok().and_then(|v| v.parse().ok()).unwrap_or($default))
+    }};
+}

@@ -6,10 +6,9 @@
 //!    drawing is worth trying on the next; the path is chosen again.
 
 use super::TrackError;
-use super::lattice::texture::Cover;
 use super::propagate::{Pose, chain};
 use super::search::Templates;
-use super::select::{Candidate, best_path};
+use super::select::{Candidate, Smoothness, best_path};
 use super::stage::Stage;
 use crate::geometry::Point;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -28,6 +27,8 @@ pub struct Hypothesis {
     pub pose: Pose,
     /// Where it puts the control points, in working pixels.
     pub points: Vec<Point>,
+    /// Colour difference of each sample that measures it.
+    pub differences: Vec<f32>,
     /// Index of the neighbouring drawing's hypothesis that it was carried from, and whether that is the drawing before.
     origin: Option<(usize, bool)>,
 }
@@ -37,7 +38,12 @@ pub type Pools = Vec<Vec<Hypothesis>>;
 
 impl Hypothesis {
     fn candidate(&self) -> Candidate<'_> {
-        Candidate { energy: self.pose.energy, points: &self.points }
+        Candidate { cost: self.pose.energy.max(0.0).sqrt(), points: &self.points }
+    }
+
+    /// The same, but no longer said to be carried from another.
+    pub fn without_origin(&self) -> Self {
+        Self { origin: None, ..self.clone() }
     }
 
     /// Mean distance of the control points.
@@ -66,15 +72,24 @@ pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>), TrackError> {
     Ok((pools, path))
 }
 
-fn hypothesis(stage: &Stage, model: usize, pose: Pose, origin: Option<(usize, bool)>) -> Hypothesis {
-    let points = stage.models[model].texture.mesh.control_points(&pose.nodes);
-    Hypothesis { model, pose, points, origin }
+/// A pose on a drawing as a hypothesis of its pool.
+pub(super) fn hypothesis(
+    stage: &Stage,
+    drawing: usize,
+    model: usize,
+    pose: Pose,
+    origin: Option<(usize, bool)>,
+) -> Hypothesis {
+    let texture = &stage.models[model].texture;
+    let points = texture.mesh.control_points(&pose.nodes);
+    let differences = texture.differences(&stage.features[drawing], &pose.nodes);
+    Hypothesis { model, pose, points, differences, origin }
 }
 
-fn choose(stage: &Stage, pools: &Pools) -> Vec<usize> {
+pub(super) fn choose(stage: &Stage, pools: &Pools) -> Vec<usize> {
     let candidates: Vec<Vec<Candidate>> =
         pools.iter().map(|pool| pool.iter().map(Hypothesis::candidate).collect()).collect();
-    best_path(&candidates, stage.models[0].texture.mesh.size)
+    best_path(&candidates, Smoothness::new(stage.models[0].texture.mesh.size))
 }
 
 /// The poses of both models, carried from their keys: two hypotheses on each drawing, the first key's first.
@@ -82,15 +97,16 @@ fn chains(stage: &Stage) -> Result<Pools, TrackError> {
     let (forwards, backwards) = rayon::join(|| carried(stage, 0), || carried(stage, 1));
     let at_key = |model: usize| {
         let nodes = stage.models[model].texture.mesh.rest.clone();
-        vec![hypothesis(stage, model, Pose { nodes, energy: 0.0 }, None)]
+        let drawing = if model == 0 { 0 } else { stage.drawings.len() - 1 };
+        vec![hypothesis(stage, drawing, model, Pose { nodes, energy: 0.0 }, None)]
     };
     let mut pools = vec![at_key(0)];
     let last = stage.drawings.len() - 1;
     for (i, (first, second)) in forwards?.into_iter().zip(backwards?).enumerate() {
         let from = [0, usize::from(i + 2 < last)];
         pools.push(vec![
-            hypothesis(stage, 0, first, Some((from[0], true))),
-            hypothesis(stage, 1, second, Some((from[1], false))),
+            hypothesis(stage, i + 1, 0, first, Some((from[0], true))),
+            hypothesis(stage, i + 1, 1, second, Some((from[1], false))),
         ]);
     }
     pools.push(at_key(1));
@@ -113,7 +129,7 @@ fn carried(stage: &Stage, model: usize) -> Result<Vec<Pose>, TrackError> {
 /// Hypotheses from searching the whole picture, on each drawing where the chains disagree.
 fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
     let lost: Vec<bool> =
-        pools.iter().map(|pool| matches!(&pool[..], [a, b] if a.distance(b) >= DISAGREEMENT)).collect();
+        pools.iter().map(|pool| matches!(&pool[..], [a, b] if a.distance(b) >= crate::knob!("DISAG", 4.0))).collect();
     if !lost.contains(&true) {
         return Ok(vec![Vec::new(); pools.len()]);
     }
@@ -123,8 +139,8 @@ fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
     let templates: Vec<Option<Templates>> = (0..2)
         .into_par_iter()
         .map(|key| {
-            let (features, cover): (_, &Cover) = (&stage.features[ends[key]], &stage.covers[ends[key]]);
-            Templates::new(&stage.models[key], features, cover, contours[key], stage.width())
+            let model = &stage.models[key];
+            Templates::new(model, &stage.features[ends[key]], &model.cover, contours[key], stage.width())
         })
         .collect();
     lost.par_iter()
@@ -133,10 +149,10 @@ fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
             let mut found = Vec::new();
             for (key, templates) in templates.iter().enumerate() {
                 let (true, Some(templates)) = (lost, templates) else { continue };
-                stage.progress.report("Searching", 0.0)?;
+                stage.kit.progress.report("Searching", 0.0)?;
                 let (model, scenery) = (&stage.models[key], stage.scenery(key, drawing));
                 for start in templates.find(&stage.features[drawing], model, contours[key]) {
-                    found.push(hypothesis(stage, key, model.polished(&scenery, &start), None));
+                    found.push(hypothesis(stage, drawing, key, model.polished(&scenery, &start), None));
                 }
             }
             Ok(found)
@@ -164,7 +180,7 @@ fn sweep(stage: &Stage, pools: &Pools, path: &[usize], forwards: bool) -> Result
             continue;
         }
         let pose = stage.carry(source.model, &source.pose.nodes, None, from, to)?;
-        let new = hypothesis(stage, source.model, pose, if fresh { None } else { origin });
+        let new = hypothesis(stage, to, source.model, pose, if fresh { None } else { origin });
         let better = new.pose.energy < pools[to][path[to]].pose.energy;
         found[to] = is_new(&pools[to], &new).then(|| new.clone());
         carried = better.then_some(new);
@@ -172,6 +188,6 @@ fn sweep(stage: &Stage, pools: &Pools, path: &[usize], forwards: bool) -> Result
     Ok(found)
 }
 
-fn is_new(pool: &[Hypothesis], new: &Hypothesis) -> bool {
+pub(super) fn is_new(pool: &[Hypothesis], new: &Hypothesis) -> bool {
     pool.iter().filter(|h| h.model == new.model).all(|h| h.distance(new) > KNOWN_PLACE)
 }

@@ -22,6 +22,10 @@ pub struct Model {
     pub texture: Texture,
     /// Aligns it.
     pub aligner: Aligner,
+    /// What hides the part at the key.
+    pub cover: Cover,
+    /// The lattice in the shape of the other key, where the part would be if it only bent.
+    pub bent: Vec<Point>,
 }
 
 /// A drawing that poses are looked for on.
@@ -69,6 +73,25 @@ impl Model {
     pub fn polished(&self, scenery: &Scenery, start: &[Point]) -> Pose {
         let start = settle(&self.texture.mesh, start, scenery.anchors);
         let nodes = self.aligner.align(&self.texture, scenery.target(), &start, &[1, 2]);
+        self.measured(scenery, nodes)
+    }
+
+    /// A pose brought to its anchors, with its energy.
+    pub fn settled(&self, scenery: &Scenery, start: &[Point]) -> Pose {
+        self.measured(scenery, settle(&self.texture.mesh, start, scenery.anchors))
+    }
+
+    /// A pose aligned on all levels.
+    pub fn realigned(&self, scenery: &Scenery, start: &[Point]) -> Pose {
+        let coarse = self.aligner.align(&self.texture, scenery.target(), start, &[0, 1, 2]);
+        let fine = self.aligner.align(&self.texture, scenery.target(), start, &[1, 2]);
+        let (coarse, fine) = (self.measured(scenery, coarse), self.measured(scenery, fine));
+        if coarse.energy < fine.energy { coarse } else { fine }
+    }
+
+    /// A pose aligned finely to what of it is seen; as it was where that fits worse.
+    pub fn seen(&self, scenery: &Scenery, start: &[Point]) -> Pose {
+        let nodes = self.aligner.align(&self.texture, scenery.target(), start, &[1, 2]);
         self.measured(scenery, nodes)
     }
 

@@ -1,44 +1,275 @@
-//! The default tracker: deformable texture lattices, carried from both keys.
+//! The default tracker: deformable texture lattices, carried from both keys, chosen for all parts together.
 //!
-//! Each key gives a [`Model`]: the part's colours on a lattice that bends. Both are carried drawing by drawing through
-//! the span, one forwards and one backwards ([`propagate`](super::propagate)), each always compared with its own key.
-//! The poses on a drawing make a pool; [`select`](super::select) picks the path through the pools that explains the
-//! pictures best and moves smoothly; where the other key's model agrees with the choice, the two are blended.
+//! 1. **Pools.** Each key gives a [`Model`](super::propagate::Model): the part's colours on a lattice that bends. Both are
+//!    carried drawing by drawing through the span, one forwards and one backwards, each always compared with its own key;
+//!    where they disagree they are searched for in the whole picture ([`pool`]). The artist's
+//!    corrections add to the pools ([`corrected`]).
+//! 2. **Choice.** All parts of a stretch of time choose their paths through the pools together ([`joint`]): nearer parts
+//!    hide farther ones.
+//! 3. **Finish.** The chosen poses are aligned once more where nearer parts leave them to be seen ([`finish`]).
 //!
 //! Why: cartoons have flat colours and hard lines, so that a part's look at a key says nearly everything about it; a
 //! chain that compares with the key cannot drift; going both ways covers what appears or is hidden on one side.
-//! Artist's corrections are constraints of the alignment, so the poses around them follow.
+//!
+//! Each step is a pure function of what it is given, and the last result of each is kept: a pin on one part leaves the
+//! pools of all others, and all that the choice does not change.
 
-use super::job::{Job, SpanSolver, SpanSummary, SpanTrack, Termination};
-use super::pool::{self, Hypothesis, Pools};
-use super::stage::Stage;
+use super::drawings::Drawing;
+use super::finish::{Finish, finish};
+use super::job::{Job, SpanSummary, SpanTrack, Termination};
+use super::joint::{self, Contender};
+use super::pool::{self, Pools};
+use super::propagate::Model;
+use super::stage::{Kit, Stage};
 use super::store::Store;
-use super::{TrackError, confidence};
+use super::tasks::{SharedProgress, Task, assemble, job, overlap, tasks};
+use super::tracker::{SceneSolver, Tracking};
+use super::{TrackError, corrected};
 use crate::geometry::Point;
-use crate::scene::{FrameSource, Progress};
-use std::sync::atomic::Ordering;
+use crate::scene::{FrameNumber, FrameSource, Part, Progress, Scene, Span};
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The default preset's solver.
 #[derive(Default)]
 pub struct Rototoon {
     store: Store,
+    plain: BTreeMap<(String, Span), Arc<Pooled>>,
+    corrected: BTreeMap<(String, Span), Arc<Pooled>>,
+    finished: BTreeMap<(String, Span), (Finish, SpanTrack)>,
 }
 
-/// Distance in working pixels at which the other key's model is no longer taken to mean the same place.
-const AGREEMENT: f64 = 4.0;
+/// The hypotheses of a job.
+pub(super) struct Pooled {
+    pub job: Job,
+    pub drawings: Vec<Drawing>,
+    pub models: Option<Arc<[Model; 2]>>,
+    pub pools: Pools,
+    /// The part's own choice, before others are heard.
+    pub path: Vec<usize>,
+    pub steps: usize,
+}
 
-impl SpanSolver for Rototoon {
-    fn solve(&self, job: &Job, frames: &dyn FrameSource, progress: &dyn Progress) -> Result<SpanTrack, TrackError> {
-        if job.span.len() == 2 || job.keys[0].is_empty() {
-            return Ok(keys_only(job));
+impl SceneSolver for Rototoon {
+    fn track(
+        &mut self,
+        scene: &Scene,
+        frames: &dyn FrameSource,
+        progress: &dyn Progress,
+    ) -> Result<Tracking, TrackError> {
+        let tasks = tasks(scene);
+        let shared = SharedProgress::new(progress, scene, &tasks);
+        let (pooled, fresh) = self.pool_all(scene, &tasks, frames, &shared)?;
+        let mut done: Vec<Option<(SpanTrack, bool)>> = vec![None; tasks.len()];
+        for stretch in stretches(&tasks) {
+            let members: Vec<&Pooled> = stretch.iter().map(|&t| &*pooled[t]).collect();
+            let paths = chosen(scene, &tasks, &stretch, &members);
+            let finishes: Vec<Finish> = (0..members.len())
+                .map(|m| Finish::of(scene, &tasks, &stretch, &members, &paths, m))
+                .collect();
+            let results: Vec<Result<(SpanTrack, bool), TrackError>> = stretch
+                .par_iter()
+                .zip(&finishes)
+                .map(|(&t, plan)| {
+                    let key = (pooled[t].job.name.clone(), pooled[t].job.span);
+                    match self.finished.get(&key) {
+                        Some((known, track)) if known == plan => Ok((track.clone(), fresh[t])),
+                        _ => {
+                            let kit = Kit { store: &self.store, frames, progress: &shared.of(t) };
+                            Ok((finish(kit, &pooled[t], plan)?, true))
+                        }
+                    }
+                })
+                .collect();
+            for ((&t, plan), result) in stretch.iter().zip(finishes).zip(results) {
+                let (track, solved) = result?;
+                shared.of(t).report("Tracking", 1.0)?;
+                let key = (pooled[t].job.name.clone(), pooled[t].job.span);
+                self.finished.insert(key, (plan, track.clone()));
+                done[t] = Some((track, solved));
+            }
         }
-        let stage = Stage::set(&self.store, job, frames, progress)?;
-        let (pools, path) = pool::fill(&stage)?;
-        Ok(track(&stage, &pools, &path))
+        Ok(assemble(scene, &tasks, done))
     }
 
-    fn forget_pictures(&self) {
-        self.store.clear();
+    fn forget(&mut self) {
+        *self = Self::default();
+    }
+}
+
+impl Rototoon {
+    /// The pools of all tasks, and whether they were made now.
+    fn pool_all(
+        &mut self,
+        scene: &Scene,
+        tasks: &[Task],
+        frames: &dyn FrameSource,
+        shared: &SharedProgress,
+    ) -> Result<(Vec<Arc<Pooled>>, Vec<bool>), TrackError> {
+        let mut done: Vec<Option<(Arc<Pooled>, bool)>> = vec![None; tasks.len()];
+        while let Some(wave) = next_wave(scene, tasks, &done) {
+            let jobs: Vec<Job> =
+                wave.iter().map(|&t| job(scene, tasks[t], occluders(scene, tasks, &done, t))).collect();
+            let results: Vec<Result<(Arc<Pooled>, Arc<Pooled>, bool), TrackError>> = wave
+                .par_iter()
+                .zip(&jobs)
+                .map(|(&t, job)| {
+                    let kit = Kit { store: &self.store, frames, progress: &shared.of(t) };
+                    let result = self.pool(kit, job)?;
+                    kit.progress.report("Tracking", 0.8)?;
+                    Ok(result)
+                })
+                .collect();
+            for (t, result) in wave.into_iter().zip(results) {
+                let (plain, with_corrections, solved) = result?;
+                let key = (plain.job.name.clone(), plain.job.span);
+                self.plain.insert(key.clone(), plain);
+                self.corrected.insert(key, with_corrections.clone());
+                done[t] = Some((with_corrections, solved));
+            }
+        }
+        Ok(done.into_iter().flatten().unzip())
+    }
+
+    /// The pools of a job without and with its corrections, and whether anything was made.
+    fn pool(&self, kit: Kit, job: &Job) -> Result<(Arc<Pooled>, Arc<Pooled>, bool), TrackError> {
+        let key = (job.name.clone(), job.span);
+        let bare = Job { corrections: BTreeMap::new(), ..job.clone() };
+        let (plain, mut solved) = match self.plain.get(&key) {
+            Some(known) if known.job == bare => (known.clone(), false),
+            _ => (Arc::new(plain_pools(kit, bare)?), true),
+        };
+        if job.corrections.is_empty() || plain.models.is_none() {
+            return Ok((plain.clone(), plain, solved));
+        }
+        let with_corrections = match self.corrected.get(&key) {
+            Some(known) if known.job == *job => known.clone(),
+            _ => {
+                solved = true;
+                Arc::new(corrected_pools(kit, job, &plain)?)
+            }
+        };
+        Ok((plain, with_corrections, solved))
+    }
+}
+
+fn plain_pools(kit: Kit, job: Job) -> Result<Pooled, TrackError> {
+    if job.span.len() == 2 || job.keys[0].is_empty() {
+        let drawings = (0..job.span.len()).map(|i| Drawing { first: i, last: i }).collect();
+        return Ok(Pooled { job, drawings, models: None, pools: Vec::new(), path: Vec::new(), steps: 0 });
+    }
+    let stage = Stage::set(kit, &job, None)?;
+    let (pools, path) = pool::fill(&stage)?;
+    let (drawings, models) = (stage.drawings.clone(), Some(stage.models.clone()));
+    let steps = stage.steps_done.into_inner();
+    Ok(Pooled { job, drawings, models, pools, path, steps })
+}
+
+fn corrected_pools(kit: Kit, job: &Job, plain: &Pooled) -> Result<Pooled, TrackError> {
+    let stage = Stage::set(kit, job, plain.models.clone())?;
+    let pools = corrected::extend(&stage, &plain.drawings, &plain.pools)?;
+    let path = pool::choose(&stage, &pools);
+    let (drawings, models) = (stage.drawings.clone(), Some(stage.models.clone()));
+    let steps = stage.steps_done.into_inner();
+    Ok(Pooled { job: job.clone(), drawings, models, pools, path, steps })
+}
+
+/// The paths of the members of a stretch, chosen together.
+fn chosen(scene: &Scene, tasks: &[Task], stretch: &[usize], members: &[&Pooled]) -> Vec<Vec<usize>> {
+    let free: Vec<usize> = (0..members.len()).filter(|&m| members[m].models.is_some()).collect();
+    let contender = |&m: &usize| {
+        let (task, pooled) = (tasks[stretch[m]], members[m]);
+        let part = &scene.parts[task.part];
+        Some(Contender {
+            span: task.span,
+            depth: task.depth,
+            hides: part.closed && part.point_count() > 2,
+            drawings: &pooled.drawings,
+            pools: &pooled.pools,
+            models: pooled.models.as_deref()?,
+        })
+    };
+    let contenders: Vec<Contender> = free.iter().filter_map(contender).collect();
+    let start = free.iter().map(|&m| members[m].path.clone()).collect();
+    let mut paths = vec![Vec::new(); members.len()];
+    for (&m, path) in free.iter().zip(joint::choose(&contenders, start)) {
+        paths[m] = path;
+    }
+    paths
+}
+
+/// Tasks that share frames between their keys, directly or by others, in the order of time.
+fn stretches(tasks: &[Task]) -> Vec<Vec<usize>> {
+    let mut order: Vec<usize> = (0..tasks.len()).collect();
+    order.sort_by_key(|&t| (tasks[t].span, t));
+    let mut stretches: Vec<(FrameNumber, Vec<usize>)> = Vec::new();
+    for t in order {
+        let span = tasks[t].span;
+        match stretches.last_mut() {
+            Some((end, members)) if span.first < *end => {
+                *end = (*end).max(span.last);
+                members.push(t);
+            }
+            _ => stretches.push((span.last, vec![t])),
+        }
+    }
+    stretches.into_iter().map(|(_, members)| members).collect()
+}
+
+/// The tasks to do next, or none when all are done: those that share frames with the earliest that is ready. A task
+/// waits for the nearer parts that are in the middle of a span on its keys: what they hide there must be known.
+fn next_wave(scene: &Scene, tasks: &[Task], done: &[Option<(Arc<Pooled>, bool)>]) -> Option<Vec<usize>> {
+    let open: Vec<usize> = (0..tasks.len()).filter(|&t| done[t].is_none()).collect();
+    let within = |o: usize, frame: FrameNumber| tasks[o].span.first < frame && frame < tasks[o].span.last;
+    let waits = |t: usize| {
+        let Span { first, last } = tasks[t].span;
+        open.iter().any(|&o| {
+            scene.parts[tasks[o].part].closed
+                && tasks[o].depth > tasks[t].depth
+                && (within(o, first) || within(o, last))
+        })
+    };
+    let ready: Vec<usize> = open.iter().copied().filter(|&t| !waits(t)).collect();
+    let &earliest = ready.iter().min_by_key(|&&t| tasks[t].span)?;
+    Some(ready.into_iter().filter(|&t| overlap(tasks[t].span, tasks[earliest].span)).collect())
+}
+
+/// What hides a task's part on its keys: the nearer closed contours as keyed, or as they track by themselves.
+fn occluders(
+    scene: &Scene,
+    tasks: &[Task],
+    done: &[Option<(Arc<Pooled>, bool)>],
+    t: usize,
+) -> Vec<Vec<Vec<Point>>> {
+    let Task { span, depth, .. } = tasks[t];
+    let nearer = |p: &Part| p.closed && p.depth > depth && p.point_count() > 2;
+    let on = |frame: FrameNumber| {
+        let of_part = |(index, p): (usize, &Part)| {
+            if let Some(key) = p.keys.get(&frame) {
+                return Some(key.clone());
+            }
+            let holds = |o: &Task| o.part == index && o.span.first < frame && frame < o.span.last;
+            let (pooled, _) = done[tasks.iter().position(holds)?].as_ref()?;
+            Some(pooled.own_points((frame - pooled.job.span.first) as usize))
+        };
+        scene.parts.iter().enumerate().filter(|(_, p)| nearer(p)).filter_map(of_part).collect()
+    };
+    let mut occluders = vec![Vec::new(); span.len()];
+    occluders[0] = on(span.first);
+    occluders[span.len() - 1] = on(span.last);
+    occluders
+}
+
+impl Pooled {
+    /// Where the part alone would put its control points on a frame of the span, in pixels of the picture.
+    fn own_points(&self, index: usize) -> Vec<Point> {
+        let drawing = self.drawings.iter().position(|d| d.first <= index && index <= d.last);
+        let scale = super::features::working_scale(self.job.size.1);
+        match drawing.filter(|_| !self.pools.is_empty()) {
+            Some(d) => self.pools[d][self.path[d]].points.iter().map(|&p| p * scale).collect(),
+            None => self.job.interpolated(index),
+        }
     }
 }
 
@@ -50,53 +281,4 @@ pub(super) fn keys_only(job: &Job) -> SpanTrack {
     let summary =
         SpanSummary { termination: Termination::NothingToSolve, iterations: 0, initial_cost: 0.0, final_cost: 0.0 };
     SpanTrack { points, confidence, summary }
-}
-
-/// The chosen control points of a drawing: those of the other model are blended in where they agree, by how near
-/// its key is.
-fn blended(pool: &[Hypothesis], chosen: usize, share: f64) -> Vec<Point> {
-    let own = &pool[chosen];
-    let others = pool.iter().filter(|h| h.model != own.model);
-    let Some(other) = others.min_by(|a, b| a.distance(own).total_cmp(&b.distance(own))) else {
-        return own.points.clone();
-    };
-    if other.pose.energy >= 1.5 * own.pose.energy + 0.005 {
-        return own.points.clone();
-    }
-    let nearness = if other.model == 1 { share } else { 1.0 - share };
-    let blend = |(a, b): (&Point, &Point)| {
-        let apart = a.distance(*b) / AGREEMENT;
-        a.lerp(*b, nearness * (-apart * apart).exp())
-    };
-    own.points.iter().zip(&other.points).map(blend).collect()
-}
-
-fn track(stage: &Stage, pools: &Pools, path: &[usize]) -> SpanTrack {
-    let last = stage.job.span.len() - 1;
-    let (mut points, mut sure) = (Vec::new(), Vec::new());
-    for (d, drawing) in stage.drawings.iter().enumerate() {
-        let share = drawing.first as f64 / last as f64;
-        let found = blended(&pools[d], path[d], share);
-        let confidence =
-            confidence::of_drawing(&stage.models, &stage.features[d], &stage.covers[d], &pools[d], path[d]);
-        for index in drawing.first..=drawing.last {
-            let mut on_frame = stage.key_of(d).unwrap_or_else(|| found.iter().map(|&p| p * stage.scale).collect());
-            stage.job.enforce(index, &mut on_frame);
-            points.push(on_frame);
-            sure.push(if index == 0 || index == last { vec![1.0; found.len()] } else { confidence.clone() });
-        }
-    }
-    for (&index, correction) in &stage.job.corrections {
-        correction.pins.keys().for_each(|&j| sure[index][j] = 1.0);
-    }
-    let energy = |choose: &dyn Fn(usize) -> usize| {
-        (0..pools.len()).map(|d| pools[d][choose(d)].pose.energy).sum::<f64>() / pools.len() as f64
-    };
-    let summary = SpanSummary {
-        termination: Termination::CostConverged,
-        iterations: stage.steps_done.load(Ordering::Relaxed),
-        initial_cost: energy(&|_| 0),
-        final_cost: energy(&|d| path[d]),
-    };
-    SpanTrack { points, confidence: sure, summary }
 }

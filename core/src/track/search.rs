@@ -72,7 +72,7 @@ impl Templates {
         let source = key.level(level);
         let cut = Cut { model, source, cover, center: polygon::center(contour), width };
         let angles =
-            (-TURN_REACH..=TURN_REACH).step_by(TURN_STEP as usize).map(|degrees| f64::from(degrees).to_radians());
+            (-(crate::knob!("REACH", 90.0) as i32)..=(crate::knob!("REACH", 90.0) as i32)).step_by(TURN_STEP as usize).map(|degrees| f64::from(degrees).to_radians());
         let cuts: Vec<_> = angles.filter_map(|angle| cut.turned(angle, contour)).collect();
         let widest = cuts.iter().map(|(_, _, colours)| colours.width()).max()?;
         let highest = cuts.iter().map(|(_, _, colours)| colours.height()).max()?;
@@ -97,7 +97,16 @@ impl Templates {
         let center = polygon::center(contour);
         let pose = |place: &Place| {
             let turn = Point::from_angle(place.angle);
-            model.texture.mesh.rest.iter().map(|&q| turn.rotate(q - center) + place.center).collect()
+            let placed = |shape: &[Point]| -> Vec<Point> {
+                shape.iter().map(|&q| turn.rotate(q - center) + place.center).collect()
+            };
+            let straight = placed(&model.texture.mesh.rest);
+            if crate::knob!("BENT", 1.0) == 0.0 { return straight; }
+            let half: Vec<Point> = model.texture.mesh.rest.iter().zip(&model.bent).map(|(a, b)| a.lerp(*b, 0.5)).collect();
+            let shapes = [straight, placed(&half), placed(&model.bent)];
+            let energy = |nodes: &Vec<Point>| model.texture.energy(picture, nodes);
+            let best = shapes.into_iter().min_by(|a, b| energy(a).total_cmp(&energy(b)));
+            best.unwrap_or_default()
         };
         self.distinct(&places).iter().map(pose).collect()
     }
@@ -150,7 +159,7 @@ impl Templates {
             let same = |k: &Place| {
                 k.center.distance(place.center) <= SAME_PLACE * self.size && (k.angle - place.angle).abs() <= SAME_TURN
             };
-            if kept.len() < PLACES && !kept.iter().any(same) {
+            if kept.len() < crate::knob!("PLACES", 4.0) as usize && !kept.iter().any(same) {
                 kept.push(*place);
             }
         }
@@ -199,7 +208,7 @@ impl Cut<'_> {
             if inside {
                 1.0
             } else if belongs {
-                BAND_WEIGHT
+                crate::knob!("BANDW", 0.6) as f32
             } else {
                 0.0
             },

@@ -15,30 +15,51 @@ const CAP: f64 = 3.0;
 /// What the selection weighs of a hypothesis.
 #[derive(Clone, Copy)]
 pub struct Candidate<'a> {
-    /// How badly it explains the picture.
-    pub energy: f64,
+    /// What it costs by itself: √E.
+    pub cost: f64,
     /// Where it puts the control points, in working pixels.
     pub points: &'a [Point],
 }
 
-/// Index of the hypothesis to follow on each drawing; no drawing may be without one. `size` is the part's, in working
-/// pixels.
-pub fn best_path(candidates: &[Vec<Candidate>], size: f64) -> Vec<usize> {
-    let unit = (40.0 * size).sqrt();
-    let own = |i: usize, h: usize| candidates[i][h].energy.max(0.0).sqrt();
+/// The cost of motion of one part.
+#[derive(Clone, Copy, Debug)]
+pub struct Smoothness {
+    unit: f64,
+}
+
+impl Smoothness {
+    /// For a part of this size in working pixels.
+    pub fn new(size: f64) -> Self {
+        Self { unit: (40.0 * size).sqrt() }
+    }
+
+    /// Cost of moving from one drawing to the next.
+    pub fn speed(&self, a: &[Point], b: &[Point]) -> f64 {
+        SPEED * (mean_length(a.len(), |k| b[k] - a[k]) / self.unit).min(CAP)
+    }
+
+    /// Cost of moving otherwise than before, over three drawings.
+    pub fn acceleration(&self, a: &[Point], b: &[Point], c: &[Point]) -> f64 {
+        ACCELERATION * (mean_length(c.len(), |k| c[k] - 2.0 * b[k] + a[k]) / self.unit).min(CAP)
+    }
+
+    /// Cost of a whole path.
+    pub fn of_path(&self, points: &[&[Point]]) -> f64 {
+        points.windows(2).map(|w| self.speed(w[0], w[1])).sum::<f64>()
+            + points.windows(3).map(|w| self.acceleration(w[0], w[1], w[2])).sum::<f64>()
+    }
+}
+
+/// Index of the hypothesis to follow on each drawing; no drawing may be without one.
+pub fn best_path(candidates: &[Vec<Candidate>], smoothness: Smoothness) -> Vec<usize> {
+    let own = |i: usize, h: usize| candidates[i][h].cost;
     let count = |i: usize| candidates[i].len();
     if candidates.len() < 2 {
         let least = |i: usize| (0..count(i)).min_by(|&a, &b| own(i, a).total_cmp(&own(i, b)));
         return (0..candidates.len()).filter_map(least).collect();
     }
-    let speed = |i: usize, g: usize, h: usize| {
-        let difference = |k: usize| candidates[i][h].points[k] - candidates[i - 1][g].points[k];
-        SPEED * (mean_length(candidates[i][h].points.len(), difference) / unit).min(CAP)
-    };
-    let acceleration = |i: usize, f: usize, g: usize, h: usize| {
-        let (a, b, c) = (candidates[i - 2][f].points, candidates[i - 1][g].points, candidates[i][h].points);
-        ACCELERATION * (mean_length(c.len(), |k| c[k] - 2.0 * b[k] + a[k]) / unit).min(CAP)
-    };
+    let points = |i: usize, h: usize| candidates[i][h].points;
+    let speed = |i: usize, g: usize, h: usize| smoothness.speed(points(i - 1, g), points(i, h));
     // costs[g][h]: least cost of a path that ends with hypothesis g, then h.
     let mut costs: Vec<Vec<f64>> =
         (0..count(0)).map(|g| (0..count(1)).map(|h| own(0, g) + own(1, h) + speed(1, g, h)).collect()).collect();
@@ -50,7 +71,8 @@ pub fn best_path(candidates: &[Vec<Candidate>], size: f64) -> Vec<usize> {
             for h in 0..count(i) {
                 let step = own(i, h) + speed(i, g, h);
                 for f in 0..count(i - 2) {
-                    let cost = costs[f][g] + acceleration(i, f, g, h) + step;
+                    let bend = smoothness.acceleration(points(i - 2, f), points(i - 1, g), points(i, h));
+                    let cost = costs[f][g] + bend + step;
                     if cost < next[g][h] {
                         (next[g][h], from[g][h]) = (cost, f);
                     }
@@ -63,7 +85,8 @@ pub fn best_path(candidates: &[Vec<Candidate>], size: f64) -> Vec<usize> {
     trace_back(&costs, &origins)
 }
 
-fn trace_back(costs: &[Vec<f64>], origins: &[Vec<Vec<usize>>]) -> Vec<usize> {
+/// The states of a path of least cost, from the table of the last two drawings and the origins of the ones before.
+pub(super) fn trace_back(costs: &[Vec<f64>], origins: &[Vec<Vec<usize>>]) -> Vec<usize> {
     let (mut g, mut h) = (0, 0);
     for (i, row) in costs.iter().enumerate() {
         for (j, cost) in row.iter().enumerate() {
@@ -109,9 +132,9 @@ mod tests {
                 pool.into_iter().map(|c| c.into_iter().map(|(e, x, y)| (e, Point::new(x, y))).collect()).collect();
             let candidates: Vec<Vec<Candidate>> = pool
                 .iter()
-                .map(|c| c.iter().map(|(e, p)| Candidate { energy: *e, points: std::slice::from_ref(p) }).collect())
+                .map(|c| c.iter().map(|(e, p)| Candidate { cost: e.sqrt(), points: std::slice::from_ref(p) }).collect())
                 .collect();
-            let path = best_path(&candidates, 50.0);
+            let path = best_path(&candidates, Smoothness::new(50.0));
             prop_assert_eq!(path.len(), pool.len());
             let mut all = vec![Vec::new()];
             for hypotheses in &pool {

@@ -3,70 +3,63 @@
 use super::TrackError;
 use super::drawings::{Drawing, group, same_drawing};
 use super::features::{Features, working_scale};
-use super::job::Job;
-use super::lattice::align::Aligner;
+use super::job::{Correction, Job};
+use super::lattice::align::{Aligner, settle};
 use super::lattice::anchors::Anchors;
 use super::lattice::mesh::Mesh;
+use super::lattice::shape;
 use super::lattice::texture::{Cover, Texture};
 use super::propagate::{Model, Pose, Scenery};
 use super::store::Store;
 use crate::geometry::Point;
+use crate::geometry::similarity::Similarity;
 use crate::scene::{FrameNumber, FrameSource, Progress};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator, ParallelSlice};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Where pictures come from, and who is told of the progress.
+#[derive(Clone, Copy)]
+pub(super) struct Kit<'a> {
+    pub store: &'a Store,
+    pub frames: &'a dyn FrameSource,
+    pub progress: &'a dyn Progress,
+}
 
 /// Everything that a job is solved with.
 pub(super) struct Stage<'a> {
     pub job: &'a Job,
-    frames: &'a dyn FrameSource,
-    store: &'a Store,
-    pub progress: &'a dyn Progress,
+    pub kit: Kit<'a>,
     pub scale: f64,
     pub drawings: Vec<Drawing>,
     pub features: Vec<Arc<Features>>,
     pub covers: Vec<Cover>,
-    pub models: [Model; 2],
+    pub models: Arc<[Model; 2]>,
     anchors: [Vec<Anchors>; 2],
     pub steps_done: AtomicUsize,
 }
 
 impl<'a> Stage<'a> {
-    /// Reads the pictures and builds the models.
-    pub fn set(
-        store: &'a Store,
-        job: &'a Job,
-        frames: &'a dyn FrameSource,
-        progress: &'a dyn Progress,
-    ) -> Result<Self, TrackError> {
+    /// Reads the pictures, and builds the models where none are given. Nothing hides the part between the keys.
+    pub fn set(kit: Kit<'a>, job: &'a Job, models: Option<Arc<[Model; 2]>>) -> Result<Self, TrackError> {
         let scale = working_scale(job.size.1);
         let width = job.size.0 as f64 / scale;
         let numbers: Vec<FrameNumber> = job.span.frames().collect();
         let features: Vec<Arc<Features>> = numbers
             .par_iter()
             .map(|&frame| {
-                progress.report("Reading frames", 0.0)?;
-                store.features(frames, frame)
+                kit.progress.report("Reading frames", 0.0)?;
+                kit.store.features(kit.frames, frame)
             })
             .collect::<Result<_, _>>()?;
         let held: Vec<bool> = features.par_windows(2).map(|pair| same_drawing(&pair[0], &pair[1])).collect();
         let drawings = group(job, |i| held[i]);
         let features: Vec<Arc<Features>> = drawings.iter().map(|d| features[d.first].clone()).collect();
-        let working = |contour: &[Point]| contour.iter().map(|&p| p / scale).collect::<Vec<_>>();
-        let cover_of = |index: usize| {
-            let contours: Vec<Vec<Point>> = job.occluders[index].iter().map(|c| working(c)).collect();
-            Cover::new(&contours, width)
-        };
-        let last = job.span.len() - 1;
-        let covers: Vec<Cover> = drawings.iter().map(|d| cover_of(d.first)).collect();
-        let model = |key: usize| {
-            let mesh = Mesh::new(&working(&job.keys[key]), job.closed);
-            let (features, cover) =
-                if key == 0 { (&features[0], cover_of(0)) } else { (&features[features.len() - 1], cover_of(last)) };
-            let texture = Texture::new(mesh, features, &cover, width);
-            Model { aligner: Aligner::new(&texture.mesh), texture }
-        };
-        let models = [model(0), model(1)];
+        let last = features.len() - 1;
+        let models = models.unwrap_or_else(|| {
+            Arc::new([model(job, 0, &features[0], scale, width), model(job, 1, &features[last], scale, width)])
+        });
         let anchors = [0, 1].map(|key: usize| {
             let of_drawing = |d: &Drawing| {
                 let correction = (d.first..=d.last).find_map(|i| job.corrections.get(&i));
@@ -74,8 +67,8 @@ impl<'a> Stage<'a> {
             };
             drawings.iter().map(of_drawing).collect()
         });
-        let steps_done = AtomicUsize::new(0);
-        Ok(Self { job, frames, store, progress, scale, drawings, features, covers, models, anchors, steps_done })
+        let covers = drawings.iter().map(|_| Cover::none(width)).collect();
+        Ok(Self { job, kit, scale, drawings, features, covers, models, anchors, steps_done: AtomicUsize::new(0) })
     }
 
     /// A drawing as the model of one key sees it.
@@ -85,6 +78,11 @@ impl<'a> Stage<'a> {
             cover: &self.covers[drawing],
             anchors: &self.anchors[model][drawing],
         }
+    }
+
+    /// Whether the artist corrected a drawing.
+    pub fn corrected(&self, drawing: usize) -> bool {
+        !self.anchors[0][drawing].is_empty()
     }
 
     /// The key whose drawing this is, as the artist drew it: frames held from a key have its very points.
@@ -113,8 +111,26 @@ impl<'a> Stage<'a> {
     ) -> Result<Pose, TrackError> {
         let steps = 2 * (self.drawings.len() - 2).max(1);
         let done = self.steps_done.fetch_add(1, Ordering::Relaxed);
-        self.progress.report("Tracking", 0.95 * (done as f64 / steps as f64).min(1.0))?;
-        let flow = self.store.flow(self.frames, self.frame_of(from), self.frame_of(to))?;
+        self.kit.progress.report("Tracking", 0.8 * (done as f64 / steps as f64).min(1.0))?;
+        let flow = self.kit.store.flow(self.kit.frames, self.frame_of(from), self.frame_of(to))?;
         Ok(self.models[model].carry(pose, &flow, moved, &self.scenery(model, to)))
     }
+}
+
+/// The model of a key: its texture is not taken from where a nearer part hides the key.
+fn model(job: &Job, key: usize, features: &Features, scale: f64, width: f64) -> Model {
+    let working = |contour: &[Point]| contour.iter().map(|&p| p / scale).collect::<Vec<_>>();
+    let occluders = &job.occluders[if key == 0 { 0 } else { job.span.len() - 1 }];
+    let contours: Vec<Vec<Point>> = occluders.iter().map(|c| working(c)).collect();
+    let cover = Cover::new(&contours, width);
+    let (own, other) = (working(&job.keys[key]), working(&job.keys[1 - key]));
+    let mut mesh = Mesh::new(&own, job.closed);
+    // The other key's contour, moved onto this one's as a whole: what is left is bending.
+    let motion = Similarity::fit(&other, &own);
+    let there: BTreeMap<usize, Point> = other.iter().map(|&p| motion.apply(p) * scale).enumerate().collect();
+    let anchors = Anchors::new(&mesh, &Correction { pins: there, center: None }, scale);
+    let bent = settle(&mesh, &mesh.rest, &anchors);
+    if crate::knob!("SOFT", 1.0) > 0.0 { shape::soften(&mut mesh, &bent); }
+    let texture = Texture::new(mesh, features, &cover, width);
+    Model { aligner: Aligner::new(&texture.mesh), texture, cover, bent }
 }

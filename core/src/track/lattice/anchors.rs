@@ -54,6 +54,14 @@ impl Anchors {
         self.anchors.is_empty()
     }
 
+    /// A pose turned by `angle` about the mean of its anchored places.
+    pub fn turned(&self, nodes: &[Point], angle: f64) -> Vec<Point> {
+        let from: Point = self.anchors.iter().map(|a| a.place - a.missing(nodes)).sum();
+        let center = from / self.anchors.len().max(1) as f64;
+        let turn = Point::from_angle(angle);
+        nodes.iter().map(|&p| turn.rotate(p - center) + center).collect()
+    }
+
     /// Moves a pose as a whole so that it comes near its anchors: one anchor shifts it, several shift and turn it.
     pub fn approach(&self, nodes: &[Point]) -> Vec<Point> {
         let from: Vec<Point> = self.anchors.iter().map(|a| a.place - a.missing(nodes)).collect();

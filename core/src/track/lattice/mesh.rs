@@ -28,6 +28,8 @@ pub struct Mesh {
     pub rest: Vec<Point>,
     /// The nodes of each cell, as in [`Binding`].
     pub cells: Vec<[usize; 4]>,
+    /// How stiff each cell is: 1, less where the part bends between the keys.
+    pub stiffness: Vec<f64>,
     /// Side of a cell.
     pub side: f64,
     /// Control points of the part.
@@ -89,6 +91,7 @@ impl Mesh {
         let mut mesh = Self {
             rest: Vec::new(),
             cells: Vec::new(),
+            stiffness: Vec::new(),
             side,
             control: Vec::new(),
             size,
@@ -100,6 +103,7 @@ impl Mesh {
             half: 0,
         };
         mesh.occupy();
+        mesh.stiffness = vec![1.0; mesh.cells.len()];
         mesh.control = control.iter().map(|&p| mesh.bind(p)).collect();
         mesh
     }

@@ -28,23 +28,43 @@ pub fn rotations(mesh: &Mesh, nodes: &[Point]) -> Vec<Point> {
 pub fn energy(mesh: &Mesh, nodes: &[Point]) -> f64 {
     let rest = rest_cell(mesh);
     let rotations = rotations(mesh, nodes);
-    let of_cell = |(cell, r): (&[usize; 4], &Point)| {
-        let mean = cell.iter().map(|&n| nodes[n]).sum::<Point>() / 4.0;
-        cell.iter().zip(&rest).map(|(&n, q)| (nodes[n] - mean - r.rotate(*q)).length_squared()).sum::<f64>()
-    };
-    let sum: f64 = mesh.cells.iter().zip(&rotations).map(of_cell).sum();
+    let sum: f64 = residuals(mesh, nodes, &rotations, &rest).zip(&mesh.stiffness).map(|(e, s)| e * s).sum();
     sum / (mesh.side * mesh.side * mesh.cells.len() as f64)
+}
+
+/// Squared distance of each cell's nodes from its best similar square.
+fn residuals<'a>(
+    mesh: &'a Mesh,
+    nodes: &'a [Point],
+    rotations: &'a [Point],
+    rest: &'a [Point; 4],
+) -> impl Iterator<Item = f64> + 'a {
+    mesh.cells.iter().zip(rotations).map(move |(cell, r)| {
+        let mean = cell.iter().map(|&n| nodes[n]).sum::<Point>() / 4.0;
+        cell.iter().zip(rest).map(|(&n, q)| (nodes[n] - mean - r.rotate(*q)).length_squared()).sum::<f64>()
+    })
+}
+
+/// Makes the cells less stiff that are bent in `shape`, a shape that the part is known to take.
+pub fn soften(mesh: &mut Mesh, shape: &[Point]) {
+    let (rest, rotations) = (rest_cell(mesh), rotations(mesh, shape));
+    let usual = crate::knob!("USUAL", 0.08) * mesh.side;
+    let least = crate::knob!("LEAST", 0.1);
+    let stiffness = residuals(mesh, shape, &rotations, &rest)
+        .map(|e| least + (1.0 - least) / (1.0 + 0.25 * e / (usual * usual)))
+        .collect();
+    mesh.stiffness = stiffness;
 }
 
 /// Second derivative (halved) of the sum of the cells' energies, for fixed turns.
 pub fn stiffness(mesh: &Mesh) -> BandMatrix {
     let mut matrix = mesh.matrix();
     let inverse = 1.0 / (mesh.side * mesh.side);
-    for cell in &mesh.cells {
+    for (cell, stiffness) in mesh.cells.iter().zip(&mesh.stiffness) {
         for (a, &i) in cell.iter().enumerate() {
             for (b, &j) in cell.iter().enumerate() {
                 if i >= j {
-                    let value = inverse * (f64::from(u8::from(a == b)) - 0.25);
+                    let value = inverse * stiffness * (f64::from(u8::from(a == b)) - 0.25);
                     matrix.add(2 * i, 2 * j, value);
                     matrix.add(2 * i + 1, 2 * j + 1, value);
                 }
@@ -58,10 +78,10 @@ pub fn stiffness(mesh: &Mesh) -> BandMatrix {
 pub fn add_gradient(mesh: &Mesh, nodes: &[Point], rotations: &[Point], weight: f64, gradient: &mut [f64]) {
     let rest = rest_cell(mesh);
     let factor = weight / (mesh.side * mesh.side);
-    for (cell, r) in mesh.cells.iter().zip(rotations) {
+    for ((cell, r), stiffness) in mesh.cells.iter().zip(rotations).zip(&mesh.stiffness) {
         let mean = cell.iter().map(|&n| nodes[n]).sum::<Point>() / 4.0;
         for (&n, q) in cell.iter().zip(&rest) {
-            let g = (nodes[n] - mean - r.rotate(*q)) * factor;
+            let g = (nodes[n] - mean - r.rotate(*q)) * (factor * stiffness);
             gradient[2 * n] += g.x;
             gradient[2 * n + 1] += g.y;
         }

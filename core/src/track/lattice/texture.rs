@@ -21,7 +21,7 @@ const SHAPE: (f64, f64) = (0.02, 2.0);
 const MEASURED_LEVEL: usize = 1;
 
 /// Where nearer parts hide the picture, by working pixels of 2 × 2.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Cover {
     hidden: Raster<bool>,
 }
@@ -41,6 +41,11 @@ impl Cover {
             });
         }
         Self { hidden }
+    }
+
+    /// Nothing is hidden.
+    pub fn none(width: f64) -> Self {
+        Self::new(&[], width)
     }
 
     /// Whether a nearer part hides the picture at `p`; outside the picture, what its nearest edge says.
@@ -82,13 +87,30 @@ impl Texture {
     pub fn energy(&self, picture: &Features, nodes: &[Point]) -> f64 {
         let level = picture.level(MEASURED_LEVEL);
         let (mut sum, mut weights) = (0.0, 0.0);
-        for texel in &self.texels[MEASURED_LEVEL] {
+        for texel in self.measured() {
             let colour = level.colour(texel.binding.at(nodes));
             sum += f64::from(texel.weight * difference(&colour, &texel.key).min(WORST));
             weights += f64::from(texel.weight);
         }
         let look = if weights > 0.0 { sum / weights } else { f64::from(WORST) };
-        look + SHAPE.0 * shape::energy(&self.mesh, nodes).min(SHAPE.1)
+        look + self.bending(nodes)
+    }
+
+    /// The part of [`Texture::energy`] that a pose's shape costs.
+    pub fn bending(&self, nodes: &[Point]) -> f64 {
+        SHAPE.0 * shape::energy(&self.mesh, nodes).min(SHAPE.1)
+    }
+
+    /// The samples that measure a pose.
+    pub fn measured(&self) -> &[Texel] {
+        &self.texels[MEASURED_LEVEL]
+    }
+
+    /// Colour difference of each of the [`Texture::measured`] samples, at most [`WORST`].
+    pub fn differences(&self, picture: &Features, nodes: &[Point]) -> Vec<f32> {
+        let level = picture.level(MEASURED_LEVEL);
+        let of = |t: &Texel| difference(&level.colour(t.binding.at(nodes)), &t.key).min(WORST);
+        self.measured().iter().map(of).collect()
     }
 }
 

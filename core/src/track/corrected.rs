@@ -1,0 +1,116 @@
+//! What the artist's corrections add to the pool of hypotheses.
+//!
+//! Without corrections a pool depends on the keys and the pictures alone, so it is kept when the artist pins a point.
+//! Then, on each corrected drawing, every hypothesis is brought to the corrections and aligned again with them as
+//! constraints; one pin alone leaves the turn open, so turned starts are tried too. The best are carried from there to
+//! the drawings on both sides, while they find something that the pools there do not hold: that is how one pin mends its
+//! neighbours.
+
+use super::TrackError;
+use super::drawings::Drawing;
+use super::pool::{Hypothesis, Pools, hypothesis, is_new};
+use super::propagate::Pose;
+use super::stage::Stage;
+use crate::geometry::Point;
+use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+
+/// Turns tried about the corrections' centre, in degrees.
+const TURNS: [f64; 8] = [-90.0, -60.0, -40.0, -20.0, 20.0, 40.0, 60.0, 90.0];
+/// Hypotheses of each model that are kept on a corrected drawing.
+const KEPT: usize = 4;
+/// Hypotheses of a corrected drawing that are carried on.
+const CARRIED: usize = 2;
+
+/// The pools of a stage with corrections, from those without; `plain` are the drawings of the latter.
+pub(super) fn extend(stage: &Stage, plain: &[Drawing], pools: &Pools) -> Result<Pools, TrackError> {
+    let of = |d: &Drawing| plain.iter().position(|p| p.first <= d.first && d.first <= p.last).unwrap_or(0);
+    let last = stage.drawings.len() - 1;
+    let mut extended: Pools = (0..=last)
+        .into_par_iter()
+        .map(|d| {
+            // The keys' drawings come first and last in both groupings.
+            let source = if d == last { plain.len() - 1 } else { of(&stage.drawings[d]) };
+            let mut pool: Vec<Hypothesis> = pools[source].iter().map(Hypothesis::without_origin).collect();
+            if stage.corrected(d) {
+                pool = constrained(stage, d, &pool)?;
+            }
+            Ok(pool)
+        })
+        .collect::<Result<_, TrackError>>()?;
+    let sources: Vec<usize> = (1..last).filter(|&d| stage.corrected(d)).collect();
+    let more: Vec<Vec<(usize, Hypothesis)>> = sources
+        .into_par_iter()
+        .map(|d| carried_on(stage, &extended, d))
+        .collect::<Result<_, TrackError>>()?;
+    for (d, new) in more.into_iter().flatten() {
+        if is_new(&extended[d], &new) {
+            extended[d].push(new);
+        }
+    }
+    Ok(extended)
+}
+
+/// The hypotheses of a corrected drawing, made to obey.
+fn constrained(stage: &Stage, d: usize, pool: &[Hypothesis]) -> Result<Vec<Hypothesis>, TrackError> {
+    stage.kit.progress.report("Tracking", 0.0)?;
+    let mut found: Vec<Hypothesis> = Vec::new();
+    for model in 0..2 {
+        let scenery = stage.scenery(model, d);
+        let mut starts: Vec<Pose> = Vec::new();
+        for h in pool.iter().filter(|h| h.model == model) {
+            let turned = TURNS.iter().map(|degrees| scenery.anchors.turned(&h.pose.nodes, degrees.to_radians()));
+            for start in std::iter::once(h.pose.nodes.clone()).chain(turned) {
+                starts.push(stage.models[model].settled(&scenery, &start));
+            }
+        }
+        starts.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+        let mut kept: Vec<Hypothesis> = Vec::new();
+        for start in starts {
+            let start = hypothesis(stage, d, model, start, None);
+            if kept.iter().all(|h| h.distance(&start) > 4.0) {
+                kept.push(start);
+            }
+            if kept.len() == KEPT {
+                break;
+            }
+        }
+        for start in kept {
+            let pose = stage.models[model].realigned(&scenery, &start.pose.nodes);
+            let new = hypothesis(stage, d, model, pose, None);
+            if is_new(&found, &new) {
+                found.push(new);
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// What the best hypotheses of a corrected drawing become on the drawings around it.
+fn carried_on(stage: &Stage, pools: &Pools, source: usize) -> Result<Vec<(usize, Hypothesis)>, TrackError> {
+    let mut order: Vec<&Hypothesis> = pools[source].iter().collect();
+    order.sort_by(|a, b| a.pose.energy.total_cmp(&b.pose.energy));
+    let last = pools.len() - 1;
+    let mut found: Vec<(usize, Hypothesis)> = Vec::new();
+    for start in order.into_iter().take(CARRIED) {
+        for step in [-1isize, 1] {
+            let (mut from, mut nodes) = (source, start.pose.nodes.clone());
+            let mut moved: Option<Vec<Point>> = None;
+            loop {
+                let to = from.wrapping_add_signed(step);
+                if to == 0 || to >= last || stage.corrected(to) {
+                    break;
+                }
+                let pose = stage.carry(start.model, &nodes, moved.as_deref(), from, to)?;
+                let new = hypothesis(stage, to, start.model, pose, None);
+                let known = |d: usize, h: &Hypothesis| d == to && h.model == new.model && h.distance(&new) <= 1.0;
+                if !is_new(&pools[to], &new) || found.iter().any(|(d, h)| known(*d, h)) {
+                    break;
+                }
+                moved = Some(new.pose.nodes.iter().zip(&nodes).map(|(a, b)| *a - *b).collect());
+                (from, nodes) = (to, new.pose.nodes.clone());
+                found.push((to, new));
+            }
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,83 @@
+//! Which hypothesis each part follows, decided for all parts together.
+//!
+//! A part alone cannot know that the leg it fits so well is another part's. What is said by all: nearer parts hide
+//! farther ones. A sample of a part that lies under a nearer part is unseen, and costs [`shadow::HIDDEN`]: less than a
+//! wrong colour, more than a right one. So of two equal legs, both on one drawn leg is dearer than one on each, and a
+//! part that is really hidden is not driven out to where its colour happens to be.
+//!
+//! E = Σ_parts [ Σ_drawings √U + smoothness ], U the visible energy of a hypothesis given the nearer parts' choices, the
+//! smoothness as in [`super::select`]. It is lowered by moves, each found by dynamic programming and taken only if E
+//! falls: all drawings of one part ([`moves::single`]), all drawings of two parts that hide each other
+//! ([`moves::pair`]). Moves of two are what lets crossing twins change places.
+//!
+//! Limits: a local minimum of moves of two; parts that are keyed on different frames move singly only.
+
+pub mod moves;
+pub mod shadow;
+
+use super::drawings::Drawing;
+use super::pool::Pools;
+use super::propagate::Model;
+use crate::scene::{FrameNumber, Span};
+use shadow::Shadows;
+
+/// Rounds over all parts and pairs at the most.
+const ROUNDS: usize = 4;
+
+/// One part over one span, with its hypotheses.
+pub struct Contender<'a> {
+    /// The frames, keys included.
+    pub span: Span,
+    /// Larger is nearer.
+    pub depth: f64,
+    /// Whether the contour is closed and can hide anything.
+    pub hides: bool,
+    /// The span's drawings.
+    pub drawings: &'a [Drawing],
+    /// The hypotheses of each drawing.
+    pub pools: &'a Pools,
+    /// What the hypotheses pose.
+    pub models: &'a [Model; 2],
+}
+
+impl Contender<'_> {
+    /// Index of the drawing that a frame shows, where the frame lies in the span.
+    pub fn drawing_at(&self, frame: FrameNumber) -> Option<usize> {
+        if frame < self.span.first || frame > self.span.last {
+            return None;
+        }
+        let index = (frame - self.span.first) as usize;
+        self.drawings.iter().position(|d| d.first <= index && index <= d.last)
+    }
+
+    /// First frame of a drawing.
+    pub fn frame_of(&self, drawing: usize) -> FrameNumber {
+        self.span.first + self.drawings[drawing].first as FrameNumber
+    }
+}
+
+/// The hypothesis that each contender follows on each of its drawings; `paths` is where to start from.
+pub fn choose(contenders: &[Contender], mut paths: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
+    if std::env::var("NOJOINT").is_ok() { return paths; }
+    let shadows = Shadows::cast(contenders);
+    if shadows.none() {
+        return paths;
+    }
+    let scene = moves::Scene { contenders, shadows: &shadows };
+    let pairs = shadows.pairs();
+    for _ in 0..ROUNDS {
+        let mut moved = false;
+        for c in 0..contenders.len() {
+            moved |= scene.single(c, &mut paths);
+        }
+        for &(far, near) in &pairs {
+            if contenders[far].drawings == contenders[near].drawings && contenders[far].span == contenders[near].span {
+                moved |= scene.pair(far, near, &mut paths);
+            }
+        }
+        if !moved {
+            break;
+        }
+    }
+    paths
+}

@@ -1,0 +1,99 @@
+//! The work of a scene: each part over each of its spans; what is told of it meanwhile, and its results put together.
+
+use super::job::{Correction, Job, SpanTrack};
+use super::tracker::{JobReport, PartTrack, Tracking};
+use crate::geometry::Point;
+use crate::scene::{Cancelled, FrameNumber, Part, Progress, Scene, Span};
+use std::sync::Mutex;
+
+/// A part over a span, before its occluders are known.
+#[derive(Clone, Copy)]
+pub(super) struct Task {
+    pub part: usize,
+    pub span: Span,
+    pub depth: f64,
+}
+
+pub(super) fn tasks(scene: &Scene) -> Vec<Task> {
+    let of_part = |(part, p): (usize, &Part)| {
+        let depth = p.depth;
+        p.spans().into_iter().map(move |span| Task { part, span, depth }).collect::<Vec<_>>()
+    };
+    scene.parts.iter().enumerate().flat_map(of_part).collect()
+}
+
+/// Whether two spans share frames.
+pub(super) fn overlap(a: Span, b: Span) -> bool {
+    a.first <= b.last && b.first <= a.last
+}
+
+/// The job of a task; `occluders` as in [`Job`].
+pub(super) fn job(scene: &Scene, task: Task, occluders: Vec<Vec<Vec<Point>>>) -> Job {
+    let Task { part, span, .. } = task;
+    let subject = &scene.parts[part];
+    let corrections = (1..span.len() - 1).filter_map(|index| {
+        let frame = span.first + index as FrameNumber;
+        let pins = subject.pins.get(&frame).cloned().unwrap_or_default();
+        let center = subject.centers.get(&frame).copied();
+        (!pins.is_empty() || center.is_some()).then_some((index, Correction { pins, center }))
+    });
+    Job {
+        name: subject.name.clone(),
+        closed: subject.closed,
+        span,
+        keys: [subject.keys[&span.first].clone(), subject.keys[&span.last].clone()],
+        corrections: corrections.collect(),
+        occluders,
+        size: (scene.footage.width, scene.footage.height),
+    }
+}
+
+/// The tracks of all parts, from those of their spans.
+pub(super) fn assemble(scene: &Scene, tasks: &[Task], done: Vec<Option<(SpanTrack, bool)>>) -> Tracking {
+    let mut tracking = Tracking { parts: vec![PartTrack::default(); scene.parts.len()], jobs: Vec::new() };
+    for (task, result) in tasks.iter().zip(done) {
+        let Some((track, solved)) = result else { continue };
+        let part = &mut tracking.parts[task.part];
+        part.tracks.extend(task.span.frames().zip(track.points));
+        part.confidence.extend(task.span.frames().zip(track.confidence));
+        tracking.jobs.push(JobReport { part: task.part, span: task.span, summary: track.summary, solved });
+    }
+    tracking
+}
+
+/// Sums the progress of jobs that run side by side; a job weighs as much as it has points and frames.
+pub(super) struct SharedProgress<'a> {
+    listener: &'a dyn Progress,
+    weights: Vec<f64>,
+    done: Mutex<Vec<f64>>,
+}
+
+impl<'a> SharedProgress<'a> {
+    pub fn new(listener: &'a dyn Progress, scene: &Scene, tasks: &[Task]) -> Self {
+        let weight = |t: &Task| ((t.span.len() - 1) * (scene.parts[t.part].point_count() + 8)) as f64;
+        let weights: Vec<f64> = tasks.iter().map(weight).collect();
+        let total: f64 = weights.iter().sum();
+        let weights = weights.into_iter().map(|w| w / total).collect();
+        Self { listener, weights, done: Mutex::new(vec![0.0; tasks.len()]) }
+    }
+
+    pub fn of(&self, task: usize) -> JobProgress<'_> {
+        JobProgress { shared: self, task }
+    }
+}
+
+/// The progress of one job among all.
+pub(super) struct JobProgress<'a> {
+    shared: &'a SharedProgress<'a>,
+    task: usize,
+}
+
+impl Progress for JobProgress<'_> {
+    fn report(&self, step: &str, done: f64) -> Result<(), Cancelled> {
+        // The listener is told under the lock, so that it never sees the share fall.
+        let mut all = self.shared.done.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        all[self.task] = all[self.task].max(done.clamp(0.0, 1.0));
+        let share: f64 = all.iter().zip(&self.shared.weights).map(|(d, w)| d * w).sum();
+        self.shared.listener.report(step, share.min(1.0))
+    }
+}
