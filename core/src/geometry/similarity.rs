@@ -38,6 +38,13 @@ impl Similarity {
         self.factor.rotate(p - self.source) + self.target
     }
 
+    /// The map back. Of a map that takes everything to one place, the one that leaves all there.
+    pub fn inverse(&self) -> Self {
+        let norm = self.factor.length_squared();
+        let factor = if norm > 1e-12 { Point::new(self.factor.x, -self.factor.y) / norm } else { Point::X };
+        Self { factor, source: self.target, target: self.source }
+    }
+
     /// Scale factor (≥ 0).
     pub fn scale(&self) -> f64 {
         self.factor.length()

@@ -24,6 +24,8 @@ pub struct Model {
     pub aligner: Aligner,
     /// What hides the part at the key.
     pub cover: Cover,
+    /// The lattice at the other key.
+    pub there: Vec<Point>,
     /// The lattice in the shape of the other key, where the part would be if it only bent.
     pub bent: Vec<Point>,
 }

@@ -72,7 +72,7 @@ impl Templates {
         let source = key.level(level);
         let cut = Cut { model, source, cover, center: polygon::center(contour), width };
         let angles =
-            (-(crate::knob!("REACH", 90.0) as i32)..=(crate::knob!("REACH", 90.0) as i32)).step_by(TURN_STEP as usize).map(|degrees| f64::from(degrees).to_radians());
+            (-(crate::knob!("REACH", 180.0) as i32)..(crate::knob!("REACH", 180.0) as i32)).step_by(TURN_STEP as usize).map(|degrees| f64::from(degrees).to_radians());
         let cuts: Vec<_> = angles.filter_map(|angle| cut.turned(angle, contour)).collect();
         let widest = cuts.iter().map(|(_, _, colours)| colours.width()).max()?;
         let highest = cuts.iter().map(|(_, _, colours)| colours.height()).max()?;
@@ -159,7 +159,7 @@ impl Templates {
             let same = |k: &Place| {
                 k.center.distance(place.center) <= SAME_PLACE * self.size && (k.angle - place.angle).abs() <= SAME_TURN
             };
-            if kept.len() < crate::knob!("PLACES", 4.0) as usize && !kept.iter().any(same) {
+            if kept.len() < crate::knob!("PLACES", 6.0) as usize && !kept.iter().any(same) {
                 kept.push(*place);
             }
         }

@@ -127,10 +127,12 @@ fn model(job: &Job, key: usize, features: &Features, scale: f64, width: f64) -> 
     let mut mesh = Mesh::new(&own, job.closed);
     // The other key's contour, moved onto this one's as a whole: what is left is bending.
     let motion = Similarity::fit(&other, &own);
-    let there: BTreeMap<usize, Point> = other.iter().map(|&p| motion.apply(p) * scale).enumerate().collect();
-    let anchors = Anchors::new(&mesh, &Correction { pins: there, center: None }, scale);
+    let bends: BTreeMap<usize, Point> = other.iter().map(|&p| motion.apply(p) * scale).enumerate().collect();
+    let anchors = Anchors::new(&mesh, &Correction { pins: bends, center: None }, scale);
     let bent = settle(&mesh, &mesh.rest, &anchors);
+    let back = motion.inverse();
+    let there = bent.iter().map(|&p| back.apply(p)).collect();
     if crate::knob!("SOFT", 1.0) > 0.0 { shape::soften(&mut mesh, &bent); }
     let texture = Texture::new(mesh, features, &cover, width);
-    Model { aligner: Aligner::new(&texture.mesh), texture, cover, bent }
+    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent }
 }

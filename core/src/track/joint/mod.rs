@@ -14,6 +14,7 @@
 
 pub mod moves;
 pub mod shadow;
+pub mod tie;
 
 use super::drawings::Drawing;
 use super::pool::Pools;
@@ -60,10 +61,12 @@ impl Contender<'_> {
 pub fn choose(contenders: &[Contender], mut paths: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
     if std::env::var("NOJOINT").is_ok() { return paths; }
     let shadows = Shadows::cast(contenders);
-    if shadows.none() {
+    let ties = tie::find(contenders);
+    if shadows.none() && ties.is_empty() {
         return paths;
     }
-    let scene = moves::Scene { contenders, shadows: &shadows };
+    if std::env::var("SHOWTIES").is_ok() { for t in &ties { eprintln!("{:?} size {:?}", t.parts, t.parts.map(|p| contenders[p].models[0].texture.mesh.rest[0])); } }
+    let scene = moves::Scene { contenders, shadows: &shadows, ties: &ties };
     let pairs = shadows.pairs();
     for _ in 0..ROUNDS {
         let mut moved = false;

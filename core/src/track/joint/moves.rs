@@ -2,6 +2,7 @@
 
 use super::Contender;
 use super::shadow::Shadows;
+use super::tie::Tie;
 use crate::track::select::{Candidate, Smoothness, best_path};
 
 /// Hypotheses of each part that a move of two weighs on a drawing.
@@ -13,6 +14,8 @@ pub struct Scene<'a> {
     pub contenders: &'a [Contender<'a>],
     /// Who hides whom.
     pub shadows: &'a Shadows,
+    /// Who hangs on whom.
+    pub ties: &'a [Tie],
 }
 
 impl Scene<'_> {
@@ -35,6 +38,26 @@ impl Scene<'_> {
             }
         }
         self.shadows.cost(c, d, h, &hidden)
+    }
+
+    /// What the joints of contender `c` cost on its drawing `d` if it follows `h`, those with `but` left out.
+    fn joints(&self, c: usize, d: usize, h: usize, paths: &[Vec<usize>], but: usize) -> f64 {
+        let cost = |tie: &Tie| {
+            let (other, _) = tie.other(c).filter(|(other, _)| *other != but)?;
+            let near = self.contenders[other].drawing_at(self.contenders[c].frame_of(d))?;
+            Some(self.joint(tie, c, (d, h), (near, paths[other][near])))
+        };
+        self.ties.iter().filter_map(cost).sum()
+    }
+
+    /// What one joint of contender `c` costs; drawing and hypothesis of either part.
+    fn joint(&self, tie: &Tie, c: usize, own: (usize, usize), others: (usize, usize)) -> f64 {
+        let Some((other, end)) = tie.other(c) else { return 0.0 };
+        let place = |c: usize, end: usize, (d, h): (usize, usize)| {
+            let hypothesis = &self.contenders[c].pools[d][h];
+            tie.place(end, hypothesis.model, &hypothesis.pose.nodes)
+        };
+        Tie::cost(place(c, end, own), place(other, 1 - end, others))
     }
 
     /// The contenders that `near` may hide.
@@ -82,7 +105,21 @@ impl Scene<'_> {
                 paths[c].iter().zip(self.contenders[c].pools).map(|(&h, pool)| &pool[h].points[..]).collect();
             self.smoothness(c).of_path(&points)
         };
-        touched.iter().map(looks).sum::<f64>() + who.iter().map(smooth).sum::<f64>()
+        let torn = |(i, &c): (usize, &usize)| {
+            // A joint between two of those asked for counts once.
+            let cost = |tie: &Tie| {
+                let (other, _) = tie.other(c).filter(|(other, _)| !who[..i].contains(other))?;
+                let on = |d: usize| {
+                    let near = self.contenders[other].drawing_at(self.contenders[c].frame_of(d))?;
+                    Some(self.joint(tie, c, (d, paths[c][d]), (near, paths[other][near])))
+                };
+                Some((0..paths[c].len()).filter_map(on).sum::<f64>())
+            };
+            self.ties.iter().filter_map(cost).sum::<f64>()
+        };
+        touched.iter().map(looks).sum::<f64>()
+            + who.iter().map(smooth).sum::<f64>()
+            + who.iter().enumerate().map(torn).sum::<f64>()
     }
 
     /// The best path of one contender, the others held. Whether it changed.
@@ -90,7 +127,8 @@ impl Scene<'_> {
         let costs: Vec<Vec<f64>> = (self.contenders[c].pools.iter().enumerate())
             .map(|(d, pool)| {
                 let cost =
-                    |h: usize| self.look(c, d, h, paths, &[]) + self.look_behind(c, d, h, paths, usize::MAX);
+                    |h: usize| self.look(c, d, h, paths, &[]) + self.look_behind(c, d, h, paths, usize::MAX)
+                        + self.joints(c, d, h, paths, usize::MAX);
                 (0..pool.len()).map(cost).collect()
             })
             .collect();
@@ -106,7 +144,7 @@ impl Scene<'_> {
         let look = |d: usize, f: usize, n: usize| self.look(far, d, f, paths, &[(near, n)]);
         let own = |c: usize, d: usize, h: usize, but: usize| {
             let own = if c == near { self.look(c, d, h, paths, &[]) } else { 0.0 };
-            own + self.look_behind(c, d, h, paths, but)
+            own + self.look_behind(c, d, h, paths, but) + self.joints(c, d, h, paths, but)
         };
         let costs: Vec<Vec<f64>> = (0..drawings)
             .map(|d| {
@@ -115,7 +153,9 @@ impl Scene<'_> {
                 let mut table = Vec::new();
                 for (i, &f) in of_far[d].iter().enumerate() {
                     for (j, &n) in of_near[d].iter().enumerate() {
-                        table.push(look(d, f, n) + far_own[i] + near_own[j]);
+                        let tie = self.ties.iter().find(|t| t.other(far).is_some_and(|(o, _)| o == near));
+                        let torn = tie.map_or(0.0, |t| self.joint(t, far, (d, f), (d, n)));
+                        table.push(look(d, f, n) + far_own[i] + near_own[j] + torn);
                     }
                 }
                 table
