@@ -37,6 +37,7 @@ mod finish;
 pub mod job;
 pub mod joint;
 pub mod lattice;
+mod mend;
 pub mod part_by_part;
 pub mod pool;
 pub mod propagate;

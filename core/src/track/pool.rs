@@ -59,17 +59,22 @@ pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>), TrackError> {
     let found: Vec<Vec<Hypothesis>> = searched(stage, &pools)?;
     pools.iter_mut().zip(found).for_each(|(pool, more)| pool.extend(more));
     let path = choose(stage, &pools);
-    let (forwards, backwards) =
-        rayon::join(|| sweep(stage, &pools, &path, true), || sweep(stage, &pools, &path, false));
-    for more in [forwards?, backwards?] {
-        for (pool, hypothesis) in pools.iter_mut().zip(more) {
-            if let Some(new) = hypothesis.filter(|new| is_new(pool, new)) {
+    let more = swept(stage, &pools, &path)?;
+    for (pool, more) in pools.iter_mut().zip(more) {
+        for new in more {
+            if is_new(pool, &new) {
                 pool.push(new);
             }
         }
     }
     let path = choose(stage, &pools);
     Ok((pools, path))
+}
+
+/// What comes of carrying the chosen hypotheses to their neighbours, both ways.
+pub(super) fn swept(stage: &Stage, pools: &Pools, path: &[usize]) -> Result<Pools, TrackError> {
+    let (forwards, backwards) = rayon::join(|| sweep(stage, pools, path, true), || sweep(stage, pools, path, false));
+    Ok(forwards?.into_iter().zip(backwards?).map(|(a, b)| a.into_iter().chain(b).collect()).collect())
 }
 
 /// A pose on a drawing as a hypothesis of its pool.
@@ -168,7 +173,8 @@ fn sweep(stage: &Stage, pools: &Pools, path: &[usize], forwards: bool) -> Result
     let mut carried: Option<Hypothesis> = None;
     for step in 1..last {
         let (to, from) = if forwards { (step, step - 1) } else { (last - step, last - step + 1) };
-        if from == 0 || from == last {
+        if from == 0 || from == last || stage.corrected(to) {
+            carried = None;
             continue;
         }
         let origin = Some((path[from], forwards));

@@ -17,7 +17,9 @@
 use super::drawings::Drawing;
 use super::finish::{Finish, finish};
 use super::job::{Job, SpanSummary, SpanTrack, Termination};
+use super::joint::tie::{Lead, leads};
 use super::joint::{self, Contender};
+use super::mend::mend;
 use super::pool::{self, Pools};
 use super::propagate::Model;
 use super::stage::{Kit, Stage};
@@ -37,7 +39,17 @@ pub struct Rototoon {
     store: Store,
     plain: BTreeMap<(String, Span), Arc<Pooled>>,
     corrected: BTreeMap<(String, Span), Arc<Pooled>>,
+    mended: BTreeMap<(String, Span), Mended>,
     finished: BTreeMap<(String, Span), (Finish, SpanTrack)>,
+}
+
+/// Pools with what a joint choice added, and what they were made from.
+#[derive(Clone)]
+struct Mended {
+    source: Arc<Pooled>,
+    path: Vec<usize>,
+    leads: Vec<Lead>,
+    result: Arc<Pooled>,
 }
 
 /// The hypotheses of a job.
@@ -64,20 +76,25 @@ impl SceneSolver for Rototoon {
         let mut done: Vec<Option<(SpanTrack, bool)>> = vec![None; tasks.len()];
         for stretch in stretches(&tasks) {
             let members: Vec<&Pooled> = stretch.iter().map(|&t| &*pooled[t]).collect();
-            let paths = chosen(scene, &tasks, &stretch, &members);
+            let start = members.iter().map(|m| m.path.clone()).collect();
+            let (paths, leads) = chosen(scene, &tasks, &stretch, &members, start);
+            let mended = self.mend_all(&stretch, &pooled, &paths, &leads, frames, &shared)?;
+            let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
+            let (paths, _) = chosen(scene, &tasks, &stretch, &members, paths);
             let finishes: Vec<Finish> = (0..members.len())
                 .map(|m| Finish::of(scene, &tasks, &stretch, &members, &paths, m))
                 .collect();
             let results: Vec<Result<(SpanTrack, bool), TrackError>> = stretch
                 .par_iter()
                 .zip(&finishes)
-                .map(|(&t, plan)| {
+                .zip(&members)
+                .map(|((&t, plan), member)| {
                     let key = (pooled[t].job.name.clone(), pooled[t].job.span);
                     match self.finished.get(&key) {
                         Some((known, track)) if known == plan => Ok((track.clone(), fresh[t])),
                         _ => {
                             let kit = Kit { store: &self.store, frames, progress: &shared.of(t) };
-                            Ok((finish(kit, &pooled[t], plan)?, true))
+                            Ok((finish(kit, member, plan)?, true))
                         }
                     }
                 })
@@ -132,6 +149,41 @@ impl Rototoon {
         Ok(done.into_iter().flatten().unzip())
     }
 
+    /// The pools of a stretch's members with what their joint choice adds.
+    fn mend_all(
+        &mut self,
+        stretch: &[usize],
+        pooled: &[Arc<Pooled>],
+        paths: &[Vec<usize>],
+        leads: &[Vec<Lead>],
+        frames: &dyn FrameSource,
+        shared: &SharedProgress,
+    ) -> Result<Vec<Arc<Pooled>>, TrackError> {
+        let members: Vec<usize> = (0..stretch.len()).collect();
+        let mended: Vec<Result<Mended, TrackError>> = members
+            .par_iter()
+            .map(|&m| {
+                let source = &pooled[stretch[m]];
+                let key = (source.job.name.clone(), source.job.span);
+                if let Some(known) = self.mended.get(&key) {
+                    if Arc::ptr_eq(&known.source, source) && known.path == paths[m] && known.leads == leads[m] {
+                        return Ok(known.clone());
+                    }
+                }
+                let kit = Kit { store: &self.store, frames, progress: &shared.of(stretch[m]) };
+                let result = Arc::new(mended_pools(kit, source, &paths[m], &leads[m])?);
+                Ok(Mended { source: source.clone(), path: paths[m].clone(), leads: leads[m].clone(), result })
+            })
+            .collect();
+        let mut results = Vec::new();
+        for mended in mended {
+            let mended = mended?;
+            results.push(mended.result.clone());
+            self.mended.insert((mended.source.job.name.clone(), mended.source.job.span), mended);
+        }
+        Ok(results)
+    }
+
     /// The pools of a job without and with its corrections, and whether anything was made.
     fn pool(&self, kit: Kit, job: &Job) -> Result<(Arc<Pooled>, Arc<Pooled>, bool), TrackError> {
         let key = (job.name.clone(), job.span);
@@ -175,8 +227,24 @@ fn corrected_pools(kit: Kit, job: &Job, plain: &Pooled) -> Result<Pooled, TrackE
     Ok(Pooled { job: job.clone(), drawings, models, pools, path, steps })
 }
 
-/// The paths of the members of a stretch, chosen together.
-fn chosen(scene: &Scene, tasks: &[Task], stretch: &[usize], members: &[&Pooled]) -> Vec<Vec<usize>> {
+fn mended_pools(kit: Kit, source: &Pooled, path: &[usize], leads: &[Lead]) -> Result<Pooled, TrackError> {
+    let (drawings, models) = (source.drawings.clone(), source.models.clone());
+    let pools = if models.is_some() && !crate::knob!("NOMEND", 0.0).is_normal() {
+        mend(&Stage::set(kit, &source.job, models.clone())?, &source.pools, path, leads)?
+    } else {
+        source.pools.clone()
+    };
+    Ok(Pooled { job: source.job.clone(), drawings, models, pools, path: path.to_vec(), steps: source.steps })
+}
+
+/// The paths of the members of a stretch, chosen together from the ones given, and what leads each member.
+fn chosen(
+    scene: &Scene,
+    tasks: &[Task],
+    stretch: &[usize],
+    members: &[&Pooled],
+    start: Vec<Vec<usize>>,
+) -> (Vec<Vec<usize>>, Vec<Vec<Lead>>) {
     let free: Vec<usize> = (0..members.len()).filter(|&m| members[m].models.is_some()).collect();
     let contender = |&m: &usize| {
         let (task, pooled) = (tasks[stretch[m]], members[m]);
@@ -191,12 +259,13 @@ fn chosen(scene: &Scene, tasks: &[Task], stretch: &[usize], members: &[&Pooled])
         })
     };
     let contenders: Vec<Contender> = free.iter().filter_map(contender).collect();
-    let start = free.iter().map(|&m| members[m].path.clone()).collect();
-    let mut paths = vec![Vec::new(); members.len()];
-    for (&m, path) in free.iter().zip(joint::choose(&contenders, start)) {
-        paths[m] = path;
+    let found = joint::choose(&contenders, free.iter().map(|&m| start[m].clone()).collect());
+    let led = leads(&contenders, &found);
+    let (mut paths, mut all_leads) = (vec![Vec::new(); members.len()], vec![Vec::new(); members.len()]);
+    for ((&m, path), lead) in free.iter().zip(found).zip(led) {
+        (paths[m], all_leads[m]) = (path, lead);
     }
-    paths
+    (paths, all_leads)
 }
 
 /// Tasks that share frames between their keys, directly or by others, in the order of time.

@@ -92,3 +92,39 @@ fn hinge(a: &Contender, b: &Contender) -> Option<(f64, [Point; 2])> {
     let fits = apart <= 4.0 + 0.05 * mesh_a.size && belongs(a, 1, places[1]) && belongs(b, 1, places[1]);
     fits.then_some((score, places))
 }
+
+/// Where a part's joint lies, on the drawings on which the part is in doubt and the one it hangs on is surer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lead {
+    /// The joint in the lattices of the part's models.
+    pub bindings: [Binding; 2],
+    /// Its place by drawing of the part.
+    pub places: Vec<Option<Point>>,
+}
+
+/// Distance of the models' first hypotheses, or of the torn joint's ends, from which on a part is in doubt.
+const DOUBT: f64 = 4.0;
+
+/// The leads of each contender.
+pub fn leads(contenders: &[Contender], paths: &[Vec<usize>]) -> Vec<Vec<Lead>> {
+    let ties = find(contenders);
+    let of = |c: usize| {
+        let lead = |tie: &Tie| {
+            let (other, end) = tie.other(c)?;
+            let place = |d: usize| {
+                let near = contenders[other].drawing_at(contenders[c].frame_of(d))?;
+                let pool = &contenders[c].pools[d];
+                let (own, theirs) = (&pool[paths[c][d]], &contenders[other].pools[near][paths[other][near]]);
+                let there = tie.place(1 - end, theirs.model, &theirs.pose.nodes);
+                let torn = tie.place(end, own.model, &own.pose.nodes).distance(there) > DOUBT;
+                let unsure = pool.len() < 2 || pool[0].distance(&pool[1]) > DOUBT;
+                (theirs.pose.energy < own.pose.energy && (torn || unsure)).then_some(there)
+            };
+            let places: Vec<Option<Point>> = (0..contenders[c].pools.len()).map(place).collect();
+            let any = places.iter().any(Option::is_some);
+            any.then(|| Lead { bindings: tie.bindings[end], places })
+        };
+        ties.iter().filter_map(lead).collect()
+    };
+    (0..contenders.len()).map(of).collect()
+}
