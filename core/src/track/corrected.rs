@@ -58,6 +58,7 @@ fn constrained(stage: &Stage, d: usize, pool: &[Hypothesis]) -> Result<Vec<Hypot
         let scenery = stage.scenery(model, d);
         let mut starts: Vec<Pose> = Vec::new();
         for h in pool.iter().filter(|h| h.model == model) {
+            starts.push(stage.models[model].drawn(&scenery, &h.pose.nodes, &h.differences));
             let turned = TURNS.iter().map(|degrees| scenery.anchors.turned(&h.pose.nodes, degrees.to_radians()));
             for start in std::iter::once(h.pose.nodes.clone()).chain(turned) {
                 starts.push(stage.models[model].settled(&scenery, &start));

@@ -6,7 +6,7 @@
 
 use super::TrackError;
 use super::features::Features;
-use super::lattice::align::{Aligner, Target, settle};
+use super::lattice::align::{Aligner, Target, draw, settle};
 use super::lattice::anchors::Anchors;
 use super::lattice::texture::{Cover, Texture};
 use super::store::FLOW_LEVEL;
@@ -15,6 +15,11 @@ use crate::image::flow::Flow;
 
 /// Weight of a node's samples below which the flow of the samples says nothing about it.
 const LEAST_FLOW_WEIGHT: f64 = 0.3;
+
+/// Colour difference at which a sample no longer says that its place is right.
+const FITS: f32 = 0.01;
+/// Weight of a place that is right, beside the lattice's stiffness.
+const HOLD: f64 = 0.3;
 
 /// A part's texture at one key, ready to be aligned.
 pub struct Model {
@@ -81,6 +86,20 @@ impl Model {
     /// A pose brought to its anchors, with its energy.
     pub fn settled(&self, scenery: &Scenery, start: &[Point]) -> Pose {
         self.measured(scenery, settle(&self.texture.mesh, start, scenery.anchors))
+    }
+
+    /// A pose drawn to its anchors; what fits the picture stays where it is. `differences` as of
+    /// [`Texture::differences`].
+    pub fn drawn(&self, scenery: &Scenery, start: &[Point], differences: &[f32]) -> Pose {
+        let mut hold = vec![(0.0, 1e-9); start.len()];
+        for (texel, difference) in self.texture.measured().iter().zip(differences) {
+            let fits = f64::from((-difference / FITS).exp());
+            for (n, w) in texel.binding.nodes.into_iter().zip(texel.binding.weights) {
+                hold[n] = (hold[n].0 + w.max(0.0) * fits, hold[n].1 + w.max(0.0));
+            }
+        }
+        let hold: Vec<f64> = hold.into_iter().map(|(sum, weight)| HOLD * (sum / weight).powi(2)).collect();
+        self.measured(scenery, draw(&self.texture.mesh, start, scenery.anchors, &hold))
     }
 
     /// A pose aligned on all levels.

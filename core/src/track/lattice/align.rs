@@ -31,6 +31,10 @@ const RIDGE: f64 = 1e-7;
 /// Local / global steps that bring a bare lattice to its anchors.
 const SETTLING: usize = 8;
 
+/// Steps in which a pose is drawn to its anchors, and local / global iterations of each.
+const DRAWS: usize = 6;
+const DRAW_ITERATIONS: usize = 3;
+
 /// What a lattice is aligned to.
 #[derive(Clone, Copy)]
 pub struct Target<'a> {
@@ -101,6 +105,36 @@ pub fn settle(mesh: &Mesh, start: &[Point], anchors: &Anchors) -> Vec<Point> {
         shape::add_gradient(mesh, &nodes, &shape::rotations(mesh, &nodes), -1.0, &mut gradient);
         if solve_and_move(matrix, gradient, anchors, &mut nodes, f64::INFINITY).is_none() {
             break;
+        }
+    }
+    nodes
+}
+
+/// A pose drawn to its anchors, while its nodes are held to where they are by the weights in `hold` (beside a lattice's
+/// own stiffness of about 1): what fits the picture stays, and what does not follows the anchors.
+///
+/// The anchors are approached in several steps, so that a limb turns on its way and is not torn through itself.
+pub fn draw(mesh: &Mesh, start: &[Point], anchors: &Anchors, hold: &[f64]) -> Vec<Point> {
+    let mut nodes = start.to_vec();
+    let stiffness = shape::stiffness(mesh);
+    for step in 1..=DRAWS {
+        let target = anchors.toward(&nodes, 1.0 / (DRAWS + 1 - step) as f64);
+        for _ in 0..DRAW_ITERATIONS {
+            let mut matrix = stiffness.clone();
+            let mut gradient = vec![0.0; 2 * nodes.len()];
+            shape::add_gradient(mesh, &nodes, &shape::rotations(mesh, &nodes), -1.0, &mut gradient);
+            let inverse = 1.0 / (mesh.side * mesh.side);
+            for (n, (at, from)) in nodes.iter().zip(start).enumerate() {
+                let weight = inverse * hold[n] + 1e-6;
+                let pull = (*from - *at) * (inverse * hold[n]);
+                for (axis, pull) in [pull.x, pull.y].into_iter().enumerate() {
+                    matrix.add(2 * n + axis, 2 * n + axis, weight);
+                    gradient[2 * n + axis] += pull;
+                }
+            }
+            if solve_and_move(matrix, gradient, &target, &mut nodes, f64::INFINITY).is_none() {
+                return nodes;
+            }
         }
     }
     nodes

@@ -54,6 +54,12 @@ impl Anchors {
         self.anchors.is_empty()
     }
 
+    /// The same constraints, but only a share of the way from where the nodes are.
+    pub fn toward(&self, nodes: &[Point], share: f64) -> Self {
+        let nearer = |a: &Anchor| Anchor { terms: a.terms.clone(), place: a.place - a.missing(nodes) * (1.0 - share) };
+        Self { anchors: self.anchors.iter().map(nearer).collect() }
+    }
+
     /// A pose turned by `angle` about the mean of its anchored places.
     pub fn turned(&self, nodes: &[Point], angle: f64) -> Vec<Point> {
         let from: Point = self.anchors.iter().map(|a| a.place - a.missing(nodes)).sum();
