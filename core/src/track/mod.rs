@@ -25,7 +25,12 @@
 //! - [`edge_maps`]: edges of frames and distances to them, kept
 //! - [`region`]: where a part's centre lies between keys
 //! - [`energy`]: the space-time energy, a file a term
+//!
+//! The presets of Agarwala et al. 2004 and Liang et al. 2012:
+//! - [`agarwala2004`], [`liang2012`]: what each chooses
+//! - [`rotoscope`]: the space-time energy of both, a file a term, and its solution
 
+pub mod agarwala2004;
 pub mod confidence;
 pub mod drawings;
 pub mod edge_maps;
@@ -33,9 +38,11 @@ pub mod energy;
 pub mod features;
 pub mod job;
 pub mod lattice;
+pub mod liang2012;
 pub mod pool;
 pub mod propagate;
 pub mod region;
+pub mod rotoscope;
 pub mod rototoon;
 pub mod search;
 pub mod select;
