@@ -100,7 +100,8 @@ pub fn minimise(
     assert!(x.len().is_multiple_of(2), "points have two coordinates");
     let mut cost = objective.linearise(x);
     let initial_cost = cost;
-    let summary = |termination, iterations, final_cost| TrustSummary { termination, iterations, initial_cost, final_cost };
+    let summary =
+        |termination, iterations, final_cost| TrustSummary { termination, iterations, initial_cost, final_cost };
     if !cost.is_finite() {
         return summary(TrustTermination::NoDescent, 0, cost);
     }

@@ -93,7 +93,7 @@ fn track(stage: &Stage, pools: &Pools, path: &[usize]) -> SpanTrack {
         (0..pools.len()).map(|d| pools[d][choose(d)].pose.energy).sum::<f64>() / pools.len() as f64
     };
     let summary = SpanSummary {
-        termination: Termination::CostConverged,
+        termination: Termination::PathChosen,
         iterations: stage.steps_done.load(Ordering::Relaxed),
         initial_cost: energy(&|_| 0),
         final_cost: energy(&|d| path[d]),

@@ -72,8 +72,7 @@ impl Term for Appearance<'_> {
 fn walk_samples<S: Sink>(term: &Appearance<'_>, frame: usize, pose: &Pose, sink: &mut S) {
     for i in (0..term.curve.places.len()).step_by(1 << term.level) {
         let (place, tangent) = (&term.curve.places[i], &term.curve.tangents[i]);
-        let [now, next] =
-            [frame, frame + 1].map(|f| Profile::new(pose.places[f][i], pose.tangents[f][i], term.level));
+        let [now, next] = [frame, frame + 1].map(|f| Profile::new(pose.places[f][i], pose.tangents[f][i], term.level));
         let handles = [Handle::earlier(place), Handle::earlier(tangent), Handle::later(place), Handle::later(tangent)];
         sink.open(&handles);
         for &offset in term.offsets {
@@ -108,7 +107,7 @@ mod tests {
             let (curve, x) = curve_case(points, closed);
             let term = Appearance { curve: &curve, scenery: &scenery, level, offsets: &WINDOW };
             let worst = worst_of_pictures(&term, &curve, &x).unwrap();
-            assert!(worst.error < 2e-2, "level {level}: {worst:?}");
+            assert!(worst.error < 1e-2, "level {level}: {worst:?}");
         }
     }
 

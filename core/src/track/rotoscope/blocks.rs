@@ -37,7 +37,8 @@ impl Band {
     }
 
     fn slot(self, row: usize, column: usize) -> usize {
-        let offset = if self.width == self.points { column } else { (column + self.points + REACH - row) % self.points };
+        let offset =
+            if self.width == self.points { column } else { (column + self.points + REACH - row) % self.points };
         row * self.width + offset
     }
 
@@ -288,8 +289,7 @@ mod tests {
     fn check(points: usize, closed: bool) {
         let scenery = scenery();
         let (curve, x) = curve_case(points, closed);
-        let term =
-            appearance::Appearance { curve: &curve, scenery: &scenery, level: 0, offsets: &appearance::WINDOW };
+        let term = appearance::Appearance { curve: &curve, scenery: &scenery, level: 0, offsets: &appearance::WINDOW };
         let pose = pose(&curve, &x);
         let link = |t: usize| {
             let mut link = Link::new(points);
@@ -325,7 +325,9 @@ mod tests {
 
     #[test]
     fn products_are_those_of_the_jacobian() {
-        for (points, closed) in [(2, false), (3, true), (5, false), (8, true), (11, true), (12, true), (17, true), (17, false)] {
+        for (points, closed) in
+            [(2, false), (3, true), (5, false), (8, true), (11, true), (12, true), (17, true), (17, false)]
+        {
             check(points, closed);
         }
     }

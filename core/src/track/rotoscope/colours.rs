@@ -110,7 +110,7 @@ mod tests {
             let (curve, x) = curve_case(points, closed);
             let term = Colours::new(&curve, &scenery, level, &pose(&curve, &x), 4);
             let worst = worst_of_pictures(&term, &curve, &x).unwrap();
-            assert!(worst.error < 2e-2, "{worst:?}");
+            assert!(worst.error < 1e-2, "{worst:?}");
         }
     }
 

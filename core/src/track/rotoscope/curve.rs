@@ -166,12 +166,12 @@ impl Curve {
             let before = if i == 0 { n - 1 } else { i - 1 };
             // Divided difference on uneven spacing h₁, h₂: 2 (Δ₂/h₂ − Δ₁/h₁)/(h₁ + h₂), times SPACING².
             let mean = 2.0 / (1.0 / scales[before] + 1.0 / scales[i]);
-            Functional::default()
-                .plus(mean * scales[i], &chords[i])
-                .plus(-mean * scales[before], &chords[before])
+            Functional::default().plus(mean * scales[i], &chords[i]).plus(-mean * scales[before], &chords[before])
         };
-        self.seconds = if closed { (0..n).map(second).collect() } else { (1..chords.len().max(1)).map(second).collect() };
-        self.chords = chords.iter().zip(&scales).map(|(chord, &scale)| Functional::default().plus(scale, chord)).collect();
+        self.seconds =
+            if closed { (0..n).map(second).collect() } else { (1..chords.len().max(1)).map(second).collect() };
+        self.chords =
+            chords.iter().zip(&scales).map(|(chord, &scale)| Functional::default().plus(scale, chord)).collect();
     }
 }
 
@@ -238,7 +238,9 @@ mod tests {
             let curve = Curve::new([&points, &points], closed);
             let same = |f: &Functional| assert!(f.read(&points).distance(f.read(&moved)) < 1e-12);
             curve.tangents.iter().chain(&curve.chords).chain(&curve.seconds).for_each(same);
-            assert!(curve.places[3].read(&moved).distance(curve.places[3].read(&points) + Point::new(7.0, -3.0)) < 1e-12);
+            assert!(
+                curve.places[3].read(&moved).distance(curve.places[3].read(&points) + Point::new(7.0, -3.0)) < 1e-12
+            );
         }
     }
 

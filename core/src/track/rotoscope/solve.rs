@@ -65,7 +65,8 @@ pub fn solve(
     for level in (0..scenery.levels()).rev() {
         let mut energy = Energy::new(method, &curve, &scenery, level, &fixed, &start);
         let done = (scenery.levels() - 1 - level) as f64 / scenery.levels() as f64;
-        let report = Report { progress, from: READ + (1.0 - READ) * done, share: (1.0 - READ) / scenery.levels() as f64 };
+        let report =
+            Report { progress, from: READ + (1.0 - READ) * done, share: (1.0 - READ) / scenery.levels() as f64 };
         let summary = on_level(&mut energy, &mut x, &options(level), &report)?;
         iterations += summary.iterations;
         last = Some(summary);

@@ -137,7 +137,9 @@ impl Views {
         kept.views.insert(frame, (now, made.clone()));
         let most = (BUDGET / bytes(&made).max(1)).max(1);
         while kept.views.len() > most {
-            let Some(oldest) = kept.views.iter().min_by_key(|(_, (used, _))| *used).map(|(&frame, _)| frame) else { break };
+            let Some(oldest) = kept.views.iter().min_by_key(|(_, (used, _))| *used).map(|(&frame, _)| frame) else {
+                break;
+            };
             kept.views.remove(&oldest);
         }
         Ok(made)
