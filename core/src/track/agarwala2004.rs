@@ -6,8 +6,7 @@
 //! those of the authors' published system.
 //!
 //! Differences: contours are Catmull–Rom curves through our control points instead of fitted Béziers, and correspond by
-//! these; every part is solved by itself, where theirs may share joints; the start is the linear blend of the keys alone,
-//! without their first solution of the shape terms.
+//! these; every part is solved by itself, where theirs may share joints.
 //!
 //! Limits: the blend must come within reach of the coarsest window (32 px of the picture); the image term compares neighbouring
 //! frames and both sides of the contour, so it follows a textured background where that has more contrast; drawings that

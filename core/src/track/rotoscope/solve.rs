@@ -1,6 +1,6 @@
 //! A job from coarse to fine.
 //!
-//! 1. The curves start as the keys blended linearly; between corrections of the artist they are shifted along.
+//! 1. The curves start as the keys blended linearly; what the artist corrected is spread to the frames around it.
 //! 2. On each level of the pyramid, the coarsest first, the [energy](super::energy) is minimised over all frames at once by
 //!    [Gauss–Newton in a trust region](crate::numeric::trust_region): no point moves more than 10 working pixels a step.
 //!
@@ -13,10 +13,10 @@
 //! Keys, pins and corrected centres are fixed exactly.
 
 use super::curve::Curve;
-use super::energy::{Energy, Fixed, Method};
+use super::energy::{Energy, Fixed, Method, Weights};
 use super::sureness::confidence;
 use super::views::{Scenery, Views, working_scale};
-use crate::geometry::{Point, polygon};
+use crate::geometry::Point;
 use crate::numeric::trust_region::{Objective, TrustOptions, TrustSummary, TrustTermination, minimise};
 use crate::scene::{Cancelled, FrameNumber, FrameSource, Progress};
 use crate::track::job::{Job, SpanSummary, SpanTrack, Termination};
@@ -55,11 +55,10 @@ pub fn solve(
     }
     let scale = working_scale(job.size.1);
     let scenery = scenery(views, job, frames, progress, scale)?;
-    let to_working = |points: &[Point]| points.iter().map(|&p| p / scale).collect::<Vec<Point>>();
-    let start: Vec<Vec<Point>> = start(job).iter().map(|points| to_working(points)).collect();
-    let curve = Curve::new([&start[0], &start[count - 1]], job.closed);
     let fixed = fixed(job);
-    let mut x: Vec<f64> = start.iter().flatten().flat_map(|p| [p.x, p.y]).collect();
+    let start = start(method, job, &scenery, &fixed, scale);
+    let curve = Curve::new([&start[0], &start[count - 1]], job.closed);
+    let mut x = flat(&start);
     let initial_cost = Energy::new(method, &curve, &scenery, 0, &fixed, &start).cost(&x);
     let (mut iterations, mut last) = (0, None);
     for level in (0..scenery.levels()).rev() {
@@ -71,8 +70,7 @@ pub fn solve(
         iterations += summary.iterations;
         last = Some(summary);
     }
-    let working: Vec<Vec<Point>> =
-        x.chunks_exact(2 * curve.points).map(|x| x.chunks_exact(2).map(|p| Point::new(p[0], p[1])).collect()).collect();
+    let working = unflat(&x, curve.points);
     let confidence = confidence(job, &curve, &scenery, &working);
     let mut points: Vec<Vec<Point>> = working.iter().map(|curve| curve.iter().map(|&p| p * scale).collect()).collect();
     points.iter_mut().enumerate().for_each(|(index, curve)| job.enforce(index, curve));
@@ -132,31 +130,37 @@ fn scenery(
     Ok(Scenery::new(seen, &occluders))
 }
 
-/// The blended keys, shifted by how far the artist moved what is corrected, blended between corrected frames.
-fn start(job: &Job) -> Vec<Vec<Point>> {
-    let last = job.span.len() - 1;
-    let mut shifts = vec![(0, Point::ZERO)];
-    for (&index, correction) in &job.corrections {
-        let blended = job.interpolated(index);
-        let of_pins = correction.pins.iter().map(|(&j, &p)| p - blended[j]).sum::<Point>();
-        let shift = match correction.center {
-            Some(center) => center - polygon::center(&blended),
-            None => of_pins / correction.pins.len().max(1) as f64,
-        };
-        shifts.push((index, shift));
-    }
-    shifts.push((last, Point::ZERO));
-    let shift = |index: usize| {
-        let after = shifts.iter().position(|&(at, _)| at >= index).unwrap_or(0).max(1);
-        let ((from, a), (to, b)) = (shifts[after - 1], shifts[after]);
-        a.lerp(b, (index - from) as f64 / (to - from) as f64)
-    };
+/// The blended keys; where the artist corrected something, what minimises E_C and E_V with the corrections fixed. Both are
+/// quadratic, and without corrections the blend is their minimum.
+fn start(method: &Method, job: &Job, scenery: &Scenery, fixed: &Fixed, scale: f64) -> Vec<Vec<Point>> {
     let on_frame = |index: usize| {
-        let mut points: Vec<Point> = job.interpolated(index).iter().map(|&p| p + shift(index)).collect();
+        let mut points = job.interpolated(index);
         job.enforce(index, &mut points);
-        points
+        points.into_iter().map(|p| p / scale).collect::<Vec<Point>>()
     };
-    (0..=last).map(on_frame).collect()
+    let start: Vec<Vec<Point>> = (0..job.span.len()).map(on_frame).collect();
+    if job.corrections.is_empty() {
+        return start;
+    }
+    let shape = Weights { length: 0.0, image: 0.0, edge: 0.0, colours: 0.0, ..method.weights };
+    let method = Method { weights: shape, ..method.clone() };
+    let curve = Curve::new([&start[0], &start[start.len() - 1]], job.closed);
+    let coarsest = scenery.levels() - 1;
+    let mut x = flat(&start);
+    let anywhere = TrustOptions { radius: f64::MAX.sqrt(), max_iterations: 4, ..options(0) };
+    minimise(&mut Energy::new(&method, &curve, scenery, coarsest, fixed, &start), &mut x, &anywhere, |_| {
+        ControlFlow::Continue(())
+    });
+    unflat(&x, curve.points)
+}
+
+fn flat(points: &[Vec<Point>]) -> Vec<f64> {
+    points.iter().flatten().flat_map(|p| [p.x, p.y]).collect()
+}
+
+fn unflat(x: &[f64], points: usize) -> Vec<Vec<Point>> {
+    let frame = |x: &[f64]| x.chunks_exact(2).map(|p| Point::new(p[0], p[1])).collect();
+    x.chunks_exact(2 * points).map(frame).collect()
 }
 
 fn fixed(job: &Job) -> Fixed {
