@@ -11,6 +11,9 @@
 //! The derivative is that of the bilinear picture and of the normal. (The authors' system reads gradients smoothed by
 //! σ = 1 and keeps the normal's length fixed; with the exact one the trust region meets what its model foretold.)
 //!
+//! Since the constant has no slope, a step that would take many samples behind a nearer part is refused rather than bent: the
+//! curve settles early there.
+//!
 //! Limits: neighbouring frames are compared, never a frame with a key, so a curve that has slipped off stays off; both sides of
 //! the contour count, although the background does not move with the part.
 
@@ -97,7 +100,7 @@ fn walk_samples<S: Sink>(term: &Appearance<'_>, frame: usize, pose: &Pose, sink:
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{curve_case, residuals, scenery, worst_of_pictures};
+    use super::super::tests::{curve_case, residuals, scenery, scenery_with, worst_of_pictures};
     use super::*;
 
     #[test]
@@ -109,6 +112,19 @@ mod tests {
             let worst = worst_of_pictures(&term, &curve, &x).unwrap();
             assert!(worst.error < 1e-2, "level {level}: {worst:?}");
         }
+    }
+
+    #[test]
+    fn hidden_places_cost_a_constant_and_pull_nowhere() {
+        let all = [(0.0, 0.0), (128.0, 0.0), (128.0, 128.0), (0.0, 128.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+        let (curve, x) = curve_case(8, true);
+        // Frame 2 is hidden: the steps to it and from it, of three, cannot be compared.
+        let scenery = scenery_with(&[vec![], vec![], vec![all], vec![]]);
+        let term = Appearance { curve: &curve, scenery: &scenery, level: 0, offsets: &WINDOW };
+        let (rows, cost) = residuals(&term, &curve, &x);
+        assert_eq!(rows, 3 * term.count());
+        let constants = 2.0 * term.count() as f64 * HIDDEN;
+        assert!(cost > constants && cost < 1.01 * constants);
     }
 
     #[test]

@@ -30,6 +30,11 @@ pub fn pose(curve: &Curve, x: &[Point]) -> Pose {
 
 /// Four pictures of planes, one a channel, that shift by (2, 1) a frame: bilinear reading is exact and has no creases.
 pub fn scenery() -> Scenery {
+    scenery_with(&vec![Vec::new(); 4])
+}
+
+/// The same behind nearer contours, by frame.
+pub fn scenery_with(occluders: &[Vec<Vec<Point>>]) -> Scenery {
     let view = |frame: usize| -> Arc<View> {
         let picture = Raster::from_fn(128, 128, |x, y| {
             let (x, y) = (x as f32 + 0.5 - 2.0 * frame as f32, y as f32 + 0.5 - frame as f32);
@@ -37,7 +42,7 @@ pub fn scenery() -> Scenery {
         });
         Arc::new(Pyramid::new(picture, LEVELS, 0.0))
     };
-    Scenery::new((0..4).map(view).collect(), &vec![Vec::new(); 4])
+    Scenery::new((0..4).map(view).collect(), occluders)
 }
 
 /// Number of residuals, and their sum of squares with the constants, over all frames of `x`.
