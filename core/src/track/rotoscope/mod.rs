@@ -24,7 +24,7 @@
 //! - [`blocks`]: JᵀJ as a block-tridiagonal matrix
 //! - [`energy`]: the terms joined, as an objective for [`trust_region`](crate::numeric::trust_region)
 //! - [`solve`]: from coarse to fine
-//! - [`sureness`]: confidence
+//! - [`sureness`]: confidence of the points
 //!
 //! Every term is a sum of squares. A term is written once, as a walk over its residuals with their derivatives by what it reads
 //! of the curves ([`Handle`]); costs, normal equations and the tests' Jacobian come from the same walk into different [`Sink`]s.
