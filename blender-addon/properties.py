@@ -7,6 +7,8 @@ import bpy
 PRESETS = (
     ("rototoon", "Rototoon", "Textured lattices that follow each part from both keys: the best that Rototoon knows"),
     ("zhou2011", "Zhou & Xiao 2011", "Space-time energy of contours, edges and regions, as published"),
+    ("agarwala2004", "Agarwala et al. 2004", "Space-time energy of shape, image and edges: key-frame based rotoscoping"),
+    ("liang2012", "Liang et al. 2012", "The same with a two-sided ribbon and a colour penalty"),
 )
 PLANES = (
     ("CAMERA", "Camera", "The footage is what the scene's camera shows in its background"),

@@ -75,8 +75,8 @@ class Job:
     solved: bool
     """Solved in this run; otherwise known from a run before, as nothing that bears on it had changed."""
     termination: str
-    """Why the solver stopped: ``nothing_to_solve``, ``cost_converged``, ``step_converged``, ``no_descent`` or
-    ``iteration_limit``."""
+    """Why the solver stopped: ``nothing_to_solve``, ``cost_converged``, ``step_converged``, ``no_descent``,
+    ``iteration_limit`` or ``path_chosen``."""
     iterations: int
     initial_cost: float
     final_cost: float
@@ -216,8 +216,9 @@ class Session:
         """Tracks every part between its keys and stores ``tracks`` and ``confidence`` in the document.
 
         Spans that nothing touched since they were last solved in this session are not solved again. Snapped curves of
-        frames whose track changed are dropped. `preset` is ``rototoon`` or ``zhou2011``; `threads` is the number of
-        threads, 0 for one a core; it does not change the result. Raises `Cancelled`, the document unchanged.
+        frames whose track changed are dropped. `preset` is ``rototoon``, ``zhou2011``, ``agarwala2004`` or
+        ``liang2012``; `threads` is the number of threads, 0 for one a core; it does not change the result. Raises
+        `Cancelled`, the document unchanged.
         """
         options = {"preset": preset, "threads": threads}
         summary = self._long("rototoon_session_track", options, progress)

@@ -306,7 +306,7 @@ RototoonStatus rototoon_session_clear_center(const struct RototoonSession *sessi
 //
 // `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
 // "final_cost"}]}`, one job for each part and span; `solved` is false where the job was reused; `termination` is one
-// of nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit.
+// of nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit, path_chosen.
 RototoonStatus rototoon_session_track(const struct RototoonSession *session,
                                       const uint8_t *options,
                                       size_t options_length,
@@ -467,7 +467,7 @@ RototoonStatus rototoon_session_clear_center(const struct RototoonSession *sessi
 //
 // `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
 // "final_cost"}]}`, one job for each part and span; `solved` is false where the job was reused; `termination` is one
-// of nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit.
+// of nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit, path_chosen.
 RototoonStatus rototoon_session_track(const struct RototoonSession *session,
                                       const uint8_t *options,
                                       size_t options_length,

@@ -252,5 +252,6 @@ fn termination_id(termination: Termination) -> &'static str {
         Termination::StepConverged => "step_converged",
         Termination::NoDescent => "no_descent",
         Termination::IterationLimit => "iteration_limit",
+        Termination::PathChosen => "path_chosen",
     }
 }

@@ -373,7 +373,7 @@ pub unsafe extern "C" fn rototoon_session_clear_center(
 ///
 /// `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
 /// "final_cost"}]}`, one job for each part and span; `solved` is false where the job was reused; `termination` is one
-/// of nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit.
+/// of nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit, path_chosen.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_track(
     session: *const RototoonSession,

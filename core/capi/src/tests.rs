@@ -245,7 +245,10 @@ fn options_and_missing_pictures_are_named() {
     let session = session();
     let before = document(&session);
     for (options, expected) in [
-        ("{\"preset\": \"best\"}", "preset: found \"best\", expected one of rototoon, zhou2011"),
+        (
+            "{\"preset\": \"best\"}",
+            "preset: found \"best\", expected one of rototoon, zhou2011, agarwala2004, liang2012",
+        ),
         ("{\"speed\": 3}", "speed"),
         ("{\"threads\": 100000}", "expected a whole number from 0 to 1024"),
         ("{", "options"),

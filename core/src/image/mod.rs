@@ -7,7 +7,6 @@
 //! - [`distance_transform`]: Manhattan distance to the nearest edge
 //! - [`flow`]: dense optical flow by inverse search
 //! - [`gaussian`]: separable blur
-//! - [`holds`]: which frames show the same drawing
 //! - [`mean_shift`]: the filter that flattens colours and keeps edges
 //! - [`pixel`]: what a pixel is to the filters
 //! - [`pyramid`]: a picture at halved sizes
@@ -23,7 +22,6 @@ pub mod decode;
 pub mod distance_transform;
 pub mod flow;
 pub mod gaussian;
-pub mod holds;
 pub mod mean_shift;
 pub mod pixel;
 pub mod pyramid;
@@ -33,5 +31,4 @@ pub mod sequence;
 mod vector;
 
 pub use decode::{DecodeError, decode, probe};
-pub use holds::{HoldError, HoldOptions, Holds, find_holds};
 pub use sequence::Sequence;

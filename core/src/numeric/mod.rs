@@ -7,6 +7,7 @@
 //! - [`gradient_check`]: an analytic Jacobian against differences
 //! - [`normal_equations`]: JᵀJ and Jᵀr of a sparse Jacobian of fixed pattern
 //! - [`sparse_least_squares`]: Levenberg–Marquardt on such problems
+//! - [`trust_region`]: Gauss–Newton within a trust region by conjugate gradients
 
 pub mod assignment;
 pub mod banded;
@@ -15,3 +16,4 @@ pub mod damped_system;
 pub mod gradient_check;
 pub mod normal_equations;
 pub mod sparse_least_squares;
+pub mod trust_region;

@@ -102,7 +102,12 @@ pub const ALL: [Parameter; 12] = [
         stage: Stage::Track,
         kind: Kind::Choice {
             default: "rototoon",
-            choices: &[choice("rototoon", "Rototoon"), choice("zhou2011", "Zhou & Xiao 2011")],
+            choices: &[
+                choice("rototoon", "Rototoon"),
+                choice("zhou2011", "Zhou & Xiao 2011"),
+                choice("agarwala2004", "Agarwala et al. 2004"),
+                choice("liang2012", "Liang et al. 2012"),
+            ],
         },
     },
     Parameter {

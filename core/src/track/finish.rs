@@ -142,7 +142,7 @@ fn track(stage: &Stage, pooled: &Pooled, pools: &[Vec<Hypothesis>], path: &[usiz
         (0..pools.len()).map(|d| pools[d][choose(d)].pose.energy).sum::<f64>() / pools.len() as f64
     };
     let summary = SpanSummary {
-        termination: Termination::CostConverged,
+        termination: Termination::PathChosen,
         iterations: pooled.steps,
         initial_cost: energy(&|_| 0),
         final_cost: energy(&|d| path[d]),

@@ -57,6 +57,8 @@ pub enum Termination {
     NoDescent,
     /// The limit of iterations was reached.
     IterationLimit,
+    /// The best path through the hypotheses was chosen.
+    PathChosen,
 }
 
 /// How a solver fared on a job.

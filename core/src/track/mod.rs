@@ -26,7 +26,12 @@
 //! - [`edge_maps`]: edges of frames and distances to them, kept
 //! - [`region`]: where a part's centre lies between keys
 //! - [`energy`]: the space-time energy, a file a term
+//!
+//! The presets of Agarwala et al. 2004 and Liang et al. 2012:
+//! - [`agarwala2004`], [`liang2012`]: what each chooses
+//! - [`rotoscope`]: the space-time energy of both, a file a term, and its solution
 
+pub mod agarwala2004;
 pub mod confidence;
 mod corrected;
 pub mod drawings;
@@ -37,11 +42,13 @@ mod finish;
 pub mod job;
 pub mod joint;
 pub mod lattice;
+pub mod liang2012;
 mod mend;
 pub mod part_by_part;
 pub mod pool;
 pub mod propagate;
 pub mod region;
+pub mod rotoscope;
 pub mod rototoon;
 pub mod search;
 pub mod select;

@@ -3,7 +3,9 @@
 //! A solver keeps what it computed, so that after an edit only what the edit touches is solved again. A result depends on
 //! nothing but the scene and the pictures, whatever was solved before and whatever the number of threads.
 
+use super::agarwala2004::Agarwala2004;
 use super::job::{SpanSolver, SpanSummary};
+use super::liang2012::Liang2012;
 use super::part_by_part::PartByPart;
 use super::rototoon::Rototoon;
 use super::zhou2011::Zhou2011;
@@ -19,11 +21,20 @@ pub enum Preset {
     Rototoon,
     /// Zhou & Xiao 2011 as printed.
     Zhou2011,
+    /// Agarwala et al. 2004.
+    Agarwala2004,
+    /// Agarwala et al. 2004 with the ribbon and the colour penalty of Liang et al. 2012.
+    Liang2012,
 }
 
 impl Preset {
     /// Every preset with its id in documents, parameters and on the command line.
-    pub const ALL: [(Self, &str); 2] = [(Self::Rototoon, "rototoon"), (Self::Zhou2011, "zhou2011")];
+    pub const ALL: [(Self, &str); 4] = [
+        (Self::Rototoon, "rototoon"),
+        (Self::Zhou2011, "zhou2011"),
+        (Self::Agarwala2004, "agarwala2004"),
+        (Self::Liang2012, "liang2012"),
+    ];
 
     /// The preset of an id.
     pub fn from_id(id: &str) -> Option<Self> {
@@ -34,6 +45,8 @@ impl Preset {
         match self {
             Self::Rototoon => Box::new(Rototoon::default()),
             Self::Zhou2011 => Box::new(PartByPart::new(Box::new(Zhou2011::default()))),
+            Self::Agarwala2004 => Box::new(PartByPart::new(Box::new(Agarwala2004::default()))),
+            Self::Liang2012 => Box::new(PartByPart::new(Box::new(Liang2012::default()))),
         }
     }
 }

@@ -2,4 +2,5 @@
 //! drawn scene of known motion.
 
 mod memory;
+mod rotoscope;
 mod scene;
