@@ -1,6 +1,7 @@
 //! Tracked and true contours over the footage, as a contact sheet.
 //!
-//! The frames between keys, evenly chosen, the worst one always among them. The footage is paled. The true contour is a
+//! The frames between keys, evenly chosen, the worst one always among them, cut to where the contours are. The footage is
+//! paled. The true contour is a
 //! thin dark line; the tracked control points are joined by straight lines in the part's colour; a bad point is a red
 //! ring with a line to its true place. Parts that are keyed on the frame are not drawn.
 
@@ -9,7 +10,7 @@ use crate::measure::Row;
 use crate::sheet;
 use anyhow::{Context, Result};
 use image::{Rgba, RgbaImage};
-use rototoon::geometry::Point;
+use rototoon::geometry::{Point, polygon};
 use rototoon::scene::{Colour, FrameNumber, Raster, palette};
 use std::collections::BTreeMap;
 use tiny_skia::{Color, IntSize, LineJoin, Paint, PathBuilder, Pixmap, Stroke, Transform};
@@ -18,6 +19,10 @@ use tiny_skia::{Color, IntSize, LineJoin, Paint, PathBuilder, Pixmap, Stroke, Tr
 const PICTURES: usize = 12;
 /// How much of the footage's contrast is left.
 const CONTRAST: f32 = 0.55;
+/// Space around the contours, as a share of the footage's height.
+const MARGIN: f64 = 0.04;
+/// Most height of a picture for its width.
+const TALLEST: f64 = 1.25;
 /// Widths of lines in pixels of the sheet.
 const TRUE_WIDTH: f32 = 1.0;
 const TRACKED_WIDTH: f32 = 1.8;
@@ -28,10 +33,12 @@ const BAD_RADIUS: f32 = 4.5;
 /// The sheet of a run; an error where it has no frame to show.
 pub fn sheet(run: &Run) -> Result<RgbaImage> {
     let worst = worst(&run.outcome.frames).context("no frame between keys")?;
-    let cells = chosen(&run.outcome.frames, worst).into_iter().map(|errors| {
+    let shown = chosen(&run.outcome.frames, worst);
+    let cut = cut(run, &shown);
+    let cells = shown.into_iter().map(|errors| {
         let mark = if errors.frame == worst { " · worst" } else { "" };
         let caption = format!("frame {} · good {:.0} %{mark}", errors.frame, 100.0 * errors.good);
-        sheet::captioned(&cell(run, errors.frame)?, &caption)
+        sheet::captioned(&cell(run, errors.frame, cut)?, &caption)
     });
     sheet::arrange(&cells.collect::<Result<Vec<_>>>()?)
 }
@@ -55,10 +62,39 @@ fn chosen(frames: &[FrameErrors], worst: FrameNumber) -> Vec<FrameErrors> {
     chosen
 }
 
-fn cell(run: &Run, frame: FrameNumber) -> Result<RgbaImage> {
-    let footage = run.frames.picture(frame)?;
-    let small = sheet::shrunk(&paled(&footage));
-    let scale = f64::from(small.width()) / footage.width() as f64;
+/// A rectangle of whole pixels of the footage: left, top, width, height.
+type Cut = [u32; 4];
+
+/// What the contours of the frames take, tracked and true, with a margin, within the picture and not narrow.
+fn cut(run: &Run, shown: &[FrameErrors]) -> Cut {
+    let parts = run.tracked.parts.iter().zip(&run.truth.parts);
+    let contours = parts.flat_map(|(part, truth)| {
+        let of = |errors: &FrameErrors| [part.tracks.get(&errors.frame), truth.contour.get(&errors.frame)];
+        shown.iter().flat_map(of).flatten().flatten().copied()
+    });
+    let size = (run.tracked.footage.width as f64, run.tracked.footage.height as f64).into();
+    around(&contours.collect::<Vec<_>>(), size)
+}
+
+fn around(points: &[Point], size: Point) -> Cut {
+    let (low, high) = polygon::bounds(points).unwrap_or((Point::ZERO, size));
+    let margin = Point::splat(MARGIN * size.y);
+    let (low, high) = ((low - margin).clamp(Point::ZERO, size), (high + margin).clamp(Point::ZERO, size));
+    let width = (high.x - low.x).max((high.y - low.y) / TALLEST).min(size.x);
+    let left = ((low.x + high.x - width) / 2.0).clamp(0.0, size.x - width);
+    let start = |v: f64, most: f64| v.floor().clamp(0.0, most - 1.0) as u32;
+    let (left, top) = (start(left, size.x), start(low.y, size.y));
+    let end = |v: f64, from: u32, most: f64| (v.ceil().min(most) as u32).saturating_sub(from).max(1);
+    [left, top, end(f64::from(left) + width, left, size.x), end(high.y, top, size.y)]
+}
+
+fn cell(run: &Run, frame: FrameNumber, [left, top, width, height]: Cut) -> Result<RgbaImage> {
+    let footage = paled(&*run.frames.picture(frame)?);
+    let small = sheet::shrunk(&image::imageops::crop_imm(&footage, left, top, width, height).to_image());
+    let view = View {
+        origin: Point::new(f64::from(left), f64::from(top)),
+        scale: f64::from(small.width()) / f64::from(width),
+    };
     let size = IntSize::from_wh(small.width(), small.height()).context("an empty picture")?;
     let mut picture = Pixmap::from_vec(small.into_raw(), size).context("a picture of another size")?;
     let rows: BTreeMap<(usize, usize), &Row> =
@@ -72,7 +108,7 @@ fn cell(run: &Run, frame: FrameNumber) -> Result<RgbaImage> {
         let [r, g, b] = palette::distinct(k);
         let colour = Color::from_rgba(r, g, b, 1.0).unwrap_or(Color::BLACK);
         let points = &part.tracks[&frame];
-        let mut pen = Pen { picture: &mut picture, scale };
+        let mut pen = Pen { picture: &mut picture, view };
         pen.line(points, part.closed, Color::from_rgba8(255, 255, 255, 190), TRACKED_WIDTH + 1.4);
         pen.line(points, part.closed, colour, TRACKED_WIDTH);
         pen.line(&truth.contour[&frame], part.closed, Color::from_rgba8(0, 0, 0, 220), TRUE_WIDTH);
@@ -98,15 +134,23 @@ fn paled(footage: &Raster<Colour>) -> RgbaImage {
     })
 }
 
+/// What a cell shows of the footage.
+#[derive(Clone, Copy)]
+struct View {
+    origin: Point,
+    scale: f64,
+}
+
 /// Draws in pixels of the footage.
 struct Pen<'a> {
     picture: &'a mut Pixmap,
-    scale: f64,
+    view: View,
 }
 
 impl Pen<'_> {
     fn place(&self, p: Point) -> (f32, f32) {
-        ((p.x * self.scale) as f32, (p.y * self.scale) as f32)
+        let p = (p - self.view.origin) * self.view.scale;
+        (p.x as f32, p.y as f32)
     }
 
     fn line(&mut self, points: &[Point], closed: bool, colour: Color, width: f32) {
@@ -172,6 +216,17 @@ mod tests {
             let shown = numbers(40, bad);
             assert!(shown.len() == 12 && shown.contains(&bad) && shown.windows(2).all(|w| w[0] < w[1]), "{shown:?}");
         }
+    }
+
+    #[test]
+    fn the_cut_holds_the_contours_and_lies_in_the_picture() {
+        let size = Point::new(1000.0, 500.0);
+        let of = |low: (f64, f64), high: (f64, f64)| around(&[low.into(), high.into()], size);
+        assert_eq!(of((300.0, 200.0), (500.0, 300.0)), [280, 180, 240, 140]);
+        assert_eq!(of((-50.0, 100.0), (2000.0, 900.0)), [0, 80, 1000, 420], "beyond the picture");
+        assert_eq!(of((10.0, 20.0), (30.0, 480.0)), [0, 0, 400, 500], "as wide as its height demands");
+        assert_eq!(around(&[], size), [0, 0, 1000, 500]);
+        assert_eq!(of((3000.0, 3000.0), (3001.0, 3001.0)), [999, 499, 1, 1], "nothing is seen");
     }
 
     #[test]
