@@ -7,7 +7,7 @@
 use crate::lettering;
 use anyhow::{Context, Result};
 use std::fmt::Write;
-use tiny_skia::{Color, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Rect, Stroke, StrokeDash, Transform};
+use tiny_skia::{Color, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Rect, Stroke, StrokeDash, Transform};
 
 /// Red, green, blue, 0 to 255.
 pub type Ink = [u8; 3];
@@ -138,6 +138,14 @@ fn write_mark(out: &mut String, mark: &Mark) -> std::fmt::Result {
     }
 }
 
+fn polyline(points: &[[f32; 2]]) -> Option<Path> {
+    let mut builder = PathBuilder::new();
+    for (i, [x, y]) in points.iter().enumerate() {
+        if i == 0 { builder.move_to(*x, *y) } else { builder.line_to(*x, *y) }
+    }
+    builder.finish()
+}
+
 fn paint_mark(picture: &mut Pixmap, mark: &Mark) {
     let scale = Transform::from_scale(SCALE, SCALE);
     let colour = |[r, g, b]: Ink| Color::from_rgba8(r, g, b, 255);
@@ -148,11 +156,7 @@ fn paint_mark(picture: &mut Pixmap, mark: &Mark) {
     };
     match mark {
         Mark::Line { points, ink, width, dash } => {
-            let mut builder = PathBuilder::new();
-            for (i, [x, y]) in points.iter().enumerate() {
-                if i == 0 { builder.move_to(*x, *y) } else { builder.line_to(*x, *y) }
-            }
-            let Some(path) = builder.finish() else { return };
+            let Some(path) = polyline(points) else { return };
             let dash = dash.and_then(|lengths| StrokeDash::new(lengths.to_vec(), 0.0));
             let stroke = Stroke {
                 width: *width,

@@ -3,7 +3,7 @@
 //! The frames between keys, evenly chosen, the worst one always among them, cut to where the contours are. The footage is
 //! paled. The true contour is a
 //! thin dark line; the tracked control points are joined by straight lines in the part's colour; a bad point is a red
-//! ring with a line to its true place. Parts that are keyed on the frame are not drawn.
+//! dot with a line to its true place. Parts that are keyed on the frame are not drawn.
 
 use super::run::{FrameErrors, Run};
 use crate::measure::Row;
@@ -28,7 +28,7 @@ const TRUE_WIDTH: f32 = 1.0;
 const TRACKED_WIDTH: f32 = 1.8;
 /// Radii of good and bad points in pixels of the sheet.
 const GOOD_RADIUS: f32 = 1.8;
-const BAD_RADIUS: f32 = 4.5;
+const BAD_RADIUS: f32 = 3.4;
 
 /// The sheet of a run; an error where it has no frame to show.
 pub fn sheet(run: &Run) -> Result<RgbaImage> {
@@ -113,13 +113,15 @@ fn cell(run: &Run, frame: FrameNumber, [left, top, width, height]: Cut) -> Resul
         pen.line(points, part.closed, colour, TRACKED_WIDTH);
         pen.line(&truth.contour[&frame], part.closed, Color::from_rgba8(0, 0, 0, 220), TRUE_WIDTH);
         for (index, &point) in points.iter().enumerate() {
-            let bad = rows.get(&(k, index)).is_some_and(|row| row.bad(height));
-            if bad {
-                let red = Color::from_rgba8(225, 0, 30, 255);
+            if rows.get(&(k, index)).is_some_and(|row| row.bad(height)) {
+                let red = Color::from_rgba8(215, 0, 40, 255);
                 pen.line(&[point, truth.points[&frame][index]], false, red, 1.2);
-                pen.ring(point, BAD_RADIUS, red);
+                // The white rim tells it from contours in red.
+                pen.dot(point, BAD_RADIUS + 1.4, Color::WHITE);
+                pen.dot(point, BAD_RADIUS, red);
+            } else {
+                pen.dot(point, GOOD_RADIUS, colour);
             }
-            pen.dot(point, GOOD_RADIUS, colour);
         }
     }
     RgbaImage::from_raw(picture.width(), picture.height(), picture.take()).context("a picture of another size")
@@ -164,13 +166,6 @@ impl Pen<'_> {
         }
         let Some(path) = builder.finish() else { return };
         let stroke = Stroke { width, line_join: LineJoin::Round, ..Stroke::default() };
-        self.picture.stroke_path(&path, &paint(colour), &stroke, Transform::identity(), None);
-    }
-
-    fn ring(&mut self, at: Point, radius: f32, colour: Color) {
-        let (x, y) = self.place(at);
-        let Some(path) = PathBuilder::from_circle(x, y, radius) else { return };
-        let stroke = Stroke { width: 1.8, ..Stroke::default() };
         self.picture.stroke_path(&path, &paint(colour), &stroke, Transform::identity(), None);
     }
 

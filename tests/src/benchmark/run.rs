@@ -9,6 +9,7 @@ use crate::measure::{Row, percentile, rows};
 use crate::memory::peak_mb;
 use crate::truth::Truth;
 use anyhow::Result;
+use rototoon::image::Sequence;
 use rototoon::pipeline::{frames, in_effect, store};
 use rototoon::project::Document;
 use rototoon::project::save::DECIMALS;
@@ -85,15 +86,12 @@ pub fn run(
     told: impl FnMut(&Work),
 ) -> Result<Run> {
     let start = Instant::now();
-    let mut document = Document::load(&folder.join("project.json"))?;
-    let pictures = frames(&document, folder)?;
     let mut tracker = Tracker::new(TrackOptions { preset });
-    track(&mut tracker, &mut document.scene, &pictures)?;
-    let seconds = start.elapsed().as_secs_f64();
-    let peak = peak_mb();
+    let (mut scene, pictures) = first(&mut tracker, folder)?;
+    let (seconds, peak) = (start.elapsed().as_secs_f64(), peak_mb());
 
     let truth = Truth::load(&folder.join("truth.json"))?;
-    let tracked = document.scene.clone();
+    let tracked = scene.clone();
     let mut times = Vec::new();
     let again = |scene: &mut Scene| {
         // The first track is the one above.
@@ -104,7 +102,7 @@ pub fn run(
         Ok(())
     };
     let none = Rules { rounds: 0, ..Rules::default() };
-    let work = correct(&mut document.scene, &truth, rules.unwrap_or(&none), again, told)?;
+    let work = correct(&mut scene, &truth, rules.unwrap_or(&none), again, told)?;
     let rows = rows(&tracked, &truth)?;
     let outcome = Outcome {
         set: set.to_owned(),
@@ -120,6 +118,14 @@ pub fn run(
         keys: keys(&tracked),
     };
     Ok(Run { outcome, tracked, truth, rows, frames: Box::new(pictures) })
+}
+
+/// Reads the set's document and tracks it.
+fn first(tracker: &mut Tracker, folder: &Path) -> Result<(Scene, Sequence)> {
+    let mut document = Document::load(&folder.join("project.json"))?;
+    let pictures = frames(&document, folder)?;
+    track(tracker, &mut document.scene, &pictures)?;
+    Ok((document.scene, pictures))
 }
 
 /// Tracks the scene and fills in the tracks; the seconds of the tracking alone.
