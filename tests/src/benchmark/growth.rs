@@ -1,6 +1,7 @@
 //! How seconds and memory of a track grow with frames, parts, points and pixels.
 //!
-//! One of the four is doubled at a time from a base scene ([`crate::puppet`]); the others stay. The exponent of a growth
+//! One of the four is doubled at a time from a base scene ([`crate::puppet`]); the others stay. Frames are counted that
+//! show other drawings than the keys; more parts are smaller ones; more points lie closer together on the same contours. The exponent of a growth
 //! is the slope of the least-squares line through the logarithms: 1 is linear.
 
 use crate::chart::{Axis, Chart, INKS, Panel, Series};
@@ -9,7 +10,9 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// The scene from which each series starts: the size of a shot at 540 lines, one span.
-const BASE: Puppet = Puppet { width: 420, height: 540, frames: 9, step: usize::MAX, parts: 6, points: 8 };
+const BASE: Puppet = Puppet { width: 420, height: 540, frames: 12, step: usize::MAX, parts: 6, points: 8 };
+/// Frames that show the drawings of the keys: nothing is tracked there.
+const KEYED: usize = 4;
 /// Times that each quantity is doubled.
 const DOUBLINGS: u32 = 3;
 
@@ -45,7 +48,7 @@ pub fn quantities() -> Vec<Quantity> {
         name,
         scenes: (0..=DOUBLINGS).map(|power| scene(1 << power)).collect(),
     };
-    let between = BASE.frames - 1;
+    let between = BASE.frames - KEYED;
     let larger = |factor: usize| {
         // Pixels double where each side grows by the square root; even sides.
         let side = |base: usize| (base as f64 * (factor as f64).sqrt() / 2.0).round() as usize * 2;
@@ -53,7 +56,7 @@ pub fn quantities() -> Vec<Quantity> {
         (puppet.width * puppet.height, puppet)
     };
     vec![
-        series("frames", &|f| (between * f + 1, Puppet { frames: between * f + 1, ..BASE })),
+        series("frames", &|f| (between * f, Puppet { frames: between * f + KEYED, ..BASE })),
         series("parts", &|f| (BASE.parts * f, Puppet { parts: BASE.parts * f, ..BASE })),
         series("points", &|f| (BASE.parts * BASE.points * f, Puppet { points: BASE.points * f, ..BASE })),
         series("pixels", &larger),
@@ -87,7 +90,8 @@ pub fn markdown(measured: &[Measured]) -> String {
     let Puppet { width, height, frames, parts, points, .. } = BASE;
     let _ = writeln!(
         text,
-        ".\n\nThe base is a drawn scene of {frames} frames of {width}×{height} in one span, {parts} parts, {} points.",
+        ".\n\nThe base is a drawn scene of {frames} frames of {width}×{height} in one span, {parts} parts, {} points. \
+         Frames are those that show other drawings than the keys. More parts are smaller ones; more points lie closer together.",
         parts * points
     );
     text
@@ -163,7 +167,7 @@ mod tests {
                 let (a, b) = (pair[0].1, pair[1].1);
                 let factor = |x: usize, y: usize| y as f64 / x as f64;
                 let all = [
-                    factor(a.frames - 1, b.frames - 1),
+                    factor(a.frames - KEYED, b.frames - KEYED),
                     factor(a.parts, b.parts),
                     factor(a.points, b.points),
                     factor(a.width * a.height, b.width * b.height),
