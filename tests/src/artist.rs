@@ -3,7 +3,7 @@
 //! The artist sees the truth and adjusts the tracks in rounds until [`Rules::enough`] of the points are good
 //! ([`crate::measure`]). In each round the worst quarter of the frames gets one adjustment each, no two of them
 //! neighbours (an artist expects that a correction helps the frames around it): of the part whose bad points are off by
-//! most in sum, the centre is put right where it is off by more than [`CENTER_OFF`] or a quarter of the part's size and
+//! most in sum, the centre is put right where it is off by more than 8 px and a quarter of the part's size and
 //! was not put right before, else the worst of its bad points that has no pin yet. Then the tracker runs again. The
 //! number of adjustments as a share of all control points of the frames between keys is the measure of Zhou & Xiao 2011
 //! (Table 1: 3.6 %, 5.8 % and 9.3 %).

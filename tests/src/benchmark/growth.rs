@@ -1,8 +1,8 @@
 //! How seconds and memory of a track grow with frames, parts, points and pixels.
 //!
 //! One of the four is doubled at a time from a base scene ([`crate::puppet`]); the others stay. Frames are counted that
-//! show other drawings than the keys; more parts are smaller ones; more points lie closer together on the same contours. The exponent of a growth
-//! is the slope of the least-squares line through the logarithms: 1 is linear.
+//! show other drawings than the keys; more parts are smaller ones; more points lie closer together on the same contours.
+//! The exponent of a growth is the slope of the least-squares line through the logarithms: 1 is linear.
 
 use crate::chart::{Axis, Chart, INKS, Panel, Series};
 use crate::puppet::Puppet;
