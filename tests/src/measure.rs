@@ -7,8 +7,12 @@
 //! - `point`: distance from the tracked control point to its own true position, in pixels
 //! - `good`: share of points with `contour` ≤ tol and `point` ≤ 5 tol, where tol = frame height / 270 (2 px at 540 lines)
 
+use crate::truth::{TruePart, Truth};
 use anyhow::{Context, Result, ensure};
-use rototoon::geometry::{Point, polyline};
+use rototoon::geometry::polyline;
+use rototoon::project::Document;
+use rototoon::scene::{Footage, FrameNumber, Part, Scene};
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// One tracked point of one frame.
@@ -29,7 +33,7 @@ pub struct Row {
 }
 
 /// Figures over many points. Of no scored point, `points` is 0 and the rest is NaN.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Figures {
     /// Number of scored points.
     pub points: usize,
@@ -45,73 +49,76 @@ pub struct Figures {
     pub point_p95: f64,
 }
 
-/// Compares a tracked project document with a truth document.
+/// Compares a tracked project document with a truth document; see [`rows`].
+pub fn measure(tracked: &Value, truth: &Value) -> Result<Vec<Row>> {
+    let document = Document::parse(&tracked.to_string(), "the tracked document")?;
+    rows(&document.scene, &Truth::deserialize(truth).context("the truth document")?)
+}
+
+/// Compares a tracked scene with the truth: by part, then frame, then point.
 ///
 /// Errors name the part and the frame where something is missing, not finite, or of another number of points.
-pub fn measure(tracked: &Value, truth: &Value) -> Result<Vec<Row>> {
-    let (parts, truths) = (list(tracked, "parts")?, list(truth, "parts")?);
+pub fn rows(tracked: &Scene, truth: &Truth) -> Result<Vec<Row>> {
+    let (parts, truths) = (&tracked.parts, &truth.parts);
     ensure!(parts.len() == truths.len(), "{} parts tracked, {} expected", parts.len(), truths.len());
-    let frames = |key: &str| tracked["footage"][key].as_i64().with_context(|| format!("footage.{key} is not a number"));
-    let range = frames("first")? as i32..=frames("last")? as i32;
     let mut rows = Vec::new();
     for (k, (part, truth)) in parts.iter().zip(truths).enumerate() {
-        let name = part["name"].as_str().unwrap_or_default();
-        ensure!(part["name"] == truth["name"], "part {name:?}, but the truth of {}", truth["name"]);
-        let closed = part["closed"].as_bool().unwrap_or(true);
-        for frame in between_keys(part)?.into_iter().filter(|f| range.contains(f)) {
-            part_rows(part, truth, closed, k, frame, &mut rows)
-                .with_context(|| format!("part {name:?}, frame {frame}"))?;
+        ensure!(part.name == truth.name, "part {:?}, but the truth of {:?}", part.name, truth.name);
+        for frame in between_keys(part, &tracked.footage) {
+            part_rows(part, truth, k, frame, &mut rows)
+                .with_context(|| format!("part {:?}, frame {frame}", part.name))?;
         }
     }
     Ok(rows)
 }
 
-/// The frames between a part's first and last key that are not keys.
-fn between_keys(part: &Value) -> Result<Vec<i32>> {
-    let keys = part["keys"].as_object().context("a part has no keys")?;
-    let mut frames =
-        keys.keys().map(|k| k.parse().with_context(|| format!("frame {k:?}"))).collect::<Result<Vec<i32>>>()?;
-    frames.sort_unstable();
-    let (Some(&first), Some(&last)) = (frames.first(), frames.last()) else { return Ok(Vec::new()) };
-    Ok((first + 1..last).filter(|f| !frames.contains(f)).collect())
+/// The frames of the footage between a part's first and last key that are not keys.
+pub fn between_keys(part: &Part, footage: &Footage) -> Vec<FrameNumber> {
+    let frames = part.spans().into_iter().flat_map(|span| span.between());
+    frames.filter(|frame| (footage.first..=footage.last).contains(frame)).collect()
 }
 
-fn part_rows(part: &Value, truth: &Value, closed: bool, k: usize, frame: i32, rows: &mut Vec<Row>) -> Result<()> {
-    let key = frame.to_string();
-    let got = points(&part["tracks"][&key]).context("tracked points")?;
-    let want = points(&truth["points"][&key]).context("true points")?;
-    let contour = points(&truth["contour"][&key]).context("true contour")?;
-    let scored = truth["scored"][&key].as_str().context("no scored points in the truth")?.as_bytes();
+fn part_rows(part: &Part, truth: &TruePart, k: usize, frame: FrameNumber, rows: &mut Vec<Row>) -> Result<()> {
+    let got = part.tracks.get(&frame).context("no tracked points")?;
+    let want = truth.points.get(&frame).context("no true points")?;
+    let contour = truth.contour.get(&frame).context("no true contour")?;
+    let scored = truth.scored.get(&frame).context("no scored points in the truth")?.as_bytes();
     ensure!(got.len() == want.len(), "{} tracked points, {} expected", got.len(), want.len());
     ensure!(scored.len() == want.len(), "{} marks of scored points, {} expected", scored.len(), want.len());
     ensure!(got.iter().all(|p| p.is_finite()), "tracked points that are not finite");
-    rows.extend(got.iter().zip(&want).zip(scored).enumerate().map(|(index, ((&g, &w), &mark))| Row {
+    rows.extend(got.iter().zip(want).zip(scored).enumerate().map(|(index, ((&g, &w), &mark))| Row {
         part: k,
         frame,
         index,
-        contour: polyline::distance(g, &contour, closed),
+        contour: polyline::distance(g, contour, part.closed),
         point: g.distance(w),
         scored: mark == b'1',
     }));
     Ok(())
 }
 
-fn list<'a>(document: &'a Value, key: &str) -> Result<&'a Vec<Value>> {
-    document[key].as_array().with_context(|| format!("the document has no list {key:?}"))
+/// The distance to the contour up to which a point is good, in pixels, in frames of this height.
+pub fn tolerance(height: f64) -> f64 {
+    height / 270.0
 }
 
-fn points(value: &Value) -> Result<Vec<Point>> {
-    let list = value.as_array().context("none")?;
-    let number = |v: &Value| v.as_f64().context("not a number");
-    list.iter().map(|p| Ok(Point::new(number(&p[0])?, number(&p[1])?))).collect()
+impl Row {
+    /// Whether the point is good, in frames of this height.
+    pub fn good(&self, height: f64) -> bool {
+        self.contour <= tolerance(height) && self.point <= 5.0 * tolerance(height)
+    }
+
+    /// Whether the picture shows the point and it is not good.
+    pub fn bad(&self, height: f64) -> bool {
+        self.scored && !self.good(height)
+    }
 }
 
 /// Figures over the scored ones of some rows, for frames of this height.
 pub fn figures<'a>(rows: impl IntoIterator<Item = &'a Row>, height: f64) -> Figures {
-    let tol = height / 270.0;
     let rows: Vec<&Row> = rows.into_iter().filter(|row| row.scored).collect();
     let n = rows.len() as f64;
-    let good = rows.iter().filter(|r| r.contour <= tol && r.point <= 5.0 * tol).count();
+    let good = rows.iter().filter(|r| r.good(height)).count();
     let mean = |value: fn(&Row) -> f64| rows.iter().map(|r| value(r)).sum::<f64>() / n;
     let p95 = |value: fn(&Row) -> f64| percentile(rows.iter().map(|r| value(r)).collect(), 0.95);
     Figures {
@@ -125,7 +132,7 @@ pub fn figures<'a>(rows: impl IntoIterator<Item = &'a Row>, height: f64) -> Figu
 }
 
 /// The percentile `q` (0 to 1), linear between neighbouring values; NaN of none.
-fn percentile(mut values: Vec<f64>, q: f64) -> f64 {
+pub fn percentile(mut values: Vec<f64>, q: f64) -> f64 {
     if values.is_empty() {
         return f64::NAN;
     }
@@ -140,16 +147,19 @@ mod tests {
     use super::*;
     use serde_json::json;
 
+    const PERFECT: Figures =
+        Figures { points: 3, good: 1.0, contour_mean: 0.0, contour_p95: 0.0, point_mean: 0.0, point_p95: 0.0 };
+
     fn square(dx: f64) -> Value {
         json!([[dx, 0.0], [dx + 100.0, 0.0], [dx + 100.0, 100.0], [dx, 100.0]])
     }
 
     fn documents(tracked: Value) -> (Value, Value) {
-        let footage = json!({"first": 0, "last": 2, "width": 960, "height": 540});
+        let footage = json!({"pattern": "%d.png", "first": 0, "last": 2, "fps": 24, "width": 960, "height": 540});
         let part = json!({"name": "a", "closed": true, "keys": {"0": square(0.0), "2": square(0.0)}, "tracks": {"1": tracked}});
         let truth =
             json!({"name": "a", "points": {"1": square(0.0)}, "contour": {"1": square(0.0)}, "scored": {"1": "1101"}});
-        (json!({"footage": footage, "parts": [part]}), json!({"parts": [truth]}))
+        (json!({"rototoon": 1, "footage": footage, "parts": [part]}), json!({"parts": [truth]}))
     }
 
     #[test]
@@ -157,11 +167,7 @@ mod tests {
         let (tracked, truth) = documents(square(0.0));
         let rows = measure(&tracked, &truth).unwrap();
         assert_eq!(rows.len(), 4);
-        let figures = figures(&rows, 540.0);
-        assert_eq!(
-            figures,
-            Figures { points: 3, good: 1.0, contour_mean: 0.0, contour_p95: 0.0, point_mean: 0.0, point_p95: 0.0 }
-        );
+        assert_eq!(figures(&rows, 540.0), PERFECT);
     }
 
     #[test]
@@ -191,7 +197,7 @@ mod tests {
         let error = |tracked: &Value| format!("{:#}", measure(tracked, &truth).unwrap_err());
         assert_eq!(error(&tracked), "part \"a\", frame 1: 1 tracked points, 4 expected");
         tracked["parts"][0]["tracks"] = json!({});
-        assert_eq!(error(&tracked), "part \"a\", frame 1: tracked points: none");
+        assert_eq!(error(&tracked), "part \"a\", frame 1: no tracked points");
     }
 
     #[test]

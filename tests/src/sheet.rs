@@ -1,9 +1,11 @@
 //! Contact sheets: rendered strokes over the frames they were tracked in, side by side.
 
+use crate::lettering;
 use anyhow::{Context, Result, ensure};
 use image::imageops::{FilterType, overlay, resize};
 use image::{Rgba, RgbaImage};
 use std::path::{Path, PathBuf};
+use tiny_skia::{Color, Pixmap};
 
 /// Width of one picture on the sheet in pixels.
 const CELL: u32 = 480;
@@ -11,11 +13,13 @@ const CELL: u32 = 480;
 const COLUMNS: u32 = 4;
 /// Space between pictures in pixels.
 const GAP: u32 = 4;
+/// Height of the bar with the caption in pixels.
+const BAR: u32 = 28;
 
 /// One picture of a sheet.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// The frame's number, written in a corner.
+    /// The frame's number, written above.
     pub frame: i32,
     /// The footage's picture.
     pub footage: PathBuf,
@@ -33,62 +37,52 @@ pub fn frame_path(pattern: &str, frame: i32) -> String {
 
 /// Writes the pictures, in their order, as one PNG.
 pub fn write(pictures: &[Picture], path: &Path) -> Result<()> {
-    ensure!(!pictures.is_empty(), "a contact sheet needs a picture");
     let cells = pictures.iter().map(cell).collect::<Result<Vec<_>>>()?;
+    arrange(&cells)?.save(path).with_context(|| format!("cannot write {path:?}"))
+}
+
+/// Cells side by side in their order, the first at the top left.
+pub fn arrange(cells: &[RgbaImage]) -> Result<RgbaImage> {
+    ensure!(!cells.is_empty(), "a contact sheet needs a picture");
+    let width = cells.iter().map(RgbaImage::width).max().unwrap_or(1);
     let height = cells.iter().map(RgbaImage::height).max().unwrap_or(1);
     let rows = (cells.len() as u32).div_ceil(COLUMNS);
     let columns = COLUMNS.min(cells.len() as u32);
     let mut sheet =
-        RgbaImage::from_pixel(columns * (CELL + GAP) + GAP, rows * (height + GAP) + GAP, Rgba([40, 40, 44, 255]));
+        RgbaImage::from_pixel(columns * (width + GAP) + GAP, rows * (height + GAP) + GAP, Rgba([40, 40, 44, 255]));
     for (i, cell) in cells.iter().enumerate() {
         let (column, row) = (i as u32 % COLUMNS, i as u32 / COLUMNS);
-        overlay(&mut sheet, cell, (GAP + column * (CELL + GAP)).into(), (GAP + row * (height + GAP)).into());
+        overlay(&mut sheet, cell, (GAP + column * (width + GAP)).into(), (GAP + row * (height + GAP)).into());
     }
-    sheet.save(path).with_context(|| format!("cannot write {path:?}"))
+    Ok(sheet)
+}
+
+/// A picture of the footage in the size of a cell.
+pub fn shrunk(footage: &RgbaImage) -> RgbaImage {
+    let height = (CELL * footage.height()).div_ceil(footage.width());
+    resize(footage, CELL, height, FilterType::Triangle)
+}
+
+/// The cell under a bar on which `text` is written.
+pub fn captioned(cell: &RgbaImage, text: &str) -> Result<RgbaImage> {
+    let mut bar = Pixmap::new(cell.width(), BAR).context("a cell without pixels")?;
+    bar.fill(Color::from_rgba8(30, 30, 34, 255));
+    lettering::draw(&mut bar, text, [8.0, BAR as f32 - 9.0], BAR as f32 - 16.0, Color::WHITE, false);
+    let bar = RgbaImage::from_raw(cell.width(), BAR, bar.data().to_vec()).context("a bar of another size")?;
+    let mut whole = RgbaImage::new(cell.width(), cell.height() + BAR);
+    overlay(&mut whole, &bar, 0, 0);
+    overlay(&mut whole, cell, 0, BAR.into());
+    Ok(whole)
 }
 
 fn cell(picture: &Picture) -> Result<RgbaImage> {
     let read = |path: &Path| {
         Ok::<_, anyhow::Error>(image::open(path).with_context(|| format!("cannot read {path:?}"))?.to_rgba8())
     };
-    let footage = read(&picture.footage)?;
-    let height = (CELL * footage.height()).div_ceil(footage.width());
-    let mut cell = resize(&footage, CELL, height, FilterType::Triangle);
-    overlay(&mut cell, &resize(&read(&picture.strokes)?, CELL, height, FilterType::Triangle), 0, 0);
-    number(&mut cell, picture.frame);
-    Ok(cell)
-}
-
-/// Rows of three bits for the digits and the minus sign.
-const DIGITS: [[u8; 5]; 11] = [
-    [7, 5, 5, 5, 7],
-    [2, 6, 2, 2, 7],
-    [7, 1, 7, 4, 7],
-    [7, 1, 3, 1, 7],
-    [5, 5, 7, 1, 1],
-    [7, 4, 7, 1, 7],
-    [7, 4, 7, 5, 7],
-    [7, 1, 1, 2, 2],
-    [7, 5, 7, 5, 7],
-    [7, 5, 7, 1, 7],
-    [0, 0, 7, 0, 0],
-];
-
-fn number(cell: &mut RgbaImage, frame: i32) {
-    const DOT: u32 = 3;
-    for (i, c) in frame.to_string().chars().enumerate() {
-        let rows = DIGITS[c.to_digit(10).unwrap_or(10) as usize];
-        let left = 6 + i as u32 * 4 * DOT;
-        for (x, y) in (0..5 * DOT).flat_map(|x| (0..7 * DOT).map(move |y| (x, y))) {
-            let (px, py) = (left + x - DOT, 6 + y - DOT);
-            if px >= cell.width() || py >= cell.height() {
-                continue;
-            }
-            let (column, row) = ((x / DOT).wrapping_sub(1), (y / DOT).wrapping_sub(1));
-            let ink = column < 3 && row < 5 && rows[row as usize] >> (2 - column) & 1 == 1;
-            cell.put_pixel(px, py, if ink { Rgba([255, 255, 255, 255]) } else { Rgba([30, 30, 34, 255]) });
-        }
-    }
+    let mut cell = shrunk(&read(&picture.footage)?);
+    let (width, height) = cell.dimensions();
+    overlay(&mut cell, &resize(&read(&picture.strokes)?, width, height, FilterType::Triangle), 0, 0);
+    captioned(&cell, &picture.frame.to_string())
 }
 
 #[cfg(test)]
@@ -112,9 +106,11 @@ mod tests {
         let picture = |frame| Picture { frame, footage: at("footage.png"), strokes: at("strokes.png") };
         write(&(0..5).map(picture).collect::<Vec<_>>(), &at("sheet.png")).unwrap();
         let sheet = image::open(at("sheet.png")).unwrap().to_rgba8();
-        assert_eq!(sheet.dimensions(), (4 * 484 + 4, 2 * 274 + 4));
+        assert_eq!(sheet.dimensions(), (4 * 484 + 4, 2 * (274 + BAR) + 4));
         assert_eq!(sheet.get_pixel(4 + 100, 4 + 200).0, [255, 0, 0, 255]);
         assert_eq!(sheet.get_pixel(4 + 380, 4 + 200).0, [0, 0, 255, 255]);
+        let inked = |y: u32| (4..484).filter(|&x| sheet.get_pixel(x, y).0[0] > 200).count();
+        assert!((4..4 + BAR).map(inked).sum::<usize>() > 5, "the number of the frame");
     }
 
     #[test]

@@ -2,6 +2,8 @@
 //!
 //! - `documents`: reading and writing project documents, good and bad
 //! - `architecture`: which module may use which
+//! - `bench_tracking`: the benchmark of tracking on a small scene
 
 mod architecture;
+mod bench_tracking;
 mod documents;

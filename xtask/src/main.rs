@@ -1,5 +1,6 @@
 //! Development commands of Rototoon.
 
+mod bench_tracking;
 mod bless;
 mod bundle;
 mod demo;
@@ -41,6 +42,8 @@ enum Command {
         #[arg(long)]
         check: bool,
     },
+    /// Measure every preset on sets with known truth, with tables and pictures in target/bench-tracking.
+    BenchTracking(bench_tracking::Arguments),
     /// Accept the golden pictures that the tests last drew.
     Bless,
     /// Photograph the panel in a real Blender window (Debian sid in a chroot; needs root and debootstrap).
@@ -53,6 +56,7 @@ fn main() -> anyhow::Result<()> {
         Command::Test => test::test(),
         Command::Bundle => bundle::bundle(&bundle::Packager::from_wheel()?).map(|_| ()),
         Command::Generate { check } => generate::generate(check),
+        Command::BenchTracking(arguments) => bench_tracking::bench_tracking(&arguments),
         Command::Bless => bless::bless(),
         Command::Photograph => photograph::photograph(),
     }

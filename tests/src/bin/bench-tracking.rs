@@ -1,0 +1,109 @@
+//! One measurement of `cargo xtask bench-tracking`, in a process of its own.
+
+use anyhow::{Context, Result};
+use clap::{Parser, Subcommand};
+use rototoon::pipeline;
+use rototoon::project::{Document, write_whole};
+use rototoon::scene::Silent;
+use rototoon::track::{Preset, TrackOptions};
+use rototoon_tests::artist::Rules;
+use rototoon_tests::benchmark::growth::Sample;
+use rototoon_tests::benchmark::{overlay, run};
+use rototoon_tests::memory::peak_mb;
+use rototoon_tests::puppet::Puppet;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+#[derive(Parser)]
+#[command(about = "One measurement of `cargo xtask bench-tracking`")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run one preset on one set; writes OUT.json and the overlay sheet OUT.png.
+    Run {
+        /// Folder with project.json and truth.json.
+        folder: PathBuf,
+        /// Name of the set in the results.
+        #[arg(long)]
+        set: String,
+        /// Id of the preset.
+        #[arg(long)]
+        preset: String,
+        /// Path of the results without an ending.
+        #[arg(long)]
+        out: PathBuf,
+        /// Leave the simulated artist out.
+        #[arg(long)]
+        no_edits: bool,
+        /// Threads; 0 for one a core.
+        #[arg(long, default_value_t = 0)]
+        threads: usize,
+    },
+    /// Track a document with the default preset; prints seconds and peak memory as JSON.
+    Time {
+        /// Folder with project.json.
+        folder: PathBuf,
+        /// Threads; 0 for one a core.
+        #[arg(long, default_value_t = 0)]
+        threads: usize,
+    },
+    /// Draw a scene of limbs.
+    Draw {
+        /// The folder to make.
+        folder: PathBuf,
+        /// Width, height, frames, frames from key to key, parts, points of a part.
+        #[arg(num_args = 6)]
+        numbers: Vec<usize>,
+    },
+}
+
+fn main() -> Result<()> {
+    match Arguments::parse().command {
+        Command::Run { folder, set, preset, out, no_edits, threads } => {
+            pool(threads)?.install(|| run_preset(&folder, &set, &preset, &out, no_edits))
+        }
+        Command::Time { folder, threads } => pool(threads)?.install(|| time(&folder)),
+        Command::Draw { folder, numbers } => {
+            let [width, height, frames, step, parts, points] = numbers[..] else { return Ok(()) };
+            Puppet { width, height, frames, step, parts, points }.write(&folder)
+        }
+    }
+}
+
+fn pool(threads: usize) -> Result<rayon::ThreadPool> {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads")
+}
+
+fn run_preset(folder: &Path, set: &str, id: &str, out: &Path, no_edits: bool) -> Result<()> {
+    let preset = Preset::from_id(id).with_context(|| format!("no preset {id:?}"))?;
+    let rules = Rules::default();
+    let run = run::run(set, folder, (preset, id), (!no_edits).then_some(&rules), |work| {
+        let (good, edits) = (100.0 * work.last.good, work.edits());
+        eprintln!("{set}, {id}: round {}, {edits} edits, good {good:.1} %", work.rounds);
+    })?;
+    let mut png = Cursor::new(Vec::new());
+    overlay::sheet(&run)?.write_to(&mut png, image::ImageFormat::Png)?;
+    write_whole(&ending(out, ".png"), png.get_ref())?;
+    write_whole(&ending(out, ".json"), &serde_json::to_vec_pretty(&run.outcome)?)?;
+    Ok(())
+}
+
+fn ending(path: &Path, ending: &str) -> PathBuf {
+    let mut path = path.as_os_str().to_owned();
+    path.push(ending);
+    path.into()
+}
+
+fn time(folder: &Path) -> Result<()> {
+    let start = Instant::now();
+    let mut document = Document::load(&folder.join("project.json"))?;
+    pipeline::track(&mut document, folder, &TrackOptions::default(), &Silent)?;
+    let sample = Sample { seconds: start.elapsed().as_secs_f64(), peak_mb: peak_mb() };
+    println!("{}", serde_json::to_string(&sample)?);
+    Ok(())
+}

@@ -1,0 +1,255 @@
+//! `bench-tracking`: every preset over sets with known truth; tables and pictures in `target/bench-tracking`.
+//!
+//! The measurements are made by an optimised program (`rototoon-tests`, binary `bench-tracking`), since this one is built
+//! for quick development; each set and preset has a process of its own, so that nothing is warm that should be cold and
+//! its peak memory is its own. Files appear whole: an interrupted run leaves what was finished.
+
+use crate::shell::{capture, cargo, command, root, run, target};
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+use rototoon_tests::benchmark::growth::{self, Measured, Sample};
+use rototoon_tests::benchmark::run::Outcome;
+use rototoon_tests::benchmark::table::{self, Failure};
+use rototoon_tests::benchmark::{presets, write_files};
+use rototoon_tests::puppet::Puppet;
+use rototoon_tests::sample;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// Times that a track is measured for its growth; the fastest counts.
+const REPEATS: usize = 5;
+
+/// What to measure.
+#[derive(Args)]
+pub struct Arguments {
+    /// Folders with project.json (key frames only) and truth.json; the sample cartoon where none is given.
+    dirs: Vec<PathBuf>,
+    /// Only this preset; may be given several times.
+    #[arg(long = "preset", value_name = "ID")]
+    presets: Vec<String>,
+    /// Leave out the simulated artist, who corrects and tracks again.
+    #[arg(long)]
+    no_edits: bool,
+    /// Threads; 0 for one a core.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
+    /// Instead: how seconds and memory grow with frames, parts, points and pixels of drawn scenes.
+    #[arg(long, conflicts_with = "dirs")]
+    growth: bool,
+    /// Instead: peak memory of 100 drawn frames of 1920x1080.
+    #[arg(long, conflicts_with = "dirs")]
+    memory: bool,
+}
+
+/// Measures.
+pub fn bench_tracking(arguments: &Arguments) -> Result<()> {
+    let known = presets();
+    if let Some(id) = arguments.presets.iter().find(|id| !known.contains(&id.as_str())) {
+        bail!("no preset {id:?}: expected one of {}", known.join(", "));
+    }
+    let bench = Bench { program: program()?, out: target().join("bench-tracking"), threads: arguments.threads };
+    std::fs::create_dir_all(&bench.out).with_context(|| format!("cannot make {:?}", bench.out))?;
+    if arguments.growth {
+        bench.growth()?;
+    }
+    if arguments.memory {
+        bench.memory()?;
+    }
+    if arguments.growth || arguments.memory {
+        return Ok(());
+    }
+    bench.sets(arguments, &known)
+}
+
+/// The optimised program.
+fn program() -> Result<PathBuf> {
+    eprintln!("building the optimised benchmark");
+    run(cargo().args(["build", "--quiet", "--release", "-p", "rototoon-tests", "--bin", "bench-tracking"]))?;
+    Ok(target().join("release").join(format!("bench-tracking{}", std::env::consts::EXE_SUFFIX)))
+}
+
+/// The program and where its results go.
+struct Bench {
+    program: PathBuf,
+    out: PathBuf,
+    threads: usize,
+}
+
+impl Bench {
+    fn sets(&self, arguments: &Arguments, known: &[&str]) -> Result<()> {
+        let sets = self.folders(&arguments.dirs)?;
+        let wanted = |id: &&&str| arguments.presets.is_empty() || arguments.presets.iter().any(|other| other == **id);
+        let presets: Vec<&str> = known.iter().filter(wanted).copied().collect();
+        let (mut outcomes, mut failures): (Vec<Outcome>, Vec<Failure>) = (Vec::new(), Vec::new());
+        for (k, (set, folder)) in sets.iter().enumerate() {
+            for (i, preset) in presets.iter().enumerate() {
+                eprintln!("[{}/{}] {set}, {preset}", k * presets.len() + i + 1, sets.len() * presets.len());
+                match self.run(set, folder, preset, arguments.no_edits) {
+                    Ok(outcome) => outcomes.push(outcome),
+                    Err(error) => {
+                        eprintln!("{set}, {preset}: {error:#}");
+                        failures.push((set.clone(), (*preset).to_owned(), format!("{error:#}")));
+                    }
+                }
+                // After each run, so that an interrupted benchmark has its table.
+                write_files(&self.out, &outcomes, &failures)?;
+            }
+        }
+        println!("{}", table::markdown(&outcomes, &failures));
+        println!("{} holds table.md, table.json, a plot of errors a set, and an overlay sheet a run", shown(&self.out));
+        ensure!(failures.is_empty(), "{} of {} runs failed", failures.len(), failures.len() + outcomes.len());
+        Ok(())
+    }
+
+    /// The sets with their names, which differ.
+    fn folders(&self, dirs: &[PathBuf]) -> Result<Vec<(String, PathBuf)>> {
+        if dirs.is_empty() {
+            let folder = self.out.join("sample");
+            sample::write(&folder)?;
+            return Ok(vec![("sample".into(), folder)]);
+        }
+        let mut sets: Vec<(String, PathBuf)> = Vec::new();
+        for dir in dirs {
+            let folder = dir.canonicalize().with_context(|| format!("no folder {dir:?}"))?;
+            for file in ["project.json", "truth.json"] {
+                ensure!(folder.join(file).is_file(), "{dir:?} holds no {file}");
+            }
+            let name = folder.file_name().map_or("set".into(), |name| name.to_string_lossy().into_owned());
+            let taken = |name: &str| sets.iter().any(|(other, _)| other == name);
+            let names = std::iter::once(name.clone()).chain((2..).map(|n| format!("{name}-{n}")));
+            let name = names.into_iter().find(|name| !taken(name)).unwrap_or_default();
+            sets.push((name, folder));
+        }
+        Ok(sets)
+    }
+
+    fn run(&self, set: &str, folder: &Path, preset: &str, no_edits: bool) -> Result<Outcome> {
+        let out = self.out.join(format!("{set}.{preset}"));
+        let results = self.out.join(format!("{set}.{preset}.json"));
+        // Results of an earlier run must not be taken for this one's.
+        if results.exists() {
+            std::fs::remove_file(&results).with_context(|| format!("cannot remove {results:?}"))?;
+        }
+        let mut start = command(&self.program);
+        start.arg("run").arg(folder).args(["--set", set, "--preset", preset, "--threads", &self.threads.to_string()]);
+        start.arg("--out").arg(&out);
+        if no_edits {
+            start.arg("--no-edits");
+        }
+        run(&mut start)?;
+        let text = std::fs::read_to_string(&results).with_context(|| format!("cannot read {results:?}"))?;
+        serde_json::from_str(&text).with_context(|| format!("cannot read {results:?}"))
+    }
+
+    fn growth(&self) -> Result<()> {
+        let mut measured: Vec<Measured> = Vec::new();
+        // The quantities share their base.
+        let mut known: Vec<(Puppet, Sample)> = Vec::new();
+        for quantity in growth::quantities() {
+            let mut samples = Vec::new();
+            for (value, puppet) in &quantity.scenes {
+                let sample = match known.iter().find(|(other, _)| other == puppet) {
+                    Some((_, sample)) => *sample,
+                    None => {
+                        eprintln!("{}: {value}", quantity.name);
+                        self.time(puppet, REPEATS)?
+                    }
+                };
+                known.push((*puppet, sample));
+                samples.push((*value, sample));
+            }
+            measured.push((quantity.name, samples));
+        }
+        let text = growth::markdown(&measured);
+        let drawing = growth::chart(&measured).draw();
+        self.write("growth.md", text.as_bytes())?;
+        self.write("growth.svg", drawing.svg().as_bytes())?;
+        self.write("growth.png", &drawing.png()?)?;
+        println!("{text}\n{} holds growth.md, growth.svg and growth.png", shown(&self.out));
+        Ok(())
+    }
+
+    fn memory(&self) -> Result<()> {
+        let mut text = String::from("| 100 frames of 1920×1080, 16 parts, 192 points | seconds | peak MB |\n");
+        text += "| --- | ---: | ---: |\n";
+        for (keyed, puppet) in [("first and last frame", growth::SHOT), ("five frames", growth::KEYED_SHOT)] {
+            eprintln!("100 frames, keyed on {keyed}");
+            let sample = self.time(&puppet, 1)?;
+            let peak = sample.peak_mb.map_or("–".into(), |mb| format!("{mb:.0}"));
+            writeln!(text, "| keyed on {keyed} | {:.1} | {peak} |", sample.seconds)?;
+        }
+        self.write("memory.md", text.as_bytes())?;
+        println!("{text}\n{} holds memory.md", shown(&self.out));
+        Ok(())
+    }
+
+    /// The fastest of several tracks of a drawn scene, and the largest of their peaks.
+    fn time(&self, puppet: &Puppet, repeats: usize) -> Result<Sample> {
+        let folder = self.out.join("drawn");
+        crate::shell::empty_folder(&folder)?;
+        let Puppet { width, height, frames, step, parts, points } = *puppet;
+        let numbers = [width, height, frames, step, parts, points].map(|n| n.to_string());
+        run(command(&self.program).arg("draw").arg(&folder).args(numbers))?;
+        let mut best: Option<Sample> = None;
+        for _ in 0..repeats {
+            let mut start = command(&self.program);
+            let said = capture(start.arg("time").arg(&folder).args(["--threads", &self.threads.to_string()]))?;
+            let sample: Sample = serde_json::from_str(&said).with_context(|| format!("{said:?} is no sample"))?;
+            best = Some(best.map_or(sample, |b| Sample {
+                seconds: b.seconds.min(sample.seconds),
+                peak_mb: b.peak_mb.zip(sample.peak_mb).map(|(a, b)| a.max(b)),
+            }));
+        }
+        std::fs::remove_dir_all(&folder).with_context(|| format!("cannot remove {folder:?}"))?;
+        best.context("nothing was measured")
+    }
+
+    fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
+        let path = self.out.join(name);
+        std::fs::write(&path, bytes).with_context(|| format!("cannot write {path:?}"))
+    }
+}
+
+fn shown(path: &Path) -> String {
+    path.strip_prefix(root()).unwrap_or(path).display().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bench() -> Bench {
+        Bench { program: "none".into(), out: target().join("xtask-bench-test"), threads: 1 }
+    }
+
+    #[test]
+    fn sets_have_names_of_their_own() {
+        let base = target().join("xtask-bench-sets");
+        crate::shell::empty_folder(&base).unwrap();
+        let dirs = ["a/walk", "b/walk", "run"].map(|name| base.join(name));
+        for dir in &dirs {
+            std::fs::create_dir_all(dir).unwrap();
+            std::fs::write(dir.join("project.json"), "{}").unwrap();
+        }
+        let missing = bench().folders(&dirs).unwrap_err().to_string();
+        assert!(missing.contains("walk") && missing.contains("holds no truth.json"), "{missing}");
+        dirs.iter().for_each(|dir| std::fs::write(dir.join("truth.json"), "{}").unwrap());
+        let names: Vec<String> = bench().folders(&dirs).unwrap().into_iter().map(|(name, _)| name).collect();
+        assert_eq!(names, ["walk", "walk-2", "run"]);
+        std::fs::remove_dir_all(&base).unwrap();
+    }
+
+    #[test]
+    fn an_unknown_preset_is_told_before_anything_is_built() {
+        let arguments = Arguments {
+            dirs: vec![],
+            presets: vec!["best".into()],
+            no_edits: true,
+            threads: 0,
+            growth: false,
+            memory: false,
+        };
+        let error = bench_tracking(&arguments).unwrap_err().to_string();
+        assert!(error.starts_with("no preset \"best\": expected one of rototoon, "), "{error}");
+    }
+}
