@@ -3,10 +3,12 @@
 
 use super::confidence;
 use super::TrackError;
+use super::joint::tie::Lead;
 use super::job::{Job, SpanSummary, SpanTrack, Termination};
 use super::lattice::texture::Cover;
 use super::pool::{Hypothesis, hypothesis};
 use super::rototoon::{Pooled, keys_only};
+use super::settle::settled;
 use super::stage::{Kit, Stage};
 use super::tasks::Task;
 use crate::geometry::{Point, polygon};
@@ -27,6 +29,8 @@ pub(super) struct Finish {
     chosen: Vec<usize>,
     /// By drawing: contours of nearer parts that reach the part, in working pixels.
     occluders: Vec<Vec<Vec<Point>>>,
+    /// Where the parts that this one hangs on have the joints.
+    leads: Vec<Lead>,
 }
 
 impl Finish {
@@ -38,6 +42,7 @@ impl Finish {
         members: &[&Pooled],
         paths: &[Vec<usize>],
         m: usize,
+        leads: &[Lead],
     ) -> Self {
         let own = members[m];
         let chosen = |k: usize, d: usize| &members[k].pools[d][paths[k][d]];
@@ -71,7 +76,7 @@ impl Finish {
         let drawings = if free { own.drawings.len() } else { 0 };
         let path = (0..drawings).map(|d| (chosen(m, d).model, chosen(m, d).pose.nodes.clone())).collect();
         let occluders = (0..drawings).map(around).collect();
-        Self { job: own.job.clone(), path, chosen: paths[m].clone(), occluders }
+        Self { job: own.job.clone(), path, chosen: paths[m].clone(), occluders, leads: leads.to_vec() }
     }
 }
 
@@ -90,9 +95,15 @@ pub(super) fn finish(kit: Kit, pooled: &Pooled, plan: &Finish) -> Result<SpanTra
         .map(|d| {
             kit.progress.report("Tracking", 0.9)?;
             let mut pool = pooled.pools[d].clone();
-            if d != 0 && d != last && !plan.occluders[d].is_empty() {
+            if d != 0 && d != last {
                 let chosen = &pool[plan.chosen[d]];
-                let pose = stage.models[chosen.model].seen(&stage.scenery(chosen.model, d), &chosen.pose.nodes);
+                let mut pose = chosen.pose.clone();
+                if !plan.occluders[d].is_empty() {
+                    pose = stage.models[chosen.model].seen(&stage.scenery(chosen.model, d), &pose.nodes);
+                }
+                if !stage.corrected(d) && crate::knob!("SETTLE", 1.0) > 0.0 {
+                    pose = settled(stage, d, chosen.model, &pose.nodes, &plan.leads);
+                }
                 pool[plan.chosen[d]] = hypothesis(stage, d, chosen.model, pose, None);
             }
             Ok(pool)

@@ -52,6 +52,7 @@ pub mod rotoscope;
 pub mod rototoon;
 pub mod search;
 pub mod select;
+mod settle;
 pub mod stage;
 pub mod store;
 mod tasks;

@@ -80,9 +80,9 @@ impl SceneSolver for Rototoon {
             let (paths, leads) = chosen(scene, &tasks, &stretch, &members, start);
             let mended = self.mend_all(&stretch, &pooled, &paths, &leads, frames, &shared)?;
             let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
-            let (paths, _) = chosen(scene, &tasks, &stretch, &members, paths);
+            let (paths, leads) = chosen(scene, &tasks, &stretch, &members, paths);
             let finishes: Vec<Finish> = (0..members.len())
-                .map(|m| Finish::of(scene, &tasks, &stretch, &members, &paths, m))
+                .map(|m| Finish::of(scene, &tasks, &stretch, &members, &paths, m, &leads[m]))
                 .collect();
             let results: Vec<Result<(SpanTrack, bool), TrackError>> = stretch
                 .par_iter()

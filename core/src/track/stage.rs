@@ -100,6 +100,11 @@ impl<'a> Stage<'a> {
         self.job.span.first + self.drawings[drawing].first as FrameNumber
     }
 
+    /// How badly a pose explains what of the part is seen on a drawing.
+    pub fn seen_energy(&self, drawing: usize, model: usize, nodes: &[Point]) -> f64 {
+        self.models[model].texture.seen_energy(&self.features[drawing], nodes, &self.covers[drawing])
+    }
+
     /// Carries a pose from one drawing to a neighbouring one.
     pub fn carry(
         &self,

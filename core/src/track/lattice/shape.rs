@@ -51,7 +51,7 @@ pub fn soften(mesh: &mut Mesh, shape: &[Point]) {
     let usual = crate::knob!("USUAL", 0.08) * mesh.side;
     let least = crate::knob!("LEAST", 0.1);
     let stiffness = residuals(mesh, shape, &rotations, &rest)
-        .map(|e| least + (1.0 - least) / (1.0 + 0.25 * e / (usual * usual)))
+        .map(|e| least + (crate::knob!("MOST", 1.0) - least) / (1.0 + 0.25 * e / (usual * usual)))
         .collect();
     mesh.stiffness = stiffness;
 }
