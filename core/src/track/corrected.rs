@@ -38,10 +38,8 @@ pub(super) fn extend(stage: &Stage, plain: &[Drawing], pools: &Pools) -> Result<
         })
         .collect::<Result<_, TrackError>>()?;
     let sources: Vec<usize> = (1..last).filter(|&d| stage.corrected(d)).collect();
-    let more: Vec<Vec<(usize, Hypothesis)>> = sources
-        .into_par_iter()
-        .map(|d| carried_on(stage, &extended, d))
-        .collect::<Result<_, TrackError>>()?;
+    let more: Vec<Vec<(usize, Hypothesis)>> =
+        sources.into_par_iter().map(|d| carried_on(stage, &extended, d)).collect::<Result<_, TrackError>>()?;
     for (d, new) in more.into_iter().flatten() {
         if is_new(&extended[d], &new) {
             extended[d].push(new);

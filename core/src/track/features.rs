@@ -87,6 +87,17 @@ impl Level {
 
     /// Bilinear reading at `p` in working pixels; outside the picture the nearest edge is read.
     pub fn sample(&self, p: Point) -> Sample {
+        let ([a, b, c, d], [wa, wb, wc, wd]) = self.around(p);
+        let unit = 1.0 / UNIT;
+        let slope = unit / self.size as f32;
+        std::array::from_fn(|k| {
+            let mixed = wa * f32::from(a[k]) + wb * f32::from(b[k]) + wc * f32::from(c[k]) + wd * f32::from(d[k]);
+            mixed * if k < 3 { unit } else { slope }
+        })
+    }
+
+    /// The four pixels around `p` and their bilinear weights.
+    fn around(&self, p: Point) -> ([&[i16; 9]; 4], [f32; 4]) {
         let (width, height) = (self.raster.width(), self.raster.height());
         let x = (p.x / self.size - 0.5).clamp(0.0, (width - 1) as f64);
         let y = (p.y / self.size - 0.5).clamp(0.0, (height - 1) as f64);
@@ -94,21 +105,18 @@ impl Level {
         let (x1, y1) = ((x0 + 1).min(width - 1), (y0 + 1).min(height - 1));
         let (fx, fy) = ((x - x0 as f64) as f32, (y - y0 as f64) as f32);
         let data = self.raster.data();
-        let (a, b) = (&data[y0 * width + x0], &data[y0 * width + x1]);
-        let (c, d) = (&data[y1 * width + x0], &data[y1 * width + x1]);
-        let unit = 1.0 / UNIT;
-        let slope = unit / self.size as f32;
-        let (wa, wb, wc, wd) = ((1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy);
-        std::array::from_fn(|k| {
-            let mixed = wa * f32::from(a[k]) + wb * f32::from(b[k]) + wc * f32::from(c[k]) + wd * f32::from(d[k]);
-            mixed * if k < 3 { unit } else { slope }
-        })
+        let at = |x: usize, y: usize| &data[y * width + x];
+        let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
+        ([at(x0, y0), at(x1, y0), at(x0, y1), at(x1, y1)], weights)
     }
 
     /// Colour at `p` in working pixels, as [`Level::sample`] reads it.
     pub fn colour(&self, p: Point) -> Colour {
-        let sample = self.sample(p);
-        [sample[0], sample[1], sample[2]]
+        let (quad, weights) = self.around(p);
+        std::array::from_fn(|k| {
+            let mixed: f32 = quad.iter().zip(weights).map(|(v, w)| w * f32::from(v[k])).sum();
+            mixed * (1.0 / UNIT)
+        })
     }
 
     /// Working pixels in a pixel of this level.

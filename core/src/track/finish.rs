@@ -1,14 +1,12 @@
 //! The chosen poses made into tracks: aligned where the part is seen, blended with the other key's model, made to obey
 //! the artist's corrections.
 
-use super::confidence;
 use super::TrackError;
-use super::joint::tie::Lead;
+use super::confidence;
 use super::job::{Job, SpanSummary, SpanTrack, Termination};
 use super::lattice::texture::Cover;
 use super::pool::{Hypothesis, hypothesis};
 use super::rototoon::{Pooled, keys_only};
-use super::settle::settled;
 use super::stage::{Kit, Stage};
 use super::tasks::Task;
 use crate::geometry::{Point, polygon};
@@ -29,8 +27,6 @@ pub(super) struct Finish {
     chosen: Vec<usize>,
     /// By drawing: contours of nearer parts that reach the part, in working pixels.
     occluders: Vec<Vec<Vec<Point>>>,
-    /// Where the parts that this one hangs on have the joints.
-    leads: Vec<Lead>,
 }
 
 impl Finish {
@@ -42,7 +38,6 @@ impl Finish {
         members: &[&Pooled],
         paths: &[Vec<usize>],
         m: usize,
-        leads: &[Lead],
     ) -> Self {
         let own = members[m];
         let chosen = |k: usize, d: usize| &members[k].pools[d][paths[k][d]];
@@ -76,7 +71,7 @@ impl Finish {
         let drawings = if free { own.drawings.len() } else { 0 };
         let path = (0..drawings).map(|d| (chosen(m, d).model, chosen(m, d).pose.nodes.clone())).collect();
         let occluders = (0..drawings).map(around).collect();
-        Self { job: own.job.clone(), path, chosen: paths[m].clone(), occluders, leads: leads.to_vec() }
+        Self { job: own.job.clone(), path, chosen: paths[m].clone(), occluders }
     }
 }
 
@@ -95,15 +90,9 @@ pub(super) fn finish(kit: Kit, pooled: &Pooled, plan: &Finish) -> Result<SpanTra
         .map(|d| {
             kit.progress.report("Tracking", 0.9)?;
             let mut pool = pooled.pools[d].clone();
-            if d != 0 && d != last {
+            if d != 0 && d != last && !plan.occluders[d].is_empty() {
                 let chosen = &pool[plan.chosen[d]];
-                let mut pose = chosen.pose.clone();
-                if !plan.occluders[d].is_empty() {
-                    pose = stage.models[chosen.model].seen(&stage.scenery(chosen.model, d), &pose.nodes);
-                }
-                if !stage.corrected(d) && crate::knob!("SETTLE", 1.0) > 0.0 {
-                    pose = settled(stage, d, chosen.model, &pose.nodes, &plan.leads);
-                }
+                let pose = stage.models[chosen.model].seen(&stage.scenery(chosen.model, d), &chosen.pose.nodes);
                 pool[plan.chosen[d]] = hypothesis(stage, d, chosen.model, pose, None);
             }
             Ok(pool)

@@ -52,7 +52,6 @@ pub mod rotoscope;
 pub mod rototoon;
 pub mod search;
 pub mod select;
-mod settle;
 pub mod stage;
 pub mod store;
 mod tasks;
@@ -66,12 +65,3 @@ pub use weakest::{WeakestFrame, weakest_frame};
 
 #[cfg(test)]
 mod tests;
-
-/// Research knob.
-#[macro_export]
-macro_rules! knob {
-    ($name:expr, $default:expr) => {{
-        static VALUE: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
-        *VALUE.get_or_init(|| std::env::var($name).ok().and_then(|v| v.parse().ok()).unwrap_or($default))
-    }};
-}

@@ -86,12 +86,7 @@ fn next_wave(tasks: &[Task], done: &[Option<(SpanTrack, bool)>]) -> Option<Vec<u
     Some(ready.into_iter().filter(|&t| overlap(tasks[t].span, tasks[earliest].span)).collect())
 }
 
-fn occluders_of(
-    scene: &Scene,
-    tasks: &[Task],
-    done: &[Option<(SpanTrack, bool)>],
-    t: usize,
-) -> Vec<Vec<Vec<Point>>> {
+fn occluders_of(scene: &Scene, tasks: &[Task], done: &[Option<(SpanTrack, bool)>], t: usize) -> Vec<Vec<Vec<Point>>> {
     tasks[t].span.frames().map(|frame| occluders(scene, tasks, done, tasks[t].depth, frame)).collect()
 }
 

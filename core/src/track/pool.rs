@@ -134,7 +134,7 @@ fn carried(stage: &Stage, model: usize) -> Result<Vec<Pose>, TrackError> {
 /// Hypotheses from searching the whole picture, on each drawing where the chains disagree.
 fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
     let lost: Vec<bool> =
-        pools.iter().map(|pool| matches!(&pool[..], [a, b] if a.distance(b) >= crate::knob!("DISAG", 4.0))).collect();
+        pools.iter().map(|pool| matches!(&pool[..], [a, b] if a.distance(b) >= DISAGREEMENT)).collect();
     if !lost.contains(&true) {
         return Ok(vec![Vec::new(); pools.len()]);
     }

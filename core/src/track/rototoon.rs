@@ -80,10 +80,9 @@ impl SceneSolver for Rototoon {
             let (paths, leads) = chosen(scene, &tasks, &stretch, &members, start);
             let mended = self.mend_all(&stretch, &pooled, &paths, &leads, frames, &shared)?;
             let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
-            let (paths, leads) = chosen(scene, &tasks, &stretch, &members, paths);
-            let finishes: Vec<Finish> = (0..members.len())
-                .map(|m| Finish::of(scene, &tasks, &stretch, &members, &paths, m, &leads[m]))
-                .collect();
+            let (paths, _) = chosen(scene, &tasks, &stretch, &members, paths);
+            let finishes: Vec<Finish> =
+                (0..members.len()).map(|m| Finish::of(scene, &tasks, &stretch, &members, &paths, m)).collect();
             let results: Vec<Result<(SpanTrack, bool), TrackError>> = stretch
                 .par_iter()
                 .zip(&finishes)
@@ -229,7 +228,7 @@ fn corrected_pools(kit: Kit, job: &Job, plain: &Pooled) -> Result<Pooled, TrackE
 
 fn mended_pools(kit: Kit, source: &Pooled, path: &[usize], leads: &[Lead]) -> Result<Pooled, TrackError> {
     let (drawings, models) = (source.drawings.clone(), source.models.clone());
-    let pools = if models.is_some() && !crate::knob!("NOMEND", 0.0).is_normal() {
+    let pools = if models.is_some() {
         mend(&Stage::set(kit, &source.job, models.clone())?, &source.pools, path, leads)?
     } else {
         source.pools.clone()
@@ -305,12 +304,7 @@ fn next_wave(scene: &Scene, tasks: &[Task], done: &[Option<(Arc<Pooled>, bool)>]
 }
 
 /// What hides a task's part on its keys: the nearer closed contours as keyed, or as they track by themselves.
-fn occluders(
-    scene: &Scene,
-    tasks: &[Task],
-    done: &[Option<(Arc<Pooled>, bool)>],
-    t: usize,
-) -> Vec<Vec<Vec<Point>>> {
+fn occluders(scene: &Scene, tasks: &[Task], done: &[Option<(Arc<Pooled>, bool)>], t: usize) -> Vec<Vec<Vec<Point>>> {
     let Task { span, depth, .. } = tasks[t];
     let nearer = |p: &Part| p.closed && p.depth > depth && p.point_count() > 2;
     let on = |frame: FrameNumber| {

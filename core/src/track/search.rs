@@ -1,6 +1,6 @@
 //! Motion from nowhere: a part's look searched over the whole picture, in all positions and many directions.
 //!
-//! The key's colours, turned by −90° to 90° in steps of 15°, are compared with every place of a coarse level by the
+//! The key's colours, turned all round in steps of 15°, are compared with every place of a coarse level by the
 //! masked squared difference Σ m (I − t)² / Σ m, expanded into correlations (I² with m, I with m t) that the fast Fourier
 //! transform gives for all places at once. The best places start alignments. This finds what a chain from neighbour to
 //! neighbour has lost: jumps larger than a limb's width, and parts that come back from behind others.
@@ -14,14 +14,13 @@ use crate::geometry::{Point, polygon};
 use crate::image::correlation::{Correlator, Spectrum};
 use crate::scene::Raster;
 
-/// Step and reach of the turns tried, in degrees.
-const TURN_STEP: i32 = 15;
-const TURN_REACH: i32 = 90;
+/// Step of the turns tried, in degrees.
+const TURN_STEP: usize = 15;
 /// Pixels by which the picture is continued beyond its edges, so that parts that are half outside are found.
 const MARGIN: usize = 12;
 /// Places taken of each turn, and of all turns together.
 const PLACES_OF_A_TURN: usize = 2;
-const PLACES: usize = 4;
+const PLACES: usize = 6;
 /// Parts of this size (working pixels) and smaller are searched on the middle level.
 const SMALL: f64 = 70.0;
 /// Parts larger than this share of the lines fill the picture: nothing to search.
@@ -71,8 +70,7 @@ impl Templates {
         let level = usize::from(size <= SMALL);
         let source = key.level(level);
         let cut = Cut { model, source, cover, center: polygon::center(contour), width };
-        let angles =
-            (-(crate::knob!("REACH", 180.0) as i32)..(crate::knob!("REACH", 180.0) as i32)).step_by(TURN_STEP as usize).map(|degrees| f64::from(degrees).to_radians());
+        let angles = (0..360).step_by(TURN_STEP).map(|degrees| f64::from(degrees).to_radians());
         let cuts: Vec<_> = angles.filter_map(|angle| cut.turned(angle, contour)).collect();
         let widest = cuts.iter().map(|(_, _, colours)| colours.width()).max()?;
         let highest = cuts.iter().map(|(_, _, colours)| colours.height()).max()?;
@@ -95,19 +93,7 @@ impl Templates {
         }
         places.sort_by(|a, b| a.difference.total_cmp(&b.difference));
         let center = polygon::center(contour);
-        let pose = |place: &Place| {
-            let turn = Point::from_angle(place.angle);
-            let placed = |shape: &[Point]| -> Vec<Point> {
-                shape.iter().map(|&q| turn.rotate(q - center) + place.center).collect()
-            };
-            let straight = placed(&model.texture.mesh.rest);
-            if crate::knob!("BENT", 1.0) == 0.0 { return straight; }
-            let half: Vec<Point> = model.texture.mesh.rest.iter().zip(&model.bent).map(|(a, b)| a.lerp(*b, 0.5)).collect();
-            let shapes = [straight, placed(&half), placed(&model.bent)];
-            let energy = |nodes: &Vec<Point>| model.texture.energy(picture, nodes);
-            let best = shapes.into_iter().min_by(|a, b| energy(a).total_cmp(&energy(b)));
-            best.unwrap_or_default()
-        };
+        let pose = |place: &Place| posed(model, picture, center, place);
         self.distinct(&places).iter().map(pose).collect()
     }
 
@@ -159,12 +145,24 @@ impl Templates {
             let same = |k: &Place| {
                 k.center.distance(place.center) <= SAME_PLACE * self.size && (k.angle - place.angle).abs() <= SAME_TURN
             };
-            if kept.len() < crate::knob!("PLACES", 6.0) as usize && !kept.iter().any(same) {
+            if kept.len() < PLACES && !kept.iter().any(same) {
                 kept.push(*place);
             }
         }
         kept
     }
+}
+
+/// The lattice of a model at a place: in the shape of either key or halfway between them, whichever fits best.
+fn posed(model: &Model, picture: &Features, center: Point, place: &Place) -> Vec<Point> {
+    let turn = Point::from_angle(place.angle);
+    let placed = |share: f64| -> Vec<Point> {
+        let shape = model.texture.mesh.rest.iter().zip(&model.bent).map(|(a, b)| a.lerp(*b, share));
+        shape.map(|q| turn.rotate(q - center) + place.center).collect()
+    };
+    let energy = |nodes: &Vec<Point>| model.texture.energy(picture, nodes);
+    let shapes = [0.0, 0.5, 1.0].map(placed);
+    shapes.into_iter().min_by(|a, b| energy(a).total_cmp(&energy(b))).unwrap_or_default()
 }
 
 /// What templates are cut from.
@@ -208,7 +206,7 @@ impl Cut<'_> {
             if inside {
                 1.0
             } else if belongs {
-                crate::knob!("BANDW", 0.6) as f32
+                BAND_WEIGHT
             } else {
                 0.0
             },

@@ -100,11 +100,6 @@ impl<'a> Stage<'a> {
         self.job.span.first + self.drawings[drawing].first as FrameNumber
     }
 
-    /// How badly a pose explains what of the part is seen on a drawing.
-    pub fn seen_energy(&self, drawing: usize, model: usize, nodes: &[Point]) -> f64 {
-        self.models[model].texture.seen_energy(&self.features[drawing], nodes, &self.covers[drawing])
-    }
-
     /// Carries a pose from one drawing to a neighbouring one.
     pub fn carry(
         &self,
@@ -137,7 +132,7 @@ fn model(job: &Job, key: usize, features: &Features, scale: f64, width: f64) -> 
     let bent = settle(&mesh, &mesh.rest, &anchors);
     let back = motion.inverse();
     let there = bent.iter().map(|&p| back.apply(p)).collect();
-    if crate::knob!("SOFT", 1.0) > 0.0 { shape::soften(&mut mesh, &bent); }
+    shape::learn_stiffness(&mut mesh, &bent);
     let texture = Texture::new(mesh, features, &cover, width);
     Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent }
 }

@@ -1,19 +1,23 @@
 //! Which hypothesis each part follows, decided for all parts together.
 //!
 //! A part alone cannot know that the leg it fits so well is another part's. What is said by all: nearer parts hide
-//! farther ones. A sample of a part that lies under a nearer part is unseen, and costs [`shadow::HIDDEN`]: less than a
+//! farther ones. A sample of a part that lies under a nearer part is unseen, and costs [`shadow::HIDDEN`], less than a
 //! wrong colour, more than a right one. So of two equal legs, both on one drawn leg is dearer than one on each, and a
 //! part that is really hidden is not driven out to where its colour happens to be.
 //!
 //! E = Σ_parts [ Σ_drawings √U + smoothness ], U the visible energy of a hypothesis given the nearer parts' choices, the
-//! smoothness as in [`super::select`]. It is lowered by moves, each found by dynamic programming and taken only if E
-//! falls: all drawings of one part ([`moves::single`]), all drawings of two parts that hide each other
-//! ([`moves::pair`]). Moves of two are what lets crossing twins change places.
+//! smoothness as in [`super::select`], plus what torn joints cost ([`tie`]). It is lowered by moves, each found by dynamic programming and taken only if E
+//! falls: all drawings of one part, all drawings of two parts that hide each other
+//! . Moves of two are what lets crossing twins change places.
 //!
 //! Limits: a local minimum of moves of two; parts that are keyed on different frames move singly only.
 
-pub mod moves;
+pub mod cost;
+mod moves;
+pub mod pairs;
 pub mod shadow;
+#[cfg(test)]
+mod tests;
 pub mod tie;
 
 use super::drawings::Drawing;
@@ -59,22 +63,23 @@ impl Contender<'_> {
 
 /// The hypothesis that each contender follows on each of its drawings; `paths` is where to start from.
 pub fn choose(contenders: &[Contender], mut paths: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
-    if std::env::var("NOJOINT").is_ok() { return paths; }
     let shadows = Shadows::cast(contenders);
     let ties = tie::find(contenders);
     if shadows.none() && ties.is_empty() {
         return paths;
     }
-    if std::env::var("SHOWTIES").is_ok() { for t in &ties { eprintln!("{:?} size {:?}", t.parts, t.parts.map(|p| contenders[p].models[0].texture.mesh.rest[0])); } }
-    let scene = moves::Scene { contenders, shadows: &shadows, ties: &ties };
+    let scene = cost::Scene { contenders, shadows: &shadows, ties: &ties };
     let pairs = shadows.pairs();
+    let same = |a: usize, b: usize| {
+        contenders[a].drawings == contenders[b].drawings && contenders[a].span == contenders[b].span
+    };
     for _ in 0..ROUNDS {
         let mut moved = false;
         for c in 0..contenders.len() {
             moved |= scene.single(c, &mut paths);
         }
         for &(far, near) in &pairs {
-            if contenders[far].drawings == contenders[near].drawings && contenders[far].span == contenders[near].span {
+            if same(far, near) {
                 moved |= scene.pair(far, near, &mut paths);
             }
         }

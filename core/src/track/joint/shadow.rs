@@ -1,13 +1,15 @@
 //! What of each hypothesis the hypotheses of nearer parts hide.
 
 use super::Contender;
+use super::cost::State;
 use crate::geometry::{Point, polygon};
 use crate::scene::Raster;
+use crate::track::pool::Hypothesis;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 
 /// Cost of a sample that a nearer part hides, as a squared colour difference.
-pub fn hidden_cost() -> f64 { crate::knob!("KAPPA", 0.03) }
+pub const HIDDEN: f32 = 0.03;
 
 /// Side of the pixels that shadows are drawn in, in working pixels.
 const PIXEL: f64 = 3.0;
@@ -19,6 +21,8 @@ pub type Mask = Option<Box<[u64]>>;
 pub struct Shadows {
     masks: BTreeMap<(usize, usize), Vec<Vec<Vec<Mask>>>>,
     costs: Vec<Vec<Vec<SampleCosts>>>,
+    in_front: Vec<Vec<usize>>,
+    behind: Vec<Vec<usize>>,
 }
 
 /// What the samples of a hypothesis cost, seen and hidden.
@@ -60,8 +64,8 @@ impl Silhouette {
     }
 
     fn mask(&self, places: &[Point], (low, high): (Point, Point)) -> Mask {
-        let (own_low, own_high) =
-            (self.corner * PIXEL, (self.corner + Point::new(self.pixels.width() as f64, self.pixels.height() as f64)) * PIXEL);
+        let extent = Point::new(self.pixels.width() as f64, self.pixels.height() as f64);
+        let (own_low, own_high) = (self.corner * PIXEL, (self.corner + extent) * PIXEL);
         if high.x < own_low.x || high.y < own_low.y || low.x > own_high.x || low.y > own_high.y {
             return None;
         }
@@ -79,7 +83,7 @@ impl Shadows {
         let silhouettes: Vec<Vec<Vec<Option<Silhouette>>>> = contenders
             .par_iter()
             .map(|c| {
-                let of_pool = |pool: &Vec<super::super::pool::Hypothesis>| {
+                let of_pool = |pool: &Vec<Hypothesis>| {
                     pool.iter().map(|h| if c.hides { Silhouette::new(&h.points) } else { None }).collect()
                 };
                 c.pools.iter().map(of_pool).collect()
@@ -88,7 +92,13 @@ impl Shadows {
         let index: Vec<usize> = (0..contenders.len()).collect();
         let far: Vec<_> = index.par_iter().map(|&f| masks_on(contenders, &silhouettes, f)).collect();
         let costs = contenders.par_iter().map(sample_costs).collect();
-        Self { masks: far.into_iter().flatten().collect(), costs }
+        let masks: BTreeMap<_, _> = far.into_iter().flatten().collect();
+        let (mut in_front, mut behind) = (vec![Vec::new(); contenders.len()], vec![Vec::new(); contenders.len()]);
+        for &(far, near) in masks.keys() {
+            in_front[far].push(near);
+            behind[near].push(far);
+        }
+        Self { masks, costs, in_front, behind }
     }
 
     /// Whether nothing hides anything.
@@ -102,8 +112,18 @@ impl Shadows {
     }
 
     /// The samples of a far hypothesis that a near one hides.
-    pub fn mask(&self, (far, near): (usize, usize), drawing: usize, hypothesis: usize, near_hypothesis: usize) -> Option<&[u64]> {
-        self.masks.get(&(far, near))?[drawing][hypothesis].get(near_hypothesis)?.as_deref()
+    pub fn mask(&self, parts: (usize, usize), (drawing, hypothesis): State, near_hypothesis: usize) -> Option<&[u64]> {
+        self.masks.get(&parts)?[drawing][hypothesis].get(near_hypothesis)?.as_deref()
+    }
+
+    /// The contenders that may hide one.
+    pub fn in_front_of(&self, contender: usize) -> &[usize] {
+        &self.in_front[contender]
+    }
+
+    /// The contenders that one may hide.
+    pub fn behind(&self, contender: usize) -> &[usize] {
+        &self.behind[contender]
     }
 
     /// Number of words of a mask.
@@ -112,7 +132,7 @@ impl Shadows {
     }
 
     /// √U of a hypothesis of which the samples in `hidden` are unseen.
-    pub fn cost(&self, contender: usize, drawing: usize, hypothesis: usize, hidden: &[u64]) -> f64 {
+    pub fn cost(&self, contender: usize, (drawing, hypothesis): State, hidden: &[u64]) -> f64 {
         let costs = &self.costs[contender][drawing][hypothesis];
         let mut sum = costs.seen;
         for (w, &word) in hidden.iter().enumerate() {
@@ -159,16 +179,12 @@ fn masks_on(
 }
 
 fn sample_costs(c: &Contender) -> Vec<Vec<SampleCosts>> {
-    let of = |h: &super::super::pool::Hypothesis| {
+    let of = |h: &Hypothesis| {
         let texture = &c.models[h.model].texture;
         let total: f32 = texture.measured().iter().map(|t| t.weight).sum();
         let share = 1.0 / total.max(1e-6);
-        let hiding = texture
-            .measured()
-            .iter()
-            .zip(&h.differences)
-            .map(|(t, d)| t.weight * share * (hidden_cost() as f32 - d))
-            .collect();
+        let hiding =
+            texture.measured().iter().zip(&h.differences).map(|(t, d)| t.weight * share * (HIDDEN - d)).collect();
         let bending = texture.bending(&h.pose.nodes);
         SampleCosts { seen: h.pose.energy - bending, hiding, bending }
     };

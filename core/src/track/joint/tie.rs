@@ -14,12 +14,8 @@ use crate::track::lattice::mesh::Binding;
 /// Distance from a part within which a place still belongs to it, in working pixels.
 const MARGIN: f64 = 6.0;
 /// Cost of a joint that is torn by [`TORN`] working pixels or more.
-fn cost_of_torn() -> f64 {
-    crate::knob!("TIE", 0.06)
-}
-fn torn() -> f64 {
-    crate::knob!("TORN", 25.0)
-}
+const COST_OF_TORN: f64 = 0.06;
+const TORN: f64 = 25.0;
 
 /// A hinge between two contenders.
 pub struct Tie {
@@ -36,20 +32,20 @@ impl Tie {
         Some((self.parts[1 - end], end))
     }
 
-    /// Where a pose of the part at one end puts the hinge.
-    pub fn place(&self, end: usize, model: usize, nodes: &[Point]) -> Point {
-        self.bindings[end][model].at(nodes)
+    /// Where a pose of contender `c` puts the hinge.
+    pub fn place(&self, c: usize, model: usize, nodes: &[Point]) -> Option<Point> {
+        let (_, end) = self.other(c)?;
+        Some(self.bindings[end][model].at(nodes))
     }
 
     /// Cost of a joint whose ends lie at these places.
     pub fn cost(a: Point, b: Point) -> f64 {
-        cost_of_torn() * (a.distance(b) / torn()).min(1.0)
+        COST_OF_TORN * (a.distance(b) / TORN).min(1.0)
     }
 }
 
 /// The hinges of all contenders: of each part, the one that tears least.
 pub fn find(contenders: &[Contender]) -> Vec<Tie> {
-    if cost_of_torn() == 0.0 { return Vec::new(); }
     let mut ties: Vec<Tie> = Vec::new();
     for c in 0..contenders.len() {
         let hinge = |b: usize| hinge(&contenders[c], &contenders[b]).map(|(tear, places)| (tear, b, places));
@@ -73,12 +69,8 @@ fn hinge(a: &Contender, b: &Contender) -> Option<(f64, [Point; 2])> {
     };
     let contour = &a.pools[0][0].points;
     let inner = mesh_a.rest.iter().copied();
-    let shared: Vec<Point> = contour
-        .iter()
-        .copied()
-        .chain(inner)
-        .filter(|&p| belongs(a, 0, p) && belongs(b, 0, p))
-        .collect();
+    let shared: Vec<Point> =
+        contour.iter().copied().chain(inner).filter(|&p| belongs(a, 0, p) && belongs(b, 0, p)).collect();
     if shared.is_empty() {
         return None;
     }
@@ -115,8 +107,8 @@ pub fn leads(contenders: &[Contender], paths: &[Vec<usize>]) -> Vec<Vec<Lead>> {
                 let near = contenders[other].drawing_at(contenders[c].frame_of(d))?;
                 let pool = &contenders[c].pools[d];
                 let (own, theirs) = (&pool[paths[c][d]], &contenders[other].pools[near][paths[other][near]]);
-                let there = tie.place(1 - end, theirs.model, &theirs.pose.nodes);
-                let torn = tie.place(end, own.model, &own.pose.nodes).distance(there) > DOUBT;
+                let there = tie.place(other, theirs.model, &theirs.pose.nodes)?;
+                let torn = tie.place(c, own.model, &own.pose.nodes)?.distance(there) > DOUBT;
                 let unsure = pool.len() < 2 || pool[0].distance(&pool[1]) > DOUBT;
                 (theirs.pose.energy < own.pose.energy && (torn || unsure)).then_some(there)
             };

@@ -83,10 +83,9 @@ impl Aligner {
         let mut gradient = vec![0.0; 2 * nodes.len()];
         let turn = rotations.iter().sum::<Point>().normalize_or(Point::X);
         add_look(texture, target, nodes, level, turn, &mut matrix, &mut gradient);
-        let stiffness = STIFFNESS * [crate::knob!("S0", 1.0), crate::knob!("S1", 1.0), crate::knob!("S2", 1.0)][level];
-        matrix.add_scaled(&self.stiffness, stiffness);
+        matrix.add_scaled(&self.stiffness, STIFFNESS);
         (0..gradient.len()).for_each(|i| matrix.add(i, i, RIDGE));
-        shape::add_gradient(mesh, nodes, &rotations, stiffness, &mut gradient);
+        shape::add_gradient(mesh, nodes, &rotations, STIFFNESS, &mut gradient);
         gradient.iter_mut().for_each(|g| *g = -*g);
         solve_and_move(matrix, gradient, target.anchors, nodes, LONGEST_STEP * LEVELS[level] as f64)
     }

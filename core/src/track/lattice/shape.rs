@@ -11,6 +11,13 @@ use crate::numeric::banded::BandMatrix;
 /// Bounds of a cell's free scale.
 const SCALE: (f64, f64) = (0.8, 1.25);
 
+/// Bounds of what a cell's stiffness is learned to be.
+const SOFTEST: f64 = 0.1;
+const STIFFEST: f64 = 4.0;
+/// Bend of a cell at which it is halfway between them: root mean square of its nodes' distances from the best similar
+/// square, in sides.
+const HALFWAY: f64 = 0.03;
+
 /// The best turn and scale of each cell, as complex numbers.
 pub fn rotations(mesh: &Mesh, nodes: &[Point]) -> Vec<Point> {
     let rest = rest_cell(mesh);
@@ -45,15 +52,13 @@ fn residuals<'a>(
     })
 }
 
-/// Makes the cells less stiff that are bent in `shape`, a shape that the part is known to take.
-pub fn soften(mesh: &mut Mesh, shape: &[Point]) {
+/// Sets the stiffness of the cells by how much each is bent in `shape`, a shape that the part is known to take: what keeps
+/// its shape from one key to the other will keep it between them, and what bends may bend.
+pub fn learn_stiffness(mesh: &mut Mesh, shape: &[Point]) {
     let (rest, rotations) = (rest_cell(mesh), rotations(mesh, shape));
-    let usual = crate::knob!("USUAL", 0.08) * mesh.side;
-    let least = crate::knob!("LEAST", 0.1);
-    let stiffness = residuals(mesh, shape, &rotations, &rest)
-        .map(|e| least + (crate::knob!("MOST", 1.0) - least) / (1.0 + 0.25 * e / (usual * usual)))
-        .collect();
-    mesh.stiffness = stiffness;
+    let half = 4.0 * (HALFWAY * mesh.side).powi(2);
+    let of_cell = |bend: f64| SOFTEST + (STIFFEST - SOFTEST) / (1.0 + bend / half);
+    mesh.stiffness = residuals(mesh, shape, &rotations, &rest).map(of_cell).collect();
 }
 
 /// Second derivative (halved) of the sum of the cells' energies, for fixed turns.

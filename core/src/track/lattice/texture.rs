@@ -89,25 +89,11 @@ impl Texture {
         let (mut sum, mut weights) = (0.0, 0.0);
         for texel in self.measured() {
             let colour = level.colour(texel.binding.at(nodes));
-            sum += f64::from(texel.weight * difference(&colour, &texel.key).min(worst(texel)));
+            sum += f64::from(texel.weight * difference(&colour, &texel.key).min(WORST));
             weights += f64::from(texel.weight);
         }
         let look = if weights > 0.0 { sum / weights } else { f64::from(WORST) };
         look + self.bending(nodes)
-    }
-
-    /// The energy of a pose on the finest level, of what nearer parts do not hide.
-    pub fn seen_energy(&self, picture: &Features, nodes: &[Point], cover: &Cover) -> f64 {
-        let level = picture.level(2);
-        let (mut sum, mut weights) = (0.0, 1e-9);
-        for texel in &self.texels[2] {
-            let place = texel.binding.at(nodes);
-            if !cover.hides(place) {
-                sum += f64::from(texel.weight * difference(&level.colour(place), &texel.key).min(WORST));
-                weights += f64::from(texel.weight);
-            }
-        }
-        sum / weights
     }
 
     /// The part of [`Texture::energy`] that a pose's shape costs.
@@ -123,13 +109,9 @@ impl Texture {
     /// Colour difference of each of the [`Texture::measured`] samples, at most [`WORST`].
     pub fn differences(&self, picture: &Features, nodes: &[Point]) -> Vec<f32> {
         let level = picture.level(MEASURED_LEVEL);
-        let of = |t: &Texel| difference(&level.colour(t.binding.at(nodes)), &t.key).min(worst(t));
+        let of = |t: &Texel| difference(&level.colour(t.binding.at(nodes)), &t.key).min(WORST);
         self.measured().iter().map(of).collect()
     }
-}
-
-fn worst(texel: &Texel) -> f32 {
-    if texel.weight == 1.0 { WORST } else { crate::knob!("BANDCAP", 0.15) as f32 }
 }
 
 /// Squared difference of two colours: the first three values of each.
