@@ -1,8 +1,7 @@
 //! Contours from key frames to every frame.
 //!
-//! The tracker cuts the work into **jobs**: one part over one span between two of its keys. Nearer parts come first, so
-//! that a job knows what hides its part. A preset decides how a job is solved; [`Tracker`] keeps the jobs that it has
-//! solved, so that after an edit only those are solved again whose keys, corrections or occluders changed.
+//! The work is cut into **jobs**: one part over one span between two of its keys. A preset decides how jobs are solved, one
+//! by one or together; its solver keeps what it computed, so that after an edit only what the edit touches is solved again.
 //!
 //! - [`job`]: what a solver is given and what it returns
 //! - [`tracker`]: what is asked, and who answers
@@ -18,7 +17,11 @@
 //! - [`propagate`]: motion from a neighbour
 //! - [`search`]: motion from nowhere, by comparing everywhere
 //! - [`pool`]: the hypotheses of both
-//! - [`select`]: which hypothesis to follow
+//! - `corrected`: what the artist's corrections add to them
+//! - [`select`]: which hypothesis a part alone follows
+//! - [`joint`]: which hypotheses all parts follow together
+//! - `mend`: what that choice adds to the pools
+//! - `finish`: the chosen poses made into tracks
 //! - [`confidence`]: how sure a point is
 //!
 //! The preset of Zhou & Xiao 2011:

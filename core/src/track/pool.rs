@@ -37,6 +37,11 @@ pub struct Hypothesis {
 pub type Pools = Vec<Vec<Hypothesis>>;
 
 impl Hypothesis {
+    /// A pose that was not carried from anywhere.
+    pub fn new(model: usize, pose: Pose, points: Vec<Point>, differences: Vec<f32>) -> Self {
+        Self { model, pose, points, differences, origin: None }
+    }
+
     fn candidate(&self) -> Candidate<'_> {
         Candidate { cost: self.pose.energy.max(0.0).sqrt(), points: &self.points }
     }

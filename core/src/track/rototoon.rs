@@ -43,6 +43,9 @@ pub struct Rototoon {
     finished: BTreeMap<(String, Span), (Finish, SpanTrack)>,
 }
 
+/// The pools of a job without and with its corrections, and whether anything was made now.
+type FoundPools = (Arc<Pooled>, Arc<Pooled>, bool);
+
 /// Pools with what a joint choice added, and what they were made from.
 #[derive(Clone)]
 struct Mended {
@@ -127,7 +130,7 @@ impl Rototoon {
         while let Some(wave) = next_wave(scene, tasks, &done) {
             let jobs: Vec<Job> =
                 wave.iter().map(|&t| job(scene, tasks[t], occluders(scene, tasks, &done, t))).collect();
-            let results: Vec<Result<(Arc<Pooled>, Arc<Pooled>, bool), TrackError>> = wave
+            let results: Vec<Result<FoundPools, TrackError>> = wave
                 .par_iter()
                 .zip(&jobs)
                 .map(|(&t, job)| {
@@ -164,10 +167,11 @@ impl Rototoon {
             .map(|&m| {
                 let source = &pooled[stretch[m]];
                 let key = (source.job.name.clone(), source.job.span);
-                if let Some(known) = self.mended.get(&key) {
-                    if Arc::ptr_eq(&known.source, source) && known.path == paths[m] && known.leads == leads[m] {
-                        return Ok(known.clone());
-                    }
+                let same = |known: &&Mended| {
+                    Arc::ptr_eq(&known.source, source) && known.path == paths[m] && known.leads == leads[m]
+                };
+                if let Some(known) = self.mended.get(&key).filter(same) {
+                    return Ok(known.clone());
                 }
                 let kit = Kit { store: &self.store, frames, progress: &shared.of(stretch[m]) };
                 let result = Arc::new(mended_pools(kit, source, &paths[m], &leads[m])?);
@@ -184,7 +188,7 @@ impl Rototoon {
     }
 
     /// The pools of a job without and with its corrections, and whether anything was made.
-    fn pool(&self, kit: Kit, job: &Job) -> Result<(Arc<Pooled>, Arc<Pooled>, bool), TrackError> {
+    fn pool(&self, kit: Kit, job: &Job) -> Result<FoundPools, TrackError> {
         let key = (job.name.clone(), job.span);
         let bare = Job { corrections: BTreeMap::new(), ..job.clone() };
         let (plain, mut solved) = match self.plain.get(&key) {

@@ -5,7 +5,8 @@
 //! transform gives for all places at once. The best places start alignments. This finds what a chain from neighbour to
 //! neighbour has lost: jumps larger than a limb's width, and parts that come back from behind others.
 //!
-//! Limits: one scale, no bending: long thin parts that bend are found by their larger half at best.
+//! Limits: one scale, no bending while searching: long thin parts that bend are found by their larger half at best (the
+//! alignment then starts from the shape of either key or halfway between them, whichever fits best).
 
 use super::features::{Features, LEVELS, Level, WORKING_LINES};
 use super::lattice::texture::Cover;

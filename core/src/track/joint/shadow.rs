@@ -17,9 +17,12 @@ const PIXEL: f64 = 3.0;
 /// Samples of a hypothesis under one of a nearer part: a bit each, none where no sample is.
 pub type Mask = Option<Box<[u64]>>;
 
+/// Masks on a contender by a nearer one: by far drawing, far hypothesis, near hypothesis.
+type Masks = Vec<Vec<Vec<Mask>>>;
+
 /// Which samples are hidden, by (far contender, near contender): by far drawing, far hypothesis, near hypothesis.
 pub struct Shadows {
-    masks: BTreeMap<(usize, usize), Vec<Vec<Vec<Mask>>>>,
+    masks: BTreeMap<(usize, usize), Masks>,
     costs: Vec<Vec<Vec<SampleCosts>>>,
     in_front: Vec<Vec<usize>>,
     behind: Vec<Vec<usize>>,
@@ -151,14 +154,14 @@ fn masks_on(
     contenders: &[Contender],
     silhouettes: &[Vec<Vec<Option<Silhouette>>>],
     f: usize,
-) -> Vec<((usize, usize), Vec<Vec<Vec<Mask>>>)> {
+) -> Vec<((usize, usize), Masks)> {
     let far = &contenders[f];
     let nearer = |n: &usize| {
         let near = &contenders[*n];
         near.hides && near.depth > far.depth && near.span.first < far.span.last && far.span.first < near.span.last
     };
     let nearer: Vec<usize> = (0..contenders.len()).filter(nearer).collect();
-    let mut found: Vec<Vec<Vec<Vec<Mask>>>> = nearer.iter().map(|_| Vec::new()).collect();
+    let mut found: Vec<Masks> = nearer.iter().map(|_| Vec::new()).collect();
     for (d, pool) in far.pools.iter().enumerate() {
         found.iter_mut().for_each(|by| by.push(vec![Vec::new(); pool.len()]));
         for (h, hypothesis) in pool.iter().enumerate() {
@@ -174,7 +177,7 @@ fn masks_on(
             }
         }
     }
-    let touches = |by: &Vec<Vec<Vec<Mask>>>| by.iter().flatten().flatten().any(Option::is_some);
+    let touches = |by: &Masks| by.iter().flatten().flatten().any(Option::is_some);
     nearer.into_iter().zip(found).filter(|(_, by)| touches(by)).map(|(n, by)| ((f, n), by)).collect()
 }
 

@@ -134,6 +134,21 @@ mod tests {
     }
 
     #[test]
+    fn what_is_held_stays_while_the_rest_is_drawn_to_its_anchor() {
+        let bar: Vec<Point> =
+            [(0.0, 0.0), (160.0, 0.0), (160.0, 20.0), (0.0, 20.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+        let mesh = Mesh::new(&bar, true);
+        let hold: Vec<f64> = mesh.rest.iter().map(|q| if q.x < 80.0 { 0.3 } else { 0.0 }).collect();
+        let pins = BTreeMap::from([(1, Point::new(130.0, 70.0))]);
+        let anchors = Anchors::new(&mesh, &Correction { pins, center: None }, 1.0);
+        let found = mesh.control_points(&align::draw(&mesh, &mesh.rest, &anchors, &hold));
+        assert!(found[0].distance(bar[0]) < 3.0 && found[3].distance(bar[3]) < 3.0, "{found:?}");
+        assert!(found[1].distance(Point::new(130.0, 70.0)) < 0.1, "{found:?}");
+        let end = found[1].distance(found[2]);
+        assert!((end - 20.0).abs() < 8.0, "the end keeps its width, nearly: {end}");
+    }
+
+    #[test]
     fn a_corrected_center_shifts_the_part() {
         let square: Vec<Point> = [(0.0, 0.0), (30.0, 0.0), (30.0, 30.0)].map(|(x, y)| Point::new(x, y)).to_vec();
         let mesh = Mesh::new(&square, true);

@@ -119,6 +119,27 @@ mod tests {
     }
 
     #[test]
+    fn cells_learn_to_be_soft_where_the_keys_bend() {
+        let bar = [(0.0, 0.0), (200.0, 0.0), (200.0, 24.0), (0.0, 24.0)].map(|(x, y)| Point::new(x, y));
+        let mut mesh = Mesh::new(&bar, true);
+        let bent = |q: Point| {
+            let turn = Point::from_angle(((q.x - 90.0) / 20.0).clamp(0.0, 1.0));
+            if q.x < 90.0 { q } else { turn.rotate(q - Point::new(90.0, 12.0)) + Point::new(90.0, 12.0) }
+        };
+        let shape: Vec<Point> = mesh.rest.iter().map(|&q| bent(q)).collect();
+        learn_stiffness(&mut mesh, &shape);
+        for (cell, &stiffness) in mesh.cells.iter().zip(&mesh.stiffness) {
+            let xs = cell.map(|n| mesh.rest[n].x);
+            let (left, right) = (xs[0], xs[1]);
+            if right < 85.0 || left > 115.0 {
+                assert!(stiffness > 0.9 * STIFFEST, "{left}: {stiffness}");
+            }
+        }
+        let softest = mesh.stiffness.iter().copied().fold(STIFFEST, f64::min);
+        assert!((SOFTEST..0.25 * STIFFEST).contains(&softest), "{softest}");
+    }
+
+    #[test]
     fn the_gradient_is_the_energy_s_slope() {
         let mesh = mesh();
         let bent = |k: usize| Point::new((k as f64 * 1.7).sin(), (k as f64 * 2.3).cos()) * 3.0;

@@ -92,6 +92,23 @@ fn limb_and_ball() -> Drawn {
     Drawn(vec![limb, ball])
 }
 
+/// Two legs of one look that swing past each other below a body, the second one nearer.
+fn twins() -> Drawn {
+    let leg = |motion: fn(f64) -> (Point, f64)| Shape {
+        rest: points(&[(-7.0, -6.0), (7.0, -6.0), (7.0, 32.0), (6.0, 68.0), (-6.0, 68.0), (-7.0, 32.0)]),
+        colour: [0.3, 0.35, 0.5],
+        motion,
+    };
+    let body = Shape {
+        rest: points(&[(-34.0, -60.0), (34.0, -60.0), (30.0, -20.0), (34.0, 6.0), (-34.0, 6.0)]),
+        colour: [0.8, 0.7, 0.3],
+        motion: |t| (Point::new(118.0 + 2.0 * t, 80.0), 0.0),
+    };
+    let far = leg(|t| (Point::new(108.0 + 2.0 * t, 80.0), 38.0 - 13.0 * t));
+    let near = leg(|t| (Point::new(124.0 + 2.0 * t, 80.0), -40.0 + 13.0 * t));
+    Drawn(vec![far, near, body])
+}
+
 fn track(drawn: &Drawn, scene: &Scene) -> Tracking {
     Tracker::new(TrackOptions::default()).track(scene, drawn, &Silent).unwrap()
 }
@@ -117,14 +134,51 @@ fn turning_and_crossing_shapes_are_followed_on_held_drawings() {
 }
 
 #[test]
+fn equal_legs_that_cross_stay_on_their_own_hips() {
+    let drawn = twins();
+    let names = [("far leg", 0.0), ("near leg", 1.0), ("body", 2.0)];
+    let parts = drawn.0.iter().zip(names).map(|(shape, (name, depth))| shape.part(name, depth)).collect();
+    let tracking = track(&drawn, &drawn.scene(parts));
+    for (shape, (part, (name, _))) in drawn.0.iter().zip(tracking.parts.iter().zip(names)) {
+        for frame in 0..=LAST {
+            let apart = shape.contour(frame).iter().zip(&part.tracks[&frame]).map(|(p, q)| p.distance(*q)).collect();
+            let apart: Vec<f64> = apart;
+            let mean = apart.iter().sum::<f64>() / apart.len() as f64;
+            assert!(mean < 3.0, "{name}, frame {frame}: {apart:?}");
+        }
+    }
+}
+
+#[test]
+fn an_edit_solves_no_more_than_it_touches_and_gives_what_a_new_run_gives() {
+    let drawn = twins();
+    let names = [("far leg", 0.0), ("near leg", 1.0), ("body", 2.0)];
+    let parts = drawn.0.iter().zip(names).map(|(shape, (name, depth))| shape.part(name, depth)).collect();
+    let mut scene = drawn.scene(parts);
+    let mut tracker = Tracker::new(TrackOptions::default());
+    let solved = |tracking: &Tracking| tracking.jobs.iter().filter(|job| job.solved).count();
+    assert_eq!(solved(&tracker.track(&scene, &drawn, &Silent).unwrap()), 3);
+    assert_eq!(solved(&tracker.track(&scene, &drawn, &Silent).unwrap()), 0);
+    let pin = drawn.0[0].contour(2)[3] + Point::new(1.0, 0.5);
+    scene.parts[0].pins.insert(2, BTreeMap::from([(3, pin)]));
+    let warm = tracker.track(&scene, &drawn, &Silent).unwrap();
+    assert!(warm.jobs[0].solved && !warm.jobs[2].solved, "the body in front is not touched");
+    let cold = track(&drawn, &scene);
+    assert_eq!(warm.parts, cold.parts);
+}
+
+#[test]
 fn the_number_of_threads_changes_nothing() {
-    let drawn = limb_and_ball();
-    let scene = drawn.scene(vec![drawn.0[0].part("limb", 0.0), drawn.0[1].part("ball", 1.0)]);
+    let drawn = twins();
+    let scene =
+        drawn.scene(vec![drawn.0[0].part("far", 0.0), drawn.0[1].part("near", 1.0), drawn.0[2].part("body", 2.0)]);
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| track(&drawn, &scene))
     };
-    assert_eq!(with(1), with(4));
+    let one = with(1);
+    assert_eq!(one, with(2));
+    assert_eq!(one, with(8));
 }
 
 #[test]
