@@ -1,11 +1,12 @@
-//! The chosen poses made into tracks: aligned where the part is seen, blended with the other key's model, made to obey
-//! the artist's corrections.
+//! The chosen poses made into tracks: aligned where the part is seen, blended with the other key's model, refined by the
+//! contour's own templates where those fit better after it, made to obey the artist's corrections.
 
 use super::TrackError;
 use super::confidence;
 use super::job::{Job, SpanSummary, SpanTrack, Termination};
 use super::lattice::texture::Cover;
 use super::pool::{Hypothesis, hypothesis};
+use super::refine::{Frame, Key, Refiner};
 use super::rototoon::{Pooled, keys_only};
 use super::stage::{Kit, Stage};
 use super::tasks::Task;
@@ -17,6 +18,9 @@ use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 const AGREEMENT: f64 = 4.0;
 /// Nearer contours further away than this from a part (working pixels) do not matter to it.
 const REACH: f64 = 24.0;
+
+/// Fall of the templates' cost that makes a refined contour worth taking.
+const WORTH: f64 = 0.01;
 
 /// What a part's track is made from, apart from the pictures.
 #[derive(Clone, PartialEq)]
@@ -85,7 +89,8 @@ pub(super) fn finish(kit: Kit, pooled: &Pooled, plan: &Finish) -> Result<SpanTra
     stage.covers = plan.occluders.iter().map(|contours| Cover::new(contours, width)).collect();
     let stage = &stage;
     let last = stage.drawings.len() - 1;
-    let pools: Vec<Vec<Hypothesis>> = (0..=last)
+    let refiner = refiner(stage);
+    let drawings: Vec<(Vec<Hypothesis>, Vec<Point>)> = (0..=last)
         .into_par_iter()
         .map(|d| {
             kit.progress.report("Tracking", 0.9)?;
@@ -95,10 +100,35 @@ pub(super) fn finish(kit: Kit, pooled: &Pooled, plan: &Finish) -> Result<SpanTra
                 let pose = stage.models[chosen.model].seen(&stage.scenery(chosen.model, d), &chosen.pose.nodes);
                 pool[plan.chosen[d]] = hypothesis(stage, d, chosen.model, pose, None);
             }
-            Ok(pool)
+            let share = stage.drawings[d].first as f64 / (stage.job.span.len() - 1) as f64;
+            let rough = blended(&pool, plan.chosen[d], share);
+            let points = match &refiner {
+                Some(refiner) if d != 0 && d != last => refined(stage, refiner, d, share, rough),
+                _ => rough,
+            };
+            Ok((pool, points))
         })
         .collect::<Result<_, TrackError>>()?;
-    Ok(track(stage, pooled, &pools, &plan.chosen))
+    Ok(track(stage, pooled, &drawings, &plan.chosen))
+}
+
+/// The contour's own templates, where it has a shape.
+fn refiner(stage: &Stage) -> Option<Refiner> {
+    let points = [0, 1].map(|k: usize| stage.job.keys[k].iter().map(|&p| p / stage.scale).collect::<Vec<_>>());
+    let key = |k: usize| Key {
+        points: &points[k],
+        picture: &stage.features[k * (stage.features.len() - 1)],
+        cover: &stage.models[k].cover,
+    };
+    Refiner::new([key(0), key(1)], stage.job.closed)
+}
+
+/// Refined control points of a drawing, or the rough ones where the templates fit those no worse.
+fn refined(stage: &Stage, refiner: &Refiner, d: usize, share: f64, rough: Vec<Point>) -> Vec<Point> {
+    let pins = stage.correction(d).map(|c| c.pins.iter().map(|(&j, &p)| (j, p / stage.scale)).collect());
+    let frame = Frame { picture: &stage.features[d], cover: &stage.covers[d], share, pins: pins.unwrap_or_default() };
+    let fine = refiner.refine(&frame, &rough);
+    if refiner.cost(&frame, &fine) < refiner.cost(&frame, &rough) - WORTH { fine } else { rough }
 }
 
 /// The chosen control points of a drawing: those of the other model are blended in where they agree, by how near
@@ -120,14 +150,12 @@ fn blended(pool: &[Hypothesis], chosen: usize, share: f64) -> Vec<Point> {
     own.points.iter().zip(&other.points).map(blend).collect()
 }
 
-fn track(stage: &Stage, pooled: &Pooled, pools: &[Vec<Hypothesis>], path: &[usize]) -> SpanTrack {
+fn track(stage: &Stage, pooled: &Pooled, drawings: &[(Vec<Hypothesis>, Vec<Point>)], path: &[usize]) -> SpanTrack {
     let last = stage.job.span.len() - 1;
     let (mut points, mut sure) = (Vec::new(), Vec::new());
     for (d, drawing) in stage.drawings.iter().enumerate() {
-        let share = drawing.first as f64 / last as f64;
-        let found = blended(&pools[d], path[d], share);
-        let confidence =
-            confidence::of_drawing(&stage.models, &stage.features[d], &stage.covers[d], &pools[d], path[d]);
+        let (pool, found) = &drawings[d];
+        let confidence = confidence::of_drawing(&stage.models, &stage.features[d], &stage.covers[d], pool, path[d]);
         for index in drawing.first..=drawing.last {
             let mut on_frame = stage.key_of(d).unwrap_or_else(|| found.iter().map(|&p| p * stage.scale).collect());
             stage.job.enforce(index, &mut on_frame);
@@ -139,7 +167,7 @@ fn track(stage: &Stage, pooled: &Pooled, pools: &[Vec<Hypothesis>], path: &[usiz
         correction.pins.keys().for_each(|&j| sure[index][j] = 1.0);
     }
     let energy = |choose: &dyn Fn(usize) -> usize| {
-        (0..pools.len()).map(|d| pools[d][choose(d)].pose.energy).sum::<f64>() / pools.len() as f64
+        (0..drawings.len()).map(|d| drawings[d].0[choose(d)].pose.energy).sum::<f64>() / drawings.len() as f64
     };
     let summary = SpanSummary {
         termination: Termination::PathChosen,

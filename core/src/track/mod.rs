@@ -21,7 +21,7 @@
 //! - [`select`]: which hypothesis a part alone follows
 //! - [`joint`]: which hypotheses all parts follow together
 //! - `mend`: what that choice adds to the pools
-//! - `finish`: the chosen poses made into tracks
+//! - `finish`: the chosen poses made into tracks, with [`refine`]: contours brought onto the drawing by its colours
 //! - [`confidence`]: how sure a point is
 //!
 //! The preset of Zhou & Xiao 2011:
@@ -50,6 +50,7 @@ mod mend;
 pub mod part_by_part;
 pub mod pool;
 pub mod propagate;
+pub mod refine;
 pub mod region;
 pub mod rotoscope;
 pub mod rototoon;

@@ -80,6 +80,12 @@ impl<'a> Stage<'a> {
         }
     }
 
+    /// What the artist corrected on a drawing.
+    pub fn correction(&self, drawing: usize) -> Option<&Correction> {
+        let Drawing { first, last } = self.drawings[drawing];
+        (first..=last).find_map(|i| self.job.corrections.get(&i))
+    }
+
     /// Whether the artist corrected a drawing.
     pub fn corrected(&self, drawing: usize) -> bool {
         !self.anchors[0][drawing].is_empty()

@@ -1,0 +1,83 @@
+//! Rough contours on a drawn shape.
+
+use super::{Frame, Key, Refiner};
+use crate::geometry::{Point, polygon, polyline};
+use crate::scene::{Colour, Raster};
+use crate::track::features::Features;
+use crate::track::lattice::texture::Cover;
+use std::collections::BTreeMap;
+
+const LINES: usize = 540;
+
+/// A boot of two colours with an ink line.
+fn boot() -> Vec<Point> {
+    let outline = [
+        (0.0, 0.0),
+        (40.0, 0.0),
+        (42.0, 30.0),
+        (44.0, 60.0),
+        (75.0, 66.0),
+        (95.0, 74.0),
+        (95.0, 92.0),
+        (60.0, 94.0),
+        (25.0, 94.0),
+        (0.0, 92.0),
+        (2.0, 60.0),
+        (3.0, 30.0),
+    ];
+    outline.map(|(x, y)| Point::new(x, y)).to_vec()
+}
+
+fn placed(degrees: f64, to: Point) -> Vec<Point> {
+    let turn = Point::from_angle(f64::to_radians(degrees));
+    boot().into_iter().map(|p| turn.rotate(p - Point::new(40.0, 50.0)) + to).collect()
+}
+
+fn drawn(contour: &[Point]) -> Features {
+    let (low, high) = polygon::bounds(contour).unwrap();
+    let colour = |p: Point| -> Colour {
+        let near = p.x > low.x - 4.0 && p.y > low.y - 4.0 && p.x < high.x + 4.0 && p.y < high.y + 4.0;
+        if near && polyline::distance(p, contour, true) <= 1.5 {
+            [0.1, 0.05, 0.1]
+        } else if near && polygon::contains(contour, p) {
+            [0.6, 0.35, 0.2]
+        } else {
+            [0.8, 0.9, 0.95]
+        }
+    };
+    Features::new(&Raster::from_fn(LINES, LINES, |x, y| colour(Point::new(x as f64 + 0.5, y as f64 + 0.5))))
+}
+
+#[test]
+fn a_rough_contour_comes_back_to_the_ink() {
+    let keys = [placed(0.0, Point::new(150.0, 200.0)), placed(40.0, Point::new(330.0, 260.0))];
+    let middle = placed(20.0, Point::new(250.0, 240.0));
+    let (pictures, cover) = ([drawn(&keys[0]), drawn(&keys[1])], Cover::none(LINES as f64));
+    let key = |k: usize| Key { points: &keys[k], picture: &pictures[k], cover: &cover };
+    let refiner = Refiner::new([key(0), key(1)], true).unwrap();
+    let picture = drawn(&middle);
+    let frame = |pins| Frame { picture: &picture, cover: &cover, share: 0.5, pins };
+    let wobble = |j: usize| Point::new((1.7 * j as f64).sin(), (2.9 * j as f64).cos()) * 1.5;
+    let rough: Vec<Point> =
+        placed(24.0, Point::new(254.0, 237.0)).into_iter().enumerate().map(|(j, p)| p + wobble(j)).collect();
+    let off = |points: &[Point]| points.iter().map(|&p| polyline::distance(p, &middle, true)).fold(0.0, f64::max);
+    let mean =
+        |points: &[Point]| points.iter().zip(&middle).map(|(p, q)| p.distance(*q)).sum::<f64>() / points.len() as f64;
+    let fine = refiner.refine(&frame(BTreeMap::new()), &rough);
+    assert!(off(&rough) > 5.0 && off(&fine) < 1.0, "{} from {}", off(&fine), off(&rough));
+    assert!(mean(&rough) > 5.0 && mean(&fine) < 2.0, "{} from {}", mean(&fine), mean(&rough));
+    let free = frame(BTreeMap::new());
+    assert!(refiner.cost(&free, &fine) < 0.5 * refiner.cost(&free, &rough));
+    let pin = middle[5] + Point::new(9.0, -4.0);
+    let pinned = refiner.refine(&frame(BTreeMap::from([(5, pin)])), &rough);
+    assert!(pinned[5].distance(pin) < 0.05);
+}
+
+#[test]
+fn contours_without_a_shape_are_not_refined() {
+    let picture = Features::new(&Raster::new(40, LINES, [0.5f32; 3]));
+    let cover = Cover::none(40.0);
+    let two = [Point::ZERO, Point::ONE];
+    let key = || Key { points: &two, picture: &picture, cover: &cover };
+    assert!(Refiner::new([key(), key()], false).is_none());
+}
