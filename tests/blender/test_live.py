@@ -72,7 +72,6 @@ def test_toggle_tracks_what_is_there_and_then_rests(addon, fake, live, tmp_path)
 
 def test_moved_point_is_a_pin_and_only_its_span_is_solved(addon, fake, live, tmp_path):
     ob = switched_on(addon, live, tmp_path)
-    addon("sessions").make = None
     solve = fake.solve
 
     def spread(part, first, last):
@@ -408,7 +407,7 @@ def test_native_result_is_that_of_track(addon, library, live, tmp_path):
     settle(live)
     after = drawings(ob)
     changed = [frame for frame in after if after[frame] != before[frame]]
-    assert set(changed) <= {2, 3, 4} and 3 in changed and len(changed) > 1
+    assert set(changed) <= {2, 3, 4} and 3 in changed
     assert np.array_equal(dict(shots.pixels(addon, ob, 3))[2][1], pinned)
     shots.move(addon, ob, 7, 1, (3.0, 2.0))
     settle(live)
