@@ -174,13 +174,13 @@ def step(now: float | None = None) -> float | None:
 
 
 def status(ob: bpy.types.Object) -> tuple[str, str]:
-    """A line for the panel, and its icon; empty if there is nothing to say."""
+    """A line for the panel, and its icon."""
     message = _messages.get(ob.session_uid)
     if message:
         return message, "ERROR"
     if _run is not None and _run.uid == ob.session_uid:
         return f"Tracking {_run.worker.fraction:.0%}", "TIME"
-    return "", "NONE"
+    return "Follows your edits", "CHECKMARK"
 
 
 def give_way() -> None:

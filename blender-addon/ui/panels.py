@@ -84,8 +84,7 @@ class ROTOTOON_PT_track(_Panel, bpy.types.Panel):
         side.prop(settings, "live", icon="FILE_REFRESH", toggle=True)
         if settings.live:
             text, icon = live.status(context.object)
-            if text:
-                layout.label(text=text, icon=icon)
+            layout.label(text=text, icon=icon)
         column = layout.column(align=True)
         column.operator("rototoon.weakest_frame", icon="FRAME_NEXT")
         icon = "HIDE_OFF" if settings.show_confidence else "HIDE_ON"
