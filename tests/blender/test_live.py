@@ -23,7 +23,12 @@ def live(addon):
 def settle(live):
     """Has everything done that is due, as the timer would; the number of steps."""
     bpy.context.view_layer.update()
-    for count in range(5000):
+    return work_off(live)
+
+
+def work_off(live):
+    """As `settle`, but Blender reports no changes before."""
+    for count in range(50000):
         if live.step(math.inf) is None:
             return count
         time.sleep(0.001)
@@ -105,6 +110,18 @@ def test_moved_point_is_a_pin_and_only_its_span_is_solved(addon, fake, live, tmp
     assert list(np.flatnonzero(gp.value(handle, gp.PIN, 8))) == [5]
     # What was written is not taken for an edit.
     assert settle(live) == 0
+
+
+def test_own_writing_is_not_taken_for_an_edit(addon, fake, live, tmp_path, monkeypatch):
+    ob = switched_on(addon, live, tmp_path)
+    document, reads = addon("document"), []
+    read = document.read
+    monkeypatch.setattr(document, "read", lambda *args, **options: (reads.append(1), read(*args, **options))[1])
+    shots.move(addon, ob, 3, 2, (5.0, -3.0), which=[1])
+    settle(live)
+    assert len(reads) == 2, "at the beginning and at the end"
+    bpy.context.view_layer.update()
+    assert live.step(math.inf) is None and len(reads) == 2
 
 
 def test_moved_part_is_a_centre(addon, fake, live, tmp_path):
@@ -194,7 +211,7 @@ def test_edit_that_was_not_reported_drops_the_result(addon, fake, live, tmp_path
     shots.move(addon, ob, 3, 2, (1.0, 0.0), which=[1])
     place = dict(shots.pixels(addon, ob, 3))[2][1]
     go.set()
-    settle(live)
+    work_off(live)
     assert session(addon, ob).state["parts"][1]["pins"]["3"]["1"] == pytest.approx(place, abs=1e-6)
 
 
@@ -275,6 +292,25 @@ def test_one_undo_takes_back_the_edit_and_its_result(addon, fake, live, tmp_path
     bpy.ops.ed.redo()
     assert now() == states[2]
     assert settle(live) == 0
+
+
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+def test_step_that_holds_no_result_gets_it_again(addon, fake, live, tmp_path, mode):
+    ob = switched_on(addon, live, tmp_path)
+    bpy.ops.object.mode_set(mode=mode)
+    bpy.ops.ed.undo_push(message="before")
+    shots.move(addon, ob, 3, 2, (9.0, 4.0))
+    ob.data.update_tag()
+    bpy.context.view_layer.update()
+    # Of a moved part, the strokes of the step itself hold only the shift; the centre is written with the result.
+    bpy.ops.ed.undo_push(message="Move")
+    settle(live)
+    result = drawings(ob)
+    bpy.ops.ed.undo_push(message="something else")
+    bpy.ops.ed.undo()
+    assert drawings(bpy.context.object) != result
+    settle(live)
+    assert drawings(bpy.context.object) == result
 
 
 def test_undo_while_tracking(addon, fake, live, tmp_path, monkeypatch):
@@ -372,6 +408,8 @@ def test_opened_file_is_tracked_from_the_first_edit(addon, fake, live, tmp_path)
     ob = bpy.context.object
     assert ob.rototoon.live
     before = shots.snapshot(ob)
+    # Blender reports everything of a new file as changed.
+    ob.data.update_tag()
     settle(live)
     assert shots.snapshot(ob) == before and len(fake.Session.made) == made
     shots.move(addon, ob, 3, 2, (5.0, -3.0), which=[1])
