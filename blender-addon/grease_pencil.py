@@ -194,16 +194,36 @@ class Rows:
 
 
 def replace_made(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
-    """Puts `rows` in the place of all generated strokes; the artist's strokes stay as they are, below them."""
+    """Puts `rows` in the place of all generated strokes; the artist's strokes stay as they are, below them.
+
+    A drawing that holds just these rows already is not touched.
+    """
     starts = offsets(drawing)
-    strokes = len(starts) - 1
+    strokes, count = len(starts) - 1, len(rows.sizes)
     made = value(drawing, MADE, strokes)
-    if not (made.all() and np.array_equal(np.diff(starts), rows.sizes)):
+    first = strokes - count
+    fits = made.sum() == count and made[first:].all() and np.array_equal(np.diff(starts)[first:], rows.sizes)
+    if fits and _holds(drawing, rows, first, starts):
+        return
+    if not fits:
         if made.any():
             drawing.remove_strokes(indices=np.flatnonzero(made).tolist())
         if len(rows.sizes):
             drawing.add_strokes(rows.sizes.tolist())
     _write_tail(drawing, rows)
+
+
+def _holds(drawing: bpy.types.bpy_struct, rows: Rows, first: int, starts: np.ndarray) -> bool:
+    """Whether the strokes from `first` on have the values of `rows`."""
+    for name, values in rows.values.items():
+        curve = name != "position" and domain(drawing, name) == "CURVE"
+        found = get(drawing, name, len(starts) - 1 if curve else int(starts[-1]))
+        if found is None:
+            return False
+        found = found[first if curve else starts[first] :]
+        if not np.array_equal(found, np.asarray(values).astype(found.dtype)):
+            return False
+    return True
 
 
 def append(drawing: bpy.types.bpy_struct, rows: Rows) -> None:

@@ -1,4 +1,4 @@
-"""What happens when files are opened and saved: sessions are forgotten, footage paths stay true."""
+"""What happens when files are opened, saved and changed: sessions are forgotten, footage paths stay true, live tracks."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 import bpy
 from bpy.app.handlers import persistent
 
-from . import footage, sessions
+from . import footage, live, sessions
 
 _FIELDS = ("pattern", "movie")
 
@@ -46,7 +46,12 @@ def _rebase(old: str, new: str) -> None:
 
 
 _HOOKS = (
+    ("load_pre", live.closing),
     ("load_post", _loaded),
+    ("load_post", live.opened),
+    ("depsgraph_update_post", live.changed),
+    ("undo_post", live.undone),
+    ("redo_post", live.undone),
     ("save_pre", _saving),
     ("save_post", _saved),
 )
@@ -64,4 +69,5 @@ def unregister() -> None:
         hooks = getattr(bpy.app.handlers, name)
         if hook in hooks:
             hooks.remove(hook)
+    live.reset()
     sessions.clear()

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import bpy
 
+from . import live
+
 PRESETS = (
     ("rototoon", "Rototoon", "Textured lattices that follow each part from both keys: the best that Rototoon knows"),
     ("zhou2011", "Zhou & Xiao 2011", "Space-time energy of contours, edges and regions, as published"),
@@ -30,7 +32,10 @@ class RototoonPart(bpy.types.PropertyGroup):
     # `name` is a property of every PropertyGroup.
     number: bpy.props.IntProperty(name="Number", description="What the part's strokes are marked with")
     depth: bpy.props.FloatProperty(
-        name="Depth", description="Larger is nearer to the viewer; nearer parts hide others", default=0.0
+        name="Depth",
+        description="Larger is nearer to the viewer; nearer parts hide others",
+        default=0.0,
+        update=live.setting_changed,
     )
     closed: bpy.props.BoolProperty(name="Closed", description="The last point joins the first", default=False)
     count: bpy.props.IntProperty(name="Control Points", description="Number of control points on each frame", min=0)
@@ -75,7 +80,16 @@ class RototoonSettings(bpy.types.PropertyGroup):
     snapped_layer: bpy.props.StringProperty(
         name="Snapped", description="Layer that snapping writes to", default="Snapped"
     )
-    preset: bpy.props.EnumProperty(name="Method", description="How contours are followed", items=PRESETS)
+    preset: bpy.props.EnumProperty(
+        name="Method", description="How contours are followed", items=PRESETS, update=live.setting_changed
+    )
+    live: bpy.props.BoolProperty(
+        name="Live",
+        description="Track by itself whenever you move a point or a part, or set, change or remove a key. "
+        "Only what you touched is tracked again; undo takes back your edit and what followed from it",
+        default=False,
+        update=live.toggled,
+    )
     show_confidence: bpy.props.BoolProperty(
         name="Show Confidence", description="Colour the tracked points: green is sure, red is doubtful", default=False
     )

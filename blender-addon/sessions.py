@@ -18,6 +18,8 @@ class Entry:
     session: Any
     folder: str
     inputs: Mapping[str, Any] | None = None
+    preset: str = ""
+    """The method that the panel showed when `inputs` was tracked."""
 
 
 _entries: dict[int, Entry] = {}
@@ -59,7 +61,12 @@ def known(ob) -> Entry | None:
 
 def drop(ob) -> None:
     """Forgets the object's session."""
-    _put(ob.session_uid, None)
+    forget(ob.session_uid)
+
+
+def forget(uid: int) -> None:
+    """Forgets the session of an object that may be gone, by its `session_uid`."""
+    _put(uid, None)
 
 
 def clear() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 
 from .. import grease_pencil as gp
+from .. import live
 from ..errors import Problem
 from ..native.errors import Cancelled, RototoonError
 
@@ -88,6 +89,7 @@ class Long:
         if self._picked:
             self._picked = False
             return self._follow(context)
+        live.give_way()
         try:
             self._work = self.begin(context)
             self._work.start()
@@ -104,6 +106,8 @@ class Long:
         return self._follow(context)
 
     def _follow(self, context):
+        # It may be at work in the session that is wanted here.
+        live.give_way()
         try:
             self._work = self.begin(context)
         except (Problem, RototoonError) as problem:

@@ -39,7 +39,9 @@ class ROTOTOON_OT_release_pins(Guarded, bpy.types.Operator):
                 mask = gp.selected_points(drawing) if self.which == "SELECTED" else None
                 released += corrections.release(drawing, mask)
         ob.data.update_tag()
-        return f"{released} pins released: press Track" if released else "There was nothing to release"
+        if not released:
+            return "There was nothing to release"
+        return f"{released} pins released" + ("" if ob.rototoon.live else ": press Track")
 
 
 CLASSES = (ROTOTOON_OT_release_pins,)

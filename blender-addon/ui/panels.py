@@ -3,6 +3,7 @@
 import bpy
 
 from .. import grease_pencil as gp
+from .. import live
 
 
 class _Panel:
@@ -78,6 +79,12 @@ class ROTOTOON_PT_track(_Panel, bpy.types.Panel):
         row = layout.row()
         row.scale_y = 1.5
         row.operator("rototoon.track", icon="TRACKING_FORWARDS")
+        side = row.row()
+        side.ui_units_x = 4
+        side.prop(settings, "live", icon="FILE_REFRESH", toggle=True)
+        if settings.live:
+            text, icon = live.status(context.object)
+            layout.label(text=text, icon=icon)
         column = layout.column(align=True)
         column.operator("rototoon.weakest_frame", icon="FRAME_NEXT")
         icon = "HIDE_OFF" if settings.show_confidence else "HIDE_ON"

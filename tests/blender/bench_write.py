@@ -56,7 +56,7 @@ def main():
     }
     ob = scene(addon)
     gp, writing, document = addon("grease_pencil"), addon("writing"), addon("document")
-    track = addon("operators.track")
+    tracking = addon("tracking")
     bpy.ops.rototoon.track()
     reading = document.read(ob)
     session = sessions.known(ob).session
@@ -83,7 +83,7 @@ def main():
     print(f"  write, frames there already {best(lambda: writing.write(layer, block, list(gp.drawings(layer)))):7.1f} ms")
     print(f"  read strokes                {best(lambda: addon('contours').read(ob)):7.1f} ms")
     print(f"  read as document            {best(lambda: document.read(ob)):7.1f} ms")
-    print(f"  track and write, session's own time apart: {best(lambda: track.write_tracks(ob, reading, session)):7.1f} ms")
+    print(f"  track and write, session's own time apart: {best(lambda: tracking.write_tracks(ob, reading, session)):7.1f} ms")
 
 
 def tracked(session, part, writing):
