@@ -3,7 +3,7 @@
 
 use super::TrackError;
 use super::confidence;
-use super::job::{Job, SpanSummary, SpanTrack, Termination};
+use super::job::{SpanSummary, SpanTrack, Termination};
 use super::lattice::texture::Cover;
 use super::pool::{Hypothesis, hypothesis};
 use super::refine::{Frame, Key, Refiner};
@@ -22,12 +22,10 @@ const REACH: f64 = 24.0;
 /// Fall of the templates' cost that makes a refined contour worth taking.
 const WORTH: f64 = 0.01;
 
-/// What a part's track is made from, apart from the pictures.
+/// What a part's track is made from, apart from its pools and the pictures.
 #[derive(Clone, PartialEq)]
 pub(super) struct Finish {
-    job: Job,
-    /// The pools of the span's drawings that the track is made of: chosen hypotheses' nodes and models.
-    path: Vec<(usize, Vec<Point>)>,
+    /// The chosen hypothesis of each drawing.
     chosen: Vec<usize>,
     /// By drawing: contours of nearer parts that reach the part, in working pixels.
     occluders: Vec<Vec<Vec<Point>>>,
@@ -73,9 +71,8 @@ impl Finish {
         };
         let free = own.models.is_some();
         let drawings = if free { own.drawings.len() } else { 0 };
-        let path = (0..drawings).map(|d| (chosen(m, d).model, chosen(m, d).pose.nodes.clone())).collect();
         let occluders = (0..drawings).map(around).collect();
-        Self { job: own.job.clone(), path, chosen: paths[m].clone(), occluders }
+        Self { chosen: paths[m].clone(), occluders }
     }
 }
 

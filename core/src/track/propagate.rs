@@ -110,7 +110,7 @@ impl Model {
         if coarse.energy < fine.energy { coarse } else { fine }
     }
 
-    /// A pose aligned finely to what of it is seen; as it was where that fits worse.
+    /// A pose aligned on the two finer levels from where it is, to what of it is seen.
     pub fn seen(&self, scenery: &Scenery, start: &[Point]) -> Pose {
         let nodes = self.aligner.align(&self.texture, scenery.target(), start, &[1, 2]);
         self.measured(scenery, nodes)

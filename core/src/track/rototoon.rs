@@ -5,8 +5,10 @@
 //!    where they disagree they are searched for in the whole picture ([`pool`]). The artist's
 //!    corrections add to the pools ([`corrected`]).
 //! 2. **Choice.** All parts of a stretch of time choose their paths through the pools together ([`joint`]): nearer parts
-//!    hide farther ones.
-//! 3. **Finish.** The chosen poses are aligned once more where nearer parts leave them to be seen ([`finish`]).
+//!    hide farther ones, parts that hang together stay together. The choice adds to the pools, and is made again
+//!    ([`mend`]).
+//! 3. **Finish.** The chosen poses are aligned once more where nearer parts leave them to be seen, and their contours
+//!    refined ([`finish`]).
 //!
 //! Why: cartoons have flat colours and hard lines, so that a part's look at a key says nearly everything about it; a
 //! chain that compares with the key cannot drift; going both ways covers what appears or is hidden on one side.
@@ -30,7 +32,7 @@ use super::{TrackError, corrected};
 use crate::geometry::Point;
 use crate::scene::{FrameNumber, FrameSource, Part, Progress, Scene, Span};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The default preset's solver.
@@ -40,7 +42,7 @@ pub struct Rototoon {
     plain: BTreeMap<(String, Span), Arc<Pooled>>,
     corrected: BTreeMap<(String, Span), Arc<Pooled>>,
     mended: BTreeMap<(String, Span), Mended>,
-    finished: BTreeMap<(String, Span), (Finish, SpanTrack)>,
+    finished: BTreeMap<(String, Span), Finished>,
 }
 
 /// The pools of a job without and with its corrections, and whether anything was made now.
@@ -53,6 +55,14 @@ struct Mended {
     path: Vec<usize>,
     leads: Vec<Lead>,
     result: Arc<Pooled>,
+}
+
+/// A track, and what it was made from: beside the chosen poses the whole pool, whose other hypotheses are blended in and
+/// weigh in the confidence.
+struct Finished {
+    source: Arc<Pooled>,
+    plan: Finish,
+    track: SpanTrack,
 }
 
 /// The hypotheses of a job.
@@ -89,26 +99,28 @@ impl SceneSolver for Rototoon {
             let results: Vec<Result<(SpanTrack, bool), TrackError>> = stretch
                 .par_iter()
                 .zip(&finishes)
-                .zip(&members)
-                .map(|((&t, plan), member)| {
-                    let key = (pooled[t].job.name.clone(), pooled[t].job.span);
+                .zip(&mended)
+                .map(|((&t, plan), source)| {
+                    let key = source.key();
                     match self.finished.get(&key) {
-                        Some((known, track)) if known == plan => Ok((track.clone(), fresh[t])),
+                        Some(known) if Arc::ptr_eq(&known.source, source) && known.plan == *plan => {
+                            Ok((known.track.clone(), fresh[t]))
+                        }
                         _ => {
                             let kit = Kit { store: &self.store, frames, progress: &shared.of(t) };
-                            Ok((finish(kit, member, plan)?, true))
+                            Ok((finish(kit, source, plan)?, true))
                         }
                     }
                 })
                 .collect();
-            for ((&t, plan), result) in stretch.iter().zip(finishes).zip(results) {
+            for (((&t, plan), source), result) in stretch.iter().zip(finishes).zip(mended).zip(results) {
                 let (track, solved) = result?;
                 shared.of(t).report("Tracking", 1.0)?;
-                let key = (pooled[t].job.name.clone(), pooled[t].job.span);
-                self.finished.insert(key, (plan, track.clone()));
+                self.finished.insert(source.key(), Finished { source, plan, track: track.clone() });
                 done[t] = Some((track, solved));
             }
         }
+        self.keep_only(&pooled);
         Ok(assemble(scene, &tasks, done))
     }
 
@@ -118,6 +130,15 @@ impl SceneSolver for Rototoon {
 }
 
 impl Rototoon {
+    /// Forgets the spans that are no more, since keys were set or taken away.
+    fn keep_only(&mut self, pooled: &[Arc<Pooled>]) {
+        let present: BTreeSet<(String, Span)> = pooled.iter().map(|p| p.key()).collect();
+        self.plain.retain(|key, _| present.contains(key));
+        self.corrected.retain(|key, _| present.contains(key));
+        self.mended.retain(|key, _| present.contains(key));
+        self.finished.retain(|key, _| present.contains(key));
+    }
+
     /// The pools of all tasks, and whether they were made now.
     fn pool_all(
         &mut self,
@@ -142,7 +163,7 @@ impl Rototoon {
                 .collect();
             for (t, result) in wave.into_iter().zip(results) {
                 let (plain, with_corrections, solved) = result?;
-                let key = (plain.job.name.clone(), plain.job.span);
+                let key = plain.key();
                 self.plain.insert(key.clone(), plain);
                 self.corrected.insert(key, with_corrections.clone());
                 done[t] = Some((with_corrections, solved));
@@ -166,7 +187,7 @@ impl Rototoon {
             .par_iter()
             .map(|&m| {
                 let source = &pooled[stretch[m]];
-                let key = (source.job.name.clone(), source.job.span);
+                let key = source.key();
                 let same = |known: &&Mended| {
                     Arc::ptr_eq(&known.source, source) && known.path == paths[m] && known.leads == leads[m]
                 };
@@ -182,7 +203,7 @@ impl Rototoon {
         for mended in mended {
             let mended = mended?;
             results.push(mended.result.clone());
-            self.mended.insert((mended.source.job.name.clone(), mended.source.job.span), mended);
+            self.mended.insert(mended.source.key(), mended);
         }
         Ok(results)
     }
@@ -329,6 +350,11 @@ fn occluders(scene: &Scene, tasks: &[Task], done: &[Option<(Arc<Pooled>, bool)>]
 }
 
 impl Pooled {
+    /// By what its job is remembered.
+    fn key(&self) -> (String, Span) {
+        (self.job.name.clone(), self.job.span)
+    }
+
     /// Where the part alone would put its control points on a frame of the span, in pixels of the picture.
     fn own_points(&self, index: usize) -> Vec<Point> {
         let drawing = self.drawings.iter().position(|d| d.first <= index && index <= d.last);

@@ -6,9 +6,9 @@
 //! part that is really hidden is not driven out to where its colour happens to be.
 //!
 //! E = Σ_parts [ Σ_drawings √U + smoothness ], U the visible energy of a hypothesis given the nearer parts' choices, the
-//! smoothness as in [`super::select`], plus what torn joints cost ([`tie`]). It is lowered by moves, each found by dynamic programming and taken only if E
-//! falls: all drawings of one part, all drawings of two parts that hide each other
-//! . Moves of two are what lets crossing twins change places.
+//! smoothness as in [`super::select`], plus what torn joints cost ([`tie`]). It is lowered by moves, each found by dynamic
+//! programming and taken only if E falls: all drawings of one part, or all drawings of two parts of which one hides the
+//! other. Moves of two are what lets crossing twins change places.
 //!
 //! Limits: a local minimum of moves of two; parts that are keyed on different frames move singly only.
 
