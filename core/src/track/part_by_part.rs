@@ -7,7 +7,7 @@
 //! A job that equals the one solved before for the same part and span is not solved again.
 
 use super::job::{Job, SpanSolver, SpanTrack};
-use super::tasks::{SharedProgress, Task, assemble, job, overlap, tasks};
+use super::tasks::{SharedProgress, Task, assemble, job, nearer_contours, next_wave, overlap, tasks};
 use super::tracker::{SceneSolver, TrackError, Tracking};
 use crate::geometry::Point;
 use crate::scene::{FrameNumber, FrameSource, Progress, Scene, Span};
@@ -30,9 +30,10 @@ impl SceneSolver for PartByPart {
         let tasks: Vec<Task> = tasks(scene);
         let shared = SharedProgress::new(progress, scene, &tasks);
         let mut done: Vec<Option<(SpanTrack, bool)>> = vec![None; tasks.len()];
-        while let Some(wave) = next_wave(&tasks, &done) {
+        let waits = |task: &Task, other: &Task| overlap(task.span, other.span);
+        while let Some(wave) = next_wave(&tasks, |t| done[t].is_some(), waits) {
             let jobs: Vec<Job> =
-                wave.iter().map(|&t| job(scene, tasks[t], occluders_of(scene, &tasks, &done, t))).collect();
+                wave.iter().map(|&t| job(scene, tasks[t], occluders(scene, &tasks, &done, t))).collect();
             let results: Vec<Result<(SpanTrack, bool), TrackError>> = wave
                 .par_iter()
                 .zip(&jobs)
@@ -76,38 +77,13 @@ impl PartByPart {
     }
 }
 
-/// The tasks to do next, or none when all are done. There is always one that is ready: the nearest part's earliest.
-fn next_wave(tasks: &[Task], done: &[Option<(SpanTrack, bool)>]) -> Option<Vec<usize>> {
-    let open: Vec<usize> = (0..tasks.len()).filter(|&t| done[t].is_none()).collect();
-    let waits =
-        |t: usize| open.iter().any(|&o| tasks[o].depth > tasks[t].depth && overlap(tasks[o].span, tasks[t].span));
-    let ready: Vec<usize> = open.iter().copied().filter(|&t| !waits(t)).collect();
-    let &earliest = ready.iter().min_by_key(|&&t| tasks[t].span)?;
-    Some(ready.into_iter().filter(|&t| overlap(tasks[t].span, tasks[earliest].span)).collect())
-}
-
-fn occluders_of(scene: &Scene, tasks: &[Task], done: &[Option<(SpanTrack, bool)>], t: usize) -> Vec<Vec<Vec<Point>>> {
-    tasks[t].span.frames().map(|frame| occluders(scene, tasks, done, tasks[t].depth, frame)).collect()
-}
-
-/// The closed contours nearer than `depth` on a frame: tracked, or as keyed where a part has that key only.
-fn occluders(
-    scene: &Scene,
-    tasks: &[Task],
-    done: &[Option<(SpanTrack, bool)>],
-    depth: f64,
-    frame: FrameNumber,
-) -> Vec<Vec<Point>> {
-    let nearer = scene.parts.iter().enumerate().filter(|(_, p)| p.closed && p.depth > depth && p.point_count() > 2);
-    nearer
-        .filter_map(|(index, p)| {
-            if let Some(key) = p.keys.get(&frame) {
-                return Some(key.clone());
-            }
-            let on_frame = |t: &Task| t.part == index && t.span.first < frame && frame < t.span.last;
-            let task = tasks.iter().position(on_frame)?;
-            let (track, _) = done[task].as_ref()?;
-            Some(track.points[(frame - tasks[task].span.first) as usize].clone())
+/// What hides a task's part on each frame of its span.
+fn occluders(scene: &Scene, tasks: &[Task], done: &[Option<(SpanTrack, bool)>], t: usize) -> Vec<Vec<Vec<Point>>> {
+    let on = |frame: FrameNumber| {
+        nearer_contours(scene, tasks, (tasks[t].depth, frame), |o| {
+            let (track, _) = done[o].as_ref()?;
+            Some(track.points[(frame - tasks[o].span.first) as usize].clone())
         })
-        .collect()
+    };
+    tasks[t].span.frames().map(on).collect()
 }

@@ -26,11 +26,11 @@ use super::pool::{self, Pools};
 use super::propagate::Model;
 use super::stage::{Kit, Stage};
 use super::store::Store;
-use super::tasks::{SharedProgress, Task, assemble, job, overlap, tasks};
+use super::tasks::{SharedProgress, Task, assemble, job, nearer_contours, next_wave, tasks};
 use super::tracker::{SceneSolver, Tracking};
 use super::{TrackError, corrected};
 use crate::geometry::Point;
-use crate::scene::{FrameNumber, FrameSource, Part, Progress, Scene, Span};
+use crate::scene::{FrameNumber, FrameSource, Progress, Scene, Span};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -148,7 +148,12 @@ impl Rototoon {
         shared: &SharedProgress,
     ) -> Result<(Vec<Arc<Pooled>>, Vec<bool>), TrackError> {
         let mut done: Vec<Option<(Arc<Pooled>, bool)>> = vec![None; tasks.len()];
-        while let Some(wave) = next_wave(scene, tasks, &done) {
+        // What nearer parts hide on a task's keys must be known, also where they are in the middle of a span there.
+        let within = |o: &Task, frame: FrameNumber| o.span.first < frame && frame < o.span.last;
+        let waits = |task: &Task, other: &Task| {
+            scene.parts[other.part].closed && (within(other, task.span.first) || within(other, task.span.last))
+        };
+        while let Some(wave) = next_wave(tasks, |t| done[t].is_some(), waits) {
             let jobs: Vec<Job> =
                 wave.iter().map(|&t| job(scene, tasks[t], occluders(scene, tasks, &done, t))).collect();
             let results: Vec<Result<FoundPools, TrackError>> = wave
@@ -310,38 +315,14 @@ fn stretches(tasks: &[Task]) -> Vec<Vec<usize>> {
     stretches.into_iter().map(|(_, members)| members).collect()
 }
 
-/// The tasks to do next, or none when all are done: those that share frames with the earliest that is ready. A task
-/// waits for the nearer parts that are in the middle of a span on its keys: what they hide there must be known.
-fn next_wave(scene: &Scene, tasks: &[Task], done: &[Option<(Arc<Pooled>, bool)>]) -> Option<Vec<usize>> {
-    let open: Vec<usize> = (0..tasks.len()).filter(|&t| done[t].is_none()).collect();
-    let within = |o: usize, frame: FrameNumber| tasks[o].span.first < frame && frame < tasks[o].span.last;
-    let waits = |t: usize| {
-        let Span { first, last } = tasks[t].span;
-        open.iter().any(|&o| {
-            scene.parts[tasks[o].part].closed
-                && tasks[o].depth > tasks[t].depth
-                && (within(o, first) || within(o, last))
-        })
-    };
-    let ready: Vec<usize> = open.iter().copied().filter(|&t| !waits(t)).collect();
-    let &earliest = ready.iter().min_by_key(|&&t| tasks[t].span)?;
-    Some(ready.into_iter().filter(|&t| overlap(tasks[t].span, tasks[earliest].span)).collect())
-}
-
-/// What hides a task's part on its keys: the nearer closed contours as keyed, or as they track by themselves.
+/// What hides a task's part on its keys; parts between keys of their own are where they track by themselves.
 fn occluders(scene: &Scene, tasks: &[Task], done: &[Option<(Arc<Pooled>, bool)>], t: usize) -> Vec<Vec<Vec<Point>>> {
     let Task { span, depth, .. } = tasks[t];
-    let nearer = |p: &Part| p.closed && p.depth > depth && p.point_count() > 2;
     let on = |frame: FrameNumber| {
-        let of_part = |(index, p): (usize, &Part)| {
-            if let Some(key) = p.keys.get(&frame) {
-                return Some(key.clone());
-            }
-            let holds = |o: &Task| o.part == index && o.span.first < frame && frame < o.span.last;
-            let (pooled, _) = done[tasks.iter().position(holds)?].as_ref()?;
-            Some(pooled.own_points((frame - pooled.job.span.first) as usize))
-        };
-        scene.parts.iter().enumerate().filter(|(_, p)| nearer(p)).filter_map(of_part).collect()
+        nearer_contours(scene, tasks, (depth, frame), |o| {
+            let (pooled, _) = done[o].as_ref()?;
+            Some(pooled.own_points((frame - tasks[o].span.first) as usize))
+        })
     };
     let mut occluders = vec![Vec::new(); span.len()];
     occluders[0] = on(span.first);

@@ -14,12 +14,45 @@ pub(super) struct Task {
     pub depth: f64,
 }
 
+/// All tasks of a scene, in the order of parts, then spans.
 pub(super) fn tasks(scene: &Scene) -> Vec<Task> {
     let of_part = |(part, p): (usize, &Part)| {
         let depth = p.depth;
         p.spans().into_iter().map(move |span| Task { part, span, depth }).collect::<Vec<_>>()
     };
     scene.parts.iter().enumerate().flat_map(of_part).collect()
+}
+
+/// The tasks to do next, or none when all are done: of those that wait for no other, the ones that share frames with the
+/// earliest. `waits(t, o)` tells whether task t needs the open task o first; it must be for the nearer part's only, so
+/// that there is always one that is ready.
+pub(super) fn next_wave(
+    tasks: &[Task],
+    is_done: impl Fn(usize) -> bool,
+    waits: impl Fn(&Task, &Task) -> bool,
+) -> Option<Vec<usize>> {
+    let open: Vec<usize> = (0..tasks.len()).filter(|&t| !is_done(t)).collect();
+    let nearer = |t: usize, o: usize| tasks[o].depth > tasks[t].depth;
+    let held_up = |t: usize| open.iter().any(|&o| nearer(t, o) && waits(&tasks[t], &tasks[o]));
+    let ready: Vec<usize> = open.iter().copied().filter(|&t| !held_up(t)).collect();
+    let &earliest = ready.iter().min_by_key(|&&t| tasks[t].span)?;
+    Some(ready.into_iter().filter(|&t| overlap(tasks[t].span, tasks[earliest].span)).collect())
+}
+
+/// The closed contours nearer than `depth` on a frame: as keyed, else as `tracked` knows them of the task whose span the
+/// frame lies in.
+pub(super) fn nearer_contours(
+    scene: &Scene,
+    tasks: &[Task],
+    (depth, frame): (f64, FrameNumber),
+    tracked: impl Fn(usize) -> Option<Vec<Point>>,
+) -> Vec<Vec<Point>> {
+    let nearer = scene.parts.iter().enumerate().filter(|(_, p)| p.closed && p.depth > depth && p.point_count() > 2);
+    let contour = |(index, p): (usize, &Part)| {
+        let holds = |t: &Task| t.part == index && t.span.first < frame && frame < t.span.last;
+        p.keys.get(&frame).cloned().or_else(|| tracked(tasks.iter().position(holds)?))
+    };
+    nearer.filter_map(contour).collect()
 }
 
 /// Whether two spans share frames.
