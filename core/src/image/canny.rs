@@ -22,7 +22,7 @@
 
 use super::colour::luma;
 use super::gaussian::{Border, Kernel, convolve_row};
-use super::vector::vectorised;
+use crate::numeric::vector::vectorised;
 use crate::scene::{Colour, Raster};
 use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
 use std::ops::Range;

@@ -10,7 +10,7 @@
 //! iteration, which vectorises and, unlike a system's mathematical library, gives the same bits everywhere. It agrees
 //! with the exact [`lab`] to 0.01.
 
-use super::vector::vectorised;
+use crate::numeric::vector::vectorised;
 use crate::scene::{Colour, Raster};
 use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSlice, ParallelSliceMut};
 use std::sync::LazyLock;

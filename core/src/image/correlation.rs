@@ -1,83 +1,137 @@
 //! Correlation of pictures by the fast Fourier transform.
 //!
 //! Σ_u picture(x + u) pattern(u) for all x at once is a product of spectra: picture × conj(pattern) (convolution
-//! theorem). Real pictures leave half of a complex transform idle, so two results are transformed back in one go, as
-//! real and imaginary part.
+//! theorem). Real pictures leave half of a complex transform idle, so two patterns are transformed together, as real and
+//! imaginary part, and their results come back together. A conjugated spectrum is that of the pattern turned by half,
+//! which is what is transformed.
+//!
+//! The transform is circular: where a pattern reaches over an edge of the picture, the opposite edge is read. All other
+//! places are right without any padding.
 
+use crate::numeric::vector::vectorised;
 use crate::scene::Raster;
 use rustfft::num_complex::Complex32;
 use rustfft::{Fft, FftPlanner};
 use std::sync::Arc;
 
-/// The transform of a real picture.
+/// A transform: real and imaginary parts, column by column.
 #[derive(Clone, Debug)]
-pub struct Spectrum(Vec<Complex32>);
+pub struct Spectrum {
+    re: Vec<f32>,
+    im: Vec<f32>,
+}
+
+impl Spectrum {
+    /// Bytes kept.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.re[..]) + size_of_val(&self.im[..])
+    }
+}
 
 /// Transforms of pictures of one size.
 pub struct Correlator {
     width: usize,
     height: usize,
-    along_rows: [Arc<dyn Fft<f32>>; 2],
-    along_columns: [Arc<dyn Fft<f32>>; 2],
+    forward: [Arc<dyn Fft<f32>>; 2],
+    inverse: [Arc<dyn Fft<f32>>; 2],
 }
 
 impl Correlator {
-    /// For pictures and patterns that fit into `width` × `height` together: a picture's size plus the largest pattern's
-    /// keeps results from wrapping around. Both are raised to the next size that transforms quickly.
+    /// For pictures of `width` × `height`; both are raised to the next size that transforms quickly.
     pub fn new(width: usize, height: usize) -> Self {
         let (width, height) = (smooth(width), smooth(height));
         let mut planner = FftPlanner::new();
-        let mut both = |n| [planner.plan_fft_forward(n), planner.plan_fft_inverse(n)];
-        Self { width, height, along_rows: both(width), along_columns: both(height) }
+        let forward = [planner.plan_fft_forward(width), planner.plan_fft_forward(height)];
+        let inverse = [planner.plan_fft_inverse(width), planner.plan_fft_inverse(height)];
+        Self { width, height, forward, inverse }
     }
 
     /// The transform of a picture, padded with zeros.
-    pub fn transform(&self, picture: &Raster<f32>) -> Spectrum {
+    pub fn picture(&self, picture: &Raster<f32>) -> Spectrum {
         assert!(picture.width() <= self.width && picture.height() <= self.height);
         let mut data = vec![Complex32::default(); self.width * self.height];
         for y in 0..picture.height() {
             let row = &mut data[y * self.width..][..picture.width()];
             row.iter_mut().zip(picture.row(y)).for_each(|(c, &v)| c.re = v);
         }
-        Spectrum(self.transformed(data, 0))
+        self.transformed(data)
     }
 
-    /// Sums of correlations: entry (x, y) of each result is Σ over the pairs of Σ_u picture(x + u) pattern(u).
-    ///
-    /// `patterns` are two lists that are each paired with `pictures` in order.
-    pub fn correlate(&self, pictures: &[Spectrum], patterns: [&[Spectrum]; 2]) -> [Raster<f32>; 2] {
-        let mut sum = vec![Complex32::default(); self.width * self.height];
-        for (turn, list) in [Complex32::new(1.0, 0.0), Complex32::new(0.0, 1.0)].into_iter().zip(patterns) {
-            for (picture, pattern) in pictures.iter().zip(list) {
-                for ((s, a), b) in sum.iter_mut().zip(&picture.0).zip(&pattern.0) {
-                    *s += turn * (a * b.conj());
+    /// The transform of two patterns for [`Correlator::correlate`]. They may not be larger than the pictures.
+    pub fn patterns(&self, patterns: [&Raster<f32>; 2]) -> Spectrum {
+        let mut data = vec![Complex32::default(); self.width * self.height];
+        for (pattern, unit) in patterns.into_iter().zip([Complex32::new(1.0, 0.0), Complex32::new(0.0, 1.0)]) {
+            assert!(pattern.width() <= self.width && pattern.height() <= self.height);
+            for y in 0..pattern.height() {
+                let turned = &mut data[(self.height - y) % self.height * self.width..][..self.width];
+                for (x, &value) in pattern.row(y).iter().enumerate() {
+                    turned[if x == 0 { 0 } else { self.width - x }] += unit * value;
                 }
             }
         }
-        let data = self.transformed(sum, 1);
-        let scale = 1.0 / data.len() as f32;
-        let part = |value: fn(&Complex32) -> f32| {
-            Raster::from_fn(self.width, self.height, |x, y| scale * value(&data[y * self.width + x]))
-        };
-        [part(|c| c.re), part(|c| c.im)]
+        self.transformed(data)
     }
 
-    /// Forward (0) or inverse (1) transform along rows, then columns.
-    fn transformed(&self, mut data: Vec<Complex32>, direction: usize) -> Vec<Complex32> {
-        self.along_rows[direction].process(&mut data);
+    /// Sums of correlations of the pictures with the pairs of patterns in the same order: entry (x, y) of each of the
+    /// two results is Σ over the pictures of Σ_u picture(x + u) pattern(u).
+    pub fn correlate(&self, pictures: &[Spectrum], patterns: &[Spectrum]) -> [Raster<f32>; 2] {
+        let mut turned = vec![Complex32::default(); self.width * self.height];
+        vectorised(
+            #[inline(always)]
+            || add_products(pictures, patterns, &mut turned),
+        );
+        self.inverse[1].process(&mut turned);
+        let mut data = vec![Complex32::default(); turned.len()];
+        transpose(&turned, &mut data, self.height);
+        self.inverse[0].process(&mut data);
+        let scale = 1.0 / data.len() as f32;
+        let plane = |part: fn(&Complex32) -> f32| data.iter().map(|c| scale * part(c)).collect();
+        [|c: &Complex32| c.re, |c: &Complex32| c.im].map(|part| {
+            Raster::from_vec(self.width, self.height, plane(part)).unwrap_or_else(|| Raster::new(0, 0, 0.0))
+        })
+    }
+
+    fn transformed(&self, mut data: Vec<Complex32>) -> Spectrum {
+        self.forward[0].process(&mut data);
         let mut turned = vec![Complex32::default(); data.len()];
         transpose(&data, &mut turned, self.width);
-        self.along_columns[direction].process(&mut turned);
-        transpose(&turned, &mut data, self.height);
-        data
+        self.forward[1].process(&mut turned);
+        Spectrum { re: turned.iter().map(|c| c.re).collect(), im: turned.iter().map(|c| c.im).collect() }
     }
 }
 
+/// Σ of the products of spectra in pairs.
+#[inline(always)]
+fn add_products(pictures: &[Spectrum], patterns: &[Spectrum], sums: &mut [Complex32]) {
+    const PIECE: usize = 256;
+    let count = sums.len();
+    for (k, sums) in sums.chunks_mut(PIECE).enumerate() {
+        let range = k * PIECE..(k * PIECE + sums.len()).min(count);
+        let (mut re, mut im) = ([0.0f32; PIECE], [0.0f32; PIECE]);
+        for (a, b) in pictures.iter().zip(patterns) {
+            let [ar, ai, br, bi] = [&a.re, &a.im, &b.re, &b.im].map(|plane| &plane[range.clone()]);
+            for i in 0..sums.len() {
+                re[i] += ar[i] * br[i] - ai[i] * bi[i];
+                im[i] += ar[i] * bi[i] + ai[i] * br[i];
+            }
+        }
+        for (i, sum) in sums.iter_mut().enumerate() {
+            *sum = Complex32::new(re[i], im[i]);
+        }
+    }
+}
+
+/// Rows of `width` values made columns, in tiles that stay in the processor's cache.
 fn transpose(from: &[Complex32], to: &mut [Complex32], width: usize) {
+    const TILE: usize = 16;
     let height = from.len() / width;
-    for (y, row) in from.chunks_exact(width).enumerate() {
-        for (x, &value) in row.iter().enumerate() {
-            to[x * height + y] = value;
+    for y0 in (0..height).step_by(TILE) {
+        for x0 in (0..width).step_by(TILE) {
+            for y in y0..(y0 + TILE).min(height) {
+                for x in x0..(x0 + TILE).min(width) {
+                    to[x * height + y] = from[y * width + x];
+                }
+            }
         }
     }
 }
@@ -107,16 +161,17 @@ mod tests {
             let picture = Raster::from_fn(9, 7, |x, y| values[y * 9 + x]);
             let pattern = |k: usize| Raster::from_fn(3, 4, |x, y| values[63 + 12 * k + y * 3 + x]);
             let patterns = [pattern(0), pattern(1)];
-            let correlator = Correlator::new(12, 11);
-            let spectra = patterns.clone().map(|p| [correlator.transform(&p)]);
-            let results = correlator.correlate(&[correlator.transform(&picture)], [&spectra[0], &spectra[1]]);
+            let correlator = Correlator::new(9, 7);
+            let spectrum = correlator.patterns([&patterns[0], &patterns[1]]);
+            let twice = [correlator.picture(&picture), correlator.picture(&picture)];
+            let results = correlator.correlate(&twice, &[spectrum.clone(), spectrum]);
             for (result, pattern) in results.iter().zip(&patterns) {
                 for y in 0..=3 {
                     for x in 0..=6 {
                         let mut want = 0.0;
                         for v in 0..4 {
                             for u in 0..3 {
-                                want += picture.get(x + u, y + v) * pattern.get(u, v);
+                                want += 2.0 * picture.get(x + u, y + v) * pattern.get(u, v);
                             }
                         }
                         prop_assert!((result.get(x, y) - want).abs() < 1e-4);

@@ -138,11 +138,11 @@ fn word(v: u16) -> f32 {
 }
 
 /// Encoded values in groups of `N`: grey, grey and alpha, colour, colour and alpha.
-fn whole<const N: usize, V: Copy>(values: &[V], unit: fn(V) -> f32) -> Vec<Colour> {
+fn whole<const N: usize, V: Copy>(values: &[V], unit: impl Fn(V) -> f32) -> Vec<Colour> {
     let over = |v: f32, alpha: f32| BACKDROP + alpha * (v - BACKDROP);
     let (pixels, _) = values.as_chunks::<N>();
     let colour = |pixel: &[V; N]| {
-        let v = pixel.map(unit);
+        let v = pixel.map(&unit);
         match N {
             1 => [v[0]; 3],
             2 => [over(v[0], v[1]); 3],

@@ -11,7 +11,7 @@
 //! Limits: the kernel ends at 3 σ, where the Gaussian has fallen to 1 % of its height; 0.3 % of its mass is beyond.
 
 use super::pixel::Pixel;
-use super::vector::vectorised;
+use crate::numeric::vector::vectorised;
 use crate::scene::Raster;
 use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
 

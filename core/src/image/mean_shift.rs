@@ -19,7 +19,7 @@
 //! Limits: colours are rounded to 8 bits, values outside 0 to 1 are cut; the range is at most 100 levels and the
 //! spatial radius at most 60 pixels (16 bits hold no more), larger ones are cut.
 
-use super::vector::vectorised;
+use crate::numeric::vector::vectorised;
 use crate::scene::{Colour, Raster};
 use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSlice, ParallelSliceMut};
 

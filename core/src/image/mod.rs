@@ -13,7 +13,6 @@
 //! - [`resize`]: area reduction and bilinear enlargement
 //! - [`sample`]: bilinear reading with derivatives
 //! - [`sequence`]: the pictures of a footage, decoded in parallel and kept for a while
-//! - `vector`: hot loops compiled for the machine they run on
 
 pub mod canny;
 pub mod colour;
@@ -28,7 +27,6 @@ pub mod pyramid;
 pub mod resize;
 pub mod sample;
 pub mod sequence;
-mod vector;
 
 pub use decode::{DecodeError, decode, probe};
 pub use sequence::Sequence;

@@ -12,7 +12,7 @@
 //! mean of the part of its area that lies in the picture.
 
 use super::pixel::Pixel;
-use super::vector::vectorised;
+use crate::numeric::vector::vectorised;
 use crate::scene::Raster;
 use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
 

@@ -2,14 +2,25 @@
 //!
 //! A lattice numbered along its longer side couples only unknowns that are close in number. Its normal equations are
 //! then a band matrix of n rows and half width b, factored in n b²/2 multiplications (dense: n³/6), without any symbolic
-//! work. Row-oriented (Cholesky–Banachiewicz; Golub & Van Loan, *Matrix Computations*, §4.3): each inner product runs
-//! over two contiguous row pieces.
+//! work. The outer product form (Golub & Van Loan, *Matrix Computations*, §4.2.5 and §4.3.5) on the upper triangle: a
+//! finished row is taken from the rows below it, and runs along memory as they do, so that the processor's vectors are
+//! full. [`BLOCK`] rows are finished before the rows below them are touched, which then are read and written once instead
+//! of [`BLOCK`] times.
 
-/// Lower triangle of a symmetric band matrix: row `i` holds the columns `i - half ..= i`.
+use super::vector::vectorised;
+
+/// Rows that are finished together.
+const BLOCK: usize = 4;
+/// Values that are worked on together.
+const LANES: usize = 4;
+
+/// Upper triangle of a symmetric band matrix: row `i` holds the columns `i ..= i + half`, and zeros behind them, so that
+/// the rows of a block may be read as if all were of one length, a multiple of [`LANES`].
 #[derive(Clone, Debug)]
 pub struct BandMatrix {
     size: usize,
     half: usize,
+    stride: usize,
     data: Vec<f64>,
 }
 
@@ -24,7 +35,8 @@ pub struct Indefinite {
 impl BandMatrix {
     /// The zero matrix of `size` rows; entries further than `half` from the diagonal stay zero.
     pub fn zeros(size: usize, half: usize) -> Self {
-        Self { size, half, data: vec![0.0; size * (half + 1)] }
+        let stride = half + 1 + (BLOCK - 1) + (LANES - 1);
+        Self { size, half, stride, data: vec![0.0; size * stride] }
     }
 
     /// Number of rows.
@@ -39,9 +51,9 @@ impl BandMatrix {
 
     /// Adds to entry (`i`, `j`), which is also entry (`j`, `i`). Panics outside the band.
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
-        let (i, j) = if i >= j { (i, j) } else { (j, i) };
-        assert!(i - j <= self.half, "entry ({i}, {j}) lies outside a band of {}", self.half);
-        self.data[i * (self.half + 1) + self.half - (i - j)] += value;
+        let (i, j) = if i <= j { (i, j) } else { (j, i) };
+        assert!(j - i <= self.half, "entry ({i}, {j}) lies outside a band of {}", self.half);
+        self.data[i * self.stride + j - i] += value;
     }
 
     /// Adds another matrix of the same shape, times `factor`.
@@ -52,31 +64,81 @@ impl BandMatrix {
         }
     }
 
-    /// Factors the matrix in place into L Lᵀ.
+    /// Factors the matrix in place into Uᵀ U.
     pub fn factor(mut self) -> Result<BandCholesky, Indefinite> {
-        let (half, width) = (self.half, self.half + 1);
-        for i in 0..self.size {
-            let first = i.saturating_sub(half);
-            let (above, from_i) = self.data.split_at_mut(i * width);
-            let row = &mut from_i[..width];
-            for j in first..i {
-                let start = first.max(j.saturating_sub(half));
-                let mine = &row[start + half - i..j + half - i];
-                let theirs = &above[j * width + start + half - j..j * width + half];
-                let at = j + half - i;
-                row[at] = (row[at] - dot(mine, theirs)) / above[j * width + half];
-            }
-            let pivot = row[half] - dot(&row[first + half - i..half], &row[first + half - i..half]);
-            if pivot <= 0.0 || pivot.is_nan() {
-                return Err(Indefinite { row: i });
-            }
-            row[half] = pivot.sqrt();
-        }
+        vectorised(
+            #[inline(always)]
+            || self.finish_all(),
+        )?;
         Ok(BandCholesky { matrix: self })
+    }
+
+    #[inline(always)]
+    fn finish_all(&mut self) -> Result<(), Indefinite> {
+        let mut first = 0;
+        while first < self.size {
+            self.finish(first)?;
+            first += BLOCK;
+        }
+        Ok(())
+    }
+
+    /// Finishes the rows of a block and takes them from the rows below.
+    #[inline(always)]
+    fn finish(&mut self, first: usize) -> Result<(), Indefinite> {
+        let (half, stride) = (self.half, self.stride);
+        let end = (first + BLOCK).min(self.size);
+        for k in first..end {
+            let (upto, below) = self.data.split_at_mut((k + 1) * stride);
+            let row = &mut upto[k * stride..];
+            if row[0] <= 0.0 || row[0].is_nan() {
+                return Err(Indefinite { row: k });
+            }
+            let scale = 1.0 / row[0].sqrt();
+            row.iter_mut().for_each(|v| *v *= scale);
+            for i in k + 1..end.min(k + half + 1) {
+                let length = (half + 1 - (i - k)).next_multiple_of(LANES);
+                take(&mut below[(i - k - 1) * stride..][..length], [&row[i - k..][..length]]);
+            }
+        }
+        let (done, below) = self.data.split_at_mut(end * stride);
+        for i in end..(end + half).min(self.size) {
+            let target = &mut below[(i - end) * stride..][..stride];
+            let row = |k: usize| &done[k * stride + (i - k)..(k + 1) * stride];
+            if end - first == BLOCK && i <= first + half {
+                let length = (half + 1 - (i - first) + BLOCK - 1).next_multiple_of(LANES);
+                take(&mut target[..length], std::array::from_fn::<_, BLOCK, _>(|b| &row(first + b)[..length]));
+            } else {
+                for k in (first..end).filter(|k| i <= k + half) {
+                    let length = (half + 1 - (i - k)).next_multiple_of(LANES);
+                    take(&mut target[..length], [&row(k)[..length]]);
+                }
+            }
+        }
+        Ok(())
     }
 }
 
-/// L of L Lᵀ = A.
+/// Takes finished rows, from the target's first column on, from a row below. All are of one length, a multiple of
+/// [`LANES`].
+#[inline(always)]
+fn take<const N: usize>(target: &mut [f64], rows: [&[f64]; N]) {
+    let factors = rows.map(|row| row[0]);
+    let rows = rows.map(|row| row.as_chunks::<LANES>().0);
+    for (g, group) in target.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
+        let mut sum = [0.0; LANES];
+        for (factor, row) in factors.iter().zip(rows) {
+            for (total, u) in sum.iter_mut().zip(row[g]) {
+                *total += factor * u;
+            }
+        }
+        for (value, total) in group.iter_mut().zip(sum) {
+            *value -= total;
+        }
+    }
+}
+
+/// U of Uᵀ U = A.
 #[derive(Clone, Debug)]
 pub struct BandCholesky {
     matrix: BandMatrix,
@@ -85,27 +147,34 @@ pub struct BandCholesky {
 impl BandCholesky {
     /// Replaces `b` by the x of A x = b.
     pub fn solve_in_place(&self, b: &mut [f64]) {
-        let BandMatrix { size, half, ref data } = self.matrix;
-        assert_eq!(b.len(), size);
-        let width = half + 1;
+        assert_eq!(b.len(), self.matrix.size);
+        vectorised(
+            #[inline(always)]
+            || self.solve(b),
+        );
+    }
+
+    #[inline(always)]
+    fn solve(&self, b: &mut [f64]) {
+        let BandMatrix { size, half, stride, ref data } = self.matrix;
+        let row = |i: usize| &data[i * stride..][..(half + 1).min(size - i)];
         for i in 0..size {
-            let first = i.saturating_sub(half);
-            let row = &data[i * width..(i + 1) * width];
-            b[i] = (b[i] - dot(&row[first + half - i..half], &b[first..i])) / row[half];
+            let row = row(i);
+            b[i] /= row[0];
+            let value = b[i];
+            for (x, u) in b[i + 1..].iter_mut().zip(&row[1..]) {
+                *x -= u * value;
+            }
         }
         for i in (0..size).rev() {
-            let first = i.saturating_sub(half);
-            let row = &data[i * width..(i + 1) * width];
-            b[i] /= row[half];
-            let value = b[i];
-            for (x, l) in b[first..i].iter_mut().zip(&row[first + half - i..half]) {
-                *x -= l * value;
-            }
+            let row = row(i);
+            b[i] = (b[i] - dot(&row[1..], &b[i + 1..i + row.len()])) / row[0];
         }
     }
 }
 
 /// Inner product in four interleaved sums: a fixed order, and the compiler can keep them in one register.
+#[inline(always)]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));

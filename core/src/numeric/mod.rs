@@ -8,6 +8,7 @@
 //! - [`normal_equations`]: JᵀJ and Jᵀr of a sparse Jacobian of fixed pattern
 //! - [`sparse_least_squares`]: Levenberg–Marquardt on such problems
 //! - [`trust_region`]: Gauss–Newton within a trust region by conjugate gradients
+//! - `vector`: hot loops compiled for the machine they run on
 
 pub mod assignment;
 pub mod banded;
@@ -17,3 +18,4 @@ pub mod gradient_check;
 pub mod normal_equations;
 pub mod sparse_least_squares;
 pub mod trust_region;
+pub(crate) mod vector;

@@ -161,7 +161,8 @@ fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
                 let (true, Some(templates)) = (lost, templates) else { continue };
                 stage.kit.progress.report("Searching", 0.0)?;
                 let (model, scenery) = (&stage.models[key], stage.scenery(key, drawing));
-                for start in templates.find(&stage.features[drawing], model, contours[key]) {
+                let sought = stage.kit.store.sought(stage.kit.frames, stage.frame_of(drawing), templates.level())?;
+                for start in templates.find(&stage.features[drawing], &sought, model, contours[key]) {
                     found.push(hypothesis(stage, drawing, key, model.polished(&scenery, &start), None));
                 }
             }

@@ -85,6 +85,7 @@ impl SceneSolver for Rototoon {
     ) -> Result<Tracking, TrackError> {
         let tasks = tasks(scene);
         let shared = SharedProgress::new(progress, scene, &tasks);
+        self.read(scene, &tasks, frames, progress)?;
         let (pooled, fresh) = self.pool_all(scene, &tasks, frames, &shared)?;
         let mut done: Vec<Option<(SpanTrack, bool)>> = vec![None; tasks.len()];
         for stretch in stretches(&tasks) {
@@ -130,6 +131,34 @@ impl SceneSolver for Rototoon {
 }
 
 impl Rototoon {
+    /// Makes what many tasks need of the pictures before the tasks are shared out to threads, which would wait for it.
+    fn read(
+        &self,
+        scene: &Scene,
+        tasks: &[Task],
+        frames: &dyn FrameSource,
+        progress: &dyn Progress,
+    ) -> Result<(), TrackError> {
+        let new = tasks.iter().filter(|t| !self.plain.contains_key(&(scene.parts[t.part].name.clone(), t.span)));
+        let spans: BTreeSet<Span> = new.map(|task| task.span).collect();
+        let numbers: BTreeSet<FrameNumber> = spans.iter().flat_map(Span::frames).collect();
+        self.store.read(frames, &Vec::from_iter(numbers), progress)?;
+        let mut pairs = BTreeSet::new();
+        for span in spans {
+            let mut before = span.first;
+            for frame in span.first + 1..=span.last {
+                if !self.store.held(frames, frame - 1)? {
+                    pairs.extend([(before, frame), (frame, before)]);
+                    before = frame;
+                }
+            }
+        }
+        Vec::from_iter(pairs).par_iter().try_for_each(|&(from, to)| {
+            progress.report("Reading frames", 0.0)?;
+            self.store.flow(frames, from, to).map(|_| ())
+        })
+    }
+
     /// Forgets the spans that are no more, since keys were set or taken away.
     fn keep_only(&mut self, pooled: &[Arc<Pooled>]) {
         let present: BTreeSet<(String, Span)> = pooled.iter().map(|p| p.key()).collect();

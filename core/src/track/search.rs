@@ -13,6 +13,7 @@ use super::lattice::texture::Cover;
 use super::propagate::Model;
 use crate::geometry::{Point, polygon};
 use crate::image::correlation::{Correlator, Spectrum};
+use crate::numeric::vector::vectorised;
 use crate::scene::Raster;
 
 /// Step of the turns tried, in degrees.
@@ -37,7 +38,21 @@ pub struct Templates {
     level: usize,
     correlator: Correlator,
     size: f64,
-    turned: Vec<Template>,
+    turned: Vec<Pair>,
+}
+
+/// Two turns, which are transformed together, and the spectra of their masks and of −2 × mask × colour.
+struct Pair {
+    templates: Vec<Template>,
+    spectra: Vec<Spectrum>,
+}
+
+/// A picture made ready to be searched on one level: it is so for all parts.
+pub struct Sought {
+    /// Of Σ colour² and of each colour.
+    spectra: Vec<Spectrum>,
+    columns: usize,
+    rows: usize,
 }
 
 struct Template {
@@ -46,8 +61,6 @@ struct Template {
     corner: Point,
     width: usize,
     height: usize,
-    /// Spectra of the mask and of −2 × mask × colour.
-    spectra: Vec<Spectrum>,
     /// Σ mask × colour² and Σ mask.
     own: f32,
     weight: f32,
@@ -70,26 +83,29 @@ impl Templates {
         }
         let level = usize::from(size <= SMALL);
         let source = key.level(level);
-        let cut = Cut { model, source, cover, center: polygon::center(contour), width };
+        let (columns, rows) = searched_size(source);
+        let cut = Cut::new(model, source, cover, polygon::center(contour), width);
         let angles = (0..360).step_by(TURN_STEP).map(|degrees| f64::from(degrees).to_radians());
-        let cuts: Vec<_> = angles.filter_map(|angle| cut.turned(angle, contour)).collect();
-        let widest = cuts.iter().map(|(_, _, colours)| colours.width()).max()?;
-        let highest = cuts.iter().map(|(_, _, colours)| colours.height()).max()?;
-        let (columns, rows) = source.dimensions();
-        let correlator = Correlator::new(columns + 2 * MARGIN + widest, rows + 2 * MARGIN + highest);
-        let turned = cuts.into_iter().map(|(angle, corner, colours)| template(&correlator, angle, corner, &colours));
-        Some(Self { level, turned: turned.collect(), correlator, size })
+        let fits = |pixels: &Raster<Masked>| pixels.width() <= columns && pixels.height() <= rows;
+        let cuts: Vec<_> =
+            angles.filter_map(|angle| cut.turned(angle, contour)).filter(|(_, _, pixels)| fits(pixels)).collect();
+        let correlator = Correlator::new(columns, rows);
+        let turned: Vec<Pair> = cuts.chunks(2).map(|cuts| pair(&correlator, cuts)).collect();
+        (!turned.is_empty()).then_some(Self { level, turned, correlator, size })
+    }
+
+    /// The level (index in [`LEVELS`]) to search on.
+    pub fn level(&self) -> usize {
+        self.level
     }
 
     /// Poses of the model's lattice at the places of a picture where its templates fit best.
-    pub fn find(&self, picture: &Features, model: &Model, contour: &[Point]) -> Vec<Vec<Point>> {
-        let (spectra, columns, rows) = self.spectra(picture.level(self.level));
+    pub fn find(&self, picture: &Features, sought: &Sought, model: &Model, contour: &[Point]) -> Vec<Vec<Point>> {
         let mut places = Vec::new();
-        for pair in self.turned.chunks(2) {
-            let second = pair.get(1).unwrap_or(&pair[0]);
-            let results = self.correlator.correlate(&spectra, [&pair[0].spectra, &second.spectra]);
-            for (template, result) in pair.iter().zip(results) {
-                self.minima(template, result, columns, rows, &mut places);
+        for pair in &self.turned {
+            let results = self.correlator.correlate(&sought.spectra, &pair.spectra);
+            for (template, result) in pair.templates.iter().zip(results) {
+                self.minima(template, result, sought, &mut places);
             }
         }
         places.sort_by(|a, b| a.difference.total_cmp(&b.difference));
@@ -98,40 +114,13 @@ impl Templates {
         self.distinct(&places).iter().map(pose).collect()
     }
 
-    /// Spectra of Σ colour² and of each colour of a picture with its margin, and its size.
-    fn spectra(&self, level: &Level) -> (Vec<Spectrum>, usize, usize) {
-        let (columns, rows) = level.dimensions();
-        let (columns, rows) = (columns + 2 * MARGIN, rows + 2 * MARGIN);
-        let pixel = level.pixel();
-        let colours = Raster::from_fn(columns, rows, |x, y| {
-            level.colour(Point::new(x as f64 + 0.5 - MARGIN as f64, y as f64 + 0.5 - MARGIN as f64) * pixel)
-        });
-        let mut spectra = vec![self.correlator.transform(&colours.map(|c| c.iter().map(|v| v * v).sum()))];
-        spectra.extend((0..3).map(|k| self.correlator.transform(&colours.map(|c| c[k]))));
-        (spectra, columns, rows)
-    }
-
     /// Adds the best places of one template, suppressing what is near one taken already.
-    fn minima(&self, t: &Template, mut map: Raster<f32>, columns: usize, rows: usize, places: &mut Vec<Place>) {
-        if columns < t.width || rows < t.height {
-            return;
-        }
-        let (across, down) = (columns - t.width + 1, rows - t.height + 1);
+    fn minima(&self, t: &Template, mut map: Raster<f32>, sought: &Sought, places: &mut Vec<Place>) {
+        let (across, down) = (sought.columns - t.width + 1, sought.rows - t.height + 1);
         let reach = ((t.width.min(t.height) as f64 * 0.3) as usize).max(2);
         let pixel = LEVELS[self.level] as f64;
         for _ in 0..PLACES_OF_A_TURN {
-            let mut best = (f32::INFINITY, 0, 0);
-            for y in 0..down {
-                for (x, &value) in map.row(y)[..across].iter().enumerate() {
-                    if value < best.0 {
-                        best = (value, x, y);
-                    }
-                }
-            }
-            let (value, x, y) = best;
-            if value == f32::INFINITY {
-                return;
-            }
+            let Some((value, x, y)) = least(&map, across, down) else { return };
             let center = (Point::new(x as f64, y as f64) - Point::splat(MARGIN as f64) - t.corner) * pixel;
             places.push(Place { difference: (value + t.own) / t.weight, center, angle: t.angle });
             for row in y.saturating_sub(reach)..(y + reach + 1).min(down) {
@@ -154,6 +143,48 @@ impl Templates {
     }
 }
 
+impl Sought {
+    /// Of a level's picture, with its margin.
+    pub fn new(level: &Level) -> Self {
+        let (columns, rows) = searched_size(level);
+        let pixel = level.pixel();
+        let colours = Raster::from_fn(columns, rows, |x, y| {
+            level.colour(Point::new(x as f64 + 0.5 - MARGIN as f64, y as f64 + 0.5 - MARGIN as f64) * pixel)
+        });
+        let correlator = Correlator::new(columns, rows);
+        let mut spectra = vec![correlator.picture(&colours.map(|c| c.iter().map(|v| v * v).sum()))];
+        spectra.extend((0..3).map(|k| correlator.picture(&colours.map(|c| c[k]))));
+        Self { spectra, columns, rows }
+    }
+
+    /// Bytes kept.
+    pub fn bytes(&self) -> usize {
+        self.spectra.iter().map(Spectrum::bytes).sum()
+    }
+}
+
+/// Width and height of a level's picture with its margin.
+fn searched_size(level: &Level) -> (usize, usize) {
+    let (columns, rows) = level.dimensions();
+    (columns + 2 * MARGIN, rows + 2 * MARGIN)
+}
+
+/// The least value of a map's first columns and rows, the first of them in reading order; none where all are infinite.
+fn least(map: &Raster<f32>, across: usize, down: usize) -> Option<(f32, usize, usize)> {
+    let mut best: Option<(f32, usize, usize)> = None;
+    for y in 0..down {
+        let row = &map.row(y)[..across];
+        let low = vectorised(
+            #[inline(always)]
+            || row.iter().fold(f32::INFINITY, |low, &v| if v < low { v } else { low }),
+        );
+        if low < best.map_or(f32::INFINITY, |(value, ..)| value) {
+            best = row.iter().position(|&v| v == low).map(|x| (low, x, y));
+        }
+    }
+    best
+}
+
 /// The lattice of a model at a place: in the shape of either key or halfway between them, whichever fits best.
 fn posed(model: &Model, picture: &Features, center: Point, place: &Place) -> Vec<Point> {
     let turn = Point::from_angle(place.angle);
@@ -170,15 +201,35 @@ fn posed(model: &Model, picture: &Features, center: Point, place: &Place) -> Vec
 struct Cut<'a> {
     model: &'a Model,
     source: &'a Level,
-    cover: &'a Cover,
     center: Point,
-    width: f64,
+    /// Weight of the key's places, from `corner` on in squares of `step`.
+    mask: Raster<f32>,
+    corner: Point,
+    step: f64,
 }
 
 /// Colour and mask weight.
 type Masked = [f32; 4];
 
-impl Cut<'_> {
+impl<'a> Cut<'a> {
+    fn new(model: &'a Model, source: &'a Level, cover: &Cover, center: Point, width: f64) -> Self {
+        let mesh = &model.texture.mesh;
+        let (corner, end) = mesh.bounds();
+        let step = 0.5 * source.pixel();
+        let count = |length: f64| (length / step).ceil().max(1.0) as usize;
+        let weight = |x: usize, y: usize| {
+            let p = corner + Point::new(x as f64 + 0.5, y as f64 + 0.5) * step;
+            let seen = p.x >= 0.0 && p.y >= 0.0 && p.x < width && p.y < WORKING_LINES && !cover.hides(p);
+            match if seen { mesh.region(p) } else { (false, false) } {
+                (_, true) => 1.0,
+                (true, false) => BAND_WEIGHT,
+                (false, false) => 0.0,
+            }
+        };
+        let mask = Raster::from_fn(count(end.x - corner.x), count(end.y - corner.y), weight);
+        Self { model, source, center, mask, corner, step }
+    }
+
     /// The part turned by `angle`: its corner relative to the centre in pixels of the level, and its pixels.
     fn turned(&self, angle: f64, contour: &[Point]) -> Option<(f64, Point, Raster<Masked>)> {
         let (pixel, turn) = (self.source.pixel(), Point::from_angle(angle));
@@ -197,28 +248,31 @@ impl Cut<'_> {
     }
 
     fn masked(&self, p: Point) -> Masked {
-        let seen = p.x >= 0.0 && p.y >= 0.0 && p.x < self.width && p.y < WORKING_LINES && !self.cover.hides(p);
-        let (belongs, inside) = if seen { self.model.texture.mesh.region(p) } else { (false, false) };
+        let at = (p - self.corner) / self.step;
+        let within = at.x >= 0.0 && at.y >= 0.0;
+        let (x, y) = (at.x as usize, at.y as usize);
+        if !within || x >= self.mask.width() || y >= self.mask.height() || self.mask.get(x, y) == 0.0 {
+            return [0.0; 4];
+        }
         let [r, g, b] = self.source.colour(p);
-        [
-            r,
-            g,
-            b,
-            if inside {
-                1.0
-            } else if belongs {
-                BAND_WEIGHT
-            } else {
-                0.0
-            },
-        ]
+        [r, g, b, self.mask.get(x, y)]
     }
 }
 
-fn template(correlator: &Correlator, angle: f64, corner: Point, pixels: &Raster<Masked>) -> Template {
-    let mut spectra = vec![correlator.transform(&pixels.map(|p| p[3]))];
-    spectra.extend((0..3).map(|k| correlator.transform(&pixels.map(|p| -2.0 * p[3] * p[k]))));
+/// One or two turns transformed together.
+fn pair(correlator: &Correlator, cuts: &[(f64, Point, Raster<Masked>)]) -> Pair {
+    let both = |value: &dyn Fn(Masked) -> f32| {
+        let planes: Vec<Raster<f32>> = cuts.iter().map(|(_, _, pixels)| pixels.map(value)).collect();
+        let none = Raster::new(0, 0, 0.0);
+        correlator.patterns([planes.first().unwrap_or(&none), planes.get(1).unwrap_or(&none)])
+    };
+    let mut spectra = vec![both(&|p| p[3])];
+    spectra.extend((0..3).map(|k| both(&move |p| -2.0 * p[3] * p[k])));
+    Pair { templates: cuts.iter().map(template).collect(), spectra }
+}
+
+fn template((angle, corner, pixels): &(f64, Point, Raster<Masked>)) -> Template {
     let own = pixels.data().iter().map(|p| p[3] * (p[0] * p[0] + p[1] * p[1] + p[2] * p[2])).sum();
     let weight = pixels.data().iter().map(|p| p[3]).sum();
-    Template { angle, corner, width: pixels.width(), height: pixels.height(), spectra, own, weight }
+    Template { angle: *angle, corner: *corner, width: pixels.width(), height: pixels.height(), own, weight }
 }

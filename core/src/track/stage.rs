@@ -1,7 +1,7 @@
 //! What a job of the default tracker is solved with: drawings, pictures, occluders, models of both keys.
 
 use super::TrackError;
-use super::drawings::{Drawing, group, same_drawing};
+use super::drawings::{Drawing, group};
 use super::features::{Features, working_scale};
 use super::job::{Correction, Job};
 use super::lattice::align::{Aligner, settle};
@@ -14,7 +14,7 @@ use super::store::Store;
 use crate::geometry::Point;
 use crate::geometry::similarity::Similarity;
 use crate::scene::{FrameNumber, FrameSource, Progress};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator, ParallelSlice};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -53,7 +53,10 @@ impl<'a> Stage<'a> {
                 kit.store.features(kit.frames, frame)
             })
             .collect::<Result<_, _>>()?;
-        let held: Vec<bool> = features.par_windows(2).map(|pair| same_drawing(&pair[0], &pair[1])).collect();
+        let held: Vec<bool> = numbers[..numbers.len() - 1]
+            .par_iter()
+            .map(|&frame| kit.store.held(kit.frames, frame))
+            .collect::<Result<_, _>>()?;
         let drawings = group(job, |i| held[i]);
         let features: Vec<Arc<Features>> = drawings.iter().map(|d| features[d.first].clone()).collect();
         let last = features.len() - 1;
@@ -102,7 +105,8 @@ impl<'a> Stage<'a> {
         self.job.size.0 as f64 / self.scale
     }
 
-    fn frame_of(&self, drawing: usize) -> FrameNumber {
+    /// The first frame of a drawing.
+    pub fn frame_of(&self, drawing: usize) -> FrameNumber {
         self.job.span.first + self.drawings[drawing].first as FrameNumber
     }
 

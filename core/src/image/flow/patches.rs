@@ -1,6 +1,7 @@
 //! Patches that search their place in the second picture, and the dense field blended from them.
 
 use super::{Flow, read};
+use crate::numeric::vector::vectorised;
 use crate::scene::Raster;
 
 /// Side of a patch in pixels.
@@ -29,6 +30,32 @@ impl Level {
         Self { luma, gradient, packed }
     }
 
+    /// Bilinear luma of a patch whose first pixel is at pixel-centre coordinates.
+    #[inline(always)]
+    fn patch_at(&self, x: f32, y: f32) -> [f32; PATCH * PATCH] {
+        let last = |count: usize| count as f32 - 1.0 - PATCH as f32;
+        if !(x >= 0.0 && y >= 0.0 && x <= last(self.luma.width()) && y <= last(self.luma.height())) {
+            return std::array::from_fn(|k| self.luma_at(x + (k % PATCH) as f32, y + (k / PATCH) as f32));
+        }
+        // Inside the picture all pixels of the patch have the same four weights.
+        let (x0, y0) = (x as i32 as usize, y as i32 as usize);
+        let (fx, fy) = (x - x0 as f32, y - y0 as f32);
+        let along = |j: usize| -> [f32; PATCH] {
+            let row = &self.luma.row(y0 + j)[x0..=x0 + PATCH];
+            std::array::from_fn(|i| (1.0 - fx) * row[i] + fx * row[i + 1])
+        };
+        let mut patch = [0.0; PATCH * PATCH];
+        let mut above = along(0);
+        for (j, out) in patch.chunks_exact_mut(PATCH).enumerate() {
+            let below = along(j + 1);
+            for i in 0..PATCH {
+                out[i] = (1.0 - fy) * above[i] + fy * below[i];
+            }
+            above = below;
+        }
+        patch
+    }
+
     /// Bilinear luma at pixel-centre coordinates.
     pub fn luma_at(&self, x: f32, y: f32) -> f32 {
         read(&self.packed, x, y)[0]
@@ -40,7 +67,8 @@ struct Patch {
     x: usize,
     y: usize,
     luma: [f32; PATCH * PATCH],
-    gradient: [[f32; 2]; PATCH * PATCH],
+    /// Along x and along y.
+    gradient: [[f32; PATCH * PATCH]; 2],
     inverse: [f32; 3],
 }
 
@@ -48,16 +76,17 @@ impl Patch {
     fn new(level: &Level, x: usize, y: usize) -> Self {
         let at = |k: usize| ((x + k % PATCH) as isize, (y + k / PATCH) as isize);
         let mut luma: [f32; PATCH * PATCH] = std::array::from_fn(|k| level.luma.clamped(at(k).0, at(k).1));
-        let mut gradient: [[f32; 2]; PATCH * PATCH] = std::array::from_fn(|k| level.gradient.clamped(at(k).0, at(k).1));
+        let slope = |axis: usize| std::array::from_fn(|k| level.gradient.clamped(at(k).0, at(k).1)[axis]);
+        let mut gradient: [[f32; PATCH * PATCH]; 2] = [slope(0), slope(1)];
         let count = (PATCH * PATCH) as f32;
         let mean = luma.iter().sum::<f32>() / count;
         luma.iter_mut().for_each(|v| *v -= mean);
         // Differences of mean-free patches have mean-free derivatives.
-        for axis in 0..2 {
-            let mean = gradient.iter().map(|g| g[axis]).sum::<f32>() / count;
-            gradient.iter_mut().for_each(|g| g[axis] -= mean);
+        for slope in &mut gradient {
+            let mean = slope.iter().sum::<f32>() / count;
+            slope.iter_mut().for_each(|g| *g -= mean);
         }
-        let moment = |a: usize, b: usize| gradient.iter().map(|g| g[a] * g[b]).sum::<f32>();
+        let moment = |a: usize, b: usize| gradient[a].iter().zip(&gradient[b]).map(|(g, h)| g * h).sum::<f32>();
         // The ridge (of a contrast of one grey step in 8 bits) keeps flat patches where they are.
         let ridge = count * (1.0 / 255.0f32).powi(2);
         let (xx, xy, yy) = (moment(0, 0) + ridge, moment(0, 1), moment(1, 1) + ridge);
@@ -66,20 +95,20 @@ impl Patch {
     }
 
     /// The difference to the second picture at shift `u`, without its mean, and its mean square.
+    #[inline(always)]
     fn difference(&self, second: &Level, u: [f32; 2]) -> ([f32; PATCH * PATCH], f32) {
-        let mut d: [f32; PATCH * PATCH] = std::array::from_fn(|k| {
-            second.luma_at((self.x + k % PATCH) as f32 + u[0], (self.y + k / PATCH) as f32 + u[1])
-        });
+        let mut d = second.patch_at(self.x as f32 + u[0], self.y as f32 + u[1]);
         let count = (PATCH * PATCH) as f32;
-        let mean = d.iter().sum::<f32>() / count;
+        let mean = total(&d, |v| v) / count;
         for (v, own) in d.iter_mut().zip(&self.luma) {
             *v -= mean + own;
         }
-        let square = d.iter().map(|v| v * v).sum::<f32>() / count;
+        let square = total(&d, |v| v * v) / count;
         (d, square)
     }
 
     /// Gradient descent on the mean square difference, with the derivatives of the first picture (inverse search).
+    #[inline(always)]
     fn descend(&self, second: &Level, start: [f32; 2]) -> [f32; 2] {
         let mut u = start;
         let mut best = (f32::INFINITY, start);
@@ -89,8 +118,8 @@ impl Patch {
                 break;
             }
             best = (square, u);
-            let bx: f32 = d.iter().zip(&self.gradient).map(|(v, g)| v * g[0]).sum();
-            let by: f32 = d.iter().zip(&self.gradient).map(|(v, g)| v * g[1]).sum();
+            let along = |slope: &[f32; PATCH * PATCH]| total(&std::array::from_fn(|k| d[k] * slope[k]), |v| v);
+            let (bx, by) = (along(&self.gradient[0]), along(&self.gradient[1]));
             let [xx, xy, yy] = self.inverse;
             let step = [xx * bx + xy * by, xy * bx + yy * by];
             u = [u[0] - step[0], u[1] - step[1]];
@@ -100,6 +129,18 @@ impl Patch {
         }
         best.1
     }
+}
+
+/// Sum of a value of each pixel of a patch, column by column first: a fixed order that the compiler can vectorise.
+#[inline(always)]
+fn total(patch: &[f32; PATCH * PATCH], value: impl Fn(f32) -> f32) -> f32 {
+    let mut columns = [0.0; PATCH];
+    for row in patch.chunks_exact(PATCH) {
+        for (sum, v) in columns.iter_mut().zip(row) {
+            *sum += value(*v);
+        }
+    }
+    columns.iter().sum()
 }
 
 /// The dense flow of a level from the coarser level's, brought to this size.
@@ -112,8 +153,12 @@ pub(super) fn search(first: &Level, second: &Level, coarse: &Flow) -> Flow {
     let middle = PATCH / 2;
     let from_coarse = |p: &Patch| coarse.get((p.x + middle).min(width - 1), (p.y + middle).min(height - 1));
     let mut shifts: Vec<[f32; 2]> = patches.iter().map(from_coarse).collect();
-    sweep(&patches, second, &mut shifts, columns.len(), false);
-    sweep(&patches, second, &mut shifts, columns.len(), true);
+    for backwards in [false, true] {
+        vectorised(
+            #[inline(always)]
+            || sweep(&patches, second, &mut shifts, columns.len(), backwards),
+        );
+    }
     blend(first, second, &patches, &shifts)
 }
 
@@ -124,6 +169,7 @@ fn grid(count: usize) -> Vec<usize> {
 
 /// One pass over the patches in reading order (or from the end): each starts from its own shift or that of the two
 /// neighbours passed before, whichever fits best, and descends.
+#[inline(always)]
 fn sweep(patches: &[Patch], second: &Level, shifts: &mut [[f32; 2]], columns: usize, backwards: bool) {
     let count = patches.len();
     for k in 0..count {
@@ -154,9 +200,10 @@ fn blend(first: &Level, second: &Level, patches: &[Patch], shifts: &[[f32; 2]]) 
     let (width, height) = (first.luma.width(), first.luma.height());
     let mut sums = Raster::new(width, height, [0.0f32; 3]);
     for (patch, u) in patches.iter().zip(shifts) {
+        let seen = second.patch_at(patch.x as f32 + u[0], patch.y as f32 + u[1]);
         for y in patch.y..(patch.y + PATCH).min(height) {
             for x in patch.x..(patch.x + PATCH).min(width) {
-                let there = second.luma_at(x as f32 + u[0], y as f32 + u[1]);
+                let there = seen[(y - patch.y) * PATCH + x - patch.x];
                 let weight = 1.0 / (255.0 * (there - first.luma.get(x, y)).abs()).max(1.0);
                 let [su, sv, sw] = sums.get(x, y);
                 sums.set(x, y, [su + weight * u[0], sv + weight * u[1], sw + weight]);

@@ -7,12 +7,14 @@
 //! picture's own. Cells turn freely: their best turns are refitted in each iteration (local / global steps).
 
 use super::anchors::Anchors;
+use super::equations::Equations;
 use super::mesh::Mesh;
 use super::shape;
-use super::texture::{Cover, Texture, difference};
+use super::texture::{Cover, PAIRS, Texel, Texture};
 use crate::geometry::Point;
 use crate::numeric::banded::BandMatrix;
-use crate::track::features::{Features, LEVELS};
+use crate::numeric::vector::vectorised;
+use crate::track::features::{Features, LEVELS, SLOPE_X, SLOPE_Y};
 
 /// Weight of the shape energy.
 const STIFFNESS: f64 = 0.05;
@@ -26,6 +28,8 @@ const LONGEST_STEP: f64 = 2.0;
 const SHORTEST_STEP: f64 = 0.06;
 /// Samples below which a level says too little about a pose.
 const FEWEST_SAMPLES: usize = 6;
+/// Steps that the equations' matrix serves: it changes slowly, and to factor it is half of the work.
+const EACH_SERVES: usize = 2;
 /// Added to the diagonal: cells without contrast keep their place.
 const RIDGE: f64 = 1e-7;
 /// Local / global steps that bring a bare lattice to its anchors.
@@ -46,16 +50,19 @@ pub struct Target<'a> {
     pub anchors: &'a Anchors,
 }
 
-/// The shape term's constant part: its matrix. Made once a lattice.
+/// What does not change from step to step: the weighted matrix of the shape term. Made once a lattice.
 #[derive(Clone, Debug)]
 pub struct Aligner {
-    stiffness: BandMatrix,
+    constant: BandMatrix,
 }
 
 impl Aligner {
     /// For the lattice of a texture.
     pub fn new(mesh: &Mesh) -> Self {
-        Self { stiffness: shape::stiffness(mesh) }
+        let mut constant = mesh.matrix();
+        constant.add_scaled(&shape::stiffness(mesh), STIFFNESS);
+        (0..constant.size()).for_each(|i| constant.add(i, i, RIDGE));
+        Self { constant }
     }
 
     /// Improves a pose on the levels of the indices given (in [`LEVELS`]), in that order.
@@ -65,8 +72,12 @@ impl Aligner {
             if texture.texels[level].len() < FEWEST_SAMPLES {
                 continue;
             }
-            for _ in 0..ITERATIONS[level] {
-                let Some(longest) = self.step(texture, target, &mut nodes, level) else { break };
+            let mut equations = None;
+            for iteration in 0..ITERATIONS[level] {
+                if iteration % EACH_SERVES == 0 {
+                    equations = None;
+                }
+                let Some(longest) = self.step(texture, target, &mut nodes, level, &mut equations) else { break };
                 if longest < SHORTEST_STEP * LEVELS[level] as f64 {
                     break;
                 }
@@ -75,19 +86,32 @@ impl Aligner {
         nodes
     }
 
-    /// One Gauss–Newton step; its length in working pixels. None where the equations have no solution.
-    fn step(&self, texture: &Texture, target: Target, nodes: &mut [Point], level: usize) -> Option<f64> {
+    /// One Gauss–Newton step, with the equations given or with new ones; its length in working pixels. None where they
+    /// have no solution.
+    fn step(
+        &self,
+        texture: &Texture,
+        target: Target,
+        nodes: &mut [Point],
+        level: usize,
+        equations: &mut Option<Equations>,
+    ) -> Option<f64> {
         let mesh = &texture.mesh;
         let rotations = shape::rotations(mesh, nodes);
-        let mut matrix = mesh.matrix();
+        let mut matrix = equations.is_none().then(|| self.constant.clone());
         let mut gradient = vec![0.0; 2 * nodes.len()];
         let turn = rotations.iter().sum::<Point>().normalize_or(Point::X);
-        add_look(texture, target, nodes, level, turn, &mut matrix, &mut gradient);
-        matrix.add_scaled(&self.stiffness, STIFFNESS);
-        (0..gradient.len()).for_each(|i| matrix.add(i, i, RIDGE));
+        vectorised(
+            #[inline(always)]
+            || add_look(texture, target, nodes, level, turn, matrix.as_mut(), &mut gradient),
+        );
+        if let Some(matrix) = matrix {
+            *equations = Some(Equations::new(matrix, target.anchors)?);
+        }
         shape::add_gradient(mesh, nodes, &rotations, STIFFNESS, &mut gradient);
         gradient.iter_mut().for_each(|g| *g = -*g);
-        solve_and_move(matrix, gradient, target.anchors, nodes, LONGEST_STEP * LEVELS[level] as f64)
+        equations.as_ref()?.solve(&mut gradient, nodes, target.anchors);
+        moved(&gradient, nodes, LONGEST_STEP * LEVELS[level] as f64)
     }
 }
 
@@ -97,13 +121,14 @@ pub fn settle(mesh: &Mesh, start: &[Point], anchors: &Anchors) -> Vec<Point> {
         return start.to_vec();
     }
     let mut nodes = anchors.approach(start);
-    let stiffness = shape::stiffness(mesh);
+    let mut matrix = shape::stiffness(mesh);
+    (0..matrix.size()).for_each(|i| matrix.add(i, i, 1e-4));
+    let Some(equations) = Equations::new(matrix, anchors) else { return nodes };
     for _ in 0..SETTLING {
-        let mut matrix = stiffness.clone();
-        (0..matrix.size()).for_each(|i| matrix.add(i, i, 1e-4));
         let mut gradient = vec![0.0; 2 * nodes.len()];
         shape::add_gradient(mesh, &nodes, &shape::rotations(mesh, &nodes), -1.0, &mut gradient);
-        if solve_and_move(matrix, gradient, anchors, &mut nodes, f64::INFINITY).is_none() {
+        equations.solve(&mut gradient, &nodes, anchors);
+        if moved(&gradient, &mut nodes, f64::INFINITY).is_none() {
             break;
         }
     }
@@ -116,23 +141,22 @@ pub fn settle(mesh: &Mesh, start: &[Point], anchors: &Anchors) -> Vec<Point> {
 /// The anchors are approached in several steps, so that a limb turns on its way and is not torn through itself.
 pub fn draw(mesh: &Mesh, start: &[Point], anchors: &Anchors, hold: &[f64]) -> Vec<Point> {
     let mut nodes = start.to_vec();
-    let stiffness = shape::stiffness(mesh);
+    let inverse = 1.0 / (mesh.side * mesh.side);
+    let mut matrix = shape::stiffness(mesh);
+    (0..matrix.size()).for_each(|i| matrix.add(i, i, inverse * hold[i / 2] + 1e-6));
+    let Some(equations) = Equations::new(matrix, anchors) else { return nodes };
     for step in 1..=DRAWS {
         let target = anchors.toward(&nodes, 1.0 / (DRAWS + 1 - step) as f64);
         for _ in 0..DRAW_ITERATIONS {
-            let mut matrix = stiffness.clone();
             let mut gradient = vec![0.0; 2 * nodes.len()];
             shape::add_gradient(mesh, &nodes, &shape::rotations(mesh, &nodes), -1.0, &mut gradient);
-            let inverse = 1.0 / (mesh.side * mesh.side);
             for (n, (at, from)) in nodes.iter().zip(start).enumerate() {
-                let weight = inverse * hold[n] + 1e-6;
                 let pull = (*from - *at) * (inverse * hold[n]);
-                for (axis, pull) in [pull.x, pull.y].into_iter().enumerate() {
-                    matrix.add(2 * n + axis, 2 * n + axis, weight);
-                    gradient[2 * n + axis] += pull;
-                }
+                gradient[2 * n] += pull.x;
+                gradient[2 * n + 1] += pull.y;
             }
-            if solve_and_move(matrix, gradient, &target, &mut nodes, f64::INFINITY).is_none() {
+            equations.solve(&mut gradient, &nodes, &target);
+            if moved(&gradient, &mut nodes, f64::INFINITY).is_none() {
                 return nodes;
             }
         }
@@ -140,19 +164,8 @@ pub fn draw(mesh: &Mesh, start: &[Point], anchors: &Anchors, hold: &[f64]) -> Ve
     nodes
 }
 
-/// Solves for a step, makes the anchors hold, shortens it to `longest`, and moves the nodes. Its length.
-fn solve_and_move(
-    matrix: BandMatrix,
-    mut step: Vec<f64>,
-    anchors: &Anchors,
-    nodes: &mut [Point],
-    longest: f64,
-) -> Option<f64> {
-    let factor = matrix.factor().ok()?;
-    factor.solve_in_place(&mut step);
-    if !anchors.is_empty() {
-        anchors.constrain(&factor, nodes, &mut step);
-    }
+/// Moves the nodes by a step, shortened to `longest`. Its length before; none, and no move, where it is not finite.
+fn moved(step: &[f64], nodes: &mut [Point], longest: f64) -> Option<f64> {
     let length = step.iter().fold(0.0f64, |most, d| most.max(d.abs()));
     if !length.is_finite() {
         return None;
@@ -164,58 +177,64 @@ fn solve_and_move(
     Some(length)
 }
 
-/// Sums of one cell: second derivatives for each pair of its nodes (xx, xy, yy), first derivatives for each node.
+/// Sums of one cell: second derivatives (xx, xy, yy) for each of [`PAIRS`] of its nodes, first derivatives (x, y) for each
+/// node.
 #[derive(Default)]
 struct CellSums {
-    pairs: [[f64; 3]; 10],
-    nodes: [[f64; 2]; 4],
+    pairs: [[f32; PAIRS.len()]; 3],
+    nodes: [[f32; 4]; 2],
 }
 
 impl CellSums {
-    /// Adds a sample: weights of the nodes, and its 2×2 second and 2 first derivatives.
-    fn add(&mut self, weights: &[f64; 4], second: [f64; 3], first: [f64; 2]) {
-        let mut pair = 0;
-        for a in 0..4 {
-            for b in 0..=a {
-                let w = weights[a] * weights[b];
-                for k in 0..3 {
-                    self.pairs[pair][k] += w * second[k];
-                }
-                pair += 1;
+    /// Adds a sample's 3 second derivatives.
+    #[inline(always)]
+    fn add_second(&mut self, texel: &Texel, second: [f32; 3]) {
+        for (sums, value) in self.pairs.iter_mut().zip(second) {
+            for (sum, product) in sums.iter_mut().zip(&texel.products) {
+                *sum += product * value;
             }
-            self.nodes[a][0] += weights[a] * first[0];
-            self.nodes[a][1] += weights[a] * first[1];
         }
     }
 
-    fn scatter(&self, nodes: &[usize; 4], matrix: &mut BandMatrix, gradient: &mut [f64]) {
-        let mut pair = 0;
-        for a in 0..4 {
-            for b in 0..=a {
-                let (i, j) = (2 * nodes[a], 2 * nodes[b]);
-                let [xx, xy, yy] = self.pairs[pair];
-                matrix.add(i, j, xx);
-                matrix.add(i + 1, j + 1, yy);
-                matrix.add(i + 1, j, xy);
-                if a != b {
-                    matrix.add(i, j + 1, xy);
-                }
-                pair += 1;
+    /// Adds a sample's 2 first derivatives.
+    #[inline(always)]
+    fn add_first(&mut self, texel: &Texel, first: [f32; 2]) {
+        for (sums, value) in self.nodes.iter_mut().zip(first) {
+            for (sum, weight) in sums.iter_mut().zip(&texel.weights) {
+                *sum += weight * value;
             }
-            gradient[2 * nodes[a]] += self.nodes[a][0];
-            gradient[2 * nodes[a] + 1] += self.nodes[a][1];
+        }
+    }
+
+    #[inline(always)]
+    fn scatter(&self, nodes: &[usize; 4], matrix: Option<&mut BandMatrix>, gradient: &mut [f64]) {
+        for (a, &n) in nodes.iter().enumerate() {
+            gradient[2 * n] += f64::from(self.nodes[0][a]);
+            gradient[2 * n + 1] += f64::from(self.nodes[1][a]);
+        }
+        let Some(matrix) = matrix else { return };
+        for (pair, (a, b)) in PAIRS.iter().enumerate().filter_map(|(k, pair)| Some((k, (*pair)?))) {
+            let (i, j) = (2 * nodes[a], 2 * nodes[b]);
+            let [xx, xy, yy] = self.pairs.map(|sums| f64::from(sums[pair]));
+            matrix.add(i, j, xx);
+            matrix.add(i + 1, j + 1, yy);
+            matrix.add(i + 1, j, xy);
+            if a != b {
+                matrix.add(i, j + 1, xy);
+            }
         }
     }
 }
 
-/// Adds the picture term's normal equations.
+/// Adds the picture term's normal equations; those of second order where a matrix is given.
+#[inline(always)]
 fn add_look(
     texture: &Texture,
     target: Target,
     nodes: &[Point],
     level: usize,
     turn: Point,
-    matrix: &mut BandMatrix,
+    mut matrix: Option<&mut BandMatrix>,
     gradient: &mut [f64],
 ) {
     let texels = &texture.texels[level];
@@ -231,19 +250,27 @@ fn add_look(
                 continue;
             }
             let (seen, key) = (picture.sample(place), &texel.key);
-            let rho = 1.0 + difference(&seen, key) * inverse;
+            let along = |first: usize, second: usize, cos: f32, sin: f32| -> [f32; 4] {
+                std::array::from_fn(|k| 0.5 * (seen[first + k] + cos * key[first + k] + sin * key[second + k]))
+            };
+            let (gx, gy) = (along(SLOPE_X, SLOPE_Y, cos, -sin), along(SLOPE_Y, SLOPE_X, cos, sin));
+            let rest: [f32; 4] = std::array::from_fn(|k| seen[k] - key[k]);
+            let rho = 1.0 + product(&rest, &rest) * inverse;
             let weight = share * texel.weight / (rho * rho);
-            let (mut second, mut first) = ([0.0f32; 3], [0.0f32; 2]);
-            for k in 0..3 {
-                let gx = 0.5 * (seen[3 + k] + cos * key[3 + k] - sin * key[6 + k]);
-                let gy = 0.5 * (seen[6 + k] + sin * key[3 + k] + cos * key[6 + k]);
-                let rest = seen[k] - key[k];
-                second = [second[0] + gx * gx, second[1] + gx * gy, second[2] + gy * gy];
-                first = [first[0] + gx * rest, first[1] + gy * rest];
+            let second = [product(&gx, &gx), product(&gx, &gy), product(&gy, &gy)];
+            let first = [product(&gx, &rest), product(&gy, &rest)];
+            sums.add_first(texel, first.map(|v| weight * v));
+            if matrix.is_some() {
+                sums.add_second(texel, second.map(|v| weight * v));
             }
-            let scaled = |v: f32| f64::from(weight * v);
-            sums.add(&texel.binding.weights, second.map(scaled), first.map(scaled));
         }
-        sums.scatter(&texture.mesh.cells[cell[0].cell], matrix, gradient);
+        sums.scatter(&texture.mesh.cells[cell[0].cell], matrix.as_deref_mut(), gradient);
     }
+}
+
+/// Inner product of three values; the fourth is zero.
+#[inline(always)]
+fn product(a: &[f32; 4], b: &[f32; 4]) -> f32 {
+    let each: [f32; 4] = std::array::from_fn(|k| a[k] * b[k]);
+    (each[0] + each[1]) + (each[2] + each[3])
 }

@@ -2,12 +2,7 @@
 
 use super::mesh::Mesh;
 use crate::geometry::{Point, similarity::Similarity};
-use crate::numeric::banded::BandCholesky;
 use crate::track::job::Correction;
-
-/// Stiffness left to a constraint: several control points in one cell may contradict its bilinear map, and then all
-/// give way a little. Against the lattice's own stiffness (about 1) the constraints are hard.
-const YIELD: f64 = 1e-4;
 
 /// One constraint: a weighted sum of nodes lies at a place.
 #[derive(Clone, Debug)]
@@ -77,40 +72,14 @@ impl Anchors {
         nodes.iter().map(|&p| motion.apply(p)).collect()
     }
 
-    /// Changes the step of a solved linear system so that the anchors hold after it.
-    ///
-    /// `factor` holds H, `step` the x of H x = b. Among all steps with C x = c the one of least energy is
-    /// x − H⁻¹Cᵀ (C H⁻¹ Cᵀ)⁻¹ (C x − c): a small dense system with a row for each anchor and axis.
-    pub fn constrain(&self, factor: &BandCholesky, nodes: &[Point], step: &mut [f64]) {
-        let rows: Vec<(usize, usize)> = (0..self.anchors.len()).flat_map(|a| [(a, 0), (a, 1)]).collect();
-        let count = rows.len();
-        let apply = |(a, axis): (usize, usize), x: &[f64]| -> f64 {
-            self.anchors[a].terms.iter().map(|&(n, w)| w * x[2 * n + axis]).sum()
-        };
-        let responses: Vec<Vec<f64>> = rows
-            .iter()
-            .map(|&(a, axis)| {
-                let mut column = vec![0.0; step.len()];
-                for &(n, w) in &self.anchors[a].terms {
-                    column[2 * n + axis] += w;
-                }
-                factor.solve_in_place(&mut column);
-                column
-            })
-            .collect();
-        let mut matrix = crate::numeric::banded::BandMatrix::zeros(count, count.saturating_sub(1));
-        for i in 0..count {
-            for j in 0..=i {
-                matrix.add(i, j, apply(rows[i], &responses[j]) + if i == j { YIELD } else { 0.0 });
-            }
-        }
-        let mut multipliers: Vec<f64> =
-            rows.iter().map(|&row| self.anchors[row.0].missing(nodes)[row.1] - apply(row, step)).collect();
-        let Ok(small) = matrix.factor() else { return };
-        small.solve_in_place(&mut multipliers);
-        for (multiplier, response) in multipliers.iter().zip(&responses) {
-            step.iter_mut().zip(response).for_each(|(x, r)| *x += multiplier * r);
-        }
+    /// The constraints' rows, one for each anchor and axis: node coordinates and their weights.
+    pub fn rows(&self) -> impl Iterator<Item = impl Iterator<Item = (usize, f64)> + Clone + '_> + Clone + '_ {
+        self.anchors.iter().flat_map(|a| [0, 1].map(|axis| a.terms.iter().map(move |&(n, w)| (2 * n + axis, w))))
+    }
+
+    /// By how much each of the [`Anchors::rows`] is missed.
+    pub fn missing(&self, nodes: &[Point]) -> impl Iterator<Item = f64> {
+        self.anchors.iter().flat_map(|a| a.missing(nodes).to_array())
     }
 }
 

@@ -14,6 +14,7 @@ pub struct Binding {
 
 impl Binding {
     /// Place of the point when the nodes are at `nodes`.
+    #[inline(always)]
     pub fn at(&self, nodes: &[Point]) -> Point {
         let [a, b, c, d] = self.nodes;
         let [wa, wb, wc, wd] = self.weights;

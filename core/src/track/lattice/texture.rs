@@ -3,6 +3,7 @@
 use super::mesh::{Binding, Mesh};
 use super::shape;
 use crate::geometry::Point;
+use crate::numeric::vector::vectorised;
 use crate::scene::Raster;
 use crate::track::features::{Features, LEVELS, Sample, WORKING_LINES};
 
@@ -24,6 +25,7 @@ const MEASURED_LEVEL: usize = 1;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cover {
     hidden: Raster<bool>,
+    any: bool,
 }
 
 impl Cover {
@@ -40,7 +42,7 @@ impl Cover {
                 hidden.row_mut(y)[x0..x1].fill(true);
             });
         }
-        Self { hidden }
+        Self { hidden, any: !contours.is_empty() }
     }
 
     /// Nothing is hidden.
@@ -49,8 +51,13 @@ impl Cover {
     }
 
     /// Whether a nearer part hides the picture at `p`; outside the picture, what its nearest edge says.
+    #[inline(always)]
     pub fn hides(&self, p: Point) -> bool {
-        self.hidden.clamped((p.x / Self::PIXEL).floor() as isize, (p.y / Self::PIXEL).floor() as isize)
+        if !self.any {
+            return false;
+        }
+        let pixel = |at: f64, count: usize| (at * (1.0 / Self::PIXEL)).clamp(0.0, (count - 1) as f64) as i32 as usize;
+        self.hidden.get(pixel(p.x, self.hidden.width()), pixel(p.y, self.hidden.height()))
     }
 }
 
@@ -65,7 +72,27 @@ pub struct Texel {
     pub weight: f32,
     /// The cell it lies in.
     pub cell: usize,
+    /// The weights of the cell's nodes, and their products in pairs, in the order of [`PAIRS`].
+    pub weights: [f32; 4],
+    /// See `weights`.
+    pub products: [f32; PAIRS.len()],
 }
+
+/// The pairs of a cell's nodes, and two that stay empty: their number fills the processor's vectors.
+pub const PAIRS: [Option<(usize, usize)>; 12] = [
+    Some((0, 0)),
+    Some((1, 0)),
+    Some((1, 1)),
+    Some((2, 0)),
+    Some((2, 1)),
+    Some((2, 2)),
+    Some((3, 0)),
+    Some((3, 1)),
+    Some((3, 2)),
+    Some((3, 3)),
+    None,
+    None,
+];
 
 /// A lattice with the key's colours at each level of the pyramid.
 #[derive(Clone, Debug)]
@@ -85,6 +112,17 @@ impl Texture {
 
     /// How badly a pose explains a picture: mean colour difference (at most [`WORST`]) plus a little for bending.
     pub fn energy(&self, picture: &Features, nodes: &[Point]) -> f64 {
+        let (sum, weights) = vectorised(
+            #[inline(always)]
+            || self.look(picture, nodes),
+        );
+        let look = if weights > 0.0 { sum / weights } else { f64::from(WORST) };
+        look + self.bending(nodes)
+    }
+
+    /// Weighted colour differences of the samples that measure a pose, and their weights.
+    #[inline(always)]
+    fn look(&self, picture: &Features, nodes: &[Point]) -> (f64, f64) {
         let level = picture.level(MEASURED_LEVEL);
         let (mut sum, mut weights) = (0.0, 0.0);
         for texel in self.measured() {
@@ -92,8 +130,7 @@ impl Texture {
             sum += f64::from(texel.weight * difference(&colour, &texel.key).min(WORST));
             weights += f64::from(texel.weight);
         }
-        let look = if weights > 0.0 { sum / weights } else { f64::from(WORST) };
-        look + self.bending(nodes)
+        (sum, weights)
     }
 
     /// The part of [`Texture::energy`] that a pose's shape costs.
@@ -115,6 +152,7 @@ impl Texture {
 }
 
 /// Squared difference of two colours: the first three values of each.
+#[inline(always)]
 pub fn difference(a: &[f32], b: &[f32]) -> f32 {
     (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum()
 }
@@ -134,7 +172,9 @@ fn sample_level(mesh: &Mesh, key: &Features, cover: &Cover, width: f64, level: u
             if belongs {
                 let (cell, binding) = mesh.bind_in_cell(p);
                 let weight = if inside { 1.0 } else { BAND_WEIGHT };
-                texels.push(Texel { binding, key: key.level(level).sample(p), weight, cell });
+                let weights = binding.weights.map(|w| w as f32);
+                let products = PAIRS.map(|pair| pair.map_or(0.0, |(a, b)| weights[a] * weights[b]));
+                texels.push(Texel { binding, key: key.level(level).sample(p), weight, cell, weights, products });
             }
         }
     }

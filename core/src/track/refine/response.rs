@@ -6,7 +6,7 @@
 use super::Frame;
 use super::template::{HALF, LEVEL, Template, offsets};
 use crate::geometry::Point;
-use crate::scene::Colour;
+use crate::numeric::vector::vectorised;
 
 /// σ² of the robust colour difference (three channels of 0 to 1).
 const TOLERANCE: f32 = 0.06;
@@ -31,42 +31,86 @@ pub struct Map {
     pub shown: f64,
 }
 
+/// Displacements that are worked on at once; rows of a window are padded to a multiple of it.
+const LANES: usize = 8;
+
+/// What the window and the templates around it show: planes of one value a place, along the normal innermost.
+struct Seen {
+    colours: [Vec<f32>; 3],
+    /// 1 where a nearer part hides the place, else 0.
+    hidden: Vec<f32>,
+    stride: usize,
+}
+
 /// The costs of a sample at a place with a unit tangent.
 pub fn map(frame: &Frame, window: &Window, (place, tangent): (Point, Point), templates: [&Template; 2]) -> Map {
-    let size = [0, 1].map(|axis: usize| 2 * (window.reach[axis] + HALF[axis]) + 1);
-    let level = frame.picture.level(LEVEL);
-    let mut seen: Vec<(Colour, bool)> = Vec::with_capacity((size[0] * size[1]) as usize);
-    for a in 0..size[0] {
-        for b in 0..size[1] {
-            let offset = [a - window.reach[0] - HALF[0], b - window.reach[1] - HALF[1]];
-            let p = place + tangent.rotate(Point::new(f64::from(offset[0]), f64::from(offset[1])));
-            seen.push((level.colour(p), frame.cover.hides(p)));
-        }
-    }
+    let [rows, columns] = window.reach.map(|reach| 2 * reach as usize + 1);
+    let padded = columns.next_multiple_of(LANES);
+    let seen = seen(frame, window, (place, tangent), padded - columns);
     let serves = templates.map(|t| t.shown > SHOWN && t.weight > 0.0);
-    let used: Vec<&Template> =
-        (0..2).filter(|&k| serves[k] || serves == [false, false]).map(|k| templates[k]).collect();
-    let mut costs = Vec::with_capacity(((2 * window.reach[0] + 1) * (2 * window.reach[1] + 1)) as usize);
-    for u in 0..=2 * window.reach[0] {
-        for v in 0..=2 * window.reach[1] {
-            let cost = |t: &&Template| cost_at(t, &seen, size[1] as usize, (u + HALF[0], v + HALF[1]));
-            costs.push(used.iter().map(cost).fold(1.0, f32::min));
+    let used = (0..2).filter(|&k| serves[k] || serves == [false, false]).map(|k| templates[k]);
+    let mut costs = vec![1.0f32; rows * columns];
+    let mut sums = vec![[0.0f32; LANES]; rows * padded / LANES];
+    for template in used {
+        sums.fill([0.0; LANES]);
+        vectorised(
+            #[inline(always)]
+            || add_costs(template, &seen, &mut sums, padded / LANES),
+        );
+        let scale = 1.0 / template.weight.max(1e-6);
+        for (row, sums) in costs.chunks_exact_mut(columns).zip(sums.chunks_exact(padded / LANES)) {
+            for (cost, sum) in row.iter_mut().zip(sums.as_flattened()) {
+                *cost = cost.min(sum * scale);
+            }
         }
     }
     let shown = templates.iter().map(|t| t.shown).fold(0.0, f64::max);
     Map { reach: window.reach, costs, shown: (2.0 * shown).min(1.0) }
 }
 
-fn cost_at(template: &Template, seen: &[(Colour, bool)], stride: usize, (u, v): (i32, i32)) -> f32 {
-    let mut sum = 0.0;
-    let mut cells = template.cells.iter();
-    for a in offsets(0) {
-        let row = (u + a) as usize * stride;
-        for (b, (key, weight)) in offsets(1).zip(&mut cells) {
-            let (colour, hidden) = &seen[row + (v + b) as usize];
-            let r: f32 = (0..3).map(|k| (colour[k] - key[k]) * (colour[k] - key[k])).sum();
-            sum += weight * if *hidden { HIDDEN } else { r / (r + TOLERANCE) };
+/// Reads the picture wherever an offset of a template may come to lie, and `padding` places beyond.
+fn seen(frame: &Frame, window: &Window, (place, tangent): (Point, Point), padding: usize) -> Seen {
+    let size = [0, 1].map(|axis: usize| 2 * (window.reach[axis] + HALF[axis]) as usize + 1);
+    let stride = size[1] + padding;
+    let level = frame.picture.level(LEVEL);
+    let empty = || vec![0.0f32; size[0] * stride];
+    let mut seen = Seen { colours: [empty(), empty(), empty()], hidden: empty(), stride };
+    for a in 0..size[0] {
+        for b in 0..size[1] {
+            let offset = [a as i32 - window.reach[0] - HALF[0], b as i32 - window.reach[1] - HALF[1]];
+            let p = place + tangent.rotate(Point::new(f64::from(offset[0]), f64::from(offset[1])));
+            let at = a * stride + b;
+            let colour = level.colour(p);
+            (0..3).for_each(|k| seen.colours[k][at] = colour[k]);
+            seen.hidden[at] = f32::from(u8::from(frame.cover.hides(p)));
         }
     }
-    sum / template.weight.max(1e-6)
+    seen
+}
+
+/// Adds the weighted cost of each of the template's offsets at all displacements, `lanes` groups a row.
+#[inline(always)]
+fn add_costs(template: &Template, seen: &Seen, sums: &mut [[f32; LANES]], lanes: usize) {
+    let cells = offsets(0).flat_map(|a| offsets(1).map(move |b| (a, b)));
+    for ((a, b), (key, weight)) in cells.zip(&template.cells) {
+        let corner = (a + HALF[0]) as usize * seen.stride + (b + HALF[1]) as usize;
+        for (u, row) in sums.chunks_exact_mut(lanes).enumerate() {
+            let from = corner + u * seen.stride;
+            for (group, sums) in row.iter_mut().enumerate() {
+                let from = from + group * LANES;
+                let read = |plane: &[f32]| -> [f32; LANES] { std::array::from_fn(|v| plane[from..from + LANES][v]) };
+                let [r, g, b] = seen.colours.each_ref().map(|plane| read(plane));
+                let hidden = read(&seen.hidden);
+                let cost: [f32; LANES] = std::array::from_fn(|v| {
+                    let (dr, dg, db) = (r[v] - key[0], g[v] - key[1], b[v] - key[2]);
+                    let square = dr * dr + dg * dg + db * db;
+                    let cost = square / (square + TOLERANCE);
+                    weight * (cost + hidden[v] * (HIDDEN - cost))
+                });
+                for (sum, cost) in sums.iter_mut().zip(cost) {
+                    *sum += cost;
+                }
+            }
+        }
+    }
 }
