@@ -85,10 +85,8 @@ impl Correlator {
         transpose(&turned, &mut data, self.height);
         self.inverse[0].process(&mut data);
         let scale = 1.0 / data.len() as f32;
-        let plane = |part: fn(&Complex32) -> f32| data.iter().map(|c| scale * part(c)).collect();
-        [|c: &Complex32| c.re, |c: &Complex32| c.im].map(|part| {
-            Raster::from_vec(self.width, self.height, plane(part)).unwrap_or_else(|| Raster::new(0, 0, 0.0))
-        })
+        let raster = |plane| Raster::from_vec(self.width, self.height, plane).unwrap_or_else(|| Raster::new(0, 0, 0.0));
+        [raster(data.iter().map(|c| scale * c.re).collect()), raster(data.iter().map(|c| scale * c.im).collect())]
     }
 
     fn transformed(&self, mut data: Vec<Complex32>) -> Spectrum {
@@ -110,7 +108,9 @@ fn add_products(pictures: &[Spectrum], patterns: &[Spectrum], sums: &mut [Comple
         let (mut re, mut im) = ([0.0f32; PIECE], [0.0f32; PIECE]);
         for (a, b) in pictures.iter().zip(patterns) {
             let [ar, ai, br, bi] = [&a.re, &a.im, &b.re, &b.im].map(|plane| &plane[range.clone()]);
-            for i in 0..sums.len() {
+            let (re, im) = (&mut re[..ar.len()], &mut im[..ar.len()]);
+            let (ai, br, bi) = (&ai[..ar.len()], &br[..ar.len()], &bi[..ar.len()]);
+            for i in 0..ar.len() {
                 re[i] += ar[i] * br[i] - ai[i] * bi[i];
                 im[i] += ar[i] * bi[i] + ai[i] * br[i];
             }

@@ -176,13 +176,22 @@ fn least(map: &Raster<f32>, across: usize, down: usize) -> Option<(f32, usize, u
         let row = &map.row(y)[..across];
         let low = vectorised(
             #[inline(always)]
-            || row.iter().fold(f32::INFINITY, |low, &v| if v < low { v } else { low }),
+            || lowest(row),
         );
         if low < best.map_or(f32::INFINITY, |(value, ..)| value) {
             best = row.iter().position(|&v| v == low).map(|x| (low, x, y));
         }
     }
     best
+}
+
+/// The least of some values, in eight interleaved runs.
+#[inline(always)]
+fn lowest(values: &[f32]) -> f32 {
+    let less = |a: f32, b: f32| if b < a { b } else { a };
+    let (groups, rest) = values.as_chunks::<8>();
+    let runs = groups.iter().fold([f32::INFINITY; 8], |runs, group| std::array::from_fn(|k| less(runs[k], group[k])));
+    runs.into_iter().chain(rest.iter().copied()).fold(f32::INFINITY, less)
 }
 
 /// The lattice of a model at a place: in the shape of either key or halfway between them, whichever fits best.

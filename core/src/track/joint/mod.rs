@@ -73,19 +73,37 @@ pub fn choose(contenders: &[Contender], mut paths: Vec<Vec<usize>>) -> Vec<Vec<u
     let same = |a: usize, b: usize| {
         contenders[a].drawings == contenders[b].drawings && contenders[a].span == contenders[b].span
     };
+    let moves = (0..contenders.len())
+        .map(|c| vec![c])
+        .chain(pairs.into_iter().filter(|&(far, near)| same(far, near)).map(|(far, near)| vec![far, near]));
+    let mut moves: Vec<Move> = moves.map(|who| Move { seen: scene.seen_by(&who), who, tried: None }).collect();
+    let mut clock = 0;
+    let mut changed = vec![0; contenders.len()];
     for _ in 0..ROUNDS {
-        let mut moved = false;
-        for c in 0..contenders.len() {
-            moved |= scene.single(c, &mut paths);
-        }
-        for &(far, near) in &pairs {
-            if same(far, near) {
-                moved |= scene.pair(far, near, &mut paths);
+        let before = clock;
+        for next in &mut moves {
+            // What a move sees has not changed since it was tried: it would find the same again.
+            if next.tried.is_some_and(|tried| next.seen.iter().all(|&c| changed[c] <= tried)) {
+                continue;
+            }
+            next.tried = Some(clock);
+            if scene.taken(&next.who, &mut paths) {
+                clock += 1;
+                next.who.iter().for_each(|&c| changed[c] = clock);
             }
         }
-        if !moved {
+        if clock == before {
             break;
         }
     }
     paths
+}
+
+/// A move to try: new paths for one contender or for two.
+struct Move {
+    who: Vec<usize>,
+    /// Those whose choices its outcome depends on, itself included.
+    seen: Vec<usize>,
+    /// The number of changes before it was tried last.
+    tried: Option<usize>,
 }

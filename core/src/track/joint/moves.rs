@@ -14,8 +14,34 @@ const STATES: usize = 6;
 const LEAST_GAIN: f64 = 1e-9;
 
 impl Scene<'_> {
+    /// New paths for one contender, or for a far and a near one of the same drawings. Whether they changed.
+    pub fn taken(&self, who: &[usize], paths: &mut Paths) -> bool {
+        match *who {
+            [c] => self.single(c, paths),
+            [far, near] => self.pair(far, near, paths),
+            _ => false,
+        }
+    }
+
+    /// The contenders whose choices a move of some depends on: those that hide them, that they hide, that hide what they
+    /// hide, and that they hang on.
+    pub fn seen_by(&self, who: &[usize]) -> Vec<usize> {
+        let mut seen: Vec<usize> = who.to_vec();
+        for &c in who {
+            seen.extend(self.shadows.in_front_of(c));
+            for &far in self.shadows.behind(c) {
+                seen.push(far);
+                seen.extend(self.shadows.in_front_of(far));
+            }
+            seen.extend(self.ties.iter().filter_map(|tie| Some(tie.other(c)?.0)));
+        }
+        seen.sort_unstable();
+        seen.dedup();
+        seen
+    }
+
     /// The best path of one contender, the others held. Whether it changed.
-    pub fn single(&self, c: usize, paths: &mut Paths) -> bool {
+    fn single(&self, c: usize, paths: &mut Paths) -> bool {
         let pools = self.contenders[c].pools;
         let candidates: Vec<Vec<Candidate>> = (0..pools.len())
             .map(|d| {
@@ -28,7 +54,7 @@ impl Scene<'_> {
     }
 
     /// The best paths of a far and a near contender of the same drawings, the others held. Whether they changed.
-    pub fn pair(&self, far: usize, near: usize, paths: &mut Paths) -> bool {
+    fn pair(&self, far: usize, near: usize, paths: &mut Paths) -> bool {
         let drawings = self.contenders[far].pools.len();
         let states = |c: usize| -> Vec<Vec<usize>> { (0..drawings).map(|d| self.states(c, d, paths)).collect() };
         let states = [states(far), states(near)];

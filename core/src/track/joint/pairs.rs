@@ -1,7 +1,8 @@
 //! The best paths of two parts at once: second-order dynamic programming over pairs of states.
 //!
-//! The cost of motion is a sum of both parts', so that it is tabulated for each part alone; the number of operations is
-//! that of triples of pairs, s⁶ a drawing for s states of each part.
+//! The cost of motion is a sum of both parts', so that it is tabulated for each part alone, and the least over the pairs of
+//! the drawing two before is taken over one part's states and then over the other's: 2 s⁵ operations a drawing for s
+//! states of each part, not the s⁶ of triples of pairs.
 
 use crate::geometry::Point;
 use crate::track::select::{Smoothness, trace_back};
@@ -49,6 +50,47 @@ impl Motion {
     }
 }
 
+/// For one pair of states on the drawing before: least costs of coming from each state of the second part, for each state
+/// that the first part goes to.
+struct Arrivals {
+    inner: usize,
+    targets: usize,
+    /// By the second part's state two drawings before, then by the first part's now: cost and the first part's state
+    /// two drawings before.
+    table: Vec<(f64, usize)>,
+}
+
+impl Arrivals {
+    fn new(problem: &PairProblem, d: usize, g: usize, least: &[Vec<f64>], motion: &[Motion; 2]) -> Self {
+        let (inner, targets) = (problem.points[1][d - 2].len(), problem.points[0][d].len());
+        let g0 = g / problem.points[1][d - 1].len();
+        let mut table = vec![(f64::INFINITY, 0); inner * targets];
+        for (f, costs) in least.iter().enumerate() {
+            let (f0, f1) = (f / inner, f % inner);
+            for (h0, best) in table[f1 * targets..][..targets].iter_mut().enumerate() {
+                let cost = costs[g] + motion[0].acceleration(f0, g0, h0);
+                if cost < best.0 {
+                    *best = (cost, f0);
+                }
+            }
+        }
+        Self { inner, targets, table }
+    }
+
+    /// Least cost of coming to a pair, and the pair two drawings before.
+    fn least(&self, motion: &[Motion; 2], [_, g1]: [usize; 2], [h0, h1]: [usize; 2]) -> (f64, usize) {
+        let mut best = (f64::INFINITY, 0);
+        for f1 in 0..self.inner {
+            let (before, f0) = self.table[f1 * self.targets + h0];
+            let cost = before + motion[1].acceleration(f1, g1, h1);
+            if cost < best.0 {
+                best = (cost, f0 * self.inner + f1);
+            }
+        }
+        best
+    }
+}
+
 /// The states of both parts on each drawing along their paths of least cost.
 pub fn best_pair(problem: &PairProblem) -> Vec<[usize; 2]> {
     let split = |d: usize, pair: usize| {
@@ -74,16 +116,10 @@ pub fn best_pair(problem: &PairProblem) -> Vec<[usize; 2]> {
         let mut next = vec![vec![f64::INFINITY; count(d)]; count(d - 1)];
         let mut from = vec![vec![0; count(d)]; count(d - 1)];
         for g in 0..count(d - 1) {
+            let arrived = Arrivals::new(problem, d, g, &least, &motion);
             for h in 0..count(d) {
-                let (own, [g0, g1], [h0, h1]) = (step(&motion, d, g, h), split(d - 1, g), split(d, h));
-                for f in 0..count(d - 2) {
-                    let [f0, f1] = split(d - 2, f);
-                    let bend = motion[0].acceleration(f0, g0, h0) + motion[1].acceleration(f1, g1, h1);
-                    let cost = least[f][g] + bend + own;
-                    if cost < next[g][h] {
-                        (next[g][h], from[g][h]) = (cost, f);
-                    }
-                }
+                let (bend, f) = arrived.least(&motion, split(d - 1, g), split(d, h));
+                (next[g][h], from[g][h]) = (bend + step(&motion, d, g, h), f);
             }
         }
         least = next;
