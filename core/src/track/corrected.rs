@@ -12,7 +12,7 @@ use super::pool::{Hypothesis, Pools, hypothesis, is_new};
 use super::propagate::Pose;
 use super::stage::Stage;
 use crate::geometry::Point;
-use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 /// Turns tried about the corrections' centre, in degrees.
 const TURNS: [f64; 8] = [-90.0, -60.0, -40.0, -20.0, 20.0, 40.0, 60.0, 90.0];
@@ -54,14 +54,17 @@ fn constrained(stage: &Stage, d: usize, pool: &[Hypothesis]) -> Result<Vec<Hypot
     let mut found: Vec<Hypothesis> = Vec::new();
     for model in 0..2 {
         let scenery = stage.scenery(model, d);
-        let mut starts: Vec<Pose> = Vec::new();
-        for h in pool.iter().filter(|h| h.model == model) {
-            starts.push(stage.models[model].drawn(&scenery, &h.pose.nodes, &h.differences));
+        let own: Vec<&Hypothesis> = pool.iter().filter(|h| h.model == model).collect();
+        let from = |h: &&Hypothesis| {
             let turned = TURNS.iter().map(|degrees| scenery.anchors.turned(&h.pose.nodes, degrees.to_radians()));
-            for start in std::iter::once(h.pose.nodes.clone()).chain(turned) {
-                starts.push(stage.models[model].settled(&scenery, &start));
-            }
-        }
+            let settled = std::iter::once(h.pose.nodes.clone())
+                .chain(turned)
+                .map(|start| stage.models[model].settled(&scenery, &start));
+            std::iter::once(stage.models[model].drawn(&scenery, &h.pose.nodes, &h.differences))
+                .chain(settled)
+                .collect::<Vec<Pose>>()
+        };
+        let mut starts: Vec<Pose> = own.par_iter().flat_map_iter(from).collect();
         starts.sort_by(|a, b| a.energy.total_cmp(&b.energy));
         let mut kept: Vec<Hypothesis> = Vec::new();
         for start in starts {
@@ -73,9 +76,12 @@ fn constrained(stage: &Stage, d: usize, pool: &[Hypothesis]) -> Result<Vec<Hypot
                 break;
             }
         }
-        for start in kept {
+        let aligned = |start: &Hypothesis| {
             let pose = stage.models[model].realigned(&scenery, &start.pose.nodes);
-            let new = hypothesis(stage, d, model, pose, None);
+            hypothesis(stage, d, model, pose, None)
+        };
+        let aligned: Vec<Hypothesis> = kept.par_iter().map(aligned).collect();
+        for new in aligned {
             if is_new(&found, &new) {
                 found.push(new);
             }

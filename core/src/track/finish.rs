@@ -3,7 +3,8 @@
 
 use super::TrackError;
 use super::confidence;
-use super::job::{SpanSummary, SpanTrack, Termination};
+use super::drawings::Drawing;
+use super::job::{Correction, SpanSummary, SpanTrack, Termination};
 use super::lattice::texture::Cover;
 use super::pool::{Hypothesis, hypothesis};
 use super::refine::{Frame, Key, Refiner};
@@ -13,6 +14,7 @@ use super::tasks::Task;
 use crate::geometry::{Point, polygon};
 use crate::scene::Scene;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+use std::sync::{Arc, OnceLock};
 
 /// Distance in working pixels at which the other key's model is no longer taken to mean the same place.
 const AGREEMENT: f64 = 4.0;
@@ -76,37 +78,82 @@ impl Finish {
     }
 }
 
-/// The track of a part whose path is chosen.
-pub(super) fn finish(kit: Kit, pooled: &Pooled, plan: &Finish) -> Result<SpanTrack, TrackError> {
+/// A track, what it was made from, and what is worth keeping for the next one: beside the chosen poses the whole pool
+/// counts, whose other hypotheses are blended in and weigh in the confidence.
+pub(super) struct Finished {
+    pub source: Arc<Pooled>,
+    pub plan: Finish,
+    settled: Vec<Settled>,
+    pub track: SpanTrack,
+}
+
+/// A drawing's chosen pose as it is seen under what hides it, where that changes it, and its control points.
+#[derive(Clone)]
+struct Settled {
+    seen: Option<Hypothesis>,
+    points: Vec<Point>,
+}
+
+impl Finished {
+    /// What became of a drawing, if all that it was made from is the same again.
+    fn of(&self, source: &Pooled, plan: &Finish, d: usize) -> Option<&Settled> {
+        let old = &self.source;
+        let same_models = old.models.as_ref().zip(source.models.as_ref()).is_some_and(|(a, b)| Arc::ptr_eq(a, b));
+        let e = old.drawings.iter().position(|drawing| *drawing == source.drawings[d]).filter(|_| same_models)?;
+        let corrections = |pooled: &Pooled, at: &Drawing| -> Vec<Option<Correction>> {
+            (at.first..=at.last).map(|i| pooled.job.corrections.get(&i).cloned()).collect()
+        };
+        let same = self.plan.chosen[e] == plan.chosen[d]
+            && self.plan.occluders[e] == plan.occluders[d]
+            && corrections(old, &old.drawings[e]) == corrections(source, &source.drawings[d])
+            && old.pools[e] == source.pools[d];
+        same.then(|| &self.settled[e])
+    }
+}
+
+/// The track of a part whose path is chosen; `before` is what was made of the part last.
+pub(super) fn finish(
+    kit: Kit,
+    pooled: &Arc<Pooled>,
+    plan: Finish,
+    before: Option<&Finished>,
+) -> Result<Finished, TrackError> {
     if pooled.models.is_none() {
-        return Ok(keys_only(&pooled.job));
+        let track = keys_only(&pooled.job);
+        return Ok(Finished { source: pooled.clone(), plan, settled: Vec::new(), track });
     }
     let mut stage = Stage::set(kit, &pooled.job, pooled.models.clone())?;
     let width = stage.width();
     stage.covers = plan.occluders.iter().map(|contours| Cover::new(contours, width)).collect();
     let stage = &stage;
-    let last = stage.drawings.len() - 1;
-    let refiner = refiner(stage);
-    let drawings: Vec<(Vec<Hypothesis>, Vec<Point>)> = (0..=last)
+    let refiner = OnceLock::new();
+    let settled: Vec<Settled> = (0..stage.drawings.len())
         .into_par_iter()
         .map(|d| {
             kit.progress.report("Tracking", 0.9)?;
-            let mut pool = pooled.pools[d].clone();
-            if d != 0 && d != last && !plan.occluders[d].is_empty() {
-                let chosen = &pool[plan.chosen[d]];
-                let pose = stage.models[chosen.model].seen(&stage.scenery(chosen.model, d), &chosen.pose.nodes);
-                pool[plan.chosen[d]] = hypothesis(stage, d, chosen.model, pose, None);
-            }
-            let share = stage.drawings[d].first as f64 / (stage.job.span.len() - 1) as f64;
-            let rough = blended(&pool, plan.chosen[d], share);
-            let points = match &refiner {
-                Some(refiner) if d != 0 && d != last => refined(stage, refiner, d, share, rough),
-                _ => rough,
-            };
-            Ok((pool, points))
+            let known = before.and_then(|before| before.of(pooled, &plan, d));
+            Ok(known.cloned().unwrap_or_else(|| settle(stage, pooled, &plan, &refiner, d)))
         })
         .collect::<Result<_, TrackError>>()?;
-    Ok(track(stage, pooled, &drawings, &plan.chosen))
+    let track = track(stage, pooled, &settled, &plan.chosen);
+    Ok(Finished { source: pooled.clone(), plan, settled, track })
+}
+
+fn settle(stage: &Stage, pooled: &Pooled, plan: &Finish, refiner: &OnceLock<Option<Refiner>>, d: usize) -> Settled {
+    let (pool, chosen) = (&pooled.pools[d], plan.chosen[d]);
+    let between = d != 0 && d != stage.drawings.len() - 1;
+    let seen = (between && !plan.occluders[d].is_empty()).then(|| {
+        let chosen = &pool[chosen];
+        let pose = stage.models[chosen.model].seen(&stage.scenery(chosen.model, d), &chosen.pose.nodes);
+        hypothesis(stage, d, chosen.model, pose, None)
+    });
+    let share = stage.drawings[d].first as f64 / (stage.job.span.len() - 1) as f64;
+    let rough = blended(pool, seen.as_ref().unwrap_or(&pool[chosen]), share);
+    let points = match refiner.get_or_init(|| self::refiner(stage)) {
+        Some(refiner) if between => refined(stage, refiner, d, share, rough),
+        _ => rough,
+    };
+    Settled { seen, points }
 }
 
 /// The contour's own templates, where it has a shape.
@@ -130,8 +177,7 @@ fn refined(stage: &Stage, refiner: &Refiner, d: usize, share: f64, rough: Vec<Po
 
 /// The chosen control points of a drawing: those of the other model are blended in where they agree, by how near
 /// its key is.
-fn blended(pool: &[Hypothesis], chosen: usize, share: f64) -> Vec<Point> {
-    let own = &pool[chosen];
+fn blended(pool: &[Hypothesis], own: &Hypothesis, share: f64) -> Vec<Point> {
     let others = pool.iter().filter(|h| h.model != own.model);
     let Some(other) = others.min_by(|a, b| a.distance(own).total_cmp(&b.distance(own))) else {
         return own.points.clone();
@@ -147,12 +193,16 @@ fn blended(pool: &[Hypothesis], chosen: usize, share: f64) -> Vec<Point> {
     own.points.iter().zip(&other.points).map(blend).collect()
 }
 
-fn track(stage: &Stage, pooled: &Pooled, drawings: &[(Vec<Hypothesis>, Vec<Point>)], path: &[usize]) -> SpanTrack {
+fn track(stage: &Stage, pooled: &Pooled, settled: &[Settled], path: &[usize]) -> SpanTrack {
     let last = stage.job.span.len() - 1;
     let (mut points, mut sure) = (Vec::new(), Vec::new());
     for (d, drawing) in stage.drawings.iter().enumerate() {
-        let (pool, found) = &drawings[d];
-        let confidence = confidence::of_drawing(&stage.models, &stage.features[d], &stage.covers[d], pool, path[d]);
+        let Settled { seen, points: found } = &settled[d];
+        let mut pool = pooled.pools[d].clone();
+        if let Some(seen) = seen {
+            pool[path[d]] = seen.clone();
+        }
+        let confidence = confidence::of_drawing(&stage.models, &stage.features[d], &stage.covers[d], &pool, path[d]);
         for index in drawing.first..=drawing.last {
             let mut on_frame = stage.key_of(d).unwrap_or_else(|| found.iter().map(|&p| p * stage.scale).collect());
             stage.job.enforce(index, &mut on_frame);
@@ -163,14 +213,14 @@ fn track(stage: &Stage, pooled: &Pooled, drawings: &[(Vec<Hypothesis>, Vec<Point
     for (&index, correction) in &stage.job.corrections {
         correction.pins.keys().for_each(|&j| sure[index][j] = 1.0);
     }
-    let energy = |choose: &dyn Fn(usize) -> usize| {
-        (0..drawings.len()).map(|d| drawings[d].0[choose(d)].pose.energy).sum::<f64>() / drawings.len() as f64
-    };
+    let mean = |of: &dyn Fn(usize) -> f64| (0..settled.len()).map(of).sum::<f64>() / settled.len() as f64;
+    let first = |d: usize| pooled.pools[d][0].pose.energy;
+    let last_seen = |d: usize| settled[d].seen.as_ref().unwrap_or(&pooled.pools[d][path[d]]).pose.energy;
     let summary = SpanSummary {
         termination: Termination::PathChosen,
         iterations: pooled.steps,
-        initial_cost: energy(&|_| 0),
-        final_cost: energy(&|d| path[d]),
+        initial_cost: mean(&first),
+        final_cost: mean(&last_seen),
     };
     SpanTrack { points, confidence: sure, summary }
 }

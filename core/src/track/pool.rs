@@ -19,7 +19,7 @@ const DISAGREEMENT: f64 = 4.0;
 const KNOWN_PLACE: f64 = 1.0;
 
 /// A hypothesis of the pool of a drawing.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Hypothesis {
     /// Which key's model it poses: 0 or 1.
     pub model: usize,

@@ -46,7 +46,7 @@ pub struct Scenery<'a> {
 }
 
 /// Where a model may be on a drawing, and how badly that explains the picture.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
     /// Places of the lattice's nodes, in working pixels.
     pub nodes: Vec<Point>,

@@ -17,8 +17,9 @@
 //! pools of all others, and all that the choice does not change.
 
 use super::drawings::Drawing;
-use super::finish::{Finish, finish};
+use super::finish::{Finish, Finished, finish};
 use super::job::{Job, SpanSummary, SpanTrack, Termination};
+use super::joint::shadow::Memory;
 use super::joint::tie::{Lead, leads};
 use super::joint::{self, Contender};
 use super::mend::mend;
@@ -43,6 +44,7 @@ pub struct Rototoon {
     corrected: BTreeMap<(String, Span), Arc<Pooled>>,
     mended: BTreeMap<(String, Span), Mended>,
     finished: BTreeMap<(String, Span), Finished>,
+    shadows: Memory,
 }
 
 /// The pools of a job without and with its corrections, and whether anything was made now.
@@ -57,20 +59,12 @@ struct Mended {
     result: Arc<Pooled>,
 }
 
-/// A track, and what it was made from: beside the chosen poses the whole pool, whose other hypotheses are blended in and
-/// weigh in the confidence.
-struct Finished {
-    source: Arc<Pooled>,
-    plan: Finish,
-    track: SpanTrack,
-}
-
 /// The hypotheses of a job.
 pub(super) struct Pooled {
     pub job: Job,
     pub drawings: Vec<Drawing>,
     pub models: Option<Arc<[Model; 2]>>,
-    pub pools: Pools,
+    pub pools: Arc<Pools>,
     /// The part's own choice, before others are heard.
     pub path: Vec<usize>,
     pub steps: usize,
@@ -91,36 +85,42 @@ impl SceneSolver for Rototoon {
         for stretch in stretches(&tasks) {
             let members: Vec<&Pooled> = stretch.iter().map(|&t| &*pooled[t]).collect();
             let start = members.iter().map(|m| m.path.clone()).collect();
-            let (paths, leads) = chosen(scene, &tasks, &stretch, &members, start);
+            let (paths, leads) = chosen(scene, &tasks, &stretch, &members, start, &mut self.shadows);
             let mended = self.mend_all(&stretch, &pooled, &paths, &leads, frames, &shared)?;
             let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
-            let (paths, _) = chosen(scene, &tasks, &stretch, &members, paths);
+            let (paths, _) = chosen(scene, &tasks, &stretch, &members, paths, &mut self.shadows);
             let finishes: Vec<Finish> =
                 (0..members.len()).map(|m| Finish::of(scene, &tasks, &stretch, &members, &paths, m)).collect();
-            let results: Vec<Result<(SpanTrack, bool), TrackError>> = stretch
+            let known = |source: &Arc<Pooled>, plan: &Finish| {
+                let known = self.finished.get(&source.key())?;
+                (Arc::ptr_eq(&known.source, source) && known.plan == *plan).then(|| known.track.clone())
+            };
+            let tracks: Vec<Option<SpanTrack>> = mended.iter().zip(&finishes).map(|(s, p)| known(s, p)).collect();
+            let results: Vec<Option<Result<Finished, TrackError>>> = stretch
                 .par_iter()
-                .zip(&finishes)
+                .zip(finishes)
                 .zip(&mended)
-                .map(|((&t, plan), source)| {
-                    let key = source.key();
-                    match self.finished.get(&key) {
-                        Some(known) if Arc::ptr_eq(&known.source, source) && known.plan == *plan => {
-                            Ok((known.track.clone(), fresh[t]))
-                        }
-                        _ => {
-                            let kit = Kit { store: &self.store, frames, progress: &shared.of(t) };
-                            Ok((finish(kit, source, plan)?, true))
-                        }
-                    }
+                .zip(&tracks)
+                .map(|(((&t, plan), source), known)| {
+                    let kit = Kit { store: &self.store, frames, progress: &shared.of(t) };
+                    known.is_none().then(|| finish(kit, source, plan, self.finished.get(&source.key())))
                 })
                 .collect();
-            for (((&t, plan), source), result) in stretch.iter().zip(finishes).zip(mended).zip(results) {
-                let (track, solved) = result?;
+            for ((&t, known), result) in stretch.iter().zip(tracks).zip(results) {
+                let solved = known.is_none() || fresh[t];
+                let track = match result.transpose()? {
+                    Some(finished) => {
+                        let track = finished.track.clone();
+                        self.finished.insert(finished.source.key(), finished);
+                        Some(track)
+                    }
+                    None => known,
+                };
                 shared.of(t).report("Tracking", 1.0)?;
-                self.finished.insert(source.key(), Finished { source, plan, track: track.clone() });
-                done[t] = Some((track, solved));
+                done[t] = track.map(|track| (track, solved));
             }
         }
+        self.shadows.turn();
         self.keep_only(&pooled);
         Ok(assemble(scene, &tasks, done))
     }
@@ -267,12 +267,12 @@ impl Rototoon {
 fn plain_pools(kit: Kit, job: Job) -> Result<Pooled, TrackError> {
     if job.span.len() == 2 || job.keys[0].is_empty() {
         let drawings = (0..job.span.len()).map(|i| Drawing { first: i, last: i }).collect();
-        return Ok(Pooled { job, drawings, models: None, pools: Vec::new(), path: Vec::new(), steps: 0 });
+        return Ok(Pooled { job, drawings, models: None, pools: Arc::default(), path: Vec::new(), steps: 0 });
     }
     let stage = Stage::set(kit, &job, None)?;
     let (pools, path) = pool::fill(&stage)?;
     let (drawings, models) = (stage.drawings.clone(), Some(stage.models.clone()));
-    let steps = stage.steps_done.into_inner();
+    let (pools, steps) = (Arc::new(pools), stage.steps_done.into_inner());
     Ok(Pooled { job, drawings, models, pools, path, steps })
 }
 
@@ -281,14 +281,14 @@ fn corrected_pools(kit: Kit, job: &Job, plain: &Pooled) -> Result<Pooled, TrackE
     let pools = corrected::extend(&stage, &plain.drawings, &plain.pools)?;
     let path = pool::choose(&stage, &pools);
     let (drawings, models) = (stage.drawings.clone(), Some(stage.models.clone()));
-    let steps = stage.steps_done.into_inner();
+    let (pools, steps) = (Arc::new(pools), stage.steps_done.into_inner());
     Ok(Pooled { job: job.clone(), drawings, models, pools, path, steps })
 }
 
 fn mended_pools(kit: Kit, source: &Pooled, path: &[usize], leads: &[Lead]) -> Result<Pooled, TrackError> {
     let (drawings, models) = (source.drawings.clone(), source.models.clone());
     let pools = if models.is_some() {
-        mend(&Stage::set(kit, &source.job, models.clone())?, &source.pools, path, leads)?
+        Arc::new(mend(&Stage::set(kit, &source.job, models.clone())?, &source.pools, path, leads)?)
     } else {
         source.pools.clone()
     };
@@ -302,6 +302,7 @@ fn chosen(
     stretch: &[usize],
     members: &[&Pooled],
     start: Vec<Vec<usize>>,
+    shadows: &mut Memory,
 ) -> (Vec<Vec<usize>>, Vec<Vec<Lead>>) {
     let free: Vec<usize> = (0..members.len()).filter(|&m| members[m].models.is_some()).collect();
     let contender = |&m: &usize| {
@@ -317,7 +318,7 @@ fn chosen(
         })
     };
     let contenders: Vec<Contender> = free.iter().filter_map(contender).collect();
-    let found = joint::choose(&contenders, free.iter().map(|&m| start[m].clone()).collect());
+    let found = joint::choose(&contenders, free.iter().map(|&m| start[m].clone()).collect(), shadows);
     let led = leads(&contenders, &found);
     let (mut paths, mut all_leads) = (vec![Vec::new(); members.len()], vec![Vec::new(); members.len()]);
     for ((&m, path), lead) in free.iter().zip(found).zip(led) {

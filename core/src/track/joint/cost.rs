@@ -94,7 +94,7 @@ impl Scene<'_> {
             states.map(|state| self.look(c, state, paths, None)).sum::<f64>()
         };
         let smooth = |&c: &usize| {
-            let pools = paths[c].iter().zip(self.contenders[c].pools);
+            let pools = paths[c].iter().zip(&**self.contenders[c].pools);
             let points: Vec<&[Point]> = pools.map(|(&h, pool)| &pool[h].points[..]).collect();
             self.smoothness(c).of_path(&points)
         };

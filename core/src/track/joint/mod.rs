@@ -24,7 +24,8 @@ use super::drawings::Drawing;
 use super::pool::Pools;
 use super::propagate::Model;
 use crate::scene::{FrameNumber, Span};
-use shadow::Shadows;
+use shadow::{Memory, Shadows};
+use std::sync::Arc;
 
 /// Rounds over all parts and pairs at the most.
 const ROUNDS: usize = 4;
@@ -40,7 +41,7 @@ pub struct Contender<'a> {
     /// The span's drawings.
     pub drawings: &'a [Drawing],
     /// The hypotheses of each drawing.
-    pub pools: &'a Pools,
+    pub pools: &'a Arc<Pools>,
     /// What the hypotheses pose.
     pub models: &'a [Model; 2],
 }
@@ -62,8 +63,8 @@ impl Contender<'_> {
 }
 
 /// The hypothesis that each contender follows on each of its drawings; `paths` is where to start from.
-pub fn choose(contenders: &[Contender], mut paths: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
-    let shadows = Shadows::cast(contenders);
+pub fn choose(contenders: &[Contender], mut paths: Vec<Vec<usize>>, memory: &mut Memory) -> Vec<Vec<usize>> {
+    let shadows = Shadows::cast(contenders, memory);
     let ties = tie::find(contenders);
     if shadows.none() && ties.is_empty() {
         return paths;

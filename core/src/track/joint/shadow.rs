@@ -4,9 +4,10 @@ use super::Contender;
 use super::cost::State;
 use crate::geometry::{Point, polygon};
 use crate::scene::Raster;
-use crate::track::pool::Hypothesis;
+use crate::track::pool::{Hypothesis, Pools};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Cost of a sample that a nearer part hides, as a squared colour difference.
 pub const HIDDEN: f32 = 0.03;
@@ -20,10 +21,13 @@ pub type Mask = Option<Box<[u64]>>;
 /// Masks on a contender by a nearer one: by far drawing, far hypothesis, near hypothesis.
 type Masks = Vec<Vec<Vec<Mask>>>;
 
-/// Which samples are hidden, by (far contender, near contender): by far drawing, far hypothesis, near hypothesis.
+/// What the samples of a contender's hypotheses cost, by drawing and hypothesis.
+type Costs = Vec<Vec<SampleCosts>>;
+
+/// Which samples are hidden, by (far contender, near contender).
 pub struct Shadows {
-    masks: BTreeMap<(usize, usize), Masks>,
-    costs: Vec<Vec<Vec<SampleCosts>>>,
+    masks: BTreeMap<(usize, usize), Arc<Masks>>,
+    costs: Vec<Arc<Costs>>,
     in_front: Vec<Vec<usize>>,
     behind: Vec<Vec<usize>>,
 }
@@ -80,22 +84,69 @@ impl Silhouette {
     }
 }
 
+/// Shadows cast before: those between pools that are the same still need not be cast again.
+#[derive(Default)]
+pub struct Memory {
+    before: Casts,
+    now: Casts,
+}
+
+/// What was cast, by the addresses of the pools, which are kept so that the addresses stay theirs.
+#[derive(Default)]
+struct Casts {
+    masks: BTreeMap<(usize, usize), PairCast>,
+    costs: BTreeMap<usize, (Arc<Pools>, Arc<Costs>)>,
+}
+
+/// A far and a near contender's pools, and the masks, where there are any.
+type PairCast = ([Arc<Pools>; 2], Option<Arc<Masks>>);
+
+impl Memory {
+    /// Forgets what was not asked for since the last call of this.
+    pub fn turn(&mut self) {
+        self.before = std::mem::take(&mut self.now);
+    }
+}
+
+fn address(pools: &Arc<Pools>) -> usize {
+    Arc::as_ptr(pools).addr()
+}
+
 impl Shadows {
     /// Casts the shadows of all hypotheses on all farther ones.
-    pub fn cast(contenders: &[Contender]) -> Self {
-        let silhouettes: Vec<Vec<Vec<Option<Silhouette>>>> = contenders
-            .par_iter()
-            .map(|c| {
-                let of_pool = |pool: &Vec<Hypothesis>| {
-                    pool.iter().map(|h| if c.hides { Silhouette::new(&h.points) } else { None }).collect()
-                };
-                c.pools.iter().map(of_pool).collect()
-            })
-            .collect();
+    pub fn cast(contenders: &[Contender], memory: &mut Memory) -> Self {
         let index: Vec<usize> = (0..contenders.len()).collect();
-        let far: Vec<_> = index.par_iter().map(|&f| masks_on(contenders, &silhouettes, f)).collect();
-        let costs = contenders.par_iter().map(sample_costs).collect();
-        let masks: BTreeMap<_, _> = far.into_iter().flatten().collect();
+        let pair = |&(f, n): &(usize, usize)| (address(contenders[f].pools), address(contenders[n].pools));
+        let pairs: Vec<(usize, usize)> = index
+            .iter()
+            .flat_map(|&f| index.iter().map(move |&n| (f, n)))
+            .filter(|&p| may_hide(contenders, p))
+            .collect();
+        let known = &memory.before;
+        let unknown: Vec<(usize, usize)> =
+            pairs.iter().copied().filter(|p| !known.masks.contains_key(&pair(p))).collect();
+        let silhouettes: Vec<Silhouettes> = index
+            .par_iter()
+            .map(|&n| if unknown.iter().any(|u| u.1 == n) { silhouettes(&contenders[n]) } else { Vec::new() })
+            .collect();
+        let fresh: Vec<Vec<((usize, usize), Option<Arc<Masks>>)>> =
+            index.par_iter().map(|&f| masks_on(contenders, &silhouettes, &unknown, f)).collect();
+        let costs: Vec<Arc<Costs>> = contenders
+            .par_iter()
+            .map(|c| known.costs.get(&address(c.pools)).map_or_else(|| Arc::new(sample_costs(c)), |(_, k)| k.clone()))
+            .collect();
+        let mut fresh: BTreeMap<_, _> = fresh.into_iter().flatten().collect();
+        let mut masks = BTreeMap::new();
+        for parts in pairs {
+            let found = known.masks.get(&pair(&parts)).map(|(_, masks)| masks.clone());
+            let found = found.or_else(|| fresh.remove(&parts)).flatten();
+            let pools = [parts.0, parts.1].map(|c| contenders[c].pools.clone());
+            memory.now.masks.insert(pair(&parts), (pools, found.clone()));
+            masks.extend(found.map(|found| (parts, found)));
+        }
+        for (c, costs) in contenders.iter().zip(&costs) {
+            memory.now.costs.insert(address(c.pools), (c.pools.clone(), costs.clone()));
+        }
         let (mut in_front, mut behind) = (vec![Vec::new(); contenders.len()], vec![Vec::new(); contenders.len()]);
         for &(far, near) in masks.keys() {
             in_front[far].push(near);
@@ -149,18 +200,32 @@ impl Shadows {
     }
 }
 
-/// The masks on one contender by all nearer ones.
+/// By drawing and hypothesis.
+type Silhouettes = Vec<Vec<Option<Silhouette>>>;
+
+fn silhouettes(c: &Contender) -> Silhouettes {
+    let of_pool = |pool: &Vec<Hypothesis>| pool.iter().map(|h| Silhouette::new(&h.points)).collect();
+    c.pools.iter().map(of_pool).collect()
+}
+
+/// Whether the second contender lies before the first one.
+fn may_hide(contenders: &[Contender], (far, near): (usize, usize)) -> bool {
+    let (far, near) = (&contenders[far], &contenders[near]);
+    near.hides && near.depth > far.depth && near.span.first < far.span.last && far.span.first < near.span.last
+}
+
+/// The masks on one contender by the nearer ones of the pairs it is the far one of.
 fn masks_on(
     contenders: &[Contender],
-    silhouettes: &[Vec<Vec<Option<Silhouette>>>],
+    silhouettes: &[Silhouettes],
+    pairs: &[(usize, usize)],
     f: usize,
-) -> Vec<((usize, usize), Masks)> {
+) -> Vec<((usize, usize), Option<Arc<Masks>>)> {
     let far = &contenders[f];
-    let nearer = |n: &usize| {
-        let near = &contenders[*n];
-        near.hides && near.depth > far.depth && near.span.first < far.span.last && far.span.first < near.span.last
-    };
-    let nearer: Vec<usize> = (0..contenders.len()).filter(nearer).collect();
+    let nearer: Vec<usize> = pairs.iter().filter(|pair| pair.0 == f).map(|pair| pair.1).collect();
+    if nearer.is_empty() {
+        return Vec::new();
+    }
     let mut found: Vec<Masks> = nearer.iter().map(|_| Vec::new()).collect();
     for (d, pool) in far.pools.iter().enumerate() {
         found.iter_mut().for_each(|by| by.push(vec![Vec::new(); pool.len()]));
@@ -177,11 +242,11 @@ fn masks_on(
             }
         }
     }
-    let touches = |by: &Masks| by.iter().flatten().flatten().any(Option::is_some);
-    nearer.into_iter().zip(found).filter(|(_, by)| touches(by)).map(|(n, by)| ((f, n), by)).collect()
+    let touching = |by: Masks| by.iter().flatten().flatten().any(Option::is_some).then(|| Arc::new(by));
+    nearer.into_iter().zip(found).map(|(n, by)| ((f, n), touching(by))).collect()
 }
 
-fn sample_costs(c: &Contender) -> Vec<Vec<SampleCosts>> {
+fn sample_costs(c: &Contender) -> Costs {
     let of = |h: &Hypothesis| {
         let texture = &c.models[h.model].texture;
         let total: f32 = texture.measured().iter().map(|t| t.weight).sum();

@@ -1,5 +1,6 @@
 //! The joint choice on made-up hypotheses.
 
+use super::shadow::Memory;
 use super::{Contender, choose, tie};
 use crate::geometry::Point;
 use crate::scene::{Raster, Span};
@@ -10,6 +11,7 @@ use crate::track::lattice::mesh::Mesh;
 use crate::track::lattice::texture::{Cover, Texture};
 use crate::track::pool::{Hypothesis, Pools};
 use crate::track::propagate::{Model, Pose};
+use std::sync::Arc;
 
 /// A bar of 20 × 80 working pixels whose upper end's middle is the origin.
 fn bar() -> Vec<Point> {
@@ -54,17 +56,35 @@ fn two_parts_do_not_stand_in_one_place() {
     // On the middle drawing the far part fits the near one's place so well that alone it would go there.
     let aside = hypothesis(&far_models[0], 0.0, Point::new(-40.0, 0.0), 0.0005);
     let home = hypothesis(&far_models[0], 0.0, Point::ZERO, 0.02);
-    let far: Pools = vec![key(&far_models), vec![aside, home], key(&far_models)];
-    let near: Pools = vec![key(&near_models), key(&near_models), key(&near_models)];
+    let far: Arc<Pools> = Arc::new(vec![key(&far_models), vec![aside, home], key(&far_models)]);
+    let near: Arc<Pools> = Arc::new(vec![key(&near_models), key(&near_models), key(&near_models)]);
     let span = Span { first: 0, last: 2 };
-    let contenders = |depth: f64| {
+    let mut memory = Memory::default();
+    let mut contenders = |depth: f64| {
         let contender =
             |pools, models, depth| Contender { span, depth, hides: true, drawings: &drawings, pools, models };
-        choose(&[contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)], vec![vec![0, 0, 0]; 2])
+        choose(
+            &[contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)],
+            vec![vec![0, 0, 0]; 2],
+            &mut memory,
+        )
     };
     // Parts of one depth hide nothing of each other.
     assert_eq!(contenders(0.0), [[0, 0, 0], [0, 0, 0]]);
     assert_eq!(contenders(1.0), [[0, 1, 0], [0, 0, 0]]);
+    // Shadows that are remembered are the ones that were cast, and depths may change.
+    memory.turn();
+    let mut contenders = |depth: f64| {
+        let contender =
+            |pools, models, depth| Contender { span, depth, hides: true, drawings: &drawings, pools, models };
+        choose(
+            &[contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)],
+            vec![vec![0, 0, 0]; 2],
+            &mut memory,
+        )
+    };
+    assert_eq!(contenders(1.0), [[0, 1, 0], [0, 0, 0]]);
+    assert_eq!(contenders(-1.0), [[0, 1, 0], [0, 0, 0]]);
 }
 
 #[test]
@@ -83,9 +103,9 @@ fn the_hinge_of_a_swinging_limb_is_its_pivot() {
     ];
     let body_models = [model(&body, (0.0, Point::ZERO)), model(&body, (0.0, Point::ZERO))];
     let drawings = three_drawings();
-    let pools = |models: &[Model; 2]| -> Pools {
+    let pools = |models: &[Model; 2]| -> Arc<Pools> {
         let still = |m: usize| vec![hypothesis(&models[m], 0.0, Point::ZERO, 0.0)];
-        vec![still(0), still(0), still(1)]
+        Arc::new(vec![still(0), still(0), still(1)])
     };
     let (limb_pools, body_pools) = (pools(&limb_models), pools(&body_models));
     let span = Span { first: 0, last: 2 };
