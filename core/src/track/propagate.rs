@@ -39,8 +39,10 @@ pub struct Model {
 pub struct Scenery<'a> {
     /// Its picture.
     pub features: &'a Features,
-    /// What hides the part.
+    /// What hides the part: what is aligned leaves it out.
     pub cover: &'a Cover,
+    /// Whether samples under the cover count as unseen when a pose is measured; else the picture's edges alone hide.
+    pub weighed: bool,
     /// The artist's corrections, for the lattice of the model in use.
     pub anchors: &'a Anchors,
 }
@@ -118,7 +120,16 @@ impl Model {
 
     /// A pose with its energy.
     pub fn measured(&self, scenery: &Scenery, nodes: Vec<Point>) -> Pose {
-        Pose { energy: self.texture.energy(scenery.features, &nodes), nodes }
+        Pose { energy: self.texture.energy_of(&nodes, &self.differences(scenery, &nodes)), nodes }
+    }
+
+    /// Colour difference of each sample that measures a pose.
+    pub fn differences(&self, scenery: &Scenery, nodes: &[Point]) -> Vec<f32> {
+        if scenery.weighed {
+            self.texture.differences_where(scenery.features, nodes, |p| !scenery.cover.hides(p))
+        } else {
+            self.texture.differences(scenery.features, nodes)
+        }
     }
 
     /// Carries `pose` to another drawing; `moved` is what its nodes moved by last.
@@ -133,6 +144,13 @@ impl Model {
             starts.push(add(&|n| moved[n]));
         }
         self.best_of(scenery, starts)
+    }
+
+    /// Where the flow alone would take the control points of a pose; nothing where it says nothing.
+    pub fn flowed(&self, pose: &[Point], flow: &Flow) -> Option<Vec<Point>> {
+        let (shifts, _) = self.flow_below(pose, flow)?;
+        let nodes: Vec<Point> = pose.iter().zip(&shifts).map(|(p, s)| *p + *s).collect();
+        Some(self.texture.mesh.control_points(&nodes))
     }
 
     /// The flow below a pose: its mean at each node, and its median over the part. Nothing where no sample is inside.

@@ -15,15 +15,19 @@ const MOST_SAMPLES: usize = 700;
 const FINE_SAMPLES: f64 = 1200.0;
 /// Squared colour difference (three channels of 0 to 1) beyond which a sample is simply wrong.
 pub const WORST: f32 = 0.15;
+/// Cost of a sample that cannot be seen, as a squared colour difference: more than a right colour, less than a wrong one.
+pub const UNSEEN: f32 = 0.03;
 /// Weight of the shape energy beside the mean colour difference, and the shape energy beyond which it stops to count.
 const SHAPE: (f64, f64) = (0.02, 2.0);
 /// Level (index in [`LEVELS`]) whose samples measure a pose.
 const MEASURED_LEVEL: usize = 1;
 
-/// Where nearer parts hide the picture, by working pixels of 2 × 2.
+/// Where nearer parts hide the picture, by working pixels of 2 × 2, and where it ends: what lies beyond its edges is
+/// hidden too.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cover {
     hidden: Raster<bool>,
+    width: f64,
 }
 
 impl Cover {
@@ -40,7 +44,12 @@ impl Cover {
                 hidden.row_mut(y)[x0..x1].fill(true);
             });
         }
-        Self { hidden }
+        Self { hidden, width }
+    }
+
+    /// Width of the picture in working pixels.
+    pub fn width(&self) -> f64 {
+        self.width
     }
 
     /// Nothing is hidden.
@@ -48,10 +57,20 @@ impl Cover {
         Self::new(&[], width)
     }
 
-    /// Whether a nearer part hides the picture at `p`; outside the picture, what its nearest edge says.
+    /// Whether nothing of the part can be seen at `p`: a nearer part hides it there, or the picture has ended.
     pub fn hides(&self, p: Point) -> bool {
+        !in_picture(p, self.width) || self.under(p)
+    }
+
+    /// Whether a nearer part hides the picture at `p`; outside the picture, what its nearest edge says.
+    pub fn under(&self, p: Point) -> bool {
         self.hidden.clamped((p.x / Self::PIXEL).floor() as isize, (p.y / Self::PIXEL).floor() as isize)
     }
+}
+
+/// Whether a place in working pixels lies in a picture of `width` working pixels.
+pub fn in_picture(p: Point, width: f64) -> bool {
+    p.x >= 0.0 && p.y >= 0.0 && p.x < width && p.y < WORKING_LINES
 }
 
 /// One sample of the key.
@@ -74,22 +93,28 @@ pub struct Texture {
     pub mesh: Mesh,
     /// Samples by level, from coarse to fine, in the order of their cells.
     pub texels: [Vec<Texel>; 3],
+    /// Width of the picture in working pixels: what lies outside is unseen.
+    width: f64,
 }
 
 impl Texture {
     /// Samples the key's picture over the lattice, but where a nearer part hides it or the picture ends.
     pub fn new(mesh: Mesh, key: &Features, cover: &Cover, width: f64) -> Self {
         let texels = std::array::from_fn(|level| sample_level(&mesh, key, cover, width, level));
-        Self { mesh, texels }
+        Self { mesh, texels, width }
     }
 
-    /// How badly a pose explains a picture: mean colour difference (at most [`WORST`]) plus a little for bending.
+    /// How badly a pose explains a picture: mean colour difference (at most [`WORST`]; [`UNSEEN`] outside the picture)
+    /// plus a little for bending.
     pub fn energy(&self, picture: &Features, nodes: &[Point]) -> f64 {
-        let level = picture.level(MEASURED_LEVEL);
+        self.energy_of(nodes, &self.differences(picture, nodes))
+    }
+
+    /// The same, for samples whose differences are known.
+    pub fn energy_of(&self, nodes: &[Point], differences: &[f32]) -> f64 {
         let (mut sum, mut weights) = (0.0, 0.0);
-        for texel in self.measured() {
-            let colour = level.colour(texel.binding.at(nodes));
-            sum += f64::from(texel.weight * difference(&colour, &texel.key).min(WORST));
+        for (texel, difference) in self.measured().iter().zip(differences) {
+            sum += f64::from(texel.weight * difference);
             weights += f64::from(texel.weight);
         }
         let look = if weights > 0.0 { sum / weights } else { f64::from(WORST) };
@@ -106,10 +131,18 @@ impl Texture {
         &self.texels[MEASURED_LEVEL]
     }
 
-    /// Colour difference of each of the [`Texture::measured`] samples, at most [`WORST`].
+    /// Colour difference of each of the [`Texture::measured`] samples, at most [`WORST`]; [`UNSEEN`] outside the picture.
     pub fn differences(&self, picture: &Features, nodes: &[Point]) -> Vec<f32> {
+        self.differences_where(picture, nodes, |p| in_picture(p, self.width))
+    }
+
+    /// The same; what is not `seen` is [`UNSEEN`].
+    pub fn differences_where(&self, picture: &Features, nodes: &[Point], seen: impl Fn(Point) -> bool) -> Vec<f32> {
         let level = picture.level(MEASURED_LEVEL);
-        let of = |t: &Texel| difference(&level.colour(t.binding.at(nodes)), &t.key).min(WORST);
+        let of = |t: &Texel| {
+            let place = t.binding.at(nodes);
+            if seen(place) { difference(&level.colour(place), &t.key).min(WORST) } else { UNSEEN }
+        };
         self.measured().iter().map(of).collect()
     }
 }
@@ -129,7 +162,7 @@ fn sample_level(mesh: &Mesh, key: &Features, cover: &Cover, width: f64, level: u
     for j in 0..count(high.y - low.y) {
         for i in 0..count(high.x - low.x) {
             let p = low + Point::new(i as f64 + 0.5, j as f64 + 0.5) * step;
-            let seen = p.x >= 0.0 && p.y >= 0.0 && p.x < width && p.y < WORKING_LINES && !cover.hides(p);
+            let seen = in_picture(p, width) && !cover.hides(p);
             let (belongs, inside) = if seen { mesh.region(p) } else { (false, false) };
             if belongs {
                 let (cell, binding) = mesh.bind_in_cell(p);
