@@ -32,9 +32,7 @@ fn changed(from: &Level, to: &Level) -> f64 {
     let (seen, known) = (colours(from), colours(to));
     let alike = |x: usize, y: usize| {
         let colour = seen[y * width + x];
-        let around = |at: usize, most: usize| {
-            at.saturating_sub(REACH as usize)..(at + REACH as usize + 1).min(most)
-        };
+        let around = |at: usize, most: usize| at.saturating_sub(REACH as usize)..(at + REACH as usize + 1).min(most);
         around(y, height).any(|v| {
             around(x, width).any(|u| {
                 let other = known[v * width + u];

@@ -146,13 +146,6 @@ impl Model {
         self.best_of(scenery, starts)
     }
 
-    /// Where the flow alone would take the control points of a pose; nothing where it says nothing.
-    pub fn flowed(&self, pose: &[Point], flow: &Flow) -> Option<Vec<Point>> {
-        let (shifts, _) = self.flow_below(pose, flow)?;
-        let nodes: Vec<Point> = pose.iter().zip(&shifts).map(|(p, s)| *p + *s).collect();
-        Some(self.texture.mesh.control_points(&nodes))
-    }
-
     /// The flow below a pose: its mean at each node, and its median over the part. Nothing where no sample is inside.
     fn flow_below(&self, pose: &[Point], flow: &Flow) -> Option<(Vec<Point>, Point)> {
         let pixel = super::features::LEVELS[FLOW_LEVEL] as f64;

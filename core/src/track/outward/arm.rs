@@ -13,7 +13,7 @@
 
 use super::trust::{LEAST_INSIDE, PATIENCE, Sureness};
 use super::{Ending, OutwardJob};
-use crate::geometry::Point;
+use crate::geometry::{Point, polygon};
 use crate::scene::FrameNumber;
 use crate::track::TrackError;
 use crate::track::cuts::is_cut;
@@ -33,6 +33,12 @@ use std::sync::Arc;
 const WINDOW: usize = 10;
 /// The search begins where the least energy is this many times the usual one, and this much more.
 const WORSE: (f64, f64) = (2.0, 0.004);
+/// What a pose found by searching costs more than one that was carried (√E): a jump must be worth it.
+const JUMP: f64 = 0.02;
+/// Share of the energy of the key's nearest rival below which a pose found by searching is taken for the part.
+const RIVALLED: f64 = 0.7;
+/// Energy that a part is thought to have while nothing is known but the key.
+const ORDINARY: f64 = 0.006;
 /// Share of the samples below which a part is also thought to move on as it did.
 const HARDLY_SEEN: f64 = 0.5;
 /// Turns tried about the corrections' centre, in degrees.
@@ -54,6 +60,8 @@ pub struct Seen {
     pub correction: Option<Correction>,
     /// The hypotheses; on the key one.
     pub pool: Vec<Hypothesis>,
+    /// What each costs beside its look.
+    dear: Vec<f64>,
     anchors: Anchors,
 }
 
@@ -66,6 +74,24 @@ pub(super) struct Ground<'a> {
     pub key: &'a [Point],
     pub scale: f64,
     pub width: f64,
+    /// The key's look, ready to be searched for.
+    pub templates: Option<&'a Templates>,
+    /// See [`rival`].
+    pub rival: f64,
+}
+
+/// The least energy of the key's model anywhere in the key's own picture but where the part is: how well a wrong place
+/// can fit. Infinite where no other place was found.
+pub(super) fn rival(model: &Model, templates: Option<&Templates>, key: &[Point], picture: &Features) -> f64 {
+    let Some(templates) = templates else { return f64::INFINITY };
+    let (anchors, mesh) = (Anchors::default(), &model.texture.mesh);
+    let scenery = Scenery { features: picture, cover: &model.cover, weighed: true, anchors: &anchors };
+    // A round part turned about itself is no other place.
+    let center = polygon::center(key);
+    let apart = |nodes: &[Point]| polygon::center(&mesh.control_points(nodes)).distance(center);
+    let found = templates.find(picture, model, key).into_iter().map(|start| model.polished(&scenery, &start));
+    let others = found.filter(|pose| apart(&pose.nodes) > 0.4 * mesh.size);
+    others.map(|pose| pose.energy).fold(f64::INFINITY, f64::min)
 }
 
 /// A grown arm.
@@ -86,23 +112,14 @@ struct Growing<'a> {
     path: Vec<usize>,
     sure: Vec<Sureness>,
     pending: Option<(FrameNumber, Arc<Features>)>,
-    templates: Option<Option<Templates>>,
     steps: usize,
 }
 
 impl Arm {
     /// Follows the part from the key; `step` is 1 forwards and −1 backwards.
     pub fn grow(ground: &Ground, step: FrameNumber) -> Result<Self, TrackError> {
-        let mut growing = Growing {
-            ground,
-            step,
-            drawings: Vec::new(),
-            path: Vec::new(),
-            sure: Vec::new(),
-            pending: None,
-            templates: None,
-            steps: 0,
-        };
+        let mut growing =
+            Growing { ground, step, drawings: Vec::new(), path: Vec::new(), sure: Vec::new(), pending: None, steps: 0 };
         growing.pending = growing.read(ground.job.frame)?;
         let mut beyond = None;
         let mut doubtful = 0;
@@ -115,9 +132,9 @@ impl Arm {
                 beyond = Some((seen.near, Ending::Cut));
                 break;
             }
-            seen.pool = growing.proposed(&seen, doubtful > 0)?;
+            (seen.pool, seen.dear) = growing.proposed(&seen, doubtful > 0)?.into_iter().unzip();
             growing.drawings.push(seen);
-            let now = growing.judge()?;
+            let now = growing.judge();
             let left = now.inside < LEAST_INSIDE && doubtful == 0;
             doubtful = if now.trusted() { 0 } else { doubtful + 1 };
             if !must && (left || doubtful >= PATIENCE) {
@@ -128,7 +145,7 @@ impl Arm {
         }
         growing.carry_back()?;
         growing.path = growing.best(0);
-        growing.sure = (0..growing.drawings.len()).map(|d| growing.sureness(d)).collect::<Result<_, _>>()?;
+        growing.sure = (0..growing.drawings.len()).map(|d| growing.sureness(d)).collect();
         let Growing { drawings, path, sure, steps, .. } = growing;
         Ok(Self { drawings, path, sure, beyond, steps })
     }
@@ -174,7 +191,16 @@ impl Growing<'_> {
         let mesh = &self.ground.model.texture.mesh;
         let anchors = correction.map_or_else(Anchors::default, |c| Anchors::new(mesh, c, self.ground.scale));
         let cover = Cover::new(&working, self.ground.width);
-        Ok(Some(Seen { near, far, features, cover, correction: correction.cloned(), pool: Vec::new(), anchors }))
+        Ok(Some(Seen {
+            near,
+            far,
+            features,
+            cover,
+            correction: correction.cloned(),
+            pool: Vec::new(),
+            dear: Vec::new(),
+            anchors,
+        }))
     }
 
     fn hypothesis(&self, seen: &Seen, pose: Pose) -> Hypothesis {
@@ -185,24 +211,29 @@ impl Growing<'_> {
     }
 
     /// The hypotheses of the drawing after those known.
-    fn proposed(&mut self, seen: &Seen, doubtful: bool) -> Result<Vec<Hypothesis>, TrackError> {
+    fn proposed(&mut self, seen: &Seen, doubtful: bool) -> Result<Vec<(Hypothesis, f64)>, TrackError> {
         let model = self.ground.model;
         if self.drawings.is_empty() {
             let pose = model.measured(&seen.scenery(), model.texture.mesh.rest.clone());
-            return Ok(vec![self.hypothesis(seen, pose)]);
+            return Ok(vec![(self.hypothesis(seen, pose), 0.0)]);
         }
         let mut pool = self.carried(seen)?;
+        let carried = pool.len();
         let least = pool.iter().map(|h| h.pose.energy).fold(f64::INFINITY, f64::min);
         if doubtful || least > WORSE.0 * self.usual_energy() + WORSE.1 {
             for start in self.searched(seen)? {
                 let pose = model.polished(&seen.scenery(), &start);
                 let new = self.hypothesis(seen, pose);
-                if is_new(&pool, &new) {
+                if new.pose.energy < RIVALLED * self.ground.rival && is_new(&pool, &new) {
                     pool.push(new);
                 }
             }
         }
-        if seen.correction.is_some() { Ok(self.constrained(seen, &pool)) } else { Ok(pool) }
+        if seen.correction.is_some() {
+            return Ok(self.constrained(seen, &pool).into_iter().map(|h| (h, 0.0)).collect());
+        }
+        let price = |i: usize| if i < carried { 0.0 } else { JUMP };
+        Ok(pool.into_iter().enumerate().map(|(i, h)| (h, price(i))).collect())
     }
 
     /// What comes of the hypotheses of the drawing before.
@@ -246,19 +277,16 @@ impl Growing<'_> {
     /// Median energy of the chosen hypotheses of the last drawings.
     fn usual_energy(&self) -> f64 {
         let mut known: Vec<f64> = (self.drawings.iter().zip(&self.path).rev().take(5))
-            .map(|(seen, &h)| seen.pool[h].pose.energy)
+            .map(|(seen, &h)| if seen.near == self.ground.job.frame { ORDINARY } else { seen.pool[h].pose.energy })
             .collect();
         known.sort_by(f64::total_cmp);
         known.get(known.len() / 2).copied().unwrap_or(0.0)
     }
 
-    fn searched(&mut self, seen: &Seen) -> Result<Vec<Vec<Point>>, TrackError> {
-        let Ground { kit, model, key, width, .. } = *self.ground;
+    fn searched(&self, seen: &Seen) -> Result<Vec<Vec<Point>>, TrackError> {
+        let Ground { kit, model, key, templates, .. } = *self.ground;
         kit.progress.report("Searching", 0.0)?;
-        let at_key = &self.drawings[0].features;
-        let templates =
-            self.templates.get_or_insert_with(|| Templates::new(model, at_key, &model.cover, key, width));
-        Ok(templates.as_ref().map_or_else(Vec::new, |t| t.find(&seen.features, model, key)))
+        Ok(templates.map_or_else(Vec::new, |t| t.find(&seen.features, model, key)))
     }
 
     /// The hypotheses of a corrected drawing, made to obey.
@@ -290,35 +318,24 @@ impl Growing<'_> {
     }
 
     /// Chooses the path over the last drawings, and says how sure the last one is.
-    fn judge(&mut self) -> Result<Sureness, TrackError> {
+    fn judge(&mut self) -> Sureness {
         let from = self.drawings.len().saturating_sub(WINDOW);
         let path = self.best(from);
         self.path.truncate(from);
         self.path.extend(path);
-        let last = self.sureness(self.drawings.len() - 1)?;
+        let last = self.sureness(self.drawings.len() - 1);
         self.sure.push(last.clone());
-        Ok(last)
+        last
     }
 
     fn best(&self, from: usize) -> Vec<usize> {
-        let candidate = |h: &'_ Hypothesis| h.pose.energy.max(0.0).sqrt();
-        let candidates: Vec<Vec<Candidate>> = (self.drawings[from..].iter())
-            .map(|seen| seen.pool.iter().map(|h| Candidate { cost: candidate(h), points: &h.points }).collect())
-            .collect();
+        let candidates: Vec<Vec<Candidate>> = self.drawings[from..].iter().map(Seen::candidates).collect();
         best_path(&candidates, Smoothness::new(self.ground.model.texture.mesh.size))
     }
 
-    fn sureness(&self, d: usize) -> Result<Sureness, TrackError> {
-        let Ground { kit, model, width, .. } = *self.ground;
-        let (seen, chosen) = (&self.drawings[d], &self.drawings[d].pool[self.path[d]]);
-        let expected = match d.checked_sub(1).map(|b| (&self.drawings[b], self.path[b])) {
-            Some((before, h)) => {
-                let flow = kit.store.flow(kit.frames, before.near, seen.near)?;
-                model.flowed(&before.pool[h].pose.nodes, &flow)
-            }
-            None => None,
-        };
-        Ok(Sureness::of(model, seen, chosen, expected.as_deref(), d, width))
+    fn sureness(&self, d: usize) -> Sureness {
+        let seen = &self.drawings[d];
+        Sureness::of(self.ground, seen, &seen.pool[self.path[d]])
     }
 
     /// Carries what was chosen late back towards the key.
@@ -340,6 +357,7 @@ impl Growing<'_> {
             if is_new(&to.pool, &new) {
                 fresh = (new.pose.energy < known.pose.energy).then(|| new.clone());
                 self.drawings[d - 1].pool.push(new);
+                self.drawings[d - 1].dear.push(0.0);
             }
         }
         Ok(())
@@ -347,6 +365,11 @@ impl Growing<'_> {
 }
 
 impl Seen {
+    fn candidates(&self) -> Vec<Candidate<'_>> {
+        let priced = self.pool.iter().zip(&self.dear);
+        priced.map(|(h, dear)| Candidate { cost: h.pose.energy.max(0.0).sqrt() + dear, points: &h.points }).collect()
+    }
+
     /// The drawing as the key's model sees it.
     pub fn scenery(&self) -> Scenery<'_> {
         Scenery { features: &self.features, cover: &self.cover, weighed: true, anchors: &self.anchors }

@@ -1,7 +1,7 @@
 //! The chosen poses of both arms made into a track: refined by the contour's own colours, cut off where the part is no
 //! longer trusted, made to obey the artist's corrections.
 
-use super::arm::{Arm, Ground, Seen};
+use super::arm::{Arm, Ground, Seen, rival};
 use super::trust::{Sureness, last_trusted};
 use super::{Ending, OutwardJob, OutwardTrack, TrackEnd};
 use crate::geometry::Point;
@@ -13,6 +13,7 @@ use crate::track::lattice::mesh::Mesh;
 use crate::track::lattice::texture::{Cover, Texture};
 use crate::track::propagate::Model;
 use crate::track::refine::{Frame, Key, Refiner};
+use crate::track::search::Templates;
 use crate::track::stage::Kit;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::collections::BTreeMap;
@@ -36,23 +37,15 @@ pub(super) fn track(kit: Kit, job: &OutwardJob) -> Result<OutwardTrack, TrackErr
     let (there, bent) = (mesh.rest.clone(), mesh.rest.clone());
     let texture = Texture::new(mesh, &features, &cover, width);
     let model = Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent };
-    let ground = Ground { kit, job, model: &model, key: &key, scale, width };
+    let templates = Templates::new(&model, &features, &model.cover, &key, width);
+    let rival = rival(&model, templates.as_ref(), &key, &features);
+    let ground = Ground { kit, job, model: &model, key: &key, scale, width, templates: templates.as_ref(), rival };
     let (back, forth) = rayon::join(|| Arm::grow(&ground, -1), || Arm::grow(&ground, 1));
     let arms = [back?, forth?];
     let own = || Key { points: &key, picture: &features, cover: &model.cover };
     let refiner = Refiner::new([own(), own()], job.closed);
     let mut found = key_alone(job);
     let mut energies = Vec::new();
-    if std::env::var_os("DUMP").is_some() {
-        for (k, arm) in arms.iter().enumerate() {
-            for d in 1..arm.drawings.len() {
-                let seen = &arm.drawings[d];
-                let hidden: Vec<bool> = arm.drawings[d].pool[arm.path[d]].points.iter().map(|&p| seen.cover.hides(p)).collect();
-                let pts: Vec<[f64;2]> = arm.drawings[d].pool[arm.path[d]].points.iter().map(|p| [p.x*scale,p.y*scale]).collect();
-                eprintln!("DUMP {:?} {} {} {:?} {:?} {:?} {} {}", job.name, k, seen.near, arm.sure[d].dump, pts, hidden, arm.sure[d].seen, arm.sure[d].inside);
-            }
-        }
-    }
     for arm in &arms {
         let last = kept(arm);
         found.steps += arm.steps;

@@ -109,11 +109,8 @@ fn job(scene: &Scene, tracking: &Tracking, p: usize) -> OutwardJob {
 fn put(tracking: &mut Tracking, part: usize, found: &OutwardTrack, solved: bool) {
     let frames: Vec<FrameNumber> = found.tracks.keys().copied().collect();
     let (Some(&first), Some(&last)) = (frames.first(), frames.last()) else { return };
-    tracking.parts[part] = PartTrack {
-        tracks: found.tracks.clone(),
-        confidence: found.confidence.clone(),
-        ends: found.ends.clone(),
-    };
+    tracking.parts[part] =
+        PartTrack { tracks: found.tracks.clone(), confidence: found.confidence.clone(), ends: found.ends.clone() };
     let summary = SpanSummary {
         termination: Termination::PathChosen,
         iterations: found.steps,

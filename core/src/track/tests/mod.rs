@@ -2,5 +2,6 @@
 //! drawn scene of known motion.
 
 mod memory;
+mod outward;
 mod rotoscope;
 mod scene;
