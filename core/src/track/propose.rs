@@ -9,8 +9,12 @@
 //! both ways: small motion costs nothing, what appears, vanishes or goes far does. That is rough, but it is the same for
 //! all frames, and it needs no motion that would have to be right.
 //!
-//! **Choice.** With keys k₁ < k₂ < …, a drawing t between a and b costs min(D(a, t), D(t, b)). The keys of least total
-//! cost for each number of them come from dynamic programming over drawings in order, O(n² · keys) after O(n · [`REACH`])
+//! **Way.** A tracker goes from drawing to drawing, and each step may lose a part, even on the way to a drawing that looks
+//! like the key. The way L(i, j) from one drawing to another is the sum of its steps, each D of the two neighbours plus the
+//! mean of D over all neighbours.
+//!
+//! **Choice.** With keys k₁ < k₂ < …, a drawing t between a and b costs min(D(a, t) + L(a, t), D(t, b) + L(t, b)): it is
+//! reached from one of them. The keys of least total cost for each number of them come from dynamic programming over drawings in order, O(n² · keys) after O(n · [`REACH`])
 //! dissimilarities; two neighbouring keys are at most [`REACH`] drawings apart. Frames keyed already stay keys.
 //!
 //! **Number.** Unless it is given, the knee of cost over number: where the curve is farthest below the straight line from
@@ -144,21 +148,31 @@ fn interval_costs(drawings: &[Drawing], fixed: &[bool]) -> Vec<Vec<f64>> {
             reached.map(|b| dissimilarity(&drawings[a].cells, &drawings[b].cells)).collect()
         })
         .collect();
+    let along = ways(&apart);
     let between = |a: usize, b: usize| -> f64 {
         if drawings[b].begins {
             // From one shot to the next nothing lies between.
             return if b == a + 1 { 0.0 } else { f64::INFINITY };
         }
-        let cost = |t: usize| {
-            if fixed[t] {
-                return f64::INFINITY;
-            }
-            let to = |i: usize, j: usize| apart[i].get(j - i - 1).copied().unwrap_or(f64::INFINITY);
-            to(a, t).min(to(t, b))
-        };
+        let to =
+            |i: usize, j: usize| apart[i].get(j - i - 1).map_or(f64::INFINITY, |apart| apart + along[j] - along[i]);
+        let cost = |t: usize| if fixed[t] { f64::INFINITY } else { to(a, t).min(to(t, b)) };
         (a + 1..b).map(cost).sum()
     };
     (0..n).map(|a| (a + 1..n.min(a + 1 + REACH)).map(|b| between(a, b)).collect()).collect()
+}
+
+/// Length of the way from the first drawing to each; `apart` by drawing, then by how many drawings further less one.
+fn ways(apart: &[Vec<f64>]) -> Vec<f64> {
+    let steps: Vec<f64> = apart.iter().filter_map(|row| row.first().copied()).collect();
+    let mean = steps.iter().sum::<f64>() / steps.len().max(1) as f64;
+    let mut way = 0.0;
+    let mut along = vec![0.0];
+    for row in apart.iter().take(apart.len().saturating_sub(1)) {
+        way += row.first().copied().unwrap_or(0.0) + mean;
+        along.push(way);
+    }
+    along
 }
 
 /// For each number of keys, the least cost and the keys; none where there is no such choice.
@@ -274,8 +288,11 @@ mod tests {
         let n = drawings.len();
         let fixed: Vec<bool> = (0..n).map(|d| d == 0 || d + 1 == n).collect();
         let apart = |a: usize, b: usize| dissimilarity(&drawings[a].cells, &drawings[b].cells);
+        let steps: Vec<f64> = (1..n).map(|d| apart(d - 1, d)).collect();
+        let mean = steps.iter().sum::<f64>() / steps.len() as f64;
+        let to = |a: usize, b: usize| apart(a, b) + steps[a..b].iter().map(|s| s + mean).sum::<f64>();
         let cost = |keys: &[usize]| -> f64 {
-            let between = |w: &[usize]| (w[0] + 1..w[1]).map(|t| apart(w[0], t).min(apart(t, w[1]))).sum::<f64>();
+            let between = |w: &[usize]| (w[0] + 1..w[1]).map(|t| to(w[0], t).min(to(t, w[1]))).sum::<f64>();
             keys.windows(2).map(between).sum()
         };
         let paths = best_keys(&interval_costs(&drawings, &fixed), n);
