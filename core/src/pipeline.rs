@@ -68,19 +68,6 @@ pub fn track(
     Ok(tracking)
 }
 
-/// Frames of a document that lies in `folder` that are worth keying, those keyed already among them; see
-/// [`crate::track::propose`]. Runs on the caller's rayon pool.
-pub fn propose(
-    document: &Document,
-    folder: &Path,
-    count: Option<usize>,
-    progress: &dyn Progress,
-) -> Result<Vec<FrameNumber>, PipelineError> {
-    let frames = frames(document, folder)?;
-    let keyed = document.scene.parts.iter().flat_map(|part| part.keys.keys().copied()).collect();
-    Ok(crate::track::propose(&document.scene.footage, &frames, &keyed, count, progress)?)
-}
-
 /// The scene with those corrections alone that act: others are kept in the document, but no stage needs to know them.
 pub fn in_effect(scene: &Scene) -> Scene {
     let mut scene = scene.clone();

@@ -3,7 +3,7 @@
 //! - [`arguments`]: options made from the core's list of parameters
 //! - [`progress`]: a bar on a terminal, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
-//! - [`track`], [`snap`], [`render`], [`export`], [`check`], [`propose`]: the subcommands
+//! - [`track`], [`snap`], [`render`], [`export`], [`check`]: the subcommands
 //!
 //! Exit status: 0 done, 1 failed, 2 wrong use.
 
@@ -13,7 +13,6 @@ mod export;
 mod failure;
 mod progress;
 mod project;
-mod propose;
 mod render;
 mod snap;
 mod track;
@@ -26,14 +25,13 @@ use std::process::ExitCode;
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 /// Each subcommand with what it does.
-fn subcommands() -> [(Command, Run); 6] {
+fn subcommands() -> [(Command, Run); 5] {
     [
         (track::command(), track::run),
         (snap::command(), snap::run),
         (render::command(), render::run),
         (export::command(), export::run),
         (check::command(), check::run),
-        (propose::command(), propose::run),
     ]
 }
 

@@ -173,9 +173,8 @@ impl PartCheck<'_> {
 
     fn keys(&mut self) {
         let part = self.part;
-        match part.keys.len() {
-            0 => self.warning("keys", "there is no key, so the part is not tracked"),
-            _ => {}
+        if part.keys.is_empty() {
+            self.warning("keys", "there is no key, so the part is not tracked");
         }
         let Some((first, points)) = part.keys.first_key_value() else { return };
         match points.len() {

@@ -7,7 +7,6 @@
 //! - [`tracker`]: what is asked, and who answers
 //! - [`part_by_part`]: order and memory of jobs that are solved singly
 //! - [`weakest`]: where the next key helps most
-//! - [`propose`]: which frames to key before anything is tracked
 //!
 //! The default preset:
 //! - [`rototoon`]: its pieces joined
@@ -55,7 +54,6 @@ pub mod outward;
 pub mod part_by_part;
 pub mod pool;
 pub mod propagate;
-pub mod propose;
 pub mod refine;
 pub mod region;
 pub mod rotoscope;
@@ -71,7 +69,6 @@ pub mod zhou2011;
 
 pub use job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
 pub use outward::{Ending, TrackEnd};
-pub use propose::propose;
 pub use tracker::{JobReport, PartTrack, Preset, SceneSolver, TrackError, TrackOptions, Tracker, Tracking};
 pub use weakest::{WeakestFrame, weakest_frame};
 

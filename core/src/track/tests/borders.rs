@@ -42,7 +42,7 @@ fn a_part_that_goes_out_between_its_keys_comes_back() {
     // Half of it is outside on the second drawing, all of it on the third.
     holds(
         &with(|t| (Point::new(50.0 - 60.0 * (0.5 * t).sin() * if t > 3.0 { 1.45 } else { 1.0 }, 100.0), 0.0)),
-        4.0,
+        8.0,
         30.0,
     );
 }
