@@ -283,7 +283,8 @@ fn part() -> impl Strategy<Value = Part> {
                     tracks.into_iter().map(|(f, points)| (f, points.into_iter().map(grid).collect())).collect();
                 let confidence = tracks.iter().map(|(&f, points)| (f, vec![0.25; points.len()])).collect();
                 let curves = tracks.iter().map(|(&f, points)| (f, vec![points.clone(); 2])).collect();
-                Part { name: String::new(), closed, depth, keys, pins, centers, tracks, confidence, curves }
+                let wants_key = keys.keys().take(2).map(|&frame| frame - 1).collect();
+                Part { name: String::new(), closed, depth, keys, pins, centers, tracks, confidence, curves, wants_key }
             },
         )
     })
