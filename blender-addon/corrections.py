@@ -37,17 +37,14 @@ class Corrections:
 
 
 def detect(found: Contours, mapper: Mapper) -> dict[int, Corrections]:
-    """Corrections by part number, for frames strictly between keys of the part."""
+    """Corrections by part number, for frames strictly between keys of the part, or beside its only key."""
     return {part.number: _of_part(part, found, mapper) for part in found.parts}
 
 
 def _of_part(part: Part, found: Contours, mapper: Mapper) -> Corrections:
     corrections = Corrections()
-    if len(part.keys) < 2:
-        return corrections
-    first, last = min(part.keys), max(part.keys)
     for frame, stroke in part.made.items():
-        if not first < frame < last or frame in part.keys:
+        if not correctable(part.keys, frame):
             continue
         drawing = found.drawings[stroke.layer, frame]
         if drawing.handle.attributes.get(gp.TRACKED) is None:
@@ -71,6 +68,13 @@ def _of_part(part: Part, found: Contours, mapper: Mapper) -> Corrections:
         if has_center:
             corrections.centers[frame] = center[:2]
     return corrections
+
+
+def correctable(keys, frame: int) -> bool:
+    """Whether a correction on a frame has an effect: it lies between two keys, or beside the only one."""
+    if not keys or frame in keys:
+        return False
+    return len(keys) == 1 or min(keys) < frame < max(keys)
 
 
 def compare(before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, bool]:

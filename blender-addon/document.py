@@ -14,14 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from . import contours, corrections, footage, identity, snapping
+from . import contours, corrections, ends, footage, identity, snapping
 from . import grease_pencil as gp
 from .errors import Problem
 from .placement import Mapper
 
 VERSION = 1
 _FOOTAGE = {"pattern", "first", "last", "fps", "width", "height"}
-_PART = {"name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves"}
+_PART = {"name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves", "wants_key"}
 _TOP = {"rototoon", "footage", "parts"}
 
 
@@ -128,6 +128,11 @@ def _add_results(ob, document: dict[str, Any], found: contours.Contours, mapper:
     curves = snapping.read(ob)
     for entry, part in zip(document["parts"], [part for part in found.parts if part.keys], strict=True):
         first, last = min(part.keys), max(part.keys)
+        if first == last:
+            first, last = _around(part, first)
+            wanted = _wanted(ob, part)
+            if wanted:
+                entry["wants_key"] = wanted
         if last > first and all(f in part.made or f in part.keys for f in range(first, last + 1)):
             tracks, confidence = {}, {}
             for frame in range(first, last + 1):
@@ -147,6 +152,22 @@ def _add_results(ob, document: dict[str, Any], found: contours.Contours, mapper:
         }
         if paths:
             entry["curves"] = paths
+
+
+def _around(part: contours.Part, key: int) -> tuple[int, int]:
+    """First and last of the frames around a part's only key that have its contour without a gap."""
+    first, last = key, key
+    while first - 1 in part.made:
+        first -= 1
+    while last + 1 in part.made:
+        last += 1
+    return first, last
+
+
+def _wanted(ob, part: contours.Part) -> list[int]:
+    """Pictures on which a part was lost."""
+    item = next((item for item in ob.rototoon.parts if item.number == part.number), None)
+    return ends.wanted(item) if item is not None else []
 
 
 # -- from a file ----------------------------------------------------------------------------------------------------

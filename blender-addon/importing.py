@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from . import contours, correspondence, corrections, document, placement, snapping, writing
+from . import contours, correspondence, corrections, document, ends, placement, snapping, writing
 from . import grease_pencil as gp
 
 
@@ -49,6 +49,7 @@ def _add_part(settings, number: int, entry: dict[str, Any]) -> None:
     part.closed, part.depth = bool(entry.get("closed", False)), float(entry.get("depth", 0.0))
     part.count = len(next(iter(entry.get("keys", {}).values()), []))
     part.extra = document.unknown_of_part(entry)
+    ends.put(part, [(frame, ends.LOST) for frame in entry.get("wants_key", [])])
 
 
 def _write_keys(ob, layer, project: dict[str, Any], material: int) -> None:
@@ -84,11 +85,11 @@ def _results(part: contours.Part, entry: dict[str, Any], mapper, offset: int):
     points = {f: np.asarray(p, np.float64) for f, p in document.by_frame(entry.get("tracks")).items()}
     sure = document.by_frame(entry.get("confidence"))
     keys = {f: np.asarray(p, np.float64) for f, p in document.by_frame(entry.get("keys")).items()}
-    if len(keys) < 2:
+    if not keys:
         return None, None
     fixed = corrections.Corrections()
     for frame in sorted(set(pins) | set(centers)):
-        if not min(keys) < frame < max(keys) or frame in keys:
+        if not corrections.correctable(keys, frame):
             continue
         base = points.get(frame)
         if base is None:

@@ -311,7 +311,7 @@ def _begin(ob: bpy.types.Object, why: Why) -> bool:
     if reading is None:
         return False
     uid, now = ob.session_uid, (reading.document, ob.rototoon.preset)
-    if why == Why.OPENED or not tracking.can_track(reading):
+    if why == Why.OPENED or not tracking.can_track(reading, ob.rototoon.preset):
         _known[uid] = now
         _messages.pop(uid, None)
         return False

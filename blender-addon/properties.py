@@ -40,6 +40,9 @@ class RototoonPart(bpy.types.PropertyGroup):
     closed: bpy.props.BoolProperty(name="Closed", description="The last point joins the first", default=False)
     count: bpy.props.IntProperty(name="Control Points", description="Number of control points on each frame", min=0)
     extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")
+    ends: bpy.props.StringProperty(
+        description="Where the track of a part with one key ends before the footage does: [[picture, reason], ...]"
+    )
 
 
 class RototoonSettings(bpy.types.PropertyGroup):

@@ -37,6 +37,7 @@ from .native.errors import Cancelled, LibraryError, RototoonError
 
 __all__ = [
     "Cancelled",
+    "End",
     "Job",
     "LibraryError",
     "RototoonError",
@@ -83,10 +84,23 @@ class Job:
 
 
 @dataclass(frozen=True)
+class End:
+    """Where the track of a part with one key ends before the footage does."""
+
+    part: str
+    frame: int
+    """The first frame beyond the track."""
+    reason: str
+    """``lost``: a key is wanted on that frame; ``cut``: another shot begins there; ``left``: the part left the picture."""
+
+
+@dataclass(frozen=True)
 class Summary:
     """What `Session.track` did: one job for each part and span, parts in the document's order, then by time."""
 
     jobs: list[Job]
+    ends: list[End]
+    """Of parts with one key, in the document's order, the end before the key first."""
 
     @property
     def solved(self) -> int:
@@ -101,7 +115,7 @@ class Summary:
 
 @dataclass(frozen=True)
 class Track:
-    """The control points of a part on every frame from its first to its last key.
+    """The control points of a part on every frame from its first to its last key; around a single key, where trusted.
 
     Both are read-only and stay valid whatever happens to the session; ``numpy.asarray`` takes them without copying.
     Both are empty and one-dimensional where the part has not been tracked.
@@ -193,7 +207,7 @@ class Session:
         self._handle.call("rototoon_session_remove_key", *_text(part), frame)
 
     def pin(self, part: str, frame: int, point: int, xy: Sequence[float]) -> None:
-        """Fixes one control point on a frame between keys: tracking passes through it exactly."""
+        """Fixes one control point on a frame between keys, or beside a single one: tracking passes through it exactly."""
         x, y = xy
         self._handle.call("rototoon_session_pin", *_text(part), frame, point, x, y)
 
@@ -215,6 +229,9 @@ class Session:
     def track(self, preset: str = "rototoon", progress: Progress | None = None, *, threads: int = 0) -> Summary:
         """Tracks every part between its keys and stores ``tracks`` and ``confidence`` in the document.
 
+        ``rototoon`` follows a part with one key outward from it, as far as it can be trusted; `Summary.ends` tells where
+        that ends and why, and the document's ``wants_key`` where the part was lost.
+
         Spans that nothing touched since they were last solved in this session are not solved again. Snapped curves of
         frames whose track changed are dropped. `preset` is ``rototoon``, ``zhou2011``, ``agarwala2004`` or
         ``liang2012``; `threads` is the number of threads, 0 for one a core; it does not change the result. Raises
@@ -222,7 +239,7 @@ class Session:
         """
         options = {"preset": preset, "threads": threads}
         summary = self._long("rototoon_session_track", options, progress)
-        return Summary([Job(**job) for job in summary["jobs"]])
+        return Summary([Job(**job) for job in summary["jobs"]], [End(**end) for end in summary["ends"]])
 
     def snap(self, progress: Progress | None = None, *, threads: int = 0, **options: Any) -> None:
         """Lays the tracked contours along the drawn ink and stores ``curves`` in the document.

@@ -10,9 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from . import document, identity, jobs, preferences, sessions, writing
+from . import document, ends, identity, jobs, preferences, sessions, writing
 from . import grease_pencil as gp
 from .errors import Problem
+
+
+OUTWARD = "rototoon"
+"""The method that follows a part with one key outward from it."""
 
 
 @dataclass
@@ -29,9 +33,10 @@ class Run:
     worker: jobs.Worker
 
 
-def can_track(reading: document.Reading) -> bool:
-    """Whether any part has two keys."""
-    return any(len(part.keys) > 1 for part in reading.found.parts)
+def can_track(reading: document.Reading, preset: str) -> bool:
+    """Whether any part has two keys, or one and a method that follows it from there."""
+    least = 1 if preset == OUTWARD else 2
+    return any(len(part.keys) >= least for part in reading.found.parts)
 
 
 def begin(ob, reading: document.Reading, preset: str) -> Run:
@@ -53,6 +58,7 @@ def finish(ob, run: Run) -> int | None:
         return None
     identity.write(ob, reading.found, reading.decisions)
     strokes = write_tracks(ob, reading, run.entry.session)
+    note_ends(ob, reading, run.worker.result.ends)
     run.entry.inputs, run.entry.preset = reading.document, run.preset
     ob.data.update_tag()
     return strokes
@@ -63,7 +69,7 @@ def write_tracks(ob, reading: document.Reading, session) -> int:
     offset = ob.rototoon.frame_offset
     tracks = {}
     for part in reading.found.parts:
-        if len(part.keys) < 2:
+        if not part.keys:
             continue
         track = session.tracks(part.name)
         frames = np.asarray(track.frames)
@@ -79,6 +85,24 @@ def write_tracks(ob, reading: document.Reading, session) -> int:
         layer = ob.data.layers[name]
         written += writing.write(layer, block, list(gp.drawings(layer)))
     return written
+
+
+def note_ends(ob, reading: document.Reading, found) -> None:
+    """Keeps with the parts where their tracks end, for the panel."""
+    numbers = {part.name: part.number for part in reading.found.parts}
+    by_number: dict[int, list[tuple[int, str]]] = {}
+    for end in found:
+        by_number.setdefault(numbers[end.part], []).append((end.frame, end.reason))
+    for item in ob.rototoon.parts:
+        ends.put(item, by_number.get(item.number, []))
+
+
+def wanted_keys(summary) -> str:
+    """What to say of parts that were lost; empty if there are none."""
+    lost = sorted({end.part for end in summary.ends if end.reason == ends.LOST})
+    if not lost:
+        return ""
+    return f"{len(lost)} parts want a key" if len(lost) > 1 else f'"{lost[0]}" wants a key'
 
 
 def nothing_to_track() -> Problem:

@@ -124,11 +124,16 @@ def _fill_part(block: Block, index: int, part: Part, track: Track, mapper: Mappe
         points = np.stack(each).astype(np.float32)
     pins = block.point[gp.PIN]
     row_of = {int(frame): row for row, frame in enumerate(track.frames)}
+    # A method that does not go beyond a single key has no stroke for what is corrected there.
     for frame, pinned in fixed.pins.items():
+        if frame not in row_of:
+            continue
         which = list(pinned)
         points[row_of[frame], which] = fixed.held[frame][which]
         pins[rows[row_of[frame]], columns.start + np.array(which)] = True
     for frame, center in fixed.centers.items():
+        if frame not in row_of:
+            continue
         block.curve[gp.CENTER][rows[row_of[frame]], index] = (center[0], center[1], 1.0)
     block.point["position"][rows, columns] = points
     block.point[gp.TRACKED][rows, columns] = points

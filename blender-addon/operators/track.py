@@ -11,7 +11,7 @@ class ROTOTOON_OT_track(Long, bpy.types.Operator):
     bl_idname = "rototoon.track"
     bl_label = "Track"
     bl_description = (
-        "Follow the contours from key to key. Points and parts that you moved on generated frames are kept; "
+        "Follow the contours from key to key, and from a single key as far as they can be trusted. Points and parts that you moved on generated frames are kept; "
         "only what you touched since the last time is tracked again"
     )
     bl_options = {"REGISTER", "UNDO"}
@@ -29,9 +29,9 @@ class ROTOTOON_OT_track(Long, bpy.types.Operator):
     def begin(self, context):
         self._ob = context.object
         reading = document.read(self._ob)
-        if not tracking.can_track(reading):
-            raise tracking.nothing_to_track()
         preset = self._ob.rototoon.preset if self.method == "SETTINGS" else self.method
+        if not tracking.can_track(reading, preset):
+            raise tracking.nothing_to_track()
         self._tracking = tracking.begin(self._ob, reading, preset)
         return self._tracking.worker
 
@@ -40,7 +40,8 @@ class ROTOTOON_OT_track(Long, bpy.types.Operator):
         if strokes is None:
             raise Problem("The contours changed while they were tracked, so the result was dropped: press Track again")
         summary = work.result
-        return f"{strokes} contours: {summary.solved} spans tracked, {summary.reused} kept"
+        wanted = tracking.wanted_keys(summary)
+        return f"{strokes} contours: {summary.solved} spans tracked, {summary.reused} kept{wanted and '; ' + wanted}"
 
 
 CLASSES = (ROTOTOON_OT_track,)

@@ -3,7 +3,7 @@
 import bpy
 
 from .. import grease_pencil as gp
-from .. import live
+from .. import ends, live
 
 
 class _Panel:
@@ -65,6 +65,32 @@ class ROTOTOON_PT_parts(_Panel, bpy.types.Panel):
         column.operator("rototoon.match_contours", icon="UV_SYNC_SELECT")
 
 
+ENDS = {
+    ends.LOST: ("wants a key on frame {}", "KEY_HLT"),
+    ends.CUT: ("ends before the cut on frame {}", "INFO"),
+    ends.LEFT: ("left the picture on frame {}", "INFO"),
+}
+"""What is said of the end of a track from a single key, by its reason."""
+
+
+def said_of_ends(settings) -> list[tuple[str, str]]:
+    """Text and icon for each end of a track that goes outward from a single key."""
+    said = []
+    for part in settings.parts:
+        for frame, reason in ends.of(part):
+            text, icon = ENDS.get(reason, ENDS[ends.LOST])
+            said.append((f"{part.name} {text.format(frame + settings.frame_offset)}", icon))
+    return said
+
+
+def _draw_ends(layout, settings) -> None:
+    said = said_of_ends(settings)
+    if said:
+        column = layout.box().column(align=True)
+        for text, icon in said:
+            column.label(text=text, icon=icon)
+
+
 class ROTOTOON_PT_track(_Panel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_track"
     bl_label = "Track"
@@ -85,6 +111,7 @@ class ROTOTOON_PT_track(_Panel, bpy.types.Panel):
         if settings.live:
             text, icon = live.status(context.object)
             layout.label(text=text, icon=icon)
+        _draw_ends(layout, settings)
         column = layout.column(align=True)
         column.operator("rototoon.weakest_frame", icon="FRAME_NEXT")
         icon = "HIDE_OFF" if settings.show_confidence else "HIDE_ON"

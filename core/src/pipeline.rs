@@ -92,6 +92,7 @@ pub fn store(scene: &mut Scene, tracking: &Tracking) {
             _ => false,
         });
         part.confidence = found.confidence.clone();
+        part.wants_key = found.wants_key();
     }
 }
 

@@ -14,6 +14,14 @@ class Cancelled(Exception):
 class Summary:
     solved: int
     reused: int
+    ends: list = field(default_factory=list)
+
+
+@dataclass
+class End:
+    part: str
+    frame: int
+    reason: str
 
 
 @dataclass
@@ -59,12 +67,16 @@ class Session:
             else:
                 reused += 1
             results.setdefault(part["name"], {}).update(self.cache[place][1])
+        ends = []
         for part in self.state["parts"]:
+            if len(part["keys"]) == 1 and preset == "rototoon":
+                results[part["name"]] = outward(part, self.state["footage"], ends)
+                self.solved.append((part["name"], min(results[part["name"]]), max(results[part["name"]])))
             found = results.get(part["name"], {})
             part["tracks"] = {str(f): p.tolist() for f, p in sorted(found.items())}
             part["confidence"] = {f: [0.5] * len(p) for f, p in part["tracks"].items()}
             part.pop("curves", None)
-        return Summary(len(self.solved), reused)
+        return Summary(len(self.solved), reused, ends)
 
     def snap(self, progress=None, *, threads=0):
         for part in self.state["parts"]:
@@ -96,6 +108,26 @@ def stop():
 def spans(part):
     frames = sorted(int(f) for f in part["keys"])
     return list(zip(frames, frames[1:]))
+
+
+def outward(part, footage, ends):
+    """A single key held for `REACH` frames either way, or as far as the part is corrected; pins moved."""
+    ((key, points),) = ((int(f), np.array(p)) for f, p in part["keys"].items())
+    fixed = [int(f) for kind in ("pins", "centers") for f in part.get(kind, {})]
+    first = max(footage["first"], min([key - REACH, *fixed]))
+    last = min(footage["last"], max([key + REACH, *fixed]))
+    found = {frame: points.copy() for frame in range(first, last + 1)}
+    for frame, pins in part.get("pins", {}).items():
+        for index, place in pins.items():
+            found[int(frame)][int(index)] = place
+    if first > footage["first"]:
+        ends.append(End(part["name"], first - 1, "lost"))
+    if last < footage["last"]:
+        ends.append(End(part["name"], last + 1, "lost"))
+    return found
+
+
+REACH = 2
 
 
 def corrections(part, first, last):

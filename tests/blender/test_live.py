@@ -421,9 +421,13 @@ def test_opened_file_is_tracked_from_the_first_edit(addon, fake, live, tmp_path)
 def test_one_key_only_is_not_an_error(addon, fake, live, tmp_path):
     ob = shots.set_up(tmp_path)
     shots.draw(addon, ob, 1, [shots.square(0)])
+    ob.rototoon.preset = "zhou2011"
     ob.rototoon.live = True
     settle(live)
     assert live.status(ob) == RESTING and sorted(drawings(ob)) == [1]
+    ob.rototoon.preset = "rototoon"
+    settle(live)
+    assert sorted(drawings(ob)) == [1, 2, 3], "followed outward"
 
 
 def test_unregistering_leaves_nothing(addon, fake, live, tmp_path):

@@ -254,6 +254,7 @@ def test_track_needs_two_keys(addon, fake, tmp_path):
     ob = shots.set_up(tmp_path)
     assert not bpy.ops.rototoon.track.poll()
     shots.draw(addon, ob, 1, [shots.square(0)])
+    ob.rototoon.preset = "zhou2011"
     with pytest.raises(RuntimeError, match="New Key Here"):
         bpy.ops.rototoon.track()
 

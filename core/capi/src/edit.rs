@@ -73,7 +73,7 @@ pub enum EditError {
         /// Points of the part.
         count: usize,
     },
-    /// A correction on a frame that is not between keys.
+    /// A correction on a frame that is not between keys, nor beside a single one.
     #[error("part {part:?}: frame {frame} is {what}; corrections go on frames between its keys")]
     NotBetweenKeys {
         /// The part.
@@ -135,6 +135,11 @@ pub fn set_key(scene: &mut Scene, name: &str, frame: FrameNumber, coordinates: &
         part.confidence.insert(frame, vec![1.0; points.len()]);
     }
     part.keys.insert(frame, points);
+    part.wants_key.clear();
+    if part.keys.len() == 2 {
+        // What was followed outward from one key is no longer what lies between two.
+        forget_outside_keys(part);
+    }
     Ok(())
 }
 
@@ -172,9 +177,14 @@ fn check_point(part: &Part, frame: FrameNumber, index: usize, point: Point) -> R
 pub fn remove_key(scene: &mut Scene, name: &str, frame: FrameNumber) -> Result<(), EditError> {
     let part = part_mut(scene, name)?;
     part.keys.remove(&frame).ok_or_else(|| EditError::NoSuchKey { part: name.into(), frame })?;
+    part.wants_key.clear();
+    forget_outside_keys(part);
+    Ok(())
+}
+
+fn forget_outside_keys(part: &mut Part) {
     let range = part.keys.keys().next().copied().zip(part.keys.keys().next_back().copied());
     forget_results(part, |frame| range.is_none_or(|(first, last)| frame < first || frame > last));
-    Ok(())
 }
 
 fn forget_results(part: &mut Part, forget: impl Fn(FrameNumber) -> bool) {
@@ -183,8 +193,17 @@ fn forget_results(part: &mut Part, forget: impl Fn(FrameNumber) -> bool) {
     part.curves.retain(|frame, _| !forget(*frame));
 }
 
-fn check_between_keys(part: &Part, frame: FrameNumber) -> Result<(), EditError> {
-    let what = if part.keys.contains_key(&frame) {
+/// An error where a correction would have no effect: corrections go between keys, or beside a part's only key.
+fn check_correctable(scene: &Scene, name: &str, frame: FrameNumber) -> Result<(), EditError> {
+    let (first, last) = (scene.footage.first, scene.footage.last);
+    let part = &scene.parts[part_index(scene, name)?];
+    let single = part.keys.len() == 1 && !part.keys.contains_key(&frame);
+    if single && !(first..=last).contains(&frame) {
+        return Err(EditError::OutsideFootage { part: name.into(), frame, first, last });
+    }
+    let what = if single {
+        return Ok(());
+    } else if part.keys.contains_key(&frame) {
         "a key, which is changed itself"
     } else if part.keys.range(..frame).next().is_none() {
         "before the first key"
@@ -198,8 +217,8 @@ fn check_between_keys(part: &Part, frame: FrameNumber) -> Result<(), EditError> 
 
 /// Fixes a control point on a frame between keys.
 pub fn pin(scene: &mut Scene, name: &str, frame: FrameNumber, index: i64, point: Point) -> Result<(), EditError> {
+    check_correctable(scene, name, frame)?;
     let part = part_mut(scene, name)?;
-    check_between_keys(part, frame)?;
     let count = part.point_count();
     let known = usize::try_from(index).ok().filter(|index| *index < count);
     let known = known.ok_or_else(|| EditError::NoSuchPoint { part: name.into(), index, count })?;
@@ -226,8 +245,8 @@ pub fn unpin(scene: &mut Scene, name: &str, frame: FrameNumber, index: i64) -> R
 
 /// Fixes the mean of the control points on a frame between keys.
 pub fn set_center(scene: &mut Scene, name: &str, frame: FrameNumber, center: Point) -> Result<(), EditError> {
+    check_correctable(scene, name, frame)?;
     let part = part_mut(scene, name)?;
-    check_between_keys(part, frame)?;
     check_point(part, frame, 0, center)?;
     part.centers.insert(frame, center);
     Ok(())
@@ -299,6 +318,24 @@ mod tests {
         unpin(&mut scene, "arm", 3, -1).unwrap();
         unpin(&mut scene, "arm", 3, -1).unwrap();
         assert!(scene.parts[0].pins.is_empty());
+    }
+
+    #[test]
+    fn beside_a_single_key_any_frame_of_the_footage_takes_corrections() {
+        let mut scene = scene();
+        remove_key(&mut scene, "arm", 8).unwrap();
+        scene.parts[0].tracks.insert(1, vec![Point::ZERO; 2]);
+        scene.parts[0].wants_key = vec![5];
+        pin(&mut scene, "arm", 9, 0, Point::ONE).unwrap();
+        set_center(&mut scene, "arm", 2, Point::ONE).unwrap();
+        let message = pin(&mut scene, "arm", 10, 0, Point::ONE).unwrap_err().to_string();
+        assert!(message.contains("outside the footage"), "{message}");
+        let message = pin(&mut scene, "arm", 0, 0, Point::ONE).unwrap_err().to_string();
+        assert!(message.contains("frame 0 is a key"), "{message}");
+        set_key(&mut scene, "arm", 4, &KEY).unwrap();
+        assert!(scene.parts[0].wants_key.is_empty());
+        set_key(&mut scene, "arm", 0, &KEY).unwrap();
+        assert_eq!(scene.parts[0].tracks.keys().copied().collect::<Vec<_>>(), [0, 1], "between its keys now");
     }
 
     #[test]

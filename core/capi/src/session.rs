@@ -10,7 +10,7 @@ use rototoon::project::Document;
 use rototoon::scene::parameters::Stage;
 use rototoon::scene::{FrameNumber, Part, Progress, Scene};
 use rototoon::snap::{CorridorWidth, Follow, SnapError, SnapOptions, snap_scene};
-use rototoon::track::{JobReport, Preset, Termination, TrackError, TrackOptions, Tracker, weakest_frame};
+use rototoon::track::{Preset, Termination, TrackEnd, TrackError, TrackOptions, Tracker, Tracking, weakest_frame};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -31,6 +31,14 @@ pub struct Session {
 #[derive(Debug, Serialize)]
 struct Summary<'a> {
     jobs: Vec<JobSummary<'a>>,
+    ends: Vec<EndSummary<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct EndSummary<'a> {
+    part: &'a str,
+    frame: FrameNumber,
+    reason: &'static str,
 }
 
 #[derive(Debug, Serialize)]
@@ -168,7 +176,7 @@ impl Session {
             })
         })?;
         pipeline::store(&mut self.document.scene, &tracking);
-        Ok(summary(&scene, &tracking.jobs))
+        Ok(summary(&scene, &tracking))
     }
 
     /// Snaps the contours to the ink; returns a summary as JSON.
@@ -231,8 +239,8 @@ fn preset(id: &str) -> Result<(Preset, &'static str), Failure> {
     })
 }
 
-fn summary(scene: &Scene, jobs: &[JobReport]) -> String {
-    let jobs = jobs.iter().map(|job| JobSummary {
+fn summary(scene: &Scene, tracking: &Tracking) -> String {
+    let jobs = tracking.jobs.iter().map(|job| JobSummary {
         part: &scene.parts[job.part].name,
         first: job.span.first,
         last: job.span.last,
@@ -242,7 +250,11 @@ fn summary(scene: &Scene, jobs: &[JobReport]) -> String {
         initial_cost: job.summary.initial_cost,
         final_cost: job.summary.final_cost,
     });
-    json!(Summary { jobs: jobs.collect() }).to_string()
+    let ends = scene.parts.iter().zip(&tracking.parts).flat_map(|(part, track)| {
+        let end = |end: &TrackEnd| EndSummary { part: &part.name, frame: end.frame, reason: end.reason.id() };
+        track.ends.iter().map(end)
+    });
+    json!(Summary { jobs: jobs.collect(), ends: ends.collect() }).to_string()
 }
 
 fn termination_id(termination: Termination) -> &'static str {

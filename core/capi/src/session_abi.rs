@@ -282,7 +282,7 @@ pub unsafe extern "C" fn rototoon_session_remove_key(
     }
 }
 
-/// Fixes control point `point` (from 0) of a part on a frame between its keys.
+/// Fixes control point `point` (from 0) of a part on a frame between its keys, or beside its only key.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_pin(
     session: *const RototoonSession,
@@ -364,7 +364,8 @@ pub unsafe extern "C" fn rototoon_session_clear_center(
     }
 }
 
-/// Tracks every part between its keys and stores `tracks` and `confidence` in the document.
+/// Tracks every part between its keys and stores `tracks` and `confidence` in the document. The default preset follows a
+/// part with one key outward from it, as far as it can be trusted, and stores in `wants_key` where it was lost.
 ///
 /// `options` is JSON of the parameters of the stages "track" and "run" (see `rototoon_parameters`), such as
 /// `{"preset": "zhou2011", "threads": 2}`; each may be missing, and so may all (length 0). The threads do not change
@@ -372,8 +373,10 @@ pub unsafe extern "C" fn rototoon_session_clear_center(
 /// track changed are dropped.
 ///
 /// `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
-/// "final_cost"}]}`, one job for each part and span; `solved` is false where the job was reused; `termination` is one
-/// of nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit, path_chosen.
+/// "final_cost"}], "ends": [{"part", "frame", "reason"}]}`, one job for each part and span; `solved` is false where the
+/// job was reused; `termination` is one of nothing_to_solve, cost_converged, step_converged, no_descent,
+/// iteration_limit, path_chosen. `ends` tells of parts with one key where the track ends before the footage does: the
+/// first frame beyond it; `reason` is one of lost (a key is wanted on the frame), cut (another shot), left (the picture).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_track(
     session: *const RototoonSession,

@@ -1,17 +1,18 @@
 //! `rototoon track`: contours from the keys to every frame.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
 use clap::{ArgMatches, Command};
 use rototoon::pipeline;
 use rototoon::project::output::check_writable;
+use rototoon::scene::Scene;
 use rototoon::scene::parameters::Stage;
-use rototoon::track::{Preset, TrackOptions};
+use rototoon::track::{Ending, Preset, TrackEnd, TrackOptions, Tracking};
 
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("track")
-        .about("Tracks every part from its first key to its last")
+        .about("Tracks every part from its first key to its last; a part with one key as far as it can be trusted")
         .arg(arguments::project())
         .arg(arguments::output("OUT", "The document to write, with tracks and confidence"))
         .args(arguments::of_stage(Stage::Track))
@@ -27,8 +28,23 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     check_writable(to)?;
     let options = TrackOptions { preset };
     let document = progress::run(arguments::threads(given), |bar| {
-        pipeline::track(&mut document, project::folder(from), &options, bar)?;
+        let tracking = pipeline::track(&mut document, project::folder(from), &options, bar)?;
+        say_ends(&document.scene, &tracking);
         Ok(document)
     })?;
     project::save(document, from, to)
+}
+
+/// Says where the tracks of parts with one key end, and where they want a key.
+fn say_ends(scene: &Scene, tracking: &Tracking) {
+    for (part, track) in scene.parts.iter().zip(&tracking.parts) {
+        for TrackEnd { frame, reason } in &track.ends {
+            let what = match reason {
+                Ending::Lost => format!("wants a key on frame {frame}: it was lost there"),
+                Ending::Cut => format!("ends before frame {frame}: another shot begins there"),
+                Ending::Left => format!("ends before frame {frame}: it left the picture"),
+            };
+            line("note", &format!("part {:?} {what}", part.name));
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use super::Document;
 use super::problem::Problems;
 use super::schema::{Field, Layout, VERSION};
-use super::shape::{Context, Entries, Flag, List, Number, Pair, Seed, Shape, Step, Text, Whole};
+use super::shape::{Context, Entries, Flag, Frame, List, Number, Pair, Seed, Shape, Step, Text, Whole};
 use super::validate;
 use crate::scene::{Footage, FrameNumber, Part, Scene};
 use serde::de::{DeserializeSeed, Error, IgnoredAny, MapAccess, SeqAccess};
@@ -308,7 +308,7 @@ impl<'de> Shape<'de> for PartShape {
     fn object<A: MapAccess<'de>>(self, context: &mut Context, mut entries: A) -> Result<Option<Self::Value>, A::Error> {
         let (mut name, mut closed, mut depth) = (None, None, None);
         let (mut keys, mut pins, mut centers) = (None, None, None);
-        let (mut tracks, mut confidence, mut curves) = (None, None, None);
+        let (mut tracks, mut confidence, mut curves, mut wants_key) = (None, None, None, None);
         let mut fields = Vec::new();
         let points = Entries::<FrameNumber, _>::new(List(Pair));
         while let Some(key) = entries.next_key::<String>()? {
@@ -330,6 +330,7 @@ impl<'de> Shape<'de> for PartShape {
                 "tracks" => field(context, source, "tracks", points, &mut tracks)?,
                 "confidence" => field(context, source, "confidence", Entries::new(List(Number)), &mut confidence)?,
                 "curves" => field(context, source, "curves", Entries::new(List(List(Pair))), &mut curves)?,
+                "wants_key" => field(context, source, "wants_key", List(Frame), &mut wants_key)?,
                 _ => unknown(source, key)?,
             });
         }
@@ -344,6 +345,7 @@ impl<'de> Shape<'de> for PartShape {
             tracks: tracks.unwrap_or_default(),
             confidence: confidence.unwrap_or_default(),
             curves: curves.unwrap_or_default(),
+            wants_key: wants_key.unwrap_or_default(),
         };
         Ok(Some((part, fields)))
     }

@@ -102,6 +102,7 @@ fn is_default(part: &Part, name: &str) -> bool {
         "tracks" => part.tracks.is_empty(),
         "confidence" => part.confidence.is_empty(),
         "curves" => part.curves.is_empty(),
+        "wants_key" => part.wants_key.is_empty(),
         _ => false,
     }
 }
@@ -127,6 +128,9 @@ fn part_field(out: &mut String, part: &Part, field: &Field) {
         Field::Known("tracks") => frames(out, &part.tracks, |out, frame, points| track(out, part, frame, points)),
         Field::Known("confidence") => {
             frames(out, &part.confidence, |out, _, values| list(out, values, "", "", |out, v| number(out, rounded(*v))))
+        }
+        Field::Known("wants_key") => {
+            list(out, &part.wants_key, "", "", |out, frame| number(out, f64::from(*frame)));
         }
         Field::Known(_) => frames(out, &part.curves, |out, _, paths| {
             list(out, paths, "", "", |out, path| list(out, path, "", "", |out, p| pair(out, rounded_point(*p))))

@@ -26,8 +26,11 @@ pub(super) const TOP: [&str; 3] = ["rototoon", "footage", "parts"];
 /// The fields of the footage.
 pub(super) const FOOTAGE: [&str; 6] = ["pattern", "first", "last", "fps", "width", "height"];
 /// The fields of a part.
-pub(super) const PART: [&str; 9] =
-    ["name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves"];
+///
+/// `wants_key` (written by tracking, left out where empty): the frames on which a part with one key was lost, the last
+/// one before its track or the first one after it, at most two in rising order. A key there helps most.
+pub(super) const PART: [&str; 10] =
+    ["name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves", "wants_key"];
 
 /// One field of an object as it stood in the document.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -241,6 +241,26 @@ impl Shape<'_> for Whole {
     }
 }
 
+/// A frame number.
+#[derive(Clone, Copy)]
+pub(super) struct Frame;
+
+impl Shape<'_> for Frame {
+    type Value = FrameNumber;
+    const EXPECTED: &'static str = "a frame number";
+
+    fn scalar(self, context: &mut Context, scalar: Scalar<'_>) -> Option<FrameNumber> {
+        let limit = super::schema::MAX_FRAME_NUMBER as f64;
+        match scalar {
+            Scalar::Number(number) if number.fract() == 0.0 && number.abs() <= limit => Some(number as FrameNumber),
+            other => {
+                context.wrong(other, Self::EXPECTED);
+                None
+            }
+        }
+    }
+}
+
 /// `true` or `false`.
 #[derive(Clone, Copy)]
 pub(super) struct Flag;

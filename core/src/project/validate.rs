@@ -173,10 +173,8 @@ impl PartCheck<'_> {
 
     fn keys(&mut self) {
         let part = self.part;
-        match part.keys.len() {
-            0 => self.warning("keys", "there is no key, so the part is not tracked"),
-            1 => self.warning("keys", "there is one key, so the part is not tracked: it takes two"),
-            _ => {}
+        if part.keys.is_empty() {
+            self.warning("keys", "there is no key, so the part is not tracked");
         }
         let Some((first, points)) = part.keys.first_key_value() else { return };
         match points.len() {
@@ -285,10 +283,10 @@ impl PartCheck<'_> {
     }
 }
 
-/// Whether a correction on this frame has an effect: it lies between two keys.
+/// Whether a correction on this frame has an effect: it lies between two keys, or beside the only one.
 pub fn acts(part: &Part, frame: FrameNumber) -> bool {
     let (Some((&first, _)), Some((&last, _))) = (part.keys.first_key_value(), part.keys.last_key_value()) else {
         return false;
     };
-    first < frame && frame < last && !part.keys.contains_key(&frame)
+    (first == last || first < frame && frame < last) && !part.keys.contains_key(&frame)
 }

@@ -19,12 +19,15 @@ pub struct Part {
     pub pins: BTreeMap<FrameNumber, BTreeMap<usize, Point>>,
     /// Part centres (mean of the control points) the artist corrected, by frame.
     pub centers: BTreeMap<FrameNumber, Point>,
-    /// Tracked control points on every frame from the first to the last key, keys included.
+    /// Tracked control points on every frame from the first to the last key, keys included; of a part with one key on
+    /// every frame around it on which the track is trusted.
     pub tracks: BTreeMap<FrameNumber, Vec<Point>>,
     /// How sure each tracked point is, 0 to 1.
     pub confidence: BTreeMap<FrameNumber, Vec<f64>>,
     /// Snapped pixel paths: by frame, one path a segment.
     pub curves: BTreeMap<FrameNumber, Vec<Vec<Point>>>,
+    /// Of a tracked part with one key: the frames before and after its track on which it was lost, and wants a key.
+    pub wants_key: Vec<FrameNumber>,
 }
 
 /// The frames between two neighbouring keys of a part, keys included.

@@ -10,7 +10,7 @@
 //! more (mean 0.99) 97 %; below 0.5 it is too careful by 0.2.
 
 use super::features::Features;
-use super::lattice::texture::{Cover, WORST, difference};
+use super::lattice::texture::{Cover, UNSEEN, WORST, difference, in_picture};
 use super::pool::Hypothesis;
 use super::propagate::Model;
 
@@ -47,13 +47,15 @@ pub fn of_drawing(
 }
 
 /// Mean colour difference around each control point; the worst where no sample is near.
-fn local_errors(model: &Model, features: &Features, cover: &Cover, hypothesis: &Hypothesis) -> Vec<f64> {
+pub(super) fn local_errors(model: &Model, features: &Features, cover: &Cover, hypothesis: &Hypothesis) -> Vec<f64> {
     let level = features.level(LEVEL);
     let reach = model.texture.mesh.side.max(6.0);
     let mut sums = vec![(0.0f64, 0.0f64); hypothesis.points.len()];
     for texel in &model.texture.texels[LEVEL] {
         let place = texel.binding.at(&hypothesis.pose.nodes);
-        let error = f64::from(difference(&level.colour(place), &texel.key).min(WORST));
+        let outside = !in_picture(place, cover.width());
+        let difference = difference(&level.colour(place), &texel.key).min(WORST);
+        let error = f64::from(if outside { UNSEEN } else { difference });
         let seen = if cover.hides(place) { COVERED_WEIGHT } else { 1.0 };
         for (sum, p) in sums.iter_mut().zip(&hypothesis.points) {
             let weight = seen * (-place.distance_squared(*p) / (reach * reach)).exp();

@@ -83,6 +83,25 @@ pub trait SpanSolver: Send + Sync {
     fn forget_pictures(&self);
 }
 
+impl Correction {
+    /// Fixes control points so that the correction holds exactly: pins are set, then the points that are not pinned are
+    /// shifted together until the centre is where the artist put it.
+    pub fn enforce(&self, points: &mut [Point]) {
+        for (&j, &p) in &self.pins {
+            points[j] = p;
+        }
+        let free = points.len() - self.pins.len();
+        if let (Some(center), true) = (self.center, free > 0) {
+            let missing = center * points.len() as f64 - points.iter().sum::<Point>();
+            for (j, p) in points.iter_mut().enumerate() {
+                if !self.pins.contains_key(&j) {
+                    *p += missing / free as f64;
+                }
+            }
+        }
+    }
+}
+
 impl Job {
     /// Fixes the points of frame `index` of the span so that the keys and corrections hold exactly: pins are set, then
     /// the points that are not pinned are shifted together until the centre is where the artist put it.
@@ -92,18 +111,7 @@ impl Job {
             return;
         }
         let Some(correction) = self.corrections.get(&index) else { return };
-        for (&j, &p) in &correction.pins {
-            points[j] = p;
-        }
-        let free = points.len() - correction.pins.len();
-        if let (Some(center), true) = (correction.center, free > 0) {
-            let missing = center * points.len() as f64 - points.iter().sum::<Point>();
-            for (j, p) in points.iter_mut().enumerate() {
-                if !correction.pins.contains_key(&j) {
-                    *p += missing / free as f64;
-                }
-            }
-        }
+        correction.enforce(points);
     }
 
     /// The keys blended linearly at frame `index` of the span.

@@ -23,6 +23,8 @@
 //! - `mend`: what that choice adds to the pools
 //! - `finish`: the chosen poses made into tracks, with [`refine`]: contours brought onto the drawing by its colours
 //! - [`confidence`]: how sure a point is
+//! - [`outward`]: parts with one key, followed until they are lost
+//! - [`cuts`]: where the footage goes over to another shot
 //!
 //! The preset of Zhou & Xiao 2011:
 //! - [`zhou2011`]: its pieces joined
@@ -37,6 +39,7 @@
 pub mod agarwala2004;
 pub mod confidence;
 mod corrected;
+pub mod cuts;
 pub mod drawings;
 pub mod edge_maps;
 pub mod energy;
@@ -47,6 +50,7 @@ pub mod joint;
 pub mod lattice;
 pub mod liang2012;
 mod mend;
+pub mod outward;
 pub mod part_by_part;
 pub mod pool;
 pub mod propagate;
@@ -64,6 +68,7 @@ pub mod weakest;
 pub mod zhou2011;
 
 pub use job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
+pub use outward::{Ending, TrackEnd};
 pub use tracker::{JobReport, PartTrack, Preset, SceneSolver, TrackError, TrackOptions, Tracker, Tracking};
 pub use weakest::{WeakestFrame, weakest_frame};
 

@@ -39,8 +39,10 @@ pub struct Model {
 pub struct Scenery<'a> {
     /// Its picture.
     pub features: &'a Features,
-    /// What hides the part.
+    /// What hides the part: what is aligned leaves it out.
     pub cover: &'a Cover,
+    /// Whether samples under the cover count as unseen when a pose is measured; else the picture's edges alone hide.
+    pub weighed: bool,
     /// The artist's corrections, for the lattice of the model in use.
     pub anchors: &'a Anchors,
 }
@@ -118,7 +120,21 @@ impl Model {
 
     /// A pose with its energy.
     pub fn measured(&self, scenery: &Scenery, nodes: Vec<Point>) -> Pose {
-        Pose { energy: self.texture.energy(scenery.features, &nodes), nodes }
+        let energy = if scenery.weighed {
+            self.texture.energy_where(scenery.features, &nodes, |p| !scenery.cover.hides(p))
+        } else {
+            self.texture.energy(scenery.features, &nodes)
+        };
+        Pose { energy, nodes }
+    }
+
+    /// Colour difference of each sample that measures a pose.
+    pub fn differences(&self, scenery: &Scenery, nodes: &[Point]) -> Vec<f32> {
+        if scenery.weighed {
+            self.texture.differences_where(scenery.features, nodes, |p| !scenery.cover.hides(p))
+        } else {
+            self.texture.differences(scenery.features, nodes)
+        }
     }
 
     /// Carries `pose` to another drawing; `moved` is what its nodes moved by last.

@@ -9,6 +9,7 @@
 //!    ([`mend`]).
 //! 3. **Finish.** The chosen poses are aligned once more where nearer parts leave them to be seen, and their contours
 //!    refined ([`finish`]).
+//! 4. **Outward.** Parts with one key are followed from it, once the others are known ([`outward`]).
 //!
 //! Why: cartoons have flat colours and hard lines, so that a part's look at a key says nearly everything about it; a
 //! chain that compares with the key cannot drift; going both ways covers what appears or is hidden on one side.
@@ -23,6 +24,7 @@ use super::joint::shadow::Memory;
 use super::joint::tie::{Lead, leads};
 use super::joint::{self, Contender};
 use super::mend::mend;
+use super::outward::{self, plan::Portion};
 use super::pool::{self, Pools};
 use super::propagate::Model;
 use super::stage::{Kit, Stage};
@@ -45,6 +47,7 @@ pub struct Rototoon {
     mended: BTreeMap<(String, Span), Mended>,
     finished: BTreeMap<(String, Span), Finished>,
     shadows: Memory,
+    outward: outward::plan::Memory,
 }
 
 /// The pools of a job without and with its corrections, and whether anything was made now.
@@ -78,19 +81,44 @@ impl SceneSolver for Rototoon {
         progress: &dyn Progress,
     ) -> Result<Tracking, TrackError> {
         let tasks = tasks(scene);
-        let shared = SharedProgress::new(progress, scene, &tasks);
-        self.read(scene, &tasks, frames, progress)?;
-        let (pooled, fresh) = self.pool_all(scene, &tasks, frames, &shared)?;
+        let single = outward::plan::subjects(scene).len();
+        let between = tasks.len() as f64 / (tasks.len() + single).max(1) as f64;
+        let first = Portion { listener: progress, range: [0.0, between] };
+        let mut tracking = self.track_between(scene, &tasks, frames, &first)?;
+        if single > 0 {
+            let rest = Portion { listener: progress, range: [between, 1.0] };
+            self.outward.run(&self.store, scene, frames, &rest, &mut tracking)?;
+        }
+        Ok(tracking)
+    }
+
+    fn forget(&mut self) {
+        *self = Self::default();
+    }
+}
+
+impl Rototoon {
+    /// Tracks the parts between their keys.
+    fn track_between(
+        &mut self,
+        scene: &Scene,
+        tasks: &[Task],
+        frames: &dyn FrameSource,
+        progress: &dyn Progress,
+    ) -> Result<Tracking, TrackError> {
+        let shared = SharedProgress::new(progress, scene, tasks);
+        self.read(scene, tasks, frames, progress)?;
+        let (pooled, fresh) = self.pool_all(scene, tasks, frames, &shared)?;
         let mut done: Vec<Option<(SpanTrack, bool)>> = vec![None; tasks.len()];
-        for stretch in stretches(&tasks) {
+        for stretch in stretches(tasks) {
             let members: Vec<&Pooled> = stretch.iter().map(|&t| &*pooled[t]).collect();
             let start = members.iter().map(|m| m.path.clone()).collect();
-            let (paths, leads) = chosen(scene, &tasks, &stretch, &members, start, &mut self.shadows);
+            let (paths, leads) = chosen(scene, tasks, &stretch, &members, start, &mut self.shadows);
             let mended = self.mend_all(&stretch, &pooled, &paths, &leads, frames, &shared)?;
             let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
-            let (paths, _) = chosen(scene, &tasks, &stretch, &members, paths, &mut self.shadows);
+            let (paths, _) = chosen(scene, tasks, &stretch, &members, paths, &mut self.shadows);
             let finishes: Vec<Finish> =
-                (0..members.len()).map(|m| Finish::of(scene, &tasks, &stretch, &members, &paths, m)).collect();
+                (0..members.len()).map(|m| Finish::of(scene, tasks, &stretch, &members, &paths, m)).collect();
             let known = |source: &Arc<Pooled>, plan: &Finish| {
                 let known = self.finished.get(&source.key())?;
                 (Arc::ptr_eq(&known.source, source) && known.plan == *plan).then(|| known.track.clone())
@@ -122,15 +150,9 @@ impl SceneSolver for Rototoon {
         }
         self.shadows.turn();
         self.keep_only(&pooled);
-        Ok(assemble(scene, &tasks, done))
+        Ok(assemble(scene, tasks, done))
     }
 
-    fn forget(&mut self) {
-        *self = Self::default();
-    }
-}
-
-impl Rototoon {
     /// Makes what many tasks need of the pictures before the tasks are shared out to threads, which would wait for it.
     fn read(
         &self,

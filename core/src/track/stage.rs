@@ -79,6 +79,7 @@ impl<'a> Stage<'a> {
         Scenery {
             features: &self.features[drawing],
             cover: &self.covers[drawing],
+            weighed: false,
             anchors: &self.anchors[model][drawing],
         }
     }

@@ -6,6 +6,7 @@
 use super::agarwala2004::Agarwala2004;
 use super::job::{SpanSolver, SpanSummary};
 use super::liang2012::Liang2012;
+use super::outward::{Ending, TrackEnd};
 use super::part_by_part::PartByPart;
 use super::rototoon::Rototoon;
 use super::zhou2011::Zhou2011;
@@ -130,10 +131,19 @@ pub struct JobReport {
 /// The track of one part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PartTrack {
-    /// Control points by frame, from the first key to the last.
+    /// Control points by frame, from the first key to the last; of a part with one key, as far as it is trusted.
     pub tracks: BTreeMap<FrameNumber, Vec<Point>>,
     /// Confidence by frame and point, 0 to 1.
     pub confidence: BTreeMap<FrameNumber, Vec<f64>>,
+    /// Where the track of a part with one key ends before the footage does, backwards first.
+    pub ends: Vec<TrackEnd>,
+}
+
+impl PartTrack {
+    /// Frames on which the part wants a key, since it was lost there.
+    pub fn wants_key(&self) -> Vec<FrameNumber> {
+        self.ends.iter().filter(|end| end.reason == Ending::Lost).map(|end| end.frame).collect()
+    }
 }
 
 /// Tracks all parts of a scene, and may keep what it computed for the next time.
@@ -172,7 +182,8 @@ impl Tracker {
 
     /// Tracks every part of `scene` between its first and its last key. Runs on the caller's rayon pool.
     ///
-    /// Parts with one key have a track on that frame only. After an error the tracker still knows what it knew before.
+    /// The default preset follows parts with one key outward, as far as they can be trusted; with the others they have a
+    /// track on that frame only. After an error the tracker still knows what it knew before.
     pub fn track(
         &mut self,
         scene: &Scene,

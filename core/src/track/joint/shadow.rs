@@ -4,13 +4,14 @@ use super::Contender;
 use super::cost::State;
 use crate::geometry::{Point, polygon};
 use crate::scene::Raster;
+use crate::track::lattice::texture::UNSEEN;
 use crate::track::pool::{Hypothesis, Pools};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Cost of a sample that a nearer part hides, as a squared colour difference.
-pub const HIDDEN: f32 = 0.03;
+pub const HIDDEN: f32 = UNSEEN;
 
 /// Side of the pixels that shadows are drawn in, in working pixels.
 const PIXEL: f64 = 3.0;

@@ -16,16 +16,20 @@ const MOST_SAMPLES: usize = 700;
 const FINE_SAMPLES: f64 = 1200.0;
 /// Squared colour difference (three channels of 0 to 1) beyond which a sample is simply wrong.
 pub const WORST: f32 = 0.15;
+/// Cost of a sample that cannot be seen, as a squared colour difference: more than a right colour, less than a wrong one.
+pub const UNSEEN: f32 = 0.03;
 /// Weight of the shape energy beside the mean colour difference, and the shape energy beyond which it stops to count.
 const SHAPE: (f64, f64) = (0.02, 2.0);
 /// Level (index in [`LEVELS`]) whose samples measure a pose.
 const MEASURED_LEVEL: usize = 1;
 
-/// Where nearer parts hide the picture, by working pixels of 2 × 2.
+/// Where nearer parts hide the picture, by working pixels of 2 × 2, and where it ends: what lies beyond its edges is
+/// hidden too.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cover {
     hidden: Raster<bool>,
     any: bool,
+    width: f64,
 }
 
 impl Cover {
@@ -42,7 +46,12 @@ impl Cover {
                 hidden.row_mut(y)[x0..x1].fill(true);
             });
         }
-        Self { hidden, any: !contours.is_empty() }
+        Self { hidden, any: !contours.is_empty(), width }
+    }
+
+    /// Width of the picture in working pixels.
+    pub fn width(&self) -> f64 {
+        self.width
     }
 
     /// Nothing is hidden.
@@ -50,15 +59,27 @@ impl Cover {
         Self::new(&[], width)
     }
 
-    /// Whether a nearer part hides the picture at `p`; outside the picture, what its nearest edge says.
+    /// Whether nothing of the part can be seen at `p`: a nearer part hides it there, or the picture has ended.
     #[inline(always)]
     pub fn hides(&self, p: Point) -> bool {
+        !in_picture(p, self.width) || self.under(p)
+    }
+
+    /// Whether a nearer part hides the picture at `p`; outside the picture, what its nearest edge says.
+    #[inline(always)]
+    pub fn under(&self, p: Point) -> bool {
         if !self.any {
             return false;
         }
         let pixel = |at: f64, count: usize| (at * (1.0 / Self::PIXEL)).clamp(0.0, (count - 1) as f64) as i32 as usize;
         self.hidden.get(pixel(p.x, self.hidden.width()), pixel(p.y, self.hidden.height()))
     }
+}
+
+/// Whether a place in working pixels lies in a picture of `width` working pixels.
+#[inline(always)]
+pub fn in_picture(p: Point, width: f64) -> bool {
+    p.x >= 0.0 && p.y >= 0.0 && p.x < width && p.y < WORKING_LINES
 }
 
 /// One sample of the key.
@@ -101,20 +122,28 @@ pub struct Texture {
     pub mesh: Mesh,
     /// Samples by level, from coarse to fine, in the order of their cells.
     pub texels: [Vec<Texel>; 3],
+    /// Width of the picture in working pixels: what lies outside is unseen.
+    width: f64,
 }
 
 impl Texture {
     /// Samples the key's picture over the lattice, but where a nearer part hides it or the picture ends.
     pub fn new(mesh: Mesh, key: &Features, cover: &Cover, width: f64) -> Self {
         let texels = std::array::from_fn(|level| sample_level(&mesh, key, cover, width, level));
-        Self { mesh, texels }
+        Self { mesh, texels, width }
     }
 
-    /// How badly a pose explains a picture: mean colour difference (at most [`WORST`]) plus a little for bending.
+    /// How badly a pose explains a picture: mean colour difference (at most [`WORST`]; [`UNSEEN`] outside the picture)
+    /// plus a little for bending.
     pub fn energy(&self, picture: &Features, nodes: &[Point]) -> f64 {
+        self.energy_where(picture, nodes, |p| in_picture(p, self.width))
+    }
+
+    /// The same; what is not `seen` costs [`UNSEEN`].
+    pub fn energy_where(&self, picture: &Features, nodes: &[Point], seen: impl Fn(Point) -> bool) -> f64 {
         let (sum, weights) = vectorised(
             #[inline(always)]
-            || self.look(picture, nodes),
+            || self.look(picture, nodes, seen),
         );
         let look = if weights > 0.0 { sum / weights } else { f64::from(WORST) };
         look + self.bending(nodes)
@@ -122,12 +151,13 @@ impl Texture {
 
     /// Weighted colour differences of the samples that measure a pose, and their weights.
     #[inline(always)]
-    fn look(&self, picture: &Features, nodes: &[Point]) -> (f64, f64) {
+    fn look(&self, picture: &Features, nodes: &[Point], seen: impl Fn(Point) -> bool) -> (f64, f64) {
         let level = picture.level(MEASURED_LEVEL);
         let (mut sum, mut weights) = (0.0, 0.0);
         for texel in self.measured() {
-            let colour = level.colour(texel.binding.at(nodes));
-            sum += f64::from(texel.weight * difference(&colour, &texel.key).min(WORST));
+            let place = texel.binding.at(nodes);
+            let wrong = difference(&level.colour(place), &texel.key).min(WORST);
+            sum += f64::from(texel.weight * if seen(place) { wrong } else { UNSEEN });
             weights += f64::from(texel.weight);
         }
         (sum, weights)
@@ -143,10 +173,18 @@ impl Texture {
         &self.texels[MEASURED_LEVEL]
     }
 
-    /// Colour difference of each of the [`Texture::measured`] samples, at most [`WORST`].
+    /// Colour difference of each of the [`Texture::measured`] samples, at most [`WORST`]; [`UNSEEN`] outside the picture.
     pub fn differences(&self, picture: &Features, nodes: &[Point]) -> Vec<f32> {
+        self.differences_where(picture, nodes, |p| in_picture(p, self.width))
+    }
+
+    /// The same; what is not `seen` is [`UNSEEN`].
+    pub fn differences_where(&self, picture: &Features, nodes: &[Point], seen: impl Fn(Point) -> bool) -> Vec<f32> {
         let level = picture.level(MEASURED_LEVEL);
-        let of = |t: &Texel| difference(&level.colour(t.binding.at(nodes)), &t.key).min(WORST);
+        let of = |t: &Texel| {
+            let place = t.binding.at(nodes);
+            if seen(place) { difference(&level.colour(place), &t.key).min(WORST) } else { UNSEEN }
+        };
         self.measured().iter().map(of).collect()
     }
 }
@@ -167,7 +205,7 @@ fn sample_level(mesh: &Mesh, key: &Features, cover: &Cover, width: f64, level: u
     for j in 0..count(high.y - low.y) {
         for i in 0..count(high.x - low.x) {
             let p = low + Point::new(i as f64 + 0.5, j as f64 + 0.5) * step;
-            let seen = p.x >= 0.0 && p.y >= 0.0 && p.x < width && p.y < WORKING_LINES && !cover.hides(p);
+            let seen = in_picture(p, width) && !cover.hides(p);
             let (belongs, inside) = if seen { mesh.region(p) } else { (false, false) };
             if belongs {
                 let (cell, binding) = mesh.bind_in_cell(p);

@@ -6,33 +6,33 @@ use crate::track::{TrackOptions, Tracker, Tracking};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-const WIDTH: usize = 240;
-const HEIGHT: usize = 180;
-const LAST: FrameNumber = 6;
+pub(super) const WIDTH: usize = 240;
+pub(super) const HEIGHT: usize = 180;
+pub(super) const LAST: FrameNumber = 6;
 
 /// An outlined shape of one colour, and where it is on each frame.
-struct Shape {
-    rest: Vec<Point>,
-    colour: Colour,
-    motion: fn(f64) -> (Point, f64),
+pub(super) struct Shape {
+    pub(super) rest: Vec<Point>,
+    pub(super) colour: Colour,
+    pub(super) motion: fn(f64) -> (Point, f64),
 }
 
 impl Shape {
-    fn contour(&self, frame: FrameNumber) -> Vec<Point> {
+    pub(super) fn contour(&self, frame: FrameNumber) -> Vec<Point> {
         // On twos: frame 1 shows the drawing of frame 0.
         let (shift, degrees) = (self.motion)(f64::from(frame / 2 * 2));
         let turn = Point::from_angle(degrees.to_radians());
         self.rest.iter().map(|&p| turn.rotate(p) + shift).collect()
     }
 
-    fn part(&self, name: &str, depth: f64) -> Part {
+    pub(super) fn part(&self, name: &str, depth: f64) -> Part {
         let keys = [0, LAST].map(|f| (f, self.contour(f)));
         Part { name: name.into(), closed: true, depth, keys: keys.into(), ..Part::default() }
     }
 }
 
 /// Later shapes are nearer.
-struct Drawn(Vec<Shape>);
+pub(super) struct Drawn(pub(super) Vec<Shape>);
 
 impl Drawn {
     /// Colour at a point: the fill of the nearest shape, its outline 2 px wide, or paper.
@@ -49,7 +49,7 @@ impl Drawn {
         [0.95, 0.93, 0.9]
     }
 
-    fn scene(&self, parts: Vec<Part>) -> Scene {
+    pub(super) fn scene(&self, parts: Vec<Part>) -> Scene {
         let footage =
             Footage { pattern: "%d.png".into(), first: 0, last: LAST, fps: 12.0, width: WIDTH, height: HEIGHT };
         Scene { footage, parts }
@@ -73,12 +73,12 @@ impl FrameSource for Drawn {
     }
 }
 
-fn points(list: &[(f64, f64)]) -> Vec<Point> {
+pub(super) fn points(list: &[(f64, f64)]) -> Vec<Point> {
     list.iter().map(|&(x, y)| Point::new(x, y)).collect()
 }
 
 /// A limb that turns by 90° while it travels, and a ball that passes in front of it.
-fn limb_and_ball() -> Drawn {
+pub(super) fn limb_and_ball() -> Drawn {
     let limb = Shape {
         rest: points(&[(-30.0, -8.0), (0.0, -10.0), (34.0, -6.0), (36.0, 8.0), (0.0, 9.0), (-30.0, 8.0)]),
         colour: [0.85, 0.3, 0.2],
@@ -109,7 +109,7 @@ fn twins() -> Drawn {
     Drawn(vec![far, near, body])
 }
 
-fn track(drawn: &Drawn, scene: &Scene) -> Tracking {
+pub(super) fn track(drawn: &Drawn, scene: &Scene) -> Tracking {
     Tracker::new(TrackOptions::default()).track(scene, drawn, &Silent).unwrap()
 }
 
