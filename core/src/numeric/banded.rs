@@ -44,6 +44,12 @@ impl BandMatrix {
         self.data[i * (self.half + 1) + self.half - (i - j)] += value;
     }
 
+    /// Entry (`i`, `j`), zero outside the band.
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        let (i, j) = if i >= j { (i, j) } else { (j, i) };
+        if i - j > self.half { 0.0 } else { self.data[i * (self.half + 1) + self.half - (i - j)] }
+    }
+
     /// Adds another matrix of the same shape, times `factor`.
     pub fn add_scaled(&mut self, other: &Self, factor: f64) {
         assert_eq!((self.size, self.half), (other.size, other.half));

@@ -1,0 +1,229 @@
+//! One Gauss–Newton step of a section's nodes towards its points.
+//!
+//! A point p with foot B(t) and unit normal n leaves the residual n · (B(t) − p): the distance, with the parameter eliminated
+//! (the tangent distance of Blake & Isard 1998; Wang, Pottmann & Liu 2006 show it to be Gauss–Newton on the true squared
+//! distance, where moving point and foot in turn converges only linearly). Moving the curve along itself changes no distance
+//! to first order, so a small weight on that direction keeps the equations regular; a weight of one is the plain
+//! point-to-point problem, with which a fit starts.
+//!
+//! **Largest error instead of the mean.** What counts is that no point is farther off than the tolerance. A least-squares
+//! fit leaves the largest error two to three times the mean; therefore the later steps minimise
+//! Σ ε r² + (|r| − θ)₊² with θ a little below the tolerance: a piecewise quadratic penalty on the excess alone, to which
+//! Gauss–Newton applies unchanged, and whose minimum has no excess if the section can be fitted at all.
+//!
+//! A point touches three neighbouring nodes: the normal equations are banded. For a closed section the nodes are numbered
+//! in turn from both sides of the start, which keeps the band narrow.
+
+use super::feet;
+use super::section::{Arc, Ends, Slot};
+use crate::geometry::Point;
+use crate::numeric::banded::BandMatrix;
+
+/// What the residuals are weighed by.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Goal {
+    /// Least squares; the weight of the direction along the curve.
+    Squares(f64),
+    /// No excess over the threshold, in pixels.
+    Within(f64),
+}
+
+/// Weight of the direction along the curve once the normal counts.
+const SLIDE: f64 = 0.01;
+/// Weight of errors without excess.
+const INSIDE: f64 = 0.02;
+/// Share of the diagonal that is added to it.
+const DAMPING: f64 = 1e-5;
+
+/// The points of a section with their parameters.
+#[derive(Clone, Debug)]
+pub(super) struct Track<'a> {
+    pub points: &'a [Point],
+    pub parameters: Vec<f64>,
+}
+
+/// What a pass over the points found.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Errors {
+    pub largest: f64,
+    /// Index of the point.
+    pub at: usize,
+    pub squares: f64,
+}
+
+/// Arcs of the section's pieces.
+pub(super) fn arcs(nodes: &[Point], slots: &[Slot]) -> Vec<Arc> {
+    slots.iter().map(|slot| Arc::new(nodes, slot)).collect()
+}
+
+/// Normal equations under construction; reused from step to step.
+pub(super) struct Step<'a> {
+    ends: Ends,
+    slots: &'a [Slot],
+    nodes: usize,
+    matrix: BandMatrix,
+    rhs: Vec<f64>,
+}
+
+/// Place of node `k` in the equations.
+fn place(ends: Ends, k: usize, nodes: usize) -> usize {
+    match ends {
+        Ends::Open(..) => k,
+        Ends::Periodic if k < nodes.div_ceil(2) => 2 * k,
+        Ends::Periodic => 2 * (nodes - 1 - k) + 1,
+    }
+}
+
+/// Sums of one piece: 3 × 3 blocks of xx, xy, yy and three right-hand sides.
+#[derive(Default)]
+struct Block {
+    matrix: [[[f64; 3]; 3]; 3],
+    rhs: [Point; 3],
+    used: bool,
+}
+
+impl<'a> Step<'a> {
+    pub fn new(ends: Ends, slots: &'a [Slot], nodes: usize) -> Self {
+        let half = if ends == Ends::Periodic { 11 } else { 5 };
+        let matrix = BandMatrix::zeros(2 * nodes, half.min(2 * nodes - 1));
+        Self { ends, slots, nodes, matrix, rhs: vec![0.0; 2 * nodes] }
+    }
+
+    /// Follows the feet, measures, and gathers the equations.
+    pub fn gather(&mut self, nodes: &[Point], track: &mut Track, goal: Goal, follow: bool) -> Errors {
+        self.matrix.clear();
+        self.rhs.fill(0.0);
+        let arcs = arcs(nodes, self.slots);
+        let (periodic, pieces) = (self.ends == Ends::Periodic, arcs.len());
+        let held = self.held_ends(track.points.len());
+        let mut errors = Errors::default();
+        let mut block = Block::default();
+        let mut current = 0;
+        for (j, (&p, t)) in track.points.iter().zip(&mut track.parameters).enumerate() {
+            let end = held[0] == Some(j) || held[1] == Some(j);
+            if end {
+                *t = if j == 0 { 0.0 } else { pieces as f64 };
+            } else if follow {
+                *t = feet::follow(&arcs, periodic, p, *t);
+            }
+            let i = (*t as usize).min(pieces - 1);
+            if i != current {
+                self.scatter(&mut block, current);
+                current = i;
+            }
+            let u = *t - i as f64;
+            let error = arcs[i].point(u) - p;
+            let distance = error.length();
+            errors.squares += distance * distance;
+            if distance > errors.largest {
+                (errors.largest, errors.at) = (distance, j);
+            }
+            let (along, across, pull) = weights(goal, distance, end);
+            let tangent = (arcs[i].b + arcs[i].a * u).normalize_or_zero();
+            let weights = self.slots[i].weights(u);
+            block.add(&weights, error, tangent, (along, across), pull);
+        }
+        self.scatter(&mut block, current);
+        errors
+    }
+
+    /// Indices of the points that belong to free ends.
+    fn held_ends(&self, points: usize) -> [Option<usize>; 2] {
+        use super::section::End::Free;
+        match self.ends {
+            Ends::Periodic => [None; 2],
+            Ends::Open(start, end) => [(start == Free).then_some(0), (end == Free).then_some(points - 1)],
+        }
+    }
+
+    fn scatter(&mut self, block: &mut Block, piece: usize) {
+        if !block.used {
+            return;
+        }
+        let places = self.slots[piece].nodes.map(|k| 2 * place(self.ends, k, self.nodes));
+        let fixed = self.slots[piece].nodes.map(|k| self.ends.fixed(k, self.nodes));
+        for a in 0..3 {
+            if fixed[a] {
+                continue;
+            }
+            let pa = places[a];
+            self.rhs[pa] += block.rhs[a].x;
+            self.rhs[pa + 1] += block.rhs[a].y;
+            for b in 0..3 {
+                let pb = places[b];
+                if fixed[b] || pb > pa {
+                    continue;
+                }
+                let [xx, xy, yy] = block.matrix[a][b];
+                self.matrix.add(pa, pb, xx);
+                self.matrix.add(pa + 1, pb, xy);
+                self.matrix.add(pa + 1, pb + 1, yy);
+                if pa != pb {
+                    self.matrix.add(pa, pb + 1, xy);
+                }
+            }
+        }
+        *block = Block::default();
+    }
+
+    /// The step of every node; `None` where the equations have no solution.
+    pub fn solve(&mut self, damping: f64) -> Option<Vec<Point>> {
+        let total: f64 = (0..2 * self.nodes).map(|k| self.matrix.get(k, k)).sum();
+        let mean = (total / (2 * self.nodes) as f64).max(f64::MIN_POSITIVE);
+        for k in 0..self.nodes {
+            let at = 2 * place(self.ends, k, self.nodes);
+            for row in [at, at + 1] {
+                let diagonal = self.matrix.get(row, row);
+                let extra = if self.ends.fixed(k, self.nodes) { mean } else { (DAMPING + damping) * (diagonal + mean) };
+                self.matrix.add(row, row, extra);
+            }
+        }
+        let factor = self.matrix.clone().factor().ok()?;
+        factor.solve_in_place(&mut self.rhs);
+        let step = |k: usize| {
+            let at = 2 * place(self.ends, k, self.nodes);
+            Point::new(self.rhs[at], self.rhs[at + 1])
+        };
+        let steps: Vec<_> = (0..self.nodes).map(step).collect();
+        steps.iter().all(|s| s.is_finite()).then_some(steps)
+    }
+}
+
+/// Weight along the curve, weight across it, and the share of the error that pulls.
+fn weights(goal: Goal, distance: f64, end: bool) -> (f64, f64, f64) {
+    match goal {
+        Goal::Squares(_) if end => (1.0, 1.0, 1.0),
+        Goal::Squares(slide) => (slide, 1.0, 1.0),
+        Goal::Within(threshold) => {
+            let over = if distance > threshold { 1.0 } else { 0.0 };
+            let weight = INSIDE + over;
+            let pull = if over > 0.0 { (INSIDE + 1.0 - threshold / distance) / weight } else { 1.0 };
+            (if end { weight } else { SLIDE * weight }, weight, pull)
+        }
+    }
+}
+
+impl Block {
+    fn add(&mut self, weights: &[f64; 3], error: Point, tangent: Point, (along, across): (f64, f64), pull: f64) {
+        // Where the curve rests there is no tangent: all directions count.
+        let least = if tangent == Point::ZERO { across } else { along };
+        let extra = least - across;
+        let (xx, xy, yy) = (
+            across + extra * tangent.x * tangent.x,
+            extra * tangent.x * tangent.y,
+            across + extra * tangent.y * tangent.y,
+        );
+        let force = Point::new(xx * error.x + xy * error.y, xy * error.x + yy * error.y) * pull;
+        for a in 0..3 {
+            self.rhs[a] -= force * weights[a];
+            for b in 0..3 {
+                let w = weights[a] * weights[b];
+                let [x, y, z] = &mut self.matrix[a][b];
+                *x += w * xx;
+                *y += w * xy;
+                *z += w * yy;
+            }
+        }
+        self.used = true;
+    }
+}
