@@ -1,7 +1,7 @@
 """Six outlines of different character, for the comparison of curve fitting. Seeded: always the same points.
 
-Each is a dict with `name`, `closed` and `points` (pixels). "Rounded" ones are the centres of the pixels that a drawn
-outline passes, as a tracer of bitmaps sees it; none has two equal points in a row.
+Each is a dict with `name`, `closed` and `points` (pixels). "Rounded" ones are sampled every pixel
+and rounded to pixel centres, as a tracer of bitmaps leaves them; none has two equal points in a row.
 """
 import numpy as np
 
@@ -16,13 +16,10 @@ def _by_length(points, step):
     return np.column_stack([np.interp(at, lengths, points[:, k]) for k in (0, 1)])
 
 
-def _rounded(points, closed):
-    """Centres of the pixels that a dense polyline passes."""
-    cells = np.floor(_by_length(points, 0.25))
-    keep = np.any(cells != np.roll(cells, 1, axis=0), axis=1)
-    if not closed:
-        keep[0] = True
-    return cells[keep] + 0.5
+def _rounded(points, count=None):
+    """Samples of a dense polyline, about one a pixel of its length or this many, rounded to pixel centres."""
+    length = np.hypot(*np.diff(points, axis=0).T).sum()
+    return np.floor(_by_length(points, length / (count or round(length)))) + 0.5
 
 
 def _harmonics(angle, terms):
@@ -103,12 +100,12 @@ def blob():
 def outlines():
     random = np.random.default_rng(SEED)
     return [
-        {"name": "cartoon outline", "closed": True, "points": _rounded(cartoon(), True)},
-        {"name": "star", "closed": True, "points": _rounded(star(), True)},
-        {"name": "thin limb", "closed": True, "points": _rounded(limb(), True)},
+        {"name": "cartoon outline", "closed": True, "points": _rounded(cartoon(), 1216)},
+        {"name": "star", "closed": True, "points": _rounded(star())},
+        {"name": "thin limb", "closed": True, "points": _rounded(limb())},
         {"name": "noisy stroke", "closed": False, "points": stroke(random)},
-        {"name": "spiral", "closed": False, "points": _rounded(spiral(), False)},
-        {"name": "blob", "closed": True, "points": _rounded(blob(), True)},
+        {"name": "spiral", "closed": False, "points": _rounded(spiral())},
+        {"name": "blob", "closed": True, "points": _rounded(blob())},
     ]
 
 

@@ -53,6 +53,12 @@ impl Spline {
         Ok(Self { guides, closed })
     }
 
+    /// The same without the checks, for points known to be finite and at least one.
+    pub(crate) fn of_finite(guides: Vec<Point>, closed: bool) -> Self {
+        debug_assert!(!guides.is_empty() && guides.iter().all(|g| g.is_finite()));
+        Self { guides, closed }
+    }
+
     /// The guiding points; those of corners twice.
     pub fn guides(&self) -> &[Point] {
         &self.guides
@@ -117,6 +123,25 @@ impl Spline {
     pub fn second_derivative(&self, t: f64) -> Point {
         let (i, _) = self.locate(t);
         self.piece(i).second_derivative()
+    }
+
+    /// Guides that bear on the point at `t`, and their weights, which sum to one. What else the guides carry (a radius, a
+    /// colour) is blended by the same weights.
+    pub fn weights(&self, t: f64) -> [(usize, f64); 3] {
+        let (i, u) = self.locate(t);
+        let [before, about, after] = self.support(i);
+        if !self.closed && self.guides.len() < 3 {
+            return [(before, 1.0 - u), (about, 0.0), (after, u)];
+        }
+        let clamped = |end: bool| if end && !self.closed { 1.0 } else { 0.5 };
+        let first = clamped(i == 0) * (1.0 - u) * (1.0 - u);
+        let last = clamped(i + 1 == self.piece_count()) * u * u;
+        [(before, first), (about, 1.0 - first - last), (after, last)]
+    }
+
+    /// Values given for each guide, blended at `t`.
+    pub fn blend(&self, values: &[f64], t: f64) -> f64 {
+        self.weights(t).iter().map(|&(k, weight)| weight * values[k]).sum()
     }
 
     /// Unit direction of travel at `t`; zero where a piece is a point.
@@ -306,6 +331,14 @@ pub(crate) mod tests {
                 let both_inner = spline.is_closed() || (i > 0 && i + 2 < spline.piece_count());
                 prop_assert!(!both_inner || here.derivative(1.0).distance(next.derivative(0.0)) < 1e-12);
             }
+        }
+
+        #[test]
+        fn the_weights_blend_the_guides_to_the_point(spline in any_spline(), share in 0.0f64..=1.0) {
+            let t = share * spline.piece_count() as f64;
+            let coordinate = |axis: usize| spline.guides().iter().map(|g| g[axis]).collect::<Vec<_>>();
+            let blended = Point::new(spline.blend(&coordinate(0), t), spline.blend(&coordinate(1), t));
+            prop_assert!(blended.distance(spline.point(t)) < 1e-11);
         }
 
         #[test]

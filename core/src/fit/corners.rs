@@ -3,7 +3,7 @@
 //! The direction before and after a point is that of the straight line that best fits the points within a reach of arc
 //! length on its side. Over the reach the steps of a pixel staircase average out (directions from neighbouring points would
 //! be multiples of 45°). A corner turns by [`LEAST_TURN`] or more, turns more than its surroundings, and does so at once: of
-//! a round bend, half the reach sees half the turn, of a corner nearly all of it.
+//! a round bend, a wider reach sees more of the turn in proportion, of a corner hardly more.
 //!
 //! The corner itself is where both lines meet, if that is near the point, since the point carries its rounding; otherwise
 //! the point (sharp tips, where nearly parallel lines meet anywhere).
@@ -16,10 +16,15 @@ const REACH: f64 = 8.0;
 const LEAST_POINTS: usize = 3;
 /// Least turn of a corner in radians: 40°.
 const LEAST_TURN: f64 = 0.7;
-/// Share of the turn that half the reach must see.
-const SUDDEN: f64 = 0.72;
+/// A wider reach, in reaches, and the share of its turn that the reach must see. (Half the reach would be lost in noise.)
+const WIDER: f64 = 1.75;
+const SUDDEN: f64 = 0.76;
 /// The lines' meeting counts within this many tolerances of the point.
 const NEAR: f64 = 0.8;
+/// The tip is sought within this share of the reach.
+const TIP: f64 = 0.6;
+/// Tolerances on each side of the tip that its lines leave out.
+const SKIP: f64 = 1.5;
 
 /// A corner of the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,11 +68,18 @@ pub(super) fn corners(points: &[Point], lengths: &[f64], total: f64, closed: boo
         if turns[j] < LEAST_TURN || !sums.is_peak(&turns, j, reach) {
             continue;
         }
-        // The peak is as broad as the noise: the sharpest point near it by the shorter reach.
-        let sudden = sums.turn(j, 0.5 * reach).abs();
-        if sudden >= SUDDEN * turns[j] {
-            found.push(Corner { index: j, place: sums.meeting(j, reach, NEAR * tolerance) });
+        if turns[j] >= SUDDEN * sums.turn(j, (WIDER * reach).min(0.3 * total)).abs() {
+            let tip = sums.tip(j, reach);
+            found.push(Corner { index: tip, place: sums.meeting(tip, reach, tolerance) });
         }
+    }
+    found.sort_by_key(|corner| corner.index);
+    // Peaks with the same tip, or with tips that noise sets a step apart, are one corner.
+    found.dedup_by(|next, kept| lengths[next.index] - lengths[kept.index] < TIP * reach);
+    if let (true, [first, .., last]) = (closed, &found[..])
+        && lengths[first.index] + total - lengths[last.index] < TIP * reach
+    {
+        found.pop();
     }
     found
 }
@@ -90,6 +102,8 @@ impl<'a> Sums<'a> {
     /// Line through the points at arc lengths `from ..= to`, which may lie beyond the ends of a closed curve.
     fn line(&self, from: f64, to: f64) -> Option<Line> {
         let n = self.points.len();
+        let turn = if !self.closed { 0.0 } else { (0.5 * (from + to) / self.total).floor() * self.total };
+        let (from, to) = (from - turn, to - turn);
         let first = |s: f64| self.lengths.partition_point(|&l| l < s);
         let past = |s: f64| self.lengths.partition_point(|&l| l <= s);
         let range = |a: usize, b: usize| -> [f64; 5] { std::array::from_fn(|k| self.sums[b][k] - self.sums[a][k]) };
@@ -135,40 +149,42 @@ impl<'a> Sums<'a> {
 
     /// Whether no point within the reach turns more (of equals, the first counts).
     fn is_peak(&self, turns: &[f64], j: usize, reach: f64) -> bool {
-        let n = turns.len();
-        let distance = |k: usize| {
+        self.around(j, reach).all(|k| turns[k] < turns[j] || (turns[k] == turns[j] && k >= j))
+    }
+
+    /// Indices of the points within a reach of `j`, nearest first on each side.
+    fn around(&self, j: usize, reach: f64) -> impl Iterator<Item = usize> + '_ {
+        let n = self.points.len();
+        let apart = move |k: usize| {
             let apart = (self.lengths[k] - self.lengths[j]).abs();
             if self.closed { apart.min(self.total - apart) } else { apart }
         };
-        let (mut back, mut forth) = (j, j);
-        for _ in 0..n {
-            back = if back > 0 { back - 1 } else { n - 1 };
-            if (!self.closed && back > j) || back == j || distance(back) > reach {
-                break;
-            }
-            if turns[back] > turns[j] || (turns[back] == turns[j] && back < j) {
-                return false;
-            }
-        }
-        for _ in 0..n {
-            forth = (forth + 1) % n;
-            if (!self.closed && forth < j) || forth == j || distance(forth) > reach {
-                break;
-            }
-            if turns[forth] > turns[j] || (turns[forth] == turns[j] && forth < j) {
-                return false;
-            }
-        }
-        true
+        let near = move |k: &usize| apart(*k) <= reach;
+        let back = (1..n).map(move |d| (j + n - d) % n).take_while(move |&k| self.closed || k < j).take_while(near);
+        let forth = (1..n).map(move |d| (j + d) % n).take_while(move |&k| self.closed || k > j).take_while(near);
+        std::iter::once(j).chain(back).chain(forth)
     }
 
-    fn meeting(&self, j: usize, reach: f64, near: f64) -> Point {
-        let p = self.points[j];
-        let Some((before, after)) = self.sides(j, reach) else { return p };
+    /// The point near `j` that sticks out most: the turn is nearly the same at a few points, the tip is not.
+    fn tip(&self, j: usize, reach: f64) -> usize {
+        let Some((before, after)) = self.sides(j, reach) else { return j };
+        let chord = after.center - before.center;
+        let height = |k: usize| chord.perp_dot(self.points[k] - before.center).abs();
+        // Of equal heights the nearest to `j`.
+        self.around(j, TIP * reach).fold(j, |best, k| if height(k) > height(best) { k } else { best })
+    }
+
+    fn meeting(&self, j: usize, reach: f64, tolerance: f64) -> Point {
+        let (p, s, skip) = (self.points[j], self.lengths[j], SKIP * tolerance);
+        let (from, to) = (s - skip - reach, s + skip + reach);
+        if !self.closed && (from < 0.0 || to > self.total) {
+            return p;
+        }
+        let (Some(before), Some(after)) = (self.line(from, s - skip), self.line(s + skip, to)) else { return p };
         let cross = before.direction.perp_dot(after.direction);
         let along = (after.center - before.center).perp_dot(after.direction) / cross;
         let place = before.center + before.direction * along;
-        if place.is_finite() && place.distance(p) <= near { place } else { p }
+        if place.is_finite() && place.distance(p) <= NEAR * tolerance { place } else { p }
     }
 }
 

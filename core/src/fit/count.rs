@@ -10,40 +10,195 @@ use super::section::{Ends, End};
 use super::trial::{Effort, Given, Trial};
 
 /// Work of a trial.
-const EFFORT: Effort = Effort { squares: 8, excess: 10 };
+const EFFORT: Effort = Effort { squares: 4, excess: 24 };
 
-/// The fit with the fewest nodes found; `None` where none of up to `most` nodes keeps the limit.
-pub(super) fn fewest(given: &Given, most: usize) -> Option<Trial> {
-    let least = given.ends.least();
+/// Fewer points a node are too few for a smooth curve to be told from noise.
+const DENSE: usize = 3;
+/// Most nodes that are tried: this multiple of those foretold, and so many more.
+const AMPLE: f64 = 1.6;
+const SPARE: usize = 5;
+/// Fits that may be spent on going below the border.
+const BELOW: usize = 6;
+
+/// Why a section has no fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unfit {
+    /// It is wrong at this point even with many nodes.
+    At(usize),
+    /// It needs about as many nodes as there are points.
+    Noise,
+}
+
+/// The fit with the fewest nodes found, starting from the profile of the points.
+pub(super) fn fewest(given: &Given, grown: Profile) -> Result<Trial, Unfit> {
+    let found = border(given, grown.clone())?;
+    Ok(below(given, &grown, found))
+}
+
+/// A fit with this many nodes, if one keeps the limit.
+pub(super) fn exactly(given: &Given, nodes: usize) -> Option<Trial> {
     let mut profile = Profile::grown(given.points, given.lengths, given.limit);
-    let extra = nodes_beyond_pieces(given.ends);
-    let foretold = (profile.total().round() as isize + extra).max(least as isize) as usize;
-    let mut nodes = foretold.min(most.max(least));
-    let (mut failed, mut best): (usize, Option<Trial>) = (least - 1, None);
-    loop {
+    for _ in 0..3 {
         let trial = given.run(given.start(nodes, &profile), EFFORT, true);
-        let (cuts, errors) = given.measure(&trial);
-        let keeps = trial.errors.largest <= given.limit;
-        if std::env::var("FIT_DEBUG").is_ok() { eprintln!("  nodes {nodes}: {:.3} rms {:.3}", trial.errors.largest, (trial.errors.squares / given.points.len() as f64).sqrt()); }
-        profile = Profile::measured(cuts, &errors, given.limit);
+        if given.keeps(&trial) {
+            return Some(trial);
+        }
+        profile = given.profile(&trial);
+    }
+    None
+}
+
+/// Falls while fits succeed and rises while they fail.
+fn border(given: &Given, mut profile: Profile) -> Result<Trial, Unfit> {
+    let least = given.ends.least();
+    let foretold = (profile.total().round() as isize + nodes_beyond_pieces(given.ends)).max(least as isize) as usize;
+    if foretold > least && foretold * DENSE > given.points.len() {
+        return Err(Unfit::Noise);
+    }
+    let most = ((AMPLE * foretold as f64) as usize + SPARE).min(given.points.len()).max(least);
+    let mut nodes = foretold;
+    let (mut failed, mut best): (usize, Option<Trial>) = (least - 1, None);
+    let mut repaired: Option<Trial> = None;
+    loop {
+        let trial = match repaired.take() {
+            Some(start) => given.run(start, EFFORT, false),
+            None => given.run(given.start(nodes, &profile), EFFORT, true),
+        };
+        profile = given.profile(&trial);
         let step = (nodes / 12).max(1);
-        if keeps {
+        if given.keeps(&trial) {
             best = Some(trial);
             if nodes <= failed + 1 {
-                break;
+                return best.ok_or(Unfit::Noise);
             }
             nodes = (nodes - step).max(failed + 1);
         } else {
-            failed = nodes;
+            failed = failed.max(nodes);
             match &best {
-                Some(found) if found.nodes.len() <= nodes + 1 => break,
+                Some(found) if found.nodes.len() <= nodes + 1 => return best.ok_or(Unfit::Noise),
                 Some(found) => nodes = (nodes + found.nodes.len()).div_ceil(2),
-                None if nodes >= most => break,
-                None => nodes = (nodes + step).min(most),
+                None if nodes >= most => return Err(Unfit::At(trial.errors.at)),
+                None => {
+                    repaired = given.with_more(&trial, (nodes / 8).max(2)).filter(|start| start.nodes.len() <= most);
+                    nodes = repaired.as_ref().map_or((nodes + step).min(most), |start| start.nodes.len());
+                }
             }
         }
     }
+}
+
+/// Other starts with one node less than the best fit has, as long as one of them succeeds.
+fn below(given: &Given, grown: &Profile, mut best: Trial) -> Trial {
+    let mut left = BELOW;
+    'lower: while best.nodes.len() > given.ends.least() {
+        let nodes = best.nodes.len() - 1;
+        for start in [Start::Without(0), Start::Even, Start::Without(1), Start::Grown] {
+            if left == 0 {
+                return best;
+            }
+            left -= 1;
+            let trial = match start {
+                Start::Even => given.run(given.start(nodes, &given.profile(&best)), EFFORT, true),
+                Start::Grown => given.run(given.start(nodes, grown), EFFORT, true),
+                Start::Without(rank) => match given.without(&best, rank) {
+                    Some(start) => given.run(start, EFFORT, false),
+                    None => continue,
+                },
+            };
+            if given.keeps(&trial) {
+                best = trial;
+                continue 'lower;
+            }
+        }
+        break;
+    }
     best
+}
+
+/// Where a fit with a node less begins.
+#[derive(Clone, Copy, Debug)]
+enum Start {
+    /// The best fit without the node of this rank, the least needed first.
+    Without(usize),
+    /// Cuts that even out the best fit's errors.
+    Even,
+    /// The first guess.
+    Grown,
+}
+
+impl Given<'_> {
+    fn profile(&self, trial: &Trial) -> Profile {
+        let (cuts, errors) = self.measure(trial);
+        Profile::measured(cuts, &errors, self.limit)
+    }
+
+    /// A fit's nodes and parameters without one node: the one of the given rank by the errors around it.
+    fn without(&self, trial: &Trial, rank: usize) -> Option<Trial> {
+        let (_, errors) = self.measure(trial);
+        let pieces = trial.slots.len();
+        let periodic = self.ends == Ends::Periodic;
+        let around = |i: usize| {
+            [i + pieces - 1, i, i + 1].into_iter().filter(|&k| periodic || (pieces..2 * pieces).contains(&(k + pieces)) || k >= pieces)
+                .map(|k| errors[k % pieces]).sum::<f64>()
+        };
+        let movable = |i: usize| {
+            let slot = trial.slots[i].nodes;
+            slot[0] != slot[1] && slot[1] != slot[2] && !self.ends.fixed(slot[1], trial.nodes.len())
+        };
+        let mut candidates: Vec<usize> =
+            (0..pieces).filter(|&i| movable(i) && (periodic || (i > 0 && i + 1 < pieces))).collect();
+        candidates.sort_by(|&a, &b| around(a).total_cmp(&around(b)));
+        let &piece = candidates.get(rank)?;
+        let mut nodes = trial.nodes.clone();
+        nodes.remove(trial.slots[piece].nodes[1]);
+        let slots = self.ends.slots(nodes.len());
+        // The three pieces about the node and its neighbours become two.
+        let (from, count) = (piece as f64 - 1.0, pieces as f64);
+        let shorter = |&t: &f64| {
+            let ahead = if periodic { (t - from).rem_euclid(count) } else { t - from };
+            let moved = if ahead < 0.0 { ahead } else if ahead < 3.0 { ahead * 2.0 / 3.0 } else { ahead - 1.0 };
+            let t = moved + from;
+            if periodic { t.rem_euclid(count - 1.0) } else { t }
+        };
+        let parameters = trial.parameters.iter().map(shorter).collect();
+        Some(Trial { nodes, slots, parameters, errors: trial.errors })
+    }
+
+    /// A fit's nodes and parameters with the nodes of failing pieces doubled; `None` where more than `most` pieces fail.
+    fn with_more(&self, trial: &Trial, most: usize) -> Option<Trial> {
+        let (_, errors) = self.measure(trial);
+        let movable = |i: usize| {
+            let slot = trial.slots[i].nodes;
+            slot[0] != slot[1] && slot[1] != slot[2] && !self.ends.fixed(slot[1], trial.nodes.len())
+        };
+        let failing: Vec<usize> = (0..errors.len()).filter(|&i| errors[i] > self.limit).collect();
+        if failing.len() > most {
+            return None;
+        }
+        // Of neighbours that fail, the worse.
+        let worst = |&&i: &&usize| {
+            let above = |k: usize| errors.get(k).is_some_and(|&e| e > errors[i]);
+            movable(i) && !above(i + 1) && !(i > 0 && above(i - 1))
+        };
+        let split: Vec<usize> = failing.iter().filter(worst).copied().collect();
+        if split.is_empty() {
+            return None;
+        }
+        let mut nodes = trial.nodes.clone();
+        for &i in split.iter().rev() {
+            let [before, about, after] = trial.slots[i].nodes;
+            let (g, first, second) = (trial.nodes[about], trial.nodes[before], trial.nodes[after]);
+            nodes.splice(about..=about, [g.lerp(first, 0.25), g.lerp(second, 0.25)]);
+        }
+        let shifted = |&t: &f64| {
+            let i = t as usize;
+            let earlier = split.partition_point(|&k| k < i) as f64;
+            if split.binary_search(&i).is_ok() { t + earlier + (t - i as f64) } else { t + earlier }
+        };
+        let parameters = trial.parameters.iter().map(shifted).collect();
+        let slots = self.ends.slots(nodes.len());
+        Some(Trial { nodes, slots, parameters, errors: trial.errors })
+    }
 }
 
 fn nodes_beyond_pieces(ends: Ends) -> isize {

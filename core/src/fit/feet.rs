@@ -13,7 +13,7 @@ use crate::geometry::Point;
 /// Steps of Newton's method a call.
 const STEPS: usize = 3;
 /// A step below this is the last.
-const CLOSE: f64 = 1e-4;
+const CLOSE: f64 = 1e-2;
 
 /// Foot of `p` near parameter `t`; within 0 ..= pieces, of a closed section within 0 .. pieces.
 pub(super) fn follow(arcs: &[Arc], periodic: bool, p: Point, mut t: f64) -> f64 {

@@ -31,7 +31,7 @@ pub(super) enum Goal {
 /// Weight of the direction along the curve once the normal counts.
 const SLIDE: f64 = 0.01;
 /// Weight of errors without excess.
-const INSIDE: f64 = 0.02;
+const INSIDE: f64 = 0.005;
 /// Share of the diagonal that is added to it.
 const DAMPING: f64 = 1e-5;
 
@@ -63,6 +63,8 @@ pub(super) struct Step<'a> {
     nodes: usize,
     matrix: BandMatrix,
     rhs: Vec<f64>,
+    /// Distances of the points as last measured.
+    distances: Vec<f64>,
 }
 
 /// Place of node `k` in the equations.
@@ -83,14 +85,31 @@ struct Block {
 }
 
 impl<'a> Step<'a> {
-    pub fn new(ends: Ends, slots: &'a [Slot], nodes: usize) -> Self {
+    pub fn new(ends: Ends, slots: &'a [Slot], nodes: usize, points: usize) -> Self {
         let half = if ends == Ends::Periodic { 11 } else { 5 };
         let matrix = BandMatrix::zeros(2 * nodes, half.min(2 * nodes - 1));
-        Self { ends, slots, nodes, matrix, rhs: vec![0.0; 2 * nodes] }
+        Self { ends, slots, nodes, matrix, rhs: vec![0.0; 2 * nodes], distances: vec![0.0; points] }
     }
 
-    /// Follows the feet, measures, and gathers the equations.
-    pub fn gather(&mut self, nodes: &[Point], track: &mut Track, goal: Goal, follow: bool) -> Errors {
+    /// Number of pieces.
+    pub fn pieces(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// Distance of point `j` when it was last among the chosen.
+    pub fn distance(&self, j: usize) -> f64 {
+        self.distances[j]
+    }
+
+    /// Follows the feet, measures, and gathers the equations, for the points of rising indices `chosen`.
+    pub fn gather(
+        &mut self,
+        nodes: &[Point],
+        track: &mut Track,
+        goal: Goal,
+        follow: bool,
+        chosen: impl Iterator<Item = usize>,
+    ) -> Errors {
         self.matrix.clear();
         self.rhs.fill(0.0);
         let arcs = arcs(nodes, self.slots);
@@ -99,7 +118,8 @@ impl<'a> Step<'a> {
         let mut errors = Errors::default();
         let mut block = Block::default();
         let mut current = 0;
-        for (j, (&p, t)) in track.points.iter().zip(&mut track.parameters).enumerate() {
+        for j in chosen {
+            let (p, t) = (track.points[j], &mut track.parameters[j]);
             let end = held[0] == Some(j) || held[1] == Some(j);
             if end {
                 *t = if j == 0 { 0.0 } else { pieces as f64 };
@@ -114,6 +134,7 @@ impl<'a> Step<'a> {
             let u = *t - i as f64;
             let error = arcs[i].point(u) - p;
             let distance = error.length();
+            self.distances[j] = distance;
             errors.squares += distance * distance;
             if distance > errors.largest {
                 (errors.largest, errors.at) = (distance, j);
@@ -167,14 +188,14 @@ impl<'a> Step<'a> {
     }
 
     /// The step of every node; `None` where the equations have no solution.
-    pub fn solve(&mut self, damping: f64) -> Option<Vec<Point>> {
+    pub fn solve(&mut self) -> Option<Vec<Point>> {
         let total: f64 = (0..2 * self.nodes).map(|k| self.matrix.get(k, k)).sum();
         let mean = (total / (2 * self.nodes) as f64).max(f64::MIN_POSITIVE);
         for k in 0..self.nodes {
             let at = 2 * place(self.ends, k, self.nodes);
             for row in [at, at + 1] {
                 let diagonal = self.matrix.get(row, row);
-                let extra = if self.ends.fixed(k, self.nodes) { mean } else { (DAMPING + damping) * (diagonal + mean) };
+                let extra = if self.ends.fixed(k, self.nodes) { mean } else { DAMPING * (diagonal + mean) };
                 self.matrix.add(row, row, extra);
             }
         }

@@ -8,15 +8,29 @@ use super::profile::Profile;
 use super::section::{Arc, End, Ends, Slot};
 use super::solve::{Errors, Goal, Step, Track, arcs};
 use crate::geometry::Point;
+use crate::geometry::polyline::nearest_on_segment;
 
 /// Weight along the curve in the first steps after the linear one.
 const FIRST_SLIDE: f64 = 0.2;
 /// Weight along the curve in the later least-squares steps.
 const SLIDE: f64 = 0.02;
 /// Share of the limit at which excess begins.
-const THRESHOLD: f64 = 0.93;
+const THRESHOLD: f64 = 0.8;
 /// A fit whose largest error is above this multiple of the limit after the least-squares steps is given up.
 const HOPELESS: f64 = 3.5;
+/// From one look at all points to the next, what is left to that multiple must fall to this share.
+const PATIENCE: f64 = 0.65;
+
+/// Points a piece that the least-squares steps look at.
+const SAMPLES: usize = 12;
+/// Of so many steps on the excess one looks at all points.
+const FULL_EVERY: usize = 3;
+/// A point is in danger if its error is above this share of the limit.
+const DANGER: f64 = 0.4;
+
+/// Between the feet of neighbours the curve may be off their segment by this multiple of the limit: it may still be near the
+/// next segment, which the final measure knows.
+const STRAY: f64 = 1.25;
 
 /// How much work a trial may be.
 #[derive(Clone, Copy, Debug)]
@@ -105,36 +119,56 @@ impl Given<'_> {
     /// Fits from a start. `linear` begins with the linear solve for the start's parameters.
     pub fn run(&self, start: Trial, effort: Effort, linear: bool) -> Trial {
         let Trial { nodes, slots, parameters, .. } = start;
-        let mut track = Track { points: self.points, parameters };
-        let mut step = Step::new(self.ends, &slots, nodes.len());
-        let mut now = nodes;
-        if linear {
-            step.gather(&now, &mut track, Goal::Squares(1.0), false);
-            advance(&mut now, &mut step, 0.0);
-        }
-        let mut best: Option<(Vec<Point>, Vec<f64>, Errors)> = None;
-        let keep = |best: &mut Option<(Vec<Point>, Vec<f64>, Errors)>, nodes: &[Point], track: &Track, errors: Errors| {
-            if best.as_ref().is_none_or(|(.., old)| errors.largest < old.largest) {
-                *best = Some((nodes.to_vec(), track.parameters.clone(), errors));
-            }
+        let all = self.points.len();
+        let stride = (all / (SAMPLES * slots.len()).max(1)).max(1);
+        let mut work = Work {
+            given: self,
+            track: Track { points: self.points, parameters },
+            step: Step::new(self.ends, &slots, nodes.len(), all),
+            nodes,
+            best: None,
+            strided: (0..all).filter(|j| j % stride == 0 || j + 1 == all).collect(),
         };
-        for k in 0..effort.squares + effort.excess {
-            let goal = match k {
-                0 if linear => Goal::Squares(FIRST_SLIDE),
-                _ if k < effort.squares => Goal::Squares(SLIDE),
-                _ => Goal::Within(THRESHOLD * self.limit),
-            };
-            let errors = step.gather(&now, &mut track, goal, true);
-            keep(&mut best, &now, &track, errors);
-            let hopeless = k >= effort.squares && errors.largest > HOPELESS * self.limit;
-            if errors.largest <= self.limit || hopeless || !advance(&mut now, &mut step, 0.0) {
-                break;
-            }
-        }
-        let last = step.gather(&now, &mut track, Goal::Squares(1.0), true);
-        keep(&mut best, &now, &track, last);
-        let (nodes, parameters, errors) = best.unwrap_or((now, track.parameters, last));
+        work.squares(effort.squares, linear);
+        work.excess(effort.excess);
+        let Work { best, nodes, track, .. } = work;
+        let (nodes, parameters, errors) = best.unwrap_or((nodes, track.parameters, Errors::default()));
         Trial { nodes, slots, parameters, errors }
+    }
+
+    /// Whether the curve keeps the limit between the points too: it might turn off and come back between the feet of two
+    /// neighbours. Looks at the middle of each such stretch.
+    pub fn keeps(&self, trial: &Trial) -> bool {
+        if trial.errors.largest > self.limit {
+            return false;
+        }
+        let arcs = arcs(&trial.nodes, &trial.slots);
+        let count = arcs.len() as f64;
+        let n = self.points.len();
+        let pairs = if self.ends == Ends::Periodic { n } else { n - 1 };
+        let mut reached = trial.parameters[0];
+        (0..pairs).all(|j| {
+            let k = (j + 1) % n;
+            let mut next = trial.parameters[k];
+            if self.ends == Ends::Periodic {
+                next += ((reached - next) / count).round() * count;
+            }
+            let (from, to) = (reached, next.max(reached));
+            reached = to;
+            if to <= from {
+                return true;
+            }
+            // Joints inside a stretch are where it bends: their sides are looked at one by one.
+            let middle = |from: f64, to: f64| {
+                let t = 0.5 * (from + to);
+                let t = if t >= count && self.ends == Ends::Periodic { t - count } else { t };
+                let i = (t.max(0.0) as usize).min(arcs.len() - 1);
+                let place = arcs[i].point(t - i as f64);
+                place.distance(nearest_on_segment(place, self.points[j], self.points[k])) <= STRAY * self.limit
+            };
+            let joint = from.floor() + 1.0;
+            if joint < to { middle(from, joint) && middle(joint, to) && to - from < 2.0 } else { middle(from, to) }
+        })
     }
 
     /// Cuts between the pieces of a fit by arc length of the points, and the largest error of each piece.
@@ -167,10 +201,86 @@ impl Given<'_> {
     }
 }
 
-fn advance(nodes: &mut [Point], step: &mut Step, damping: f64) -> bool {
-    let Some(moves) = step.solve(damping) else { return false };
-    for (node, by) in nodes.iter_mut().zip(moves) {
-        *node += by;
+/// A running trial.
+struct Work<'a, 'b> {
+    given: &'a Given<'a>,
+    track: Track<'a>,
+    step: Step<'b>,
+    nodes: Vec<Point>,
+    best: Option<(Vec<Point>, Vec<f64>, Errors)>,
+    /// Points enough to tell the shape.
+    strided: Vec<usize>,
+}
+
+impl Work<'_, '_> {
+    /// Least-squares steps, on as many points as the shape needs.
+    fn squares(&mut self, steps: usize, linear: bool) {
+        for k in 0..steps + usize::from(linear) {
+            let slide = match k {
+                0 if linear => 1.0,
+                1 if linear => FIRST_SLIDE,
+                _ => SLIDE,
+            };
+            let follow = k > 0 || !linear;
+            let chosen = self.strided.iter().copied();
+            self.step.gather(&self.nodes, &mut self.track, Goal::Squares(slide), follow, chosen);
+            if !self.advance() {
+                break;
+            }
+        }
+        self.interpolate();
     }
-    true
+
+    /// Parameters of the points between those of the least-squares steps.
+    fn interpolate(&mut self) {
+        let count = self.step.pieces() as f64;
+        let periodic = self.given.ends == Ends::Periodic;
+        for pair in self.strided.windows(2) {
+            let (from, mut to) = (self.track.parameters[pair[0]], self.track.parameters[pair[1]]);
+            if periodic && (to - from).abs() > 0.5 * count {
+                to += if to < from { count } else { -count };
+            }
+            for j in pair[0] + 1..pair[1] {
+                let t = from + (to - from) * (j - pair[0]) as f64 / (pair[1] - pair[0]) as f64;
+                self.track.parameters[j] = if periodic { t.rem_euclid(count) } else { t };
+            }
+        }
+    }
+
+    /// Steps on the excess: all points now and then, in between those that are in danger of it.
+    fn excess(&mut self, steps: usize) {
+        let goal = Goal::Within(THRESHOLD * self.given.limit);
+        let mut danger: Vec<usize> = Vec::new();
+        let mut bearable = (HOPELESS - 1.0) * self.given.limit;
+        for k in 0..=steps {
+            if k % FULL_EVERY == 0 || k == steps {
+                let all = 0..self.given.points.len();
+                let errors = self.step.gather(&self.nodes, &mut self.track, goal, true, all);
+                if self.best.as_ref().is_none_or(|(.., old)| errors.largest < old.largest) {
+                    self.best = Some((self.nodes.clone(), self.track.parameters.clone(), errors));
+                }
+                if errors.largest <= self.given.limit || errors.largest > self.given.limit + bearable {
+                    return;
+                }
+                bearable *= PATIENCE;
+                let near = DANGER * self.given.limit;
+                danger.clear();
+                danger.extend((0..self.given.points.len()).filter(|&j| self.step.distance(j) > near));
+            } else {
+                let chosen = danger.iter().copied();
+                self.step.gather(&self.nodes, &mut self.track, goal, true, chosen);
+            }
+            if !self.advance() {
+                return;
+            }
+        }
+    }
+
+    fn advance(&mut self) -> bool {
+        let Some(moves) = self.step.solve() else { return false };
+        for (node, by) in self.nodes.iter_mut().zip(moves) {
+            *node += by;
+        }
+        true
+    }
 }
