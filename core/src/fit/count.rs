@@ -40,7 +40,7 @@ pub(super) fn exactly(given: &Given, nodes: usize) -> Option<Trial> {
     let mut profile = Profile::grown(given.points, given.lengths, given.limit);
     for _ in 0..3 {
         let trial = given.run(given.start(nodes, &profile), EFFORT, true);
-        if given.keeps(&trial) {
+        if given.fault(&trial).is_none() {
             return Some(trial);
         }
         profile = given.profile(&trial);
@@ -66,7 +66,8 @@ fn border(given: &Given, mut profile: Profile) -> Result<Trial, Unfit> {
         };
         profile = given.profile(&trial);
         let step = (nodes / 12).max(1);
-        if given.keeps(&trial) {
+        let fault = given.fault(&trial);
+        if fault.is_none() {
             best = Some(trial);
             if nodes <= failed + 1 {
                 return best.ok_or(Unfit::Noise);
@@ -77,7 +78,7 @@ fn border(given: &Given, mut profile: Profile) -> Result<Trial, Unfit> {
             match &best {
                 Some(found) if found.nodes.len() <= nodes + 1 => return best.ok_or(Unfit::Noise),
                 Some(found) => nodes = (nodes + found.nodes.len()).div_ceil(2),
-                None if nodes >= most => return Err(Unfit::At(trial.errors.at)),
+                None if nodes >= most => return Err(Unfit::At(fault.unwrap_or(trial.errors.at))),
                 None => {
                     repaired = given.with_more(&trial, (nodes / 8).max(2)).filter(|start| start.nodes.len() <= most);
                     nodes = repaired.as_ref().map_or((nodes + step).min(most), |start| start.nodes.len());
@@ -105,7 +106,7 @@ fn below(given: &Given, grown: &Profile, mut best: Trial) -> Trial {
                     None => continue,
                 },
             };
-            if given.keeps(&trial) {
+            if given.fault(&trial).is_none() {
                 best = trial;
                 continue 'lower;
             }

@@ -46,6 +46,9 @@ mod trial;
 mod whole;
 pub mod yang1986;
 
+#[cfg(test)]
+mod tests;
+
 pub use together::{Polyline, fit_together};
 
 use crate::curve::Spline;
@@ -169,7 +172,7 @@ pub fn fit(points: &[Point], closed: bool, options: &Options) -> Result<Fitted, 
             let corners = corners::corners(&data.points, &data.lengths, data.total, closed, options.tolerance);
             whole::fit(&data, closed, &corners, options.tolerance)
         }
-        Preset::Yang1986 => yang1986::fit(points, closed, options.tolerance),
+        Preset::Yang1986 => yang1986::fit(&data, closed, options.tolerance),
     };
     Ok(finished(whole, &data))
 }

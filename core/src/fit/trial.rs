@@ -136,18 +136,19 @@ impl Given<'_> {
         Trial { nodes, slots, parameters, errors }
     }
 
-    /// Whether the curve keeps the limit between the points too: it might turn off and come back between the feet of two
-    /// neighbours. Looks at the middle of each such stretch.
-    pub fn keeps(&self, trial: &Trial) -> bool {
+    /// The first point after which the curve does not keep near the points' line: it might turn off and come back between
+    /// the feet of two neighbours. Looks at the middle of each such stretch. Else the point with the largest error, if that
+    /// is above the limit.
+    pub fn fault(&self, trial: &Trial) -> Option<usize> {
         if trial.errors.largest > self.limit {
-            return false;
+            return Some(trial.errors.at);
         }
         let arcs = arcs(&trial.nodes, &trial.slots);
         let count = arcs.len() as f64;
         let n = self.points.len();
         let pairs = if self.ends == Ends::Periodic { n } else { n - 1 };
         let mut reached = trial.parameters[0];
-        (0..pairs).all(|j| {
+        (0..pairs).find(|&j| {
             let k = (j + 1) % n;
             let mut next = trial.parameters[k];
             if self.ends == Ends::Periodic {
@@ -156,7 +157,7 @@ impl Given<'_> {
             let (from, to) = (reached, next.max(reached));
             reached = to;
             if to <= from {
-                return true;
+                return false;
             }
             // Joints inside a stretch are where it bends: their sides are looked at one by one.
             let middle = |from: f64, to: f64| {
@@ -167,7 +168,8 @@ impl Given<'_> {
                 place.distance(nearest_on_segment(place, self.points[j], self.points[k])) <= STRAY * self.limit
             };
             let joint = from.floor() + 1.0;
-            if joint < to { middle(from, joint) && middle(joint, to) && to - from < 2.0 } else { middle(from, to) }
+            let near = if joint < to { middle(from, joint) && middle(joint, to) && to - from < 2.0 } else { middle(from, to) };
+            !near
         })
     }
 
