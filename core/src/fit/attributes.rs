@@ -8,7 +8,7 @@ use crate::curve::Spline;
 use crate::numeric::banded::BandMatrix;
 
 /// Weight of equal neighbours, in points a guide.
-const EVEN: f64 = 1e-3;
+const EVEN: f64 = 1e-5;
 
 /// Values for the guides of a spline whose blend comes nearest to `values` at `parameters`.
 pub(super) fn fit(spline: &Spline, parameters: &[f64], values: &[f64]) -> Vec<f64> {
@@ -45,7 +45,7 @@ pub(super) fn fit(spline: &Spline, parameters: &[f64], values: &[f64]) -> Vec<f6
         }
     }
     for k in 0..n {
-        matrix.add(k, k, EVEN * even);
+        matrix.add(k, k, 1e-3 * even);
     }
     let Ok(factor) = matrix.factor() else { return vec![mean; n] };
     factor.solve_in_place(&mut rhs);

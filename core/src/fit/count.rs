@@ -18,7 +18,11 @@ const DENSE: usize = 3;
 const AMPLE: f64 = 1.6;
 const SPARE: usize = 5;
 /// Fits that may be spent on going below the border.
-const BELOW: usize = 6;
+const BELOW: usize = 16;
+/// Nodes that are left out in turn at each step below, the most promising first.
+const PROMISING: usize = 3;
+/// A start is hopeless if its error stays above this multiple of the limit.
+const UNPROMISING: f64 = 2.5;
 
 /// Why a section has no fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,19 +97,35 @@ fn below(given: &Given, grown: &Profile, mut best: Trial) -> Trial {
     let mut left = BELOW;
     'lower: while best.nodes.len() > given.ends.least() {
         let nodes = best.nodes.len() - 1;
-        for start in [Start::Without(0), Start::Even, Start::Without(1), Start::Grown] {
+        let mut starts: Vec<(f64, Trial)> = given
+            .movable(&best)
+            .map(|piece| given.without(&best, piece))
+            .map(|start| (given.promise(&start), start))
+            .collect();
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        starts.truncate(PROMISING);
+        for (promise, start) in starts {
+            if promise > UNPROMISING * given.limit {
+                break;
+            }
             if left == 0 {
                 return best;
             }
             left -= 1;
-            let trial = match start {
-                Start::Even => given.run(given.start(nodes, &given.profile(&best)), EFFORT, true),
-                Start::Grown => given.run(given.start(nodes, grown), EFFORT, true),
-                Start::Without(rank) => match given.without(&best, rank) {
-                    Some(start) => given.run(start, EFFORT, false),
-                    None => continue,
-                },
-            };
+            let trial = given.run(start, EFFORT, false);
+            if std::env::var("FIT_DEBUG").is_ok() { eprintln!("   below {nodes} promise {promise:.3}: {:.3} {:?}", trial.errors.largest, given.fault(&trial)); }
+            if given.fault(&trial).is_none() {
+                best = trial;
+                continue 'lower;
+            }
+        }
+        for profile in [given.profile(&best), grown.clone()] {
+            if left == 0 {
+                return best;
+            }
+            left -= 1;
+            let trial = given.run(given.start(nodes, &profile), EFFORT, true);
+            if std::env::var("FIT_DEBUG").is_ok() { eprintln!("   below {nodes} profile: {:.3} {:?}", trial.errors.largest, given.fault(&trial)); }
             if given.fault(&trial).is_none() {
                 best = trial;
                 continue 'lower;
@@ -116,40 +136,26 @@ fn below(given: &Given, grown: &Profile, mut best: Trial) -> Trial {
     best
 }
 
-/// Where a fit with a node less begins.
-#[derive(Clone, Copy, Debug)]
-enum Start {
-    /// The best fit without the node of this rank, the least needed first.
-    Without(usize),
-    /// Cuts that even out the best fit's errors.
-    Even,
-    /// The first guess.
-    Grown,
-}
-
 impl Given<'_> {
     fn profile(&self, trial: &Trial) -> Profile {
         let (cuts, errors) = self.measure(trial);
         Profile::measured(cuts, &errors, self.limit)
     }
 
-    /// A fit's nodes and parameters without one node: the one of the given rank by the errors around it.
-    fn without(&self, trial: &Trial, rank: usize) -> Option<Trial> {
-        let (_, errors) = self.measure(trial);
+    /// Pieces whose node could be left out.
+    fn movable<'t>(&'t self, trial: &'t Trial) -> impl Iterator<Item = usize> + 't {
+        let pieces = trial.slots.len();
+        let inner = move |i: usize| self.ends == Ends::Periodic || (i > 0 && i + 1 < pieces);
+        (0..pieces).filter(move |&i| {
+            let slot = trial.slots[i].nodes;
+            inner(i) && slot[0] != slot[1] && slot[1] != slot[2] && !self.ends.fixed(slot[1], trial.nodes.len())
+        })
+    }
+
+    /// A fit's nodes and parameters without the node of a piece.
+    fn without(&self, trial: &Trial, piece: usize) -> Trial {
         let pieces = trial.slots.len();
         let periodic = self.ends == Ends::Periodic;
-        let around = |i: usize| {
-            [i + pieces - 1, i, i + 1].into_iter().filter(|&k| periodic || (pieces..2 * pieces).contains(&(k + pieces)) || k >= pieces)
-                .map(|k| errors[k % pieces]).sum::<f64>()
-        };
-        let movable = |i: usize| {
-            let slot = trial.slots[i].nodes;
-            slot[0] != slot[1] && slot[1] != slot[2] && !self.ends.fixed(slot[1], trial.nodes.len())
-        };
-        let mut candidates: Vec<usize> =
-            (0..pieces).filter(|&i| movable(i) && (periodic || (i > 0 && i + 1 < pieces))).collect();
-        candidates.sort_by(|&a, &b| around(a).total_cmp(&around(b)));
-        let &piece = candidates.get(rank)?;
         let mut nodes = trial.nodes.clone();
         nodes.remove(trial.slots[piece].nodes[1]);
         let slots = self.ends.slots(nodes.len());
@@ -162,7 +168,7 @@ impl Given<'_> {
             if periodic { t.rem_euclid(count - 1.0) } else { t }
         };
         let parameters = trial.parameters.iter().map(shorter).collect();
-        Some(Trial { nodes, slots, parameters, errors: trial.errors })
+        Trial { nodes, slots, parameters, errors: trial.errors }
     }
 
     /// A fit's nodes and parameters with the nodes of failing pieces doubled; `None` where more than `most` pieces fail.

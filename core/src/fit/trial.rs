@@ -18,13 +18,15 @@ const SLIDE: f64 = 0.02;
 const THRESHOLD: f64 = 0.8;
 /// A fit whose largest error is above this multiple of the limit after the least-squares steps is given up.
 const HOPELESS: f64 = 3.5;
-/// From one look at all points to the next, what is left to that multiple must fall to this share.
-const PATIENCE: f64 = 0.65;
+/// With each step, what is left to that multiple must fall to this share.
+const PATIENCE: f64 = 0.86;
 
 /// Points a piece that the least-squares steps look at.
 const SAMPLES: usize = 12;
+/// Least-squares steps that tell whether a start is promising.
+const PROMISE: usize = 3;
 /// Of so many steps on the excess one looks at all points.
-const FULL_EVERY: usize = 3;
+const FULL_EVERY: usize = 4;
 /// A point is in danger if its error is above this share of the limit.
 const DANGER: f64 = 0.4;
 
@@ -119,21 +121,21 @@ impl Given<'_> {
     /// Fits from a start. `linear` begins with the linear solve for the start's parameters.
     pub fn run(&self, start: Trial, effort: Effort, linear: bool) -> Trial {
         let Trial { nodes, slots, parameters, .. } = start;
-        let all = self.points.len();
-        let stride = (all / (SAMPLES * slots.len()).max(1)).max(1);
-        let mut work = Work {
-            given: self,
-            track: Track { points: self.points, parameters },
-            step: Step::new(self.ends, &slots, nodes.len(), all),
-            nodes,
-            best: None,
-            strided: (0..all).filter(|j| j % stride == 0 || j + 1 == all).collect(),
-        };
+        let mut work = Work::new(self, &slots, nodes, parameters);
         work.squares(effort.squares, linear);
+        work.interpolate();
         work.excess(effort.excess);
         let Work { best, nodes, track, .. } = work;
         let (nodes, parameters, errors) = best.unwrap_or((nodes, track.parameters, Errors::default()));
         Trial { nodes, slots, parameters, errors }
+    }
+
+    /// How promising a start is: the largest error, on some of the points, after a few least-squares steps.
+    pub fn promise(&self, start: &Trial) -> f64 {
+        let mut work = Work::new(self, &start.slots, start.nodes.clone(), start.parameters.clone());
+        work.squares(PROMISE, false);
+        let chosen = work.strided.iter().copied();
+        work.step.gather(&work.nodes, &mut work.track, Goal::Squares(SLIDE), true, chosen).largest
     }
 
     /// The first point after which the curve does not keep near the points' line: it might turn off and come back between
@@ -214,7 +216,20 @@ struct Work<'a, 'b> {
     strided: Vec<usize>,
 }
 
-impl Work<'_, '_> {
+impl<'a, 'b> Work<'a, 'b> {
+    fn new(given: &'a Given<'a>, slots: &'b [Slot], nodes: Vec<Point>, parameters: Vec<f64>) -> Self {
+        let all = given.points.len();
+        let stride = (all / (SAMPLES * slots.len()).max(1)).max(1);
+        Self {
+            given,
+            track: Track { points: given.points, parameters },
+            step: Step::new(given.ends, slots, nodes.len(), all),
+            nodes,
+            best: None,
+            strided: (0..all).filter(|j| j % stride == 0 || j + 1 == all).collect(),
+        }
+    }
+
     /// Least-squares steps, on as many points as the shape needs.
     fn squares(&mut self, steps: usize, linear: bool) {
         for k in 0..steps + usize::from(linear) {
@@ -230,7 +245,6 @@ impl Work<'_, '_> {
                 break;
             }
         }
-        self.interpolate();
     }
 
     /// Parameters of the points between those of the least-squares steps.
@@ -252,30 +266,45 @@ impl Work<'_, '_> {
     /// Steps on the excess: all points now and then, in between those that are in danger of it.
     fn excess(&mut self, steps: usize) {
         let goal = Goal::Within(THRESHOLD * self.given.limit);
+        let limit = self.given.limit;
         let mut danger: Vec<usize> = Vec::new();
-        let mut bearable = (HOPELESS - 1.0) * self.given.limit;
-        for k in 0..=steps {
-            if k % FULL_EVERY == 0 || k == steps {
-                let all = 0..self.given.points.len();
-                let errors = self.step.gather(&self.nodes, &mut self.track, goal, true, all);
-                if self.best.as_ref().is_none_or(|(.., old)| errors.largest < old.largest) {
-                    self.best = Some((self.nodes.clone(), self.track.parameters.clone(), errors));
-                }
-                if errors.largest <= self.given.limit || errors.largest > self.given.limit + bearable {
+        let mut bearable = (HOPELESS - 1.0) * limit;
+        let mut since = FULL_EVERY;
+        let mut taken = 0;
+        loop {
+            if since >= FULL_EVERY || taken == steps {
+                let errors = self.look_at_all(goal);
+                if errors.largest <= limit || errors.largest > limit + bearable || taken == steps {
                     return;
                 }
-                bearable *= PATIENCE;
-                let near = DANGER * self.given.limit;
+                bearable *= PATIENCE.powi(since as i32);
+                since = 0;
                 danger.clear();
-                danger.extend((0..self.given.points.len()).filter(|&j| self.step.distance(j) > near));
+                danger.extend((0..self.given.points.len()).filter(|&j| self.step.distance(j) > DANGER * limit));
             } else {
                 let chosen = danger.iter().copied();
-                self.step.gather(&self.nodes, &mut self.track, goal, true, chosen);
+                let errors = self.step.gather(&self.nodes, &mut self.track, goal, true, chosen);
+                if errors.largest <= limit {
+                    // Perhaps done: the others have a say before the next step.
+                    since = FULL_EVERY;
+                    continue;
+                }
             }
             if !self.advance() {
                 return;
             }
+            taken += 1;
+            since += 1;
         }
+    }
+
+    fn look_at_all(&mut self, goal: Goal) -> Errors {
+        let all = 0..self.given.points.len();
+        let errors = self.step.gather(&self.nodes, &mut self.track, goal, true, all);
+        if self.best.as_ref().is_none_or(|(.., old)| errors.largest < old.largest) {
+            self.best = Some((self.nodes.clone(), self.track.parameters.clone(), errors));
+        }
+        errors
     }
 
     fn advance(&mut self) -> bool {
