@@ -21,8 +21,11 @@ const SPARE: usize = 5;
 const BELOW: usize = 16;
 /// Nodes that are left out in turn at each step below, the most promising first.
 const PROMISING: usize = 3;
+/// Nodes whose promise is below this multiple of the limit, so many pieces apart, are left out together.
+const PROMISED: f64 = 1.0;
+const APART: usize = 6;
 /// A start is hopeless if its error stays above this multiple of the limit.
-const UNPROMISING: f64 = 2.5;
+const UNPROMISING: f64 = 1.6;
 
 /// Why a section has no fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,8 +38,8 @@ pub(super) enum Unfit {
 
 /// The fit with the fewest nodes found, starting from the profile of the points.
 pub(super) fn fewest(given: &Given, grown: Profile) -> Result<Trial, Unfit> {
-    let found = border(given, grown.clone())?;
-    Ok(below(given, &grown, found))
+    let found = border(given, grown)?;
+    Ok(below(given, found))
 }
 
 /// A fit with this many nodes, if one keeps the limit.
@@ -93,18 +96,27 @@ fn border(given: &Given, mut profile: Profile) -> Result<Trial, Unfit> {
 }
 
 /// Other starts with one node less than the best fit has, as long as one of them succeeds.
-fn below(given: &Given, grown: &Profile, mut best: Trial) -> Trial {
+fn below(given: &Given, mut best: Trial) -> Trial {
     let mut left = BELOW;
     'lower: while best.nodes.len() > given.ends.least() {
         let nodes = best.nodes.len() - 1;
-        let mut starts: Vec<(f64, Trial)> = given
+        let mut starts: Vec<(f64, usize, Trial)> = given
             .movable(&best)
-            .map(|piece| given.without(&best, piece))
-            .map(|start| (given.promise(&start), start))
+            .map(|piece| (piece, given.without(&best, piece)))
+            .map(|(piece, start)| (given.promise(&start, piece.saturating_sub(1)), piece, start))
             .collect();
         starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some(start) = given.without_several(&best, &starts) {
+            left = left.saturating_sub(1);
+            let trial = given.run(start, EFFORT, false);
+            if std::env::var("FIT_DEBUG").is_ok() { eprintln!("   below several {}: {:.3} {:?}", trial.nodes.len(), trial.errors.largest, given.fault(&trial)); }
+            if given.fault(&trial).is_none() {
+                best = trial;
+                continue 'lower;
+            }
+        }
         starts.truncate(PROMISING);
-        for (promise, start) in starts {
+        for (promise, _, start) in starts {
             if promise > UNPROMISING * given.limit {
                 break;
             }
@@ -114,18 +126,6 @@ fn below(given: &Given, grown: &Profile, mut best: Trial) -> Trial {
             left -= 1;
             let trial = given.run(start, EFFORT, false);
             if std::env::var("FIT_DEBUG").is_ok() { eprintln!("   below {nodes} promise {promise:.3}: {:.3} {:?}", trial.errors.largest, given.fault(&trial)); }
-            if given.fault(&trial).is_none() {
-                best = trial;
-                continue 'lower;
-            }
-        }
-        for profile in [given.profile(&best), grown.clone()] {
-            if left == 0 {
-                return best;
-            }
-            left -= 1;
-            let trial = given.run(given.start(nodes, &profile), EFFORT, true);
-            if std::env::var("FIT_DEBUG").is_ok() { eprintln!("   below {nodes} profile: {:.3} {:?}", trial.errors.largest, given.fault(&trial)); }
             if given.fault(&trial).is_none() {
                 best = trial;
                 continue 'lower;
@@ -150,6 +150,27 @@ impl Given<'_> {
             let slot = trial.slots[i].nodes;
             inner(i) && slot[0] != slot[1] && slot[1] != slot[2] && !self.ends.fixed(slot[1], trial.nodes.len())
         })
+    }
+
+    /// Without the nodes of all very promising pieces that are far from each other; `None` where that is one at most.
+    fn without_several(&self, trial: &Trial, starts: &[(f64, usize, Trial)]) -> Option<Trial> {
+        let pieces = trial.slots.len();
+        let apart = |a: usize, b: usize| {
+            let apart = a.abs_diff(b);
+            if self.ends == Ends::Periodic { apart.min(pieces - apart) } else { apart }
+        };
+        let mut chosen: Vec<usize> = Vec::new();
+        for (promise, piece, _) in starts {
+            if *promise <= PROMISED * self.limit && chosen.iter().all(|&other| apart(other, *piece) >= APART) {
+                chosen.push(*piece);
+            }
+        }
+        if chosen.len() < 2 {
+            return None;
+        }
+        chosen.sort_by(|a, b| b.cmp(a));
+        let first = self.without(trial, chosen[0]);
+        Some(chosen[1..].iter().fold(first, |fewer, &piece| self.without(&fewer, piece)))
     }
 
     /// A fit's nodes and parameters without the node of a piece.

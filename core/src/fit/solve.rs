@@ -32,6 +32,9 @@ pub(super) enum Goal {
 const SLIDE: f64 = 0.01;
 /// Weight of errors without excess.
 const INSIDE: f64 = 0.005;
+/// Errors below this share of the threshold are well inside, and of such points each fourth is kept.
+const QUIET: f64 = 0.6;
+const KEPT: usize = 4;
 /// Share of the diagonal that is added to it.
 const DAMPING: f64 = 1e-5;
 
@@ -61,6 +64,8 @@ pub(super) struct Step<'a> {
     ends: Ends,
     slots: &'a [Slot],
     nodes: usize,
+    /// Nodes that do not move.
+    fixed: Vec<bool>,
     matrix: BandMatrix,
     rhs: Vec<f64>,
     /// Distances of the points as last measured.
@@ -76,7 +81,7 @@ fn place(ends: Ends, k: usize, nodes: usize) -> usize {
     }
 }
 
-/// Sums of one piece: 3 × 3 blocks of xx, xy, yy and three right-hand sides.
+/// Sums of one piece: 3 × 3 blocks of xx, xy, yy, of which the lower ones are gathered, and three right-hand sides.
 #[derive(Default)]
 struct Block {
     matrix: [[[f64; 3]; 3]; 3],
@@ -88,7 +93,17 @@ impl<'a> Step<'a> {
     pub fn new(ends: Ends, slots: &'a [Slot], nodes: usize, points: usize) -> Self {
         let half = if ends == Ends::Periodic { 11 } else { 5 };
         let matrix = BandMatrix::zeros(2 * nodes, half.min(2 * nodes - 1));
-        Self { ends, slots, nodes, matrix, rhs: vec![0.0; 2 * nodes], distances: vec![0.0; points] }
+        let fixed = (0..nodes).map(|k| ends.fixed(k, nodes)).collect();
+        Self { ends, slots, nodes, fixed, matrix, rhs: vec![0.0; 2 * nodes], distances: vec![0.0; points] }
+    }
+
+    /// Holds all nodes but those of the pieces for which `free` says so.
+    pub fn hold_but(&mut self, free: impl Fn(usize) -> bool) {
+        let mut held = vec![true; self.nodes];
+        for (i, slot) in self.slots.iter().enumerate() {
+            held[slot.nodes[1]] &= !free(i);
+        }
+        self.fixed.iter_mut().zip(held).for_each(|(fixed, held)| *fixed |= held);
     }
 
     /// Number of pieces.
@@ -139,6 +154,14 @@ impl<'a> Step<'a> {
             if distance > errors.largest {
                 (errors.largest, errors.at) = (distance, j);
             }
+            // Points well inside only keep the equations regular: some of them do.
+            if let Goal::Within(threshold) = goal
+                && distance < QUIET * threshold
+                && j % KEPT != 0
+                && !end
+            {
+                continue;
+            }
             let (along, across, pull) = weights(goal, distance, end);
             let tangent = (arcs[i].b + arcs[i].a * u).normalize_or_zero();
             let weights = self.slots[i].weights(u);
@@ -161,8 +184,11 @@ impl<'a> Step<'a> {
         if !block.used {
             return;
         }
+        for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+            block.matrix[a][b] = block.matrix[b][a];
+        }
         let places = self.slots[piece].nodes.map(|k| 2 * place(self.ends, k, self.nodes));
-        let fixed = self.slots[piece].nodes.map(|k| self.ends.fixed(k, self.nodes));
+        let fixed = self.slots[piece].nodes.map(|k| self.fixed[k]);
         for a in 0..3 {
             if fixed[a] {
                 continue;
@@ -195,7 +221,7 @@ impl<'a> Step<'a> {
             let at = 2 * place(self.ends, k, self.nodes);
             for row in [at, at + 1] {
                 let diagonal = self.matrix.get(row, row);
-                let extra = if self.ends.fixed(k, self.nodes) { mean } else { DAMPING * (diagonal + mean) };
+                let extra = if self.fixed[k] { mean } else { DAMPING * (diagonal + mean) };
                 self.matrix.add(row, row, extra);
             }
         }
@@ -237,7 +263,7 @@ impl Block {
         let force = Point::new(xx * error.x + xy * error.y, xy * error.x + yy * error.y) * pull;
         for a in 0..3 {
             self.rhs[a] -= force * weights[a];
-            for b in 0..3 {
+            for b in 0..=a {
                 let w = weights[a] * weights[b];
                 let [x, y, z] = &mut self.matrix[a][b];
                 *x += w * xx;

@@ -25,10 +25,12 @@ const PATIENCE: f64 = 0.86;
 const SAMPLES: usize = 12;
 /// Least-squares steps that tell whether a start is promising.
 const PROMISE: usize = 3;
+/// Pieces on each side of a change that such steps move.
+const NEAR: usize = 4;
 /// Of so many steps on the excess one looks at all points.
 const FULL_EVERY: usize = 4;
 /// A point is in danger if its error is above this share of the limit.
-const DANGER: f64 = 0.4;
+const DANGER: f64 = 0.55;
 
 /// Between the feet of neighbours the curve may be off their segment by this multiple of the limit: it may still be near the
 /// next segment, which the final measure knows.
@@ -130,9 +132,18 @@ impl Given<'_> {
         Trial { nodes, slots, parameters, errors }
     }
 
-    /// How promising a start is: the largest error, on some of the points, after a few least-squares steps.
-    pub fn promise(&self, start: &Trial) -> f64 {
+    /// How promising a start is that differs from a good fit about piece `at`: the largest error near there, on some of the
+    /// points, after a few least-squares steps of the nodes near there.
+    pub fn promise(&self, start: &Trial, at: usize) -> f64 {
+        let pieces = start.slots.len();
+        let apart = |i: usize| {
+            let apart = i.abs_diff(at);
+            if self.ends == Ends::Periodic { apart.min(pieces - apart) } else { apart }
+        };
         let mut work = Work::new(self, &start.slots, start.nodes.clone(), start.parameters.clone());
+        work.step.hold_but(|i| apart(i) <= NEAR);
+        let parameters = &work.track.parameters;
+        work.strided.retain(|&j| apart((parameters[j] as usize).min(pieces - 1)) <= NEAR + 1);
         work.squares(PROMISE, false);
         let chosen = work.strided.iter().copied();
         work.step.gather(&work.nodes, &mut work.track, Goal::Squares(SLIDE), true, chosen).largest
