@@ -109,7 +109,6 @@ fn below(given: &Given, mut best: Trial) -> Trial {
         if let Some(start) = given.without_several(&best, &starts) {
             left = left.saturating_sub(1);
             let trial = given.run(start, EFFORT, false);
-            if std::env::var("FIT_DEBUG").is_ok() { eprintln!("   below several {}: {:.3} {:?}", trial.nodes.len(), trial.errors.largest, given.fault(&trial)); }
             if given.fault(&trial).is_none() {
                 best = trial;
                 continue 'lower;
@@ -125,7 +124,6 @@ fn below(given: &Given, mut best: Trial) -> Trial {
             }
             left -= 1;
             let trial = given.run(start, EFFORT, false);
-            if std::env::var("FIT_DEBUG").is_ok() { eprintln!("   below {nodes} promise {promise:.3}: {:.3} {:?}", trial.errors.largest, given.fault(&trial)); }
             if given.fault(&trial).is_none() {
                 best = trial;
                 continue 'lower;
