@@ -99,7 +99,6 @@ fn border(given: &Given, mut profile: Profile) -> Result<Trial, Unfit> {
 fn below(given: &Given, mut best: Trial) -> Trial {
     let mut left = BELOW;
     'lower: while best.nodes.len() > given.ends.least() {
-        let nodes = best.nodes.len() - 1;
         let mut starts: Vec<(f64, usize, Trial)> = given
             .movable(&best)
             .map(|piece| (piece, given.without(&best, piece)))

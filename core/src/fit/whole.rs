@@ -18,6 +18,8 @@ use crate::geometry::polyline::nearest_on_segment;
 
 /// Rounds of new corners before straight lines.
 const ROUNDS: usize = 5;
+/// A fault within this many limits of a corner is that corner's.
+const BESIDE: f64 = 6.0;
 /// Share of the tolerance that fits use: rounding, and the measure's own slack, take the rest.
 const MARGIN: f64 = 0.998;
 /// Rounds with a smaller limit where the curve strays between points.
@@ -136,11 +138,31 @@ fn sections(data: &Cleaned, closed: bool, mut corners: Vec<Corner>, limit: f64, 
         if new.is_empty() {
             return done;
         }
-        corners.extend(new.into_iter().map(|index| Corner { index, place: data.points[index] }));
+        for index in new {
+            repair(data, closed, &mut corners, index, round, limit);
+        }
         corners.sort_by_key(|corner| corner.index);
         corners.dedup_by_key(|corner| corner.index);
     }
     done
+}
+
+/// Puts a corner where a fit fails. Next to a corner that is there already, that one was misplaced: it is first put on its
+/// point, then moved to the fault; only then the fault gets a corner of its own.
+fn repair(data: &Cleaned, closed: bool, corners: &mut Vec<Corner>, index: usize, round: usize, limit: f64) {
+    let apart = |corner: &Corner| {
+        let apart = (data.lengths[corner.index] - data.lengths[index]).abs();
+        if closed { apart.min(data.total - apart) } else { apart }
+    };
+    let place = data.points[index];
+    let near = corners.iter_mut().filter(|corner| round < 2 && apart(corner) <= BESIDE * limit);
+    match near.min_by(|a, b| apart(a).total_cmp(&apart(b))) {
+        Some(corner) if round == 0 && corner.place != data.points[corner.index] => {
+            corner.place = data.points[corner.index];
+        }
+        Some(corner) => *corner = Corner { index, place },
+        None => corners.push(Corner { index, place }),
+    }
 }
 
 /// Where corners would help; none where noise is the reason, or where there is a corner already.
