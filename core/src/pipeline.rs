@@ -81,7 +81,8 @@ pub fn frames(document: &Document, folder: &Path) -> Result<Sequence, PipelineEr
 pub fn fit_curves(curves: &Curves, options: &fit::Options, progress: &dyn Progress) -> Result<String, PipelineError> {
     let (all, done) = (curves.curves.len(), AtomicUsize::new(0));
     let fitted = curves.curves.par_iter().enumerate().map(|(curve, line)| {
-        let fitted = fit::fit(&line.points, line.closed, options).map_err(|source| PipelineError::Fit { curve, source })?;
+        let fitted =
+            fit::fit(&line.points, line.closed, options).map_err(|source| PipelineError::Fit { curve, source })?;
         let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
         progress.report("Fitting", finished as f64 / all as f64)?;
         let (spline, max_error) = (fitted.spline, fitted.max_error);

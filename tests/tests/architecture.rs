@@ -21,7 +21,10 @@ const ALLOWED: [(&str, &[&str]); 12] = [
     ("render", &["numeric", "geometry", "scene", "image"]),
     ("export", &["numeric", "geometry", "scene"]),
     ("project", &["numeric", "geometry", "scene"]),
-    ("pipeline", &["numeric", "geometry", "curve", "fit", "scene", "image", "track", "snap", "render", "export", "project"]),
+    (
+        "pipeline",
+        &["numeric", "geometry", "curve", "fit", "scene", "image", "track", "snap", "render", "export", "project"],
+    ),
 ];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {

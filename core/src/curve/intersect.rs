@@ -117,7 +117,9 @@ fn merged(sorted: Vec<Meeting>) -> Vec<Meeting> {
         if let Meeting::Point { first: u, second: v } = meeting {
             let near = |x: f64, y: f64| (x - y).abs() < MERGE;
             let within = |x: f64, (a, b): (f64, f64)| x > a.min(b) - MERGE && x < a.max(b) + MERGE;
-            let repeated = kept.iter().any(|k| matches!(*k, Meeting::Point { first, second } if near(first, u) && near(second, v)));
+            let repeated = kept
+                .iter()
+                .any(|k| matches!(*k, Meeting::Point { first, second } if near(first, u) && near(second, v)));
             let covered = overlaps
                 .iter()
                 .any(|o| matches!(*o, Meeting::Overlap { first, second } if within(u, first) && within(v, second)));
@@ -211,7 +213,9 @@ fn same_parabola(one: &Quadratic, two: &Quadratic, size: f64) -> Option<Meeting>
 /// Direction of a straight piece's line; none where it is a point.
 fn line_direction(line: &Quadratic) -> Option<Point> {
     let legs = [line.p1 - line.p0, line.p2 - line.p1, line.p2 - line.p0];
-    legs.into_iter().max_by(|a, b| a.length_squared().total_cmp(&b.length_squared())).and_then(|leg| leg.try_normalize())
+    legs.into_iter()
+        .max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
+        .and_then(|leg| leg.try_normalize())
 }
 
 /// Parameters at which a straight piece passes the place `at` along `direction`.
@@ -238,8 +242,7 @@ fn along_line(line: &Quadratic, direction: Point, at: f64, size: f64) -> Vec<f64
 fn line_and_parabola(line: &Quadratic, other: &Quadratic, size: f64) -> Vec<Meeting> {
     let Some(direction) = line_direction(line) else { return point_and_piece(line, other, size) };
     let (a, b) = other.coefficients();
-    let quadratic =
-        [direction.perp_dot(other.p0 - line.p0), 2.0 * direction.perp_dot(b), direction.perp_dot(a)];
+    let quadratic = [direction.perp_dot(other.p0 - line.p0), 2.0 * direction.perp_dot(b), direction.perp_dot(a)];
     let touch = -0.5 * quadratic[1] / quadratic[2];
     let candidates = [0.0, 1.0, if touch.is_finite() { touch.clamp(0.0, 1.0) } else { 0.0 }];
     let mut found = Vec::new();

@@ -59,7 +59,11 @@ impl Quadratic {
         let mut u = length / total;
         for _ in 0..80 {
             let missing = length - self.length_to(u);
-            if missing > 0.0 { low = u } else { high = u }
+            if missing > 0.0 {
+                low = u
+            } else {
+                high = u
+            }
             let newton = u + missing / self.derivative(u).length();
             let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
             if (next - u).abs() <= f64::EPSILON {
@@ -145,7 +149,8 @@ mod tests {
                 let next = from + (to - from) * 0.5f64.powi(level);
                 let n = 8;
                 for i in 0..n {
-                    let (x, y) = (edge + (next - edge) * i as f64 / n as f64, edge + (next - edge) * (i + 1) as f64 / n as f64);
+                    let (x, y) =
+                        (edge + (next - edge) * i as f64 / n as f64, edge + (next - edge) * (i + 1) as f64 / n as f64);
                     sum += quadrature(a, b + a * x.min(y), (y - x).abs());
                 }
                 edge = next;

@@ -180,7 +180,8 @@ impl Spline {
         let n = self.guides.len();
         let same = |i: usize| self.guides[i] == self.guides[(i + 1) % n];
         let last = if self.closed { n } else { n - 1 };
-        let inner = |i: usize| self.closed || (self.guides[i] != self.guides[0] && self.guides[i] != self.guides[n - 1]);
+        let inner =
+            |i: usize| self.closed || (self.guides[i] != self.guides[0] && self.guides[i] != self.guides[n - 1]);
         let begins = |i: usize| if i > 0 { !same(i - 1) } else { !self.closed || !same(n - 1) };
         (0..last).filter(|&i| same(i) && begins(i) && inner(i)).collect()
     }

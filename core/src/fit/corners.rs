@@ -127,8 +127,7 @@ impl<'a> Sums<'a> {
         }
         let m = count as f64;
         let mean = Point::new(sum[0] / m, sum[1] / m);
-        let (xx, xy, yy) =
-            (sum[2] / m - mean.x * mean.x, sum[3] / m - mean.x * mean.y, sum[4] / m - mean.y * mean.y);
+        let (xx, xy, yy) = (sum[2] / m - mean.x * mean.x, sum[3] / m - mean.x * mean.y, sum[4] / m - mean.y * mean.y);
         let direction = Point::from_angle(0.5 * (2.0 * xy).atan2(xx - yy));
         let along = self.points[ends.1] - self.points[ends.0];
         let direction = if direction.dot(along) < 0.0 { -direction } else { direction };

@@ -1,12 +1,15 @@
 //! The fewest nodes with which a section keeps the limit.
 //!
-//! The profile foretells about how many; from there the number falls while fits succeed and rises while they fail, in steps
-//! that grow with the number, until the border between success and failure is one node wide. Every fit refines the profile.
-//! At the border a node is taken out of the best fit itself, where it is missed least: a start of its own, which sometimes
-//! gets along with one node less than the even start does.
+//! The profile foretells about how many. From there the number rises while fits fail (where few pieces fail, by doubling the
+//! nodes of those) and falls while they succeed, in steps that grow with the number, until the border between success and
+//! failure is one node wide. Each fit refines the profile.
+//!
+//! Then nodes are taken out of the best fit itself, which gets along with a fifth fewer than even starts do. Which of them
+//! can be missed is asked of a few least-squares steps near each, on some of the points (its *promise*); the most promising
+//! are tried in full, in long sections several far apart at once.
 
 use super::profile::Profile;
-use super::section::{Ends, End};
+use super::section::{End, Ends};
 use super::trial::{Effort, Given, Trial};
 
 /// Work of a trial.
@@ -20,10 +23,11 @@ const SPARE: usize = 5;
 /// Fits that may be spent on going below the border.
 const BELOW: usize = 16;
 /// Nodes that are left out in turn at each step below, the most promising first.
-const PROMISING: usize = 3;
+const PROMISING: usize = 4;
 /// Nodes whose promise is below this multiple of the limit, so many pieces apart, are left out together.
 const PROMISED: f64 = 1.0;
 const APART: usize = 6;
+const LEAST_TOGETHER: usize = 3;
 /// A start is hopeless if its error stays above this multiple of the limit.
 const UNPROMISING: f64 = 1.6;
 
@@ -149,7 +153,7 @@ impl Given<'_> {
         })
     }
 
-    /// Without the nodes of all very promising pieces that are far from each other; `None` where that is one at most.
+    /// Without the nodes of all very promising pieces that are far from each other; `None` where those are few.
     fn without_several(&self, trial: &Trial, starts: &[(f64, usize, Trial)]) -> Option<Trial> {
         let pieces = trial.slots.len();
         let apart = |a: usize, b: usize| {
@@ -162,7 +166,7 @@ impl Given<'_> {
                 chosen.push(*piece);
             }
         }
-        if chosen.len() < 2 {
+        if chosen.len() < LEAST_TOGETHER {
             return None;
         }
         chosen.sort_by(|a, b| b.cmp(a));
@@ -181,7 +185,13 @@ impl Given<'_> {
         let (from, count) = (piece as f64 - 1.0, pieces as f64);
         let shorter = |&t: &f64| {
             let ahead = if periodic { (t - from).rem_euclid(count) } else { t - from };
-            let moved = if ahead < 0.0 { ahead } else if ahead < 3.0 { ahead * 2.0 / 3.0 } else { ahead - 1.0 };
+            let moved = if ahead < 0.0 {
+                ahead
+            } else if ahead < 3.0 {
+                ahead * 2.0 / 3.0
+            } else {
+                ahead - 1.0
+            };
             let t = moved + from;
             if periodic { t.rem_euclid(count - 1.0) } else { t }
         };

@@ -30,7 +30,7 @@ const NEAR: usize = 4;
 /// Of so many steps on the excess one looks at all points.
 const FULL_EVERY: usize = 4;
 /// A point is in danger if its error is above this share of the limit.
-const DANGER: f64 = 0.55;
+const DANGER: f64 = 0.45;
 
 /// Between the feet of neighbours the curve may be off their segment by this multiple of the limit: it may still be near the
 /// next segment, which the final measure knows.
@@ -181,7 +181,8 @@ impl Given<'_> {
                 place.distance(nearest_on_segment(place, self.points[j], self.points[k])) <= STRAY * self.limit
             };
             let joint = from.floor() + 1.0;
-            let near = if joint < to { middle(from, joint) && middle(joint, to) && to - from < 2.0 } else { middle(from, to) };
+            let near =
+                if joint < to { middle(from, joint) && middle(joint, to) && to - from < 2.0 } else { middle(from, to) };
             !near
         })
     }

@@ -93,7 +93,10 @@ pub fn guides(arcs: &[Quadratic], corners: &[bool], closed: bool, tolerance: f64
     let mut iterations = 1;
     loop {
         let open = (0..n).filter(|&i| counts[i] < MOST);
-        let worst = open.fold(None, |worst: Option<usize>, i| if worst.is_none_or(|w| missed[i] > missed[w]) { Some(i) } else { worst });
+        let worst = open.fold(
+            None,
+            |worst: Option<usize>, i| if worst.is_none_or(|w| missed[i] > missed[w]) { Some(i) } else { worst },
+        );
         let Some(worst) = worst.filter(|&i| missed[i] > tolerance) else { return (spline, counts, iterations) };
         counts[worst] += 1;
         iterations += 1;
@@ -147,7 +150,9 @@ pub fn arcs(points: &[Point], closed: bool, tolerance: f64) -> (Vec<Quadratic>, 
     while start + 1 < line.len() {
         let fits = |end: usize| {
             let arc = parabola(&knots[start], &knots[end]);
-            let curved = end == start + 1 || meeting(&knots[start], &knots[end]).is_some() || is_straight(&line[start..=end], tolerance);
+            let curved = end == start + 1
+                || meeting(&knots[start], &knots[end]).is_some()
+                || is_straight(&line[start..=end], tolerance);
             curved && line[start + 1..end].iter().all(|&p| arc.nearest(p).distance < tolerance)
         };
         let corner = (start + 1..line.len()).find(|&k| knots[k].is_corner()).unwrap_or(line.len());
@@ -263,7 +268,8 @@ mod tests {
     #[test]
     fn the_first_guiding_points_are_those_of_table_1() {
         // As printed, but for G(2), whose second coordinate is 7.2 there and 7.0 in Table 2, and for lost signs.
-        let printed = [(8.30, 9.60), (12.0, 7.0), (8.0, 6.0), (9.0, 1.0), (5.0, 3.0), (5.4, 6.4), (0.8, 5.7), (2.3, 7.9)];
+        let printed =
+            [(8.30, 9.60), (12.0, 7.0), (8.0, 6.0), (9.0, 1.0), (5.0, 3.0), (5.4, 6.4), (0.8, 5.7), (2.3, 7.9)];
         let rest = [(-0.2, 12.0), (5.4, 9.7), (7.0, 20.0)];
         for (arc, (x, y)) in table().iter().zip(printed.into_iter().chain(rest)) {
             assert!(arc.p1.distance(Point::new(x, y)) < 0.3, "{:?} {x} {y}", arc.p1);

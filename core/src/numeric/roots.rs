@@ -139,7 +139,11 @@ fn bracketed(c: &[f64], derivative: &[f64], (mut a, at_a): (f64, f64), mut b: f6
         if value == 0.0 {
             return x;
         }
-        if (value < 0.0) == (at_a < 0.0) { a = x } else { b = x }
+        if (value < 0.0) == (at_a < 0.0) {
+            a = x
+        } else {
+            b = x
+        }
         let newton = x - value / evaluate(derivative, x);
         let (least, most) = if a < b { (a, b) } else { (b, a) };
         let next = if newton > least && newton < most { newton } else { 0.5 * (a + b) };

@@ -97,7 +97,8 @@ impl Curves {
         let reader = Reader { origin };
         let mut rest = reader.object(value, "the document")?;
         let curves = reader.array(rest.get_mut("curves").map(Value::take), "curves", "a list of curves")?;
-        let curves = curves.into_iter().enumerate().map(|(k, curve)| reader.curve(curve, k)).collect::<Result<_, _>>()?;
+        let curves =
+            curves.into_iter().enumerate().map(|(k, curve)| reader.curve(curve, k)).collect::<Result<_, _>>()?;
         Ok(Self { curves, rest })
     }
 
@@ -190,7 +191,8 @@ mod tests {
 
     #[test]
     fn what_is_written_keeps_other_fields() {
-        let text = r#"{"by":"me","curves":[{"name":"arm","closed":true,"points":[[1,2.5],[3,4]],"z":1,"guides":[]}],"n":[2]}"#;
+        let text =
+            r#"{"by":"me","curves":[{"name":"arm","closed":true,"points":[[1,2.5],[3,4]],"z":1,"guides":[]}],"n":[2]}"#;
         let file = Curves::from_json(text, "a.json").unwrap();
         assert_eq!(file.curves[0].points, [Point::new(1.0, 2.5), Point::new(3.0, 4.0)]);
         let guides = CurveGuides { guides: vec![Point::new(0.1, 2.0)], corners: vec![0], max_error: 0.25 };
