@@ -46,7 +46,7 @@ impl Cubic {
     /// Quadratics of equal parameter steps, nowhere farther than `tolerance` from the cubic; as few as that needs.
     ///
     /// `tolerance` is positive; with one that is not, the largest number of parts is taken (65 536).
-    pub fn to_quadratics(&self, tolerance: f64) -> Vec<Quadratic> {
+    pub fn to_quadratics(self, tolerance: f64) -> Vec<Quadratic> {
         let [c0, c1, c2, c3] = self.points;
         let wave = CUBIC_WAVE * ((c3 - c0) + 3.0 * (c1 - c2)).length();
         // A little more than the bound, which rounding must not break.
@@ -103,7 +103,8 @@ impl Spline {
         let spline = Self::new(guides, closed)?;
         for (index, (have, made)) in pieces.iter().zip(spline.pieces()).enumerate() {
             let distance = have.p0.distance(made.p0).max(have.p2.distance(made.p2));
-            if !(distance <= tolerance) {
+            let near = distance <= tolerance;
+            if !near {
                 return Err(NotUniform::Joint { index, distance, tolerance });
             }
         }

@@ -38,8 +38,9 @@ impl Quadratic {
         let (a, b) = self.coefficients();
         let squared = a.length_squared();
         let start = a.dot(b) / squared;
-        // The comparison also sends the straight piece (not a number, or infinite) to the quadrature.
-        if !(start.abs() <= FAR) || squared <= f64::MIN_POSITIVE {
+        // Of straight pieces `start` is infinite or not a number: no comparison holds.
+        let by_formula = start.abs() <= FAR && squared > f64::MIN_POSITIVE;
+        if !by_formula {
             return quadrature(a, b, u);
         }
         let k = a.perp_dot(b).abs() / squared;
@@ -49,7 +50,7 @@ impl Quadratic {
     /// Parameter (0 to 1) at which the length from the start is `length`; clamped to the piece.
     pub fn parameter_at(&self, length: f64) -> f64 {
         let total = self.length();
-        if !(length > 0.0) || total <= 0.0 {
+        if length.is_nan() || length <= 0.0 || total <= 0.0 {
             return 0.0;
         }
         if length >= total {

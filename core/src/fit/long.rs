@@ -40,10 +40,12 @@ pub(super) fn fit(given: &Given) -> Result<Trial, Vec<Unfit>> {
     in_chunks(given, &whole)
 }
 
+/// Joints at the start and the end of a chunk, by the index of the piece that begins there; none at the section's own ends.
+type Joints = (Option<usize>, Option<usize>);
+
 /// A stretch of the section between two joints of its first fit.
 struct Chunk {
-    /// Its joints, by the index of the piece that begins there; none at the section's own end.
-    joints: (Option<usize>, Option<usize>),
+    joints: Joints,
     /// Its points: indices, which go round in a closed section.
     points: Vec<usize>,
     ends: (End, End),
@@ -69,7 +71,7 @@ impl Chunk {
 /// Fits all chunks. A chunk that cannot be fitted is joined with its neighbour at the joint that is nearer to the fault.
 fn in_chunks(given: &Given, whole: &Trial) -> Result<Trial, Vec<Unfit>> {
     let mut joints = joints(given, whole);
-    let mut done: Vec<((Option<usize>, Option<usize>), Trial)> = Vec::new();
+    let mut done: Vec<(Joints, Trial)> = Vec::new();
     for round in 0..=JOININGS {
         let chunks = chunks(given, whole, &joints);
         let (mut bad_joints, mut failures) = (Vec::new(), Vec::new());

@@ -189,7 +189,7 @@ fn checked(points: &[Point], tolerance: f64) -> Result<(), FitError> {
     if points.is_empty() {
         return Err(FitError::Empty);
     }
-    let outside = |p: &Point| !(p.abs().max_element() <= FARTHEST) || p.is_nan();
+    let outside = |p: &Point| p.is_nan() || p.abs().max_element() > FARTHEST;
     match points.iter().position(outside) {
         Some(index) => Err(FitError::Point { index, x: points[index].x, y: points[index].y }),
         None => Ok(()),

@@ -138,7 +138,8 @@ fn solve(m: [f64; 5], sums: [Point; 3]) -> Option<[Point; 3]> {
             for j in k..3 {
                 a[i][j] -= factor * a[k][j];
             }
-            b[i] = b[i] - b[k] * factor;
+            let by = b[k] * factor;
+            b[i] -= by;
         }
     }
     let c2 = b[2] / a[2][2];

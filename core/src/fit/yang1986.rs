@@ -15,7 +15,8 @@
 //! middle is the guiding point, a straight line. The discrepancies printed in the paper's Table 2 cannot be reproduced;
 //! the procedure and its result can (see the test). The paper promises ε for the points only; so does step 1 here. The error
 //! that is given back is measured like that of all fits, and may exceed the tolerance between points or by the
-//! corners' straight legs. If it does, the shares of ε are made smaller and all is done again.
+//! corners' straight legs. If it does, the shares of ε are halved and all is done again; where six halvings do not help (a
+//! staircase of pixels, whose every step is a corner to slopes of neighbours), the default method takes over.
 
 use super::bound::{self, Line};
 use super::clean::Cleaned;

@@ -53,7 +53,8 @@ pub fn roots_in(coefficients: &[f64], low: f64, high: f64) -> Roots {
     assert!(coefficients.len() <= MAX_DEGREE + 1, "degree {} is above {MAX_DEGREE}", coefficients.len() - 1);
     let largest = coefficients.iter().fold(0.0f64, |most, c| most.max(c.abs()));
     let mut scaled = [0.0; MAX_DEGREE + 1];
-    if !(largest > 0.0 && largest.is_finite()) || !(low <= high) || coefficients.iter().any(|c| c.is_nan()) {
+    let usable = largest > 0.0 && largest.is_finite() && low <= high && !coefficients.iter().any(|c| c.is_nan());
+    if !usable {
         return Roots::default();
     }
     for (to, from) in scaled.iter_mut().zip(coefficients) {
