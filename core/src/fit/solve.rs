@@ -150,22 +150,10 @@ impl<'a> Step<'a> {
             let error = arcs[i].point(u) - p;
             let distance = error.length();
             self.distances[j] = distance;
-            errors.squares += distance * distance;
-            if distance > errors.largest {
-                (errors.largest, errors.at) = (distance, j);
-            }
-            // Points well inside only keep the equations regular: some of them do.
-            if let Goal::Within(threshold) = goal
-                && distance < QUIET * threshold
-                && j % KEPT != 0
-                && !end
-            {
-                continue;
-            }
-            let (along, across, pull) = weights(goal, distance, end);
+            errors.note(distance, j);
+            let Some((along, across, pull)) = weights(goal, distance, end, j) else { continue };
             let tangent = (arcs[i].b + arcs[i].a * u).normalize_or_zero();
-            let weights = self.slots[i].weights(u);
-            block.add(&weights, error, tangent, (along, across), pull);
+            block.add(&self.slots[i].weights(u), error, tangent, (along, across), pull);
         }
         self.scatter(&mut block, current);
         errors
@@ -236,16 +224,27 @@ impl<'a> Step<'a> {
     }
 }
 
-/// Weight along the curve, weight across it, and the share of the error that pulls.
-fn weights(goal: Goal, distance: f64, end: bool) -> (f64, f64, f64) {
-    match goal {
+/// Weight along the curve, weight across it, and the share of the error that pulls; none where point `j` is left out.
+fn weights(goal: Goal, distance: f64, end: bool, j: usize) -> Option<(f64, f64, f64)> {
+    Some(match goal {
         Goal::Squares(_) if end => (1.0, 1.0, 1.0),
         Goal::Squares(slide) => (slide, 1.0, 1.0),
+        // Points well inside only keep the equations regular: some of them do.
+        Goal::Within(threshold) if distance < QUIET * threshold && j % KEPT != 0 && !end => return None,
         Goal::Within(threshold) => {
-            let over = if distance > threshold { 1.0 } else { 0.0 };
-            let weight = INSIDE + over;
-            let pull = if over > 0.0 { (INSIDE + 1.0 - threshold / distance) / weight } else { 1.0 };
+            let over = distance > threshold;
+            let weight = if over { INSIDE + 1.0 } else { INSIDE };
+            let pull = if over { (weight - threshold / distance) / weight } else { 1.0 };
             (if end { weight } else { SLIDE * weight }, weight, pull)
+        }
+    })
+}
+
+impl Errors {
+    fn note(&mut self, distance: f64, j: usize) {
+        self.squares += distance * distance;
+        if distance > self.largest {
+            (self.largest, self.at) = (distance, j);
         }
     }
 }
