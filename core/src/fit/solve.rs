@@ -68,8 +68,10 @@ pub(super) struct Step<'a> {
     fixed: Vec<bool>,
     matrix: BandMatrix,
     rhs: Vec<f64>,
-    /// Distances of the points as last measured.
-    distances: Vec<f64>,
+    /// Distances of the points as last measured, and how far the nodes had travelled by then.
+    distances: Vec<(f64, f64)>,
+    /// Sum of the largest moves of a node, step by step.
+    travelled: f64,
 }
 
 /// Place of node `k` in the equations.
@@ -94,7 +96,16 @@ impl<'a> Step<'a> {
         let half = if ends == Ends::Periodic { 11 } else { 5 };
         let matrix = BandMatrix::zeros(2 * nodes, half.min(2 * nodes - 1));
         let fixed = (0..nodes).map(|k| ends.fixed(k, nodes)).collect();
-        Self { ends, slots, nodes, fixed, matrix, rhs: vec![0.0; 2 * nodes], distances: vec![0.0; points] }
+        Self {
+            ends,
+            slots,
+            nodes,
+            fixed,
+            matrix,
+            rhs: vec![0.0; 2 * nodes],
+            distances: vec![(f64::INFINITY, 0.0); points],
+            travelled: 0.0,
+        }
     }
 
     /// Holds all nodes but those of the pieces for which `free` says so.
@@ -113,7 +124,14 @@ impl<'a> Step<'a> {
 
     /// Distance of point `j` when it was last among the chosen.
     pub fn distance(&self, j: usize) -> f64 {
-        self.distances[j]
+        self.distances[j].0
+    }
+
+    /// Whether point `j` is within the limit without another look: a place of the curve moves no farther than the nodes that
+    /// it is blended from, and so no farther than all nodes have travelled since the last look.
+    pub fn is_sure(&self, j: usize, limit: f64) -> bool {
+        let (distance, travelled) = self.distances[j];
+        distance + (self.travelled - travelled) <= limit
     }
 
     /// Follows the feet, measures, and gathers the equations, for the points of rising indices `chosen`.
@@ -149,7 +167,7 @@ impl<'a> Step<'a> {
             let u = *t - i as f64;
             let error = arcs[i].point(u) - p;
             let distance = error.length();
-            self.distances[j] = distance;
+            self.distances[j] = (distance, self.travelled);
             errors.note(distance, j);
             let Some((along, across, pull)) = weights(goal, distance, end, j) else { continue };
             let tangent = (arcs[i].b + arcs[i].a * u).normalize_or_zero();
@@ -220,6 +238,7 @@ impl<'a> Step<'a> {
             Point::new(self.rhs[at], self.rhs[at + 1])
         };
         let steps: Vec<_> = (0..self.nodes).map(step).collect();
+        self.travelled += steps.iter().map(|by| by.length()).fold(0.0, f64::max);
         steps.iter().all(|s| s.is_finite()).then_some(steps)
     }
 }

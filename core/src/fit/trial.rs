@@ -275,7 +275,8 @@ impl<'a, 'b> Work<'a, 'b> {
         }
     }
 
-    /// Steps on the excess: all points now and then, in between those that are in danger of it.
+    /// Steps on the excess: all points now and then (but those that are sure to be within the limit), in between those that
+    /// are in danger of it.
     fn excess(&mut self, steps: usize) {
         let goal = Goal::Within(THRESHOLD * self.given.limit);
         let limit = self.given.limit;
@@ -311,8 +312,9 @@ impl<'a, 'b> Work<'a, 'b> {
     }
 
     fn look_at_all(&mut self, goal: Goal) -> Errors {
-        let all = 0..self.given.points.len();
-        let errors = self.step.gather(&self.nodes, &mut self.track, goal, true, all);
+        let unsure: Vec<usize> =
+            (0..self.given.points.len()).filter(|&j| !self.step.is_sure(j, self.given.limit)).collect();
+        let errors = self.step.gather(&self.nodes, &mut self.track, goal, true, unsure.into_iter());
         if self.best.as_ref().is_none_or(|(.., old)| errors.largest < old.largest) {
             self.best = Some((self.nodes.clone(), self.track.parameters.clone(), errors));
         }
