@@ -19,7 +19,7 @@ const THRESHOLD: f64 = 0.8;
 /// A fit whose largest error is above this multiple of the limit after the least-squares steps is given up.
 const HOPELESS: f64 = 3.5;
 /// With each step, what is left to that multiple must fall to this share.
-const PATIENCE: f64 = 0.86;
+const PATIENCE: f64 = 0.8;
 
 /// Points a piece that the least-squares steps look at.
 const SAMPLES: usize = 12;
