@@ -24,9 +24,9 @@ const PATIENCE: f64 = 0.8;
 /// Points a piece that the least-squares steps look at.
 const SAMPLES: usize = 12;
 /// Least-squares steps that tell whether a start is promising.
-const PROMISE: usize = 3;
+const PROMISE: usize = 2;
 /// Pieces on each side of a change that such steps move.
-const NEAR: usize = 4;
+const NEAR: usize = 3;
 /// Of so many steps on the excess one looks at all points.
 const FULL_EVERY: usize = 4;
 /// A point is in danger if its error is above this share of the limit.
