@@ -10,14 +10,16 @@
 //! 6. [`project`]: the document that holds all of it.
 //! 7. [`pipeline`]: the stages joined.
 //!
-//! [`geometry`] and [`numeric`] serve them all.
+//! [`geometry`] and [`numeric`] serve them all; [`curve`] holds quadratic B-splines, and [`fit`] makes them from points.
 //!
 //! # Coordinates
 //!
 //! Pixels, x right, y down, origin at the outer top-left corner of the picture: a pixel's centre lies at +0.5.
 //! Hosts convert at their border.
 
+pub mod curve;
 pub mod export;
+pub mod fit;
 pub mod geometry;
 pub mod image;
 pub mod numeric;

@@ -4,17 +4,20 @@
 //! when cancelled, not at all.
 
 use crate::export::{SvgOptions, svg};
+use crate::fit::{self, FitError};
 use crate::geometry::Point;
 use crate::image::Sequence;
+use crate::project::curves::{CurveGuides, Curves};
 use crate::project::save::DECIMALS;
 use crate::project::{Document, Problems, WriteError, output, validate, write_whole};
 use crate::render::{self, EncodeError, Format, OverlayOptions};
 use crate::scene::{Cancelled, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
 use crate::snap::{SnapError, SnapOptions, snap_scene};
 use crate::track::{TrackError, TrackOptions, Tracker, Tracking};
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Why the pipeline stopped. The document is as it was.
 #[derive(Debug, thiserror::Error)]
@@ -45,14 +48,50 @@ pub enum PipelineError {
         /// What the encoder said.
         source: EncodeError,
     },
+    /// A curve could not be fitted.
+    #[error("curves[{curve}].{}", fit_place(source))]
+    Fit {
+        /// Its index.
+        curve: usize,
+        /// Why.
+        source: FitError,
+    },
     /// What was asked for does not fit the document.
     #[error("{0}")]
     Request(String),
 }
 
+/// The place of an error within its curve, and the error.
+fn fit_place(error: &FitError) -> String {
+    match error {
+        FitError::Point { index, x, y } => {
+            format!("points[{index}]: found ({x}, {y}), expected numbers between -1e9 and 1e9")
+        }
+        other => format!("points: {other}"),
+    }
+}
+
 /// The pictures of a document that lies in `folder`.
 pub fn frames(document: &Document, folder: &Path) -> Result<Sequence, PipelineError> {
     Ok(Sequence::new(&document.scene.footage, folder)?)
+}
+
+/// Fits splines to the curves of a file, each by itself; the text of the file with guides in place of points. Runs on the
+/// caller's rayon pool; the result does not depend on it.
+pub fn fit_curves(curves: &Curves, options: &fit::Options, progress: &dyn Progress) -> Result<String, PipelineError> {
+    let (all, done) = (curves.curves.len(), AtomicUsize::new(0));
+    let fitted = curves.curves.par_iter().enumerate().map(|(curve, line)| {
+        let fitted =
+            fit::fit(&line.points, line.closed, options).map_err(|source| PipelineError::Fit { curve, source })?;
+        let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
+        progress.report("Fitting", finished as f64 / all as f64)?;
+        let (spline, max_error) = (fitted.spline, fitted.max_error);
+        Ok(CurveGuides { corners: spline.corners(), guides: spline.guides().to_vec(), max_error })
+    });
+    // Of several errors the first curve's is told, whichever was met first.
+    let fitted: Vec<Result<CurveGuides, PipelineError>> = fitted.collect();
+    let guides = fitted.into_iter().collect::<Result<Vec<_>, _>>()?;
+    Ok(curves.with_guides(&guides))
 }
 
 /// Tracks every part of a document that lies in `folder`. Runs on the caller's rayon pool.

@@ -1,5 +1,6 @@
 //! Holds the direction of dependencies in the core:
 //!
+//! `numeric ← geometry ← curve ← fit` and
 //! `numeric ← geometry ← scene ← {image, track, snap, render, export, project} ← pipeline`,
 //! where track, snap and render may use image, and track and snap never import each other.
 
@@ -8,9 +9,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module of the core with the modules that it may use.
-const ALLOWED: [(&str, &[&str]); 10] = [
+const ALLOWED: [(&str, &[&str]); 12] = [
     ("numeric", &[]),
     ("geometry", &["numeric"]),
+    ("curve", &["numeric", "geometry"]),
+    ("fit", &["numeric", "geometry", "curve"]),
     ("scene", &["numeric", "geometry"]),
     ("image", &["numeric", "geometry", "scene"]),
     ("track", &["numeric", "geometry", "scene", "image"]),
@@ -18,7 +21,10 @@ const ALLOWED: [(&str, &[&str]); 10] = [
     ("render", &["numeric", "geometry", "scene", "image"]),
     ("export", &["numeric", "geometry", "scene"]),
     ("project", &["numeric", "geometry", "scene"]),
-    ("pipeline", &["numeric", "geometry", "scene", "image", "track", "snap", "render", "export", "project"]),
+    (
+        "pipeline",
+        &["numeric", "geometry", "curve", "fit", "scene", "image", "track", "snap", "render", "export", "project"],
+    ),
 ];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {

@@ -1,5 +1,6 @@
 //! Development commands of Rototoon.
 
+mod bench_fit;
 mod bench_tracking;
 mod bless;
 mod bundle;
@@ -42,6 +43,8 @@ enum Command {
         #[arg(long)]
         check: bool,
     },
+    /// Measure curve fitting beside its peers on six outlines.
+    BenchFit(bench_fit::Arguments),
     /// Measure every preset on sets with known truth, with tables and pictures in target/bench-tracking.
     BenchTracking(bench_tracking::Arguments),
     /// Accept the golden pictures that the tests last drew.
@@ -56,6 +59,7 @@ fn main() -> anyhow::Result<()> {
         Command::Test => test::test(),
         Command::Bundle => bundle::bundle(&bundle::Packager::from_wheel()?).map(|_| ()),
         Command::Generate { check } => generate::generate(check),
+        Command::BenchFit(arguments) => bench_fit::bench_fit(&arguments),
         Command::BenchTracking(arguments) => bench_tracking::bench_tracking(&arguments),
         Command::Bless => bless::bless(),
         Command::Photograph => photograph::photograph(),

@@ -3,7 +3,7 @@
 //! - [`arguments`]: options made from the core's list of parameters
 //! - [`progress`]: a bar on a terminal, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
-//! - [`track`], [`snap`], [`render`], [`export`], [`check`]: the subcommands
+//! - [`track`], [`snap`], [`render`], [`export`], [`check`], [`fit`]: the subcommands
 //!
 //! Exit status: 0 done, 1 failed, 2 wrong use.
 
@@ -11,6 +11,7 @@ mod arguments;
 mod check;
 mod export;
 mod failure;
+mod fit;
 mod progress;
 mod project;
 mod render;
@@ -25,13 +26,14 @@ use std::process::ExitCode;
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 /// Each subcommand with what it does.
-fn subcommands() -> [(Command, Run); 5] {
+fn subcommands() -> [(Command, Run); 6] {
     [
         (track::command(), track::run),
         (snap::command(), snap::run),
         (render::command(), render::run),
         (export::command(), export::run),
         (check::command(), check::run),
+        (fit::command(), fit::run),
     ]
 }
 

@@ -6,6 +6,7 @@
 //! - [`damped_system`]: damped normal equations, long rows as a correction of low rank
 //! - [`gradient_check`]: an analytic Jacobian against differences
 //! - [`normal_equations`]: JᵀJ and Jᵀr of a sparse Jacobian of fixed pattern
+//! - [`roots`]: real roots of polynomials up to the quartic
 //! - [`sparse_least_squares`]: Levenberg–Marquardt on such problems
 //! - [`trust_region`]: Gauss–Newton within a trust region by conjugate gradients
 //! - `vector`: hot loops compiled for the machine they run on
@@ -16,6 +17,7 @@ pub mod cholesky;
 pub mod damped_system;
 pub mod gradient_check;
 pub mod normal_equations;
+pub mod roots;
 pub mod sparse_least_squares;
 pub mod trust_region;
 pub(crate) mod vector;

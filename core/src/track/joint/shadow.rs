@@ -99,6 +99,9 @@ struct Casts {
     costs: BTreeMap<usize, (Arc<Pools>, Arc<Costs>)>,
 }
 
+/// A far and a near contender, and the masks, where there are any.
+type Fresh = ((usize, usize), Option<Arc<Masks>>);
+
 /// A far and a near contender's pools, and the masks, where there are any.
 type PairCast = ([Arc<Pools>; 2], Option<Arc<Masks>>);
 
@@ -130,7 +133,7 @@ impl Shadows {
             .par_iter()
             .map(|&n| if unknown.iter().any(|u| u.1 == n) { silhouettes(&contenders[n]) } else { Vec::new() })
             .collect();
-        let fresh: Vec<Vec<((usize, usize), Option<Arc<Masks>>)>> =
+        let fresh: Vec<Vec<Fresh>> =
             index.par_iter().map(|&f| masks_on(contenders, &silhouettes, &unknown, f)).collect();
         let costs: Vec<Arc<Costs>> = contenders
             .par_iter()
@@ -216,12 +219,7 @@ fn may_hide(contenders: &[Contender], (far, near): (usize, usize)) -> bool {
 }
 
 /// The masks on one contender by the nearer ones of the pairs it is the far one of.
-fn masks_on(
-    contenders: &[Contender],
-    silhouettes: &[Silhouettes],
-    pairs: &[(usize, usize)],
-    f: usize,
-) -> Vec<((usize, usize), Option<Arc<Masks>>)> {
+fn masks_on(contenders: &[Contender], silhouettes: &[Silhouettes], pairs: &[(usize, usize)], f: usize) -> Vec<Fresh> {
     let far = &contenders[f];
     let nearer: Vec<usize> = pairs.iter().filter(|pair| pair.0 == f).map(|pair| pair.1).collect();
     if nearer.is_empty() {

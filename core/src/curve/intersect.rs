@@ -1,0 +1,507 @@
+//! Where two parabola pieces meet (Yang et al. 1986, Appendix E).
+//!
+//! **Boxes first.** Pieces whose boxes are apart do not meet.
+//!
+//! **The quartic.** For X on the piece p0 + 2b v + a v², cross products with a and b give v and v² alone:
+//! a × (X − p0) = 2D v and b × (X − p0) = −D v² with D = a × b. So the parabola is the set where
+//!
+//! (a × (X − p0))² + 4 D (b × (X − p0)) = 0,
+//!
+//! and with X the other piece's point, quadratic in u, this is a quartic in u. Its roots are the crossings; v follows
+//! from the first equation, and both are polished by Newton's method on B₁(u) = B₂(v). The more bent of the two pieces is
+//! made implicit, since D divides.
+//!
+//! **Degenerate cases.**
+//! - Straight pieces (D = 0 in proportion to the size): the line's own equation replaces the quartic, giving a quadratic;
+//!   v is found along the line. A straight piece may fold back on itself and then meet twice at one place.
+//! - Two straight pieces: points where the lines cross, a stretch where they lie on each other.
+//! - The same parabola: the quartic vanishes. The shared stretch, between ends of the two, is reported as an overlap.
+//! - Tangents: a double root, reported once. What is apart by less than the rounding of the coefficients counts as touching.
+//! - Pieces that are points: met where the other passes through.
+//!
+//! Limits: two crossings closer together than about 1e-6 of the pieces' size may be reported as one.
+
+use super::{Quadratic, Spline};
+use crate::geometry::Point;
+use crate::numeric::roots::roots_in;
+
+/// How two pieces meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Meeting {
+    /// At a point.
+    Point {
+        /// Parameter on the first.
+        first: f64,
+        /// Parameter on the second.
+        second: f64,
+    },
+    /// Along a stretch; the parameters of its start and end, on the second falling where it runs the other way.
+    Overlap {
+        /// Parameters on the first, rising.
+        first: (f64, f64),
+        /// The parameters of the same points on the second.
+        second: (f64, f64),
+    },
+}
+
+/// A distance below this share of the pieces' size counts as none.
+const SAME: f64 = 1e-10;
+/// A piece is straight if its control triangle's height is below this share of the pieces' size.
+const STRAIGHT: f64 = 1e-9;
+/// Meetings that are closer in both parameters are one.
+const MERGE: f64 = 1e-6;
+
+impl Quadratic {
+    /// All meetings with another piece, in the order of this one's parameter.
+    pub fn intersect(&self, other: &Self) -> Vec<Meeting> {
+        let (low, high) = self.control_box();
+        let (other_low, other_high) = other.control_box();
+        let size = (high.max(other_high) - low.min(other_low)).max_element();
+        let gap = (low - other_high).max(other_low - high).max_element();
+        if gap > SAME * size {
+            return Vec::new();
+        }
+        // About a near origin, so that distance from the true one costs no digits.
+        let moved = |q: &Self| Self::new(q.p0 - low, q.p1 - low, q.p2 - low);
+        let (mine, theirs) = (moved(self), moved(other));
+        let mut found = match (mine.straight(size), theirs.straight(size)) {
+            (true, true) => lines(&mine, &theirs, size),
+            (false, true) => line_and_parabola(&theirs, &mine, size).into_iter().map(Meeting::swapped).collect(),
+            (true, false) => line_and_parabola(&mine, &theirs, size),
+            (false, false) if mine.flatness() > theirs.flatness() => {
+                parabolas(&theirs, &mine, size).into_iter().map(Meeting::swapped).collect()
+            }
+            (false, false) => parabolas(&mine, &theirs, size),
+        };
+        found.sort_by(|a, b| a.start().total_cmp(&b.start()));
+        merged(found)
+    }
+
+    /// Height of the control triangle over its longest side, in pixels.
+    fn flatness(&self) -> f64 {
+        let (a, b) = self.coefficients();
+        let longest = self.p0.distance(self.p1).max(self.p1.distance(self.p2)).max(self.p0.distance(self.p2));
+        if longest > 0.0 { a.perp_dot(b).abs() / longest } else { 0.0 }
+    }
+
+    fn straight(&self, size: f64) -> bool {
+        self.flatness() <= STRAIGHT * size
+    }
+}
+
+impl Meeting {
+    fn start(&self) -> f64 {
+        match *self {
+            Self::Point { first, .. } => first,
+            Self::Overlap { first, .. } => first.0,
+        }
+    }
+
+    /// The meeting as the other piece sees it.
+    fn swapped(self) -> Self {
+        match self {
+            Self::Point { first, second } => Self::Point { first: second, second: first },
+            Self::Overlap { first, second } if second.0 <= second.1 => Self::Overlap { first: second, second: first },
+            Self::Overlap { first, second } => {
+                Self::Overlap { first: (second.1, second.0), second: (first.1, first.0) }
+            }
+        }
+    }
+}
+
+/// One of each group of meetings that are the same; points on an overlap are part of it.
+fn merged(sorted: Vec<Meeting>) -> Vec<Meeting> {
+    let overlaps: Vec<_> = sorted.iter().filter(|m| matches!(m, Meeting::Overlap { .. })).copied().collect();
+    let mut kept: Vec<Meeting> = Vec::with_capacity(sorted.len());
+    for meeting in sorted {
+        if let Meeting::Point { first: u, second: v } = meeting {
+            let near = |x: f64, y: f64| (x - y).abs() < MERGE;
+            let within = |x: f64, (a, b): (f64, f64)| x > a.min(b) - MERGE && x < a.max(b) + MERGE;
+            let repeated = kept
+                .iter()
+                .any(|k| matches!(*k, Meeting::Point { first, second } if near(first, u) && near(second, v)));
+            let covered = overlaps
+                .iter()
+                .any(|o| matches!(*o, Meeting::Overlap { first, second } if within(u, first) && within(v, second)));
+            if repeated || covered {
+                continue;
+            }
+        }
+        kept.push(meeting);
+    }
+    kept
+}
+
+/// Two bent pieces; the second is made implicit.
+fn parabolas(one: &Quadratic, two: &Quadratic, size: f64) -> Vec<Meeting> {
+    let (a, b) = two.coefficients();
+    let d = a.perp_dot(b);
+    let (a1, b1) = one.coefficients();
+    let c = one.p0 - two.p0;
+    let along = [a.perp_dot(c), 2.0 * a.perp_dot(b1), a.perp_dot(a1)];
+    let across = [b.perp_dot(c), 2.0 * b.perp_dot(b1), b.perp_dot(a1)];
+    let mut quartic = [0.0; 5];
+    for i in 0..3 {
+        quartic[i] += 4.0 * d * across[i];
+        for j in 0..3 {
+            quartic[i + j] += along[i] * along[j];
+        }
+    }
+    if let Some(overlap) = same_parabola(one, two, size) {
+        return vec![overlap];
+    }
+    let at = |u: f64| (along[0] + u * (along[1] + u * along[2])) / (2.0 * d);
+    let ends = [one.nearest(two.p0).parameter, one.nearest(two.p2).parameter, 0.0, 1.0];
+    roots_in(&quartic, 0.0, 1.0)
+        .iter()
+        .map(|&u| (u, at(u)))
+        // Ends that touch may miss the interval by a rounding.
+        .chain(ends.map(|u| (u, at(u))))
+        .filter_map(|(u, v)| accepted(one, two, (u, v), size))
+        .collect()
+}
+
+/// The meeting near these parameters, if there is one.
+fn accepted(one: &Quadratic, two: &Quadratic, (u, v): (f64, f64), size: f64) -> Option<Meeting> {
+    let clamped = |(u, v): (f64, f64)| (u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
+    let miss = |(u, v): (f64, f64)| one.point(u).distance(two.point(v));
+    let start = clamped((u, v));
+    let polished = clamped(polish(one, two, start));
+    let best = if miss(polished) <= miss(start) { polished } else { start };
+    (miss(best) <= SAME * size).then_some(Meeting::Point { first: best.0, second: best.1 })
+}
+
+/// Newton's method on B₁(u) = B₂(v); where the tangents are parallel, the steps that still help.
+fn polish(one: &Quadratic, two: &Quadratic, (mut u, mut v): (f64, f64)) -> (f64, f64) {
+    for _ in 0..4 {
+        let error = one.point(u) - two.point(v);
+        let (s, t) = (one.derivative(u), two.derivative(v));
+        let cross = s.perp_dot(t);
+        if cross.abs() <= 1e-9 * s.length() * t.length() {
+            break;
+        }
+        u -= error.perp_dot(t) / cross;
+        v -= error.perp_dot(s) / cross;
+        (u, v) = (u.clamp(-0.5, 1.5), v.clamp(-0.5, 1.5));
+    }
+    (u, v)
+}
+
+/// The shared stretch of two pieces of one parabola.
+fn same_parabola(one: &Quadratic, two: &Quadratic, size: f64) -> Option<Meeting> {
+    // Parameters on `one` of both ends of `two`, on the parabola continued: affine in v.
+    let (a, b) = one.coefficients();
+    let d = a.perp_dot(b);
+    let on_one = |p: Point| a.perp_dot(p - one.p0) / (2.0 * d);
+    let (start, end) = (on_one(two.p0), on_one(two.p2));
+    // Three points and the tangents of one on the other: a parabola that shares them all is the same.
+    let shared = |v: f64| {
+        let u = start + (end - start) * v;
+        one.point(u).distance(two.point(v)) <= SAME * size.max(one.point(u).length())
+    };
+    if ![0.0, 0.25, 0.5, 0.75, 1.0].into_iter().all(shared) {
+        return None;
+    }
+    let (from, to) = (start.min(end).max(0.0), start.max(end).min(1.0));
+    if to - from <= MERGE {
+        return None;
+    }
+    let on_two = |u: f64| ((u - start) / (end - start)).clamp(0.0, 1.0);
+    Some(Meeting::Overlap { first: (from, to), second: (on_two(from), on_two(to)) })
+}
+
+/// Direction of a straight piece's line; none where it is a point.
+fn line_direction(line: &Quadratic) -> Option<Point> {
+    let legs = [line.p1 - line.p0, line.p2 - line.p1, line.p2 - line.p0];
+    legs.into_iter()
+        .max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
+        .and_then(|leg| leg.try_normalize())
+}
+
+/// Parameters at which a straight piece passes the place `at` along `direction`.
+fn along_line(line: &Quadratic, direction: Point, at: f64, size: f64) -> Vec<f64> {
+    let (a, b) = line.coefficients();
+    let polynomial = [line.p0.dot(direction) - at, 2.0 * b.dot(direction), a.dot(direction)];
+    let mut found = roots_in(&polynomial, 0.0, 1.0).to_vec();
+    for end in [0.0, 1.0] {
+        let missed = (line.point(end).dot(direction) - at).abs() <= SAME * size;
+        if missed && !found.iter().any(|u| (u - end).abs() < MERGE) {
+            found.push(end);
+        }
+    }
+    // The turning point of a fold, touched within the same slack.
+    let turn = -b.dot(direction) / a.dot(direction);
+    if turn > 0.0 && turn < 1.0 && (line.point(turn).dot(direction) - at).abs() <= SAME * size {
+        found.retain(|u| (u - turn).abs() >= 1e-4);
+        found.push(turn);
+    }
+    found
+}
+
+/// A straight piece and a bent one.
+fn line_and_parabola(line: &Quadratic, other: &Quadratic, size: f64) -> Vec<Meeting> {
+    let Some(direction) = line_direction(line) else { return point_and_piece(line, other, size) };
+    let (a, b) = other.coefficients();
+    let quadratic = [direction.perp_dot(other.p0 - line.p0), 2.0 * direction.perp_dot(b), direction.perp_dot(a)];
+    let touch = -0.5 * quadratic[1] / quadratic[2];
+    let candidates = [0.0, 1.0, if touch.is_finite() { touch.clamp(0.0, 1.0) } else { 0.0 }];
+    let mut found = Vec::new();
+    for &v in roots_in(&quadratic, 0.0, 1.0).iter().chain(&candidates) {
+        let place = other.point(v);
+        if direction.perp_dot(place - line.p0).abs() > SAME * size {
+            continue;
+        }
+        for u in along_line(line, direction, place.dot(direction), size) {
+            found.push(Meeting::Point { first: u, second: v });
+        }
+    }
+    found
+}
+
+/// A piece that is a point.
+fn point_and_piece(point: &Quadratic, other: &Quadratic, size: f64) -> Vec<Meeting> {
+    let nearest = other.nearest(point.p0);
+    if nearest.distance > SAME * size {
+        return Vec::new();
+    }
+    vec![Meeting::Point { first: 0.0, second: nearest.parameter }]
+}
+
+/// Two straight pieces.
+fn lines(one: &Quadratic, two: &Quadratic, size: f64) -> Vec<Meeting> {
+    let (Some(s), Some(t)) = (line_direction(one), line_direction(two)) else {
+        return match line_direction(one) {
+            None => point_and_piece(one, two, size),
+            Some(_) => point_and_piece(two, one, size).into_iter().map(Meeting::swapped).collect(),
+        };
+    };
+    let cross = s.perp_dot(t);
+    let offset = two.p0 - one.p0;
+    if cross.abs() > SAME {
+        let place = one.p0 + s * (offset.perp_dot(t) / cross);
+        let firsts = along_line(one, s, place.dot(s), size);
+        let seconds = along_line(two, t, place.dot(t), size);
+        return firsts
+            .iter()
+            .flat_map(|&first| seconds.iter().map(move |&second| Meeting::Point { first, second }))
+            .collect();
+    }
+    if s.perp_dot(offset).abs() > SAME * size { Vec::new() } else { on_one_line(one, two, s, size) }
+}
+
+/// The stretches of a straight piece between which it does not turn back.
+fn monotone(line: &Quadratic, direction: Point) -> Vec<(f64, f64)> {
+    let (a, b) = line.coefficients();
+    let turn = -b.dot(direction) / a.dot(direction);
+    if turn > MERGE && turn < 1.0 - MERGE { vec![(0.0, turn), (turn, 1.0)] } else { vec![(0.0, 1.0)] }
+}
+
+/// Two straight pieces on the same line: the stretches that they share, fold by fold.
+fn on_one_line(one: &Quadratic, two: &Quadratic, direction: Point, size: f64) -> Vec<Meeting> {
+    let place = |q: &Quadratic, u: f64| q.point(u).dot(direction);
+    let parameter = |q: &Quadratic, (from, to): (f64, f64), x: f64| {
+        let part = q.part(from, to);
+        along_line(&part, direction, x, size).first().map_or(from, |u| from + (to - from) * u)
+    };
+    let mut found = Vec::new();
+    for mine in monotone(one, direction) {
+        for theirs in monotone(two, direction) {
+            let ends = |q, (from, to): (f64, f64)| {
+                let (x, y) = (place(q, from), place(q, to));
+                (x.min(y), x.max(y), y >= x)
+            };
+            let ((a0, a1, rising), (b0, b1, _)) = (ends(one, mine), ends(two, theirs));
+            let (low, high) = (a0.max(b0), a1.min(b1));
+            if high < low - SAME * size {
+                continue;
+            }
+            let (from, to) = if rising { (low, high) } else { (high, low) };
+            let first = (parameter(one, mine, from), parameter(one, mine, to));
+            let second = (parameter(two, theirs, from), parameter(two, theirs, to));
+            found.push(if high - low <= SAME * size {
+                Meeting::Point { first: first.0, second: second.0 }
+            } else {
+                Meeting::Overlap { first, second }
+            });
+        }
+    }
+    found
+}
+
+impl Spline {
+    /// Where this spline meets another: pairs of the pieces' indices with how they meet. A meeting at a joint is reported for
+    /// the pieces on both of its sides.
+    pub fn intersect(&self, other: &Self) -> Vec<((usize, usize), Meeting)> {
+        let theirs: Vec<_> = other.pieces().map(|piece| (piece, piece.bounds())).collect();
+        let mut found = Vec::new();
+        for (i, piece) in self.pieces().enumerate() {
+            let (low, high) = piece.bounds();
+            for (j, (second, (other_low, other_high))) in theirs.iter().enumerate() {
+                if low.cmple(*other_high).all() && other_low.cmple(high).all() {
+                    found.extend(piece.intersect(second).into_iter().map(|meeting| ((i, j), meeting)));
+                }
+            }
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::quadratic::tests::any_piece;
+    use super::*;
+    use proptest::prelude::*;
+
+    fn piece(p: [(f64, f64); 3]) -> Quadratic {
+        let [a, b, c] = p.map(Point::from);
+        Quadratic::new(a, b, c)
+    }
+
+    fn points(found: &[Meeting]) -> Vec<(f64, f64)> {
+        found
+            .iter()
+            .map(|m| match *m {
+                Meeting::Point { first, second } => (first, second),
+                Meeting::Overlap { .. } => panic!("{m:?}"),
+            })
+            .collect()
+    }
+
+    #[test]
+    fn two_arches_cross_four_times() {
+        let tall = piece([(-2.0, 4.0), (0.0, -4.0), (2.0, 4.0)]);
+        let wide = piece([(-1.0, -2.0), (7.0, 1.5), (-1.0, 5.0)]);
+        let found = points(&tall.intersect(&wide));
+        for &(u, v) in &found {
+            assert!(tall.point(u).distance(wide.point(v)) < 1e-12);
+        }
+        // y = x² against x = 3 − ((y − 1.5)/1.75)²: counted by hand, the left end hides two.
+        assert_eq!(found.len(), crossings_by_chords(&tall, &wide, 2000));
+        // The same arch laid on its side crosses all four times.
+        let side = piece([(3.0, -3.0), (-5.0, 0.0), (3.0, 3.0)].map(|(x, y)| (x + 0.1, y)));
+        let up = piece([(-3.0, 3.0), (0.0, -5.0), (3.0, 3.0)].map(|(x, y)| (x, y + 0.1)));
+        assert_eq!(points(&side.intersect(&up)).len(), crossings_by_chords(&side, &up, 2000));
+    }
+
+    #[test]
+    fn a_tangent_is_met_once() {
+        let arch = piece([(-1.0, 1.0), (0.0, -1.0), (1.0, 1.0)]);
+        let bowl = piece([(-1.0, -1.0), (0.0, 1.0), (1.0, -1.0)]);
+        assert_eq!(points(&arch.intersect(&bowl)), [(0.5, 0.5)]);
+        let line = piece([(-1.0, 0.0), (0.0, 0.0), (1.0, 0.0)]);
+        assert_eq!(points(&arch.intersect(&line)), [(0.5, 0.5)]);
+        assert_eq!(points(&line.intersect(&arch)), [(0.5, 0.5)]);
+    }
+
+    #[test]
+    fn neighbours_of_a_spline_meet_at_their_joint() {
+        let guides = [(0.0, 0.0), (8.0, 0.0), (9.0, 7.0), (1.0, 9.0), (-4.0, 3.0)].map(Point::from);
+        let spline = Spline::new(guides.into(), true).unwrap();
+        let found = points(&spline.piece(0).intersect(&spline.piece(1)));
+        assert_eq!(found.len(), 1);
+        assert!((found[0].0 - 1.0).abs() < 1e-9 && found[0].1.abs() < 1e-9);
+    }
+
+    #[test]
+    fn pieces_of_one_parabola_overlap() {
+        let whole = piece([(-2.0, 4.0), (0.0, -4.0), (2.0, 4.0)]);
+        let (one, two) = (whole.part(0.0, 0.6), whole.part(0.8, 0.2));
+        let found = one.intersect(&two);
+        let [Meeting::Overlap { first, second }] = found[..] else { panic!("{found:?}") };
+        assert!((first.0 - 0.2 / 0.6).abs() < 1e-9 && (first.1 - 1.0).abs() < 1e-9);
+        assert!((second.0 - 1.0).abs() < 1e-9 && (second.1 - 0.2 / 0.6).abs() < 1e-9);
+        // Parts that only share an end meet at a point.
+        assert_eq!(points(&whole.part(0.0, 0.5).intersect(&whole.part(0.5, 1.0))).len(), 1);
+        assert_eq!(whole.part(0.0, 0.4).intersect(&whole.part(0.5, 1.0)), []);
+    }
+
+    #[test]
+    fn lines_cross_overlap_touch_and_miss() {
+        let line = piece([(0.0, 0.0), (2.0, 0.0), (4.0, 0.0)]);
+        assert_eq!(points(&line.intersect(&piece([(1.0, -1.0), (1.0, 0.0), (1.0, 1.0)]))), [(0.25, 0.5)]);
+        assert_eq!(line.intersect(&piece([(0.0, 1.0), (2.0, 1.0), (4.0, 1.0)])), []);
+        assert_eq!(line.intersect(&piece([(5.0, 0.0), (6.0, 0.0), (7.0, 0.0)])), []);
+        assert_eq!(points(&line.intersect(&piece([(4.0, 0.0), (6.0, 0.0), (8.0, 0.0)]))), [(1.0, 0.0)]);
+        let back = piece([(6.0, 0.0), (4.0, 0.0), (2.0, 0.0)]);
+        assert_eq!(line.intersect(&back), [Meeting::Overlap { first: (0.5, 1.0), second: (1.0, 0.5) }]);
+        // A doubled control point is how a corner's straight half is stored.
+        let stopping = piece([(0.0, -4.0), (2.0, 0.0), (2.0, 0.0)]);
+        assert_eq!(points(&line.intersect(&stopping)).len(), 1);
+    }
+
+    #[test]
+    fn points_meet_what_passes_through_them() {
+        let dot = piece([(2.0, 0.0); 3]);
+        let line = piece([(0.0, 0.0), (2.0, 0.0), (4.0, 0.0)]);
+        assert_eq!(points(&line.intersect(&dot)), [(0.5, 0.0)]);
+        assert_eq!(points(&dot.intersect(&dot)), [(0.0, 0.0)]);
+        assert_eq!(dot.intersect(&piece([(0.0, 0.0), (2.0, 1.0), (4.0, 0.0)])), []);
+    }
+
+    #[test]
+    fn a_folded_line_is_met_on_both_ways() {
+        let folded = piece([(0.0, 0.0), (4.0, 0.0), (0.0, 0.0)]);
+        let gate = piece([(1.0, -1.0), (1.0, 0.0), (1.0, 1.0)]);
+        assert_eq!(points(&folded.intersect(&gate)).len(), 2);
+        let found = folded.intersect(&piece([(0.0, 0.0), (2.0, 0.0), (4.0, 0.0)]));
+        assert_eq!(found.len(), 2);
+        assert!(found.iter().all(|m| matches!(m, Meeting::Overlap { .. })));
+    }
+
+    /// Naive reference: chords of both, each against each.
+    fn crossings_by_chords(one: &Quadratic, two: &Quadratic, n: usize) -> usize {
+        let chords = |q: &Quadratic| -> Vec<(Point, Point)> {
+            (0..n).map(|i| (q.point(i as f64 / n as f64), q.point((i + 1) as f64 / n as f64))).collect()
+        };
+        let (mine, theirs) = (chords(one), chords(two));
+        let side = |a: Point, b: Point, p: Point| (b - a).perp_dot(p - a) > 0.0;
+        let cross = |(a, b): (Point, Point), (c, d): (Point, Point)| {
+            side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b)
+        };
+        mine.iter().map(|&m| theirs.iter().filter(|&&t| cross(m, t)).count()).sum()
+    }
+
+    proptest! {
+        #[test]
+        fn meetings_are_those_of_the_chords(one in any_piece(), two in any_piece()) {
+            let found = one.intersect(&two);
+            for meeting in &found {
+                if let Meeting::Point { first, second } = *meeting {
+                    prop_assert!((0.0..=1.0).contains(&first) && (0.0..=1.0).contains(&second));
+                    prop_assert!(one.point(first).distance(two.point(second)) < 1e-7);
+                }
+            }
+            // Chords are a hair off: pairs that nearly touch may differ by a pair of crossings or one at an end.
+            let coarse = crossings_by_chords(&one, &two, 150);
+            let shaky = found.iter().any(|m| match *m {
+                Meeting::Point { first: u, second: v } => {
+                    let (s, t) = (one.direction(u), two.direction(v));
+                    s.perp_dot(t).abs() < 0.05 || u.min(1.0 - u) < 0.02 || v.min(1.0 - v) < 0.02
+                }
+                Meeting::Overlap { .. } => true,
+            });
+            if coarse != found.len() && !shaky {
+                prop_assert_eq!(found.len(), crossings_by_chords(&one, &two, 1500));
+            }
+        }
+
+        #[test]
+        fn a_common_point_is_found(one in any_piece(), two in any_piece(), u in 0.0f64..=1.0, v in 0.0f64..=1.0) {
+            let shift = one.point(u) - two.point(v);
+            let moved = Quadratic::new(two.p0 + shift, two.p1 + shift, two.p2 + shift);
+            let found = one.intersect(&moved);
+            let place = one.point(u);
+            let hit = found.iter().any(|m| match *m {
+                Meeting::Point { first, .. } => one.point(first).distance(place) < 1e-3,
+                Meeting::Overlap { first, .. } => u >= first.0 - 1e-6 && u <= first.1 + 1e-6,
+            });
+            prop_assert!(hit, "{found:?}");
+        }
+
+        #[test]
+        fn the_order_of_the_pieces_does_not_matter(one in any_piece(), two in any_piece()) {
+            let (ab, ba) = (one.intersect(&two), two.intersect(&one));
+            prop_assert_eq!(ab.len(), ba.len());
+        }
+    }
+}

@@ -1,0 +1,261 @@
+#!/usr/bin/env python3
+"""Curve fitting beside its peers: pieces, true largest error and time on six outlines (bench_fit_outlines.py).
+
+    cargo xtask bench-fit
+
+builds what is needed and runs this. By hand, with NumPy, SciPy and cu2qu, and Node.js with fit-curve and paper:
+
+    python3 tests/bench_fit.py --own target/release/bench-fit [--node FOLDER] [--tolerance 1] [--svg FILE]
+
+--node is the folder in whose node_modules fit-curve and paper are; without it they are left out, and cu2qu too, whose
+cubics come from fit-curve.
+
+What is compared, each at the fewest pieces with which its true error keeps the tolerance:
+- Rototoon: called with the tolerance, nothing tuned.
+- SciPy's FITPACK (splprep, k = 2, periodic where closed): the largest smoothing found by bisection whose error keeps it; the
+  time is that of the whole search, since the smoothing is not known beforehand ("one call" is the last call alone).
+- paper.js Path.simplify, fit-curve (Schneider 1990): the largest tolerance parameter found by bisection; the time is that of
+  the one call with it. Their pieces are cubic.
+- cu2qu (quadratics from cubics): on fit-curve's cubics, half of the tolerance for each of the two; the same bisection.
+
+The true error is the same measure for all: each curve is sampled every hundredth of a pixel; of the distances from all given
+points to the samples' polyline, and from all samples to the polyline of the points, the largest.
+"""
+import os
+
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[name] = "1"
+
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import time
+
+import numpy as np
+from scipy.interpolate import splev, splprep
+from scipy.spatial import cKDTree
+
+from bench_fit_outlines import outlines
+
+SPACING = 0.01
+BISECTIONS = 24
+
+
+def quadratics_of(guides, closed):
+    """Bézier control points of the pieces of a uniform quadratic B-spline."""
+    g = np.asarray(guides, float)
+    if closed:
+        before, after = np.roll(g, 1, axis=0), np.roll(g, -1, axis=0)
+        return np.stack([(before + g) / 2, g, (g + after) / 2], axis=1)
+    if len(g) < 3:
+        return np.stack([g[:1], (g[:1] + g[-1:]) / 2, g[-1:]], axis=1)
+    joints = np.vstack([g[:1], (g[1:-2] + g[2:-1]) / 2, g[-1:]])
+    return np.stack([joints[:-1], g[1:-1], joints[1:]], axis=1)
+
+
+def sampled(beziers):
+    """Samples of Bézier pieces of any degree, at most SPACING apart, as one polyline."""
+    parts = []
+    for control in np.asarray(beziers, float):
+        hull = np.hypot(*np.diff(control, axis=0).T)
+        steps = max(2, int(np.ceil((len(control) - 1) * hull.max() / SPACING)))
+        u = np.linspace(0, 1, steps + 1)[:, None]
+        level = [np.repeat(c[None], steps + 1, axis=0) for c in control]
+        while len(level) > 1:
+            level = [a + (b - a) * u for a, b in zip(level, level[1:])]
+        parts.append(level[0])
+    return np.vstack(parts)
+
+
+def to_polyline(points, line, closed):
+    """Distances of points to a polyline: by the segments at the nearest vertices of a densely cut copy."""
+    ends = np.vstack([line, line[:1]]) if closed else line
+    steps = np.maximum(1, np.ceil(np.hypot(*np.diff(ends, axis=0).T) / 0.25).astype(int))
+    owner = np.repeat(np.arange(len(steps)), steps)
+    share = np.concatenate([np.arange(n) / n for n in steps])[:, None]
+    dense = ends[owner] + share * (ends[owner + 1] - ends[owner])
+    owner = np.append(owner, len(steps) - 1)
+    dense = np.vstack([dense, ends[-1:]])
+    _, near = cKDTree(dense).query(points, k=min(6, len(dense)))
+    best = np.full(len(points), np.inf)
+    for column in np.atleast_2d(near.T if near.ndim > 1 else near[:, None].T):
+        for segment in (owner[column], np.maximum(owner[column] - 1, 0)):
+            a, d = ends[segment], ends[segment + 1] - ends[segment]
+            squared = np.maximum((d * d).sum(1), 1e-300)
+            u = np.clip(((points - a) * d).sum(1) / squared, 0, 1)[:, None]
+            best = np.minimum(best, np.hypot(*(points - a - u * d).T))
+    return best
+
+
+def true_error(beziers, points, closed):
+    samples = sampled(beziers)
+    return max(to_polyline(points, samples, False).max(), to_polyline(samples, points, closed).max())
+
+
+def own(program, outline, tolerance):
+    job = {"curves": [{"closed": outline["closed"], "points": outline["points"].tolist()}]}
+    said = subprocess.run([program, str(tolerance)], input=json.dumps(job), capture_output=True, text=True, check=True)
+    result = json.loads(said.stdout)[0]
+    return quadratics_of(result["guides"], outline["closed"]), result["ms"], result["max_error"]
+
+
+def spline_beziers(tck):
+    """Bézier pieces of a quadratic spline: end points and, from the end tangents' values, the middle control point."""
+    knots = np.unique(tck[0])
+    knots = knots[(knots >= 0) & (knots <= 1)]
+    middle = 0.5 * (knots[:-1] + knots[1:])
+    p0, pm, p2 = (np.column_stack(splev(t, tck)) for t in (knots[:-1], middle, knots[1:]))
+    return np.stack([p0, 2 * pm - 0.5 * (p0 + p2), p2], axis=1)
+
+
+def fitpack(outline, tolerance):
+    points, closed = outline["points"], outline["closed"]
+    data = np.vstack([points, points[:1]]) if closed else points
+    # FITPACK refuses repeated points.
+    data = data[np.concatenate([[True], np.any(np.diff(data, axis=0) != 0, axis=1)])]
+
+    def fit(smoothing):
+        tck, _ = splprep(data.T, s=smoothing, k=2, per=closed, quiet=2)
+        return spline_beziers(tck)
+
+    start = time.perf_counter()
+    low, high, best = 0.0, len(points) * tolerance**2, None
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        before = time.perf_counter()
+        pieces = fit(middle)
+        one = time.perf_counter() - before
+        if true_error_quick(pieces, points, closed) <= tolerance:
+            low = middle
+            if best is None or len(pieces) <= len(best[0]):
+                best = (pieces, one)
+        else:
+            high = middle
+    whole = time.perf_counter() - start
+    pieces, one = best
+    return pieces, 1e3 * whole, 1e3 * one
+
+
+def true_error_quick(pieces, points, closed):
+    """The same measure at coarser samples, for searches."""
+    global SPACING
+    SPACING, fine = 0.1, SPACING
+    try:
+        return true_error(pieces, points, closed)
+    finally:
+        SPACING = fine
+
+
+def node(folder, method, outline, tolerances, repeats=5):
+    job = {"method": method, "repeats": repeats, "closed": outline["closed"]}
+    job |= {"points": outline["points"].tolist(), "tolerances": list(tolerances)}
+    script = pathlib.Path(__file__).resolve().parent / "bench_fit_peers.cjs"
+    environment = {**os.environ, "NODE_PATH": str(pathlib.Path(folder).resolve() / "node_modules")}
+    said = subprocess.run(["node", script], input=json.dumps(job), capture_output=True, text=True, check=True, env=environment)
+    return json.loads(said.stdout)
+
+
+def searched(outline, tolerance, run):
+    """The fewest pieces over a fine ladder of a method's own tolerance, then the best one timed."""
+    ladder = tolerance * np.geomspace(0.05, 6.0, 90)
+    best = None
+    for parameter, pieces in zip(ladder, run(ladder, 1)):
+        if len(pieces[0]) and true_error_quick(pieces[0], outline["points"], outline["closed"]) <= tolerance:
+            if best is None or len(pieces[0]) < len(best[1]):
+                best = (parameter, pieces[0])
+    if best is None:
+        return None
+    pieces, ms = run([best[0]], 5)[0]
+    return pieces, ms
+
+
+def cubic_method(folder, method):
+    def run(outline):
+        return lambda ladder, repeats: [(r["cubics"], r["ms"]) for r in node(folder, method, outline, ladder, repeats)]
+
+    return run
+
+
+def through_cu2qu(folder):
+    from cu2qu import curve_to_quadratic
+
+    def convert(cubics, tolerance):
+        start = time.perf_counter()
+        splines = [curve_to_quadratic([tuple(p) for p in c], float(tolerance)) for c in cubics]
+        ms = 1e3 * (time.perf_counter() - start)
+        pieces = []
+        for control in splines:
+            c = np.asarray(control, float)
+            joints = np.vstack([c[:1], (c[1:-2] + c[2:-1]) / 2, c[-1:]])
+            pieces.extend(np.stack([joints[:-1], c[1:-1], joints[1:]], axis=1))
+        return pieces, ms
+
+    def run(outline):
+        def both(ladder, repeats):
+            fitted = node(folder, "fit-curve", outline, np.asarray(ladder) / 2, repeats)
+            made = [convert(f["cubics"], t / 2) for f, t in zip(fitted, ladder)]
+            return [(pieces, f["ms"] + ms) for (pieces, ms), f in zip(made, fitted)]
+
+        return both
+
+    return run
+
+
+def picture(path, shown):
+    """Each outline's points with our curve, its joints and guides, as SVG."""
+    parts, top = [], 0.0
+    for outline, pieces in shown:
+        points = outline["points"]
+        low, high = points.min(0) - 12, points.max(0) + 12
+        shift = np.array([-low[0], top - low[1]])
+        line = " ".join(f"{x:.2f},{y:.2f}" for x, y in points + shift)
+        curve = [f"M{pieces[0][0][0] + shift[0]:.3f},{pieces[0][0][1] + shift[1]:.3f}"]
+        curve += ["Q{:.3f},{:.3f} {:.3f},{:.3f}".format(*(p[1] + shift), *(p[2] + shift)) for p in pieces]
+        dots = "".join(f'<circle cx="{p[0][0] + shift[0]:.2f}" cy="{p[0][1] + shift[1]:.2f}" r="1.6" fill="#d22"/>' for p in pieces)
+        parts.append(f'<polyline points="{line}" fill="none" stroke="#bbb" stroke-width="0.5"/>')
+        parts.append(f'<path d="{" ".join(curve)}" fill="none" stroke="#06c" stroke-width="0.8"/>{dots}')
+        top += high[1] - low[1]
+    pathlib.Path(path).write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="640" height="{top:.0f}"><rect width="100%" height="100%" fill="#fff"/>'
+        + "".join(parts) + "</svg>\n"
+    )
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--own", required=True, help="the program bench-fit")
+    parser.add_argument("--node", help="folder whose node_modules holds fit-curve and paper")
+    parser.add_argument("--tolerance", type=float, default=1.0)
+    parser.add_argument("--svg", help="where to draw our curves")
+    given = parser.parse_args()
+    print(f"| outline | method | pieces | true error, px | ms |\n| --- | --- | ---: | ---: | ---: |")
+    shown = []
+    for outline in outlines():
+        points, closed = outline["points"], outline["closed"]
+        rows = []
+        pieces, ms, said = own(given.own, outline, given.tolerance)
+        shown.append((outline, pieces))
+        error = true_error(pieces, points, closed)
+        if error > said + 1e-6:
+            sys.exit(f"{outline['name']}: the true error is {error}, above the {said} that was promised")
+        rows.append(("Rototoon", pieces, f"{ms:.1f}"))
+        pieces, whole, one = fitpack(outline, given.tolerance)
+        rows.append(("SciPy FITPACK", pieces, f"{whole:.0f} (one call {one:.1f})"))
+        if given.node:
+            peers = [("paper.js simplify, cubic", cubic_method(given.node, "paper"))]
+            peers += [("fit-curve, cubic", cubic_method(given.node, "fit-curve")), ("fit-curve + cu2qu", through_cu2qu(given.node))]
+            for name, method in peers:
+                found = searched(outline, given.tolerance, method(outline))
+                rows.append((name, *((found[0], f"{found[1]:.1f}") if found else (None, "–"))))
+        for name, pieces, ms in rows:
+            what = f"{outline['name']}, {len(points)} points"
+            figures = (len(pieces), f"{true_error(pieces, points, closed):.3f}") if pieces is not None else ("–", "–")
+            print(f"| {what} | {name} | {figures[0]} | {figures[1]} | {ms} |", flush=True)
+    if given.svg:
+        picture(given.svg, shown)
+
+
+if __name__ == "__main__":
+    main()
