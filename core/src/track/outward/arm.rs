@@ -21,7 +21,7 @@ use crate::track::drawings::same_drawing;
 use crate::track::features::Features;
 use crate::track::job::Correction;
 use crate::track::lattice::anchors::Anchors;
-use crate::track::lattice::texture::Cover;
+use crate::track::lattice::texture::{Cover, in_picture};
 use crate::track::pool::{Hypothesis, is_new};
 use crate::track::propagate::{Model, Pose, Scenery};
 use crate::track::search::{Sought, Templates};
@@ -136,7 +136,7 @@ impl Arm {
             (seen.pool, seen.dear) = growing.proposed(&seen, doubtful > 0)?.into_iter().unzip();
             growing.drawings.push(seen);
             let now = growing.judge();
-            let left = now.inside < LEAST_INSIDE && doubtful == 0;
+            let left = now.inside < LEAST_INSIDE && doubtful == 0 && growing.was_leaving();
             doubtful = if now.trusted() { 0 } else { doubtful + 1 };
             if !must && (left || doubtful >= PATIENCE) {
                 let near = growing.drawings.last().map_or(ground.job.frame, |seen| seen.near);
@@ -329,6 +329,16 @@ impl Growing<'_> {
         let last = self.sureness(self.drawings.len() - 1);
         self.sure.push(last.clone());
         last
+    }
+
+    /// Whether the part reached over the picture's edge on the drawing before the last, or would have after moving once
+    /// more as it did. Else it was not on its way out, and a pose outside only hides that it is lost.
+    fn was_leaving(&self) -> bool {
+        let Some(before) = self.drawings.len().checked_sub(2) else { return false };
+        let points = |d: usize| &self.drawings[d].pool[self.path[d]].points;
+        let earlier = points(before.saturating_sub(1));
+        let moved = points(before).iter().zip(earlier).map(|(p, q)| *p * 2.0 - *q);
+        points(before).iter().copied().chain(moved).any(|p| !in_picture(p, self.ground.width))
     }
 
     fn best(&self, from: usize) -> Vec<usize> {
