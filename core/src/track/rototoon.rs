@@ -21,7 +21,7 @@ use super::drawings::Drawing;
 use super::finish::{Finish, Finished, finish};
 use super::job::{Job, SpanSummary, SpanTrack, Termination};
 use super::joint::shadow::Memory;
-use super::joint::tie::{Lead, leads};
+use super::joint::tie::{self, Lead, Tie, leads};
 use super::joint::{self, Contender};
 use super::mend::mend;
 use super::outward::{self, plan::Portion};
@@ -113,10 +113,11 @@ impl Rototoon {
         for stretch in stretches(tasks) {
             let members: Vec<&Pooled> = stretch.iter().map(|&t| &*pooled[t]).collect();
             let start = members.iter().map(|m| m.path.clone()).collect();
-            let (paths, leads) = chosen(scene, tasks, &stretch, &members, start, &mut self.shadows);
+            let mut joints = None;
+            let (paths, leads) = chosen(scene, tasks, &stretch, &members, start, &mut joints, &mut self.shadows);
             let mended = self.mend_all(&stretch, &pooled, &paths, &leads, frames, &shared)?;
             let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
-            let (paths, _) = chosen(scene, tasks, &stretch, &members, paths, &mut self.shadows);
+            let (paths, _) = chosen(scene, tasks, &stretch, &members, paths, &mut joints, &mut self.shadows);
             let finishes: Vec<Finish> =
                 (0..members.len()).map(|m| Finish::of(scene, tasks, &stretch, &members, &paths, m)).collect();
             let known = |source: &Arc<Pooled>, plan: &Finish| {
@@ -317,13 +318,15 @@ fn mended_pools(kit: Kit, source: &Pooled, path: &[usize], leads: &[Lead]) -> Re
     Ok(Pooled { job: source.job.clone(), drawings, models, pools, path: path.to_vec(), steps: source.steps })
 }
 
-/// The paths of the members of a stretch, chosen together from the ones given, and what leads each member.
+/// The paths of the members of a stretch, chosen together from the ones given, and what leads each member. `ties` are found
+/// where none are given: they lie in the keys, and are the same for every choice of a stretch.
 fn chosen(
     scene: &Scene,
     tasks: &[Task],
     stretch: &[usize],
     members: &[&Pooled],
     start: Vec<Vec<usize>>,
+    ties: &mut Option<Vec<Tie>>,
     shadows: &mut Memory,
 ) -> (Vec<Vec<usize>>, Vec<Vec<Lead>>) {
     let free: Vec<usize> = (0..members.len()).filter(|&m| members[m].models.is_some()).collect();
@@ -340,8 +343,9 @@ fn chosen(
         })
     };
     let contenders: Vec<Contender> = free.iter().filter_map(contender).collect();
-    let found = joint::choose(&contenders, free.iter().map(|&m| start[m].clone()).collect(), shadows);
-    let led = leads(&contenders, &found);
+    let ties = ties.get_or_insert_with(|| tie::find(&contenders));
+    let found = joint::choose(&contenders, ties, free.iter().map(|&m| start[m].clone()).collect(), shadows);
+    let led = leads(&contenders, ties, &found);
     let (mut paths, mut all_leads) = (vec![Vec::new(); members.len()], vec![Vec::new(); members.len()]);
     for ((&m, path), lead) in free.iter().zip(found).zip(led) {
         (paths[m], all_leads[m]) = (path, lead);

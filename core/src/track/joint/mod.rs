@@ -26,6 +26,7 @@ use super::propagate::Model;
 use crate::scene::{FrameNumber, Span};
 use shadow::{Memory, Shadows};
 use std::sync::Arc;
+use tie::Tie;
 
 /// Rounds over all parts and pairs at the most.
 const ROUNDS: usize = 4;
@@ -62,14 +63,19 @@ impl Contender<'_> {
     }
 }
 
-/// The hypothesis that each contender follows on each of its drawings; `paths` is where to start from.
-pub fn choose(contenders: &[Contender], mut paths: Vec<Vec<usize>>, memory: &mut Memory) -> Vec<Vec<usize>> {
+/// The hypothesis that each contender follows on each of its drawings; `ties` are their hinges ([`tie::find`]), `paths` is
+/// where to start from.
+pub fn choose(
+    contenders: &[Contender],
+    ties: &[Tie],
+    mut paths: Vec<Vec<usize>>,
+    memory: &mut Memory,
+) -> Vec<Vec<usize>> {
     let shadows = Shadows::cast(contenders, memory);
-    let ties = tie::find(contenders);
     if shadows.none() && ties.is_empty() {
         return paths;
     }
-    let scene = cost::Scene { contenders, shadows: &shadows, ties: &ties };
+    let scene = cost::Scene { contenders, shadows: &shadows, ties };
     let pairs = shadows.pairs();
     let same = |a: usize, b: usize| {
         contenders[a].drawings == contenders[b].drawings && contenders[a].span == contenders[b].span

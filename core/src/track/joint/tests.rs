@@ -63,11 +63,10 @@ fn two_parts_do_not_stand_in_one_place() {
     let mut contenders = |depth: f64| {
         let contender =
             |pools, models, depth| Contender { span, depth, hides: true, drawings: &drawings, pools, models };
-        choose(
-            &[contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)],
-            vec![vec![0, 0, 0]; 2],
-            &mut memory,
-        )
+        {
+            let both = [contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)];
+            choose(&both, &tie::find(&both), vec![vec![0, 0, 0]; 2], &mut memory)
+        }
     };
     // Parts of one depth hide nothing of each other.
     assert_eq!(contenders(0.0), [[0, 0, 0], [0, 0, 0]]);
@@ -77,11 +76,10 @@ fn two_parts_do_not_stand_in_one_place() {
     let mut contenders = |depth: f64| {
         let contender =
             |pools, models, depth| Contender { span, depth, hides: true, drawings: &drawings, pools, models };
-        choose(
-            &[contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)],
-            vec![vec![0, 0, 0]; 2],
-            &mut memory,
-        )
+        {
+            let both = [contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)];
+            choose(&both, &tie::find(&both), vec![vec![0, 0, 0]; 2], &mut memory)
+        }
     };
     assert_eq!(contenders(1.0), [[0, 1, 0], [0, 0, 0]]);
     assert_eq!(contenders(-1.0), [[0, 1, 0], [0, 0, 0]]);

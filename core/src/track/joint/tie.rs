@@ -98,8 +98,7 @@ pub struct Lead {
 const DOUBT: f64 = 4.0;
 
 /// The leads of each contender.
-pub fn leads(contenders: &[Contender], paths: &[Vec<usize>]) -> Vec<Vec<Lead>> {
-    let ties = find(contenders);
+pub fn leads(contenders: &[Contender], ties: &[Tie], paths: &[Vec<usize>]) -> Vec<Vec<Lead>> {
     let of = |c: usize| {
         let lead = |tie: &Tie| {
             let (other, end) = tie.other(c)?;
