@@ -60,29 +60,19 @@ fn two_parts_do_not_stand_in_one_place() {
     let near: Arc<Pools> = Arc::new(vec![key(&near_models), key(&near_models), key(&near_models)]);
     let span = Span { first: 0, last: 2 };
     let mut memory = Memory::default();
-    let mut contenders = |depth: f64| {
+    let chosen = |depth: f64, memory: &mut Memory| {
         let contender =
             |pools, models, depth| Contender { span, depth, hides: true, drawings: &drawings, pools, models };
-        {
-            let both = [contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)];
-            choose(&both, &tie::find(&both), vec![vec![0, 0, 0]; 2], &mut memory)
-        }
+        let both = [contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)];
+        choose(&both, &tie::find(&both), vec![vec![0, 0, 0]; 2], memory)
     };
     // Parts of one depth hide nothing of each other.
-    assert_eq!(contenders(0.0), [[0, 0, 0], [0, 0, 0]]);
-    assert_eq!(contenders(1.0), [[0, 1, 0], [0, 0, 0]]);
+    assert_eq!(chosen(0.0, &mut memory), [[0, 0, 0], [0, 0, 0]]);
+    assert_eq!(chosen(1.0, &mut memory), [[0, 1, 0], [0, 0, 0]]);
     // Shadows that are remembered are the ones that were cast, and depths may change.
     memory.turn();
-    let mut contenders = |depth: f64| {
-        let contender =
-            |pools, models, depth| Contender { span, depth, hides: true, drawings: &drawings, pools, models };
-        {
-            let both = [contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)];
-            choose(&both, &tie::find(&both), vec![vec![0, 0, 0]; 2], &mut memory)
-        }
-    };
-    assert_eq!(contenders(1.0), [[0, 1, 0], [0, 0, 0]]);
-    assert_eq!(contenders(-1.0), [[0, 1, 0], [0, 0, 0]]);
+    assert_eq!(chosen(1.0, &mut memory), [[0, 1, 0], [0, 0, 0]]);
+    assert_eq!(chosen(-1.0, &mut memory), [[0, 1, 0], [0, 0, 0]]);
 }
 
 #[test]
