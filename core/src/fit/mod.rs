@@ -36,6 +36,7 @@ mod clean;
 mod corners;
 mod count;
 mod feet;
+mod grow;
 mod long;
 mod polygon;
 mod profile;

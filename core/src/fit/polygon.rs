@@ -4,6 +4,7 @@
 //! (it is grown as far as that holds). The points between are then within the limit of the chord; and each place of the chord
 //! has a place of the points' line square to it, hence within the limit too: the guarantee holds both ways.
 
+use super::grow::grow;
 use crate::geometry::Point;
 use crate::geometry::polyline::nearest_on_segment;
 
@@ -25,23 +26,7 @@ fn farthest(points: &[Point], start: usize, limit: f64) -> usize {
         let (a, b) = (points[start], points[end]);
         points[start + 1..end].iter().all(|&p| p.distance(nearest_on_segment(p, a, b)) <= limit)
     };
-    let (mut good, mut step) = (start + 1, 2);
-    let mut bad = loop {
-        let end = (start + step).min(last);
-        if end <= good {
-            return last;
-        }
-        if !fits(end) {
-            break end;
-        }
-        good = end;
-        step *= 2;
-    };
-    while bad - good > 1 {
-        let middle = (good + bad) / 2;
-        if fits(middle) { good = middle } else { bad = middle }
-    }
-    good
+    grow(start, last, 2, |_| 1, fits)
 }
 
 /// Parameters of the points on the chords, two pieces (straight half legs between corners) each.

@@ -9,6 +9,7 @@
 //! used (e / tolerance)^¼ of the length it may have; cuts at even sums of these shares even out the errors
 //! (equidistribution; de Boor 1973).
 
+use super::grow::grow;
 use crate::geometry::Point;
 
 /// Exponent from error to the share of the allowed length.
@@ -78,23 +79,7 @@ impl Profile {
 fn farthest(points: &[Point], lengths: &[f64], start: usize, tolerance: f64) -> usize {
     let last = points.len() - 1;
     let fits = |end: usize| parabola_error(&points[start..=end], &lengths[start..=end]) <= tolerance;
-    let (mut good, mut step) = (start + 1, 4);
-    let mut bad = loop {
-        let end = (start + step).min(last);
-        if end <= good {
-            return last;
-        }
-        if !fits(end) {
-            break end;
-        }
-        good = end;
-        step *= 2;
-    };
-    while bad - good > 1 + (good - start) / 32 {
-        let middle = (good + bad) / 2;
-        if fits(middle) { good = middle } else { bad = middle }
-    }
-    good
+    grow(start, last, 4, |good| 1 + (good - start) / 32, fits)
 }
 
 /// Largest distance across the curve from the least-squares parabola in arc length.

@@ -168,9 +168,15 @@ impl Rototoon {
         self.store.read(frames, &Vec::from_iter(numbers), progress)?;
         let mut pairs = BTreeSet::new();
         for span in spans {
+            let held = |&frame: &FrameNumber| {
+                progress.report("Reading frames", 0.0)?;
+                self.store.held(frames, frame)
+            };
+            let until: Vec<FrameNumber> = (span.first..span.last).collect();
+            let held: Vec<bool> = until.par_iter().map(held).collect::<Result<_, TrackError>>()?;
             let mut before = span.first;
-            for frame in span.first + 1..=span.last {
-                if !self.store.held(frames, frame - 1)? {
+            for (frame, held) in (span.first + 1..=span.last).zip(held) {
+                if !held {
                     pairs.extend([(before, frame), (frame, before)]);
                     before = frame;
                 }

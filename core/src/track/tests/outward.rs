@@ -1,6 +1,6 @@
 //! Parts with one key on drawn scenes of known motion.
 
-use super::scene::{Drawn, HEIGHT, LAST, Shape, WIDTH, limb_and_ball, points, track};
+use super::scene::{Drawn, HEIGHT, LAST, Shape, WIDTH, limb_and_ball, points, same_on_any_threads, track};
 use crate::geometry::{Point, polygon};
 use crate::scene::{Colour, FrameError, FrameNumber, FrameSource, Part, Raster, Silent};
 use crate::track::{Ending, PartTrack, TrackEnd, TrackOptions, Tracker};
@@ -155,13 +155,7 @@ fn a_second_run_remembers_and_a_second_key_makes_an_ordinary_part() {
 fn the_number_of_threads_changes_nothing_outward() {
     let drawn = limb_and_ball();
     let scene = drawn.scene(vec![single(&drawn.0[0], "limb", 0.0, 4), single(&drawn.0[1], "ball", 1.0, 2)]);
-    let with = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| track(&drawn, &scene))
-    };
-    let one = with(1);
-    assert_eq!(one, with(2));
-    assert_eq!(one, with(8));
+    same_on_any_threads(&drawn, &scene);
 }
 
 #[test]

@@ -167,18 +167,23 @@ fn an_edit_solves_no_more_than_it_touches_and_gives_what_a_new_run_gives() {
     assert_eq!(warm.parts, cold.parts);
 }
 
+/// Tracks a scene on 1, 2 and 8 threads.
+pub(super) fn same_on_any_threads(drawn: &Drawn, scene: &Scene) {
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| track(drawn, scene))
+    };
+    let one = with(1);
+    assert_eq!(one, with(2));
+    assert_eq!(one, with(8));
+}
+
 #[test]
 fn the_number_of_threads_changes_nothing() {
     let drawn = twins();
     let scene =
         drawn.scene(vec![drawn.0[0].part("far", 0.0), drawn.0[1].part("near", 1.0), drawn.0[2].part("body", 2.0)]);
-    let with = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| track(&drawn, &scene))
-    };
-    let one = with(1);
-    assert_eq!(one, with(2));
-    assert_eq!(one, with(8));
+    same_on_any_threads(&drawn, &scene);
 }
 
 #[test]
