@@ -78,6 +78,10 @@ fn constrained(stage: &Stage, d: usize, pool: &[Hypothesis]) -> Result<Vec<Hypot
         }
         let aligned = |start: &Hypothesis| {
             let pose = stage.models[model].realigned(&scenery, &start.pose.nodes);
+            let free = stage.centered(d).then(|| freed(stage, d, model, &pose.nodes)).flatten();
+            if let Some(free) = free.filter(|free| free.pose.energy < pose.energy) {
+                return free;
+            }
             hypothesis(stage, d, model, pose, None)
         };
         let aligned: Vec<Hypothesis> = kept.par_iter().map(aligned).collect();
@@ -88,6 +92,13 @@ fn constrained(stage: &Stage, d: usize, pool: &[Hypothesis]) -> Result<Vec<Hypot
         }
     }
     Ok(found)
+}
+
+/// A pose aligned to what is seen, with pins alone: a centre says where the part is, but not to the pixel. None where that
+/// takes the part further from its centre than the artist can have meant.
+pub(super) fn freed(stage: &Stage, d: usize, model: usize, nodes: &[Point]) -> Option<Hypothesis> {
+    let pose = stage.models[model].seen(&stage.released(model, d), nodes);
+    Some(hypothesis(stage, d, model, pose, None)).filter(|free| stage.near_center(d, &free.points))
 }
 
 /// What the best hypotheses of a corrected drawing become on the drawings around it.

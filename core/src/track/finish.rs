@@ -3,6 +3,7 @@
 
 use super::TrackError;
 use super::confidence;
+use super::corrected::freed;
 use super::drawings::Drawing;
 use super::job::{Correction, SpanSummary, SpanTrack, Termination};
 use super::lattice::texture::Cover;
@@ -144,8 +145,10 @@ fn settle(stage: &Stage, pooled: &Pooled, plan: &Finish, refiner: &OnceLock<Opti
     let between = d != 0 && d != stage.drawings.len() - 1;
     let seen = (between && !plan.occluders[d].is_empty()).then(|| {
         let chosen = &pool[chosen];
-        let pose = stage.models[chosen.model].seen(&stage.scenery(chosen.model, d), &chosen.pose.nodes);
-        hypothesis(stage, d, chosen.model, pose, None)
+        freed(stage, d, chosen.model, &chosen.pose.nodes).unwrap_or_else(|| {
+            let pose = stage.models[chosen.model].seen(&stage.scenery(chosen.model, d), &chosen.pose.nodes);
+            hypothesis(stage, d, chosen.model, pose, None)
+        })
     });
     let share = stage.drawings[d].first as f64 / (stage.job.span.len() - 1) as f64;
     let rough = blended(pool, seen.as_ref().unwrap_or(&pool[chosen]), share);
@@ -205,7 +208,7 @@ fn track(stage: &Stage, pooled: &Pooled, settled: &[Settled], path: &[usize]) ->
         let confidence = confidence::of_drawing(&stage.models, &stage.features[d], &stage.covers[d], &pool, path[d]);
         for index in drawing.first..=drawing.last {
             let mut on_frame = stage.key_of(d).unwrap_or_else(|| found.iter().map(|&p| p * stage.scale).collect());
-            stage.job.enforce(index, &mut on_frame);
+            stage.job.enforce_within(stage.center_reach() * stage.scale, index, &mut on_frame);
             points.push(on_frame);
             sure.push(if index == 0 || index == last { vec![1.0; found.len()] } else { confidence.clone() });
         }

@@ -1,7 +1,7 @@
 //! One part over one span: what a solver is given, and what it returns.
 
 use super::TrackError;
-use crate::geometry::Point;
+use crate::geometry::{Point, polygon};
 use crate::scene::{FrameSource, Progress, Span};
 use std::collections::BTreeMap;
 
@@ -10,7 +10,8 @@ use std::collections::BTreeMap;
 pub struct Correction {
     /// Control points by index: hard constraints.
     pub pins: BTreeMap<usize, Point>,
-    /// Where the mean of the control points lies: a hard constraint.
+    /// Where the mean of the control points lies: a hard constraint to the paper's solvers, a place to look at to the default
+    /// one.
     pub center: Option<Point>,
 }
 
@@ -84,6 +85,22 @@ pub trait SpanSolver: Send + Sync {
 }
 
 impl Correction {
+    /// Without the centre.
+    pub fn pins_only(&self) -> Self {
+        Self { center: None, ..self.clone() }
+    }
+
+    /// Sets the pins, and shifts the rest as [`Correction::enforce`] does only if the centre is further than `reach` from
+    /// where the artist put it.
+    pub fn enforce_within(&self, reach: f64, points: &mut [Point]) {
+        for (&j, &p) in &self.pins {
+            points[j] = p;
+        }
+        if self.center.is_some_and(|center| polygon::center(points).distance(center) > reach) {
+            self.enforce(points);
+        }
+    }
+
     /// Fixes control points so that the correction holds exactly: pins are set, then the points that are not pinned are
     /// shifted together until the centre is where the artist put it.
     pub fn enforce(&self, points: &mut [Point]) {
@@ -106,12 +123,17 @@ impl Job {
     /// Fixes the points of frame `index` of the span so that the keys and corrections hold exactly: pins are set, then
     /// the points that are not pinned are shifted together until the centre is where the artist put it.
     pub fn enforce(&self, index: usize, points: &mut [Point]) {
+        self.enforce_within(0.0, index, points);
+    }
+
+    /// The same, but a centre may lie up to `reach` from where the artist put it.
+    pub fn enforce_within(&self, reach: f64, index: usize, points: &mut [Point]) {
         if index == 0 || index + 1 == self.span.len() {
             points.copy_from_slice(&self.keys[usize::from(index != 0)]);
             return;
         }
         let Some(correction) = self.corrections.get(&index) else { return };
-        correction.enforce(points);
+        correction.enforce_within(reach, points);
     }
 
     /// The keys blended linearly at frame `index` of the span.

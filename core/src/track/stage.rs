@@ -11,13 +11,16 @@ use super::lattice::shape;
 use super::lattice::texture::{Cover, Texture};
 use super::propagate::{Model, Pose, Scenery};
 use super::store::Store;
-use crate::geometry::Point;
 use crate::geometry::similarity::Similarity;
+use crate::geometry::{Point, polygon};
 use crate::scene::{FrameNumber, FrameSource, Progress};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// A part may come to lie this far from where its centre was put, in sizes of the part.
+const CENTER_REACH: f64 = 0.15;
 
 /// Where pictures come from, and who is told of the progress.
 #[derive(Clone, Copy)]
@@ -37,6 +40,8 @@ pub(super) struct Stage<'a> {
     pub covers: Vec<Cover>,
     pub models: Arc<[Model; 2]>,
     anchors: [Vec<Anchors>; 2],
+    /// As `anchors`, without centres.
+    pins: [Vec<Anchors>; 2],
     pub steps_done: AtomicUsize,
 }
 
@@ -63,15 +68,19 @@ impl<'a> Stage<'a> {
         let models = models.unwrap_or_else(|| {
             Arc::new([model(job, 0, &features[0], scale, width), model(job, 1, &features[last], scale, width)])
         });
-        let anchors = [0, 1].map(|key: usize| {
-            let of_drawing = |d: &Drawing| {
-                let correction = (d.first..=d.last).find_map(|i| job.corrections.get(&i));
-                correction.map_or_else(Anchors::default, |c| Anchors::new(&models[key].texture.mesh, c, scale))
-            };
-            drawings.iter().map(of_drawing).collect()
-        });
+        let anchors = |of: &dyn Fn(&Correction) -> Correction| {
+            [0, 1].map(|key: usize| {
+                let of_drawing = |d: &Drawing| {
+                    let correction = (d.first..=d.last).find_map(|i| job.corrections.get(&i));
+                    let anchors = |c: &Correction| Anchors::new(&models[key].texture.mesh, &of(c), scale);
+                    correction.map_or_else(Anchors::default, anchors)
+                };
+                drawings.iter().map(of_drawing).collect()
+            })
+        };
+        let (anchors, pins) = (anchors(&Correction::clone), anchors(&Correction::pins_only));
         let covers = drawings.iter().map(|_| Cover::none(width)).collect();
-        Ok(Self { job, kit, scale, drawings, features, covers, models, anchors, steps_done: AtomicUsize::new(0) })
+        Ok(Self { job, kit, scale, drawings, features, covers, models, anchors, pins, steps_done: AtomicUsize::new(0) })
     }
 
     /// A drawing as the model of one key sees it.
@@ -82,6 +91,27 @@ impl<'a> Stage<'a> {
             weighed: false,
             anchors: &self.anchors[model][drawing],
         }
+    }
+
+    /// The same with pins as the only corrections.
+    pub fn released(&self, model: usize, drawing: usize) -> Scenery<'_> {
+        Scenery { anchors: &self.pins[model][drawing], ..self.scenery(model, drawing) }
+    }
+
+    /// How far from where the artist put the part's centre it may lie, in working pixels.
+    pub fn center_reach(&self) -> f64 {
+        CENTER_REACH * self.models[0].texture.mesh.size
+    }
+
+    /// Whether control points (working pixels) are about where the artist put their centre.
+    pub fn near_center(&self, drawing: usize, points: &[Point]) -> bool {
+        let center = self.correction(drawing).and_then(|c| c.center);
+        center.is_none_or(|c| polygon::center(points).distance(c / self.scale) <= self.center_reach())
+    }
+
+    /// Whether the artist put the part's centre on a drawing.
+    pub fn centered(&self, drawing: usize) -> bool {
+        self.correction(drawing).is_some_and(|c| c.center.is_some())
     }
 
     /// What the artist corrected on a drawing.

@@ -115,6 +115,15 @@ impl Mesh {
         (inside || polyline::distance(p, &self.contour, self.closed) <= self.band, inside)
     }
 
+    /// The place as far inside a closed contour as `p` is outside; none where the part is too thin for that.
+    pub fn across(&self, p: Point) -> Option<Point> {
+        let on_segment = |(a, b)| polyline::nearest_on_segment(p, a, b);
+        let nearest = (polyline::segments(&self.contour, self.closed).map(on_segment))
+            .min_by(|a, b| a.distance_squared(p).total_cmp(&b.distance_squared(p)))?;
+        let across = nearest * 2.0 - p;
+        self.region(across).1.then_some(across)
+    }
+
     /// Area of the cells, an upper bound of the region's.
     pub fn area(&self) -> f64 {
         self.cells.len() as f64 * self.side * self.side

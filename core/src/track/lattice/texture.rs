@@ -18,6 +18,13 @@ const FINE_SAMPLES: f64 = 1200.0;
 pub const WORST: f32 = 0.15;
 /// Cost of a sample that cannot be seen, as a squared colour difference: more than a right colour, less than a wrong one.
 pub const UNSEEN: f32 = 0.03;
+/// Cost of a sample outside the part where the ground is another than at the key, as a squared colour difference: less
+/// than the part's own colour there, more than the same ground.
+const OTHER_GROUND: f32 = 0.015;
+/// Squared colour difference at which a colour is no longer much like another.
+const ALIKE: f32 = 0.02;
+/// Squared colour difference of a part from its ground, at the key, above which they are told apart.
+const CONTRAST: f32 = 0.02;
 /// Weight of the shape energy beside the mean colour difference, and the shape energy beyond which it stops to count.
 const SHAPE: (f64, f64) = (0.02, 2.0);
 /// Level (index in [`LEVELS`]) whose samples measure a pose.
@@ -91,6 +98,8 @@ pub struct Texel {
     pub key: Sample,
     /// 1 inside the contour, less in the band.
     pub weight: f32,
+    /// The part's colour across the contour, for a sample outside that measures a pose and differs from it.
+    pub own: Option<[f32; 3]>,
     /// The cell it lies in.
     pub cell: usize,
     /// The weights of the cell's nodes, and their products in pairs, in the order of [`PAIRS`].
@@ -156,7 +165,7 @@ impl Texture {
         let (mut sum, mut weights) = (0.0, 0.0);
         for texel in self.measured() {
             let place = texel.binding.at(nodes);
-            let wrong = difference(&level.colour(place), &texel.key).min(WORST);
+            let wrong = texel.cost(&level.colour(place));
             sum += f64::from(texel.weight * if seen(place) { wrong } else { UNSEEN });
             weights += f64::from(texel.weight);
         }
@@ -183,9 +192,23 @@ impl Texture {
         let level = picture.level(MEASURED_LEVEL);
         let of = |t: &Texel| {
             let place = t.binding.at(nodes);
-            if seen(place) { difference(&level.colour(place), &t.key).min(WORST) } else { UNSEEN }
+            if seen(place) { t.cost(&level.colour(place)) } else { UNSEEN }
         };
         self.measured().iter().map(of).collect()
+    }
+}
+
+impl Texel {
+    /// What it costs where the picture has the colour `seen`: the squared difference, at most [`WORST`].
+    ///
+    /// Outside the part the ground may have changed since the key, as it does when a limb swings from before the hair to
+    /// before the sky: any other colour costs no more than [`OTHER_GROUND`], but the part's own colour costs as much as it
+    /// is like it. A contour that has slid inwards along its part shows just that.
+    #[inline(always)]
+    fn cost(&self, seen: &[f32]) -> f32 {
+        let wrong = difference(seen, &self.key).min(WORST);
+        let Some(own) = &self.own else { return wrong };
+        wrong.min(OTHER_GROUND.max(WORST * (-difference(seen, own) / ALIKE).exp()))
     }
 }
 
@@ -212,13 +235,21 @@ fn sample_level(mesh: &Mesh, key: &Features, cover: &Cover, width: f64, level: u
                 let weight = if inside { 1.0 } else { BAND_WEIGHT };
                 let weights = binding.weights.map(|w| w as f32);
                 let products = PAIRS.map(|pair| pair.map_or(0.0, |(a, b)| weights[a] * weights[b]));
-                texels.push(Texel { binding, key: key.level(level).sample(p), weight, cell, weights, products });
+                let sample = key.level(level).sample(p);
+                let own = if inside || level != MEASURED_LEVEL { None } else { own_colour(mesh, key, p, &sample) };
+                texels.push(Texel { binding, key: sample, weight, cell, weights, products, own });
             }
         }
     }
     let mut texels = thin(texels);
     texels.sort_by_key(|texel| texel.cell);
     texels
+}
+
+/// The colour inside the part across the contour from `p`, where it differs from the sample there.
+fn own_colour(mesh: &Mesh, key: &Features, p: Point, sample: &Sample) -> Option<[f32; 3]> {
+    let own = key.level(MEASURED_LEVEL).colour(mesh.across(p)?);
+    Some(own).filter(|own| difference(own, sample) > CONTRAST)
 }
 
 /// Every k-th sample, so that at most [`MOST_SAMPLES`] are left.
