@@ -171,13 +171,14 @@ impl Mask {
         Self { inside }
     }
 
-    /// The state at a point, where all pixels around agree.
+    /// The state at a point within the picture, where all pixels around agree.
     fn at(&self, p: Point) -> Option<bool> {
         let (x, y) = ((p.x * FINE as f64).floor(), (p.y * FINE as f64).floor());
-        let pixel = |x: f64, y: f64| {
-            let within = x >= 0.0 && y >= 0.0 && x < SIDE as f64 && y < SIDE as f64;
-            within && self.inside[y as usize * SIDE + x as usize]
-        };
+        let last = SIDE as f64 - 1.0;
+        if x < 1.0 || y < 1.0 || x >= last || y >= last {
+            return None;
+        }
+        let pixel = |x: f64, y: f64| self.inside[y as usize * SIDE + x as usize];
         let middle = pixel(x, y);
         let agree = (-1..=1).all(|i| (-1..=1).all(|j| pixel(x + f64::from(i), y + f64::from(j)) == middle));
         agree.then_some(middle)
@@ -338,7 +339,7 @@ fn what_is_seen_moves_continuously() {
 #[test]
 fn thousands_of_strokes_and_any_number_of_threads() {
     let strokes = 2000;
-    let place = |i: usize| Point::new((i * 7919 % 1900) as f64, (i * 104_729 % 1050) as f64);
+    let place = |i: usize| Point::new(1900.0 * (i as f64 * 0.618).fract(), 1050.0 * (i as f64 * 0.7549 + 1e-4 * (i * i) as f64).fract());
     let lines: Vec<Line> = (0..strokes)
         .map(|i| Line { path: disc(place(i), 12.0), depth: Depth { layer: 0, stroke: i as i32 } })
         .collect();
