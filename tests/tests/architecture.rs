@@ -25,7 +25,8 @@ const ALLOWED: [(&str, &[&str]); 13] = [
     (
         "pipeline",
         &[
-            "numeric", "geometry", "curve", "fit", "scene", "image", "track", "snap", "tween", "render", "export", "project",
+            "numeric", "geometry", "curve", "fit", "scene", "image", "track", "snap", "tween", "render", "export",
+            "project",
         ],
     ),
 ];

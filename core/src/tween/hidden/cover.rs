@@ -128,8 +128,18 @@ mod tests {
 
     #[test]
     fn a_doubly_wound_ring_is_full_or_hollow_by_rule() {
-        let twice =
-            [(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0), (0.0, 0.0), (3.0, 3.0), (6.0, 3.0), (6.0, 6.0), (3.0, 6.0), (3.0, 3.0)];
+        let twice = [
+            (0.0, 0.0),
+            (9.0, 0.0),
+            (9.0, 9.0),
+            (0.0, 9.0),
+            (0.0, 0.0),
+            (3.0, 3.0),
+            (6.0, 3.0),
+            (6.0, 6.0),
+            (3.0, 6.0),
+            (3.0, 3.0),
+        ];
         assert!(shape(&twice, FillRule::NonZero).contains(Point::splat(4.5)));
         assert!(!shape(&twice, FillRule::EvenOdd).contains(Point::splat(4.5)));
         assert!(shape(&twice, FillRule::EvenOdd).contains(Point::splat(1.5)));
@@ -139,7 +149,9 @@ mod tests {
     fn rays_through_corners_and_along_edges_are_counted_once() {
         let stairs = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (8.0, 4.0), (8.0, 8.0), (0.0, 8.0)];
         let shape = shape(&stairs, FillRule::NonZero);
-        for (p, inside) in [((2.0, 4.0), true), ((6.0, 6.0), true), ((6.0, 2.0), false), ((-1.0, 4.0), false), ((-1.0, 0.0), false)] {
+        for (p, inside) in
+            [((2.0, 4.0), true), ((6.0, 6.0), true), ((6.0, 2.0), false), ((-1.0, 4.0), false), ((-1.0, 0.0), false)]
+        {
             assert_eq!(shape.contains(Point::from(p)), inside, "{p:?}");
         }
     }

@@ -2,7 +2,8 @@
 //!
 //! [`hidden_lines`] takes lines and covers, each with its [`Depth`], and gives for each line the parameters between which it
 //! is visible and hidden. Nothing is cut or moved here: a line stays the line that it is, with intervals of its own
-//! parameter ([`Path::part`] gives their shape), so that whatever is made of them still knows where it came from.
+//! parameter ([`Path::part`] gives their shape, [`Form::cut`] their points), so that whatever is made of them still knows
+//! where it came from.
 //!
 //! # What is hidden
 //!
@@ -32,6 +33,7 @@
 
 mod against;
 mod cover;
+mod cut;
 mod depth;
 mod intervals;
 mod path;
@@ -40,6 +42,7 @@ mod tests;
 mod tree;
 
 pub use cover::FillRule;
+pub use cut::{Blend, Form};
 pub use depth::{Depth, DepthOrder};
 pub use intervals::Interval;
 pub use path::{Path, PathError};

@@ -285,10 +285,8 @@ fn moving(time: f64) -> Vec<Cover> {
     (0..4)
         .map(|i| {
             let phase = f64::from(i) * 1.7;
-            let centre = Point::new(
-                32.0 + 22.0 * (0.9 * time + phase).sin(),
-                32.0 + 18.0 * (0.7 * time + 2.0 * phase).cos(),
-            );
+            let centre =
+                Point::new(32.0 + 22.0 * (0.9 * time + phase).sin(), 32.0 + 18.0 * (0.7 * time + 2.0 * phase).cos());
             let guides = (0..11)
                 .map(|k| {
                     let angle = TAU * f64::from(k) / 11.0 + 0.5 * time;
@@ -320,7 +318,8 @@ fn what_is_seen_moves_continuously() {
     let lines: Vec<Line> = paths.iter().cloned().map(line).collect();
     let mut jumps = [0.0f64; 2];
     for (jump, (steps, step)) in jumps.iter_mut().zip([(600, 1e-2), (3000, 1e-4)]) {
-        let at = |frame: i32| hidden_lines(&lines, &moving(0.3 + f64::from(frame) * step), &Options::default()).unwrap();
+        let at =
+            |frame: i32| hidden_lines(&lines, &moving(0.3 + f64::from(frame) * step), &Options::default()).unwrap();
         let mut before = at(0);
         for frame in 1..steps {
             let now = at(frame);
@@ -339,7 +338,9 @@ fn what_is_seen_moves_continuously() {
 #[test]
 fn thousands_of_strokes_and_any_number_of_threads() {
     let strokes = 2000;
-    let place = |i: usize| Point::new(1900.0 * (i as f64 * 0.618).fract(), 1050.0 * (i as f64 * 0.7549 + 1e-4 * (i * i) as f64).fract());
+    let place = |i: usize| {
+        Point::new(1900.0 * (i as f64 * 0.618).fract(), 1050.0 * (i as f64 * 0.7549 + 1e-4 * (i * i) as f64).fract())
+    };
     let lines: Vec<Line> = (0..strokes)
         .map(|i| Line { path: disc(place(i), 12.0), depth: Depth { layer: 0, stroke: i as i32 } })
         .collect();
