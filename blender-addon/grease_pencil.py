@@ -38,6 +38,12 @@ CONFIDENCE = "rototoon_confidence"
 SEGMENT = "rototoon_segment"
 """For each point of a snapped stroke, the segment between control points that it belongs to."""
 
+STROKE = "rototoon_stroke"
+"""Which stroke of its drawing a cut stroke is a part of; 0 for a stroke that was never cut."""
+INTERVAL = "rototoon_interval"
+"""From which parameter of that stroke to which a part reaches; both 0 for a whole stroke. Whole numbers are its points, or
+the joints of its pieces where it is a curve."""
+
 TYPES = {
     PART: ("INT", "CURVE"),
     MADE: ("BOOLEAN", "CURVE"),
@@ -56,10 +62,15 @@ TYPES = {
     "fill_color": ("FLOAT_COLOR", "CURVE"),
     "fill_id": ("INT", "CURVE"),
     "softness": ("FLOAT", "CURVE"),
+    STROKE: ("INT", "CURVE"),
+    INTERVAL: ("FLOAT2", "CURVE"),
+    "nurbs_order": ("INT8", "CURVE"),
+    "knots_mode": ("INT8", "CURVE"),
+    "resolution": ("INT", "CURVE"),
 }
 """Data type and domain of each attribute that is ever created here."""
 
-DEFAULTS = {"radius": 0.01, "opacity": 1.0, CONFIDENCE: 1.0}
+DEFAULTS = {"radius": 0.01, "opacity": 1.0, CONFIDENCE: 1.0, "nurbs_order": 4, "resolution": 12}
 """What a missing attribute means to Blender, where it is not 0."""
 
 FILL_BY_ID = bpy.app.version >= (5, 1, 0)
@@ -248,7 +259,7 @@ def _write_tail(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
             values = head
         put(drawing, name, values)
     for name in DEFAULTS:
-        if name not in rows.values and drawing.attributes.get(name) is not None:
+        if TYPES[name][1] == "POINT" and name not in rows.values and drawing.attributes.get(name) is not None:
             values = value(drawing, name, points)
             values[points - int(rows.sizes.sum()) :] = DEFAULTS[name]
             put(drawing, name, values)

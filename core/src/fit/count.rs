@@ -8,6 +8,7 @@
 //! can be missed is asked of a few least-squares steps near each, on some of the points (its *promise*); the most promising
 //! are tried in full, in long sections several far apart at once.
 
+use super::feet::wrapped;
 use super::profile::Profile;
 use super::section::{End, Ends};
 use super::trial::{Effort, Given, Trial};
@@ -184,7 +185,7 @@ impl Given<'_> {
         // The three pieces about the node and its neighbours become two.
         let (from, count) = (piece as f64 - 1.0, pieces as f64);
         let shorter = |&t: &f64| {
-            let ahead = if periodic { (t - from).rem_euclid(count) } else { t - from };
+            let ahead = if periodic { wrapped(t - from, count) } else { t - from };
             let moved = if ahead < 0.0 {
                 ahead
             } else if ahead < 3.0 {
@@ -193,7 +194,7 @@ impl Given<'_> {
                 ahead - 1.0
             };
             let t = moved + from;
-            if periodic { t.rem_euclid(count - 1.0) } else { t }
+            if periodic { wrapped(t, count - 1.0) } else { t }
         };
         let parameters = trial.parameters.iter().map(shorter).collect();
         Trial { nodes, slots, parameters, errors: trial.errors }

@@ -4,6 +4,7 @@
 //! on the squared distances, then steps on the excess over the tolerance. It ends as soon as every point is within the
 //! limit, or when steps no longer help.
 
+use super::feet::wrapped;
 use super::profile::Profile;
 use super::section::{Arc, End, Ends, Slot};
 use super::solve::{Errors, Goal, Step, Track, arcs};
@@ -232,13 +233,17 @@ impl<'a, 'b> Work<'a, 'b> {
     fn new(given: &'a Given<'a>, slots: &'b [Slot], nodes: Vec<Point>, parameters: Vec<f64>) -> Self {
         let all = given.points.len();
         let stride = (all / (SAMPLES * slots.len()).max(1)).max(1);
+        let mut strided: Vec<usize> = (0..all).step_by(stride).collect();
+        if strided.last().is_some_and(|&last| last + 1 < all) {
+            strided.push(all - 1);
+        }
         Self {
             given,
             track: Track { points: given.points, parameters },
             step: Step::new(given.ends, slots, nodes.len(), all),
             nodes,
             best: None,
-            strided: (0..all).filter(|j| j % stride == 0 || j + 1 == all).collect(),
+            strided,
         }
     }
 
@@ -270,7 +275,7 @@ impl<'a, 'b> Work<'a, 'b> {
             }
             for j in pair[0] + 1..pair[1] {
                 let t = from + (to - from) * (j - pair[0]) as f64 / (pair[1] - pair[0]) as f64;
-                self.track.parameters[j] = if periodic { t.rem_euclid(count) } else { t };
+                self.track.parameters[j] = if periodic { wrapped(t, count) } else { t };
             }
         }
     }
