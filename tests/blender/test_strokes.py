@@ -138,7 +138,7 @@ def test_strokes_that_cannot_be_fitted_stay(addon):
     add(addon, ob, "Lines", 1, shapes)
     handle = drawing(addon, ob, "Lines", 1)
     gp = addon("grease_pencil")
-    points = gp.positions(handle, 473)
+    points = gp.positions(handle, 423)
     points[300] = np.nan
     gp.put(handle, "position", points)
     handle.set_types(type="BEZIER", indices=[3])

@@ -26,6 +26,8 @@ const PATIENCE: f64 = 0.8;
 const SAMPLES: usize = 12;
 /// Least-squares steps that tell whether a start is promising.
 const PROMISE: usize = 2;
+/// Of the points of the least-squares steps, such steps look at one in so many.
+const SPARSE: usize = 2;
 /// Pieces on each side of a change that such steps move.
 const NEAR: usize = 3;
 /// Of so many steps on the excess one looks at all points.
@@ -145,6 +147,9 @@ impl Given<'_> {
         work.step.hold_but(|i| apart(i) <= NEAR);
         let parameters = &work.track.parameters;
         work.strided.retain(|&j| apart((parameters[j] as usize).min(pieces - 1)) <= NEAR + 1);
+        if self.points.len() >= SAMPLES * pieces {
+            work.strided = work.strided.iter().step_by(SPARSE).copied().collect();
+        }
         work.squares(PROMISE, false);
         let chosen = work.strided.iter().copied();
         work.step.gather(&work.nodes, &mut work.track, Goal::Squares(SLIDE), true, chosen).largest
