@@ -176,11 +176,20 @@ def blank(name: str, count: int) -> np.ndarray:
     return np.full(count if width == 1 else (count, width), DEFAULTS.get(name, 0), kind)
 
 
+def make(drawing: bpy.types.bpy_struct, name: str, kind: str, where: str) -> bpy.types.bpy_struct:
+    """A new attribute of a drawing."""
+    if name != "nurbs_order":
+        return drawing.attributes.new(name, kind, where)
+    # Blender 4.5 writes beyond its end when it makes this one by its name; renaming is safe.
+    drawing.attributes.new("rototoon_order", kind, where).name = name
+    return drawing.attributes[name]
+
+
 def put(drawing: bpy.types.bpy_struct, name: str, values: np.ndarray) -> None:
     """Sets all values of an attribute, which is made if need be."""
     attribute = drawing.attributes.get(name)
     if attribute is None:
-        attribute = drawing.attributes.new(name, *TYPES[name])
+        attribute = make(drawing, name, *TYPES[name])
     key, kind, _ = _LAYOUT[attribute.data_type]
     attribute.data.foreach_set(key, np.ascontiguousarray(values, kind).ravel())
 
@@ -281,7 +290,7 @@ def copy_strokes(source: bpy.types.bpy_struct, indices: list[int], target: bpy.t
         if values is None:
             continue
         if name != "position" and target.attributes.get(name) is None:
-            target.attributes.new(name, attribute.data_type, attribute.domain)
+            make(target, name, attribute.data_type, attribute.domain)
         rows.values[name] = values[points if attribute.domain == "POINT" else indices]
     append(target, rows)
 

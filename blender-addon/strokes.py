@@ -102,7 +102,7 @@ def write(drawing, content: Content) -> None:
         for domain, values in (("POINT", content.point), ("CURVE", content.curve)):
             for name, each in values.items():
                 if drawing.attributes.get(name) is None:
-                    drawing.attributes.new(name, content.kinds[name], domain)
+                    gp.make(drawing, name, content.kinds[name], domain)
                 gp.put(drawing, name, each)
     drawing.tag_positions_changed()
 

@@ -26,8 +26,8 @@ const PATIENCE: f64 = 0.8;
 const SAMPLES: usize = 12;
 /// Least-squares steps that tell whether a start is promising.
 const PROMISE: usize = 2;
-/// Of the points of the least-squares steps, such steps look at one in so many.
-const SPARSE: usize = 2;
+/// A start whose error is above this multiple of the limit after the first of them will not come near it.
+const FORLORN: f64 = 4.0;
 /// Pieces on each side of a change that such steps move.
 const NEAR: usize = 3;
 /// Of so many steps on the excess one looks at all points.
@@ -147,12 +147,15 @@ impl Given<'_> {
         work.step.hold_but(|i| apart(i) <= NEAR);
         let parameters = &work.track.parameters;
         work.strided.retain(|&j| apart((parameters[j] as usize).min(pieces - 1)) <= NEAR + 1);
-        if self.points.len() >= SAMPLES * pieces {
-            work.strided = work.strided.iter().step_by(SPARSE).copied().collect();
+        for k in 0.. {
+            let chosen = work.strided.iter().copied();
+            let errors = work.step.gather(&work.nodes, &mut work.track, Goal::Squares(SLIDE), true, chosen);
+            let forlorn = k > 0 && errors.largest > FORLORN * self.limit;
+            if forlorn || k == PROMISE || !work.advance() {
+                return errors.largest;
+            }
         }
-        work.squares(PROMISE, false);
-        let chosen = work.strided.iter().copied();
-        work.step.gather(&work.nodes, &mut work.track, Goal::Squares(SLIDE), true, chosen).largest
+        f64::INFINITY
     }
 
     /// The first point after which the curve does not keep near the points' line: it might turn off and come back between
