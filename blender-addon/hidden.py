@@ -71,8 +71,9 @@ def cut_frame(ob, frame: int, choices: Choices) -> Iterator[Cut]:
     scene = _Scene(ob, frame, choices)
     found = session.hidden_lines(scene.strokes(), scene.forms, scene.depths, scene.fills)
     pieces = _Pieces(found)
+    may_change = {layer.name for layer in st.editable_layers(ob, active=False)}
     for entry in scene.entries:
-        if not entry.layer.lock:
+        if entry.layer.name in may_change:
             yield _cut(ob, frame, entry, pieces)
 
 
@@ -331,13 +332,13 @@ def write(ob, cuts: list[Cut], move: bool, in_place: bool) -> tuple[int, int]:
         for each in sorted(group, key=lambda cut: cut.frame):
             again = before is not None and before.source == each.source
             same = before.seen.equals(each.seen) if again else not each.changed
+            number = each.source if in_place else each.frame
+            if aside is not None and not (same and again):
+                _put_aside(aside, number, each.hidden)
             before = each
             if same:
                 continue
-            number = each.source if in_place else each.frame
             _put(layer, number, each.source, each.seen)
-            if aside is not None:
-                _put(aside, number, None, each.hidden)
             changed += 1
             parts += each.pieces
     return changed, parts
@@ -358,6 +359,16 @@ def _aside(ob, layer):
     place, turn, size = Matrix((np.array(found.matrix_local) @ own).tolist()).decompose()
     found.translation, found.rotation, found.scale = place, turn.to_euler(), size
     return found
+
+
+def _put_aside(layer, number: int, hidden: st.Content) -> None:
+    """Adds hidden lines to those of a frame; what an earlier frame hid does not show on it."""
+    known = gp.drawings(layer).get(number)
+    if known is not None:
+        hidden = st.joined(st.read(known[0]), hidden)
+    elif not len(hidden.sizes) and st.shown_frame(layer, number) is None:
+        return
+    _put(layer, number, None, hidden)
 
 
 def _put(layer, number: int, source: int | None, content: st.Content) -> None:

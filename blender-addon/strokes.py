@@ -116,6 +116,26 @@ def _set_types(drawing, types: np.ndarray) -> None:
             drawing.set_types(type=_TYPE_NAMES[kind], indices=other.tolist())
 
 
+def joined(one: Content, other: Content) -> Content:
+    """The strokes of both, each with the attributes of either."""
+    result = Content(np.concatenate([one.sizes, other.sizes]), np.concatenate([one.types, other.types]))
+    result.kinds = one.kinds | other.kinds
+    for side in ("point", "curve"):
+        mine, theirs, into = getattr(one, side), getattr(other, side), getattr(result, side)
+        counts = [len(c.point["position"]) if side == "point" else len(c.sizes) for c in (one, other)]
+        for name in mine | theirs:
+            values = [_or_blank(name, each, count, mine, theirs) for each, count in zip((mine, theirs), counts)]
+            into[name] = np.concatenate(values)
+    return result
+
+
+def _or_blank(name: str, values: dict, count: int, *known: dict) -> np.ndarray:
+    if name in values:
+        return values[name]
+    like = next(each[name] for each in known if name in each)
+    return np.full((count, *like.shape[1:]), gp.DEFAULTS.get(name, 0), like.dtype)
+
+
 def ranges(starts: np.ndarray, sizes: np.ndarray) -> np.ndarray:
     """The numbers `starts[i]` to `starts[i] + sizes[i]` for all i, one after the other."""
     ends = np.cumsum(sizes)
@@ -130,9 +150,13 @@ def shown_frame(layer, frame: int) -> int | None:
 
 
 def editable_layers(ob, active: bool) -> list:
-    """The layers that the artist may change, lowest first: those not locked; only the active one if asked."""
+    """The layers whose strokes may be made anew, lowest first; only the active one if asked.
+
+    Locked ones are not, nor those with contours: tracking knows their points by number.
+    """
     layers = [ob.data.layers.active] if active else list(ob.data.layers)
-    return [layer for layer in layers if layer is not None and not layer.lock]
+    contours = {layer.name for layer in gp.layers(ob, ob.rototoon.contours_layer)}
+    return [layer for layer in layers if layer is not None and not layer.lock and layer.name not in contours]
 
 
 def filled(ob, content: Content) -> np.ndarray:

@@ -3,6 +3,7 @@
 import bpy
 
 from .. import hidden, jobs
+from .. import strokes as st
 from ..errors import Problem
 from .base import Long, drawing_poll
 
@@ -57,6 +58,8 @@ class ROTOTOON_OT_hidden_lines(Long, bpy.types.Operator):
             self._frames = hidden.frames_between(self._ob, scene.frame_start, scene.frame_end)
         if not any(not layer.hide and len(layer.frames) for layer in self._ob.data.layers):
             raise Problem("No drawings to look at: draw something, or show a layer")
+        if not st.editable_layers(self._ob, active=False):
+            raise Problem("No layer may be cut: unlock one. Contours are left alone, since tracking goes by their points")
         self._cuts = []
         return jobs.Stepper(self._steps(scene), "Looking at frames")
 

@@ -407,3 +407,44 @@ def test_hidden_lines_through_a_camera(addon):
     found = content(addon, ob, "Back", 1)
     # At half the distance the disc covers twice as much: the whole line.
     assert len(found.sizes) == 0
+
+
+def test_contours_cover_and_are_not_cut(addon):
+    ob = scene(addon)
+    ob.rototoon.contours_layer = "Front"
+    bpy.ops.rototoon.hidden_lines()
+    assert len(content(addon, ob, "Back", 1).sizes) == 2
+    ob = scene(addon)
+    ob.rototoon.contours_layer = "Back"
+    assert bpy.ops.rototoon.hidden_lines() == {"FINISHED"}
+    assert len(content(addon, ob, "Back", 1).sizes) == 1
+    bpy.ops.rototoon.fit_strokes()
+    assert content(addon, ob, "Back", 1).sizes[0] == 41
+
+
+def test_hidden_lines_of_one_drawing_do_not_show_on_the_next(addon):
+    ob = scene(addon)
+    bpy.context.scene.frame_start, bpy.context.scene.frame_end = 1, 12
+    add(addon, ob, "Back", 6, [[(0, 3), (4, 3)]])
+    bpy.ops.rototoon.hidden_lines(frames="RANGE", action="MOVE")
+    assert [len(content(addon, ob, "Back Hidden", f).sizes) for f in (1, 6)] == [1, 0]
+    # More is hidden later: it joins what is there.
+    add(addon, ob, "Back", 1, [[(0, 0.5), (4, 0.5)]])
+    bpy.ops.rototoon.hidden_lines(frames="RANGE", action="MOVE")
+    assert [len(content(addon, ob, "Back Hidden", f).sizes) for f in (1, 6)] == [2, 0]
+    assert len(content(addon, ob, "Back", 1).sizes) == 4
+
+
+def test_a_layer_under_a_parent_keeps_its_place(addon):
+    ob = scene(addon)
+    empty = bpy.data.objects.new("Empty", None)
+    bpy.context.collection.objects.link(empty)
+    empty.location, empty.scale = (0.5, 0.0, 0.25), (2.0, 2.0, 2.0)
+    back = ob.data.layers["Back"]
+    back.parent = empty
+    back.translation = (-0.1, 0.0, 0.0)
+    bpy.context.view_layer.update()
+    bpy.ops.rototoon.hidden_lines(action="MOVE")
+    bpy.context.view_layer.update()
+    place = addon("camera").layer_to_world
+    assert place(ob, ob.data.layers["Back Hidden"]) == pytest.approx(place(ob, back), abs=1e-5)

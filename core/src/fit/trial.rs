@@ -26,8 +26,6 @@ const PATIENCE: f64 = 0.8;
 const SAMPLES: usize = 12;
 /// Least-squares steps that tell whether a start is promising.
 const PROMISE: usize = 2;
-/// A start whose error is above this multiple of the limit after the first of them will not come near it.
-const FORLORN: f64 = 4.0;
 /// Pieces on each side of a change that such steps move.
 const NEAR: usize = 3;
 /// Of so many steps on the excess one looks at all points.
@@ -135,27 +133,32 @@ impl Given<'_> {
         Trial { nodes, slots, parameters, errors }
     }
 
+    /// Points enough to tell the shape of so many pieces.
+    pub fn strided(&self, pieces: usize) -> Vec<usize> {
+        let all = self.points.len();
+        let stride = (all / (SAMPLES * pieces).max(1)).max(1);
+        let mut strided: Vec<usize> = (0..all).step_by(stride).collect();
+        if strided.last().is_some_and(|&last| last + 1 < all) {
+            strided.push(all - 1);
+        }
+        strided
+    }
+
     /// How promising a start is that differs from a good fit about piece `at`: the largest error near there, on some of the
-    /// points, after a few least-squares steps of the nodes near there.
-    pub fn promise(&self, start: &Trial, at: usize) -> f64 {
+    /// points, after a few least-squares steps of the nodes near there. Only the parameters of the strided points count.
+    pub fn promise(&self, start: Trial, at: usize) -> f64 {
         let pieces = start.slots.len();
         let apart = |i: usize| {
             let apart = i.abs_diff(at);
             if self.ends == Ends::Periodic { apart.min(pieces - apart) } else { apart }
         };
-        let mut work = Work::new(self, &start.slots, start.nodes.clone(), start.parameters.clone());
+        let mut work = Work::new(self, &start.slots, start.nodes, start.parameters);
         work.step.hold_but(|i| apart(i) <= NEAR);
         let parameters = &work.track.parameters;
         work.strided.retain(|&j| apart((parameters[j] as usize).min(pieces - 1)) <= NEAR + 1);
-        for k in 0.. {
-            let chosen = work.strided.iter().copied();
-            let errors = work.step.gather(&work.nodes, &mut work.track, Goal::Squares(SLIDE), true, chosen);
-            let forlorn = k > 0 && errors.largest > FORLORN * self.limit;
-            if forlorn || k == PROMISE || !work.advance() {
-                return errors.largest;
-            }
-        }
-        f64::INFINITY
+        work.squares(PROMISE, false);
+        let chosen = work.strided.iter().copied();
+        work.step.gather(&work.nodes, &mut work.track, Goal::Squares(SLIDE), true, chosen).largest
     }
 
     /// The first point after which the curve does not keep near the points' line: it might turn off and come back between
@@ -240,18 +243,13 @@ struct Work<'a, 'b> {
 impl<'a, 'b> Work<'a, 'b> {
     fn new(given: &'a Given<'a>, slots: &'b [Slot], nodes: Vec<Point>, parameters: Vec<f64>) -> Self {
         let all = given.points.len();
-        let stride = (all / (SAMPLES * slots.len()).max(1)).max(1);
-        let mut strided: Vec<usize> = (0..all).step_by(stride).collect();
-        if strided.last().is_some_and(|&last| last + 1 < all) {
-            strided.push(all - 1);
-        }
         Self {
             given,
             track: Track { points: given.points, parameters },
             step: Step::new(given.ends, slots, nodes.len(), all),
             nodes,
             best: None,
-            strided,
+            strided: given.strided(slots.len()),
         }
     }
 
