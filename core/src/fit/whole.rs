@@ -148,18 +148,20 @@ fn sections(data: &Cleaned, closed: bool, mut corners: Vec<Corner>, limit: f64, 
 }
 
 /// Puts a corner where a fit fails. Next to a corner that is there already, that one was misplaced: it is first put on its
-/// point, then moved to the fault; only then the fault gets a corner of its own.
+/// point, then moved to the fault, then between both (the tip of a sharp corner may be two pixels wide); only then the fault
+/// gets a corner of its own.
 fn repair(data: &Cleaned, closed: bool, corners: &mut Vec<Corner>, index: usize, round: usize, limit: f64) {
     let apart = |corner: &Corner| {
         let apart = (data.lengths[corner.index] - data.lengths[index]).abs();
         if closed { apart.min(data.total - apart) } else { apart }
     };
     let place = data.points[index];
-    let near = corners.iter_mut().filter(|corner| round < 2 && apart(corner) <= BESIDE * limit);
+    let near = corners.iter_mut().filter(|corner| round < 3 && apart(corner) <= BESIDE * limit);
     match near.min_by(|a, b| apart(a).total_cmp(&apart(b))) {
         Some(corner) if round == 0 && corner.place != data.points[corner.index] => {
             corner.place = data.points[corner.index];
         }
+        Some(corner) if round == 2 => corner.place = 0.5 * (corner.place + place),
         Some(corner) => *corner = Corner { index, place },
         None => corners.push(Corner { index, place }),
     }
