@@ -1,9 +1,9 @@
 """Strokes as light curves: quadratic B-splines with few guiding points, in the place of many points.
 
-Blender draws such a curve as a NURBS of order 3. It is fitted in the plane of the drawing; what points have beside their
-place in it (the distance from it, radius, opacity, colour, attributes of the artist's own) is blended along the curve by
-the same weights as the guiding points, so Blender's blend of it runs as it did along the stroke. Numbers that cannot be
-blended are taken from the nearest point.
+Blender draws such a curve as a NURBS of order 3. It is fitted in the plane of the drawing; what points have beside
+their place in it (the distance from it, radius, opacity, colour, attributes of the artist's own) is blended along the
+curve by the same weights as the guiding points, so Blender's blend of it runs as it did along the stroke. Numbers that
+cannot be blended are taken from the nearest point.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Fitted:
 
 
 def fit(content: st.Content, wanted: np.ndarray, scale: float, tolerance: float) -> Fitted | None:
-    """Fits the strokes `wanted` (mask) within `tolerance` pixels, `scale` pixels being a unit; `None` where none changes."""
+    """Fits the strokes `wanted` (mask) within `tolerance` pixels, `scale` of them a unit; `None` where none changes."""
     poly = (content.types == st.POLY) & content.finite()
     chosen = np.flatnonzero(wanted & poly & (content.sizes > 2))
     skipped = int((wanted & ~poly).sum())

@@ -372,7 +372,7 @@ def _put_aside(layer, number: int, hidden: st.Content) -> None:
 
 
 def _put(layer, number: int, source: int | None, content: st.Content) -> None:
-    """Writes a drawing on a frame, which becomes a generated one if it is new; a copy of `source` keeps what is there."""
+    """Writes a drawing on a frame; a new frame is a generated one, and a copy of `source` for what is not written."""
     if number not in gp.drawings(layer):
         if source is None:
             layer.frames.new(number)

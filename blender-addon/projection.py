@@ -13,8 +13,10 @@ FRONT_SCALE = 100.0
 
 
 class Projection:
-    """From layer points to pixels: of the footage where the object has some, else of the scene's camera, else of the front
-    view."""
+    """From layer points to pixels.
+
+    Those of the footage where the object has some, else of the scene's camera, else of the front view.
+    """
 
     def __init__(self, ob: bpy.types.Object):
         self._ob = ob

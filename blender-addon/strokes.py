@@ -1,7 +1,7 @@
 """Whole drawings as arrays: everything that Blender knows of their strokes, out and in again.
 
-A drawing that is written with other numbers of strokes and points keeps its attributes; only vertex groups, which Blender
-keeps elsewhere, stay with the points of the same number.
+A drawing that is written with other numbers of strokes and points keeps its attributes; only vertex groups, which
+Blender keeps elsewhere, stay with the points of the same number.
 """
 
 from __future__ import annotations
@@ -163,12 +163,16 @@ def filled(ob, content: Content) -> np.ndarray:
     """For each stroke the number of its fill, 0 where it has none; strokes that are filled together share a number."""
     if gp.FILL_BY_ID:
         return content.strokes("fill_id")
-    materials = [slot is not None and slot.grease_pencil is not None and slot.grease_pencil.show_fill for slot in ob.data.materials]
-    shown = np.array([*materials, False])
-    index = np.clip(content.strokes("material_index"), 0, max(len(materials) - 1, 0))
-    if not materials:
+    index = content.strokes("material_index")
+    shown = np.array([_shows_fill(material) for material in ob.data.materials])
+    if not len(shown):
         return np.zeros(len(index), np.int32)
+    index = np.clip(index, 0, len(shown) - 1)
     return np.where(shown[index], np.arange(1, len(index) + 1), 0).astype(np.int32)
+
+
+def _shows_fill(material) -> bool:
+    return material is not None and material.grease_pencil is not None and material.grease_pencil.show_fill
 
 
 def unique_numbers(used: Iterable[int], count: int) -> np.ndarray:

@@ -66,7 +66,10 @@ class ROTOTOON_OT_fit_strokes(Long, bpy.types.Operator):
             for number in self._numbers(layer, context.scene.frame_current)
         ]
         if not self._drawings:
-            raise Problem("No drawings to fit on these frames: choose other frames or layers, or unlock the layers. Contours are left alone")
+            raise Problem(
+                "No drawings to fit on these frames: choose other frames or layers, or unlock the layers. "
+                "Contours are left alone"
+            )
         self._done = []
         return jobs.Stepper(self._steps(), "Fitting")
 

@@ -43,7 +43,7 @@ class ROTOTOON_OT_hidden_lines(Long, bpy.types.Operator):
         description="Which frames are done",
         items=(
             ("CURRENT", "Current", "The drawings that show on the current frame"),
-            ("RANGE", "Scene Range", "All frames of the scene; where a held drawing looks another way it gets a new frame"),
+            ("RANGE", "Scene Range", "All frames of the scene; a held drawing gets a new frame where it looks another way"),
         ),
     )
 
