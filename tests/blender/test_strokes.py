@@ -12,7 +12,8 @@ def drawing_object(addon, layers=("Lines",), filled=False):
     gp = addon("grease_pencil")
     ob = gp.new_object("Drawing", bpy.context.collection)
     bpy.context.view_layer.objects.active = ob
-    ob.data.materials[0].grease_pencil.show_fill = filled
+    if filled:
+        ob.data.materials[0].grease_pencil.show_fill = True
     for name in layers:
         ob.data.layers.new(name)
     return ob

@@ -78,6 +78,12 @@ impl Strokes<'_> {
     }
 }
 
+/// A fitted stroke with the values of its guides, channel by channel.
+struct Carrying {
+    fitted: Fitted,
+    carried: Vec<Vec<f64>>,
+}
+
 /// Fits all strokes; `values` has `channels` numbers for each point.
 pub fn fitted(strokes: &Strokes, values: &[f64], channels: usize, tolerance: f64) -> Result<RototoonGuides, Failure> {
     let count = strokes.checked()?;
@@ -86,7 +92,7 @@ pub fn fitted(strokes: &Strokes, values: &[f64], channels: usize, tolerance: f64
         return Err(Failure::Error(format!("values: {} numbers, expected {expected}", values.len())));
     }
     let options = Options::new(tolerance);
-    let one = |stroke: usize| -> Result<Option<(Fitted, Vec<Vec<f64>>)>, FitError> {
+    let one = |stroke: usize| -> Result<Option<Carrying>, FitError> {
         let points = strokes.points_of(stroke);
         if points.is_empty() {
             return Ok(None);
@@ -97,13 +103,13 @@ pub fn fitted(strokes: &Strokes, values: &[f64], channels: usize, tolerance: f64
             fitted.attribute(&given)
         };
         let carried = (0..channels).map(channel).collect::<Result<_, _>>()?;
-        Ok(Some((fitted, carried)))
+        Ok(Some(Carrying { fitted, carried }))
     };
     let all: Vec<_> = (0..count).into_par_iter().map(one).collect();
     let mut guides = RototoonGuides { offsets: vec![0], ..RototoonGuides::default() };
     for (stroke, found) in all.into_iter().enumerate() {
         match found.map_err(|error| Failure::Error(format!("stroke {stroke}: {error}")))? {
-            Some((fitted, carried)) => guides.push(&fitted, &carried, strokes.offsets[stroke]),
+            Some(found) => guides.push(&found, strokes.offsets[stroke]),
             None => guides.errors.push(0.0),
         }
         guides.offsets.push((guides.points.len() / 2) as i32);
@@ -112,7 +118,7 @@ pub fn fitted(strokes: &Strokes, values: &[f64], channels: usize, tolerance: f64
 }
 
 impl RototoonGuides {
-    fn push(&mut self, fitted: &Fitted, carried: &[Vec<f64>], first: i32) {
+    fn push(&mut self, Carrying { fitted, carried }: &Carrying, first: i32) {
         let guides = fitted.spline.guides();
         self.points.extend(guides.iter().flat_map(|g| g.to_array()));
         self.values.extend((0..guides.len()).flat_map(|k| carried.iter().map(move |channel| channel[k])));
