@@ -71,19 +71,33 @@ class Mapping:
 
     def to_layer(self, pixels: np.ndarray) -> np.ndarray:
         """Pixels (..., 2) to points (..., 3) of the drawing plane in layer space."""
-        uv = (np.asarray(pixels, np.float64) - self.view.to_pixel[:, 2]) @ self.linear_inverse.T
+        pixels = np.asarray(pixels, np.float64)
         rotation, shift = self.from_view[:3, :3], self.from_view[:3, 3]
+        # What moves with the pixel: the ray's direction through a perspective camera, else where the ray begins.
+        linear = self.linear_inverse.T @ rotation[:, :2].T
+        start = -self.view.to_pixel[:, 2] @ linear
+        moving = pixels @ linear
         if self.view.perspective:
-            origin = shift
-            direction = uv @ rotation[:, :2].T - rotation[:, 2]
-        else:
-            origin = uv @ rotation[:, :2].T + shift
-            direction = -rotation[:, 2]
+            moving += start - rotation[:, 2]
+            along = moving @ self.normal
+            self._refuse_edge_on(along, moving)
+            moving *= (((self.point - shift) @ self.normal) / along)[..., None]
+            moving += shift
+            return moving
+        direction = -rotation[:, 2]
         along = np.asarray(direction @ self.normal)
+        self._refuse_edge_on(along, direction)
+        moving += start + shift
+        moving += direction * (((self.point - moving) @ self.normal) / along)[..., None]
+        return moving
+
+    def _refuse_edge_on(self, along: np.ndarray, direction: np.ndarray) -> None:
+        # The norm of every direction costs more than all else here; the largest coordinate bounds them all.
+        bound = 2.0 * np.abs(direction).max(initial=0.0)
+        if along.size and np.abs(along).min() > 1e-9 * bound:
+            return
         if (np.abs(along) <= 1e-9 * np.linalg.norm(direction, axis=-1)).any():
             raise Problem("The drawing plane is seen edge-on: turn the Grease Pencil object towards the camera")
-        reach = ((self.point - origin) @ self.normal) / along
-        return origin + direction * reach[..., None]
 
 
 def plane_of(points: np.ndarray, view_normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -38,6 +38,12 @@ CONFIDENCE = "rototoon_confidence"
 SEGMENT = "rototoon_segment"
 """For each point of a snapped stroke, the segment between control points that it belongs to."""
 
+STROKE = "rototoon_stroke"
+"""Which stroke of its drawing a cut stroke is a part of; 0 for a stroke that was never cut."""
+INTERVAL = "rototoon_interval"
+"""From which parameter of that stroke to which a part reaches; both 0 for a whole stroke. Whole numbers are its points, or
+the joints of its pieces where it is a curve."""
+
 TYPES = {
     PART: ("INT", "CURVE"),
     MADE: ("BOOLEAN", "CURVE"),
@@ -56,10 +62,15 @@ TYPES = {
     "fill_color": ("FLOAT_COLOR", "CURVE"),
     "fill_id": ("INT", "CURVE"),
     "softness": ("FLOAT", "CURVE"),
+    STROKE: ("INT", "CURVE"),
+    INTERVAL: ("FLOAT2", "CURVE"),
+    "nurbs_order": ("INT8", "CURVE"),
+    "knots_mode": ("INT8", "CURVE"),
+    "resolution": ("INT", "CURVE"),
 }
 """Data type and domain of each attribute that is ever created here."""
 
-DEFAULTS = {"radius": 0.01, "opacity": 1.0, CONFIDENCE: 1.0}
+DEFAULTS = {"radius": 0.01, "opacity": 1.0, CONFIDENCE: 1.0, "nurbs_order": 4, "resolution": 12}
 """What a missing attribute means to Blender, where it is not 0."""
 
 FILL_BY_ID = bpy.app.version >= (5, 1, 0)
@@ -165,11 +176,20 @@ def blank(name: str, count: int) -> np.ndarray:
     return np.full(count if width == 1 else (count, width), DEFAULTS.get(name, 0), kind)
 
 
+def make(drawing: bpy.types.bpy_struct, name: str, kind: str, where: str) -> bpy.types.bpy_struct:
+    """A new attribute of a drawing."""
+    if name != "nurbs_order":
+        return drawing.attributes.new(name, kind, where)
+    # Blender 4.5 writes beyond its end when it makes this one by its name; renaming is safe.
+    drawing.attributes.new("rototoon_order", kind, where).name = name
+    return drawing.attributes[name]
+
+
 def put(drawing: bpy.types.bpy_struct, name: str, values: np.ndarray) -> None:
     """Sets all values of an attribute, which is made if need be."""
     attribute = drawing.attributes.get(name)
     if attribute is None:
-        attribute = drawing.attributes.new(name, *TYPES[name])
+        attribute = make(drawing, name, *TYPES[name])
     key, kind, _ = _LAYOUT[attribute.data_type]
     attribute.data.foreach_set(key, np.ascontiguousarray(values, kind).ravel())
 
@@ -248,7 +268,7 @@ def _write_tail(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
             values = head
         put(drawing, name, values)
     for name in DEFAULTS:
-        if name not in rows.values and drawing.attributes.get(name) is not None:
+        if TYPES[name][1] == "POINT" and name not in rows.values and drawing.attributes.get(name) is not None:
             values = value(drawing, name, points)
             values[points - int(rows.sizes.sum()) :] = DEFAULTS[name]
             put(drawing, name, values)
@@ -270,7 +290,7 @@ def copy_strokes(source: bpy.types.bpy_struct, indices: list[int], target: bpy.t
         if values is None:
             continue
         if name != "position" and target.attributes.get(name) is None:
-            target.attributes.new(name, attribute.data_type, attribute.domain)
+            make(target, name, attribute.data_type, attribute.domain)
         rows.values[name] = values[points if attribute.domain == "POINT" else indices]
     append(target, rows)
 

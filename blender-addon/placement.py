@@ -112,10 +112,11 @@ def _moves(ob: bpy.types.Object) -> bool:
     settings = ob.rototoon
     objects = [ob, settings.reference if settings.plane == "REFERENCE" else camera_of(ob)]
     objects += [layer.parent for layer in gp.layers(ob, settings.contours_layer)]
-    return any(_animated(each) for each in objects)
+    return any(is_animated(each) for each in objects)
 
 
-def _animated(ob: bpy.types.Object | None) -> bool:
+def is_animated(ob: bpy.types.Object | None) -> bool:
+    """Whether an object, or one that it hangs on, can differ from frame to frame."""
     while ob is not None:
         owners = [ob] + ([ob.data] if ob.type in {"CAMERA", "EMPTY"} and ob.data is not None else [])
         if any(_has_motion(owner) for owner in owners) or len(ob.constraints):

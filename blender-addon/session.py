@@ -38,13 +38,18 @@ from .native.errors import Cancelled, LibraryError, RototoonError
 __all__ = [
     "Cancelled",
     "End",
+    "Guides",
     "Job",
     "LibraryError",
+    "Pieces",
     "RototoonError",
     "Session",
+    "Strokes",
     "Summary",
     "Track",
     "WeakestFrame",
+    "fit_strokes",
+    "hidden_lines",
     "match_contours",
     "parameters",
     "version",
@@ -134,6 +139,53 @@ class WeakestFrame:
     frame: int
     score: float
     """Doubt on that frame: the sum over parts of the mean of ``1 - confidence``, smoothed over time."""
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """Strokes of a drawing as flat buffers, such as NumPy arrays: stroke `i` has the points `offsets[i]` to
+    `offsets[i + 1]`."""
+
+    offsets: Any
+    """int32, one more than there are strokes."""
+    points: Any
+    """float64 (N, 2), pixels."""
+    closed: Any
+    """uint8 or bool, one a stroke: whether the end joins the start."""
+
+
+@dataclass(frozen=True)
+class Guides:
+    """Fitted strokes: quadratic B-splines by their guiding points."""
+
+    offsets: memoryview
+    """int32: stroke `i` has the guides `offsets[i]` to `offsets[i + 1]`."""
+    points: memoryview
+    """float64 (G, 2), pixels; those of corners twice."""
+    values: memoryview
+    """float64 (G, channels): what the points carried."""
+    nearest: memoryview
+    """int32 (G,): the given point that is nearest along the stroke."""
+    errors: memoryview
+    """float64, one a stroke: the largest distance in pixels."""
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """Seen and hidden parts of strokes, in the order of the strokes and along each."""
+
+    strokes: memoryview
+    """int32 (P,): the stroke of each part."""
+    hidden: memoryview
+    """int32 (P,): not 0 where it is hidden."""
+    intervals: memoryview
+    """float64 (P, 2): from which parameter of the stroke to which; over the seam of a closed one beyond its end."""
+    offsets: memoryview
+    """int32 (P + 1): part `i` has the points `offsets[i]` to `offsets[i + 1]`, none where it is a whole stroke."""
+    indices: memoryview
+    """int32 (M, 3): the given points of which each point is the sum."""
+    weights: memoryview
+    """float64 (M, 3): their weights."""
 
 
 class Session:
@@ -312,6 +364,49 @@ def match_contours(request: Mapping[str, Any]) -> Any:
     return json.loads(handles.take(handles.Text, "rototoon_match_contours", *_json(request)))
 
 
+def fit_strokes(strokes: Strokes, tolerance: float, values: Any = None, channels: int = 0) -> Guides:
+    """Fits quadratic B-splines with few guiding points; no point is farther than `tolerance` pixels from its curve.
+
+    `values` (float64, N × `channels`) are numbers that the points carry and the guides carry on. A stroke with a point
+    that is no place is an error that names it; a stroke without points gives no guides.
+    """
+    given = _strokes(strokes)
+    carried, numbers = _buffer([] if values is None else values, "d")
+    expected = channels * (len(given[2]) // 2)
+    if channels < 0 or numbers != expected:
+        raise RototoonError(f"values: {numbers} numbers, expected {expected}, {channels} a point")
+    arguments = (*given, carried, channels, float(tolerance))
+    sizes = (given[1], channels)
+    return Guides(*handles.take(handles.GuideArrays, "rototoon_fit_strokes", *arguments, sizes=sizes))
+
+
+def hidden_lines(
+    strokes: Strokes, forms: Any, depths: Any, fills: Any, *, border: float = 0.01, sliver: float = 0.1
+) -> Pieces:
+    """Cuts strokes where filled strokes in front hide them.
+
+    `forms` (uint8) says what the points of each stroke mean: 0 a polyline, 1 guiding points of a uniform quadratic
+    B-spline, 2 a chain of quadratic Bézier curves. `depths` (int32, two a stroke) are layer and stroke, larger is nearer,
+    equal ones do not hide each other. `fills` (int32) is 0 where a stroke is not filled; strokes of a layer with the same
+    number fill one shape. What is nearer to an outline than `border` pixels lies on it; parts shorter than `sliver` pixels
+    take after their surroundings. Parts of polylines are polylines, all others are of form 2; all are open.
+    """
+    given = _strokes(strokes)
+    count = given[1]
+    placing = []
+    for name, values, kind, length in (
+        ("forms", forms, "B", count),
+        ("depths", depths, "i", 2 * count),
+        ("fills", fills, "i", count),
+    ):
+        pointer, found = _buffer(values, kind)
+        if found != length:
+            raise RototoonError(f"{name}: {found} values, expected {length}")
+        placing.append(pointer)
+    arguments = (*given, *placing, float(border), float(sliver))
+    return Pieces(*handles.take(handles.PieceArrays, "rototoon_hidden_lines", *arguments))
+
+
 def parameters() -> Any:
     """Every parameter: id, label, kind, range, default, help. Hosts build their panels from it."""
     return json.loads(handles.take(handles.Text, "rototoon_parameters"))
@@ -337,6 +432,32 @@ def _json(value: Mapping[str, Any]) -> tuple[bytes, int]:
         return _text(json.dumps(value, allow_nan=False))
     except (TypeError, ValueError) as error:
         raise RototoonError(f"not a JSON document: {error}") from error
+
+
+def _strokes(strokes: Strokes) -> tuple[Any, int, Any, Any]:
+    """Pointers to the arrays of strokes, and their number, as the library takes them; checked against each other."""
+    offsets, count = _buffer(strokes.offsets, "i")
+    points, numbers = _buffer(strokes.points, "d")
+    closed, flags = _buffer(strokes.closed, "B")
+    if count < 1 or flags != count - 1:
+        raise RototoonError(f"closed: {flags} values, expected {max(count - 1, 0)}, one less than offsets")
+    if numbers != 2 * max(offsets[count - 1], 0):
+        raise RototoonError(f"points: {numbers} numbers, expected x and y of {offsets[count - 1]} points")
+    return offsets, count - 1, points, closed
+
+
+def _buffer(values: Any, kind: str) -> tuple[Any, int]:
+    """A C array with a copy of the numbers of a buffer or a flat sequence, and how many they are."""
+    try:
+        data = memoryview(values)
+    except TypeError:
+        flat = array.array(kind, values)
+    else:
+        if {"l": "i", "?": "B"}.get(data.format, data.format) != kind or data.itemsize != array.array(kind).itemsize:
+            raise RototoonError(f"expected numbers of type {kind}, found {data.format}")
+        flat = array.array(kind, data.tobytes())
+    ctype = {"i": ctypes.c_int32, "d": ctypes.c_double, "B": ctypes.c_uint8}[kind]
+    return (ctype * len(flat)).from_buffer(flat) if len(flat) else (ctype * 0)(), len(flat)
 
 
 def _flat(points: Points) -> array.array[float]:

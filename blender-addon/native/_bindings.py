@@ -2,7 +2,7 @@
 
 import ctypes
 
-HEADER_HASH = 0xe02519624ef5641f
+HEADER_HASH = 0x8b03e54ad5c46098
 
 ROTOTOON_ABI_VERSION = 1
 ROTOTOON_STATUS_OK = 0
@@ -299,6 +299,63 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_void_p,
         ctypes.c_void_p,
     ]
+    library.rototoon_fit_strokes.restype = ctypes.c_int32
+    library.rototoon_fit_strokes.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_double,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_guides_read.restype = ctypes.c_int32
+    library.rototoon_guides_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_guides_free.restype = None
+    library.rototoon_guides_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_hidden_lines.restype = ctypes.c_int32
+    library.rototoon_hidden_lines.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_double,
+        ctypes.c_double,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_pieces_read.restype = ctypes.c_int32
+    library.rototoon_pieces_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_pieces_free.restype = None
+    library.rototoon_pieces_free.argtypes = [
+        ctypes.c_void_p,
+    ]
     library.rototoon_session_new.restype = ctypes.c_int32
     library.rototoon_session_new.argtypes = [
         ctypes.c_void_p,
@@ -463,5 +520,62 @@ def declare(library: ctypes.CDLL) -> None:
     library.rototoon_session_weakest_frame.argtypes = [
         ctypes.c_void_p,
         ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_fit_strokes.restype = ctypes.c_int32
+    library.rototoon_fit_strokes.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_double,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_guides_read.restype = ctypes.c_int32
+    library.rototoon_guides_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_guides_free.restype = None
+    library.rototoon_guides_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_hidden_lines.restype = ctypes.c_int32
+    library.rototoon_hidden_lines.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_double,
+        ctypes.c_double,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_pieces_read.restype = ctypes.c_int32
+    library.rototoon_pieces_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_pieces_free.restype = None
+    library.rototoon_pieces_free.argtypes = [
         ctypes.c_void_p,
     ]

@@ -116,6 +116,53 @@ class CurveArrays(Handle):
         return [view(ctypes.c_void_p(start + a * size), "d", b - a, 2) for a, b in zip(bounds, bounds[1:])]
 
 
+class GuideArrays(Handle):
+    """Guiding points of fitted strokes."""
+
+    _free = "rototoon_guides_free"
+
+    def read(self, strokes: int, channels: int) -> tuple[memoryview, ...]:
+        """Offsets (strokes + 1) int32, points (G, 2) float64, values (G, channels) float64, nearest (G,) int32 and errors
+        (strokes,) float64: copies that outlive the handle."""
+        count = ctypes.c_size_t()
+        out = [ctypes.c_void_p() for _ in range(5)]
+        call("rototoon_guides_read", self.pointer(), ctypes.byref(count), *map(ctypes.byref, out))
+        offsets, points, values, nearest, errors = out
+        guides = count.value
+        return (
+            view(offsets, "i", strokes + 1),
+            view(points, "d", guides, 2),
+            view(values, "d", guides, channels),
+            view(nearest, "i", guides),
+            view(errors, "d", strokes),
+        )
+
+
+class PieceArrays(Handle):
+    """Seen and hidden parts of strokes."""
+
+    _free = "rototoon_pieces_free"
+
+    def read(self) -> tuple[memoryview, ...]:
+        """Strokes (P,) int32, hidden (P,) int32, intervals (P, 2) float64, offsets (P + 1) int32, indices (M, 3) int32 and
+        weights (M, 3) float64: copies that outlive the handle."""
+        count = ctypes.c_size_t()
+        out = [ctypes.c_void_p() for _ in range(6)]
+        call("rototoon_pieces_read", self.pointer(), ctypes.byref(count), *map(ctypes.byref, out))
+        strokes, hidden, intervals, offsets, indices, weights = out
+        pieces = count.value
+        bounds = view(offsets, "i", pieces + 1)
+        points = bounds[pieces]
+        return (
+            view(strokes, "i", pieces),
+            view(hidden, "i", pieces),
+            view(intervals, "d", pieces, 2),
+            bounds,
+            view(indices, "i", points, 3),
+            view(weights, "d", points, 3),
+        )
+
+
 class Session(Handle):
     """A session of the library, guarded: a call during another one is refused, so nothing is freed while in use."""
 
@@ -165,11 +212,11 @@ class Session(Handle):
                 self._guard.release()
 
 
-def take(kind: type[Handle], name: str, *arguments: Any) -> Any:
-    """What the handle reads that a function gives; the handle is freed."""
+def take(kind: type[Handle], name: str, *arguments: Any, sizes: tuple[int, ...] = ()) -> Any:
+    """What the handle reads that a function gives, told `sizes` that only the caller knows; the handle is freed."""
     handle = kind.make(name, *arguments)
     try:
-        return handle.read()
+        return handle.read(*sizes)
     finally:
         handle.close()
 

@@ -3,9 +3,11 @@
 from . import (
     clear_generated,
     export_document,
+    fit_strokes,
     footage_from_camera,
     footage_from_file,
     footage_from_reference,
+    hidden_lines,
     import_document,
     match_contours,
     new_key,
@@ -30,6 +32,8 @@ _MODULES = (
     show_confidence,
     weakest_frame,
     clear_generated,
+    fit_strokes,
+    hidden_lines,
     import_document,
     export_document,
 )

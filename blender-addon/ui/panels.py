@@ -1,4 +1,4 @@
-"""The panels, in the order of the work: footage, parts, track, snap, document."""
+"""The panels, in the order of the work: footage, parts, track, snap, strokes, document."""
 
 import bpy
 
@@ -136,6 +136,20 @@ class ROTOTOON_PT_snap(_Panel, bpy.types.Panel):
         self.layout.prop(settings, "snapped_layer", text="Layer")
 
 
+class ROTOTOON_PT_strokes(_Panel, bpy.types.Panel):
+    bl_idname = "ROTOTOON_PT_strokes"
+    bl_label = "Strokes"
+
+    @classmethod
+    def poll(cls, context):
+        return _settings(context) is not None
+
+    def draw(self, _context):
+        column = self.layout.column(align=True)
+        column.operator("rototoon.fit_strokes", icon="IPO_EASE_IN_OUT")
+        column.operator("rototoon.hidden_lines", icon="MOD_MASK")
+
+
 class ROTOTOON_PT_document(_Panel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_document"
     bl_label = "Document"
@@ -151,5 +165,6 @@ CLASSES = (
     ROTOTOON_PT_parts,
     ROTOTOON_PT_track,
     ROTOTOON_PT_snap,
+    ROTOTOON_PT_strokes,
     ROTOTOON_PT_document,
 )

@@ -1,6 +1,7 @@
 """How long tracked contours take into Blender and out of it: 100 frames x 50 strokes x 64 points.
 
-Run with the Python that has `bpy`: `python bench_write.py`. Prints the best of several runs in processor time.
+Beside it, in the same process, Blender's own `grease_pencil.interpolate_sequence` on two keys as large, which makes as
+many frames, and in-betweens written as tracked contours are, with the attributes that Blender's have. Run with the Python that has `bpy`: `python bench_write.py`. Prints the best of several runs in processor time.
 """
 
 import os
@@ -84,6 +85,60 @@ def main():
     print(f"  read strokes                {best(lambda: addon('contours').read(ob)):7.1f} ms")
     print(f"  read as document            {best(lambda: document.read(ob)):7.1f} ms")
     print(f"  track and write, session's own time apart: {best(lambda: tracking.write_tracks(ob, reading, session)):7.1f} ms")
+    beside_blender(addon)
+
+
+def clock(function, prepare, runs=10):
+    """The median time in milliseconds on the wall, after one run that does not count."""
+    times = []
+    for _ in range(runs + 1):
+        prepare()
+        start = time.perf_counter()
+        function()
+        times.append(1000 * (time.perf_counter() - start))
+    return sorted(times[1:])[runs // 2]
+
+
+def beside_blender(addon):
+    """Blender's in-betweens, and ours written."""
+    gp, writing = addon("grease_pencil"), addon("writing")
+    ob = gp.new_object("Two Keys", bpy.context.collection)
+    bpy.context.view_layer.objects.active = ob
+    layer = ob.data.layers.new("Lines")
+    turn = np.linspace(0, 2 * np.pi, POINTS, endpoint=False)
+    shape = np.stack([np.cos(turn), 0 * turn, np.sin(turn)], 1)
+    total = PARTS * POINTS
+    for frame in (0, FRAMES + 1):
+        drawing = layer.frames.new(frame).drawing
+        drawing.add_strokes([POINTS] * PARTS)
+        gp.put(drawing, "position", np.concatenate([shape + [i + 0.01 * frame, 0, 0] for i in range(PARTS)]))
+        for name in ("radius", "opacity", "vertex_color"):
+            gp.put(drawing, name, gp.blank(name, total))
+        for name in ("cyclic", "material_index"):
+            gp.put(drawing, name, gp.blank(name, PARTS))
+        drawing.tag_positions_changed()
+
+    def clear():
+        gp.remove_frames(layer, [number for number in gp.drawings(layer) if 0 < number <= FRAMES])
+        bpy.context.view_layer.update()
+
+    bpy.context.scene.frame_set(FRAMES // 2)
+    bpy.ops.object.mode_set(mode="EDIT")
+    blender = clock(lambda: bpy.ops.grease_pencil.interpolate_sequence(step=1), clear)
+    assert len(layer.frames) == FRAMES + 2
+    bpy.ops.object.mode_set(mode="OBJECT")
+    columns = [slice(i * POINTS, (i + 1) * POINTS) for i in range(PARTS)]
+    present = np.ones((FRAMES, PARTS), bool)
+    block = writing.Block(np.arange(1, FRAMES + 1), np.full(PARTS, POINTS, np.int32), present, columns)
+    block.point["position"] = np.random.default_rng(1).random((FRAMES, total, 3), np.float32)
+    for name in ("radius", "opacity", "vertex_color"):
+        block.point[name] = np.repeat(gp.blank(name, total)[None], FRAMES, 0)
+    for name in ("cyclic", "material_index", gp.PART, gp.MADE):
+        block.curve[name] = np.repeat(gp.blank(name, PARTS)[None], FRAMES, 0)
+    block.curve[gp.MADE][:] = True
+    ours = clock(lambda: writing.write(layer, block, []), clear)
+    print(f"  interpolate_sequence        {blender:7.1f} ms (median of ten, on the wall)")
+    print(f"  in-betweens as many, written {ours:6.1f} ms (the same)")
 
 
 def tracked(session, part, writing):

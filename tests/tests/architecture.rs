@@ -1,19 +1,20 @@
 //! Holds the direction of dependencies in the core:
 //!
-//! `numeric ← geometry ← curve ← fit` and
+//! `numeric ← geometry ← curve ← fit ← tween` and
 //! `numeric ← geometry ← scene ← {image, track, snap, render, export, project} ← pipeline`,
-//! where track, snap and render may use image, and track and snap never import each other.
+//! where track, snap and render may use image, and track, snap and tween never import one another.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module of the core with the modules that it may use.
-const ALLOWED: [(&str, &[&str]); 12] = [
+const ALLOWED: [(&str, &[&str]); 13] = [
     ("numeric", &[]),
     ("geometry", &["numeric"]),
     ("curve", &["numeric", "geometry"]),
     ("fit", &["numeric", "geometry", "curve"]),
+    ("tween", &["numeric", "geometry", "curve", "fit", "scene"]),
     ("scene", &["numeric", "geometry"]),
     ("image", &["numeric", "geometry", "scene"]),
     ("track", &["numeric", "geometry", "scene", "image"]),
@@ -23,7 +24,10 @@ const ALLOWED: [(&str, &[&str]); 12] = [
     ("project", &["numeric", "geometry", "scene"]),
     (
         "pipeline",
-        &["numeric", "geometry", "curve", "fit", "scene", "image", "track", "snap", "render", "export", "project"],
+        &[
+            "numeric", "geometry", "curve", "fit", "scene", "image", "track", "snap", "tween", "render", "export",
+            "project",
+        ],
     ),
 ];
 

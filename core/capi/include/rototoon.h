@@ -59,6 +59,12 @@ typedef int32_t RototoonStatus;
 // The snapped paths of a part on one frame.
 typedef struct RototoonCurves RototoonCurves;
 
+// Guiding points of fitted strokes.
+typedef struct RototoonGuides RototoonGuides;
+
+// Parts of strokes that are seen or hidden, by stroke and along it.
+typedef struct RototoonPieces RototoonPieces;
+
 // A document with its pictures and with what tracking remembers.
 typedef struct RototoonSession RototoonSession;
 
@@ -352,6 +358,72 @@ RototoonStatus rototoon_session_weakest_frame(const struct RototoonSession *sess
                                               struct RototoonText **weakest,
                                               struct RototoonText **error);
 
+// Fits quadratic B-splines with few guiding points to strokes. Stroke `i` has the points `offsets[i]` to `offsets[i + 1]`
+// (excluded) of `points` (x, y in pixels); its end joins its start where `closed[i]` is not 0. Each point carries
+// `channel_count` numbers of `values`, which the guides carry on. No point of a stroke is farther than `tolerance` pixels
+// from its curve, and no place of the curve farther than that from the stroke. Strokes without points give no guides.
+RototoonStatus rototoon_fit_strokes(const int32_t *offsets,
+                                    size_t stroke_count,
+                                    const double *points,
+                                    const uint8_t *closed,
+                                    const double *values,
+                                    size_t channel_count,
+                                    double tolerance,
+                                    struct RototoonGuides **guides,
+                                    struct RototoonText **error);
+
+// The arrays of fitted strokes, which live as long as the handle: stroke `i` has the guiding points `offsets[i]` to
+// `offsets[i + 1]` (excluded) of `points` (x, y in pixels), those of corners twice; `values` are what they carry;
+// `nearest` the given point that is nearest to each; `errors` the largest distance of each stroke. There are
+// `guide_count` guides.
+RototoonStatus rototoon_guides_read(const struct RototoonGuides *guides,
+                                    size_t *guide_count,
+                                    const int32_t **offsets,
+                                    const double **points,
+                                    const double **values,
+                                    const int32_t **nearest,
+                                    const double **errors,
+                                    struct RototoonText **error);
+
+// Frees fitted strokes; null is allowed.
+void rototoon_guides_free(struct RototoonGuides *guides);
+
+// Cuts strokes where filled strokes in front hide them. Strokes are given as to `rototoon_fit_strokes`. `forms[i]` says
+// what the points of stroke `i` mean: 0 a polyline, 1 guiding points of a uniform quadratic B-spline, 2 control points of
+// a chain of quadratic Bezier curves. `depths` has two numbers for each stroke, layer and stroke: of two layers the
+// larger is in front, in a layer the larger stroke; equal ones do not hide each other. `fills[i]` is 0 where a stroke is not filled;
+// strokes of a layer with the same number fill one shape. What is nearer to an outline than `border` pixels lies on it;
+// parts shorter than `sliver` pixels take after their surroundings.
+RototoonStatus rototoon_hidden_lines(const int32_t *offsets,
+                                     size_t stroke_count,
+                                     const double *points,
+                                     const uint8_t *closed,
+                                     const uint8_t *forms,
+                                     const int32_t *depths,
+                                     const int32_t *fills,
+                                     double border,
+                                     double sliver,
+                                     struct RototoonPieces **cut,
+                                     struct RototoonText **error);
+
+// The arrays of cut strokes, which live as long as the handle. There are `piece_count` parts, in the order of the strokes
+// and along each: part `i` belongs to the stroke `strokes[i]`, is hidden where `hidden[i]` is not 0, and reaches from
+// parameter `intervals[2 i]` to `intervals[2 i + 1]` (over the end of a closed stroke's last piece if it runs over its
+// seam). Its points are `offsets[i]` to `offsets[i + 1]` (excluded), none where it is a whole stroke; each is the sum of
+// three given points by `indices` with `weights`. Parts of polylines are polylines, all others are of form 2; all are open.
+RototoonStatus rototoon_pieces_read(const struct RototoonPieces *pieces,
+                                    size_t *piece_count,
+                                    const int32_t **strokes,
+                                    const int32_t **hidden,
+                                    const double **intervals,
+                                    const int32_t **offsets,
+                                    const int32_t **indices,
+                                    const double **weights,
+                                    struct RototoonText **error);
+
+// Frees cut strokes; null is allowed.
+void rototoon_pieces_free(struct RototoonPieces *pieces);
+
 // A session of a JSON document. A relative footage pattern is relative to `folder`. Pictures are read when needed.
 RototoonStatus rototoon_session_new(const uint8_t *document,
                                     size_t document_length,
@@ -515,6 +587,72 @@ RototoonStatus rototoon_session_curves_of(const struct RototoonSession *session,
 RototoonStatus rototoon_session_weakest_frame(const struct RototoonSession *session,
                                               struct RototoonText **weakest,
                                               struct RototoonText **error);
+
+// Fits quadratic B-splines with few guiding points to strokes. Stroke `i` has the points `offsets[i]` to `offsets[i + 1]`
+// (excluded) of `points` (x, y in pixels); its end joins its start where `closed[i]` is not 0. Each point carries
+// `channel_count` numbers of `values`, which the guides carry on. No point of a stroke is farther than `tolerance` pixels
+// from its curve, and no place of the curve farther than that from the stroke. Strokes without points give no guides.
+RototoonStatus rototoon_fit_strokes(const int32_t *offsets,
+                                    size_t stroke_count,
+                                    const double *points,
+                                    const uint8_t *closed,
+                                    const double *values,
+                                    size_t channel_count,
+                                    double tolerance,
+                                    struct RototoonGuides **guides,
+                                    struct RototoonText **error);
+
+// The arrays of fitted strokes, which live as long as the handle: stroke `i` has the guiding points `offsets[i]` to
+// `offsets[i + 1]` (excluded) of `points` (x, y in pixels), those of corners twice; `values` are what they carry;
+// `nearest` the given point that is nearest to each; `errors` the largest distance of each stroke. There are
+// `guide_count` guides.
+RototoonStatus rototoon_guides_read(const struct RototoonGuides *guides,
+                                    size_t *guide_count,
+                                    const int32_t **offsets,
+                                    const double **points,
+                                    const double **values,
+                                    const int32_t **nearest,
+                                    const double **errors,
+                                    struct RototoonText **error);
+
+// Frees fitted strokes; null is allowed.
+void rototoon_guides_free(struct RototoonGuides *guides);
+
+// Cuts strokes where filled strokes in front hide them. Strokes are given as to `rototoon_fit_strokes`. `forms[i]` says
+// what the points of stroke `i` mean: 0 a polyline, 1 guiding points of a uniform quadratic B-spline, 2 control points of
+// a chain of quadratic Bezier curves. `depths` has two numbers for each stroke, layer and stroke: of two layers the
+// larger is in front, in a layer the larger stroke; equal ones do not hide each other. `fills[i]` is 0 where a stroke is not filled;
+// strokes of a layer with the same number fill one shape. What is nearer to an outline than `border` pixels lies on it;
+// parts shorter than `sliver` pixels take after their surroundings.
+RototoonStatus rototoon_hidden_lines(const int32_t *offsets,
+                                     size_t stroke_count,
+                                     const double *points,
+                                     const uint8_t *closed,
+                                     const uint8_t *forms,
+                                     const int32_t *depths,
+                                     const int32_t *fills,
+                                     double border,
+                                     double sliver,
+                                     struct RototoonPieces **cut,
+                                     struct RototoonText **error);
+
+// The arrays of cut strokes, which live as long as the handle. There are `piece_count` parts, in the order of the strokes
+// and along each: part `i` belongs to the stroke `strokes[i]`, is hidden where `hidden[i]` is not 0, and reaches from
+// parameter `intervals[2 i]` to `intervals[2 i + 1]` (over the end of a closed stroke's last piece if it runs over its
+// seam). Its points are `offsets[i]` to `offsets[i + 1]` (excluded), none where it is a whole stroke; each is the sum of
+// three given points by `indices` with `weights`. Parts of polylines are polylines, all others are of form 2; all are open.
+RototoonStatus rototoon_pieces_read(const struct RototoonPieces *pieces,
+                                    size_t *piece_count,
+                                    const int32_t **strokes,
+                                    const int32_t **hidden,
+                                    const double **intervals,
+                                    const int32_t **offsets,
+                                    const int32_t **indices,
+                                    const double **weights,
+                                    struct RototoonText **error);
+
+// Frees cut strokes; null is allowed.
+void rototoon_pieces_free(struct RototoonPieces *pieces);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -1,9 +1,9 @@
 //! C ABI of Rototoon, for ctypes and other foreign callers.
 //!
 //! The header `include/rototoon.h` is generated from this crate and the Python bindings from the header
-//! (`cargo xtask generate`). Layers, from the outside: the exported functions ([`session_abi`], [`functions`],
-//! [`handles`]) read their arguments through [`entry`]; below them all is safe Rust ([`session`], [`edit`], [`options`],
-//! [`matching`], [`work`]).
+//! (`cargo xtask generate`). Layers, from the outside: the exported functions ([`session_abi`], [`strokes_abi`],
+//! [`functions`], [`handles`]) read their arguments through [`entry`]; below them all is safe Rust ([`session`], [`edit`], [`options`],
+//! [`matching`], [`strokes`], [`work`]).
 //!
 //! # Contract
 //!
@@ -43,6 +43,8 @@ pub mod options;
 pub mod session;
 pub mod session_abi;
 pub mod status;
+pub mod strokes;
+pub mod strokes_abi;
 pub mod work;
 
 #[cfg(test)]

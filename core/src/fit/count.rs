@@ -8,9 +8,11 @@
 //! can be missed is asked of a few least-squares steps near each, on some of the points (its *promise*); the most promising
 //! are tried in full, in long sections several far apart at once.
 
+use super::feet::wrapped;
 use super::profile::Profile;
-use super::section::{End, Ends};
+use super::section::{End, Ends, Slot};
 use super::trial::{Effort, Given, Trial};
+use crate::geometry::Point;
 
 /// Work of a trial.
 const EFFORT: Effort = Effort { squares: 4, excess: 24 };
@@ -103,10 +105,9 @@ fn border(given: &Given, mut profile: Profile) -> Result<Trial, Unfit> {
 fn below(given: &Given, mut best: Trial) -> Trial {
     let mut left = BELOW;
     'lower: while best.nodes.len() > given.ends.least() {
-        let mut starts: Vec<(f64, usize, Trial)> = given
+        let mut starts: Vec<(f64, usize)> = given
             .movable(&best)
-            .map(|piece| (piece, given.without(&best, piece)))
-            .map(|(piece, start)| (given.promise(&start, piece.saturating_sub(1)), piece, start))
+            .map(|piece| (given.promise(given.without_in_few(&best, piece), piece.saturating_sub(1)), piece))
             .collect();
         starts.sort_by(|a, b| a.0.total_cmp(&b.0));
         if let Some(start) = given.without_several(&best, &starts) {
@@ -118,7 +119,7 @@ fn below(given: &Given, mut best: Trial) -> Trial {
             }
         }
         starts.truncate(PROMISING);
-        for (promise, _, start) in starts {
+        for (promise, piece) in starts {
             if promise > UNPROMISING * given.limit {
                 break;
             }
@@ -126,7 +127,7 @@ fn below(given: &Given, mut best: Trial) -> Trial {
                 return best;
             }
             left -= 1;
-            let trial = given.run(start, EFFORT, false);
+            let trial = given.run(given.without(&best, piece), EFFORT, false);
             if given.fault(&trial).is_none() {
                 best = trial;
                 continue 'lower;
@@ -154,14 +155,14 @@ impl Given<'_> {
     }
 
     /// Without the nodes of all very promising pieces that are far from each other; `None` where those are few.
-    fn without_several(&self, trial: &Trial, starts: &[(f64, usize, Trial)]) -> Option<Trial> {
+    fn without_several(&self, trial: &Trial, starts: &[(f64, usize)]) -> Option<Trial> {
         let pieces = trial.slots.len();
         let apart = |a: usize, b: usize| {
             let apart = a.abs_diff(b);
             if self.ends == Ends::Periodic { apart.min(pieces - apart) } else { apart }
         };
         let mut chosen: Vec<usize> = Vec::new();
-        for (promise, piece, _) in starts {
+        for (promise, piece) in starts {
             if *promise <= PROMISED * self.limit && chosen.iter().all(|&other| apart(other, *piece) >= APART) {
                 chosen.push(*piece);
             }
@@ -176,15 +177,37 @@ impl Given<'_> {
 
     /// A fit's nodes and parameters without the node of a piece.
     fn without(&self, trial: &Trial, piece: usize) -> Trial {
-        let pieces = trial.slots.len();
-        let periodic = self.ends == Ends::Periodic;
+        let (nodes, slots) = self.nodes_without(trial, piece);
+        let shorter = self.shorter(trial, piece);
+        let parameters = trial.parameters.iter().map(|&t| shorter(t)).collect();
+        Trial { nodes, slots, parameters, errors: trial.errors }
+    }
+
+    /// The same with the parameters of the strided points alone; the others stay.
+    fn without_in_few(&self, trial: &Trial, piece: usize) -> Trial {
+        let (nodes, slots) = self.nodes_without(trial, piece);
+        let shorter = self.shorter(trial, piece);
+        let mut parameters = trial.parameters.clone();
+        for j in self.strided(slots.len()) {
+            parameters[j] = shorter(parameters[j]);
+        }
+        Trial { nodes, slots, parameters, errors: trial.errors }
+    }
+
+    fn nodes_without(&self, trial: &Trial, piece: usize) -> (Vec<Point>, Vec<Slot>) {
         let mut nodes = trial.nodes.clone();
         nodes.remove(trial.slots[piece].nodes[1]);
         let slots = self.ends.slots(nodes.len());
+        (nodes, slots)
+    }
+
+    /// Where a parameter goes when the node of a piece is left out.
+    fn shorter(&self, trial: &Trial, piece: usize) -> impl Fn(f64) -> f64 + use<> {
+        let periodic = self.ends == Ends::Periodic;
         // The three pieces about the node and its neighbours become two.
-        let (from, count) = (piece as f64 - 1.0, pieces as f64);
-        let shorter = |&t: &f64| {
-            let ahead = if periodic { (t - from).rem_euclid(count) } else { t - from };
+        let (from, count) = (piece as f64 - 1.0, trial.slots.len() as f64);
+        move |t: f64| {
+            let ahead = if periodic { wrapped(t - from, count) } else { t - from };
             let moved = if ahead < 0.0 {
                 ahead
             } else if ahead < 3.0 {
@@ -193,10 +216,8 @@ impl Given<'_> {
                 ahead - 1.0
             };
             let t = moved + from;
-            if periodic { t.rem_euclid(count - 1.0) } else { t }
-        };
-        let parameters = trial.parameters.iter().map(shorter).collect();
-        Trial { nodes, slots, parameters, errors: trial.errors }
+            if periodic { wrapped(t, count - 1.0) } else { t }
+        }
     }
 
     /// A fit's nodes and parameters with the nodes of failing pieces doubled; `None` where more than `most` pieces fail.

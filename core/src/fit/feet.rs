@@ -31,11 +31,19 @@ pub(super) fn follow(arcs: &[Arc], periodic: bool, p: Point, mut t: f64) -> f64 
     t
 }
 
-fn wrapped(t: f64, count: f64) -> f64 {
+/// The parameter `t` of a closed section of `count` pieces, brought into 0 .. count.
+pub(super) fn wrapped(t: f64, count: f64) -> f64 {
     if (0.0..count).contains(&t) {
         return t;
     }
-    let t = t.rem_euclid(count);
+    // One round too far is what happens; the remainder takes ten times as long and is the same number then.
+    let t = if t < 0.0 && t >= -count {
+        t + count
+    } else if t >= count && t < 2.0 * count {
+        t - count
+    } else {
+        t.rem_euclid(count)
+    };
     if t < count { t } else { 0.0 }
 }
 

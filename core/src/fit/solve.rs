@@ -170,8 +170,8 @@ impl<'a> Step<'a> {
             self.distances[j] = (distance, self.travelled);
             errors.note(distance, j);
             let Some((along, across, pull)) = weights(goal, distance, end, j) else { continue };
-            let tangent = (arcs[i].b + arcs[i].a * u).normalize_or_zero();
-            block.add(&self.slots[i].weights(u), error, tangent, (along, across), pull);
+            let half_speed = arcs[i].b + arcs[i].a * u;
+            block.add(&self.slots[i].weights(u), error, half_speed, (along, across), pull);
         }
         self.scatter(&mut block, current);
         errors
@@ -271,8 +271,8 @@ impl Errors {
 impl Block {
     fn add(&mut self, weights: &[f64; 3], error: Point, tangent: Point, (along, across): (f64, f64), pull: f64) {
         // Where the curve rests there is no tangent: all directions count.
-        let least = if tangent == Point::ZERO { across } else { along };
-        let extra = least - across;
+        let squared = tangent.length_squared();
+        let extra = if squared > f64::MIN_POSITIVE { (along - across) / squared } else { 0.0 };
         let (xx, xy, yy) = (
             across + extra * tangent.x * tangent.x,
             extra * tangent.x * tangent.y,

@@ -4,6 +4,7 @@
 //! on the squared distances, then steps on the excess over the tolerance. It ends as soon as every point is within the
 //! limit, or when steps no longer help.
 
+use super::feet::wrapped;
 use super::profile::Profile;
 use super::section::{Arc, End, Ends, Slot};
 use super::solve::{Errors, Goal, Step, Track, arcs};
@@ -132,15 +133,26 @@ impl Given<'_> {
         Trial { nodes, slots, parameters, errors }
     }
 
+    /// Points enough to tell the shape of so many pieces.
+    pub fn strided(&self, pieces: usize) -> Vec<usize> {
+        let all = self.points.len();
+        let stride = (all / (SAMPLES * pieces).max(1)).max(1);
+        let mut strided: Vec<usize> = (0..all).step_by(stride).collect();
+        if strided.last().is_some_and(|&last| last + 1 < all) {
+            strided.push(all - 1);
+        }
+        strided
+    }
+
     /// How promising a start is that differs from a good fit about piece `at`: the largest error near there, on some of the
-    /// points, after a few least-squares steps of the nodes near there.
-    pub fn promise(&self, start: &Trial, at: usize) -> f64 {
+    /// points, after a few least-squares steps of the nodes near there. Only the parameters of the strided points count.
+    pub fn promise(&self, start: Trial, at: usize) -> f64 {
         let pieces = start.slots.len();
         let apart = |i: usize| {
             let apart = i.abs_diff(at);
             if self.ends == Ends::Periodic { apart.min(pieces - apart) } else { apart }
         };
-        let mut work = Work::new(self, &start.slots, start.nodes.clone(), start.parameters.clone());
+        let mut work = Work::new(self, &start.slots, start.nodes, start.parameters);
         work.step.hold_but(|i| apart(i) <= NEAR);
         let parameters = &work.track.parameters;
         work.strided.retain(|&j| apart((parameters[j] as usize).min(pieces - 1)) <= NEAR + 1);
@@ -231,14 +243,13 @@ struct Work<'a, 'b> {
 impl<'a, 'b> Work<'a, 'b> {
     fn new(given: &'a Given<'a>, slots: &'b [Slot], nodes: Vec<Point>, parameters: Vec<f64>) -> Self {
         let all = given.points.len();
-        let stride = (all / (SAMPLES * slots.len()).max(1)).max(1);
         Self {
             given,
             track: Track { points: given.points, parameters },
             step: Step::new(given.ends, slots, nodes.len(), all),
             nodes,
             best: None,
-            strided: (0..all).filter(|j| j % stride == 0 || j + 1 == all).collect(),
+            strided: given.strided(slots.len()),
         }
     }
 
@@ -270,7 +281,7 @@ impl<'a, 'b> Work<'a, 'b> {
             }
             for j in pair[0] + 1..pair[1] {
                 let t = from + (to - from) * (j - pair[0]) as f64 / (pair[1] - pair[0]) as f64;
-                self.track.parameters[j] = if periodic { t.rem_euclid(count) } else { t };
+                self.track.parameters[j] = if periodic { wrapped(t, count) } else { t };
             }
         }
     }

@@ -20,6 +20,8 @@ use crate::geometry::polyline::nearest_on_segment;
 const ROUNDS: usize = 5;
 /// A fault within this many limits of a corner is that corner's.
 const BESIDE: f64 = 6.0;
+/// A fault within this many limits of a corner's place is the same tip.
+const TIP: f64 = 2.0;
 /// Share of the tolerance that fits use: rounding, and the measure's own slack, take the rest.
 const MARGIN: f64 = 0.998;
 /// Rounds with a smaller limit where the curve strays between points.
@@ -148,7 +150,8 @@ fn sections(data: &Cleaned, closed: bool, mut corners: Vec<Corner>, limit: f64, 
 }
 
 /// Puts a corner where a fit fails. Next to a corner that is there already, that one was misplaced: it is first put on its
-/// point, then moved to the fault; only then the fault gets a corner of its own.
+/// point, then moved to the fault, or between both where they are next to each other (the tip of a sharp corner may be two
+/// pixels wide); only then the fault gets a corner of its own.
 fn repair(data: &Cleaned, closed: bool, corners: &mut Vec<Corner>, index: usize, round: usize, limit: f64) {
     let apart = |corner: &Corner| {
         let apart = (data.lengths[corner.index] - data.lengths[index]).abs();
@@ -160,6 +163,7 @@ fn repair(data: &Cleaned, closed: bool, corners: &mut Vec<Corner>, index: usize,
         Some(corner) if round == 0 && corner.place != data.points[corner.index] => {
             corner.place = data.points[corner.index];
         }
+        Some(corner) if corner.place.distance(place) <= TIP * limit => corner.place = 0.5 * (corner.place + place),
         Some(corner) => *corner = Corner { index, place },
         None => corners.push(Corner { index, place }),
     }

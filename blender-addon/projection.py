@@ -1,0 +1,51 @@
+"""How an object's layers are seen on the current frame, with or without footage."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from . import camera as cameras
+from . import placement
+
+FRONT_SCALE = 100.0
+"""Pixels a unit where nothing shows the drawing but Blender's front view."""
+
+
+class Projection:
+    """From layer points to pixels.
+
+    Those of the footage where the object has some, else of the scene's camera, else of the front view.
+    """
+
+    def __init__(self, ob: bpy.types.Object):
+        self._ob = ob
+        self._view = _view(ob)
+
+    def pixels(self, layer, points: np.ndarray) -> np.ndarray:
+        """Points (N, 3) of a layer to pixels (N, 2)."""
+        return cameras.Mapping(self._view, cameras.layer_to_world(self._ob, layer)).to_pixels(points)
+
+    def scale(self, layer, points: np.ndarray) -> float:
+        """Pixels a unit of the layer, at the middle of some points."""
+        middle = np.asarray(points, np.float64).mean(0)
+        # Seen from ahead, one of the three axes is foreshortened to nothing at worst; the longest is seen best.
+        corners = middle + 1e-3 * np.vstack([np.zeros(3), np.eye(3)])
+        seen = self.pixels(layer, corners)
+        return float(np.linalg.norm(seen[1:] - seen[0], axis=1).max() / 1e-3)
+
+
+def world_scale(ob: bpy.types.Object, layer) -> float:
+    """World units a unit of the layer."""
+    return float(np.linalg.norm(cameras.layer_to_world(ob, layer)[:3, :3], axis=0).max())
+
+
+def _view(ob: bpy.types.Object) -> cameras.View:
+    scene = bpy.context.scene
+    if ob.rototoon.width and ob.rototoon.height:
+        return placement.view_of(ob)
+    if scene.camera is not None:
+        render = scene.render
+        return cameras.camera_view(scene, scene.camera, render.resolution_x, render.resolution_y, cameras.Placement())
+    front = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+    return cameras.View(front, False, np.array([[FRONT_SCALE, 0, 0], [0, -FRONT_SCALE, 0]]))
