@@ -29,3 +29,4 @@ pub mod render;
 pub mod scene;
 pub mod snap;
 pub mod track;
+pub mod tween;
