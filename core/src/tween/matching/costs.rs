@@ -19,12 +19,14 @@ const SIZE: f64 = 1.0;
 const LENGTH: f64 = 0.5;
 /// Weight of the squared distance from the expected place, in units of the drawing's radius.
 const POSITION: f64 = 2.0;
-/// Weight of the squared colour difference.
-const COLOUR: f64 = 4.0;
+/// Cost of quite another colour.
+const COLOUR: f64 = 1.5;
+/// Colour difference (root of the summed squares) that costs half of it: drawings are painted in few flat colours.
+const HALF_COLOUR: f64 = 0.12;
 /// Cost of another material.
 const MATERIAL: f64 = 0.7;
 /// Cost of another layer.
-const LAYER: f64 = 1.5;
+const LAYER: f64 = 2.5;
 /// Cost of an open stroke drawn closed.
 const CLOSEDNESS: f64 = 0.4;
 /// Pairs of strokes up to which all are looked at.
@@ -165,7 +167,9 @@ pub(super) fn labels(a: &Figure, b: &Figure, i: usize, j: usize, around: &Moveme
 /// What differs beside the geometry.
 fn likeness(a: &Stroke, b: &Stroke) -> f64 {
     let differ = |a: Option<u32>, b: Option<u32>| a.zip(b).is_some_and(|(a, b)| a != b);
-    let colour = a.colour.zip(b.colour).map_or(0.0, |(a, b)| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum());
+    let squares = |(a, b): ([f32; 3], [f32; 3])| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum();
+    let squares: f64 = a.colour.zip(b.colour).map_or(0.0, squares);
+    let colour = squares / (squares + HALF_COLOUR * HALF_COLOUR);
     let flag = |there: bool, cost: f64| if there { cost } else { 0.0 };
     COLOUR * colour
         + flag(differ(a.material, b.material), MATERIAL)

@@ -27,7 +27,6 @@ mod relaxation;
 use super::stroke::{BadPoint, Stroke, checked};
 use crate::scene::{Cancelled, Progress};
 use costs::{Figure, Rows};
-use movement::Movement;
 
 /// Rounds of matching and fitting of the movement around each stroke.
 const ROUNDS: usize = 3;

@@ -85,12 +85,13 @@ fn hand_made_pairs_are_kept_and_lead_the_others() {
     // Two equal dots side by side, each with an equal line: without a hint they stay, with one they cross.
     let line = |x: f64| Stroke::new(vec![Point::new(x, 0.0), Point::new(x, 30.0)], false);
     let dot = |x: f64| Stroke::new(arc((x, 36.0), 5.0, 0.0, 6.0, 12), true);
-    let strokes = [line(0.0), line(40.0), dot(0.0), dot(40.0)];
+    let frame = Stroke::new(arc((20.0, 20.0), 150.0, 0.0, 6.0, 60), true);
+    let strokes = [line(0.0), line(40.0), dot(0.0), dot(40.0), frame];
     let to = |m: &Matching| m.pairs.iter().map(|p| p.to).collect::<Vec<_>>();
-    assert_eq!(to(&run(&strokes, &strokes)), [0, 1, 2, 3]);
+    assert_eq!(to(&run(&strokes, &strokes)), [0, 1, 2, 3, 4]);
     let hands = [HandPair { from: 0, to: Some(1) }, HandPair { from: 1, to: Some(0) }];
     let found = match_strokes(&strokes, &strokes, &hands, &Options::default(), &Silent).unwrap();
-    assert_eq!(to(&found), [1, 0, 3, 2]);
+    assert_eq!(to(&found), [1, 0, 3, 2, 4]);
     assert!(found.pairs[0].by_hand && found.pairs[0].confidence == 1.0 && !found.pairs[2].by_hand);
     let alone = [HandPair { from: 3, to: None }];
     let found = match_strokes(&strokes, &strokes, &alone, &Options::default(), &Silent).unwrap();
