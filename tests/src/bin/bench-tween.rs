@@ -13,11 +13,12 @@ fn main() -> Result<()> {
     let mut all = Score::default();
     for folder in &folders {
         let set = Set::load(folder)?;
+        let paints = if coloured { set.paints()? } else { Vec::new() };
         let mut score = Score::default();
         let mut chance = Chance(1);
         let spans = set.spans();
         for &span in &spans {
-            score.add(measure(&set, span, coloured, &mut chance)?);
+            score.add(measure(&set, span, &paints, &mut chance)?);
         }
         row(&set.name, spans.len(), &score, percent);
         all.add(score);

@@ -70,8 +70,8 @@ struct Known {
     start: f64,
 }
 
-/// Matches the strokes of two frames.
-pub fn measure(set: &Set, (from, to): (i32, i32), coloured: bool, chance: &mut Chance) -> Result<Score> {
+/// Matches the strokes of two frames, painted where `paints` are given by part.
+pub fn measure(set: &Set, (from, to): (i32, i32), paints: &[Option<[f32; 3]>], chance: &mut Chance) -> Result<Score> {
     let there: Vec<usize> =
         (0..set.parts.len()).filter(|&i| [from, to].iter().all(|f| set.parts[i].points.contains_key(f))).collect();
     let away = if there.len() < 4 { 0 } else { there.len().div_ceil(10) };
@@ -89,11 +89,9 @@ pub fn measure(set: &Set, (from, to): (i32, i32), coloured: bool, chance: &mut C
     let order = chance.order(there.len());
     let second: Vec<Known> =
         order.into_iter().map(|k| there[k]).filter(|&i| !missing(i, false)).map(|i| redrawn(set, i, to, chance)).collect();
-    let strokes = |known: &[Known], frame: i32| -> Result<Vec<Stroke>> {
-        let colours = if coloured { set.colours(frame)? } else { vec![None; set.parts.len()] };
-        Ok(known.iter().map(|k| Stroke { colour: colours[k.part], ..k.stroke.clone() }).collect())
-    };
-    let found = match_strokes(&strokes(&first, from)?, &strokes(&second, to)?, &[], &Options::default(), &Silent)?;
+    let painted = |k: &Known| Stroke { colour: paints.get(k.part).copied().flatten(), ..k.stroke.clone() };
+    let strokes = |known: &[Known]| known.iter().map(painted).collect::<Vec<_>>();
+    let found = match_strokes(&strokes(&first), &strokes(&second), &[], &Options::default(), &Silent)?;
     let mut score = Score { there: there.len() - away, ..Score::default() };
     for pair in &found.pairs {
         let (a, b) = (&first[pair.from], &second[pair.to]);
@@ -108,7 +106,16 @@ pub fn measure(set: &Set, (from, to): (i32, i32), coloured: bool, chance: &mut C
         if a.stroke.closed {
             score.closed += 1;
             let off = pair.start - b.start;
-            score.starts += usize::from((off - off.round()).abs() < 0.05);
+            let near = (off - off.round()).abs() < 0.05;
+            score.starts += usize::from(near);
+            if !near && std::env::var_os("BENCH_TWEEN_WRONG").is_some() { println!("  {} {from}-{to}: {:?} start off by {:.2}", set.name, set.parts[a.part].name, off - off.round()); }
+        }
+    }
+    if std::env::var_os("BENCH_TWEEN_WRONG").is_some() {
+        for i in &found.vanished {
+            if second.iter().any(|k| k.part == first[*i].part) {
+                println!("  {} {from}-{to}: {:?} alone", set.name, set.parts[first[*i].part].name);
+            }
         }
     }
     score.by_index = first.iter().zip(&second).filter(|(a, b)| a.part == b.part).count();

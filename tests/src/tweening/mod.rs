@@ -13,8 +13,8 @@ use std::path::Path;
 /// Distances in frames of two keys that are looked at.
 pub const GAPS: std::ops::RangeInclusive<i32> = 6..=14;
 
-/// How far inside a contour its paint is looked at, in pixels: beyond the ink.
-const INSET: f64 = 5.0;
+/// How far inside a contour its paint is looked at, in pixels: beyond the ink, and nearer where nothing is seen there.
+const INSETS: [f64; 3] = [5.0, 3.0, 1.5];
 
 /// The contours of a set as strokes on every frame.
 #[derive(Clone, Debug)]
@@ -66,22 +66,27 @@ impl Set {
         Ok(Self { name, parts, frames, pattern })
     }
 
-    /// The paint of each part on a frame, where some of it is seen: of the places just inside its contour that no nearer
-    /// part covers, the colour that is nearest to the others'.
-    pub fn colours(&self, frame: i32) -> Result<Vec<Option<[f32; 3]>>> {
-        let path = crate::sheet::frame_path(&self.pattern, frame);
-        let picture = image::open(&path).with_context(|| format!("cannot read {path}"))?.into_rgb8();
-        let seen = |part: &Contours| {
-            let points = part.points.get(&frame)?;
-            let covers = |other: &&Contours| other.depth > part.depth && other.closed;
-            let nearer: Vec<_> = self.parts.iter().filter(covers).filter_map(|other| other.points.get(&frame)).collect();
-            let inset = inset(points).filter(|p| nearer.iter().all(|other| !polygon::contains(other, *p)));
-            let colours: Vec<[f32; 3]> = inset.filter_map(|p| pixel(&picture, p)).collect();
-            let apart = |a: &[f32; 3], b: &[f32; 3]| (0..3).map(|c| (a[c] - b[c]).abs()).sum::<f32>();
-            let among = |a: &[f32; 3]| colours.iter().map(|b| apart(a, b)).sum::<f32>();
-            colours.iter().min_by(|a, b| among(a).total_cmp(&among(b))).copied()
-        };
-        Ok(self.parts.iter().map(seen).collect())
+    /// The paint of each part, as it is seen on most frames: of the places just inside its contour that no nearer part
+    /// covers, the colour that is nearest to the others'.
+    pub fn paints(&self) -> Result<Vec<Option<[f32; 3]>>> {
+        let mut seen = vec![Vec::new(); self.parts.len()];
+        for frame in self.frames.0..=self.frames.1 {
+            let path = crate::sheet::frame_path(&self.pattern, frame);
+            let picture = image::open(&path).with_context(|| format!("cannot read {path}"))?.into_rgb8();
+            for (part, seen) in self.parts.iter().zip(&mut seen) {
+                seen.extend(self.paint(part, frame, &picture));
+            }
+        }
+        Ok(seen.iter().map(|colours| commonest(colours)).collect())
+    }
+
+    fn paint(&self, part: &Contours, frame: i32, picture: &image::RgbImage) -> Option<[f32; 3]> {
+        let points = part.points.get(&frame)?;
+        let covers = |other: &&Contours| other.depth > part.depth && other.closed;
+        let nearer: Vec<_> = self.parts.iter().filter(covers).filter_map(|other| other.points.get(&frame)).collect();
+        let bare = |p: &Point| nearer.iter().all(|other| !polygon::contains(other, *p));
+        let at = |depth: f64| inset(points, depth).filter(bare).filter_map(|p| pixel(picture, p)).collect::<Vec<_>>();
+        INSETS.into_iter().map(at).find_map(|colours| commonest(&colours))
     }
 
     /// Pairs of frames as far apart as [`GAPS`] says; of a shorter set its ends.
@@ -95,9 +100,16 @@ impl Set {
     }
 }
 
+/// The colour that is nearest to all the others.
+fn commonest(colours: &[[f32; 3]]) -> Option<[f32; 3]> {
+    let apart = |a: &[f32; 3], b: &[f32; 3]| (0..3).map(|c| (a[c] - b[c]).abs()).sum::<f32>();
+    let among = |a: &[f32; 3]| colours.iter().map(|b| apart(a, b)).sum::<f32>();
+    colours.iter().min_by(|a, b| among(a).total_cmp(&among(b))).copied()
+}
+
 /// Places a little inside a polygon, along it.
-fn inset(points: &[Point]) -> impl Iterator<Item = Point> {
-    let side = polygon::signed_area(points).signum() * INSET;
+fn inset(points: &[Point], depth: f64) -> impl Iterator<Item = Point> {
+    let side = polygon::signed_area(points).signum() * depth;
     let n = points.len();
     let at = move |i: usize| points[i] + (points[(i + 1) % n] - points[(i + n - 1) % n]).perp().normalize_or_zero() * side;
     (0..n).map(at).filter(|p| polygon::contains(points, *p))

@@ -19,10 +19,12 @@ const SIZE: f64 = 1.0;
 const LENGTH: f64 = 0.5;
 /// Weight of the squared distance from the expected place, in units of the drawing's radius.
 const POSITION: f64 = 2.0;
+/// Squared distance, in those units, from which on farther costs little more.
+const FAR: f64 = 2.0;
 /// Cost of quite another colour.
-const COLOUR: f64 = 1.5;
+const COLOUR: f64 = 2.0;
 /// Colour difference (root of the summed squares) that costs half of it: drawings are painted in few flat colours.
-const HALF_COLOUR: f64 = 0.12;
+const HALF_COLOUR: f64 = 0.06;
 /// Cost of another material.
 const MATERIAL: f64 = 0.7;
 /// Cost of another layer.
@@ -155,7 +157,7 @@ pub(super) fn labels(a: &Figure, b: &Figure, i: usize, j: usize, around: &Moveme
     let base = likeness(&a.strokes[i], &b.strokes[j])
         + LENGTH * length * length
         + SIZE * size * size
-        + POSITION * away * away;
+        + POSITION * away * away / (1.0 + away * away / FAR);
     let ways = p.ways(q, around.turn, TURN / SHAPE).into_iter().map(|way| {
         let turn = wrap(way.turn - around.turn);
         let cost = base + SHAPE * way.residual + TURN * turn * turn;

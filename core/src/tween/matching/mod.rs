@@ -45,7 +45,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { max_cost: 3.0, max_turn: 75f64.to_radians(), max_scale: 2.0 }
+        Self { max_cost: 6.0, max_turn: std::f64::consts::PI, max_scale: 2.0 }
     }
 }
 
