@@ -2,8 +2,12 @@
 //!
 //! - [`stroke`]: a stroke of a drawing
 //! - [`matching`]: which stroke of one drawing is which of the next
+//! - [`peg`]: pivots that shift, turn and scale over time, given or found
+//! - `grid`: nearest places among many
 
+mod grid;
 pub mod matching;
+pub mod peg;
 pub mod stroke;
 
 pub use stroke::{BadPoint, Stroke};

@@ -1,7 +1,7 @@
 //! The likely counterparts of each stroke, and what each costs under the movement that is expected there.
 
 use super::super::stroke::Stroke;
-use super::grid::Grid;
+use super::super::grid::Grid;
 use super::movement::Movement;
 use super::outline::{Outline, Way, wrap};
 use super::{Fixed, Options};
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 /// Weight of the unexplained share of the shape.
 const SHAPE: f64 = 2.0;
 /// Weight of the squared turn, in rad², of a stroke against the drawing around it.
-const TURN: f64 = 0.15;
+const TURN: f64 = 0.06;
 /// Weight of the squared logarithm of a stroke's growth against that around it.
 const SIZE: f64 = 1.0;
 /// Weight of the squared logarithm of a length's growth against the size's.

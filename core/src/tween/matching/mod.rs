@@ -18,7 +18,6 @@
 //! disc does not show its turn: it is taken to have turned as what is around it.
 
 mod costs;
-mod grid;
 mod movement;
 mod outline;
 mod pieces;

@@ -1,7 +1,7 @@
 //! The movement of the whole drawing, and that around each stroke.
 
 use super::costs::{Figure, Rows};
-use super::grid::Grid;
+use super::super::grid::Grid;
 use super::relaxation::{self, Chosen};
 use super::{Fixed, Options};
 use crate::geometry::Point;

@@ -5,7 +5,7 @@
 //! on until nothing is won; strokes without any counterpart are tried with two pieces that have none. Pieces are open.
 
 use super::super::stroke::Stroke;
-use super::grid::Grid;
+use super::super::grid::Grid;
 use super::movement::Movement;
 use super::outline::Outline;
 use super::{Fixed, InPieces, Matching};

@@ -8,7 +8,7 @@
 
 use super::Options;
 use super::costs::{Figure, Label, Rows};
-use super::grid::Grid;
+use super::super::grid::Grid;
 use super::outline::{Outline, Way};
 use crate::geometry::Point;
 use crate::numeric::sparse_assignment::{Choice, assign_sparse};
