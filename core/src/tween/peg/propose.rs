@@ -5,7 +5,7 @@
 //! joint movement costs nothing to know. From single strokes on, the two groups are joined whose joint movement explains
 //! both best, until a join would leave more than a small share of their size unexplained. The largest group is the root; the
 //! others hang on the one that they stay nearest to. Where a group turns against its parent, its hinge is the fixed point of
-//! that relative turn, if it lies near the place where the two meet; otherwise that place.
+//! that relative turn, if it lies near the strokes of both; otherwise the place where they meet.
 //!
 //! Limits: strokes that happen to move alike are one group, however far apart they lie, where there are few; among more than
 //! [`ALL_PAIRS`] only those near to each other are joined.
@@ -29,7 +29,7 @@ const LEAST_TOLERANCE: f64 = 1.0;
 const TOLERANCE: f64 = 0.06;
 /// Least turn in radians that shows a hinge.
 const HINGE_TURN: f64 = 0.1;
-/// Farthest distance of a hinge from where two groups meet, in radii of the child.
+/// Farthest distance of a hinge from the strokes of the two groups, in radii of the child.
 const HINGE_REACH: f64 = 0.7;
 
 /// A stroke on several keys: by key its points, the same number on each; `None` where it is not there.
@@ -120,6 +120,18 @@ struct Growing {
     sums: Vec<Sums>,
     neighbours: BTreeSet<usize>,
     length: f64,
+}
+
+impl Growing {
+    fn radius(&self) -> f64 {
+        self.sums.iter().find(|sums| sums.count > 0.0).map_or(0.0, Sums::radius)
+    }
+
+    /// Distance of a place from the samples on the first key that has them.
+    fn distance(&self, p: Point, samples: &[Vec<Option<Vec<Point>>>]) -> f64 {
+        let places = self.members.iter().filter_map(|&i| samples[i].iter().flatten().next()).flatten();
+        places.map(|q| q.distance(p)).fold(f64::INFINITY, f64::min)
+    }
 }
 
 /// A join that may be made: how much it leaves unexplained, relative to what may be.
@@ -282,27 +294,21 @@ fn hung(all: &[Growing], samples: &[Vec<Option<Vec<Point>>>]) -> Vec<Group> {
                 best = Some((worst, parent, first.1));
             }
         }
-        let pivot = best.map_or(middles[g], |(gap, parent, place)| pivot(group, &all[parent], gap, place, middles[g]));
+        let pivot = best.map_or(middles[g], |(gap, parent, place)| {
+            let reach = HINGE_REACH * group.radius().max(1.0);
+            let on_both = |p: Point| [group, &all[parent]].into_iter().all(|g| g.distance(p, samples) <= reach + gap);
+            hinge(group, &all[parent]).filter(|&p| on_both(p)).unwrap_or(if gap <= reach { place } else { middles[g] })
+        });
         groups.push(Group { members: group.members.clone(), parent: best.map(|b| b.1), pivot });
     }
     groups
 }
 
-/// The hinge of a group on its parent: the fixed point of the relative turn, the place where they meet, or, where they do
-/// not, the group's own middle.
-fn pivot(child: &Growing, parent: &Growing, gap: f64, place: Point, middle: Point) -> Point {
-    let Some((own, on)) = child.sums.iter().zip(&parent.sums).find(|(a, b)| a.count > 0.0 && b.count > 0.0) else {
-        return middle;
-    };
+/// The fixed point of a group's turn against its parent.
+fn hinge(child: &Growing, parent: &Growing) -> Option<Point> {
+    let (own, on) = child.sums.iter().zip(&parent.sums).find(|(a, b)| a.count > 0.0 && b.count > 0.0)?;
     let relative = on.similarity().inverse().after(&own.similarity());
-    let radius = own.radius().max(1.0);
-    let near = |p: &Point| p.distance(place) <= HINGE_REACH * radius + gap;
-    if relative.angle().abs() >= HINGE_TURN
-        && let Some(fixed) = relative.fixed_point().filter(near)
-    {
-        return fixed;
-    }
-    if gap <= HINGE_REACH * radius { place } else { middle }
+    if relative.angle().abs() < HINGE_TURN { None } else { relative.fixed_point() }
 }
 
 /// Groups as pegs with keys on the frames of the drawings, the first at rest.
