@@ -3,8 +3,10 @@
 //! - [`stroke`]: a stroke of a drawing
 //! - [`matching`]: which stroke of one drawing is which of the next
 //! - [`peg`]: pivots that shift, turn and scale over time, given or found
+//! - [`between`]: the drawings between
 //! - `grid`: nearest places among many
 
+pub mod between;
 mod grid;
 pub mod matching;
 pub mod peg;

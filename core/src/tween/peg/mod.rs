@@ -22,6 +22,7 @@
 pub mod propose;
 mod timing;
 
+pub(in crate::tween) use timing::{hermite, monotone_slope};
 pub use timing::{Timing, TimingError};
 
 use super::stroke::FARTHEST;
