@@ -1,7 +1,9 @@
 //! What is measured of tweening on sets with known truth.
 //!
+//! - [`between`]: in-betweens against the true frames
 //! - [`matching`]: strokes drawn in another way found again
 
+pub mod between;
 pub mod matching;
 
 use crate::truth::{TruePart, Truth};
