@@ -6,9 +6,10 @@
 //! 2. [`image`]: pictures from files and what is computed on them.
 //! 3. [`track`]: contours from key frames to every frame.
 //! 4. [`snap`]: contours onto the drawn ink.
-//! 5. [`render`]: pictures of what was found. [`export`]: the same for other programs.
-//! 6. [`project`]: the document that holds all of it.
-//! 7. [`pipeline`]: the stages joined.
+//! 5. [`tween`]: the drawings between drawings on key frames.
+//! 6. [`render`]: pictures of what was found. [`export`]: the same for other programs.
+//! 7. [`project`]: the document that holds all of it.
+//! 8. [`pipeline`]: the stages joined.
 //!
 //! [`geometry`] and [`numeric`] serve them all; [`curve`] holds quadratic B-splines, and [`fit`] makes them from points.
 //!

@@ -90,7 +90,8 @@ mod tests {
     #[test]
     fn maps_follow_each_other_and_keep_a_point() {
         let p = Point::new(3.0, -7.0);
-        let first = Similarity { factor: Point::from_angle(0.7) * 1.3, source: Point::ONE, target: Point::new(4.0, 5.0) };
+        let first =
+            Similarity { factor: Point::from_angle(0.7) * 1.3, source: Point::ONE, target: Point::new(4.0, 5.0) };
         let second = Similarity { factor: Point::from_angle(-1.9) * 0.4, source: Point::X, target: Point::Y };
         assert!(second.after(&first).apply(p).distance(second.apply(first.apply(p))) < 1e-12);
         let fixed = first.fixed_point().unwrap();

@@ -119,7 +119,14 @@ impl<'a> Solver<'a> {
     }
 
     /// Shortens the ways to the columns of a row that is reached at a distance, through the column that it holds.
-    fn relax(&mut self, row: usize, through: usize, base: f64, heap: &mut BinaryHeap<Reached>, touched: &mut Vec<usize>) {
+    fn relax(
+        &mut self,
+        row: usize,
+        through: usize,
+        base: f64,
+        heap: &mut BinaryHeap<Reached>,
+        touched: &mut Vec<usize>,
+    ) {
         let own = Choice { column: self.columns + row, cost: self.none[row] };
         let listed = self.choices[row].iter().filter(|c| c.cost.is_finite() && c.column < self.columns);
         let options: Vec<Choice> = listed.copied().chain([own]).collect();

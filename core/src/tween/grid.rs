@@ -67,7 +67,12 @@ impl<'a> Grid<'a> {
     /// Distance of `p` from the nearest cell that is not within `ring` cells of its own; 0 where p lies outside the grid.
     fn beyond(&self, p: Point, (x, y): (i64, i64), ring: i64) -> f64 {
         let at = (p - self.origin) / self.cell;
-        let sides = [at.x - (x - ring) as f64, (x + ring + 1) as f64 - at.x, at.y - (y - ring) as f64, (y + ring + 1) as f64 - at.y];
+        let sides = [
+            at.x - (x - ring) as f64,
+            (x + ring + 1) as f64 - at.x,
+            at.y - (y - ring) as f64,
+            (y + ring + 1) as f64 - at.y,
+        ];
         sides.into_iter().fold(f64::INFINITY, f64::min).max(0.0) * self.cell
     }
 

@@ -46,7 +46,8 @@ fn drawings(set: &Set, frames: &[i32]) -> (Vec<usize>, Vec<Key>) {
     let there = |i: &usize| frames.iter().all(|f| set.parts[*i].points.contains_key(f));
     let parts: Vec<usize> = (0..set.parts.len()).filter(there).collect();
     let stroke = |i: usize, f: i32| Stroke::new(set.parts[i].points[&f].clone(), set.parts[i].closed);
-    let key = |&frame: &i32| Key { frame, strokes: parts.iter().map(|&i| stroke(i, frame)).collect(), ..Key::default() };
+    let key =
+        |&frame: &i32| Key { frame, strokes: parts.iter().map(|&i| stroke(i, frame)).collect(), ..Key::default() };
     let keys = frames.iter().map(key).collect();
     (parts, keys)
 }

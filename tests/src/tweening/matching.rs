@@ -84,11 +84,19 @@ pub fn measure(set: &Set, (from, to): (i32, i32), paints: &[Option<[f32; 3]>], c
         .into_iter()
         .map(|k| there[k])
         .filter(|&i| !missing(i, true))
-        .map(|i| Known { part: i, stroke: Stroke::new(set.parts[i].points[&from].clone(), set.parts[i].closed), start: 0.0 })
+        .map(|i| Known {
+            part: i,
+            stroke: Stroke::new(set.parts[i].points[&from].clone(), set.parts[i].closed),
+            start: 0.0,
+        })
         .collect();
     let order = chance.order(there.len());
-    let second: Vec<Known> =
-        order.into_iter().map(|k| there[k]).filter(|&i| !missing(i, false)).map(|i| redrawn(set, i, to, chance)).collect();
+    let second: Vec<Known> = order
+        .into_iter()
+        .map(|k| there[k])
+        .filter(|&i| !missing(i, false))
+        .map(|i| redrawn(set, i, to, chance))
+        .collect();
     let painted = |k: &Known| Stroke { colour: paints.get(k.part).copied().flatten(), ..k.stroke.clone() };
     let strokes = |known: &[Known]| known.iter().map(painted).collect::<Vec<_>>();
     let found = match_strokes(&strokes(&first), &strokes(&second), &[], &Options::default(), &Silent)?;
@@ -108,7 +116,14 @@ pub fn measure(set: &Set, (from, to): (i32, i32), paints: &[Option<[f32; 3]>], c
             let off = pair.start - b.start;
             let near = (off - off.round()).abs() < 0.05;
             score.starts += usize::from(near);
-            if !near && std::env::var_os("BENCH_TWEEN_WRONG").is_some() { println!("  {} {from}-{to}: {:?} start off by {:.2}", set.name, set.parts[a.part].name, off - off.round()); }
+            if !near && std::env::var_os("BENCH_TWEEN_WRONG").is_some() {
+                println!(
+                    "  {} {from}-{to}: {:?} start off by {:.2}",
+                    set.name,
+                    set.parts[a.part].name,
+                    off - off.round()
+                );
+            }
         }
     }
     if std::env::var_os("BENCH_TWEEN_WRONG").is_some() {

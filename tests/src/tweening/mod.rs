@@ -2,9 +2,11 @@
 //!
 //! - [`between`]: in-betweens against the true frames
 //! - [`matching`]: strokes drawn in another way found again
+//! - [`sheet`]: in-betweens over the truth
 
 pub mod between;
 pub mod matching;
+pub mod sheet;
 
 use crate::truth::{TruePart, Truth};
 use anyhow::{Context, Result};
@@ -29,6 +31,8 @@ pub struct Set {
     pub frames: (i32, i32),
     /// Pattern of the pictures.
     pub pattern: String,
+    /// Frames on which the project has keys.
+    pub keys: Vec<i32>,
 }
 
 /// One contour by frame, with as many points on each, the same point always at the same index.
@@ -49,7 +53,8 @@ impl Set {
     pub fn load(folder: &Path) -> Result<Self> {
         let truth = Truth::load(&folder.join("truth.json"))?;
         let project = rototoon::project::Document::load(&folder.join("project.json"))?;
-        let known: BTreeMap<_, _> = project.scene.parts.iter().map(|p| (p.name.as_str(), (p.closed, p.depth))).collect();
+        let known: BTreeMap<_, _> =
+            project.scene.parts.iter().map(|p| (p.name.as_str(), (p.closed, p.depth))).collect();
         let of = |part: &TruePart| known.get(part.name.as_str()).copied().unwrap_or((true, 0.0));
         let parts: Vec<Contours> = truth
             .parts
@@ -65,7 +70,10 @@ impl Set {
         let frames = (frames.clone().min().context("no frames")?, frames.max().context("no frames")?);
         let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let pattern = folder.join(&project.scene.footage.pattern).to_string_lossy().into_owned();
-        Ok(Self { name, parts, frames, pattern })
+        let mut keys: Vec<i32> = project.scene.parts.iter().flat_map(|part| part.keys.keys().copied()).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        Ok(Self { name, parts, frames, pattern, keys })
     }
 
     /// The paint of each part, as it is seen on most frames: of the places just inside its contour that no nearer part
@@ -113,7 +121,8 @@ fn commonest(colours: &[[f32; 3]]) -> Option<[f32; 3]> {
 fn inset(points: &[Point], depth: f64) -> impl Iterator<Item = Point> {
     let side = polygon::signed_area(points).signum() * depth;
     let n = points.len();
-    let at = move |i: usize| points[i] + (points[(i + 1) % n] - points[(i + n - 1) % n]).perp().normalize_or_zero() * side;
+    let at =
+        move |i: usize| points[i] + (points[(i + 1) % n] - points[(i + n - 1) % n]).perp().normalize_or_zero() * side;
     (0..n).map(at).filter(|p| polygon::contains(points, *p))
 }
 

@@ -77,7 +77,13 @@ impl Places {
         let (here, there) = (vertex_shares(stroke), vertex_shares(other));
         let apart = |a: f64, b: f64| if other.closed { (a - b - (a - b).round()).abs() } else { (a - b).abs() };
         let nearest = (0..n).min_by(|&i, &j| apart(there[i], start).total_cmp(&apart(there[j], start)))?;
-        let first = if other.closed { nearest } else if reversed { n - 1 } else { 0 };
+        let first = if other.closed {
+            nearest
+        } else if reversed {
+            n - 1
+        } else {
+            0
+        };
         let index = |i: usize| if reversed { (first + n - i) % n } else { (first + i) % n };
         let off = |i: usize| {
             let walked = if reversed { there[first] - there[index(i)] } else { there[index(i)] - there[first] };

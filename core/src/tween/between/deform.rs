@@ -30,7 +30,8 @@ impl Deform {
     /// The change from some points to as many others.
     pub fn new(from: &[Point], to: &[Point], closed: bool, rigid: bool) -> Self {
         assert_eq!(from.len(), to.len(), "points are deformed to as many points");
-        let turns = if rigid && from.len() > 2 { turns(&edges(from, closed), &edges(to, closed), closed) } else { None };
+        let turns =
+            if rigid && from.len() > 2 { turns(&edges(from, closed), &edges(to, closed), closed) } else { None };
         Self { from: from.into(), to: to.into(), closed, turns }
     }
 
@@ -77,15 +78,16 @@ fn edges(points: &[Point], closed: bool) -> Vec<Point> {
 fn turns(a: &[Point], b: &[Point], closed: bool) -> Option<Vec<f64>> {
     let n = a.len();
     let reach = ((n as f64 * WINDOW) as usize).max(1);
-    let products: Vec<(Point, f64)> = a
-        .iter()
-        .zip(b)
-        .map(|(p, q)| (Point::new(p.dot(*q), p.perp_dot(*q)), p.length() * q.length()))
-        .collect();
+    let products: Vec<(Point, f64)> =
+        a.iter().zip(b).map(|(p, q)| (Point::new(p.dot(*q), p.perp_dot(*q)), p.length() * q.length())).collect();
     let around = |i: usize| {
         let window = (0..=2 * reach).filter_map(|k| {
             let j = i as isize + k as isize - reach as isize;
-            if closed { products.get(j.rem_euclid(n as isize) as usize) } else { products.get(usize::try_from(j).ok()?) }
+            if closed {
+                products.get(j.rem_euclid(n as isize) as usize)
+            } else {
+                products.get(usize::try_from(j).ok()?)
+            }
         });
         window.fold((Point::ZERO, 0.0), |(sum, size), (product, length)| (sum + *product, size + length))
     };

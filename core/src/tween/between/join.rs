@@ -70,7 +70,14 @@ pub(super) fn runs(ends: &[Option<Ends>], asked: &Asked) -> Vec<Run> {
         let (Some(before), Some(after)) = (&ends[k - 1], &ends[k]) else { continue };
         if smooth && !asked.corners[k] {
             let (first, second) = runs.split_at_mut(k);
-            join(&mut first[k - 1], &before.end, asked.durations[k - 1], &mut second[0], &after.start, asked.durations[k]);
+            join(
+                &mut first[k - 1],
+                &before.end,
+                asked.durations[k - 1],
+                &mut second[0],
+                &after.start,
+                asked.durations[k],
+            );
         }
     }
     runs
@@ -90,7 +97,7 @@ fn join(first: &mut Run, incoming: &[f64], before: f64, second: &mut Run, outgoi
     let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let (a, b) = (norm(incoming) / before, norm(outgoing) / after);
     let dot = incoming.iter().zip(outgoing).map(|(x, y)| x * y).sum::<f64>() / (before * after);
-    if !(dot > 0.0) {
+    if dot.is_nan() || dot <= 0.0 {
         (first.slopes.1, second.slopes.0) = (0.0, 0.0);
         return;
     }
@@ -158,7 +165,8 @@ mod tests {
     fn corners_and_turns_and_holds() {
         let ways = [[10.0, 0.0], [10.0, 0.0]];
         let run = |spacings: [Spacing; 2], corner: bool, ways: &[[f64; 2]]| {
-            let asked = Asked { durations: &[10.0, 10.0], spacings: &spacings, corners: &[false, corner, false], rest: false };
+            let asked =
+                Asked { durations: &[10.0, 10.0], spacings: &spacings, corners: &[false, corner, false], rest: false };
             runs(&straight(ways), &asked)
         };
         let even = run([Spacing::Smooth, Spacing::Smooth], false, &ways);

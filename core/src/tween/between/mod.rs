@@ -174,7 +174,9 @@ pub enum BetweenError {
         count: usize,
     },
     /// A spacing chart has not one share for each frame.
-    #[error("frame {frame}: the spacing chart has {found} shares, expected one for each of {expected} frames to the next key")]
+    #[error(
+        "frame {frame}: the spacing chart has {found} shares, expected one for each of {expected} frames to the next key"
+    )]
     Chart {
         /// Frame of the earlier key.
         frame: FrameNumber,
@@ -267,7 +269,8 @@ impl Sequence {
         let spacings: Vec<Spacing> = keys.iter().map(|key| key.spacing.clone()).collect();
         let corners: Vec<bool> = keys.iter().map(|key| key.corner).collect();
         let spans = durations.len();
-        let asked = Asked { durations: &durations, spacings: &spacings[..spans], corners: &corners, rest: options.rest };
+        let asked =
+            Asked { durations: &durations, spacings: &spacings[..spans], corners: &corners, rest: options.rest };
         let hung = Hung { tree: pegs.tree.clone(), pegs: tracks.iter().map(|track| peg_of(track, pegs)).collect() };
         let motion = Motion::new(&tracks, &places, &groups, &hung, &asked, options.arcs);
         let local = local(&keys, &places, &motion);
@@ -276,7 +279,8 @@ impl Sequence {
             .zip(&tracks)
             .map(|(places, track)| changes(places, track.closed, &asked, options))
             .collect();
-        let mut sequence = Self { keys, tracks, motion, changes, local, contacts: vec![Vec::new(); spans], options: *options };
+        let mut sequence =
+            Self { keys, tracks, motion, changes, local, contacts: vec![Vec::new(); spans], options: *options };
         if options.contacts {
             sequence.contacts = (0..spans).into_par_iter().map(|k| sequence.touching(k)).collect();
         }
@@ -308,7 +312,8 @@ impl Sequence {
             let own = |track: &Track| track.at(k).is_some_and(|stand| stand.stroke == i && !stand.part);
             self.tracks.iter().position(own).unwrap_or(usize::MAX)
         };
-        let drawn = |(i, stroke): (usize, &Stroke)| InBetween { stroke: stroke.clone(), track: track_of(i), opacity: 1.0 };
+        let drawn =
+            |(i, stroke): (usize, &Stroke)| InBetween { stroke: stroke.clone(), track: track_of(i), opacity: 1.0 };
         strokes.iter().enumerate().map(drawn).collect()
     }
 

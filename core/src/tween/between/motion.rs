@@ -214,8 +214,13 @@ fn poses(strokes: &[Moving], groups: &[Group], keys: usize, order: &[usize]) -> 
         worlds[g] = by_key;
     }
     let mover = |(g, group): (usize, &Group)| {
-        let own: Vec<Point> =
-            group.members.iter().filter_map(|&i| strokes[i].places.iter().flatten().next()).flatten().copied().collect();
+        let own: Vec<Point> = group
+            .members
+            .iter()
+            .filter_map(|&i| strokes[i].places.iter().flatten().next())
+            .flatten()
+            .copied()
+            .collect();
         let middle = polygon::center(&own);
         let square = own.iter().map(|p| p.distance_squared(middle)).sum::<f64>() / own.len().max(1) as f64;
         let anchor = if group.parent.is_some() { group.pivot } else { middle };
@@ -225,7 +230,8 @@ fn poses(strokes: &[Moving], groups: &[Group], keys: usize, order: &[usize]) -> 
             let local = on.inverse().after(&world);
             Pose { turn: turn - on_turn, growth: local.scale().max(1e-12).ln(), at: local.apply(anchor) }
         };
-        let poses = (0..keys.max(1)).map(|k| if k < keys { pose(k) } else { Pose { turn: 0.0, growth: 0.0, at: anchor } });
+        let poses =
+            (0..keys.max(1)).map(|k| if k < keys { pose(k) } else { Pose { turn: 0.0, growth: 0.0, at: anchor } });
         Mover { parent: group.parent, anchor, radius: square.sqrt().max(1.0), poses: poses.collect(), runs: Vec::new() }
     };
     groups.iter().enumerate().map(mover).collect()

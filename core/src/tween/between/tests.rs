@@ -165,7 +165,9 @@ fn what_cannot_be_used_is_named() {
 #[test]
 fn any_number_of_threads_gives_the_same() {
     let strokes = |turn: f64| {
-        (0..40).map(|k| circle(Point::from_angle(k as f64 + turn) * (k as f64 * 5.0), 4.0 + turn, k as f64 + turn)).collect()
+        (0..40)
+            .map(|k| circle(Point::from_angle(k as f64 + turn) * (k as f64 * 5.0), 4.0 + turn, k as f64 + turn))
+            .collect()
     };
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

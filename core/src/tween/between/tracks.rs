@@ -88,7 +88,11 @@ pub(super) fn chained(keys: &[Key], matchings: &[Matching]) -> Vec<Track> {
                 let part = Stroke::new(places.0.points.clone(), false);
                 let pair = Pair { from: 0, to: 0, reversed, start: 0.0, confidence: 1.0, by_hand: false };
                 let places = stand.places.on(&here.strokes[piece], &part, &pair);
-                tracks[track].stands.push(Stand { stroke: joined.whole, part: true, places: Places { own: None, ..places } });
+                tracks[track].stands.push(Stand {
+                    stroke: joined.whole,
+                    part: true,
+                    places: Places { own: None, ..places },
+                });
             }
         }
         for (j, track) in of_next.iter_mut().enumerate().filter(|(_, track)| **track == usize::MAX) {

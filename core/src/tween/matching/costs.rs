@@ -1,7 +1,7 @@
 //! The likely counterparts of each stroke, and what each costs under the movement that is expected there.
 
-use super::super::stroke::Stroke;
 use super::super::grid::Grid;
+use super::super::stroke::Stroke;
 use super::movement::Movement;
 use super::outline::{Outline, Way, wrap};
 use super::{Fixed, Options};
@@ -77,7 +77,8 @@ impl<'a> Figure<'a> {
 
     /// Root mean square distance of the strokes' samples from the middle; at least 1.
     pub fn spread(&self) -> f64 {
-        let squares = self.outlines.iter().flatten().map(|o| o.centre.distance_squared(self.middle) + o.radius * o.radius);
+        let squares =
+            self.outlines.iter().flatten().map(|o| o.centre.distance_squared(self.middle) + o.radius * o.radius);
         (squares.sum::<f64>() / self.outlines.iter().flatten().count().max(1) as f64).sqrt().max(1.0)
     }
 

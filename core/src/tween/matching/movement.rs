@@ -1,7 +1,7 @@
 //! The movement of the whole drawing, and that around each stroke.
 
-use super::costs::{Figure, Rows};
 use super::super::grid::Grid;
+use super::costs::{Figure, Rows};
 use super::relaxation::{self, Chosen};
 use super::{Fixed, Options};
 use crate::geometry::Point;
@@ -164,5 +164,10 @@ fn fit(pairs: &[(f64, Point, Point)], held: &Movement, radius: f64) -> Movement 
         denominator += weight * p.length_squared();
     }
     let factor = numerator / denominator;
-    Movement { turn: factor.to_angle(), scale: factor.length().clamp(0.3 * held.scale, 3.0 * held.scale), source, target }
+    Movement {
+        turn: factor.to_angle(),
+        scale: factor.length().clamp(0.3 * held.scale, 3.0 * held.scale),
+        source,
+        target,
+    }
 }

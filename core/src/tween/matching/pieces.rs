@@ -4,8 +4,8 @@
 //! counterpart, and both put together are more like the stroke than the counterpart alone is, the two are pieces of it. So
 //! on until nothing is won; strokes without any counterpart are tried with two pieces that have none. Pieces are open.
 
-use super::super::stroke::Stroke;
 use super::super::grid::Grid;
+use super::super::stroke::Stroke;
 use super::movement::Movement;
 use super::outline::Outline;
 use super::{Fixed, InPieces, Matching};
@@ -156,7 +156,8 @@ impl<E: Fn(usize, Point) -> (Point, f64)> Search<'_, E> {
     /// How unlike the whole a line of points is.
     fn cost(&self, i: usize, points: &[Point]) -> Option<f64> {
         let closed = self.whole[i].closed;
-        let (whole, line) = (Outline::new(&self.whole[i], closed)?, Outline::new(&Stroke::new(points.into(), closed), closed)?);
+        let (whole, line) =
+            (Outline::new(&self.whole[i], closed)?, Outline::new(&Stroke::new(points.into(), closed), closed)?);
         let (place, growth) = (self.expected)(i, whole.centre);
         let away = place.distance(line.centre) / (whole.radius * growth);
         let length = (line.length.max(1.0) / (whole.length.max(1.0) * growth)).ln();

@@ -6,9 +6,9 @@
 //! present weights, β sharpening from round to round; between rounds they are normalised so that no stroke of the second
 //! drawing is taken more than once (Sinkhorn). The last word has an exact assignment, repeated while it lowers the energy.
 
+use super::super::grid::Grid;
 use super::Options;
 use super::costs::{Figure, Label, Rows};
-use super::super::grid::Grid;
 use super::outline::{Outline, Way};
 use crate::geometry::Point;
 use crate::numeric::sparse_assignment::{Choice, assign_sparse};
@@ -133,10 +133,13 @@ fn normalised(mut weights: Vec<Weights>, rows: &Rows, columns: usize) -> Vec<Wei
     weights
 }
 
+/// Energy, label of each stroke, and what each label costs under the labels of the others.
+type Assigned = (f64, Vec<Option<usize>>, Vec<Vec<f64>>);
+
 /// Exact assignments under the costs that the weights, then the assignments themselves, imply.
 fn harden(rows: &Rows, links: &[Vec<Link>], soft: Vec<Weights>, columns: usize, options: &Options) -> Relaxed {
     let mut weights = soft;
-    let mut best: Option<(f64, Vec<Option<usize>>, Vec<Vec<f64>>)> = None;
+    let mut best: Option<Assigned> = None;
     for _ in 0..EXACT {
         let costs = supported(rows, links, &weights);
         let picked = assigned(rows, &costs, columns, options);
@@ -237,5 +240,10 @@ fn link(a: &Outline, b: &Outline, to: usize) -> Link {
     }
     let size = (a.radius * b.radius).sqrt();
     let gap = least.0.sqrt() / (TOUCHING * size);
-    Link { to, place: 0.5 * (least.1 + least.2), weight: 1.0 / (1.0 + gap * gap), torn: TORN * 0.5 * (a.radius + b.radius) }
+    Link {
+        to,
+        place: 0.5 * (least.1 + least.2),
+        weight: 1.0 / (1.0 + gap * gap),
+        torn: TORN * 0.5 * (a.radius + b.radius),
+    }
 }

@@ -15,7 +15,10 @@ fn arc(centre: (f64, f64), radius: f64, from: f64, to: f64, count: usize) -> Vec
 /// A figure: body, head, two equal arms and legs of two bones each.
 fn figure(shift: Point, turn: f64, arms: f64, legs: f64) -> Vec<Stroke> {
     let mut strokes = vec![
-        Stroke::new(vec![(-30.0, -50.0), (30.0, -50.0), (25.0, 50.0), (-25.0, 50.0)].into_iter().map(Point::from).collect(), true),
+        Stroke::new(
+            vec![(-30.0, -50.0), (30.0, -50.0), (25.0, 50.0), (-25.0, 50.0)].into_iter().map(Point::from).collect(),
+            true,
+        ),
         Stroke::new(arc((0.0, -80.0), 28.0, 0.0, 6.0, 20), true),
     ];
     let bone = |from: Point, angle: f64| {
@@ -23,7 +26,9 @@ fn figure(shift: Point, turn: f64, arms: f64, legs: f64) -> Vec<Stroke> {
         let bulge = from.lerp(to, 0.5) + Point::from_angle(angle + 1.57) * 8.0;
         (Stroke::new(polyline::resample(&[from, bulge, to], false, 9), false), to)
     };
-    for (x, y, angle) in [(-30.0, -45.0, 2.4 + arms), (30.0, -45.0, 0.7 - arms), (-15.0, 50.0, 1.8 + legs), (15.0, 50.0, 1.3 - legs)] {
+    for (x, y, angle) in
+        [(-30.0, -45.0, 2.4 + arms), (30.0, -45.0, 0.7 - arms), (-15.0, 50.0, 1.8 + legs), (15.0, 50.0, 1.3 - legs)]
+    {
         let (upper, joint) = bone(Point::new(x, y), angle);
         let (lower, _) = bone(joint, angle + 0.4);
         strokes.extend([upper, lower]);
@@ -115,7 +120,10 @@ fn wrong_hand_made_pairs_are_named() {
 
 #[test]
 fn colour_and_layer_tell_equal_strokes_apart() {
-    let line = |x: f64, layer| Stroke { layer: Some(layer), ..Stroke::new(vec![Point::new(x, 0.0), Point::new(x + 5.0, 30.0)], false) };
+    let line = |x: f64, layer| Stroke {
+        layer: Some(layer),
+        ..Stroke::new(vec![Point::new(x, 0.0), Point::new(x + 5.0, 30.0)], false)
+    };
     let found = run(&[line(0.0, 1), line(10.0, 2)], &[line(0.0, 2), line(10.0, 1)]);
     assert_eq!(found.pairs.iter().map(|p| p.to).collect::<Vec<_>>(), [1, 0]);
 }
@@ -141,7 +149,10 @@ fn bad_strokes_are_named_or_left_alone() {
     let p = Point::new;
     let nan = [Stroke::new(vec![p(0.0, 0.0), p(f64::NAN, 1.0)], false)];
     let error = match_strokes(&[], &nan, &[], &Options::default(), &Silent).unwrap_err();
-    assert_eq!(error.to_string(), "second drawing: stroke 0: point 1 is (NaN, 1), expected numbers between -1e9 and 1e9");
+    assert_eq!(
+        error.to_string(),
+        "second drawing: stroke 0: point 1 is (NaN, 1), expected numbers between -1e9 and 1e9"
+    );
     assert_eq!(run(&[], &[]), Matching::default());
     let odd = [
         Stroke::new(vec![], true),

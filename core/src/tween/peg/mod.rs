@@ -22,8 +22,8 @@
 pub mod propose;
 mod timing;
 
-pub(in crate::tween) use timing::{hermite, monotone_slope};
 pub use timing::{Timing, TimingError};
+pub(in crate::tween) use timing::{hermite, monotone_slope};
 
 use super::stroke::FARTHEST;
 use crate::geometry::Point;
@@ -209,24 +209,25 @@ fn check(peg: &Peg, count: usize) -> Result<(), PegError> {
     if let Some(parent) = peg.parent.filter(|&parent| parent >= count) {
         return Err(PegError::Parent { name: name(), parent, count });
     }
-    let place = |p: Point| p.is_finite() && p.abs().max_element() <= FARTHEST;
-    if !place(peg.pivot) {
+    let within = |value: f64| (-FARTHEST..=FARTHEST).contains(&value);
+    if !(within(peg.pivot.x) && within(peg.pivot.y)) {
         return Err(PegError::Pivot { name: name(), x: peg.pivot.x, y: peg.pivot.y });
     }
     for (k, key) in peg.keys.iter().enumerate() {
-        let wrong = |field, found, expected| Err(PegError::Key { name: name(), frame: key.frame, field, found, expected });
+        let wrong =
+            |field, found, expected| Err(PegError::Key { name: name(), frame: key.frame, field, found, expected });
         if let Some(before) = k.checked_sub(1).map(|k| peg.keys[k].frame).filter(|&before| before >= key.frame) {
             return Err(PegError::Order { name: name(), frame: key.frame, before });
         }
         for found in [key.shift.x, key.shift.y] {
-            if !(found.abs() <= FARTHEST) {
+            if !within(found) {
                 return wrong("shift", found, "a number between -1e9 and 1e9");
             }
         }
-        if !(key.turn.abs() <= FARTHEST) {
+        if !within(key.turn) {
             return wrong("turn", key.turn, "a number between -1e9 and 1e9");
         }
-        if !(key.scale >= LEAST_SCALE && key.scale <= FARTHEST) {
+        if !(LEAST_SCALE..=FARTHEST).contains(&key.scale) {
             return wrong("scale", key.scale, "a number from 1e-6 to 1e9");
         }
         key.timing.check().map_err(|source| PegError::Timing { name: name(), frame: key.frame, source })?;

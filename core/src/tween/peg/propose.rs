@@ -366,7 +366,9 @@ mod tests {
 
     fn bone(from: Point, angle: f64, length: f64) -> Vec<Point> {
         let along = Point::from_angle(angle);
-        (0..12).map(|k| from + along * (length * k as f64 / 11.0) + along.perp() * (k as f64 * 0.7).sin() * 2.0).collect()
+        (0..12)
+            .map(|k| from + along * (length * k as f64 / 11.0) + along.perp() * (k as f64 * 0.7).sin() * 2.0)
+            .collect()
     }
 
     /// A body of three strokes, and an arm of two bones, in a pose.
@@ -412,8 +414,12 @@ mod tests {
 
     #[test]
     fn strokes_that_are_not_there_or_are_points() {
-        let places: [Vec<Option<Vec<Point>>>; 4] =
-            [vec![Some(vec![Point::ONE]); 2], vec![None, Some(vec![Point::X])], vec![None, None], vec![Some(vec![]); 2]];
+        let places: [Vec<Option<Vec<Point>>>; 4] = [
+            vec![Some(vec![Point::ONE]); 2],
+            vec![None, Some(vec![Point::X])],
+            vec![None, None],
+            vec![Some(vec![]); 2],
+        ];
         let strokes: Vec<Moving> = places.iter().map(|places| Moving { places, closed: true }).collect();
         let members: usize = groups(&strokes).iter().map(|g| g.members.len()).sum();
         assert_eq!(members, 4);
