@@ -14,6 +14,8 @@ const COINCIDENT: f64 = 0.75;
 const SLIDE: f64 = 0.06;
 /// Contacts of two strokes, at most.
 const MOST: usize = 24;
+/// Points of one stroke and segments of another, multiplied, up to which all points are looked at.
+const MOST_TRIED: usize = 1_000_000;
 /// Rounds of closing.
 const ROUNDS: usize = 8;
 /// Share of a stroke's length along which it gives way.
@@ -64,7 +66,9 @@ fn of_pair(strokes: &[Between], i: usize, j: usize) -> Vec<Contact> {
     let mut found = Vec::new();
     for (a, b) in [(i, j), (j, i)] {
         let n = strokes[a].ends[0].len();
-        let mut own: Vec<Contact> = (0..n).filter_map(|point| contact(strokes, a, point, b)).collect();
+        let step = (n * strokes[b].ends[0].len() / MOST_TRIED).max(1);
+        let tried = (0..n).step_by(step).chain((step > 1).then_some(n - 1));
+        let mut own: Vec<Contact> = tried.filter_map(|point| contact(strokes, a, point, b)).collect();
         if own.len() > MOST {
             let step = own.len().div_ceil(MOST);
             own = own.into_iter().step_by(step).collect();

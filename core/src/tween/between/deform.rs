@@ -80,17 +80,8 @@ fn turns(a: &[Point], b: &[Point], closed: bool) -> Option<Vec<f64>> {
     let reach = ((n as f64 * WINDOW) as usize).max(1);
     let products: Vec<(Point, f64)> =
         a.iter().zip(b).map(|(p, q)| (Point::new(p.dot(*q), p.perp_dot(*q)), p.length() * q.length())).collect();
-    let around = |i: usize| {
-        let window = (0..=2 * reach).filter_map(|k| {
-            let j = i as isize + k as isize - reach as isize;
-            if closed {
-                products.get(j.rem_euclid(n as isize) as usize)
-            } else {
-                products.get(usize::try_from(j).ok()?)
-            }
-        });
-        window.fold((Point::ZERO, 0.0), |(sum, size), (product, length)| (sum + *product, size + length))
-    };
+    let sums = Running::new(&products);
+    let around = |i: usize| sums.around(i, reach.min((n - 1) / 2), closed);
     let mut turns = Vec::with_capacity(n);
     let mut last = 0.0f64;
     let mut first = None;
@@ -112,6 +103,38 @@ fn turns(a: &[Point], b: &[Point], closed: bool) -> Option<Vec<f64>> {
     let whole = std::f64::consts::TAU * (mean / std::f64::consts::TAU).round();
     turns.iter_mut().for_each(|turn| *turn -= whole);
     Some(turns)
+}
+
+/// Sums of everything before each place, so that those of any window cost two look-ups.
+struct Running(Vec<(Point, f64)>);
+
+impl Running {
+    fn new(values: &[(Point, f64)]) -> Self {
+        let mut sums = vec![(Point::ZERO, 0.0)];
+        for (point, length) in values {
+            let (p, l) = sums[sums.len() - 1];
+            sums.push((p + *point, l + length));
+        }
+        Self(sums)
+    }
+
+    fn between(&self, from: usize, to: usize) -> (Point, f64) {
+        (self.0[to].0 - self.0[from].0, self.0[to].1 - self.0[from].1)
+    }
+
+    /// The sum of place `i` and `reach` places to each side, which go round where `closed`.
+    fn around(&self, i: usize, reach: usize, closed: bool) -> (Point, f64) {
+        let n = self.0.len() - 1;
+        let (low, high) = (i.saturating_sub(reach), (i + reach + 1).min(n));
+        let mut sum = self.between(low, high);
+        if closed {
+            for (from, to) in [(n - reach.saturating_sub(i), n), (0, (i + reach + 1).saturating_sub(n))] {
+                let more = self.between(from, to);
+                sum = (sum.0 + more.0, sum.1 + more.1);
+            }
+        }
+        sum
+    }
 }
 
 /// The angle, by whole turns, that is nearest to another.
@@ -145,6 +168,16 @@ mod tests {
             let turned = 7.0 * s * 58.0 / 60.0;
             assert!((first.angle_to(last) - turned).sin().abs() < 0.06, "{s}");
         }
+    }
+
+    #[test]
+    fn windows_go_round() {
+        let values: Vec<(Point, f64)> = (0..7).map(|k| (Point::splat(f64::from(1 << k)), f64::from(1 << k))).collect();
+        let sums = Running::new(&values);
+        assert_eq!(sums.around(0, 2, true).1, 1.0 + 2.0 + 4.0 + 32.0 + 64.0);
+        assert_eq!(sums.around(0, 2, false).1, 7.0);
+        assert_eq!(sums.around(6, 1, true).1, 32.0 + 64.0 + 1.0);
+        assert_eq!(sums.around(3, 3, true).1, 127.0);
     }
 
     #[test]

@@ -14,6 +14,7 @@
 //! How far something has come on each frame cannot be known from two drawings: where it matters, a [`Spacing`] says it. A
 //! movement to and fro between two keys needs a key at its turning point.
 
+mod check;
 mod contacts;
 mod correspond;
 mod deform;
@@ -21,13 +22,14 @@ mod join;
 mod motion;
 mod tracks;
 
+pub use check::BetweenError;
 pub use correspond::Places;
 pub use tracks::{Stand, Track};
 
 use super::matching::Matching;
 use super::peg::propose::{self, Moving};
-use super::peg::{PegTree, Timing, TimingError};
-use super::stroke::{BadPoint, Stroke, checked};
+use super::peg::{PegTree, Timing};
+use super::stroke::Stroke;
 use crate::geometry::similarity::Similarity;
 use crate::geometry::{Point, polygon};
 use crate::scene::FrameNumber;
@@ -35,6 +37,7 @@ use deform::Deform;
 use join::{Asked, Ends, Run};
 use motion::{Hung, Motion};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// How far the drawings between two keys have come.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -136,93 +139,6 @@ pub struct InBetween {
     pub opacity: f64,
 }
 
-/// Why there are no in-betweens.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum BetweenError {
-    /// A point of a drawing is no place.
-    #[error("frame {frame}: {source}")]
-    Point {
-        /// The drawing's frame.
-        frame: FrameNumber,
-        /// The point.
-        source: BadPoint,
-    },
-    /// Keys do not follow each other.
-    #[error("found a key on frame {frame} after one on frame {before}, expected a later frame")]
-    Order {
-        /// Frame of the key.
-        frame: FrameNumber,
-        /// Frame of the one before it.
-        before: FrameNumber,
-    },
-    /// There are not as many matchings as spans.
-    #[error("found {found} matchings, expected one for each of {expected} spans between keys")]
-    Matchings {
-        /// How many there are.
-        found: usize,
-        /// How many there should be.
-        expected: usize,
-    },
-    /// A matching names a stroke that is not there.
-    #[error("matching of frame {frame} and the next key: found stroke {found}, expected less than {count}")]
-    Stroke {
-        /// Frame of the earlier key.
-        frame: FrameNumber,
-        /// The stroke.
-        found: usize,
-        /// Strokes of the drawing.
-        count: usize,
-    },
-    /// A spacing chart has not one share for each frame.
-    #[error(
-        "frame {frame}: the spacing chart has {found} shares, expected one for each of {expected} frames to the next key"
-    )]
-    Chart {
-        /// Frame of the earlier key.
-        frame: FrameNumber,
-        /// Shares found.
-        found: usize,
-        /// Frames between the keys.
-        expected: usize,
-    },
-    /// A spacing chart holds what is no number.
-    #[error("frame {frame}: share {index} of the spacing chart is {found}, expected a number from -10 to 10")]
-    Share {
-        /// Frame of the earlier key.
-        frame: FrameNumber,
-        /// Index of the share.
-        index: usize,
-        /// What was found.
-        found: f64,
-    },
-    /// A movement function is none.
-    #[error("frame {frame}: {source}")]
-    Timing {
-        /// Frame of the earlier key.
-        frame: FrameNumber,
-        /// What is wrong.
-        source: TimingError,
-    },
-    /// A stroke hangs on a peg that is not there.
-    #[error("frame {frame}, stroke {stroke}: found peg {found}, expected less than {count}")]
-    Peg {
-        /// Frame of the key.
-        frame: FrameNumber,
-        /// Index of the stroke.
-        stroke: usize,
-        /// What was found.
-        found: usize,
-        /// Number of pegs.
-        count: usize,
-    },
-    /// The strength of arcs is no number.
-    #[error("arcs are {found}, expected 0 to 1")]
-    Arcs {
-        /// What was found.
-        found: f64,
-    },
-}
-
 /// A change of shape between two keys.
 #[derive(Clone, Debug, PartialEq)]
 struct Change {
@@ -258,7 +174,7 @@ impl Sequence {
         pegs: &GivenPegs,
         options: &Options,
     ) -> Result<Self, BetweenError> {
-        check(&keys, matchings, pegs, options)?;
+        check::check(&keys, matchings, pegs, options)?;
         let tracks = tracks::chained(&keys, matchings);
         let places = motion::by_key(&tracks, keys.len());
         let moving: Vec<Moving> =
@@ -308,29 +224,36 @@ impl Sequence {
 
     fn on_key(&self, k: usize) -> Vec<InBetween> {
         let strokes = &self.keys[k].strokes;
-        let track_of = |i: usize| {
-            let own = |track: &Track| track.at(k).is_some_and(|stand| stand.stroke == i && !stand.part);
-            self.tracks.iter().position(own).unwrap_or(usize::MAX)
-        };
-        let drawn =
-            |(i, stroke): (usize, &Stroke)| InBetween { stroke: stroke.clone(), track: track_of(i), opacity: 1.0 };
-        strokes.iter().enumerate().map(drawn).collect()
+        let mut tracks = vec![usize::MAX; strokes.len()];
+        for (t, track) in self.tracks.iter().enumerate() {
+            if let Some(stand) = track.at(k).filter(|stand| !stand.part) {
+                tracks[stand.stroke] = t;
+            }
+        }
+        let drawn = |(stroke, track): (&Stroke, usize)| InBetween { stroke: stroke.clone(), track, opacity: 1.0 };
+        strokes.iter().zip(tracks).map(drawn).collect()
     }
 
-    /// The tracks that are drawn in a span, with their stacking order.
+    /// The tracks that are drawn in a span, with their stacking order: of a stroke in pieces the pieces alone.
     fn present(&self, k: usize) -> Vec<usize> {
-        let split = |track: &Track| {
-            let own = track.at(k);
-            own.is_some_and(|s| !s.part && self.is_split(k, s.stroke)) && track.last() == k
+        let parts = |key: usize| -> BTreeSet<usize> {
+            let part = |track: &Track| {
+                let in_span = track.at(k).is_some() && track.at(k + 1).is_some();
+                track.at(key).filter(|stand| in_span && stand.part).map(|stand| stand.stroke)
+            };
+            self.tracks.iter().filter_map(part).collect()
         };
-        let joined = |track: &Track| {
-            let own = track.at(k + 1);
-            own.is_some_and(|s| !s.part && self.is_joined(k + 1, s.stroke)) && track.first == k + 1
+        let (split, joined) = (parts(k), parts(k + 1));
+        let whole = |track: &Track, key: usize, parts: &BTreeSet<usize>| {
+            track.at(key).is_some_and(|stand| !stand.part && parts.contains(&stand.stroke))
         };
-        let there = |track: &Track| track.at(k).is_some() || track.at(k + 1).is_some();
-        let mut found: Vec<usize> = (0..self.tracks.len())
-            .filter(|&t| there(&self.tracks[t]) && !split(&self.tracks[t]) && !joined(&self.tracks[t]))
-            .collect();
+        let there = |track: &Track| match (track.at(k).is_some(), track.at(k + 1).is_some()) {
+            (true, true) => true,
+            (true, false) => !whole(track, k, &split),
+            (false, true) => !whole(track, k + 1, &joined),
+            (false, false) => false,
+        };
+        let mut found: Vec<usize> = (0..self.tracks.len()).filter(|&t| there(&self.tracks[t])).collect();
         let mut rank = vec![0.0; self.tracks.len()];
         let mut by_later: Vec<(usize, usize)> =
             found.iter().filter_map(|&t| Some((self.tracks[t].at(k + 1)?.stroke, t))).collect();
@@ -347,14 +270,6 @@ impl Sequence {
         }
         found.sort_by(|&a, &b| rank[a].total_cmp(&rank[b]).then(a.cmp(&b)));
         found
-    }
-
-    fn is_split(&self, k: usize, stroke: usize) -> bool {
-        self.tracks.iter().any(|t| t.first == k && t.stands[0].part && t.stands[0].stroke == stroke)
-    }
-
-    fn is_joined(&self, k: usize, stroke: usize) -> bool {
-        self.tracks.iter().any(|t| t.last() == k && t.at(k).is_some_and(|s| s.part && s.stroke == stroke))
     }
 
     fn between(&self, k: usize, frame: FrameNumber) -> Vec<InBetween> {
@@ -482,66 +397,6 @@ fn way_out(points: &[Point], size: Point) -> Point {
         }
     };
     way * out(way.x, low.x, high.x, size.x).min(out(way.y, low.y, high.y, size.y)).max(0.0)
-}
-
-fn check(keys: &[Key], matchings: &[Matching], pegs: &GivenPegs, options: &Options) -> Result<(), BetweenError> {
-    if !(0.0..=1.0).contains(&options.arcs) {
-        return Err(BetweenError::Arcs { found: options.arcs });
-    }
-    let expected = keys.len().saturating_sub(1);
-    if matchings.len() != expected {
-        return Err(BetweenError::Matchings { found: matchings.len(), expected });
-    }
-    for key in keys {
-        checked(&key.strokes).map_err(|source| BetweenError::Point { frame: key.frame, source })?;
-    }
-    for (pair, matching) in keys.windows(2).zip(matchings) {
-        let (frame, next) = (pair[0].frame, pair[1].frame);
-        if next <= frame {
-            return Err(BetweenError::Order { frame: next, before: frame });
-        }
-        check_spacing(&pair[0], next)?;
-        for (named, count) in named(matching).into_iter().zip([pair[0].strokes.len(), pair[1].strokes.len()]) {
-            if let Some(&found) = named.iter().find(|&&i| i >= count) {
-                return Err(BetweenError::Stroke { frame, found, count });
-            }
-        }
-    }
-    let count = pegs.tree.pegs().len();
-    for (key, of) in keys.iter().zip(&pegs.of) {
-        if let Some((stroke, found)) = of.iter().enumerate().find_map(|(i, p)| Some((i, p.filter(|&p| p >= count)?))) {
-            return Err(BetweenError::Peg { frame: key.frame, stroke, found, count });
-        }
-    }
-    Ok(())
-}
-
-/// The strokes of both drawings that a matching names.
-fn named(matching: &Matching) -> [Vec<usize>; 2] {
-    let wholes = |list: &[super::matching::InPieces]| list.iter().map(|s| s.whole).collect::<Vec<_>>();
-    let pieces =
-        |list: &[super::matching::InPieces]| list.iter().flat_map(|s| s.pieces.iter().map(|p| p.0)).collect::<Vec<_>>();
-    let first = matching.pairs.iter().map(|p| p.from).chain(wholes(&matching.split)).chain(pieces(&matching.joined));
-    let second = matching.pairs.iter().map(|p| p.to).chain(wholes(&matching.joined)).chain(pieces(&matching.split));
-    [first.collect(), second.collect()]
-}
-
-fn check_spacing(key: &Key, next: FrameNumber) -> Result<(), BetweenError> {
-    let frame = key.frame;
-    match &key.spacing {
-        Spacing::Smooth => Ok(()),
-        Spacing::Timing(timing) => timing.check().map_err(|source| BetweenError::Timing { frame, source }),
-        Spacing::Chart(shares) => {
-            let expected = next.abs_diff(frame) as usize - 1;
-            if shares.len() != expected {
-                return Err(BetweenError::Chart { frame, found: shares.len(), expected });
-            }
-            match shares.iter().position(|s| !(-10.0..=10.0).contains(s)) {
-                Some(index) => Err(BetweenError::Share { frame, index, found: shares[index] }),
-                None => Ok(()),
-            }
-        }
-    }
 }
 
 #[cfg(test)]

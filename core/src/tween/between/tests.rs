@@ -163,6 +163,26 @@ fn what_cannot_be_used_is_named() {
 }
 
 #[test]
+fn many_strokes_and_many_points() {
+    let strokes = |x: f64| -> Vec<Stroke> {
+        let at = |k: usize| Point::new((k % 100) as f64 * 12.0 + x * (1.0 + (k % 3) as f64), (k / 100) as f64 * 12.0);
+        (0..4_000)
+            .map(|k| Stroke::new((0..4).map(|j| at(k) + Point::from_angle(j as f64) * 4.0).collect(), false))
+            .collect()
+    };
+    let keys = vec![key(0, strokes(0.0)), key(2, strokes(3.0))];
+    let many = Sequence::new(keys, &[by_index(4_000)], &GivenPegs::default(), &Options::default()).unwrap();
+    assert_eq!(many.at(1).len(), 4_000);
+    let long = |turn: f64, radius: f64| {
+        let points = (0..100_000).map(|k| Point::from_angle(turn + k as f64 * 6e-5) * (radius + (k % 7) as f64 * 0.01));
+        Stroke::new(points.collect(), false)
+    };
+    let keys = vec![key(0, vec![long(0.0, 90.0), long(0.0, 90.2)]), key(2, vec![long(0.4, 90.0), long(0.4, 90.2)])];
+    let drawn = sequence(keys, &Options::default()).at(1);
+    assert!(drawn[0].stroke.points.iter().all(|p| (p.length() - 90.0).abs() < 1.0));
+}
+
+#[test]
 fn any_number_of_threads_gives_the_same() {
     let strokes = |turn: f64| {
         (0..40)

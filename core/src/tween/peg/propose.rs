@@ -23,6 +23,8 @@ pub const ALL_PAIRS: usize = 200;
 const NEAREST: usize = 8;
 /// Groups that a group may hang on: the nearest.
 const PARENTS: usize = 16;
+/// Samples of a group by which its distance from others is told, at most.
+const MOST_PLACES: usize = 640;
 /// Root mean square in pixels that a join may leave unexplained.
 const LEAST_TOLERANCE: f64 = 1.0;
 /// The same as a share of the smaller group's radius.
@@ -256,7 +258,8 @@ fn join_all(all: &mut [Growing]) {
 /// Where two groups come nearest on a key: the distance and the place.
 fn meeting(a: &[usize], b: &[usize], samples: &[Vec<Option<Vec<Point>>>], key: usize) -> Option<(f64, Point)> {
     let places = |members: &[usize]| -> Vec<Point> {
-        members.iter().filter_map(|&i| samples[i].get(key)?.as_ref()).flatten().copied().collect()
+        let step = (members.len() * SAMPLES).div_ceil(MOST_PLACES);
+        members.iter().filter_map(|&i| samples[i].get(key)?.as_ref()).flatten().copied().step_by(step).collect()
     };
     let (a, b) = (places(a), places(b));
     let mut best: Option<(f64, Point)> = None;
@@ -281,10 +284,15 @@ fn hung(all: &[Growing], samples: &[Vec<Option<Vec<Point>>>]) -> Vec<Group> {
     let mut groups = Vec::with_capacity(all.len());
     for (g, group) in all.iter().enumerate() {
         let mut before: Vec<usize> = (0..g).collect();
-        before.sort_by(|&a, &b| {
-            middles[a].distance_squared(middles[g]).total_cmp(&middles[b].distance_squared(middles[g])).then(a.cmp(&b))
-        });
-        before.truncate(PARENTS);
+        let nearer = |a: &usize, b: &usize| {
+            let from = |other: usize| middles[other].distance_squared(middles[g]);
+            from(*a).total_cmp(&from(*b)).then(a.cmp(b))
+        };
+        if before.len() > PARENTS {
+            before.select_nth_unstable_by(PARENTS, nearer);
+            before.truncate(PARENTS);
+        }
+        before.sort_by(nearer);
         let mut best: Option<(f64, usize, Point)> = None;
         for parent in before {
             let met: Vec<(f64, Point)> =
