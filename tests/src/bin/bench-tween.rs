@@ -4,7 +4,7 @@
 
 use anyhow::{Context, Result};
 use rototoon::tween::between::Options;
-use rototoon_tests::tweening::between::{Errors, measure as measure_between, rows_of_keys};
+use rototoon_tests::tweening::between::{Errors, measure as measure_between, measure_one_way, rows_of_keys};
 use rototoon_tests::tweening::matching::{Chance, Score, measure};
 use rototoon_tests::tweening::{GAPS, Set, sheet};
 use std::path::{Path, PathBuf};
@@ -15,7 +15,9 @@ fn main() -> Result<()> {
     let sets = arguments.map(|folder| Set::load(&folder)).collect::<Result<Vec<_>>>()?;
     matching(&sets, false)?;
     matching(&sets, true)?;
-    between(&sets)?;
+    between(&sets, "all strokes, one chart for all of them", measure_between)?;
+    between(&sets, "strokes that move one way, a chart for each", measure_one_way)?;
+    println!("charted: with the shares of the way that suit best; ratio to plain linear in brackets");
     for set in &sets {
         sheets(set, &out)?;
     }
@@ -52,8 +54,11 @@ fn matching_row(name: &str, spans: usize, s: &Score) {
     println!("{name:22}{spans:6}{:8}{right:9.1}{:8}{index:11.1}{starts:10.1}", s.there, s.wrong);
 }
 
-fn between(sets: &[Set]) -> Result<()> {
-    println!("in-betweens, mean distance of the points from the truth in px");
+/// Errors at some keys of a set.
+type Measure = fn(&Set, &[i32], &Options) -> Result<Errors>;
+
+fn between(sets: &[Set], title: &str, measure: Measure) -> Result<()> {
+    println!("in-betweens, {title}: mean distance of the points from the truth in px");
     println!(
         "{:22}{:>8}{:>8}{:>8}{:>8}{:>17}{:>17}",
         "", "keys", "linear", "ours", "ratio", "linear, charted", "ours, charted"
@@ -63,22 +68,21 @@ fn between(sets: &[Set]) -> Result<()> {
         let fits = |gap: &i32| set.frames.1 - set.frames.0 >= *gap;
         for gap in GAPS.filter(fits) {
             for row in rows_of_keys(set, gap) {
-                all.add(measure_between(set, &row, &Options::default())?);
+                all.add(measure(set, &row, &Options::default())?);
             }
         }
-        if all.count > 0 {
-            between_row(&set.name, "6-14", &all);
-        }
-        between_row(&set.name, "project", &measure_between(set, &set.keys, &Options::default())?);
+        between_row(&set.name, "6-14", &all);
+        between_row(&set.name, "project", &measure(set, &set.keys, &Options::default())?);
     }
-    println!(
-        "charted: with the one share a frame, for all strokes alike, that suits best; ratio to plain linear in brackets"
-    );
+    println!();
     Ok(())
 }
 
 fn between_row(name: &str, keys: &str, e: &Errors) {
-    let n = e.count.max(1) as f64;
+    if e.count == 0 {
+        return;
+    }
+    let n = e.count as f64;
     let charted = |sum: f64| format!("{:.2} ({:.2})", sum / n, sum / e.linear);
     let (linear, ours) = (charted(e.linear_charted), charted(e.ours_charted));
     let ratio = e.ours / e.linear;

@@ -3,12 +3,15 @@
 //! Every contour has the same points on all frames, and they are paired rightly for both. Keys are all frames at one
 //! distance, from every first frame.
 
-use super::Set;
+use super::{Contours, Set};
 use anyhow::{Context, Result};
 use rototoon::geometry::Point;
 use rototoon::tween::Stroke;
 use rototoon::tween::between::{GivenPegs, InBetween, Key, Options, Sequence, Spacing};
 use rototoon::tween::matching::{Matching, Pair};
+
+/// Root mean square way in pixels from key to key below which a contour does not move.
+const LEAST_WAY: f64 = 5.0;
 
 /// Sums of distances in pixels from the true points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -67,6 +70,56 @@ pub fn sequence(set: &Set, frames: &[i32], options: &Options) -> Result<(Vec<usi
     let (parts, keys) = drawings(set, frames);
     let matchings = paired(parts.len(), frames.len() - 1);
     Ok((parts, Sequence::new(keys, &matchings, &GivenPegs::default(), options)?))
+}
+
+/// The errors of the strokes that move one way between some keys, each with the chart that suits it best: what remains is
+/// the way and the shape.
+pub fn measure_one_way(set: &Set, frames: &[i32], options: &Options) -> Result<Errors> {
+    let (parts, ours) = sequence(set, frames, options)?;
+    let mut errors = Errors::default();
+    for pair in frames.windows(2) {
+        let (_, keys) = drawings(set, pair);
+        let charted = Charted::new(&keys, options)?;
+        let moving: Vec<usize> =
+            (0..parts.len()).filter(|&n| is_one_way(&set.parts[parts[n]], (pair[0], pair[1]))).collect();
+        for frame in pair[0] + 1..pair[1] {
+            let drawn = points(ours.at(frame));
+            let u = f64::from(frame - pair[0]) / f64::from(pair[1] - pair[0]);
+            for &n in &moving {
+                let truth = &set.parts[parts[n]].points[&frame];
+                let (a, b) = (&keys[0].strokes[n].points, &keys[1].strokes[n].points);
+                let off = |line: &[Point]| line.iter().zip(truth).map(|(p, q)| p.distance(*q)).sum::<f64>();
+                let linear = |s: f64| off(&a.iter().zip(b).map(|(p, q)| p.lerp(*q, s)).collect::<Vec<_>>());
+                errors.count += truth.len();
+                errors.linear += linear(u);
+                errors.ours += off(&drawn[n]);
+                errors.linear_charted += shares().map(linear).fold(f64::INFINITY, f64::min);
+                errors.ours_charted += charted.drawings.iter().map(|d| off(&d[n])).fold(f64::INFINITY, f64::min);
+            }
+        }
+    }
+    Ok(errors)
+}
+
+/// Whether a contour goes from one key to the other, and on no frame between turns back or beyond them by more than a tenth
+/// of the way; and moves at all.
+fn is_one_way(part: &Contours, (from, to): (i32, i32)) -> bool {
+    let (a, b) = (&part.points[&from], &part.points[&to]);
+    let square: f64 = a.iter().zip(b).map(|(p, q)| p.distance_squared(*q)).sum();
+    if square < LEAST_WAY * LEAST_WAY * a.len() as f64 {
+        return false;
+    }
+    let come = |frame: i32| {
+        let now = part.points.get(&frame)?;
+        Some(a.iter().zip(b).zip(now).map(|((p, q), r)| (*r - *p).dot(*q - *p)).sum::<f64>() / square)
+    };
+    let mut farthest = 0.0f64;
+    (from + 1..=to).all(|frame| {
+        let Some(share) = come(frame) else { return false };
+        let forward = share > farthest - 0.1 && share < 1.1;
+        farthest = farthest.max(share);
+        forward
+    })
 }
 
 /// The errors of all frames between some keys.

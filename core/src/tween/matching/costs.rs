@@ -3,7 +3,7 @@
 use super::super::grid::Grid;
 use super::super::stroke::Stroke;
 use super::movement::Movement;
-use super::outline::{Outline, Way, wrap};
+use super::outline::{Outline, Way, likely, wrap};
 use super::{Fixed, Options};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::{Point, polygon};
@@ -33,6 +33,10 @@ const LAYER: f64 = 2.5;
 const CLOSEDNESS: f64 = 0.4;
 /// Pairs of strokes up to which all are looked at.
 const ALL_PAIRS: usize = 40_000;
+/// Pairs of strokes up to which the ways to lay one upon the other are remembered.
+const REMEMBERED: usize = 4_000;
+/// The same, with places for strokes that are left out.
+const MOST_SLOTS: usize = 1_000_000;
 /// Counterparts looked at for each stroke where there are more.
 const NEAREST: usize = 24;
 /// Counterparts that are kept for each stroke.
@@ -93,6 +97,41 @@ impl<'a> Figure<'a> {
     }
 }
 
+/// How the strokes of two drawings can be laid upon each other, remembered where they are few.
+pub(super) struct Ways {
+    columns: usize,
+    known: Vec<Option<Vec<Vec<Way>>>>,
+}
+
+impl Ways {
+    pub fn new(a: &Figure, b: &Figure) -> Self {
+        let (rows, columns) = (a.outlines.len(), b.outlines.len());
+        let there = |figure: &Figure| figure.outlines.iter().flatten().count();
+        if there(a) * there(b) > REMEMBERED || rows.saturating_mul(columns) > MOST_SLOTS {
+            return Self { columns, known: Vec::new() };
+        }
+        let pair = |k: usize| a.comparable(k / columns, b, k % columns).map(|(p, q)| p.all_ways(q));
+        Self { columns, known: (0..rows * columns).into_par_iter().map(pair).collect() }
+    }
+
+    /// The least of the costs of all ways to lay stroke `i` upon `j`.
+    fn least(&self, a: &Figure, i: usize, b: &Figure, j: usize, cost: impl Fn(&Way) -> f64) -> f64 {
+        let least = |all: &[Vec<Way>]| all.iter().flatten().map(&cost).fold(f64::INFINITY, f64::min);
+        match self.known.get(i * self.columns + j) {
+            Some(known) => known.as_ref().map_or(f64::INFINITY, |all| least(all)),
+            None => a.comparable(i, b, j).map_or(f64::INFINITY, |(p, q)| least(&p.all_ways(q))),
+        }
+    }
+
+    /// The likely ways to lay stroke `i` upon `j` for an expected turn.
+    pub fn likely(&self, a: &Figure, i: usize, b: &Figure, j: usize, expected: f64, stiffness: f64) -> Vec<Way> {
+        if let Some(known) = self.known.get(i * self.columns + j) {
+            return known.as_ref().map_or_else(Vec::new, |all| likely(all, expected, stiffness));
+        }
+        a.comparable(i, b, j).map_or_else(Vec::new, |(p, q)| p.ways(q, expected, stiffness))
+    }
+}
+
 /// A counterpart, and a way to lay the stroke upon it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Label {
@@ -110,7 +149,13 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    pub fn new(a: &Figure, b: &Figure, around: &[Movement], fixed: &[Fixed], options: &Options) -> Self {
+    pub fn new(
+        (a, b): (&Figure, &Figure),
+        ways: &Ways,
+        around: &[Movement],
+        fixed: &[Fixed],
+        options: &Options,
+    ) -> Self {
         let numbers: Vec<usize> = (0..b.outlines.len()).filter(|&j| b.outlines[j].is_some()).collect();
         let centres: Vec<Point> = numbers.iter().filter_map(|&j| Some(b.outlines[j].as_ref()?.centre)).collect();
         let grid = Grid::new(&centres);
@@ -125,7 +170,7 @@ impl Rows {
             let Some(outline) = &a.outlines[i] else { return Vec::new() };
             match fixed[i] {
                 Fixed::Alone => return Vec::new(),
-                Fixed::To(j) => return labels(a, b, i, j, &around[i]),
+                Fixed::To(j) => return labels((a, b), ways, (i, j), &around[i]),
                 Fixed::Free => {}
             }
             let near = if all {
@@ -135,8 +180,8 @@ impl Rows {
                 found.into_iter().map(|k| numbers[k]).collect()
             };
             let mut found: Vec<Vec<Label>> =
-                near.into_iter().filter(|&j| !taken[j]).map(|j| labels(a, b, i, j, &around[i])).collect();
-            found.retain(|ways| ways.first().is_some_and(|label| label.cost < options.max_cost));
+                near.into_iter().filter(|&j| !taken[j]).map(|j| labels((a, b), ways, (i, j), &around[i])).collect();
+            found.retain(|row| row.first().is_some_and(|label| label.cost < options.max_cost));
             found.sort_by(|x, y| x[0].cost.total_cmp(&y[0].cost).then(x[0].to.cmp(&y[0].to)));
             found.truncate(KEPT);
             found.concat()
@@ -148,23 +193,48 @@ impl Rows {
 }
 
 /// The ways to lay stroke `i` upon `j`, the cheapest first.
-pub(super) fn labels(a: &Figure, b: &Figure, i: usize, j: usize, around: &Movement) -> Vec<Label> {
-    let Some((p, q)) = a.comparable(i, b, j) else { return Vec::new() };
-    let (Some(from), Some(to)) = (&a.outlines[i], &b.outlines[j]) else { return Vec::new() };
-    let growth = (q.radius / p.radius).ln();
-    let length = (q.length.max(1.0) / p.length.max(1.0)).ln() - growth;
-    let size = growth - around.scale.ln();
-    let away = around.apply(from.centre).distance(to.centre) / (a.radius * around.scale);
-    let base = likeness(&a.strokes[i], &b.strokes[j])
-        + LENGTH * length * length
-        + SIZE * size * size
-        + POSITION * away * away / (1.0 + away * away / FAR);
-    let ways = p.ways(q, around.turn, TURN / SHAPE).into_iter().map(|way| {
+fn labels((a, b): (&Figure, &Figure), ways: &Ways, (i, j): (usize, usize), around: &Movement) -> Vec<Label> {
+    let (Some(base), Some((p, q))) = (base(a, b, (i, j), around), a.comparable(i, b, j)) else { return Vec::new() };
+    let ways = ways.likely(a, i, b, j, around.turn, TURN / SHAPE).into_iter().map(|way| {
         let turn = wrap(way.turn - around.turn);
         let cost = base + SHAPE * way.residual + TURN * turn * turn;
         Label { to: j, way, map: p.movement(q, &way), cost }
     });
     ways.collect()
+}
+
+/// What taking stroke `j` for `i` costs before it is known how they are laid upon each other.
+fn base(a: &Figure, b: &Figure, (i, j): (usize, usize), around: &Movement) -> Option<f64> {
+    let (p, q) = a.comparable(i, b, j)?;
+    let (from, to) = (a.outlines[i].as_ref()?, b.outlines[j].as_ref()?);
+    let growth = (q.radius / p.radius).ln();
+    let length = (q.length.max(1.0) / p.length.max(1.0)).ln() - growth;
+    let size = growth - around.scale.ln();
+    let away = around.apply(from.centre).distance(to.centre) / (a.radius * around.scale);
+    Some(
+        likeness(&a.strokes[i], &b.strokes[j])
+            + LENGTH * length * length
+            + SIZE * size * size
+            + POSITION * away * away / (1.0 + away * away / FAR),
+    )
+}
+
+/// What all strokes cost at least under a movement: each takes its best counterpart, though others may want it too.
+pub(super) fn bound((a, b): (&Figure, &Figure), ways: &Ways, movement: &Movement, options: &Options) -> f64 {
+    let there = |figure: &Figure| -> Vec<usize> {
+        (0..figure.outlines.len()).filter(|&i| figure.outlines[i].is_some()).collect()
+    };
+    let columns = there(b);
+    let of = |i: usize| {
+        columns.iter().fold(options.max_cost, |least, &j| match base(a, b, (i, j), movement) {
+            Some(base) if base < least => {
+                let way = |way: &Way| SHAPE * way.residual + TURN * wrap(way.turn - movement.turn).powi(2);
+                least.min(base + ways.least(a, i, b, j, way))
+            }
+            _ => least,
+        })
+    };
+    there(a).into_iter().map(of).sum()
 }
 
 /// What differs beside the geometry.

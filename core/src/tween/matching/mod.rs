@@ -25,7 +25,7 @@ mod relaxation;
 
 use super::stroke::{BadPoint, Stroke, checked};
 use crate::scene::{Cancelled, Progress};
-use costs::{Figure, Rows};
+use costs::{Figure, Rows, Ways};
 
 /// Rounds of matching and fitting of the movement around each stroke.
 const ROUNDS: usize = 3;
@@ -157,11 +157,12 @@ pub fn match_strokes(
     let (a, b) = (Figure::new(first), Figure::new(second));
     progress.report("matching strokes", 0.1)?;
     let held = movement::of_whole(&a, &b, &fixed, options);
+    let ways = Ways::new(&a, &b);
     let mut around = vec![held; first.len()];
     let mut found = Vec::new();
     for round in 0..ROUNDS {
         progress.report("matching strokes", 0.3 + 0.2 * round as f64)?;
-        let rows = Rows::new(&a, &b, &around, &fixed, options);
+        let rows = Rows::new((&a, &b), &ways, &around, &fixed, options);
         found = relaxation::relaxed(&a, &b, &rows, options).chosen;
         around = movement::around_each(&a, &b, &found, &held);
     }

@@ -1,7 +1,7 @@
 //! The movement of the whole drawing, and that around each stroke.
 
 use super::super::grid::Grid;
-use super::costs::{Figure, Rows};
+use super::costs::{Figure, Rows, Ways, bound};
 use super::relaxation::{self, Chosen};
 use super::{Fixed, Options};
 use crate::geometry::Point;
@@ -46,23 +46,18 @@ pub(super) fn of_whole(a: &Figure, b: &Figure, fixed: &[Fixed], options: &Option
     let pinned = fixed.iter().enumerate().filter_map(|(i, f)| if let Fixed::To(j) = f { Some((i, *j)) } else { None });
     let (rows, columns): (Vec<usize>, Vec<usize>) = pinned.unzip();
     let (a, b) = (a.only(&largest(a, &rows)), b.only(&largest(b, &columns)));
-    let scored = |movement: Movement| {
-        let around = vec![movement; a.outlines.len()];
-        let rows = Rows::new(&a, &b, &around, fixed, options);
-        let least = |labels: &Vec<super::costs::Label>| labels.first().map_or(options.max_cost, |label| label.cost);
-        let there = a.outlines.iter().zip(&rows.labels).filter(|(outline, _)| outline.is_some());
-        let bound: f64 = there.map(|(_, labels)| least(labels).min(options.max_cost)).sum();
-        (bound + prior(&a, &movement), movement, rows)
-    };
-    let mut scores: Vec<_> = proposals(&a, &b, options).into_par_iter().map(scored).collect();
+    let ways = Ways::new(&a, &b);
+    let scored = |movement: Movement| (bound((&a, &b), &ways, &movement, options) + prior(&a, &movement), movement);
+    let mut scores: Vec<_> = proposals(&a, &b, &ways, options).into_par_iter().map(scored).collect();
     scores.sort_by(|x, y| x.0.total_cmp(&y.0));
     scores.truncate(FINALISTS);
     let tried: Vec<(f64, Movement)> = scores
         .into_par_iter()
-        .map(|(_, movement, rows)| {
+        .map(|(_, movement)| {
+            let rows = Rows::new((&a, &b), &ways, &vec![movement; a.outlines.len()], fixed, options);
             let first = relaxation::relaxed(&a, &b, &rows, options);
             let around = around_each(&a, &b, &first.chosen, &movement);
-            let rows = Rows::new(&a, &b, &around, fixed, options);
+            let rows = Rows::new((&a, &b), &ways, &around, fixed, options);
             (relaxation::relaxed(&a, &b, &rows, options).energy + prior(&a, &movement), movement)
         })
         .collect();
@@ -91,7 +86,7 @@ fn largest(figure: &Figure, named: &[usize]) -> Vec<usize> {
 }
 
 /// Movements that may be the drawing's.
-fn proposals(a: &Figure, b: &Figure, options: &Options) -> Vec<Movement> {
+fn proposals(a: &Figure, b: &Figure, ways: &Ways, options: &Options) -> Vec<Movement> {
     let most = options.max_scale.max(1.0);
     let scale = (b.spread() / a.spread()).clamp(1.0 / most, most);
     let steps = (options.max_turn / TURN_STEP).clamp(0.0, 12.0) as i32;
@@ -109,7 +104,9 @@ fn proposals(a: &Figure, b: &Figure, options: &Options) -> Vec<Movement> {
             if scale.max(1.0 / scale) > most {
                 continue;
             }
-            let Some(way) = p.ways(q, 0.0, 0.1).into_iter().find(|way| way.turn.abs() <= options.max_turn) else {
+            let Some(way) =
+                ways.likely(a, i, b, j, 0.0, 0.1).into_iter().find(|way| way.turn.abs() <= options.max_turn)
+            else {
                 continue;
             };
             if way.residual < PROPOSING {

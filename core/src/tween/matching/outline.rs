@@ -66,27 +66,24 @@ impl Outline {
         Some(Self { centre, radius, length, places, shape, turning, closed })
     }
 
-    /// The most likely ways to lay this curve upon `other`, which is closed as this one is, when a turn is expected that is
-    /// worth `stiffness` residual for each rad².
-    pub fn ways(&self, other: &Self, expected: f64, stiffness: f64) -> Vec<Way> {
-        let mut found: Vec<(f64, Way)> = Vec::new();
+    /// All ways to lay this curve upon `other`, which is closed as this one is: by direction, all starts in order.
+    pub fn all_ways(&self, other: &Self) -> Vec<Vec<Way>> {
+        let mut found = Vec::new();
         for reversed in [false, true] {
             let opposed = self.turning * other.turning == -1;
             if self.turning * other.turning != 0 && reversed != opposed {
                 continue;
             }
             let starts = if self.closed { SAMPLES } else { 1 };
-            let ways: Vec<Way> = (0..starts).map(|start| self.lay(other, start, reversed)).collect();
-            let cost = |way: &Way| way.residual + stiffness * wrap(way.turn - expected).powi(2);
-            for (k, way) in ways.iter().enumerate() {
-                let neighbours = [ways[(k + starts - 1) % starts], ways[(k + 1) % starts]];
-                if starts == 1 || neighbours.iter().all(|n| cost(way) <= cost(n)) {
-                    found.push((cost(way), *way));
-                }
-            }
+            found.push((0..starts).map(|start| self.lay(other, start, reversed)).collect());
         }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        found.into_iter().take(WAYS).map(|(_, way)| way).collect()
+        found
+    }
+
+    /// The most likely ways to lay this curve upon `other`, when a turn is expected that is worth `stiffness` residual for
+    /// each rad².
+    pub fn ways(&self, other: &Self, expected: f64, stiffness: f64) -> Vec<Way> {
+        likely(&self.all_ways(other), expected, stiffness)
     }
 
     fn lay(&self, other: &Self, start: usize, reversed: bool) -> Way {
@@ -109,6 +106,20 @@ impl Outline {
         let factor = Point::from_angle(way.turn) * (other.radius / self.radius);
         Similarity { factor, source: self.centre, target: other.centre }
     }
+}
+
+/// The most likely of all ways, when a turn is expected that is worth `stiffness` residual for each rad².
+pub(super) fn likely(all: &[Vec<Way>], expected: f64, stiffness: f64) -> Vec<Way> {
+    let mut found: Vec<(f64, Way)> = Vec::new();
+    for ways in all {
+        let costs: Vec<f64> =
+            ways.iter().map(|way| way.residual + stiffness * wrap(way.turn - expected).powi(2)).collect();
+        let n = ways.len();
+        let lowest = |k: usize| n == 1 || (costs[k] <= costs[(k + n - 1) % n] && costs[k] <= costs[(k + 1) % n]);
+        found.extend((0..n).filter(|&k| lowest(k)).map(|k| (costs[k], ways[k])));
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().take(WAYS).map(|(_, way)| way).collect()
 }
 
 /// The angle as the equivalent one from −π to π.
