@@ -4,10 +4,11 @@
 //! - [`matching`]: which stroke of one drawing is which of the next
 //! - [`peg`]: pivots that shift, turn and scale over time, given or found
 //! - [`between`]: the drawings between
-//! - `grid`: nearest places among many
+//! - `grid`: nearest places among many, `line`: strokes by shares of their length
 
 pub mod between;
 mod grid;
+mod line;
 pub mod matching;
 pub mod peg;
 pub mod stroke;

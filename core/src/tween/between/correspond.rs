@@ -3,16 +3,13 @@
 //! An artist who drew a stroke with as many points as the other has meant them: where points of equal number lie at about
 //! equal shares of the lengths, those points themselves are taken.
 
+use super::super::line::{Line, vertex_shares};
 use super::super::matching::Pair;
 use super::super::stroke::Stroke;
-use crate::geometry::{Point, polyline};
+use crate::geometry::Point;
 
 /// Greatest difference of the shares of the length, in the mean, at which points of equal number are taken.
 const MEAN_OFF: f64 = 0.04;
-/// Samples of a closed stroke by which its starting point is refined.
-const SAMPLES: usize = 64;
-/// Starting points that are tried to each side, and how far apart they lie as a share of the length.
-const STARTS: (i32, f64) = (8, 1.0 / 256.0);
 
 /// Places of a stroke that are followed from drawing to drawing.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,8 +44,7 @@ impl Places {
             let points = self.points.clone();
             return Self { points, shares: self.shares.clone(), own: None };
         }
-        let start = if stroke.closed && other.closed { refined(stroke, other, pair) } else { pair.start };
-        if let Some(own) = self.own_points(stroke, other, pair.reversed, start) {
+        if let Some(own) = self.own_points(stroke, other, pair.reversed, pair.start) {
             let shares = vertex_shares(other);
             return Self {
                 points: own.iter().map(|&i| other.points[i]).collect(),
@@ -57,8 +53,8 @@ impl Places {
             };
         }
         let along = |share: f64| match (other.closed, pair.reversed) {
-            (true, false) => (start + share).rem_euclid(1.0),
-            (true, true) => (start - share).rem_euclid(1.0),
+            (true, false) => (pair.start + share).rem_euclid(1.0),
+            (true, true) => (pair.start - share).rem_euclid(1.0),
             (false, false) => share,
             (false, true) => 1.0 - share,
         };
@@ -94,71 +90,6 @@ impl Places {
     }
 }
 
-/// Shares of the length at the points of a stroke, those of a closed one followed by 1. Of one without length, even ones.
-fn vertex_shares(stroke: &Stroke) -> Vec<f64> {
-    let mut walked = vec![0.0];
-    for (a, b) in polyline::segments(&stroke.points, stroke.closed) {
-        walked.push(walked[walked.len() - 1] + a.distance(b));
-    }
-    let (total, count) = (walked[walked.len() - 1], walked.len());
-    if total > 0.0 {
-        walked.iter_mut().for_each(|w| *w /= total);
-    } else {
-        walked.iter_mut().enumerate().for_each(|(k, w)| *w = k as f64 / (count.max(2) - 1) as f64);
-    }
-    walked
-}
-
-/// A stroke by shares of its length.
-struct Line<'a> {
-    stroke: &'a Stroke,
-    shares: Vec<f64>,
-}
-
-impl<'a> Line<'a> {
-    fn new(stroke: &'a Stroke) -> Self {
-        Self { stroke, shares: vertex_shares(stroke) }
-    }
-
-    fn at(&self, share: f64) -> Point {
-        let points = &self.stroke.points;
-        let k = self.shares.partition_point(|&s| s <= share).clamp(1, self.shares.len().max(2) - 1);
-        let (Some(&from), Some(&to)) = (self.shares.get(k - 1), self.shares.get(k)) else { return points[0] };
-        let within = if to > from { ((share - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
-        points[k - 1].lerp(points[k % points.len()], within)
-    }
-}
-
-/// The start of a closed pair, to a finer step than the matching's.
-fn refined(stroke: &Stroke, other: &Stroke, pair: &Pair) -> f64 {
-    let (a, b) = (Line::new(stroke), Line::new(other));
-    if stroke.points.is_empty() {
-        return pair.start;
-    }
-    let from: Vec<Point> = (0..SAMPLES).map(|k| a.at(k as f64 / SAMPLES as f64)).collect();
-    let centre = crate::geometry::polygon::center(&from);
-    let sign = if pair.reversed { -1.0 } else { 1.0 };
-    let likeness = |start: f64| {
-        let to = (0..SAMPLES).map(|k| b.at((start + sign * k as f64 / SAMPLES as f64).rem_euclid(1.0)));
-        let mut sum = Point::ZERO;
-        for (p, q) in from.iter().zip(to) {
-            let p = *p - centre;
-            sum += Point::new(p.dot(q), p.perp_dot(q));
-        }
-        sum.length()
-    };
-    let (reach, step) = STARTS;
-    let mut best = (likeness(pair.start) * (1.0 + 1e-6), pair.start);
-    for k in (1..=reach).flat_map(|k| [-k, k]) {
-        let start = (pair.start + f64::from(k) * step).rem_euclid(1.0);
-        let found = likeness(start);
-        if found > best.0 {
-            best = (found, start);
-        }
-    }
-    best.1
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -190,17 +121,6 @@ mod tests {
         assert_eq!(on.own, Some(vec![2, 1, 0, 3]));
         let c = stroke(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 10.0)], true);
         assert_eq!(Places::all(&a).on(&a, &c, &pair(false, 0.0)).own, None);
-    }
-
-    #[test]
-    fn a_coarse_start_is_refined() {
-        let blob = |t: f64| Point::from_angle(t) * (30.0 + 6.0 * (2.0 * t).cos() + 4.0 * (3.0 * t).sin());
-        let at = |k: usize, shift: f64| blob(std::f64::consts::TAU * (k as f64 / 200.0 + shift));
-        let a = Stroke::new((0..200).map(|k| at(k, 0.0)).collect(), true);
-        let b = Stroke::new((0..150).map(|k| blob(std::f64::consts::TAU * (k as f64 / 150.0 + 0.3))).collect(), true);
-        let on = Places::all(&a).on(&a, &b, &pair(false, 0.69));
-        let worst = a.points.iter().zip(&on.points).map(|(p, q)| p.distance(*q)).fold(0.0, f64::max);
-        assert!(worst < 1.5, "{worst}");
     }
 
     #[test]

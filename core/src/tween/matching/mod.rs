@@ -22,10 +22,12 @@ mod movement;
 mod outline;
 mod pieces;
 mod relaxation;
+mod start;
 
 use super::stroke::{BadPoint, Stroke, checked};
 use crate::scene::{Cancelled, Progress};
 use costs::{Figure, Rows, Ways};
+use outline::Way;
 
 /// Rounds of matching and fitting of the movement around each stroke.
 const ROUNDS: usize = 3;
@@ -178,7 +180,7 @@ pub fn match_strokes(
                     from,
                     to: choice.to,
                     reversed: choice.way.reversed,
-                    start: if first[from].closed && second[choice.to].closed { choice.way.start } else { 0.0 },
+                    start: started(&first[from], &second[choice.to], &choice.way),
                     confidence: if by_hand { 1.0 } else { choice.confidence },
                     by_hand,
                 });
@@ -190,6 +192,11 @@ pub fn match_strokes(
     pieces::find(first, second, &around, &fixed, &mut matching);
     progress.report("matching strokes", 1.0)?;
     Ok(matching)
+}
+
+/// Where a stroke's first point lies on its counterpart.
+fn started(stroke: &Stroke, other: &Stroke, way: &Way) -> f64 {
+    if stroke.closed && other.closed { start::refined(stroke, other, way.start, way.reversed) } else { 0.0 }
 }
 
 /// What is decided by hand of a stroke of the first drawing.
