@@ -6,7 +6,7 @@
 //! 2. [`image`]: pictures from files and what is computed on them.
 //! 3. [`track`]: contours from key frames to every frame.
 //! 4. [`snap`]: contours onto the drawn ink.
-//! 5. [`tween`]: drawings between drawings, hidden lines.
+//! 5. [`tween`]: the drawings between drawings on key frames, hidden lines.
 //! 6. [`render`]: pictures of what was found. [`export`]: the same for other programs.
 //! 7. [`project`]: the document that holds all of it.
 //! 8. [`pipeline`]: the stages joined.

@@ -3,6 +3,10 @@
 //! This is the only file that knows all stages. A stage's result enters the document as a whole or, after an error or
 //! when cancelled, not at all.
 
+mod tween;
+
+pub use tween::tween;
+
 use crate::export::{SvgOptions, svg};
 use crate::fit::{self, FitError};
 use crate::geometry::Point;
@@ -56,6 +60,9 @@ pub enum PipelineError {
         /// Why.
         source: FitError,
     },
+    /// Drawings could not be tweened.
+    #[error("{0}")]
+    Tween(String),
     /// What was asked for does not fit the document.
     #[error("{0}")]
     Request(String),

@@ -25,3 +25,4 @@ pub mod puppet;
 pub mod sample;
 pub mod sheet;
 pub mod truth;
+pub mod tweening;

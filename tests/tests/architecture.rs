@@ -1,8 +1,9 @@
 //! Holds the direction of dependencies in the core:
 //!
-//! `numeric ← geometry ← curve ← fit ← tween` and
-//! `numeric ← geometry ← scene ← {image, track, snap, render, export, project} ← pipeline`,
-//! where track, snap and render may use image, and track, snap and tween never import one another.
+//! `numeric ← geometry ← curve ← fit` and
+//! `numeric ← geometry ← scene ← {image, track, snap, tween, render, export, project} ← pipeline`,
+//! where track, snap, tween and render may use image, tween curves and their fitting too, and track, snap and tween never
+//! import each other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -14,11 +15,11 @@ const ALLOWED: [(&str, &[&str]); 13] = [
     ("geometry", &["numeric"]),
     ("curve", &["numeric", "geometry"]),
     ("fit", &["numeric", "geometry", "curve"]),
-    ("tween", &["numeric", "geometry", "curve", "fit", "scene"]),
     ("scene", &["numeric", "geometry"]),
     ("image", &["numeric", "geometry", "scene"]),
     ("track", &["numeric", "geometry", "scene", "image"]),
     ("snap", &["numeric", "geometry", "scene", "image"]),
+    ("tween", &["numeric", "geometry", "curve", "fit", "scene", "image"]),
     ("render", &["numeric", "geometry", "scene", "image"]),
     ("export", &["numeric", "geometry", "scene"]),
     ("project", &["numeric", "geometry", "scene"]),

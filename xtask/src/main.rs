@@ -2,6 +2,7 @@
 
 mod bench_fit;
 mod bench_tracking;
+mod bench_tween;
 mod bless;
 mod bundle;
 mod demo;
@@ -47,6 +48,8 @@ enum Command {
     BenchFit(bench_fit::Arguments),
     /// Measure every preset on sets with known truth, with tables and pictures in target/bench-tracking.
     BenchTracking(bench_tracking::Arguments),
+    /// Measure matching and in-betweens on sets with known truth, with sheets in target/bench-tween.
+    BenchTween(bench_tween::Arguments),
     /// Accept the golden pictures that the tests last drew.
     Bless,
     /// Photograph the panel in a real Blender window (Debian sid in a chroot; needs root and debootstrap).
@@ -61,6 +64,7 @@ fn main() -> anyhow::Result<()> {
         Command::Generate { check } => generate::generate(check),
         Command::BenchFit(arguments) => bench_fit::bench_fit(&arguments),
         Command::BenchTracking(arguments) => bench_tracking::bench_tracking(&arguments),
+        Command::BenchTween(arguments) => bench_tween::bench_tween(&arguments),
         Command::Bless => bless::bless(),
         Command::Photograph => photograph::photograph(),
     }

@@ -3,7 +3,7 @@
 //! - [`arguments`]: options made from the core's list of parameters
 //! - [`progress`]: a bar on a terminal, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
-//! - [`track`], [`snap`], [`render`], [`export`], [`check`], [`fit`]: the subcommands
+//! - [`track`], [`snap`], [`render`], [`export`], [`check`], [`fit`], [`tween`]: the subcommands
 //!
 //! Exit status: 0 done, 1 failed, 2 wrong use.
 
@@ -17,6 +17,7 @@ mod project;
 mod render;
 mod snap;
 mod track;
+mod tween;
 
 use clap::{ArgMatches, Command};
 use failure::Failure;
@@ -26,7 +27,7 @@ use std::process::ExitCode;
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 /// Each subcommand with what it does.
-fn subcommands() -> [(Command, Run); 6] {
+fn subcommands() -> [(Command, Run); 7] {
     [
         (track::command(), track::run),
         (snap::command(), snap::run),
@@ -34,6 +35,7 @@ fn subcommands() -> [(Command, Run); 6] {
         (export::command(), export::run),
         (check::command(), check::run),
         (fit::command(), fit::run),
+        (tween::command(), tween::run),
     ]
 }
 

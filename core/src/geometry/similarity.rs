@@ -45,6 +45,20 @@ impl Similarity {
         Self { factor, source: self.target, target: self.source }
     }
 
+    /// This map after another.
+    pub fn after(&self, first: &Self) -> Self {
+        Self { factor: self.factor.rotate(first.factor), source: first.source, target: self.apply(first.target) }
+    }
+
+    /// The place that the map leaves where it is; `None` of a map that hardly turns or scales.
+    pub fn fixed_point(&self) -> Option<Point> {
+        let rest = Point::X - self.factor;
+        let norm = rest.length_squared();
+        // p = factor (p − source) + target, as complex numbers.
+        let shift = self.target - self.factor.rotate(self.source);
+        (norm > 1e-12).then(|| Point::new(rest.x, -rest.y).rotate(shift) / norm)
+    }
+
     /// Scale factor (≥ 0).
     pub fn scale(&self) -> f64 {
         self.factor.length()
@@ -71,6 +85,18 @@ mod tests {
         for (&p, &q) in from.iter().zip(&to) {
             assert!(fitted.apply(p).distance(q) < 1e-12);
         }
+    }
+
+    #[test]
+    fn maps_follow_each_other_and_keep_a_point() {
+        let p = Point::new(3.0, -7.0);
+        let first =
+            Similarity { factor: Point::from_angle(0.7) * 1.3, source: Point::ONE, target: Point::new(4.0, 5.0) };
+        let second = Similarity { factor: Point::from_angle(-1.9) * 0.4, source: Point::X, target: Point::Y };
+        assert!(second.after(&first).apply(p).distance(second.apply(first.apply(p))) < 1e-12);
+        let fixed = first.fixed_point().unwrap();
+        assert!(first.apply(fixed).distance(fixed) < 1e-12);
+        assert_eq!(Similarity { factor: Point::X, ..first }.fixed_point(), None);
     }
 
     #[test]

@@ -7,6 +7,7 @@
 //! - [`gradient_check`]: an analytic Jacobian against differences
 //! - [`normal_equations`]: JᵀJ and Jᵀr of a sparse Jacobian of fixed pattern
 //! - [`roots`]: real roots of polynomials up to the quartic
+//! - [`sparse_assignment`]: the same where few pairs are allowed
 //! - [`sparse_least_squares`]: Levenberg–Marquardt on such problems
 //! - [`trust_region`]: Gauss–Newton within a trust region by conjugate gradients
 //! - `vector`: hot loops compiled for the machine they run on
@@ -18,6 +19,7 @@ pub mod damped_system;
 pub mod gradient_check;
 pub mod normal_equations;
 pub mod roots;
+pub mod sparse_assignment;
 pub mod sparse_least_squares;
 pub mod trust_region;
 pub(crate) mod vector;

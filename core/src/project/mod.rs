@@ -5,12 +5,14 @@
 //! - [`shape`]: reading JSON that may hold anything
 //! - [`load`], [`save`]: documents from and to files
 //! - [`validate`]: what a document must hold beyond being well-formed
+//! - [`drawings`]: drawings on key frames, pairs, pegs and in-betweens
 //! - [`curves`]: files of curves to fit
 //! - [`output`]: files that appear whole or not at all
 //!
 //! Fields that this version does not know are kept where they stood. A document of a newer major version is refused.
 
 pub mod curves;
+pub mod drawings;
 pub mod load;
 pub mod output;
 pub mod problem;

@@ -1,0 +1,72 @@
+//! `rototoon tween`: the drawings between drawings on key frames.
+
+use crate::failure::Failure;
+use crate::{arguments, progress, project};
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{Arg, ArgMatches, Command};
+use rototoon::geometry::Point;
+use rototoon::pipeline;
+use rototoon::project::output::check_writable;
+use rototoon::scene::parameters::Stage;
+use rototoon::tween::between::{Leaving, Options};
+
+/// The subcommand.
+pub fn command() -> Command {
+    let leaving = PossibleValuesParser::new([
+        PossibleValue::new("grow").help("Shrink into their middle, or grow out of it"),
+        PossibleValue::new("fade").help("Become transparent"),
+        PossibleValue::new("leave").help("Move out of the picture"),
+    ]);
+    let ends = PossibleValuesParser::new([
+        PossibleValue::new("rest").help("Everything rests before the first and after the last drawing"),
+        PossibleValue::new("move").help("Everything moves on with constant speed"),
+    ]);
+    Command::new("tween")
+        .about("Matches the strokes of drawings on key frames and makes the drawings between them")
+        .arg(arguments::project())
+        .arg(arguments::output("OUT", "The document to write, with matches and in-betweens"))
+        .arg(
+            Arg::new("arcs")
+                .long("arcs")
+                .value_name("NUMBER")
+                .help("Strength of arcs, 0 for straight ways to 1 for turns about the fixed point of a movement")
+                .default_value("0.5")
+                .allow_negative_numbers(true)
+                .value_parser(|text: &str| match text.parse::<f64>() {
+                    Ok(value) if (0.0..=1.0).contains(&value) => Ok(value),
+                    _ => Err("expected a number from 0 to 1"),
+                }),
+        )
+        .arg(
+            Arg::new("leaving")
+                .long("leaving")
+                .help("What strokes do that only one of two drawings has")
+                .default_value("grow")
+                .value_parser(leaving),
+        )
+        .arg(Arg::new("ends").long("ends").help("How movements begin and end").default_value("rest").value_parser(ends))
+        .args(arguments::of_stage(Stage::Run))
+}
+
+/// Runs it.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
+    let mut document = rototoon::project::Document::load(from)?;
+    check_writable(to)?;
+    let footage = &document.scene.footage;
+    let leaving = match arguments::choice(given, "leaving") {
+        "fade" => Leaving::Fade,
+        "leave" => Leaving::Leave { size: Point::new(footage.width as f64, footage.height as f64) },
+        _ => Leaving::Grow,
+    };
+    let arcs = given.get_one::<f64>("arcs").copied().unwrap_or(Options::default().arcs);
+    let options = Options { arcs, leaving, rest: arguments::choice(given, "ends") == "rest", ..Options::default() };
+    let document = progress::run(arguments::threads(given), |bar| {
+        pipeline::tween(&mut document, &options, bar).map_err(|error| match error {
+            pipeline::PipelineError::Tween(reason) => Failure::Other(format!("{}: {reason}", from.display())),
+            other => other.into(),
+        })?;
+        Ok(document)
+    })?;
+    project::save(document, from, to)
+}

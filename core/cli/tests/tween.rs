@@ -1,0 +1,111 @@
+//! `rototoon tween` as users call it.
+
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A folder with a document of these fields beside footage and parts.
+fn project(fields: Value) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let footage = json!({"pattern": "f_%03d.png", "first": 0, "last": 20, "fps": 24, "width": 200, "height": 100});
+    let mut document = json!({"rototoon": 1, "footage": footage, "parts": [], "note": "kept"});
+    document.as_object_mut().unwrap().extend(fields.as_object().unwrap().clone());
+    let path = folder.path().join("project.json");
+    fs::write(&path, document.to_string()).unwrap();
+    (folder, path)
+}
+
+fn tween(from: &Path, to: &Path, more: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_rototoon")).arg("tween").arg(from).arg("-o").arg(to).args(more).output().unwrap()
+}
+
+fn square(x: f64, y: f64, side: f64) -> Value {
+    json!({"closed": true, "points": [[x, y], [x + side, y], [x + side, y + side], [x, y + side]]})
+}
+
+fn line(x: f64) -> Value {
+    json!({"closed": false, "points": [[x, 10], [x + 8.0, 40], [x + 30.0, 60]], "material": 2})
+}
+
+fn two_drawings() -> Value {
+    json!({"drawings": [
+        {"frame": 2, "spacing": "linear", "strokes": [square(100.0, 20.0, 30.0), line(10.0)]},
+        {"frame": 6, "strokes": [line(30.0), square(120.0, 20.0, 30.0)]},
+    ]})
+}
+
+#[test]
+fn in_betweens_and_matches_are_written() {
+    let (folder, path) = project(two_drawings());
+    let out = folder.path().join("out.json");
+    let output = tween(&path, &out, &[]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let written: Value = serde_json::from_str(&fs::read_to_string(&out).unwrap()).unwrap();
+    assert_eq!(written["note"], "kept");
+    assert_eq!(written["drawings"], two_drawings()["drawings"]);
+    let pairs = written["matches"][0]["pairs"].as_array().unwrap();
+    assert_eq!(pairs.iter().map(|p| p["to"].as_u64().unwrap()).collect::<Vec<_>>(), [1, 0]);
+    let between = written["in_betweens"].as_array().unwrap();
+    assert_eq!(between.iter().map(|d| d["frame"].as_i64().unwrap()).collect::<Vec<_>>(), [3, 4, 5]);
+    let half = &between[1]["strokes"];
+    assert_eq!(half[0]["points"][0], json!([110.0, 20.0]));
+    assert_eq!((&half[1]["points"][2], &half[1]["material"]), (&json!([50.0, 60.0]), &json!(2)));
+    let again = folder.path().join("again.json");
+    assert!(tween(&out, &again, &["--threads", "1"]).status.success());
+    assert_eq!(fs::read(&out).unwrap(), fs::read(&again).unwrap());
+}
+
+#[test]
+fn pairs_made_by_hand_and_pegs_are_respected() {
+    let mut fields = two_drawings();
+    fields["pairs"] = json!([{"frame": 2, "from": 1, "to": null}]);
+    fields["pegs"] = json!([{"name": "wheel", "pivot": [115, 35],
+        "keys": [{"frame": 2, "timing": "linear"}, {"frame": 6, "shift": [20, 0], "turn": 360}]}]);
+    fields["drawings"][0]["strokes"][0]["peg"] = json!("wheel");
+    let (folder, path) = project(fields);
+    let out = folder.path().join("out.json");
+    let output = tween(&path, &out, &["--leaving", "fade"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let written: Value = serde_json::from_str(&fs::read_to_string(&out).unwrap()).unwrap();
+    assert_eq!(written["matches"][0]["vanished"], json!([1]));
+    let half = &written["in_betweens"][1]["strokes"];
+    let turned = half.as_array().unwrap().iter().find(|s| s["closed"] == true).unwrap();
+    assert_eq!(turned["points"][0], json!([140.0, 50.0]), "half a turn");
+    let opacities: Vec<f64> = half
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|s| s["closed"] == false)
+        .map(|s| s["opacity"].as_f64().unwrap())
+        .collect();
+    assert_eq!(opacities, [0.5, 0.5]);
+}
+
+#[test]
+fn what_is_wrong_is_named_and_nothing_is_written() {
+    let bad = |change: &dyn Fn(&mut Value), expected: &str| {
+        let mut fields = two_drawings();
+        change(&mut fields);
+        let (folder, path) = project(fields);
+        let out = folder.path().join("out.json");
+        let output = tween(&path, &out, &[]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(said.contains(expected) && said.contains("project.json"), "{said}");
+        assert!(!out.exists());
+    };
+    bad(&|f| f["drawings"] = json!([]), "drawings: found 0, expected at least two");
+    bad(&|f| f["drawings"][1]["frame"] = json!(2), "drawings[1].frame: found 2, expected more than 2");
+    bad(&|f| f["drawings"][0]["spacing"] = json!("fast"), "drawings[0].spacing: found \"fast\"");
+    bad(&|f| f["drawings"][0]["spacing"] = json!([0.5]), "has 1 shares, expected one for each of 3 frames");
+    bad(&|f| f["pairs"] = json!([{"frame": 2, "from": 9, "to": 0}]), "pair 0: found stroke 9 of the first drawing");
+    let pegs = |keys: Value| {
+        json!([{"name": "a", "parent": "b", "pivot": [0, 0], "keys": keys}, {"name": "b", "parent": "a",
+        "pivot": [0, 0], "keys": []}])
+    };
+    bad(&|f| f["pegs"] = pegs(json!([])), "hangs on itself");
+    bad(&|f| f["pegs"] = pegs(json!([{"frame": 2, "scale": 0}])), "peg \"a\", frame 2: scale is 0");
+    let wrong_use = tween(Path::new("none.json"), Path::new("out.json"), &["--arcs", "2"]);
+    assert_eq!(wrong_use.status.code(), Some(2));
+}

@@ -1,0 +1,113 @@
+//! From the drawings of a document to the drawings between them.
+
+use super::PipelineError;
+use crate::project::Document;
+use crate::project::drawings::{Drawing, Drawings, DrawnBetween, DrawnPeg, DrawnStroke, WrittenTiming};
+use crate::scene::Progress;
+use crate::tween::Stroke;
+use crate::tween::between::{GivenPegs, InBetween, Key, Options, Sequence, Spacing};
+use crate::tween::matching::{HandPair, InPieces, Matching, Options as MatchingOptions, match_strokes};
+use crate::tween::peg::{Peg, PegKey, PegTree, Timing};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use serde_json::{Value, json};
+
+/// Matches the strokes of a document's drawings and puts the drawings between them into it. Runs on the caller's rayon pool;
+/// the result does not depend on it.
+pub fn tween(document: &mut Document, options: &Options, progress: &dyn Progress) -> Result<(), PipelineError> {
+    let wrong = |error: &dyn std::fmt::Display| PipelineError::Tween(error.to_string());
+    let read = document.drawings().map_err(|e| wrong(&e))?;
+    if read.drawings.len() < 2 {
+        let found = read.drawings.len();
+        return Err(PipelineError::Tween(format!("drawings: found {found}, expected at least two to draw between")));
+    }
+    let keys = read.drawings.iter().enumerate().map(|(k, d)| key(d, k)).collect::<Result<Vec<_>, _>>()?;
+    let pegs = given(&read)?;
+    let mut matchings = Vec::new();
+    for (k, pair) in keys.windows(2).enumerate() {
+        progress.report("matching strokes", 0.8 * k as f64 / (keys.len() - 1) as f64)?;
+        let by_hand: Vec<HandPair> =
+            read.pairs.iter().filter(|p| p.drawing == k).map(|p| HandPair { from: p.from, to: p.to }).collect();
+        let strokes = (&pair[0].strokes, &pair[1].strokes);
+        let found = match_strokes(strokes.0, strokes.1, &by_hand, &MatchingOptions::default(), &crate::scene::Silent);
+        matchings.push(found.map_err(|e| wrong(&format!("frames {} and {}: {e}", pair[0].frame, pair[1].frame)))?);
+    }
+    progress.report("drawing in-betweens", 0.8)?;
+    let matches = keys.windows(2).zip(&matchings).map(|(pair, m)| written(pair[0].frame, pair[1].frame, m)).collect();
+    let frames: Vec<i32> = keys.windows(2).flat_map(|pair| pair[0].frame + 1..pair[1].frame).collect();
+    let sequence = Sequence::new(keys, &matchings, &pegs, options).map_err(|e| wrong(&e))?;
+    let drawn: Vec<DrawnBetween> = frames
+        .par_iter()
+        .map(|&frame| DrawnBetween { frame, strokes: sequence.at(frame).into_iter().map(stroke_of).collect() })
+        .collect();
+    progress.report("drawing in-betweens", 1.0)?;
+    document.set_in_betweens(matches, &drawn);
+    Ok(())
+}
+
+fn key(drawing: &Drawing, k: usize) -> Result<Key, PipelineError> {
+    let stroke = |s: &DrawnStroke| Stroke {
+        points: s.points.clone(),
+        closed: s.closed,
+        colour: s.colour,
+        material: s.material,
+        layer: s.layer,
+    };
+    let spacing = match &drawing.spacing {
+        WrittenTiming::Smooth => Spacing::Smooth,
+        WrittenTiming::Chart(shares) => Spacing::Chart(shares.clone()),
+        other => Spacing::Timing(timing(other, &format!("drawings[{k}].spacing"))?),
+    };
+    let strokes = drawing.strokes.iter().map(stroke).collect();
+    Ok(Key { frame: drawing.frame, strokes, spacing, corner: drawing.corner })
+}
+
+fn timing(written: &WrittenTiming, place: &str) -> Result<Timing, PipelineError> {
+    let wrong = |found: &str| {
+        PipelineError::Tween(format!(
+            "{place}: found {found}, expected a movement function (constant, linear, ease_in, …)"
+        ))
+    };
+    match written {
+        WrittenTiming::Smooth => Ok(Timing::EaseInOut),
+        WrittenTiming::Named(name) => Timing::from_id(name).ok_or_else(|| wrong(&format!("{name:?}"))),
+        WrittenTiming::Curve(places) => Ok(Timing::Custom(places.clone())),
+        WrittenTiming::Bounce(count) => Ok(Timing::Bounce(*count)),
+        WrittenTiming::Chart(shares) => Err(wrong(&format!("a list of {}", shares.len()))),
+    }
+}
+
+fn given(read: &Drawings) -> Result<GivenPegs, PipelineError> {
+    let peg = |(k, peg): (usize, &DrawnPeg)| {
+        let keys = peg.keys.iter().enumerate().map(|(j, key)| {
+            let timing = timing(&key.timing, &format!("pegs[{k}].keys[{j}].timing"))?;
+            Ok(PegKey { frame: key.frame, shift: key.shift, turn: key.turn.to_radians(), scale: key.scale, timing })
+        });
+        let keys = keys.collect::<Result<_, PipelineError>>()?;
+        Ok(Peg { name: peg.name.clone(), parent: peg.parent, pivot: peg.pivot, keys })
+    };
+    let pegs = read.pegs.iter().enumerate().map(peg).collect::<Result<Vec<_>, PipelineError>>()?;
+    let tree = PegTree::new(pegs).map_err(|error| PipelineError::Tween(format!("pegs: {error}")))?;
+    Ok(GivenPegs { tree, of: read.drawings.iter().map(|d| d.strokes.iter().map(|s| s.peg).collect()).collect() })
+}
+
+fn stroke_of(drawn: InBetween) -> (usize, f64, DrawnStroke) {
+    let Stroke { points, closed, colour, material, layer } = drawn.stroke;
+    (drawn.track, drawn.opacity, DrawnStroke { points, closed, colour, material, layer, peg: None })
+}
+
+fn written(frame: i32, next: i32, matching: &Matching) -> Value {
+    let short = |v: f64| (v * 1e4).round() / 1e4;
+    let pairs: Vec<Value> = matching
+        .pairs
+        .iter()
+        .map(|p| {
+            json!({"from": p.from, "to": p.to, "reversed": p.reversed, "start": short(p.start),
+                "confidence": short(p.confidence), "by_hand": p.by_hand})
+        })
+        .collect();
+    let pieces = |list: &[InPieces]| -> Vec<Value> {
+        list.iter().map(|found| json!({"whole": found.whole, "pieces": found.pieces})).collect()
+    };
+    json!({"frame": frame, "next": next, "pairs": pairs, "split": pieces(&matching.split),
+        "joined": pieces(&matching.joined), "vanished": matching.vanished, "appeared": matching.appeared})
+}

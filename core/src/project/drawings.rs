@@ -1,0 +1,507 @@
+//! Drawings on key frames, pairs made by hand, pegs, and the in-betweens made from them.
+//!
+//! A document may hold, beside what it holds already:
+//!
+//! ```json
+//! "drawings": [{"frame": 0, "spacing": "smooth", "corner": false, "strokes": [
+//!     {"points": [[x, y], "…"], "closed": true, "colour": [r, g, b], "material": 0, "layer": 2, "peg": "arm"}, "…"]}, "…"],
+//! "pairs": [{"frame": 0, "from": 3, "to": 5}, {"frame": 0, "from": 4, "to": null}],
+//! "pegs": [{"name": "arm", "parent": "body", "pivot": [x, y], "keys": [
+//!     {"frame": 0, "shift": [x, y], "turn": 30, "scale": 1.2, "timing": "ease_in_out"}, "…"]}]
+//! ```
+//!
+//! - `drawings`: frames rising; strokes from behind to the front. `colour` (sRGB, 0 to 1), `material`, `layer` and `peg` may
+//!   be left out, and so may `corner`, a corner in time: velocities do not join there. `spacing` says how the movement to the
+//!   next drawing runs: `"smooth"` (also where it is left out), a movement function, or a spacing chart, the list of shares of
+//!   the way, one for each frame between.
+//! - A movement function is one of `"constant"` (a hold), `"linear"`, `"ease_in"`, `"ease_out"`, `"ease_in_out"`, `"cosine"`,
+//!   `"bounce"`, or `{"curve": [[time, share], …]}`, or `{"bounce": count}`.
+//! - `pairs`: stroke `from` of the drawing on `frame` is stroke `to` of the next one, or none; by index from 0.
+//! - `pegs`: `turn` in degrees from x towards y, whole turns count; what is left out of a key is at rest, a `parent` that is
+//!   left out is none.
+//!
+//! Tweening writes, in place of those of an earlier run:
+//!
+//! ```json
+//! "matches": [{"frame": 0, "next": 8, "pairs": [{"from": 3, "to": 5, "reversed": false, "start": 0.25, "confidence": 0.97,
+//!     "by_hand": true}, "…"], "split": [{"whole": 1, "pieces": [[2, false], [7, true]]}], "joined": [], "vanished": [4],
+//!     "appeared": []}, "…"],
+//! "in_betweens": [{"frame": 1, "strokes": [{"track": 0, "points": [[x, y], "…"], "closed": true, "opacity": 1, "colour": "…",
+//!     "material": "…", "layer": "…"}, "…"]}, "…"]
+//! ```
+//!
+//! - `start`: of closed strokes the share of the counterpart's length at which the first point of the other lies.
+//! - `track`: the same number for the same stroke on all frames.
+
+use super::Document;
+use super::save::DECIMALS;
+use super::schema::{Field, MAX_COORDINATE, MAX_FRAME_NUMBER, TOP};
+use crate::geometry::Point;
+use crate::scene::FrameNumber;
+use serde_json::{Map, Value, json};
+
+/// A movement function or chart as it is written.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum WrittenTiming {
+    /// `"smooth"`.
+    #[default]
+    Smooth,
+    /// A name.
+    Named(String),
+    /// `{"curve": [[time, share], …]}`.
+    Curve(Vec<(f64, f64)>),
+    /// `{"bounce": count}`.
+    Bounce(u32),
+    /// A list of shares.
+    Chart(Vec<f64>),
+}
+
+/// A stroke of a drawing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DrawnStroke {
+    /// Its points in pixels.
+    pub points: Vec<Point>,
+    /// Whether the last point joins the first.
+    pub closed: bool,
+    /// sRGB-encoded, 0 to 1.
+    pub colour: Option<[f32; 3]>,
+    /// Number of its material.
+    pub material: Option<u32>,
+    /// Number of its layer.
+    pub layer: Option<u32>,
+    /// Index of its peg.
+    pub peg: Option<usize>,
+}
+
+/// A drawing on a key frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawing {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// From behind to the front.
+    pub strokes: Vec<DrawnStroke>,
+    /// How the movement to the next drawing runs.
+    pub spacing: WrittenTiming,
+    /// Whether velocities need not join here.
+    pub corner: bool,
+}
+
+/// A pair made by hand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawnPair {
+    /// Index of the earlier drawing.
+    pub drawing: usize,
+    /// Stroke of it.
+    pub from: usize,
+    /// Stroke of the next one.
+    pub to: Option<usize>,
+}
+
+/// A peg's key.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnPegKey {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// In pixels.
+    pub shift: Point,
+    /// In degrees.
+    pub turn: f64,
+    /// 1 at rest.
+    pub scale: f64,
+    /// How the movement to the next key runs.
+    pub timing: WrittenTiming,
+}
+
+/// A peg.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnPeg {
+    /// Unique name.
+    pub name: String,
+    /// Index of the peg that it hangs on.
+    pub parent: Option<usize>,
+    /// In pixels.
+    pub pivot: Point,
+    /// Its keys.
+    pub keys: Vec<DrawnPegKey>,
+}
+
+/// What a document holds for tweening.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawings {
+    /// Frames rising.
+    pub drawings: Vec<Drawing>,
+    /// Pairs made by hand.
+    pub pairs: Vec<DrawnPair>,
+    /// Pegs.
+    pub pegs: Vec<DrawnPeg>,
+}
+
+/// A drawing between keys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnBetween {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// From behind to the front: track, opacity, stroke.
+    pub strokes: Vec<(usize, f64, DrawnStroke)>,
+}
+
+/// A field that is not as it must be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{place}: found {found}, expected {expected}")]
+pub struct DrawingsError {
+    /// JSON path.
+    pub place: String,
+    /// What was found.
+    pub found: String,
+    /// What was expected.
+    pub expected: String,
+}
+
+impl Document {
+    /// The drawings, pairs and pegs of the document; none where it has none.
+    ///
+    /// # Errors
+    ///
+    /// The first field that is not as it must be.
+    pub fn drawings(&self) -> Result<Drawings, DrawingsError> {
+        let list = |name: &'static str| -> Result<Vec<Value>, DrawingsError> {
+            match self.other_field(name) {
+                Some(json) => {
+                    let value = serde_json::from_str(json).map_err(|e| wrong(name, &e.to_string(), "JSON"))?;
+                    array(Some(&value), name).cloned()
+                }
+                None => Ok(Vec::new()),
+            }
+        };
+        let pegs = pegs(&list("pegs")?)?;
+        let drawings = list("drawings")?;
+        let drawings = drawings.iter().enumerate().map(|(k, d)| drawing(d, &format!("drawings[{k}]"), &pegs));
+        let drawings = drawings.collect::<Result<Vec<_>, _>>()?;
+        for (k, two) in drawings.windows(2).enumerate() {
+            if two[1].frame <= two[0].frame {
+                let (place, expected) = (format!("drawings[{}].frame", k + 1), format!("more than {}", two[0].frame));
+                return Err(wrong(&place, &two[1].frame.to_string(), &expected));
+            }
+        }
+        let pairs = list("pairs")?;
+        let pairs = pairs.iter().enumerate().map(|(k, p)| pair(p, &format!("pairs[{k}]"), &drawings));
+        Ok(Drawings { pairs: pairs.collect::<Result<_, _>>()?, drawings, pegs })
+    }
+
+    /// Puts the list `json` into a field that the document's scene does not hold, in place of what was there.
+    fn set_other_field(&mut self, name: &'static str, json: String) {
+        if self.layout.top.is_empty() {
+            self.layout.top.extend(TOP.map(Field::Known));
+        }
+        let field = Field::Unknown { name: name.into(), json };
+        match self.layout.top.iter_mut().find(|field| field.name() == name) {
+            Some(known) => *known = field,
+            None => self.layout.top.push(field),
+        }
+    }
+
+    fn other_field(&self, name: &str) -> Option<&str> {
+        self.layout.top.iter().find_map(|field| match field {
+            Field::Unknown { name: own, json } if own == name => Some(json.as_str()),
+            _ => None,
+        })
+    }
+
+    /// Puts drawings into the document.
+    pub fn set_drawings(&mut self, drawings: &[Drawing]) {
+        let written = drawings.iter().map(|d| {
+            let strokes = d.strokes.iter().map(|s| Value::Object(stroke_fields(s, |v| v))).collect::<Vec<_>>();
+            json!({"frame": d.frame, "strokes": strokes})
+        });
+        self.set_other_field("drawings", lines(written));
+    }
+
+    /// Puts what tweening found into the document: matches, as JSON objects, and the drawings between keys.
+    pub fn set_in_betweens(&mut self, matches: Vec<Value>, drawn: &[DrawnBetween]) {
+        let rounded = |v: f64| (v * 10f64.powi(DECIMALS)).round() / 10f64.powi(DECIMALS);
+        let written = drawn.iter().map(|between| {
+            let stroke = |(track, opacity, stroke): &(usize, f64, DrawnStroke)| {
+                let mut fields = Map::new();
+                fields.insert("track".into(), json!(track));
+                fields.extend(stroke_fields(stroke, rounded));
+                fields.insert("opacity".into(), json!(rounded(*opacity)));
+                Value::Object(fields)
+            };
+            json!({"frame": between.frame, "strokes": between.strokes.iter().map(stroke).collect::<Vec<_>>()})
+        });
+        self.set_other_field("in_betweens", lines(written));
+        self.set_other_field("matches", lines(matches.into_iter()));
+    }
+}
+
+/// A list with one element a line.
+fn lines(values: impl Iterator<Item = Value>) -> String {
+    let lines: Vec<String> = values.map(|value| format!("\n    {value}")).collect();
+    if lines.is_empty() { "[]".into() } else { format!("[{}\n  ]", lines.join(",")) }
+}
+
+fn stroke_fields(stroke: &DrawnStroke, written: impl Fn(f64) -> f64) -> Map<String, Value> {
+    let mut fields = Map::new();
+    let points: Vec<Value> = stroke.points.iter().map(|p| json!([written(p.x), written(p.y)])).collect();
+    fields.insert("points".into(), Value::Array(points));
+    fields.insert("closed".into(), json!(stroke.closed));
+    if let Some(colour) = stroke.colour {
+        fields.insert("colour".into(), json!(colour.map(|c| (f64::from(c) * 1e4).round() / 1e4)));
+    }
+    for (name, number) in [("material", stroke.material), ("layer", stroke.layer)] {
+        if let Some(number) = number {
+            fields.insert(name.into(), json!(number));
+        }
+    }
+    fields
+}
+
+fn wrong(place: &str, found: &str, expected: &str) -> DrawingsError {
+    DrawingsError { place: place.into(), found: found.into(), expected: expected.into() }
+}
+
+/// A value in a few words.
+fn described(value: Option<&Value>) -> String {
+    match value {
+        None => "nothing".into(),
+        Some(Value::Object(_)) => "an object".into(),
+        Some(Value::Array(list)) if list.len() > 3 => format!("a list of {}", list.len()),
+        Some(other) => other.to_string().chars().take(40).collect(),
+    }
+}
+
+fn object<'a>(value: &'a Value, place: &str) -> Result<&'a Map<String, Value>, DrawingsError> {
+    value.as_object().ok_or_else(|| wrong(place, &described(Some(value)), "an object"))
+}
+
+fn array<'a>(value: Option<&'a Value>, place: &str) -> Result<&'a Vec<Value>, DrawingsError> {
+    value.and_then(Value::as_array).ok_or_else(|| wrong(place, &described(value), "a list"))
+}
+
+fn flag(value: Option<&Value>, place: &str) -> Result<bool, DrawingsError> {
+    value.and_then(Value::as_bool).ok_or_else(|| wrong(place, &described(value), "true or false"))
+}
+
+fn number(value: Option<&Value>, place: &str) -> Result<f64, DrawingsError> {
+    value.and_then(Value::as_f64).ok_or_else(|| wrong(place, &described(value), "a number"))
+}
+
+fn count<T: TryFrom<u64>>(value: Option<&Value>, place: &str) -> Result<T, DrawingsError> {
+    let number = value.and_then(Value::as_u64).and_then(|n| T::try_from(n).ok());
+    number.ok_or_else(|| wrong(place, &described(value), "a whole number from 0 on"))
+}
+
+fn frame(value: Option<&Value>, place: &str) -> Result<FrameNumber, DrawingsError> {
+    let number = value.and_then(Value::as_i64).filter(|n| n.abs() <= MAX_FRAME_NUMBER);
+    let number = number.and_then(|n| FrameNumber::try_from(n).ok());
+    number.ok_or_else(|| wrong(place, &described(value), "a frame number"))
+}
+
+fn point(value: Option<&Value>, place: &str) -> Result<Point, DrawingsError> {
+    let pair = value.and_then(Value::as_array).filter(|pair| pair.len() == 2);
+    let point = pair.and_then(|pair| Some(Point::new(pair[0].as_f64()?, pair[1].as_f64()?)));
+    let fits = |p: &Point| p.abs().max_element() <= MAX_COORDINATE;
+    let expected = "a point [x, y] of numbers between -1e6 and 1e6";
+    point.filter(fits).ok_or_else(|| wrong(place, &described(value), expected))
+}
+
+/// An optional field.
+fn given<T>(
+    fields: &Map<String, Value>,
+    place: &str,
+    name: &str,
+    read: impl Fn(Option<&Value>, &str) -> Result<T, DrawingsError>,
+) -> Result<Option<T>, DrawingsError> {
+    fields.get(name).map(|value| read(Some(value), &format!("{place}.{name}"))).transpose()
+}
+
+fn drawing(value: &Value, place: &str, pegs: &[DrawnPeg]) -> Result<Drawing, DrawingsError> {
+    let fields = object(value, place)?;
+    let list = array(fields.get("strokes"), &format!("{place}.strokes"))?;
+    let strokes = list.iter().enumerate().map(|(i, s)| stroke(s, &format!("{place}.strokes[{i}]"), pegs));
+    Ok(Drawing {
+        frame: frame(fields.get("frame"), &format!("{place}.frame"))?,
+        strokes: strokes.collect::<Result<_, _>>()?,
+        spacing: given(fields, place, "spacing", timing)?.unwrap_or_default(),
+        corner: given(fields, place, "corner", flag)?.unwrap_or(false),
+    })
+}
+
+fn stroke(value: &Value, place: &str, pegs: &[DrawnPeg]) -> Result<DrawnStroke, DrawingsError> {
+    let fields = object(value, place)?;
+    let list = array(fields.get("points"), &format!("{place}.points"))?;
+    let points = list.iter().enumerate().map(|(i, p)| point(Some(p), &format!("{place}.points[{i}]")));
+    let colour = |value: Option<&Value>, place: &str| {
+        let channels = value.and_then(Value::as_array).filter(|list| list.len() == 3);
+        let channel = |c: usize| channels?[c].as_f64().filter(|v| (0.0..=1.0).contains(v)).map(|v| v as f32);
+        let all = || Some([channel(0)?, channel(1)?, channel(2)?]);
+        all().ok_or_else(|| wrong(place, &described(value), "three numbers from 0 to 1"))
+    };
+    let peg = |value: Option<&Value>, place: &str| {
+        let found = value.and_then(Value::as_str).and_then(|name| pegs.iter().position(|peg| peg.name == name));
+        found.ok_or_else(|| wrong(place, &described(value), "the name of a peg"))
+    };
+    Ok(DrawnStroke {
+        points: points.collect::<Result<_, _>>()?,
+        closed: flag(fields.get("closed"), &format!("{place}.closed"))?,
+        colour: given(fields, place, "colour", colour)?,
+        material: given(fields, place, "material", count)?,
+        layer: given(fields, place, "layer", count)?,
+        peg: given(fields, place, "peg", peg)?,
+    })
+}
+
+fn pair(value: &Value, place: &str, drawings: &[Drawing]) -> Result<DrawnPair, DrawingsError> {
+    let fields = object(value, place)?;
+    let at = format!("{place}.frame");
+    let on = frame(fields.get("frame"), &at)?;
+    let drawing = drawings.iter().position(|d| d.frame == on).filter(|&k| k + 1 < drawings.len());
+    let drawing = drawing.ok_or_else(|| wrong(&at, &on.to_string(), "the frame of a drawing that has a next one"))?;
+    let to = match fields.get("to") {
+        Some(Value::Null) => None,
+        value => Some(count(value, &format!("{place}.to"))?),
+    };
+    Ok(DrawnPair { drawing, from: count(fields.get("from"), &format!("{place}.from"))?, to })
+}
+
+fn pegs(list: &[Value]) -> Result<Vec<DrawnPeg>, DrawingsError> {
+    let mut names: Vec<&str> = Vec::new();
+    for (k, value) in list.iter().enumerate() {
+        let place = format!("pegs[{k}].name");
+        let name = object(value, &format!("pegs[{k}]"))?.get("name");
+        match name.and_then(Value::as_str).filter(|text| !text.is_empty() && !names.contains(text)) {
+            Some(text) => names.push(text),
+            None => return Err(wrong(&place, &described(name), "a unique name")),
+        }
+    }
+    list.iter().enumerate().map(|(k, value)| peg(value, &format!("pegs[{k}]"), &names)).collect()
+}
+
+fn peg(value: &Value, place: &str, names: &[&str]) -> Result<DrawnPeg, DrawingsError> {
+    let fields = object(value, place)?;
+    let parent = |value: Option<&Value>, place: &str| {
+        let found = value.and_then(Value::as_str).and_then(|text| names.iter().position(|name| *name == text));
+        found.ok_or_else(|| wrong(place, &described(value), "the name of a peg"))
+    };
+    let key = |(k, value): (usize, &Value)| {
+        let place = format!("{place}.keys[{k}]");
+        let fields = object(value, &place)?;
+        Ok(DrawnPegKey {
+            frame: frame(fields.get("frame"), &format!("{place}.frame"))?,
+            shift: given(fields, &place, "shift", point)?.unwrap_or_default(),
+            turn: given(fields, &place, "turn", number)?.unwrap_or(0.0),
+            scale: given(fields, &place, "scale", number)?.unwrap_or(1.0),
+            timing: given(fields, &place, "timing", timing)?.unwrap_or_default(),
+        })
+    };
+    let keys = array(fields.get("keys"), &format!("{place}.keys"))?;
+    Ok(DrawnPeg {
+        name: fields.get("name").and_then(Value::as_str).unwrap_or_default().to_owned(),
+        parent: given(fields, place, "parent", parent)?,
+        pivot: point(fields.get("pivot"), &format!("{place}.pivot"))?,
+        keys: keys.iter().enumerate().map(key).collect::<Result<_, _>>()?,
+    })
+}
+
+fn timing(value: Option<&Value>, place: &str) -> Result<WrittenTiming, DrawingsError> {
+    match value {
+        Some(Value::String(name)) if name == "smooth" => Ok(WrittenTiming::Smooth),
+        Some(Value::String(name)) => Ok(WrittenTiming::Named(name.clone())),
+        Some(Value::Array(list)) => {
+            let share = |(k, v): (usize, &Value)| number(Some(v), &format!("{place}[{k}]"));
+            list.iter().enumerate().map(share).collect::<Result<_, _>>().map(WrittenTiming::Chart)
+        }
+        Some(Value::Object(fields)) if fields.contains_key("bounce") => {
+            count(fields.get("bounce"), &format!("{place}.bounce")).map(WrittenTiming::Bounce)
+        }
+        Some(Value::Object(fields)) => {
+            let place = format!("{place}.curve");
+            let list = array(fields.get("curve"), &place)?;
+            let pair = |(k, v): (usize, &Value)| point(Some(v), &format!("{place}[{k}]")).map(|p| (p.x, p.y));
+            list.iter().enumerate().map(pair).collect::<Result<_, _>>().map(WrittenTiming::Curve)
+        }
+        other => Err(wrong(place, &described(other), "a movement function or a spacing chart")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn document(fields: &str) -> Document {
+        let text = format!(
+            r#"{{"rototoon": 1, "footage": {{"pattern": "f_%d.png", "first": 0, "last": 9, "fps": 24, "width": 64,
+            "height": 48}}, "parts": [], {fields}}}"#
+        );
+        Document::parse(&text, "a.json").unwrap()
+    }
+
+    #[test]
+    fn everything_is_read() {
+        let read = document(
+            r#""drawings": [{"frame": 0, "spacing": [0.2, 0.9], "strokes": [{"points": [[1, 2.5], [3, 4]], "closed": false,
+            "colour": [0, 0.5, 1], "material": 3, "layer": 1, "peg": "arm"}]}, {"frame": 3, "corner": true, "strokes": []}],
+            "pairs": [{"frame": 0, "from": 0, "to": null}],
+            "pegs": [{"name": "arm", "parent": "body", "pivot": [1, 1], "keys": [{"frame": 0, "turn": 90,
+            "timing": {"curve": [[0.5, 0.2]]}}]}, {"name": "body", "pivot": [0, 0], "keys": []}]"#,
+        )
+        .drawings()
+        .unwrap();
+        let stroke = &read.drawings[0].strokes[0];
+        assert_eq!(stroke.points, [Point::new(1.0, 2.5), Point::new(3.0, 4.0)]);
+        assert_eq!(
+            (stroke.colour, stroke.material, stroke.layer, stroke.peg),
+            (Some([0.0, 0.5, 1.0]), Some(3), Some(1), Some(0))
+        );
+        assert_eq!(read.drawings[0].spacing, WrittenTiming::Chart(vec![0.2, 0.9]));
+        assert!(read.drawings[1].corner);
+        assert_eq!(read.pairs, [DrawnPair { drawing: 0, from: 0, to: None }]);
+        assert_eq!((read.pegs[0].parent, read.pegs[0].keys[0].turn), (Some(1), 90.0));
+        assert_eq!(read.pegs[0].keys[0].timing, WrittenTiming::Curve(vec![(0.5, 0.2)]));
+        assert_eq!(document(r#""x": 1"#).drawings(), Ok(Drawings::default()));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_place() {
+        let said = |fields: &str| document(fields).drawings().unwrap_err().to_string();
+        assert_eq!(said(r#""drawings": 7"#), "drawings: found 7, expected a list");
+        let stroke = |text: &str| said(&format!(r#""drawings": [{{"frame": 0, "strokes": [{text}]}}]"#));
+        assert_eq!(stroke("{}"), "drawings[0].strokes[0].points: found nothing, expected a list");
+        assert_eq!(
+            stroke(r#"{"points": [[1, "x"]], "closed": true}"#),
+            r#"drawings[0].strokes[0].points[0]: found [1,"x"], expected a point [x, y] of numbers between -1e6 and 1e6"#
+        );
+        assert!(
+            stroke(r#"{"points": [], "closed": true, "peg": "none"}"#)
+                .ends_with(r#"found "none", expected the name of a peg"#)
+        );
+        let twice = r#""drawings": [{"frame": 4, "strokes": []}, {"frame": 4, "strokes": []}]"#;
+        assert_eq!(said(twice), "drawings[1].frame: found 4, expected more than 4");
+        assert_eq!(
+            said(r#""pairs": [{"frame": 4, "from": 0, "to": 1}]"#),
+            "pairs[0].frame: found 4, expected the frame of a drawing that has a next one"
+        );
+        assert!(
+            said(r#""pegs": [{"name": "a"}, {"name": "a"}]"#)
+                .starts_with("pegs[1].name: found \"a\", expected a unique")
+        );
+    }
+
+    #[test]
+    fn results_are_written_beside_what_was_there_and_read_again() {
+        let mut doc = document(r#""in_betweens": [1], "note": "kept""#);
+        let stroke =
+            DrawnStroke { points: vec![Point::new(1.0 / 3.0, 2.0)], material: Some(2), ..DrawnStroke::default() };
+        let drawn = [DrawnBetween { frame: 2, strokes: vec![(5, 0.5, stroke.clone())] }];
+        doc.set_in_betweens(vec![json!({"frame": 0})], &drawn);
+        let text = doc.to_json();
+        assert!(text.contains(r#"{"frame":2,"strokes":[{"track":5,"points":[[0.3333,2.0]],"closed":false,"material":2,"opacity":0.5}]}"#), "{text}");
+        assert!(text.contains(r#""note": "kept""#) && text.contains(r#"{"frame":0}"#));
+        let again = Document::parse(&text, "a.json").unwrap();
+        assert_eq!(again.to_json(), text);
+        let mut fresh = Document::new(doc.scene.clone());
+        fresh.set_drawings(&[Drawing { frame: 1, strokes: vec![stroke.clone()], ..Drawing::default() }]);
+        let read = Document::parse(&fresh.to_json(), "b.json").unwrap().drawings().unwrap();
+        assert_eq!(read.drawings[0].strokes, [stroke]);
+    }
+}

@@ -1,0 +1,251 @@
+//! The likely counterparts of each stroke, and what each costs under the movement that is expected there.
+
+use super::super::grid::Grid;
+use super::super::stroke::Stroke;
+use super::movement::Movement;
+use super::outline::{Outline, Way, likely, wrap};
+use super::{Fixed, Options};
+use crate::geometry::similarity::Similarity;
+use crate::geometry::{Point, polygon};
+use rayon::prelude::*;
+
+/// Weight of the unexplained share of the shape.
+const SHAPE: f64 = 2.0;
+/// Weight of the squared turn, in rad², of a stroke against the drawing around it.
+const TURN: f64 = 0.06;
+/// Weight of the squared logarithm of a stroke's growth against that around it.
+const SIZE: f64 = 1.0;
+/// Weight of the squared logarithm of a length's growth against the size's.
+const LENGTH: f64 = 0.5;
+/// Weight of the squared distance from the expected place, in units of the drawing's radius.
+const POSITION: f64 = 2.0;
+/// Squared distance, in those units, from which on farther costs little more.
+const FAR: f64 = 2.0;
+/// Cost of quite another colour.
+const COLOUR: f64 = 2.0;
+/// Colour difference (root of the summed squares) that costs half of it: drawings are painted in few flat colours.
+const HALF_COLOUR: f64 = 0.06;
+/// Cost of another material.
+const MATERIAL: f64 = 0.7;
+/// Cost of another layer.
+const LAYER: f64 = 2.5;
+/// Cost of an open stroke drawn closed.
+const CLOSEDNESS: f64 = 0.4;
+/// Pairs of strokes up to which all are looked at.
+const ALL_PAIRS: usize = 40_000;
+/// Pairs of strokes up to which the ways to lay one upon the other are remembered.
+const REMEMBERED: usize = 4_000;
+/// The same, with places for strokes that are left out.
+const MOST_SLOTS: usize = 1_000_000;
+/// Counterparts looked at for each stroke where there are more.
+const NEAREST: usize = 24;
+/// Counterparts that are kept for each stroke.
+const KEPT: usize = 10;
+
+/// The strokes of a drawing as they are compared.
+pub(super) struct Figure<'a> {
+    pub strokes: &'a [Stroke],
+    /// By stroke; `None` without points.
+    pub outlines: Vec<Option<Outline>>,
+    /// Open strokes taken as closed.
+    rings: Vec<Option<Outline>>,
+    /// Mean of the outlines' centres.
+    pub middle: Point,
+    /// Root mean square distance of the samples from the middle; at least 1.
+    pub radius: f64,
+}
+
+impl<'a> Figure<'a> {
+    pub fn new(strokes: &'a [Stroke]) -> Self {
+        let outlines: Vec<_> = strokes.par_iter().map(|s| Outline::new(s, s.closed)).collect();
+        let rings = strokes.par_iter().map(|s| if s.closed { None } else { Outline::new(s, true) }).collect();
+        Self::of_outlines(strokes, outlines, rings)
+    }
+
+    /// The same drawing with no other strokes than those named.
+    pub fn only(&self, named: &[usize]) -> Self {
+        let pick = |list: &[Option<Outline>]| {
+            let mut kept = vec![None; list.len()];
+            named.iter().for_each(|&i| kept[i] = list[i].clone());
+            kept
+        };
+        Self { radius: self.radius, ..Self::of_outlines(self.strokes, pick(&self.outlines), pick(&self.rings)) }
+    }
+
+    fn of_outlines(strokes: &'a [Stroke], outlines: Vec<Option<Outline>>, rings: Vec<Option<Outline>>) -> Self {
+        let middle = polygon::center(&outlines.iter().flatten().map(|o| o.centre).collect::<Vec<_>>());
+        let mut figure = Self { strokes, outlines, rings, middle, radius: 1.0 };
+        figure.radius = figure.spread();
+        figure
+    }
+
+    /// Root mean square distance of the strokes' samples from the middle; at least 1.
+    pub fn spread(&self) -> f64 {
+        let squares =
+            self.outlines.iter().flatten().map(|o| o.centre.distance_squared(self.middle) + o.radius * o.radius);
+        (squares.sum::<f64>() / self.outlines.iter().flatten().count().max(1) as f64).sqrt().max(1.0)
+    }
+
+    /// The outlines of two strokes in a form in which they can be laid upon each other.
+    pub fn comparable<'b>(&'b self, i: usize, other: &'b Self, j: usize) -> Option<(&'b Outline, &'b Outline)> {
+        let (a, b) = (self.outlines[i].as_ref()?, other.outlines[j].as_ref()?);
+        Some(match (a.closed, b.closed) {
+            (true, false) => (a, other.rings[j].as_ref()?),
+            (false, true) => (self.rings[i].as_ref()?, b),
+            _ => (a, b),
+        })
+    }
+}
+
+/// How the strokes of two drawings can be laid upon each other, remembered where they are few.
+pub(super) struct Ways {
+    columns: usize,
+    known: Vec<Option<Vec<Vec<Way>>>>,
+}
+
+impl Ways {
+    pub fn new(a: &Figure, b: &Figure) -> Self {
+        let (rows, columns) = (a.outlines.len(), b.outlines.len());
+        let there = |figure: &Figure| figure.outlines.iter().flatten().count();
+        if there(a) * there(b) > REMEMBERED || rows.saturating_mul(columns) > MOST_SLOTS {
+            return Self { columns, known: Vec::new() };
+        }
+        let pair = |k: usize| a.comparable(k / columns, b, k % columns).map(|(p, q)| p.all_ways(q));
+        Self { columns, known: (0..rows * columns).into_par_iter().map(pair).collect() }
+    }
+
+    /// The least of the costs of all ways to lay stroke `i` upon `j`.
+    fn least(&self, a: &Figure, i: usize, b: &Figure, j: usize, cost: impl Fn(&Way) -> f64) -> f64 {
+        let least = |all: &[Vec<Way>]| all.iter().flatten().map(&cost).fold(f64::INFINITY, f64::min);
+        match self.known.get(i * self.columns + j) {
+            Some(known) => known.as_ref().map_or(f64::INFINITY, |all| least(all)),
+            None => a.comparable(i, b, j).map_or(f64::INFINITY, |(p, q)| least(&p.all_ways(q))),
+        }
+    }
+
+    /// The likely ways to lay stroke `i` upon `j` for an expected turn.
+    pub fn likely(&self, a: &Figure, i: usize, b: &Figure, j: usize, expected: f64, stiffness: f64) -> Vec<Way> {
+        if let Some(known) = self.known.get(i * self.columns + j) {
+            return known.as_ref().map_or_else(Vec::new, |all| likely(all, expected, stiffness));
+        }
+        a.comparable(i, b, j).map_or_else(Vec::new, |(p, q)| p.ways(q, expected, stiffness))
+    }
+}
+
+/// A counterpart, and a way to lay the stroke upon it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Label {
+    pub to: usize,
+    pub way: Way,
+    pub map: Similarity,
+    pub cost: f64,
+}
+
+/// The likely counterparts of each stroke of the first drawing.
+pub(super) struct Rows {
+    pub labels: Vec<Vec<Label>>,
+    /// Whether the stroke must take one of its labels.
+    pub bound: Vec<bool>,
+}
+
+impl Rows {
+    pub fn new(
+        (a, b): (&Figure, &Figure),
+        ways: &Ways,
+        around: &[Movement],
+        fixed: &[Fixed],
+        options: &Options,
+    ) -> Self {
+        let numbers: Vec<usize> = (0..b.outlines.len()).filter(|&j| b.outlines[j].is_some()).collect();
+        let centres: Vec<Point> = numbers.iter().filter_map(|&j| Some(b.outlines[j].as_ref()?.centre)).collect();
+        let grid = Grid::new(&centres);
+        let mut taken = vec![false; b.outlines.len()];
+        for fixed in fixed {
+            if let Fixed::To(j) = fixed {
+                taken[*j] = true;
+            }
+        }
+        let all = a.outlines.len().saturating_mul(numbers.len()) <= ALL_PAIRS;
+        let row = |i: usize| {
+            let Some(outline) = &a.outlines[i] else { return Vec::new() };
+            match fixed[i] {
+                Fixed::Alone => return Vec::new(),
+                Fixed::To(j) => return labels((a, b), ways, (i, j), &around[i]),
+                Fixed::Free => {}
+            }
+            let near = if all {
+                numbers.clone()
+            } else {
+                let found = grid.nearest(around[i].apply(outline.centre), NEAREST);
+                found.into_iter().map(|k| numbers[k]).collect()
+            };
+            let mut found: Vec<Vec<Label>> =
+                near.into_iter().filter(|&j| !taken[j]).map(|j| labels((a, b), ways, (i, j), &around[i])).collect();
+            found.retain(|row| row.first().is_some_and(|label| label.cost < options.max_cost));
+            found.sort_by(|x, y| x[0].cost.total_cmp(&y[0].cost).then(x[0].to.cmp(&y[0].to)));
+            found.truncate(KEPT);
+            found.concat()
+        };
+        let labels: Vec<Vec<Label>> = (0..a.outlines.len()).into_par_iter().map(row).collect();
+        let bound = fixed.iter().map(|fixed| matches!(fixed, Fixed::To(_))).collect();
+        Self { labels, bound }
+    }
+}
+
+/// The ways to lay stroke `i` upon `j`, the cheapest first.
+fn labels((a, b): (&Figure, &Figure), ways: &Ways, (i, j): (usize, usize), around: &Movement) -> Vec<Label> {
+    let (Some(base), Some((p, q))) = (base(a, b, (i, j), around), a.comparable(i, b, j)) else { return Vec::new() };
+    let ways = ways.likely(a, i, b, j, around.turn, TURN / SHAPE).into_iter().map(|way| {
+        let turn = wrap(way.turn - around.turn);
+        let cost = base + SHAPE * way.residual + TURN * turn * turn;
+        Label { to: j, way, map: p.movement(q, &way), cost }
+    });
+    ways.collect()
+}
+
+/// What taking stroke `j` for `i` costs before it is known how they are laid upon each other.
+fn base(a: &Figure, b: &Figure, (i, j): (usize, usize), around: &Movement) -> Option<f64> {
+    let (p, q) = a.comparable(i, b, j)?;
+    let (from, to) = (a.outlines[i].as_ref()?, b.outlines[j].as_ref()?);
+    let growth = (q.radius / p.radius).ln();
+    let length = (q.length.max(1.0) / p.length.max(1.0)).ln() - growth;
+    let size = growth - around.scale.ln();
+    let away = around.apply(from.centre).distance(to.centre) / (a.radius * around.scale);
+    Some(
+        likeness(&a.strokes[i], &b.strokes[j])
+            + LENGTH * length * length
+            + SIZE * size * size
+            + POSITION * away * away / (1.0 + away * away / FAR),
+    )
+}
+
+/// What all strokes cost at least under a movement: each takes its best counterpart, though others may want it too.
+pub(super) fn bound((a, b): (&Figure, &Figure), ways: &Ways, movement: &Movement, options: &Options) -> f64 {
+    let there = |figure: &Figure| -> Vec<usize> {
+        (0..figure.outlines.len()).filter(|&i| figure.outlines[i].is_some()).collect()
+    };
+    let columns = there(b);
+    let of = |i: usize| {
+        columns.iter().fold(options.max_cost, |least, &j| match base(a, b, (i, j), movement) {
+            Some(base) if base < least => {
+                let way = |way: &Way| SHAPE * way.residual + TURN * wrap(way.turn - movement.turn).powi(2);
+                least.min(base + ways.least(a, i, b, j, way))
+            }
+            _ => least,
+        })
+    };
+    there(a).into_iter().map(of).sum()
+}
+
+/// What differs beside the geometry.
+fn likeness(a: &Stroke, b: &Stroke) -> f64 {
+    let differ = |a: Option<u32>, b: Option<u32>| a.zip(b).is_some_and(|(a, b)| a != b);
+    let squares = |(a, b): ([f32; 3], [f32; 3])| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum();
+    let squares: f64 = a.colour.zip(b.colour).map_or(0.0, squares);
+    let colour = squares / (squares + HALF_COLOUR * HALF_COLOUR);
+    let flag = |there: bool, cost: f64| if there { cost } else { 0.0 };
+    COLOUR * colour
+        + flag(differ(a.material, b.material), MATERIAL)
+        + flag(differ(a.layer, b.layer), LAYER)
+        + flag(a.closed != b.closed, CLOSEDNESS)
+}

@@ -1,0 +1,95 @@
+//! Matching and in-betweens on sets with known truth, for `cargo xtask bench-tween`.
+//!
+//! `bench-tween OUT DIR…` prints tables and writes a sheet of in-betweens for each set to the folder OUT.
+
+use anyhow::{Context, Result};
+use rototoon::tween::between::Options;
+use rototoon_tests::tweening::between::{Errors, measure as measure_between, measure_one_way, rows_of_keys};
+use rototoon_tests::tweening::matching::{Chance, Score, measure};
+use rototoon_tests::tweening::{GAPS, Set, sheet};
+use std::path::{Path, PathBuf};
+
+fn main() -> Result<()> {
+    let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
+    let out = arguments.next().context("expected a folder to write to")?;
+    let sets = arguments.map(|folder| Set::load(&folder)).collect::<Result<Vec<_>>>()?;
+    matching(&sets, false)?;
+    matching(&sets, true)?;
+    between(&sets, "all strokes, one chart for all of them", measure_between)?;
+    between(&sets, "strokes that move one way, a chart for each", measure_one_way)?;
+    println!("charted: with the shares of the way that suit best; ratio to plain linear in brackets");
+    for set in &sets {
+        sheets(set, &out)?;
+    }
+    Ok(())
+}
+
+fn matching(sets: &[Set], painted: bool) -> Result<()> {
+    println!("matching, {}", if painted { "strokes with their paint" } else { "shape and place alone" });
+    println!(
+        "{:22}{:>6}{:>8}{:>9}{:>8}{:>11}{:>10}",
+        "", "spans", "pairs", "right %", "wrong", "by index %", "starts %"
+    );
+    let mut all = (0, Score::default());
+    for set in sets {
+        let paints = if painted { set.paints()? } else { Vec::new() };
+        let (mut score, mut chance) = (Score::default(), Chance(1));
+        let spans = set.spans();
+        for &span in &spans {
+            score.add(measure(set, span, &paints, &mut chance)?);
+        }
+        matching_row(&set.name, spans.len(), &score);
+        all = (all.0 + spans.len(), all.1);
+        all.1.add(score);
+    }
+    matching_row("all", all.0, &all.1);
+    println!();
+    Ok(())
+}
+
+fn matching_row(name: &str, spans: usize, s: &Score) {
+    let percent = |n: usize, of: usize| if of == 0 { 100.0 } else { 100.0 * n as f64 / of as f64 };
+    let (right, index) = (percent(s.right, s.there), percent(s.by_index, s.there));
+    let starts = percent(s.starts, s.closed);
+    println!("{name:22}{spans:6}{:8}{right:9.1}{:8}{index:11.1}{starts:10.1}", s.there, s.wrong);
+}
+
+/// Errors at some keys of a set.
+type Measure = fn(&Set, &[i32], &Options) -> Result<Errors>;
+
+fn between(sets: &[Set], title: &str, measure: Measure) -> Result<()> {
+    println!("in-betweens, {title}: mean distance of the points from the truth in px");
+    println!(
+        "{:22}{:>8}{:>8}{:>8}{:>8}{:>17}{:>17}",
+        "", "keys", "linear", "ours", "ratio", "linear, charted", "ours, charted"
+    );
+    for set in sets {
+        let mut all = Errors::default();
+        let fits = |gap: &i32| set.frames.1 - set.frames.0 >= *gap;
+        for gap in GAPS.filter(fits) {
+            for row in rows_of_keys(set, gap) {
+                all.add(measure(set, &row, &Options::default())?);
+            }
+        }
+        between_row(&set.name, "6-14", &all);
+        between_row(&set.name, "project", &measure(set, &set.keys, &Options::default())?);
+    }
+    println!();
+    Ok(())
+}
+
+fn between_row(name: &str, keys: &str, e: &Errors) {
+    if e.count == 0 {
+        return;
+    }
+    let n = e.count as f64;
+    let charted = |sum: f64| format!("{:.2} ({:.2})", sum / n, sum / e.linear);
+    let (linear, ours) = (charted(e.linear_charted), charted(e.ours_charted));
+    let ratio = e.ours / e.linear;
+    println!("{name:22}{keys:>8}{:8.2}{:8.2}{ratio:8.2}{linear:>17}{ours:>17}", e.linear / n, e.ours / n);
+}
+
+fn sheets(set: &Set, out: &Path) -> Result<()> {
+    let path = out.join(format!("{}.png", set.name));
+    sheet::draw(set, &set.keys, &Options::default())?.save(&path).with_context(|| format!("cannot write {path:?}"))
+}

@@ -1,0 +1,181 @@
+//! In-betweens of frames of a set against the true frames between, beside linear interpolation of the same points.
+//!
+//! Every contour has the same points on all frames, and they are paired rightly for both. Keys are all frames at one
+//! distance, from every first frame.
+
+use super::{Contours, Set};
+use anyhow::{Context, Result};
+use rototoon::geometry::Point;
+use rototoon::tween::Stroke;
+use rototoon::tween::between::{GivenPegs, InBetween, Key, Options, Sequence, Spacing};
+use rototoon::tween::matching::{Matching, Pair};
+
+/// Root mean square way in pixels from key to key below which a contour does not move.
+const LEAST_WAY: f64 = 5.0;
+
+/// Sums of distances in pixels from the true points.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Points.
+    pub count: usize,
+    /// Of linear interpolation.
+    pub linear: f64,
+    /// Of linear interpolation with the spacing chart that suits it best.
+    pub linear_charted: f64,
+    /// Of ours.
+    pub ours: f64,
+    /// Of ours with the spacing chart that suits it best.
+    pub ours_charted: f64,
+}
+
+impl Errors {
+    /// Adds others.
+    pub fn add(&mut self, other: Self) {
+        self.count += other.count;
+        self.linear += other.linear;
+        self.linear_charted += other.linear_charted;
+        self.ours += other.ours;
+        self.ours_charted += other.ours_charted;
+    }
+}
+
+/// Shares that a chart may give a frame.
+fn shares() -> impl Iterator<Item = f64> {
+    (-10..=50).map(|k| f64::from(k) / 40.0)
+}
+
+/// The keys of a set as drawings; only parts that every key has.
+fn drawings(set: &Set, frames: &[i32]) -> (Vec<usize>, Vec<Key>) {
+    let there = |i: &usize| frames.iter().all(|f| set.parts[*i].points.contains_key(f));
+    let parts: Vec<usize> = (0..set.parts.len()).filter(there).collect();
+    let stroke = |i: usize, f: i32| Stroke::new(set.parts[i].points[&f].clone(), set.parts[i].closed);
+    let key =
+        |&frame: &i32| Key { frame, strokes: parts.iter().map(|&i| stroke(i, frame)).collect(), ..Key::default() };
+    let keys = frames.iter().map(key).collect();
+    (parts, keys)
+}
+
+fn paired(count: usize, spans: usize) -> Vec<Matching> {
+    let pair = |i| Pair { from: i, to: i, reversed: false, start: 0.0, confidence: 1.0, by_hand: true };
+    vec![Matching { pairs: (0..count).map(pair).collect(), ..Matching::default() }; spans]
+}
+
+fn off(drawn: &[Vec<Point>], truth: &[&Vec<Point>]) -> f64 {
+    let stroke = |(a, b): (&Vec<Point>, &&Vec<Point>)| a.iter().zip(b.iter()).map(|(p, q)| p.distance(*q)).sum::<f64>();
+    drawn.iter().zip(truth).map(stroke).sum()
+}
+
+/// The in-betweens of a set's keys.
+pub fn sequence(set: &Set, frames: &[i32], options: &Options) -> Result<(Vec<usize>, Sequence)> {
+    let (parts, keys) = drawings(set, frames);
+    let matchings = paired(parts.len(), frames.len() - 1);
+    Ok((parts, Sequence::new(keys, &matchings, &GivenPegs::default(), options)?))
+}
+
+/// The errors of the strokes that move one way between some keys, each with the chart that suits it best: what remains is
+/// the way and the shape.
+pub fn measure_one_way(set: &Set, frames: &[i32], options: &Options) -> Result<Errors> {
+    let (parts, ours) = sequence(set, frames, options)?;
+    let mut errors = Errors::default();
+    for pair in frames.windows(2) {
+        let (_, keys) = drawings(set, pair);
+        let charted = Charted::new(&keys, options)?;
+        let moving: Vec<usize> =
+            (0..parts.len()).filter(|&n| is_one_way(&set.parts[parts[n]], (pair[0], pair[1]))).collect();
+        for frame in pair[0] + 1..pair[1] {
+            let drawn = points(ours.at(frame));
+            let u = f64::from(frame - pair[0]) / f64::from(pair[1] - pair[0]);
+            for &n in &moving {
+                let truth = &set.parts[parts[n]].points[&frame];
+                let (a, b) = (&keys[0].strokes[n].points, &keys[1].strokes[n].points);
+                let off = |line: &[Point]| line.iter().zip(truth).map(|(p, q)| p.distance(*q)).sum::<f64>();
+                let linear = |s: f64| off(&a.iter().zip(b).map(|(p, q)| p.lerp(*q, s)).collect::<Vec<_>>());
+                errors.count += truth.len();
+                errors.linear += linear(u);
+                errors.ours += off(&drawn[n]);
+                errors.linear_charted += shares().map(linear).fold(f64::INFINITY, f64::min);
+                errors.ours_charted += charted.drawings.iter().map(|d| off(&d[n])).fold(f64::INFINITY, f64::min);
+            }
+        }
+    }
+    Ok(errors)
+}
+
+/// Whether a contour goes from one key to the other, and on no frame between turns back or beyond them by more than a tenth
+/// of the way; and moves at all.
+fn is_one_way(part: &Contours, (from, to): (i32, i32)) -> bool {
+    let (a, b) = (&part.points[&from], &part.points[&to]);
+    let square: f64 = a.iter().zip(b).map(|(p, q)| p.distance_squared(*q)).sum();
+    if square < LEAST_WAY * LEAST_WAY * a.len() as f64 {
+        return false;
+    }
+    let come = |frame: i32| {
+        let now = part.points.get(&frame)?;
+        Some(a.iter().zip(b).zip(now).map(|((p, q), r)| (*r - *p).dot(*q - *p)).sum::<f64>() / square)
+    };
+    let mut farthest = 0.0f64;
+    (from + 1..=to).all(|frame| {
+        let Some(share) = come(frame) else { return false };
+        let forward = share > farthest - 0.1 && share < 1.1;
+        farthest = farthest.max(share);
+        forward
+    })
+}
+
+/// The errors of all frames between some keys.
+pub fn measure(set: &Set, frames: &[i32], options: &Options) -> Result<Errors> {
+    let (parts, ours) = sequence(set, frames, options)?;
+    let mut errors = Errors::default();
+    for pair in frames.windows(2) {
+        let (_, keys) = drawings(set, pair);
+        let charted = Charted::new(&keys, options)?;
+        for frame in pair[0] + 1..pair[1] {
+            let truth: Option<Vec<&Vec<Point>>> = parts.iter().map(|&i| set.parts[i].points.get(&frame)).collect();
+            let Some(truth) = truth else { continue };
+            let u = f64::from(frame - pair[0]) / f64::from(pair[1] - pair[0]);
+            let linear = |s: f64| -> Vec<Vec<Point>> {
+                let strokes = keys[0].strokes.iter().zip(&keys[1].strokes);
+                strokes.map(|(a, b)| a.points.iter().zip(&b.points).map(|(p, q)| p.lerp(*q, s)).collect()).collect()
+            };
+            errors.count += truth.iter().map(|p| p.len()).sum::<usize>();
+            errors.linear += off(&linear(u), &truth);
+            errors.linear_charted += shares().map(|s| off(&linear(s), &truth)).fold(f64::INFINITY, f64::min);
+            errors.ours += off(&points(ours.at(frame)), &truth);
+            errors.ours_charted += charted.drawings.iter().map(|d| off(d, &truth)).fold(f64::INFINITY, f64::min);
+        }
+    }
+    Ok(errors)
+}
+
+/// The points of drawings whose strokes kept their order.
+fn points(drawn: Vec<InBetween>) -> Vec<Vec<Point>> {
+    let mut drawn = drawn;
+    drawn.sort_by_key(|d| d.track);
+    drawn.into_iter().map(|d| d.stroke.points).collect()
+}
+
+/// Our drawings between two keys at every share that a chart may give.
+struct Charted {
+    drawings: Vec<Vec<Vec<Point>>>,
+}
+
+impl Charted {
+    fn new(keys: &[Key], options: &Options) -> Result<Self> {
+        let chart: Vec<f64> = shares().collect();
+        let mut keys = keys.to_vec();
+        keys[0].frame = 0;
+        keys[1].frame = i32::try_from(chart.len() + 1).context("too many shares")?;
+        keys[0].spacing = Spacing::Chart(chart);
+        let last = keys[1].frame;
+        let matchings = paired(keys[0].strokes.len(), 1);
+        let sequence = Sequence::new(keys, &matchings, &GivenPegs::default(), options)?;
+        Ok(Self { drawings: (1..last).map(|f| points(sequence.at(f))).collect() })
+    }
+}
+
+/// Rows of keys of a set, at one distance, from every first frame; of a set shorter than that its ends.
+pub fn rows_of_keys(set: &Set, gap: i32) -> Vec<Vec<i32>> {
+    let (first, last) = set.frames;
+    let row = |start: i32| (start..=last).step_by(gap as usize).collect::<Vec<_>>();
+    (first..first + gap).map(row).filter(|row| row.len() > 1).collect()
+}

@@ -1,0 +1,159 @@
+//! Strokes of two frames of a set, the second drawn in another way, matched.
+//!
+//! The second drawing has another order, half of its strokes run the other way, closed ones start elsewhere, all have
+//! another number of points, and a tenth of the strokes is missing on one of the two sides.
+
+use super::Set;
+use anyhow::Result;
+use rototoon::geometry::{Point, polyline};
+use rototoon::scene::Silent;
+use rototoon::tween::Stroke;
+use rototoon::tween::matching::{Options, match_strokes};
+
+/// Pairs found and pairs there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Score {
+    /// Strokes that are on both drawings.
+    pub there: usize,
+    /// Of these, those paired rightly.
+    pub right: usize,
+    /// Pairs that are none.
+    pub wrong: usize,
+    /// Strokes that pairing by index pairs rightly.
+    pub by_index: usize,
+    /// Closed pairs whose starting points were found within 5 % of the length.
+    pub starts: usize,
+    /// Closed pairs found.
+    pub closed: usize,
+}
+
+impl Score {
+    /// Adds another.
+    pub fn add(&mut self, other: Self) {
+        self.there += other.there;
+        self.right += other.right;
+        self.wrong += other.wrong;
+        self.by_index += other.by_index;
+        self.starts += other.starts;
+        self.closed += other.closed;
+    }
+}
+
+/// Numbers that look random and are always the same (Steele, Lea & Flood 2014, SplitMix64).
+pub struct Chance(pub u64);
+
+impl Chance {
+    /// The next number below `bound`.
+    pub fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) % bound.max(1) as u64) as usize
+    }
+
+    /// The numbers below `count` in some order.
+    pub fn order(&mut self, count: usize) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..count).collect();
+        for k in (1..count).rev() {
+            order.swap(k, self.below(k + 1));
+        }
+        order
+    }
+}
+
+/// A stroke of a drawing, and what it is.
+struct Known {
+    part: usize,
+    stroke: Stroke,
+    /// Where the contour's first point lies, as a share of the stroke's length.
+    start: f64,
+}
+
+/// Matches the strokes of two frames, painted where `paints` are given by part.
+pub fn measure(set: &Set, (from, to): (i32, i32), paints: &[Option<[f32; 3]>], chance: &mut Chance) -> Result<Score> {
+    let there: Vec<usize> =
+        (0..set.parts.len()).filter(|&i| [from, to].iter().all(|f| set.parts[i].points.contains_key(f))).collect();
+    let away = if there.len() < 4 { 0 } else { there.len().div_ceil(10) };
+    let first_loses = chance.below(2) == 0;
+    let mut kept = chance.order(there.len());
+    let lost: Vec<usize> = kept.split_off(there.len() - away).into_iter().map(|k| there[k]).collect();
+    let missing = |part: usize, first: bool| first == first_loses && lost.contains(&part);
+    let first: Vec<Known> = chance
+        .order(there.len())
+        .into_iter()
+        .map(|k| there[k])
+        .filter(|&i| !missing(i, true))
+        .map(|i| Known {
+            part: i,
+            stroke: Stroke::new(set.parts[i].points[&from].clone(), set.parts[i].closed),
+            start: 0.0,
+        })
+        .collect();
+    let order = chance.order(there.len());
+    let second: Vec<Known> = order
+        .into_iter()
+        .map(|k| there[k])
+        .filter(|&i| !missing(i, false))
+        .map(|i| redrawn(set, i, to, chance))
+        .collect();
+    let painted = |k: &Known| Stroke { colour: paints.get(k.part).copied().flatten(), ..k.stroke.clone() };
+    let strokes = |known: &[Known]| known.iter().map(painted).collect::<Vec<_>>();
+    let found = match_strokes(&strokes(&first), &strokes(&second), &[], &Options::default(), &Silent)?;
+    let mut score = Score { there: there.len() - away, ..Score::default() };
+    for pair in &found.pairs {
+        let (a, b) = (&first[pair.from], &second[pair.to]);
+        if a.part != b.part {
+            score.wrong += 1;
+            if std::env::var_os("BENCH_TWEEN_WRONG").is_some() {
+                println!("  {} {from}-{to}: {:?} as {:?}", set.name, set.parts[a.part].name, set.parts[b.part].name);
+            }
+            continue;
+        }
+        score.right += 1;
+        if a.stroke.closed {
+            score.closed += 1;
+            let off = pair.start - b.start;
+            let near = (off - off.round()).abs() < 0.05;
+            score.starts += usize::from(near);
+            if !near && std::env::var_os("BENCH_TWEEN_WRONG").is_some() {
+                println!(
+                    "  {} {from}-{to}: {:?} start off by {:.2}",
+                    set.name,
+                    set.parts[a.part].name,
+                    off - off.round()
+                );
+            }
+        }
+    }
+    if std::env::var_os("BENCH_TWEEN_WRONG").is_some() {
+        for i in &found.vanished {
+            if second.iter().any(|k| k.part == first[*i].part) {
+                println!("  {} {from}-{to}: {:?} alone", set.name, set.parts[first[*i].part].name);
+            }
+        }
+    }
+    score.by_index = first.iter().zip(&second).filter(|(a, b)| a.part == b.part).count();
+    Ok(score)
+}
+
+/// A contour drawn in another way.
+fn redrawn(set: &Set, i: usize, frame: i32, chance: &mut Chance) -> Known {
+    let part = &set.parts[i];
+    let points = &part.points[&frame];
+    let count = (points.len() * (50 + chance.below(150)) / 100).max(6);
+    let total = polyline::length(points, part.closed);
+    let shift = if part.closed { chance.below(points.len()) } else { 0 };
+    let walked = polyline::length(&points[..=shift], false);
+    let mut rotated: Vec<Point> = points.clone();
+    rotated.rotate_left(shift);
+    let mut start = if part.closed { (1.0 - walked / total.max(1e-9)).fract() } else { 0.0 };
+    if chance.below(2) == 0 {
+        rotated.reverse();
+        if part.closed {
+            rotated.rotate_right(1);
+        }
+        start = (1.0 - start).fract();
+    }
+    Known { part: i, stroke: Stroke::new(polyline::resample(&rotated, part.closed, count), part.closed), start }
+}
