@@ -10,8 +10,9 @@ use super::TrackError;
 use super::drawings::Drawing;
 use super::pool::{Hypothesis, Pools, hypothesis, is_new};
 use super::propagate::Pose;
+use super::rototoon::Pooled;
 use super::stage::Stage;
-use crate::geometry::Point;
+use crate::geometry::{Point, polygon};
 use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 /// Turns tried about the corrections' centre, in degrees.
@@ -20,6 +21,22 @@ const TURNS: [f64; 8] = [-90.0, -60.0, -40.0, -20.0, 20.0, 40.0, 60.0, 90.0];
 const KEPT: usize = 4;
 /// Hypotheses of a corrected drawing that are carried on.
 const CARRIED: usize = 2;
+
+/// A part may come to lie this far from where its centre was put, in sizes of the part, if it was moved by twice as much.
+const CENTER_REACH: f64 = 0.15;
+
+/// By drawing of a stage: how far the part may lie from where the artist put its centre, in working pixels. Who moves a
+/// part a little means it to the pixel; who moves it far says where to look. `plain` is what is known without corrections.
+pub(super) fn center_reach(stage: &Stage, plain: &Pooled) -> Vec<f64> {
+    let reach = CENTER_REACH * stage.models[0].texture.mesh.size;
+    let of_drawing = |d: usize| {
+        let Some(center) = stage.correction(d).and_then(|c| c.center) else { return 0.0 };
+        let before = plain.own_points(stage.drawings[d].first);
+        let far = polygon::center(&before).distance(center) > 2.0 * reach * stage.scale;
+        if far { reach } else { 0.0 }
+    };
+    (0..stage.drawings.len()).map(of_drawing).collect()
+}
 
 /// The pools of a stage with corrections, from those without; `plain` are the drawings of the latter.
 pub(super) fn extend(stage: &Stage, plain: &[Drawing], pools: &Pools) -> Result<Pools, TrackError> {
@@ -78,7 +95,7 @@ fn constrained(stage: &Stage, d: usize, pool: &[Hypothesis]) -> Result<Vec<Hypot
         }
         let aligned = |start: &Hypothesis| {
             let pose = stage.models[model].realigned(&scenery, &start.pose.nodes);
-            let free = stage.centered(d).then(|| freed(stage, d, model, &pose.nodes)).flatten();
+            let free = (stage.center_reach[d] > 0.0).then(|| freed(stage, d, model, &pose.nodes)).flatten();
             if let Some(free) = free.filter(|free| free.pose.energy < pose.energy) {
                 return free;
             }
@@ -94,8 +111,8 @@ fn constrained(stage: &Stage, d: usize, pool: &[Hypothesis]) -> Result<Vec<Hypot
     Ok(found)
 }
 
-/// A pose aligned to what is seen, with pins alone: a centre says where the part is, but not to the pixel. None where that
-/// takes the part further from its centre than the artist can have meant.
+/// A pose aligned to what is seen, with pins alone. None where that takes the part further from its centre than
+/// [`center_reach`] lets it.
 pub(super) fn freed(stage: &Stage, d: usize, model: usize, nodes: &[Point]) -> Option<Hypothesis> {
     let pose = stage.models[model].seen(&stage.released(model, d), nodes);
     Some(hypothesis(stage, d, model, pose, None)).filter(|free| stage.near_center(d, &free.points))

@@ -124,6 +124,7 @@ pub(super) fn finish(
         return Ok(Finished { source: pooled.clone(), plan, settled: Vec::new(), track });
     }
     let mut stage = Stage::set(kit, &pooled.job, pooled.models.clone())?;
+    stage.center_reach = pooled.center_reach.clone();
     let width = stage.width();
     stage.covers = plan.occluders.iter().map(|contours| Cover::new(contours, width)).collect();
     let stage = &stage;
@@ -208,7 +209,7 @@ fn track(stage: &Stage, pooled: &Pooled, settled: &[Settled], path: &[usize]) ->
         let confidence = confidence::of_drawing(&stage.models, &stage.features[d], &stage.covers[d], &pool, path[d]);
         for index in drawing.first..=drawing.last {
             let mut on_frame = stage.key_of(d).unwrap_or_else(|| found.iter().map(|&p| p * stage.scale).collect());
-            stage.job.enforce_within(stage.center_reach() * stage.scale, index, &mut on_frame);
+            stage.job.enforce_within(stage.center_reach[d] * stage.scale, index, &mut on_frame);
             points.push(on_frame);
             sure.push(if index == 0 || index == last { vec![1.0; found.len()] } else { confidence.clone() });
         }

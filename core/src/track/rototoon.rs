@@ -71,6 +71,8 @@ pub(super) struct Pooled {
     /// The part's own choice, before others are heard.
     pub path: Vec<usize>,
     pub steps: usize,
+    /// By drawing: how far the part may lie from where the artist put its centre, in working pixels.
+    pub center_reach: Vec<f64>,
 }
 
 impl SceneSolver for Rototoon {
@@ -296,22 +298,33 @@ impl Rototoon {
 fn plain_pools(kit: Kit, job: Job) -> Result<Pooled, TrackError> {
     if job.span.len() == 2 || job.keys[0].is_empty() {
         let drawings = (0..job.span.len()).map(|i| Drawing { first: i, last: i }).collect();
-        return Ok(Pooled { job, drawings, models: None, pools: Arc::default(), path: Vec::new(), steps: 0 });
+        return Ok(Pooled {
+            job,
+            drawings,
+            models: None,
+            pools: Arc::default(),
+            path: Vec::new(),
+            steps: 0,
+            center_reach: Vec::new(),
+        });
     }
     let stage = Stage::set(kit, &job, None)?;
     let (pools, path) = pool::fill(&stage)?;
     let (drawings, models) = (stage.drawings.clone(), Some(stage.models.clone()));
     let (pools, steps) = (Arc::new(pools), stage.steps_done.into_inner());
-    Ok(Pooled { job, drawings, models, pools, path, steps })
+    let center_reach = vec![0.0; drawings.len()];
+    Ok(Pooled { job, drawings, models, pools, path, steps, center_reach })
 }
 
 fn corrected_pools(kit: Kit, job: &Job, plain: &Pooled) -> Result<Pooled, TrackError> {
-    let stage = Stage::set(kit, job, plain.models.clone())?;
+    let mut stage = Stage::set(kit, job, plain.models.clone())?;
+    stage.center_reach = corrected::center_reach(&stage, plain);
     let pools = corrected::extend(&stage, &plain.drawings, &plain.pools)?;
     let path = pool::choose(&stage, &pools);
     let (drawings, models) = (stage.drawings.clone(), Some(stage.models.clone()));
     let (pools, steps) = (Arc::new(pools), stage.steps_done.into_inner());
-    Ok(Pooled { job: job.clone(), drawings, models, pools, path, steps })
+    let center_reach = stage.center_reach;
+    Ok(Pooled { job: job.clone(), drawings, models, pools, path, steps, center_reach })
 }
 
 fn mended_pools(kit: Kit, source: &Pooled, path: &[usize], leads: &[Lead]) -> Result<Pooled, TrackError> {
@@ -321,7 +334,9 @@ fn mended_pools(kit: Kit, source: &Pooled, path: &[usize], leads: &[Lead]) -> Re
     } else {
         source.pools.clone()
     };
-    Ok(Pooled { job: source.job.clone(), drawings, models, pools, path: path.to_vec(), steps: source.steps })
+    let Pooled { job, steps, center_reach, .. } = source;
+    let (job, path, center_reach) = (job.clone(), path.to_vec(), center_reach.clone());
+    Ok(Pooled { job, drawings, models, pools, path, steps: *steps, center_reach })
 }
 
 /// The paths of the members of a stretch, chosen together from the ones given, and what leads each member. `ties` are found
@@ -399,7 +414,7 @@ impl Pooled {
     }
 
     /// Where the part alone would put its control points on a frame of the span, in pixels of the picture.
-    fn own_points(&self, index: usize) -> Vec<Point> {
+    pub fn own_points(&self, index: usize) -> Vec<Point> {
         let drawing = self.drawings.iter().position(|d| d.first <= index && index <= d.last);
         let scale = super::features::working_scale(self.job.size.1);
         match drawing.filter(|_| !self.pools.is_empty()) {

@@ -19,9 +19,6 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// A part may come to lie this far from where its centre was put, in sizes of the part.
-const CENTER_REACH: f64 = 0.15;
-
 /// Where pictures come from, and who is told of the progress.
 #[derive(Clone, Copy)]
 pub(super) struct Kit<'a> {
@@ -39,6 +36,8 @@ pub(super) struct Stage<'a> {
     pub features: Vec<Arc<Features>>,
     pub covers: Vec<Cover>,
     pub models: Arc<[Model; 2]>,
+    /// By drawing: how far the part may lie from where the artist put its centre, in working pixels.
+    pub center_reach: Vec<f64>,
     anchors: [Vec<Anchors>; 2],
     /// As `anchors`, without centres.
     pins: [Vec<Anchors>; 2],
@@ -80,7 +79,20 @@ impl<'a> Stage<'a> {
         };
         let (anchors, pins) = (anchors(&Correction::clone), anchors(&Correction::pins_only));
         let covers = drawings.iter().map(|_| Cover::none(width)).collect();
-        Ok(Self { job, kit, scale, drawings, features, covers, models, anchors, pins, steps_done: AtomicUsize::new(0) })
+        let center_reach = vec![0.0; drawings.len()];
+        Ok(Self {
+            job,
+            kit,
+            scale,
+            drawings,
+            features,
+            covers,
+            models,
+            center_reach,
+            anchors,
+            pins,
+            steps_done: AtomicUsize::new(0),
+        })
     }
 
     /// A drawing as the model of one key sees it.
@@ -98,20 +110,10 @@ impl<'a> Stage<'a> {
         Scenery { anchors: &self.pins[model][drawing], ..self.scenery(model, drawing) }
     }
 
-    /// How far from where the artist put the part's centre it may lie, in working pixels.
-    pub fn center_reach(&self) -> f64 {
-        CENTER_REACH * self.models[0].texture.mesh.size
-    }
-
     /// Whether control points (working pixels) are about where the artist put their centre.
     pub fn near_center(&self, drawing: usize, points: &[Point]) -> bool {
         let center = self.correction(drawing).and_then(|c| c.center);
-        center.is_none_or(|c| polygon::center(points).distance(c / self.scale) <= self.center_reach())
-    }
-
-    /// Whether the artist put the part's centre on a drawing.
-    pub fn centered(&self, drawing: usize) -> bool {
-        self.correction(drawing).is_some_and(|c| c.center.is_some())
+        center.is_none_or(|c| polygon::center(points).distance(c / self.scale) <= self.center_reach[drawing])
     }
 
     /// What the artist corrected on a drawing.
