@@ -49,10 +49,11 @@ def test_only_touched_spans_are_solved_again(session):
     assert after[:7] == before["red"][:7]
     assert session.tracks("blau ü").points.tolist() == before["blau ü"]
 
-    session.set_center("blau ü", 3, (30.0, 46.0))
+    center = [sum(p[axis] for p in before["blau ü"][3]) / 4 + move for axis, move in ((0, 1.5), (1, -1.0))]
+    session.set_center("blau ü", 3, tuple(center))
     assert [(job.part, job.first) for job in session.track().jobs if job.solved] == [("blau ü", 0)]
     points = session.tracks("blau ü").points.tolist()[3]
-    assert [sum(p[axis] for p in points) / 4 for axis in (0, 1)] == pytest.approx([30.0, 46.0], abs=1e-9)
+    assert [sum(p[axis] for p in points) / 4 for axis in (0, 1)] == pytest.approx(center, abs=1e-9)
 
     session.unpin("red", 9)
     session.clear_center("blau ü", 3)

@@ -71,12 +71,13 @@ fn constrained(stage: &Stage, d: usize, pool: &[Hypothesis]) -> Result<Vec<Hypot
     let mut found: Vec<Hypothesis> = Vec::new();
     for model in 0..2 {
         let scenery = stage.scenery(model, d);
+        let settler = stage.models[model].settler(&scenery);
         let own: Vec<&Hypothesis> = pool.iter().filter(|h| h.model == model).collect();
         let from = |h: &&Hypothesis| {
             let turned = TURNS.iter().map(|degrees| scenery.anchors.turned(&h.pose.nodes, degrees.to_radians()));
             let settled = std::iter::once(h.pose.nodes.clone())
                 .chain(turned)
-                .map(|start| stage.models[model].settled(&scenery, &start));
+                .map(|start| stage.models[model].measured(&scenery, settler.settle(&start)));
             std::iter::once(stage.models[model].drawn(&scenery, &h.pose.nodes, &h.differences))
                 .chain(settled)
                 .collect::<Vec<Pose>>()

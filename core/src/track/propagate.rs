@@ -6,7 +6,7 @@
 
 use super::TrackError;
 use super::features::Features;
-use super::lattice::align::{Aligner, Target, draw, settle};
+use super::lattice::align::{Aligner, Settler, Target, draw, settle};
 use super::lattice::anchors::Anchors;
 use super::lattice::texture::{Cover, Texture};
 use super::store::FLOW_LEVEL;
@@ -59,10 +59,10 @@ pub struct Pose {
 impl Model {
     /// Aligns each start on the coarsest level, and polishes the best two.
     pub fn best_of(&self, scenery: &Scenery, starts: Vec<Vec<Point>>) -> Pose {
-        let target = scenery.target();
+        let (target, settler) = (scenery.target(), self.settler(scenery));
         let mut poses = Vec::new();
         for start in starts {
-            let start = settle(&self.texture.mesh, &start, scenery.anchors);
+            let start = settler.settle(&start);
             let aligned = self.aligner.align(&self.texture, target, &start, &[0]);
             poses.push(self.measured(scenery, aligned));
             poses.push(self.measured(scenery, start));
@@ -85,9 +85,9 @@ impl Model {
         self.measured(scenery, nodes)
     }
 
-    /// A pose brought to its anchors, with its energy.
-    pub fn settled(&self, scenery: &Scenery, start: &[Point]) -> Pose {
-        self.measured(scenery, settle(&self.texture.mesh, start, scenery.anchors))
+    /// Brings poses to the anchors of a drawing.
+    pub fn settler<'a>(&'a self, scenery: &Scenery<'a>) -> Settler<'a> {
+        Settler::new(&self.texture.mesh, scenery.anchors)
     }
 
     /// A pose drawn to its anchors; what fits the picture stays where it is. `differences` as of

@@ -115,24 +115,47 @@ impl Aligner {
     }
 }
 
-/// A bare lattice brought to its anchors with as little bending as possible, from `start`.
-pub fn settle(mesh: &Mesh, start: &[Point], anchors: &Anchors) -> Vec<Point> {
-    if anchors.is_empty() {
-        return start.to_vec();
+/// Brings a bare lattice to its anchors with as little bending as possible. The equations are the same for every start.
+pub struct Settler<'a> {
+    mesh: &'a Mesh,
+    anchors: &'a Anchors,
+    equations: Option<Equations>,
+}
+
+impl<'a> Settler<'a> {
+    /// For one lattice and what is fixed of it.
+    pub fn new(mesh: &'a Mesh, anchors: &'a Anchors) -> Self {
+        let equations = || {
+            let mut matrix = shape::stiffness(mesh);
+            (0..matrix.size()).for_each(|i| matrix.add(i, i, 1e-4));
+            Equations::new(matrix, anchors)
+        };
+        Self { mesh, anchors, equations: if anchors.is_empty() { None } else { equations() } }
     }
-    let mut nodes = anchors.approach(start);
-    let mut matrix = shape::stiffness(mesh);
-    (0..matrix.size()).for_each(|i| matrix.add(i, i, 1e-4));
-    let Some(equations) = Equations::new(matrix, anchors) else { return nodes };
-    for _ in 0..SETTLING {
-        let mut gradient = vec![0.0; 2 * nodes.len()];
-        shape::add_gradient(mesh, &nodes, &shape::rotations(mesh, &nodes), -1.0, &mut gradient);
-        equations.solve(&mut gradient, &nodes, anchors);
-        if moved(&gradient, &mut nodes, f64::INFINITY).is_none() {
-            break;
+
+    /// The nodes from `start`; those of the start where nothing is fixed.
+    pub fn settle(&self, start: &[Point]) -> Vec<Point> {
+        if self.anchors.is_empty() {
+            return start.to_vec();
         }
+        let mut nodes = self.anchors.approach(start);
+        let Some(equations) = &self.equations else { return nodes };
+        for _ in 0..SETTLING {
+            let mut gradient = vec![0.0; 2 * nodes.len()];
+            let rotations = shape::rotations(self.mesh, &nodes);
+            shape::add_gradient(self.mesh, &nodes, &rotations, -1.0, &mut gradient);
+            equations.solve(&mut gradient, &nodes, self.anchors);
+            if moved(&gradient, &mut nodes, f64::INFINITY).is_none() {
+                break;
+            }
+        }
+        nodes
     }
-    nodes
+}
+
+/// One pose settled.
+pub fn settle(mesh: &Mesh, start: &[Point], anchors: &Anchors) -> Vec<Point> {
+    Settler::new(mesh, anchors).settle(start)
 }
 
 /// A pose drawn to its anchors, while its nodes are held to where they are by the weights in `hold` (beside a lattice's

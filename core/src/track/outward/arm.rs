@@ -295,12 +295,14 @@ impl Growing<'_> {
     /// The hypotheses of a corrected drawing, made to obey.
     fn constrained(&self, seen: &Seen, pool: &[Hypothesis]) -> Vec<Hypothesis> {
         let (model, scenery) = (self.ground.model, seen.scenery());
+        let settler = model.settler(&scenery);
+        let settled = |nodes: &[Point]| model.measured(&scenery, settler.settle(nodes));
         let mut starts: Vec<Pose> = Vec::new();
         for h in pool {
             starts.push(model.drawn(&scenery, &h.pose.nodes, &h.differences));
-            starts.push(model.settled(&scenery, &h.pose.nodes));
+            starts.push(settled(&h.pose.nodes));
             let turned = TURNS.iter().map(|degrees| seen.anchors.turned(&h.pose.nodes, degrees.to_radians()));
-            starts.extend(turned.map(|nodes| model.settled(&scenery, &nodes)));
+            starts.extend(turned.map(|nodes| settled(&nodes)));
         }
         starts.sort_by(|a, b| a.energy.total_cmp(&b.energy));
         let mut kept: Vec<Hypothesis> = Vec::new();
