@@ -88,11 +88,13 @@ pub(super) struct Finished {
     pub track: SpanTrack,
 }
 
-/// A drawing's chosen pose as it is seen under what hides it, where that changes it, and its control points.
+/// A drawing's chosen pose as it is seen under what hides it, where that changes it, its control points, and how sure they
+/// are.
 #[derive(Clone)]
 struct Settled {
     seen: Option<Hypothesis>,
     points: Vec<Point>,
+    confidence: Vec<f64>,
 }
 
 impl Finished {
@@ -157,7 +159,19 @@ fn settle(stage: &Stage, pooled: &Pooled, plan: &Finish, refiner: &OnceLock<Opti
         Some(refiner) if between => refined(stage, refiner, d, share, rough),
         _ => rough,
     };
-    Settled { seen, points }
+    let confidence = confidence(stage, d, pool, chosen, seen.as_ref());
+    Settled { seen, points, confidence }
+}
+
+/// How sure each control point of a drawing is, the chosen pose being as it is seen.
+fn confidence(stage: &Stage, d: usize, pool: &[Hypothesis], chosen: usize, seen: Option<&Hypothesis>) -> Vec<f64> {
+    let replaced = seen.map(|seen| {
+        let mut pool = pool.to_vec();
+        pool[chosen] = seen.clone();
+        pool
+    });
+    let pool = replaced.as_deref().unwrap_or(pool);
+    confidence::of_drawing(&stage.models, &stage.features[d], &stage.covers[d], pool, chosen)
 }
 
 /// The contour's own templates, where it has a shape.
@@ -201,12 +215,7 @@ fn track(stage: &Stage, pooled: &Pooled, settled: &[Settled], path: &[usize]) ->
     let last = stage.job.span.len() - 1;
     let (mut points, mut sure) = (Vec::new(), Vec::new());
     for (d, drawing) in stage.drawings.iter().enumerate() {
-        let Settled { seen, points: found } = &settled[d];
-        let mut pool = pooled.pools[d].clone();
-        if let Some(seen) = seen {
-            pool[path[d]] = seen.clone();
-        }
-        let confidence = confidence::of_drawing(&stage.models, &stage.features[d], &stage.covers[d], &pool, path[d]);
+        let Settled { points: found, confidence, .. } = &settled[d];
         for index in drawing.first..=drawing.last {
             let mut on_frame = stage.key_of(d).unwrap_or_else(|| found.iter().map(|&p| p * stage.scale).collect());
             stage.job.enforce_within(stage.center_reach[d] * stage.scale, index, &mut on_frame);

@@ -68,9 +68,15 @@ pub fn best_path(candidates: &[Vec<Candidate>], smoothness: Smoothness) -> Vec<u
         let mut next = vec![vec![f64::INFINITY; count(i)]; count(i - 1)];
         let mut from = vec![vec![0; count(i)]; count(i - 1)];
         for g in 0..count(i - 1) {
+            let mut order: Vec<usize> = (0..count(i - 2)).collect();
+            order.sort_by(|&a, &b| costs[a][g].total_cmp(&costs[b][g]));
             for h in 0..count(i) {
                 let step = own(i, h) + speed(i, g, h);
-                for f in 0..count(i - 2) {
+                for &f in &order {
+                    // A change of speed costs nothing at the least: none of those that follow can do better.
+                    if costs[f][g] + step >= next[g][h] {
+                        break;
+                    }
                     let bend = smoothness.acceleration(points(i - 2, f), points(i - 1, g), points(i, h));
                     let cost = costs[f][g] + bend + step;
                     if cost < next[g][h] {

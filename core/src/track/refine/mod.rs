@@ -26,6 +26,7 @@ use super::features::Features;
 use super::lattice::texture::Cover;
 use crate::geometry::Point;
 use links::Links;
+use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use response::Window;
 use samples::Samples;
 use std::collections::BTreeMap;
@@ -89,6 +90,7 @@ impl Refiner {
         for (window, rounds) in &PASSES {
             let (places, angles) = self.samples.frames(&points);
             let maps: Vec<response::Map> = (0..places.len())
+                .into_par_iter()
                 .map(|s| response::map(frame, window, (places[s], angles[s]), self.templates.of(s)))
                 .collect();
             for &(reach, weight) in rounds {
@@ -109,9 +111,12 @@ impl Refiner {
     pub fn cost(&self, frame: &Frame, points: &[Point]) -> f64 {
         let window = Window { reach: [0, 0] };
         let (places, angles) = self.samples.frames(points);
+        let maps: Vec<response::Map> = (0..places.len())
+            .into_par_iter()
+            .map(|s| response::map(frame, &window, (places[s], angles[s]), self.templates.of(s)))
+            .collect();
         let (mut sum, mut weights) = (0.0, 1e-6);
-        for s in 0..places.len() {
-            let map = response::map(frame, &window, (places[s], angles[s]), self.templates.of(s));
+        for map in maps {
             sum += map.shown * f64::from(map.costs[0]).min(LOST);
             weights += map.shown;
         }

@@ -46,7 +46,10 @@ struct Seen {
 pub fn map(frame: &Frame, window: &Window, (place, tangent): (Point, Point), templates: [&Template; 2]) -> Map {
     let [rows, columns] = window.reach.map(|reach| 2 * reach as usize + 1);
     let padded = columns.next_multiple_of(LANES);
-    let seen = seen(frame, window, (place, tangent), padded - columns);
+    let seen = vectorised(
+        #[inline(always)]
+        || seen(frame, window, (place, tangent), padded - columns),
+    );
     let serves = templates.map(|t| t.shown > SHOWN && t.weight > 0.0);
     let used = (0..2).filter(|&k| serves[k] || serves == [false, false]).map(|k| templates[k]);
     let mut costs = vec![1.0f32; rows * columns];
@@ -69,6 +72,7 @@ pub fn map(frame: &Frame, window: &Window, (place, tangent): (Point, Point), tem
 }
 
 /// Reads the picture wherever an offset of a template may come to lie, and `padding` places beyond.
+#[inline(always)]
 fn seen(frame: &Frame, window: &Window, (place, tangent): (Point, Point), padding: usize) -> Seen {
     let size = [0, 1].map(|axis: usize| 2 * (window.reach[axis] + HALF[axis]) as usize + 1);
     let stride = size[1] + padding;
