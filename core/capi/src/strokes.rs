@@ -1,7 +1,7 @@
 //! Fitting and hidden lines of whole drawings: strokes as flat arrays in, flat arrays out.
 
 use crate::status::Failure;
-use rayon::prelude::*;
+use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use rototoon::fit::{FitError, Fitted, Options, fit};
 use rototoon::geometry::Point;
 use rototoon::tween::hidden::{Cover, Depth, FillRule, Form, Line, hidden_lines};

@@ -62,6 +62,9 @@ impl Chance {
     }
 }
 
+/// Distance of a closed stroke's start from its true one that still counts as found, in lengths of the stroke.
+const NEAR_START: f64 = 0.05;
+
 /// A stroke of a drawing, and what it is.
 struct Known {
     part: usize,
@@ -71,7 +74,44 @@ struct Known {
 }
 
 /// Matches the strokes of two frames, painted where `paints` are given by part.
-pub fn measure(set: &Set, (from, to): (i32, i32), paints: &[Option<[f32; 3]>], chance: &mut Chance) -> Result<Score> {
+pub fn measure(set: &Set, frames: (i32, i32), paints: &[Option<[f32; 3]>], chance: &mut Chance) -> Result<Score> {
+    let (first, second, there) = drawings(set, frames, chance);
+    let painted = |k: &Known| Stroke { colour: paints.get(k.part).copied().flatten(), ..k.stroke.clone() };
+    let strokes = |known: &[Known]| known.iter().map(painted).collect::<Vec<_>>();
+    let found = match_strokes(&strokes(&first), &strokes(&second), &[], &Options::default(), &Silent)?;
+    let tell = |part: usize, what: &str| {
+        if std::env::var_os("BENCH_TWEEN_WRONG").is_some() {
+            println!("  {} {}-{}: {:?} {what}", set.name, frames.0, frames.1, set.parts[part].name);
+        }
+    };
+    let by_index = first.iter().zip(&second).filter(|(a, b)| a.part == b.part).count();
+    let mut score = Score { there, by_index, ..Score::default() };
+    for pair in &found.pairs {
+        let (a, b) = (&first[pair.from], &second[pair.to]);
+        if a.part != b.part {
+            score.wrong += 1;
+            tell(a.part, &format!("as {:?}", set.parts[b.part].name));
+            continue;
+        }
+        score.right += 1;
+        if a.stroke.closed {
+            let off = pair.start - b.start;
+            let off = off - off.round();
+            score.closed += 1;
+            score.starts += usize::from(off.abs() < NEAR_START);
+            if off.abs() >= NEAR_START {
+                tell(a.part, &format!("start off by {off:.2}"));
+            }
+        }
+    }
+    let alone = |&&i: &&usize| second.iter().any(|k| k.part == first[i].part);
+    found.vanished.iter().filter(alone).for_each(|&i| tell(first[i].part, "alone"));
+    Ok(score)
+}
+
+/// The strokes of two frames in orders of their own, those of the second drawn in another way, a tenth of the parts missing
+/// on one side; and the number of parts on both.
+fn drawings(set: &Set, (from, to): (i32, i32), chance: &mut Chance) -> (Vec<Known>, Vec<Known>, usize) {
     let there: Vec<usize> =
         (0..set.parts.len()).filter(|&i| [from, to].iter().all(|f| set.parts[i].points.contains_key(f))).collect();
     let away = if there.len() < 4 { 0 } else { there.len().div_ceil(10) };
@@ -79,62 +119,16 @@ pub fn measure(set: &Set, (from, to): (i32, i32), paints: &[Option<[f32; 3]>], c
     let mut kept = chance.order(there.len());
     let lost: Vec<usize> = kept.split_off(there.len() - away).into_iter().map(|k| there[k]).collect();
     let missing = |part: usize, first: bool| first == first_loses && lost.contains(&part);
-    let first: Vec<Known> = chance
-        .order(there.len())
-        .into_iter()
-        .map(|k| there[k])
-        .filter(|&i| !missing(i, true))
-        .map(|i| Known {
-            part: i,
-            stroke: Stroke::new(set.parts[i].points[&from].clone(), set.parts[i].closed),
-            start: 0.0,
-        })
-        .collect();
+    let as_is = |i: usize| {
+        let stroke = Stroke::new(set.parts[i].points[&from].clone(), set.parts[i].closed);
+        Known { part: i, stroke, start: 0.0 }
+    };
     let order = chance.order(there.len());
-    let second: Vec<Known> = order
-        .into_iter()
-        .map(|k| there[k])
-        .filter(|&i| !missing(i, false))
-        .map(|i| redrawn(set, i, to, chance))
-        .collect();
-    let painted = |k: &Known| Stroke { colour: paints.get(k.part).copied().flatten(), ..k.stroke.clone() };
-    let strokes = |known: &[Known]| known.iter().map(painted).collect::<Vec<_>>();
-    let found = match_strokes(&strokes(&first), &strokes(&second), &[], &Options::default(), &Silent)?;
-    let mut score = Score { there: there.len() - away, ..Score::default() };
-    for pair in &found.pairs {
-        let (a, b) = (&first[pair.from], &second[pair.to]);
-        if a.part != b.part {
-            score.wrong += 1;
-            if std::env::var_os("BENCH_TWEEN_WRONG").is_some() {
-                println!("  {} {from}-{to}: {:?} as {:?}", set.name, set.parts[a.part].name, set.parts[b.part].name);
-            }
-            continue;
-        }
-        score.right += 1;
-        if a.stroke.closed {
-            score.closed += 1;
-            let off = pair.start - b.start;
-            let near = (off - off.round()).abs() < 0.05;
-            score.starts += usize::from(near);
-            if !near && std::env::var_os("BENCH_TWEEN_WRONG").is_some() {
-                println!(
-                    "  {} {from}-{to}: {:?} start off by {:.2}",
-                    set.name,
-                    set.parts[a.part].name,
-                    off - off.round()
-                );
-            }
-        }
-    }
-    if std::env::var_os("BENCH_TWEEN_WRONG").is_some() {
-        for i in &found.vanished {
-            if second.iter().any(|k| k.part == first[*i].part) {
-                println!("  {} {from}-{to}: {:?} alone", set.name, set.parts[first[*i].part].name);
-            }
-        }
-    }
-    score.by_index = first.iter().zip(&second).filter(|(a, b)| a.part == b.part).count();
-    Ok(score)
+    let first = order.into_iter().map(|k| there[k]).filter(|&i| !missing(i, true)).map(as_is).collect();
+    let order = chance.order(there.len());
+    let kept = order.into_iter().map(|k| there[k]).filter(|&i| !missing(i, false));
+    let second = kept.map(|i| redrawn(set, i, to, chance)).collect();
+    (first, second, there.len() - away)
 }
 
 /// A contour drawn in another way.

@@ -36,7 +36,7 @@ use crate::scene::FrameNumber;
 use deform::Deform;
 use join::{Asked, Ends, Run};
 use motion::{Hung, Motion};
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeSet;
 
 /// How far the drawings between two keys have come.

@@ -7,7 +7,7 @@ use super::outline::{Outline, Way, likely, wrap};
 use super::{Fixed, Options};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::{Point, polygon};
-use rayon::prelude::*;
+use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 /// Weight of the unexplained share of the shape.
 const SHAPE: f64 = 2.0;

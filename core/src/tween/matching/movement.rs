@@ -5,7 +5,7 @@ use super::costs::{Figure, Rows, Ways, bound};
 use super::relaxation::{self, Chosen};
 use super::{Fixed, Options};
 use crate::geometry::Point;
-use rayon::prelude::*;
+use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 /// Step in radians of the proposed turns of the whole drawing.
 const TURN_STEP: f64 = std::f64::consts::PI / 12.0;

@@ -12,7 +12,7 @@ use super::costs::{Figure, Label, Rows};
 use super::outline::{Outline, Way};
 use crate::geometry::Point;
 use crate::numeric::sparse_assignment::{Choice, assign_sparse};
-use rayon::prelude::*;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 /// Neighbours of a stroke.
 const NEIGHBOURS: usize = 6;
