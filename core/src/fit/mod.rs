@@ -53,10 +53,7 @@ mod tests;
 pub use together::{Polyline, fit_together};
 
 use crate::curve::Spline;
-use crate::geometry::Point;
-
-/// Coordinates beyond this are refused: their squares would lose what the tolerance asks for.
-pub const FARTHEST: f64 = 1e9;
+use crate::geometry::{Point, polyline};
 
 /// How curves are fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -190,8 +187,7 @@ fn checked(points: &[Point], tolerance: f64) -> Result<(), FitError> {
     if points.is_empty() {
         return Err(FitError::Empty);
     }
-    let outside = |p: &Point| p.is_nan() || p.abs().max_element() > FARTHEST;
-    match points.iter().position(outside) {
+    match polyline::first_unusable(points) {
         Some(index) => Err(FitError::Point { index, x: points[index].x, y: points[index].y }),
         None => Ok(()),
     }

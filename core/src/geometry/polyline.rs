@@ -2,6 +2,15 @@
 
 use super::Point;
 
+/// Coordinates beyond this are refused where drawings come in: differences and squares of them would lose what is smaller
+/// than a pixel.
+pub const FARTHEST: f64 = 1e9;
+
+/// Index of the first point that is no place, or too far away to compute with.
+pub fn first_unusable(points: &[Point]) -> Option<usize> {
+    points.iter().position(|p| p.is_nan() || p.abs().max_element() > FARTHEST)
+}
+
 /// Length in pixels of a polyline; of a closed one the segment from the last point to the first counts too.
 pub fn length(points: &[Point], closed: bool) -> f64 {
     segments(points, closed).map(|(a, b)| a.distance(b)).sum()

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 pub struct Correction {
     /// Control points by index: hard constraints.
     pub pins: BTreeMap<usize, Point>,
-    /// Where the mean of the control points lies: a hard constraint to the paper's solvers, a place to look at to the default
-    /// one.
+    /// Where the mean of the control points lies: a hard constraint, but to the default solver a place to look at if the
+    /// part was moved far.
     pub center: Option<Point>,
 }
 
@@ -90,30 +90,25 @@ impl Correction {
         Self { center: None, ..self.clone() }
     }
 
-    /// Sets the pins, and shifts the rest as [`Correction::enforce`] does only if the centre is further than `reach` from
-    /// where the artist put it.
+    /// Fixes control points so that the correction holds exactly: pins are set, then the points that are not pinned are
+    /// shifted together until the centre is where the artist put it.
+    pub fn enforce(&self, points: &mut [Point]) {
+        self.enforce_within(0.0, points);
+    }
+
+    /// The same, but a centre that is no further than `reach` from where the artist put it stays.
     pub fn enforce_within(&self, reach: f64, points: &mut [Point]) {
         for (&j, &p) in &self.pins {
             points[j] = p;
         }
-        if self.center.is_some_and(|center| polygon::center(points).distance(center) > reach) {
-            self.enforce(points);
-        }
-    }
-
-    /// Fixes control points so that the correction holds exactly: pins are set, then the points that are not pinned are
-    /// shifted together until the centre is where the artist put it.
-    pub fn enforce(&self, points: &mut [Point]) {
-        for (&j, &p) in &self.pins {
-            points[j] = p;
-        }
+        let Some(center) = self.center.filter(|center| polygon::center(points).distance(*center) > reach) else {
+            return;
+        };
         let free = points.len() - self.pins.len();
-        if let (Some(center), true) = (self.center, free > 0) {
-            let missing = center * points.len() as f64 - points.iter().sum::<Point>();
-            for (j, p) in points.iter_mut().enumerate() {
-                if !self.pins.contains_key(&j) {
-                    *p += missing / free as f64;
-                }
+        let missing = center * points.len() as f64 - points.iter().sum::<Point>();
+        for (j, p) in points.iter_mut().enumerate() {
+            if !self.pins.contains_key(&j) {
+                *p += missing / free as f64;
             }
         }
     }

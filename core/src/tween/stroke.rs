@@ -2,9 +2,6 @@
 
 use crate::geometry::{Point, polyline};
 
-/// Coordinates beyond this are refused: their squares would lose what the methods need.
-pub const FARTHEST: f64 = 1e9;
-
 /// A line or outline as it was drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stroke {
@@ -49,7 +46,7 @@ pub struct BadPoint {
 /// The first point of the strokes that is no place.
 pub(super) fn checked(strokes: &[Stroke]) -> Result<(), BadPoint> {
     for (stroke, points) in strokes.iter().map(|s| &s.points).enumerate() {
-        if let Some(point) = points.iter().position(|p| p.is_nan() || p.abs().max_element() > FARTHEST) {
+        if let Some(point) = polyline::first_unusable(points) {
             return Err(BadPoint { stroke, point, x: points[point].x, y: points[point].y });
         }
     }

@@ -260,3 +260,38 @@ fn thin(texels: Vec<Texel>) -> Vec<Texel> {
     }
     (0..MOST_SAMPLES).map(|k| texels[k * (count - 1) / (MOST_SAMPLES - 1)].clone()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texel(own: Option<[f32; 3]>) -> Texel {
+        let mesh = Mesh::new(&[(0.0, 0.0), (40.0, 0.0), (40.0, 40.0)].map(|(x, y)| Point::new(x, y)), true);
+        let mut key = Sample::default();
+        key[..3].copy_from_slice(&[0.9, 0.9, 0.9]);
+        let (weights, products) = ([0.25; 4], [0.0625; PAIRS.len()]);
+        Texel { binding: mesh.bind(Point::new(30.0, 10.0)), key, weight: BAND_WEIGHT, own, cell: 0, weights, products }
+    }
+
+    #[test]
+    fn another_ground_costs_little_but_the_part_s_own_colour_much() {
+        let (same, other, own) = ([0.9, 0.9, 0.9], [0.1, 0.3, 0.9], [0.8, 0.2, 0.1]);
+        let outside = texel(Some(own));
+        assert_eq!(outside.cost(&same), 0.0);
+        assert_eq!(outside.cost(&other), OTHER_GROUND);
+        assert_eq!(outside.cost(&own), WORST);
+        // Inside, and where the part was like its ground, a wrong colour is just wrong.
+        assert_eq!(texel(None).cost(&other), WORST);
+        // A ground that has changed a little costs what it has changed by.
+        assert!((outside.cost(&[0.9, 0.9, 0.8]) - 0.01).abs() < 1e-6);
+    }
+
+    #[test]
+    fn across_a_contour_lies_as_far_inside_as_outside() {
+        let square = [(10.0, 10.0), (50.0, 10.0), (50.0, 50.0), (10.0, 50.0)].map(|(x, y)| Point::new(x, y));
+        let mesh = Mesh::new(&square, true);
+        assert!(mesh.across(Point::new(30.0, 6.0)).unwrap().distance(Point::new(30.0, 14.0)) < 1e-9);
+        assert_eq!(Mesh::new(&square, false).across(Point::new(30.0, 6.0)), None, "a line has no inside");
+        assert_eq!(mesh.across(Point::new(30.0, -35.0)), None, "it comes out on the other side");
+    }
+}

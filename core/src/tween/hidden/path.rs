@@ -2,10 +2,7 @@
 
 use super::tree::{Bounds, around};
 use crate::curve::{Quadratic, Spline};
-use crate::geometry::Point;
-
-/// Coordinates beyond this are refused: differences between them would lose what is smaller than a pixel.
-const FARTHEST: f64 = 1e9;
+use crate::geometry::{Point, polyline};
 
 /// Points that make no path.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -143,8 +140,7 @@ fn checked(points: &[Point]) -> Result<(), PathError> {
     if points.is_empty() {
         return Err(PathError::Empty);
     }
-    let outside = |p: &Point| p.is_nan() || p.abs().max_element() > FARTHEST;
-    match points.iter().position(outside) {
+    match polyline::first_unusable(points) {
         Some(index) => Err(PathError::Point { index, x: points[index].x, y: points[index].y }),
         None => Ok(()),
     }

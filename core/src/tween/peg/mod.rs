@@ -25,8 +25,8 @@ mod timing;
 pub use timing::{Timing, TimingError};
 pub(in crate::tween) use timing::{hermite, monotone_slope};
 
-use super::stroke::FARTHEST;
 use crate::geometry::Point;
+use crate::geometry::polyline::FARTHEST;
 use crate::geometry::similarity::Similarity;
 
 /// Scales nearer to zero than this are refused: nothing that hangs on such a peg could be seen.
