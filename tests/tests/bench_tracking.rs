@@ -84,3 +84,22 @@ fn errors_name_what_is_wrong() {
     assert!(missing.contains("project.json"), "{missing}");
     assert!(error(&["run", set, "--set", "a", "--preset", "best", "--out", "out"]).contains("no preset \"best\""));
 }
+
+#[test]
+fn what_is_left_out_is_left_out_and_said() {
+    let folder = tempfile::tempdir().unwrap();
+    SMALL.write(&folder.path().join("set")).unwrap();
+    let whole = outcome(folder.path(), "rototoon", &["--no-edits"]);
+    let lessened = outcome(folder.path(), "rototoon", &["--no-edits", "--without", "refinement"]);
+    assert_eq!(lessened.preset, "rototoon without refinement");
+    assert_ne!(lessened.frames, whole.frames, "it makes a difference");
+    let set = folder.path().join("set");
+    let arguments = ["run", set.to_str().unwrap(), "--set", "limbs", "--out", "none", "--no-edits", "--preset"];
+    let said = |more: &[&str]| {
+        let ran = program(&[&arguments, more].concat());
+        assert!(!ran.status.success());
+        String::from_utf8_lossy(&ran.stderr).into_owned()
+    };
+    assert!(said(&["rototoon", "--without", "luck"]).contains("no mechanism \"luck\""));
+    assert!(said(&["zhou2011", "--without", "search"]).contains("left out of the preset \"zhou2011\""));
+}

@@ -10,7 +10,7 @@ use clap::Args;
 use rototoon_tests::benchmark::growth::{self, Measured, Sample};
 use rototoon_tests::benchmark::run::Outcome;
 use rototoon_tests::benchmark::table::{self, Failure};
-use rototoon_tests::benchmark::{presets, write_files};
+use rototoon_tests::benchmark::{mechanisms, presets, write_files};
 use rototoon_tests::puppet::Puppet;
 use rototoon_tests::sample;
 use std::fmt::Write;
@@ -33,6 +33,9 @@ pub struct Arguments {
     /// Threads; 0 for one a core.
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
+    /// The default preset alone, whole and with each of its mechanisms left out.
+    #[arg(long, conflicts_with = "presets")]
+    ablations: bool,
     /// Instead: how seconds and memory grow with frames, parts, points and pixels of drawn scenes.
     #[arg(long, conflicts_with = "dirs")]
     growth: bool,
@@ -61,6 +64,20 @@ pub fn bench_tracking(arguments: &Arguments) -> Result<()> {
     bench.sets(arguments, &known)
 }
 
+/// A way to track.
+struct Way {
+    preset: &'static str,
+    /// A mechanism that is left out.
+    without: Option<&'static str>,
+}
+
+impl Way {
+    /// As the results call it.
+    fn name(&self) -> String {
+        self.without.map_or(self.preset.to_owned(), |id| format!("{} without {id}", self.preset))
+    }
+}
+
 /// The optimised program.
 fn program() -> Result<PathBuf> {
     eprintln!("building the optimised benchmark");
@@ -76,19 +93,22 @@ struct Bench {
 }
 
 impl Bench {
-    fn sets(&self, arguments: &Arguments, known: &[&str]) -> Result<()> {
+    fn sets(&self, arguments: &Arguments, known: &[&'static str]) -> Result<()> {
         let sets = self.folders(&arguments.dirs)?;
         let wanted = |id: &&&str| arguments.presets.is_empty() || arguments.presets.iter().any(|other| other == **id);
-        let presets: Vec<&str> = known.iter().filter(wanted).copied().collect();
+        let whole = known.iter().filter(wanted).map(|&preset| Way { preset, without: None });
+        let lessened = mechanisms().into_iter().map(|id| Way { preset: known[0], without: Some(id) });
+        let presets: Vec<Way> =
+            if arguments.ablations { whole.take(1).chain(lessened).collect() } else { whole.collect() };
         let (mut outcomes, mut failures): (Vec<Outcome>, Vec<Failure>) = (Vec::new(), Vec::new());
         for (k, (set, folder)) in sets.iter().enumerate() {
             for (i, preset) in presets.iter().enumerate() {
-                eprintln!("[{}/{}] {set}, {preset}", k * presets.len() + i + 1, sets.len() * presets.len());
+                eprintln!("[{}/{}] {set}, {}", k * presets.len() + i + 1, sets.len() * presets.len(), preset.name());
                 match self.run(set, folder, preset, arguments.no_edits) {
                     Ok(outcome) => outcomes.push(outcome),
                     Err(error) => {
-                        eprintln!("{set}, {preset}: {error:#}");
-                        failures.push((set.clone(), (*preset).to_owned(), format!("{error:#}")));
+                        eprintln!("{set}, {}: {error:#}", preset.name());
+                        failures.push((set.clone(), preset.name(), format!("{error:#}")));
                     }
                 }
                 // After each run, so that an interrupted benchmark has its table.
@@ -123,15 +143,25 @@ impl Bench {
         Ok(sets)
     }
 
-    fn run(&self, set: &str, folder: &Path, preset: &str, no_edits: bool) -> Result<Outcome> {
-        let out = self.out.join(format!("{set}.{preset}"));
-        let results = self.out.join(format!("{set}.{preset}.json"));
+    fn run(&self, set: &str, folder: &Path, way: &Way, no_edits: bool) -> Result<Outcome> {
+        let name = format!("{set}.{}", way.name().replace(' ', "-"));
+        let (out, results) = (self.out.join(&name), self.out.join(format!("{name}.json")));
         // Results of an earlier run must not be taken for this one's.
         if results.exists() {
             std::fs::remove_file(&results).with_context(|| format!("cannot remove {results:?}"))?;
         }
         let mut start = command(&self.program);
-        start.arg("run").arg(folder).args(["--set", set, "--preset", preset, "--threads", &self.threads.to_string()]);
+        start.arg("run").arg(folder).args([
+            "--set",
+            set,
+            "--preset",
+            way.preset,
+            "--threads",
+            &self.threads.to_string(),
+        ]);
+        way.without.iter().for_each(|id| {
+            start.args(["--without", id]);
+        });
         start.arg("--out").arg(&out);
         if no_edits {
             start.arg("--no-edits");
@@ -246,6 +276,7 @@ mod tests {
             presets: vec!["best".into()],
             no_edits: true,
             threads: 0,
+            ablations: false,
             growth: false,
             memory: false,
         };

@@ -168,7 +168,8 @@ impl Session {
         let (preset, id) = preset(options.choice("preset"))?;
         let pictures = pictures(&mut self.pictures, &self.document, &self.folder)?;
         let scene = pipeline::in_effect(&self.document.scene);
-        let tracker = self.trackers.entry(id).or_insert_with(|| Tracker::new(TrackOptions { preset }));
+        let tracker =
+            self.trackers.entry(id).or_insert_with(|| Tracker::new(TrackOptions { preset, ..TrackOptions::default() }));
         let tracking = work::run(options.number("threads") as usize, go_on, |progress: &dyn Progress| {
             tracker.track(&scene, pictures, progress).map_err(|error| match error {
                 TrackError::Cancelled(_) => Failure::Cancelled,

@@ -26,7 +26,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let preset = Preset::from_id(id).ok_or_else(|| Failure::Use(format!("no preset {id:?}")))?;
     let mut document = project::load(from)?;
     check_writable(to)?;
-    let options = TrackOptions { preset };
+    let options = TrackOptions { preset, ..TrackOptions::default() };
     let document = progress::run(arguments::threads(given), |bar| {
         let tracking = pipeline::track(&mut document, project::folder(from), &options, bar)?;
         say_ends(&document.scene, &tracking);

@@ -7,6 +7,7 @@ use super::corrected::freed;
 use super::drawings::Drawing;
 use super::job::{Correction, SpanSummary, SpanTrack, Termination};
 use super::lattice::texture::Cover;
+use super::mechanisms::Mechanism;
 use super::pool::{Hypothesis, hypothesis};
 use super::refine::{Frame, Key, Refiner};
 use super::rototoon::{Pooled, keys_only};
@@ -35,14 +36,14 @@ pub(super) struct Finish {
 }
 
 impl Finish {
-    /// The plan of member `m` of a stretch, whose paths are chosen.
+    /// The plan of member `m` of a stretch, whose paths are chosen; `hiding` is whether nearer parts hide it.
     pub fn of(
         scene: &Scene,
         tasks: &[Task],
         stretch: &[usize],
         members: &[&Pooled],
         paths: &[Vec<usize>],
-        m: usize,
+        (m, hiding): (usize, bool),
     ) -> Self {
         let own = members[m];
         let chosen = |k: usize, d: usize| &members[k].pools[d][paths[k][d]];
@@ -56,7 +57,7 @@ impl Finish {
             };
             let of_member = |k: usize| {
                 let (task, part) = (tasks[stretch[k]], &scene.parts[tasks[stretch[k]].part]);
-                if task.depth <= tasks[stretch[m]].depth || !part.closed || part.point_count() <= 2 {
+                if !hiding || task.depth <= tasks[stretch[m]].depth || !part.closed || part.point_count() <= 2 {
                     return None;
                 }
                 let span = members[k].job.span;
@@ -154,9 +155,13 @@ fn settle(stage: &Stage, pooled: &Pooled, plan: &Finish, refiner: &OnceLock<Opti
         })
     });
     let share = stage.drawings[d].first as f64 / (stage.job.span.len() - 1) as f64;
-    let rough = blended(pool, seen.as_ref().unwrap_or(&pool[chosen]), share);
+    let own = seen.as_ref().unwrap_or(&pool[chosen]);
+    let mixes = stage.kit.mechanisms.has(Mechanism::Blending);
+    let rough = if mixes { blended(pool, own, share) } else { own.points.clone() };
     let points = match refiner.get_or_init(|| self::refiner(stage)) {
-        Some(refiner) if between => refined(stage, refiner, d, share, rough),
+        Some(refiner) if between && stage.kit.mechanisms.has(Mechanism::Refinement) => {
+            refined(stage, refiner, d, share, rough)
+        }
         _ => rough,
     };
     let confidence = confidence(stage, d, pool, chosen, seen.as_ref());

@@ -24,6 +24,7 @@
 //! - `finish`: the chosen poses made into tracks, with [`refine`]: contours brought onto the drawing by its colours
 //! - [`confidence`]: how sure a point is
 //! - [`outward`]: parts with one key, followed until they are lost
+//! - [`mechanisms`]: what can be switched off to measure it
 //! - [`cuts`]: where the footage goes over to another shot
 //!
 //! The preset of Zhou & Xiao 2011:
@@ -49,6 +50,7 @@ pub mod job;
 pub mod joint;
 pub mod lattice;
 pub mod liang2012;
+pub mod mechanisms;
 mod mend;
 pub mod outward;
 pub mod part_by_part;
@@ -68,6 +70,7 @@ pub mod weakest;
 pub mod zhou2011;
 
 pub use job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
+pub use mechanisms::{Mechanism, Mechanisms};
 pub use outward::{Ending, TrackEnd};
 pub use tracker::{JobReport, PartTrack, Preset, SceneSolver, TrackError, TrackOptions, Tracker, Tracking};
 pub use weakest::{WeakestFrame, weakest_frame};

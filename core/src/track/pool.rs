@@ -3,9 +3,10 @@
 //! 1. Each key's model is carried through the span from its own key.
 //! 2. Where the two chains disagree, both models are searched over the whole picture.
 //! 3. A path is chosen; each chosen pose is carried to its neighbours once more, since what the search found on one
-//!    drawing is worth trying on the next; the path is chosen again.
+//!    drawing is worth trying on the next, unless both keys agree there already; the path is chosen again.
 
 use super::TrackError;
+use super::mechanisms::Mechanism;
 use super::propagate::{Pose, chain};
 use super::search::Templates;
 use super::select::{Candidate, Smoothness, best_path};
@@ -17,6 +18,9 @@ use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallel
 const DISAGREEMENT: f64 = 4.0;
 /// Mean distance (working pixels) below which a carried pose adds nothing to the pool.
 const KNOWN_PLACE: f64 = 1.0;
+/// Mean distance (working pixels) up to which a chosen pose is confirmed by one of the other key's model: neither has
+/// anything to learn from the neighbours.
+const CONFIRMED: f64 = 2.0;
 
 /// A hypothesis of the pool of a drawing.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,6 +82,9 @@ pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>), TrackError> {
 
 /// What comes of carrying the chosen hypotheses to their neighbours, both ways.
 pub(super) fn swept(stage: &Stage, pools: &Pools, path: &[usize]) -> Result<Pools, TrackError> {
+    if !stage.kit.mechanisms.has(Mechanism::Sweep) {
+        return Ok(vec![Vec::new(); pools.len()]);
+    }
     let (forwards, backwards) = rayon::join(|| sweep(stage, pools, path, true), || sweep(stage, pools, path, false));
     Ok(forwards?.into_iter().zip(backwards?).map(|(a, b)| a.into_iter().chain(b).collect()).collect())
 }
@@ -140,7 +147,7 @@ fn carried(stage: &Stage, model: usize) -> Result<Vec<Pose>, TrackError> {
 fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
     let lost: Vec<bool> =
         pools.iter().map(|pool| matches!(&pool[..], [a, b] if a.distance(b) >= DISAGREEMENT)).collect();
-    if !lost.contains(&true) {
+    if !lost.contains(&true) || !stage.kit.mechanisms.has(Mechanism::Search) {
         return Ok(vec![Vec::new(); pools.len()]);
     }
     let last = stage.drawings.len() - 1;
@@ -179,7 +186,7 @@ fn sweep(stage: &Stage, pools: &Pools, path: &[usize], forwards: bool) -> Result
     let mut carried: Option<Hypothesis> = None;
     for step in 1..last {
         let (to, from) = if forwards { (step, step - 1) } else { (last - step, last - step + 1) };
-        if from == 0 || from == last || stage.corrected(to) {
+        if from == 0 || from == last || stage.corrected(to) || confirmed(&pools[to], path[to]) {
             carried = None;
             continue;
         }
@@ -198,6 +205,12 @@ fn sweep(stage: &Stage, pools: &Pools, path: &[usize], forwards: bool) -> Result
         carried = better.then_some(new);
     }
     Ok(found)
+}
+
+/// Whether the other key's model says the same as a hypothesis.
+fn confirmed(pool: &[Hypothesis], chosen: usize) -> bool {
+    let chosen = &pool[chosen];
+    pool.iter().any(|h| h.model != chosen.model && h.distance(chosen) < CONFIRMED)
 }
 
 pub(super) fn is_new(pool: &[Hypothesis], new: &Hypothesis) -> bool {

@@ -33,6 +33,8 @@ pub struct Model {
     pub there: Vec<Point>,
     /// The lattice in the shape of the other key, where the part would be if it only bent.
     pub bent: Vec<Point>,
+    /// A slender part's lattice in bends that neither key shows.
+    pub bends: Vec<Vec<Point>>,
 }
 
 /// A drawing that poses are looked for on.
@@ -137,11 +139,11 @@ impl Model {
         }
     }
 
-    /// Carries `pose` to another drawing; `moved` is what its nodes moved by last.
-    pub fn carry(&self, pose: &[Point], flow: &Flow, moved: Option<&[Point]>, scenery: &Scenery) -> Pose {
+    /// Carries `pose` to another drawing; `flow` leads there, `moved` is what its nodes moved by last.
+    pub fn carry(&self, pose: &[Point], flow: Option<&Flow>, moved: Option<&[Point]>, scenery: &Scenery) -> Pose {
         let add = |shift: &dyn Fn(usize) -> Point| (0..pose.len()).map(|n| pose[n] + shift(n)).collect();
         let mut starts: Vec<Vec<Point>> = vec![pose.to_vec()];
-        if let Some((shifts, median)) = self.flow_below(pose, flow) {
+        if let Some((shifts, median)) = flow.and_then(|flow| self.flow_below(pose, flow)) {
             starts.push(add(&|n| shifts[n]));
             starts.push(add(&|_| median));
         }

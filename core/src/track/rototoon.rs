@@ -23,6 +23,7 @@ use super::job::{Job, SpanSummary, SpanTrack, Termination};
 use super::joint::shadow::Memory;
 use super::joint::tie::{self, Lead, Tie, leads};
 use super::joint::{self, Contender};
+use super::mechanisms::{Mechanism, Mechanisms};
 use super::mend::mend;
 use super::outward::{self, plan::Portion};
 use super::pool::{self, Pools};
@@ -48,6 +49,7 @@ pub struct Rototoon {
     finished: BTreeMap<(String, Span), Finished>,
     shadows: Memory,
     outward: outward::plan::Memory,
+    mechanisms: Mechanisms,
 }
 
 /// The pools of a job without and with its corrections, and whether anything was made now.
@@ -95,11 +97,16 @@ impl SceneSolver for Rototoon {
     }
 
     fn forget(&mut self) {
-        *self = Self::default();
+        *self = Self::new(self.mechanisms);
     }
 }
 
 impl Rototoon {
+    /// A solver that knows nothing yet and uses these mechanisms.
+    pub fn new(mechanisms: Mechanisms) -> Self {
+        Self { mechanisms, ..Self::default() }
+    }
+
     /// Tracks the parts between their keys.
     fn track_between(
         &mut self,
@@ -116,12 +123,13 @@ impl Rototoon {
             let members: Vec<&Pooled> = stretch.iter().map(|&t| &*pooled[t]).collect();
             let start = members.iter().map(|m| m.path.clone()).collect();
             let mut joints = None;
-            let (paths, leads) = chosen(scene, tasks, &stretch, &members, start, &mut joints, &mut self.shadows);
+            let (paths, leads) = self.chosen((scene, tasks, &stretch), &members, start, &mut joints);
             let mended = self.mend_all(&stretch, &pooled, &paths, &leads, frames, &shared)?;
             let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
-            let (paths, _) = chosen(scene, tasks, &stretch, &members, paths, &mut joints, &mut self.shadows);
+            let (paths, _) = self.chosen((scene, tasks, &stretch), &members, paths, &mut joints);
+            let hiding = self.mechanisms.has(Mechanism::Hiding);
             let finishes: Vec<Finish> =
-                (0..members.len()).map(|m| Finish::of(scene, tasks, &stretch, &members, &paths, m)).collect();
+                (0..members.len()).map(|m| Finish::of(scene, tasks, &stretch, &members, &paths, (m, hiding))).collect();
             let known = |source: &Arc<Pooled>, plan: &Finish| {
                 let known = self.finished.get(&source.key())?;
                 (Arc::ptr_eq(&known.source, source) && known.plan == *plan).then(|| known.track.clone())
@@ -133,7 +141,7 @@ impl Rototoon {
                 .zip(&mended)
                 .zip(&tracks)
                 .map(|(((&t, plan), source), known)| {
-                    let kit = Kit { store: &self.store, frames, progress: &shared.of(t) };
+                    let kit = Kit { store: &self.store, frames, progress: &shared.of(t), mechanisms: self.mechanisms };
                     known.is_none().then(|| finish(kit, source, plan, self.finished.get(&source.key())))
                 })
                 .collect();
@@ -220,7 +228,7 @@ impl Rototoon {
                 .par_iter()
                 .zip(&jobs)
                 .map(|(&t, job)| {
-                    let kit = Kit { store: &self.store, frames, progress: &shared.of(t) };
+                    let kit = Kit { store: &self.store, frames, progress: &shared.of(t), mechanisms: self.mechanisms };
                     let result = self.pool(kit, job)?;
                     kit.progress.report("Tracking", 0.8)?;
                     Ok(result)
@@ -235,6 +243,47 @@ impl Rototoon {
             }
         }
         Ok(done.into_iter().flatten().unzip())
+    }
+
+    /// The paths of the members of a stretch, chosen together from the ones given, and what leads each member. `ties` are
+    /// found where none are given: they lie in the keys, and are the same for every choice of a stretch.
+    fn chosen(
+        &mut self,
+        (scene, tasks, stretch): (&Scene, &[Task], &[usize]),
+        members: &[&Pooled],
+        start: Vec<Vec<usize>>,
+        ties: &mut Option<Vec<Tie>>,
+    ) -> (Vec<Vec<usize>>, Vec<Vec<Lead>>) {
+        if !self.mechanisms.has(Mechanism::JointChoice) {
+            return (start, vec![Vec::new(); members.len()]);
+        }
+        let free: Vec<usize> = (0..members.len()).filter(|&m| members[m].models.is_some()).collect();
+        let contender = |&m: &usize| {
+            let (task, pooled) = (tasks[stretch[m]], members[m]);
+            let part = &scene.parts[task.part];
+            Some(Contender {
+                span: task.span,
+                depth: task.depth,
+                hides: part.closed && part.point_count() > 2,
+                drawings: &pooled.drawings,
+                pools: &pooled.pools,
+                models: pooled.models.as_deref()?,
+            })
+        };
+        let mut contenders: Vec<Contender> = free.iter().filter_map(contender).collect();
+        let hang = self.mechanisms.has(Mechanism::Joints);
+        let ties = ties.get_or_insert_with(|| if hang { tie::find(&contenders) } else { Vec::new() });
+        if !self.mechanisms.has(Mechanism::Hiding) {
+            contenders.iter_mut().for_each(|contender| contender.hides = false);
+        }
+        let start = free.iter().map(|&m| start[m].clone()).collect();
+        let found = joint::choose(&contenders, ties, start, &mut self.shadows);
+        let led = leads(&contenders, ties, &found);
+        let (mut paths, mut all_leads) = (vec![Vec::new(); members.len()], vec![Vec::new(); members.len()]);
+        for ((&m, path), lead) in free.iter().zip(found).zip(led) {
+            (paths[m], all_leads[m]) = (path, lead);
+        }
+        (paths, all_leads)
     }
 
     /// The pools of a stretch's members with what their joint choice adds.
@@ -259,7 +308,8 @@ impl Rototoon {
                 if let Some(known) = self.mended.get(&key).filter(same) {
                     return Ok(known.clone());
                 }
-                let kit = Kit { store: &self.store, frames, progress: &shared.of(stretch[m]) };
+                let kit =
+                    Kit { store: &self.store, frames, progress: &shared.of(stretch[m]), mechanisms: self.mechanisms };
                 let result = Arc::new(mended_pools(kit, source, &paths[m], &leads[m])?);
                 Ok(Mended { source: source.clone(), path: paths[m].clone(), leads: leads[m].clone(), result })
             })
@@ -337,41 +387,6 @@ fn mended_pools(kit: Kit, source: &Pooled, path: &[usize], leads: &[Lead]) -> Re
     let Pooled { job, steps, center_reach, .. } = source;
     let (job, path, center_reach) = (job.clone(), path.to_vec(), center_reach.clone());
     Ok(Pooled { job, drawings, models, pools, path, steps: *steps, center_reach })
-}
-
-/// The paths of the members of a stretch, chosen together from the ones given, and what leads each member. `ties` are found
-/// where none are given: they lie in the keys, and are the same for every choice of a stretch.
-fn chosen(
-    scene: &Scene,
-    tasks: &[Task],
-    stretch: &[usize],
-    members: &[&Pooled],
-    start: Vec<Vec<usize>>,
-    ties: &mut Option<Vec<Tie>>,
-    shadows: &mut Memory,
-) -> (Vec<Vec<usize>>, Vec<Vec<Lead>>) {
-    let free: Vec<usize> = (0..members.len()).filter(|&m| members[m].models.is_some()).collect();
-    let contender = |&m: &usize| {
-        let (task, pooled) = (tasks[stretch[m]], members[m]);
-        let part = &scene.parts[task.part];
-        Some(Contender {
-            span: task.span,
-            depth: task.depth,
-            hides: part.closed && part.point_count() > 2,
-            drawings: &pooled.drawings,
-            pools: &pooled.pools,
-            models: pooled.models.as_deref()?,
-        })
-    };
-    let contenders: Vec<Contender> = free.iter().filter_map(contender).collect();
-    let ties = ties.get_or_insert_with(|| tie::find(&contenders));
-    let found = joint::choose(&contenders, ties, free.iter().map(|&m| start[m].clone()).collect(), shadows);
-    let led = leads(&contenders, ties, &found);
-    let (mut paths, mut all_leads) = (vec![Vec::new(); members.len()], vec![Vec::new(); members.len()]);
-    for ((&m, path), lead) in free.iter().zip(found).zip(led) {
-        (paths[m], all_leads[m]) = (path, lead);
-    }
-    (paths, all_leads)
 }
 
 /// Tasks that share frames between their keys, directly or by others, in the order of time.

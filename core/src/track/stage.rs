@@ -6,9 +6,11 @@ use super::features::{Features, working_scale};
 use super::job::{Correction, Job};
 use super::lattice::align::{Aligner, settle};
 use super::lattice::anchors::Anchors;
+use super::lattice::bend::bends;
 use super::lattice::mesh::Mesh;
 use super::lattice::shape;
 use super::lattice::texture::{Cover, Texture};
+use super::mechanisms::{Mechanism, Mechanisms};
 use super::propagate::{Model, Pose, Scenery};
 use super::store::Store;
 use crate::geometry::similarity::Similarity;
@@ -25,6 +27,8 @@ pub(super) struct Kit<'a> {
     pub store: &'a Store,
     pub frames: &'a dyn FrameSource,
     pub progress: &'a dyn Progress,
+    /// What is in use.
+    pub mechanisms: Mechanisms,
 }
 
 /// Everything that a job is solved with.
@@ -65,7 +69,8 @@ impl<'a> Stage<'a> {
         let features: Vec<Arc<Features>> = drawings.iter().map(|d| features[d.first].clone()).collect();
         let last = features.len() - 1;
         let models = models.unwrap_or_else(|| {
-            Arc::new([model(job, 0, &features[0], scale, width), model(job, 1, &features[last], scale, width)])
+            let model = |key: usize| model(job, key, &features[key * last], (scale, width), kit.mechanisms);
+            Arc::new([model(0), model(1)])
         });
         let anchors = |of: &dyn Fn(&Correction) -> Correction| {
             [0, 1].map(|key: usize| {
@@ -155,13 +160,14 @@ impl<'a> Stage<'a> {
         let steps = 2 * (self.drawings.len() - 2).max(1);
         let done = self.steps_done.fetch_add(1, Ordering::Relaxed);
         self.kit.progress.report("Tracking", 0.8 * (done as f64 / steps as f64).min(1.0))?;
-        let flow = self.kit.store.flow(self.kit.frames, self.frame_of(from), self.frame_of(to))?;
-        Ok(self.models[model].carry(pose, &flow, moved, &self.scenery(model, to)))
+        let flow = || self.kit.store.flow(self.kit.frames, self.frame_of(from), self.frame_of(to));
+        let flow = self.kit.mechanisms.has(Mechanism::Flow).then(flow).transpose()?;
+        Ok(self.models[model].carry(pose, flow.as_deref(), moved, &self.scenery(model, to)))
     }
 }
 
 /// The model of a key: its texture is not taken from where a nearer part hides the key.
-fn model(job: &Job, key: usize, features: &Features, scale: f64, width: f64) -> Model {
+fn model(job: &Job, key: usize, features: &Features, (scale, width): (f64, f64), mechanisms: Mechanisms) -> Model {
     let working = |contour: &[Point]| contour.iter().map(|&p| p / scale).collect::<Vec<_>>();
     let occluders = &job.occluders[if key == 0 { 0 } else { job.span.len() - 1 }];
     let contours: Vec<Vec<Point>> = occluders.iter().map(|c| working(c)).collect();
@@ -170,12 +176,18 @@ fn model(job: &Job, key: usize, features: &Features, scale: f64, width: f64) -> 
     let mut mesh = Mesh::new(&own, job.closed);
     // The other key's contour, moved onto this one's as a whole: what is left is bending.
     let motion = Similarity::fit(&other, &own);
-    let bends: BTreeMap<usize, Point> = other.iter().map(|&p| motion.apply(p) * scale).enumerate().collect();
-    let anchors = Anchors::new(&mesh, &Correction { pins: bends, center: None }, scale);
+    let places: BTreeMap<usize, Point> = other.iter().map(|&p| motion.apply(p) * scale).enumerate().collect();
+    let anchors = Anchors::new(&mesh, &Correction { pins: places, center: None }, scale);
     let bent = settle(&mesh, &mesh.rest, &anchors);
     let back = motion.inverse();
     let there = bent.iter().map(|&p| back.apply(p)).collect();
-    shape::learn_stiffness(&mut mesh, &bent);
-    let texture = Texture::new(mesh, features, &cover, width);
-    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent }
+    let bends = if mechanisms.has(Mechanism::Bends) { bends(&mesh) } else { Vec::new() };
+    if mechanisms.has(Mechanism::Stiffness) {
+        shape::learn_stiffness(&mut mesh, &bent);
+    }
+    let mut texture = Texture::new(mesh, features, &cover, width);
+    if !mechanisms.has(Mechanism::FigureAndGround) {
+        texture.forget_figure();
+    }
+    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent, bends }
 }

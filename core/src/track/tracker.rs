@@ -6,6 +6,7 @@
 use super::agarwala2004::Agarwala2004;
 use super::job::{SpanSolver, SpanSummary};
 use super::liang2012::Liang2012;
+use super::mechanisms::Mechanisms;
 use super::outward::{Ending, TrackEnd};
 use super::part_by_part::PartByPart;
 use super::rototoon::Rototoon;
@@ -42,9 +43,9 @@ impl Preset {
         Self::ALL.iter().find(|(_, name)| *name == id).map(|(preset, _)| *preset)
     }
 
-    fn solver(self) -> Box<dyn SceneSolver> {
+    fn solver(self, mechanisms: Mechanisms) -> Box<dyn SceneSolver> {
         match self {
-            Self::Rototoon => Box::new(Rototoon::default()),
+            Self::Rototoon => Box::new(Rototoon::new(mechanisms)),
             Self::Zhou2011 => Box::new(PartByPart::new(Box::new(Zhou2011::default()))),
             Self::Agarwala2004 => Box::new(PartByPart::new(Box::new(Agarwala2004::default()))),
             Self::Liang2012 => Box::new(PartByPart::new(Box::new(Liang2012::default()))),
@@ -57,6 +58,8 @@ impl Preset {
 pub struct TrackOptions {
     /// The method.
     pub preset: Preset,
+    /// What the default preset uses; the others do not listen.
+    pub mechanisms: Mechanisms,
 }
 
 /// Why tracking failed. Nothing was changed.
@@ -172,7 +175,7 @@ pub struct Tracker {
 impl Tracker {
     /// A tracker that knows nothing yet.
     pub fn new(options: TrackOptions) -> Self {
-        Self { solver: options.preset.solver(), footage: None }
+        Self { solver: options.preset.solver(options.mechanisms), footage: None }
     }
 
     /// A tracker that solves part by part with a solver of the caller's.

@@ -18,10 +18,15 @@ pub mod table;
 
 use anyhow::Result;
 use rototoon::project::write_whole;
-use rototoon::track::Preset;
+use rototoon::track::{Mechanism, Preset};
 use run::Outcome;
 use std::path::Path;
 use table::Failure;
+
+/// The ids of the default preset's mechanisms that can be left out.
+pub fn mechanisms() -> Vec<&'static str> {
+    Mechanism::ALL.iter().map(|(_, id)| *id).collect()
+}
 
 /// The ids of all presets.
 pub fn presets() -> Vec<&'static str> {

@@ -14,7 +14,7 @@ use rototoon::pipeline::{frames, in_effect, store};
 use rototoon::project::Document;
 use rototoon::project::save::DECIMALS;
 use rototoon::scene::{FrameNumber, FrameSource, Scene, Silent};
-use rototoon::track::{Preset, TrackOptions, Tracker};
+use rototoon::track::{TrackOptions, Tracker};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -25,7 +25,7 @@ use std::time::Instant;
 pub struct Outcome {
     /// Name of the set.
     pub set: String,
-    /// Id of the preset.
+    /// Id of the preset, and what it was run without.
     pub preset: String,
     /// Threads that tracked.
     pub threads: usize,
@@ -76,17 +76,17 @@ pub struct Run {
     pub frames: Box<dyn FrameSource>,
 }
 
-/// Tracks the set in `folder`, and lets the artist correct it where there are rules for that. `told` hears how things
+/// Tracks the set in `folder` (`id` names the way in the results), and lets the artist correct it where there are rules for that. `told` hears how things
 /// stand after each track. Runs on the caller's rayon pool.
 pub fn run(
     set: &str,
     folder: &Path,
-    (preset, id): (Preset, &str),
+    (options, id): (TrackOptions, &str),
     rules: Option<&Rules>,
     told: impl FnMut(&Work),
 ) -> Result<Run> {
     let start = Instant::now();
-    let mut tracker = Tracker::new(TrackOptions { preset });
+    let mut tracker = Tracker::new(options);
     let (mut scene, pictures) = first(&mut tracker, folder)?;
     let (seconds, peak) = (start.elapsed().as_secs_f64(), peak_mb());
 

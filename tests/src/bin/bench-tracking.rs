@@ -1,11 +1,11 @@
 //! One measurement of `cargo xtask bench-tracking`, in a process of its own.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::{Parser, Subcommand};
 use rototoon::pipeline;
 use rototoon::project::{Document, write_whole};
 use rototoon::scene::Silent;
-use rototoon::track::{Preset, TrackOptions};
+use rototoon::track::{Mechanism, Mechanisms, Preset, TrackOptions};
 use rototoon_tests::artist::Rules;
 use rototoon_tests::benchmark::growth::Sample;
 use rototoon_tests::benchmark::{overlay, run};
@@ -34,6 +34,9 @@ enum Command {
         /// Id of the preset.
         #[arg(long)]
         preset: String,
+        /// Id of a mechanism to leave out of the default preset.
+        #[arg(long)]
+        without: Option<String>,
         /// Path of the results without an ending.
         #[arg(long)]
         out: PathBuf,
@@ -64,8 +67,9 @@ enum Command {
 
 fn main() -> Result<()> {
     match Arguments::parse().command {
-        Command::Run { folder, set, preset, out, no_edits, threads } => {
-            pool(threads)?.install(|| run_preset(&folder, &set, &preset, &out, no_edits))
+        Command::Run { folder, set, preset, without, out, no_edits, threads } => {
+            let (options, id) = options(&preset, without.as_deref())?;
+            pool(threads)?.install(|| run_set(&folder, &set, (options, &id), &out, no_edits))
         }
         Command::Time { folder, threads } => pool(threads)?.install(|| time(&folder)),
         Command::Draw { folder, numbers } => {
@@ -79,10 +83,21 @@ fn pool(threads: usize) -> Result<rayon::ThreadPool> {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads")
 }
 
-fn run_preset(folder: &Path, set: &str, id: &str, out: &Path, no_edits: bool) -> Result<()> {
-    let preset = Preset::from_id(id).with_context(|| format!("no preset {id:?}"))?;
+/// How to track, and what that is called in the results.
+fn options(preset: &str, without: Option<&str>) -> Result<(TrackOptions, String)> {
+    let known = Preset::from_id(preset).with_context(|| format!("no preset {preset:?}"))?;
+    let Some(id) = without else {
+        return Ok((TrackOptions { preset: known, ..TrackOptions::default() }, preset.to_owned()));
+    };
+    ensure!(known == Preset::default(), "nothing can be left out of the preset {preset:?}");
+    let mechanism = Mechanism::from_id(id).with_context(|| format!("no mechanism {id:?}"))?;
+    let options = TrackOptions { preset: known, mechanisms: Mechanisms::without(mechanism) };
+    Ok((options, format!("{preset} without {id}")))
+}
+
+fn run_set(folder: &Path, set: &str, (options, id): (TrackOptions, &str), out: &Path, no_edits: bool) -> Result<()> {
     let rules = Rules::default();
-    let run = run::run(set, folder, (preset, id), (!no_edits).then_some(&rules), |work| {
+    let run = run::run(set, folder, (options, id), (!no_edits).then_some(&rules), |work| {
         let (good, edits) = (100.0 * work.last.good, work.edits());
         eprintln!("{set}, {id}: round {}, {edits} edits, good {good:.1} %", work.rounds);
     })?;

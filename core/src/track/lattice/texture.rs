@@ -142,6 +142,11 @@ impl Texture {
         Self { mesh, texels, width }
     }
 
+    /// Forgets what tells the part from its ground: every wrong colour is just wrong.
+    pub fn forget_figure(&mut self) {
+        self.texels.iter_mut().flatten().for_each(|texel| texel.own = None);
+    }
+
     /// How badly a pose explains a picture: mean colour difference (at most [`WORST`]; [`UNSEEN`] outside the picture)
     /// plus a little for bending.
     pub fn energy(&self, picture: &Features, nodes: &[Point]) -> f64 {

@@ -272,7 +272,7 @@ impl Growing<'_> {
     fn carry(&self, from: &Hypothesis, moved: Option<&[Point]>, at: &Seen, to: &Seen) -> Result<Pose, TrackError> {
         let kit = self.ground.kit;
         let flow = kit.store.flow(kit.frames, at.near, to.near)?;
-        Ok(self.ground.model.carry(&from.pose.nodes, &flow, moved, &to.scenery()))
+        Ok(self.ground.model.carry(&from.pose.nodes, Some(&flow), moved, &to.scenery()))
     }
 
     /// Median energy of the chosen hypotheses of the last drawings.

@@ -9,6 +9,7 @@ use crate::geometry::Point;
 use crate::scene::{Cancelled, FrameNumber, FrameSource, Part, Progress, Scene, Span};
 use crate::track::TrackError;
 use crate::track::job::{Correction, SpanSummary, Termination};
+use crate::track::mechanisms::Mechanisms;
 use crate::track::stage::Kit;
 use crate::track::store::Store;
 use crate::track::tracker::{JobReport, PartTrack, Tracking};
@@ -49,7 +50,10 @@ impl Memory {
                 .map(|(_, job)| {
                     let result = match self.known.get(&job.name) {
                         Some((known, result)) if known == job => (result.clone(), false),
-                        _ => (track(Kit { store, frames, progress: &counter }, job)?, true),
+                        _ => (
+                            track(Kit { store, frames, progress: &counter, mechanisms: Mechanisms::default() }, job)?,
+                            true,
+                        ),
                     };
                     counter.finished()?;
                     Ok(result)

@@ -35,7 +35,7 @@ use template::Templates;
 /// The windows of the passes, and for each its rounds: reach of the pull (working pixels) and weight of the links.
 const PASSES: [(Window, [(f64, f64); 3]); 2] = [
     (Window { reach: [5, 6] }, [(6.0, 0.5), (4.0, 0.3), (3.0, 0.2)]),
-    (Window { reach: [3, 4] }, [(3.0, 0.2), (2.0, 0.15), (2.0, 0.1)]),
+    (Window { reach: [2, 3] }, [(3.0, 0.2), (2.0, 0.15), (2.0, 0.1)]),
 ];
 /// A cost counts at most this much: a sample cannot be worse than lost.
 const LOST: f64 = 0.5;
