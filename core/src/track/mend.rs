@@ -24,7 +24,7 @@ const SAME_PLACE: f64 = 6.0;
 pub(super) fn mend(stage: &Stage, pools: &Pools, path: &[usize], leads: &[Lead]) -> Result<Pools, TrackError> {
     let last = pools.len() - 1;
     let mut extended = pools.clone();
-    for hypotheses in [swept(stage, pools, path)?, led(stage, pools, last, leads)?] {
+    for hypotheses in [swept(stage, pools, path, true)?, led(stage, pools, last, leads)?] {
         for (pool, more) in extended.iter_mut().zip(hypotheses) {
             for new in more {
                 if is_new(pool, &new) {

@@ -68,7 +68,7 @@ pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>), TrackError> {
     let found: Vec<Vec<Hypothesis>> = searched(stage, &pools)?;
     pools.iter_mut().zip(found).for_each(|(pool, more)| pool.extend(more));
     let path = choose(stage, &pools);
-    let more = swept(stage, &pools, &path)?;
+    let more = swept(stage, &pools, &path, false)?;
     for (pool, more) in pools.iter_mut().zip(more) {
         for new in more {
             if is_new(pool, &new) {
@@ -80,12 +80,16 @@ pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>), TrackError> {
     Ok((pools, path))
 }
 
-/// What comes of carrying the chosen hypotheses to their neighbours, both ways.
-pub(super) fn swept(stage: &Stage, pools: &Pools, path: &[usize]) -> Result<Pools, TrackError> {
+/// What comes of carrying the chosen hypotheses to their neighbours, both ways: to all of them, or to those where the
+/// chosen one is not confirmed by the other key. (What other parts say may speak against what both keys say.)
+pub(super) fn swept(stage: &Stage, pools: &Pools, path: &[usize], all: bool) -> Result<Pools, TrackError> {
     if !stage.kit.mechanisms.has(Mechanism::Sweep) {
         return Ok(vec![Vec::new(); pools.len()]);
     }
-    let (forwards, backwards) = rayon::join(|| sweep(stage, pools, path, true), || sweep(stage, pools, path, false));
+    let wanted = |d: usize| !stage.corrected(d) && (all || !confirmed(&pools[d], path[d]));
+    let wanted: Vec<bool> = (0..pools.len()).map(wanted).collect();
+    let sweep = |forwards: bool| sweep(stage, pools, path, (&wanted, forwards));
+    let (forwards, backwards) = rayon::join(|| sweep(true), || sweep(false));
     Ok(forwards?.into_iter().zip(backwards?).map(|(a, b)| a.into_iter().chain(b).collect()).collect())
 }
 
@@ -178,15 +182,20 @@ fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
         .collect()
 }
 
-/// Carries the chosen poses to the next drawing (or the one before), and what comes of it further while it is better
+/// Carries the chosen poses to the next drawing (or the one before) where that is wanted, and what comes of it further while it is better
 /// than what was chosen there.
-fn sweep(stage: &Stage, pools: &Pools, path: &[usize], forwards: bool) -> Result<Vec<Option<Hypothesis>>, TrackError> {
+fn sweep(
+    stage: &Stage,
+    pools: &Pools,
+    path: &[usize],
+    (wanted, forwards): (&[bool], bool),
+) -> Result<Vec<Option<Hypothesis>>, TrackError> {
     let last = pools.len() - 1;
     let mut found: Vec<Option<Hypothesis>> = vec![None; pools.len()];
     let mut carried: Option<Hypothesis> = None;
     for step in 1..last {
         let (to, from) = if forwards { (step, step - 1) } else { (last - step, last - step + 1) };
-        if from == 0 || from == last || stage.corrected(to) || confirmed(&pools[to], path[to]) {
+        if from == 0 || from == last || !wanted[to] {
             carried = None;
             continue;
         }
