@@ -39,9 +39,9 @@ impl Mask {
         let tight = points.fold(None, |bounds: Option<Bounds>, &p| {
             Some(bounds.map_or(Bounds { least: p, most: p }, |b| Bounds { least: b.least.min(p), most: b.most.max(p) }))
         })?;
-        // Growing ends in an even step of a pixel.
-        let more = if self.grow == 0.0 { 0.0 } else { self.grow + 0.5 };
-        let margin = Point::splat(more + self.feather);
+        // Both end in an even step of a pixel.
+        let more = |by: f64| if by == 0.0 { 0.0 } else { by + 0.5 };
+        let margin = Point::splat(more(self.grow) + more(self.feather));
         let bounds = Bounds { least: tight.least - margin, most: tight.most + margin };
         bounds.least.cmple(bounds.most).all().then_some(bounds)
     }
