@@ -3,7 +3,7 @@
 #![allow(non_snake_case, reason = "the names are those that OpenFX looks up")]
 
 use crate::ofx::{entry, host};
-use crate::roto;
+use crate::{lines, roto};
 use openfx::sys::generic::core::{OfxHost, OfxPlugin, OfxPropertySetHandle, OfxStatus};
 use openfx::sys::image_effect_v1::image_effect::kOfxImageEffectPluginApi;
 use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
@@ -27,7 +27,7 @@ const fn plugin(
 const MAJOR: c_uint = 1;
 const MINOR: c_uint = 0;
 
-static PLUGINS: [OfxPlugin; 1] = [plugin(roto::ID, roto_main)];
+static PLUGINS: [OfxPlugin; 2] = [plugin(roto::ID, roto_main), plugin(lines::ID, lines_main)];
 
 unsafe extern "C" fn set_host(host: *mut OfxHost) {
     host::set(host);
@@ -41,6 +41,16 @@ unsafe extern "C" fn roto_main(
 ) -> OfxStatus {
     // SAFETY: the host's own call.
     unsafe { entry::entry(action, handle, input, output, roto::perform) }
+}
+
+unsafe extern "C" fn lines_main(
+    action: *const c_char,
+    handle: *const c_void,
+    input: OfxPropertySetHandle,
+    output: OfxPropertySetHandle,
+) -> OfxStatus {
+    // SAFETY: the host's own call.
+    unsafe { entry::entry(action, handle, input, output, lines::perform) }
 }
 
 /// How many effects there are.

@@ -2,8 +2,8 @@
 //!
 //! Only what the user did counts: each value that the plugin sets comes back as a change of its own.
 
-use super::describe::SOURCE;
 use super::{instance, track};
+use crate::description::SOURCE;
 use crate::ofx::entry::Action;
 use crate::ofx::{Effect, Failure};
 use openfx::sys::generic::core::{kOfxChangeUserEdited, kOfxPropChangeReason, kOfxPropName, kOfxPropTime, kOfxPropType};

@@ -1,28 +1,16 @@
 //! Clips and parameters of the effect.
 
+use crate::description::{self, About};
+use crate::ofx::Failure;
 use crate::ofx::entry::Action;
-use crate::ofx::{Effect, Failure};
 use crate::parameters::{Kind, Parameter};
-use openfx::sys::generic::core::{
-    kOfxBitDepthByte, kOfxBitDepthFloat, kOfxBitDepthHalf, kOfxBitDepthShort, kOfxPropLabel, kOfxPropLongLabel,
-    kOfxPropPluginDescription, kOfxPropShortLabel,
-};
-use openfx::sys::image_effect_v1::image_effect::{
-    kOfxImageClipPropOptional, kOfxImageComponentAlpha, kOfxImageComponentRGB, kOfxImageComponentRGBA,
-    kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral, kOfxImageEffectOutputClipName,
-    kOfxImageEffectPluginPropGrouping, kOfxImageEffectPluginPropHostFrameThreading,
-    kOfxImageEffectPluginRenderThreadSafety, kOfxImageEffectPropClipPreferencesSlaveParam,
-    kOfxImageEffectPropContext, kOfxImageEffectPropSupportedComponents, kOfxImageEffectPropSupportedContexts,
-    kOfxImageEffectPropSupportedPixelDepths, kOfxImageEffectPropSupportsMultiResolution,
-    kOfxImageEffectPropSupportsMultipleClipDepths, kOfxImageEffectPropSupportsTiles,
-    kOfxImageEffectPropTemporalClipAccess, kOfxImageEffectRenderFullySafe, kOfxImageEffectSimpleSourceClipName,
-};
 use std::ffi::CStr;
 
-/// The input.
-pub const SOURCE: &CStr = kOfxImageEffectSimpleSourceClipName;
-/// The output.
-pub const OUTPUT: &CStr = kOfxImageEffectOutputClipName;
+const ABOUT: About = About {
+    label: "Rototoon Roto",
+    description: "Contours of drawn characters, tracked by Rototoon, as cutouts, mattes, lines and ids.",
+    tiles: true,
+};
 
 const fn parameter(
     id: &'static CStr,
@@ -140,58 +128,16 @@ pub const PARAMETERS: [Parameter; 24] = [
     ),
 ];
 
-const COMPONENTS: [&CStr; 3] = [kOfxImageComponentRGBA, kOfxImageComponentRGB, kOfxImageComponentAlpha];
-
 /// What the effect can do.
 pub fn describe(action: &Action) -> Result<(), Failure> {
-    let properties = action.effect.properties()?;
-    for name in [kOfxPropLabel, kOfxPropShortLabel, kOfxPropLongLabel] {
-        properties.set_text(name, 0, "Rototoon Roto")?;
-    }
-    properties.set_text(kOfxImageEffectPluginPropGrouping, 0, "Rototoon")?;
-    // Hosts before 1.2 have no place for a description.
-    let _ = properties.set_text(
-        kOfxPropPluginDescription,
-        0,
-        "Contours of drawn characters, tracked by Rototoon, as cutouts, mattes, lines and ids.",
-    );
-    for (index, context) in [kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral].into_iter().enumerate() {
-        properties.set_name(kOfxImageEffectPropSupportedContexts, index as i32, context)?;
-    }
-    let depths = [kOfxBitDepthFloat, kOfxBitDepthHalf, kOfxBitDepthShort, kOfxBitDepthByte];
-    for (index, depth) in depths.into_iter().enumerate() {
-        properties.set_name(kOfxImageEffectPropSupportedPixelDepths, index as i32, depth)?;
-    }
-    properties.set_int(kOfxImageEffectPropSupportsMultiResolution, 0, 1)?;
-    properties.set_int(kOfxImageEffectPropSupportsTiles, 0, 1)?;
-    properties.set_int(kOfxImageEffectPropTemporalClipAccess, 0, 1)?;
-    properties.set_int(kOfxImageEffectPropSupportsMultipleClipDepths, 0, 0)?;
-    properties.set_name(kOfxImageEffectPluginRenderThreadSafety, 0, kOfxImageEffectRenderFullySafe)?;
-    // Rows are shared among the host's threads by the effect itself, which prepares the outlines once.
-    properties.set_int(kOfxImageEffectPluginPropHostFrameThreading, 0, 0)?;
-    properties.set_name(kOfxImageEffectPropClipPreferencesSlaveParam, 0, c"output")
+    description::effect(&action.effect, &ABOUT)
 }
 
 /// Clips and parameters in a context.
 pub fn describe_in_context(action: &Action) -> Result<(), Failure> {
-    let context = action.input.text(kOfxImageEffectPropContext, 0)?;
-    let source = clip(&action.effect, SOURCE)?;
-    source.set_int(kOfxImageEffectPropTemporalClipAccess, 0, 1)?;
-    if context.as_bytes() != kOfxImageEffectContextFilter.to_bytes() {
-        source.set_int(kOfxImageClipPropOptional, 0, 1)?;
-    }
-    clip(&action.effect, OUTPUT)?;
+    description::clips(action, &ABOUT)?;
     let parameters = action.effect.parameters()?;
     PARAMETERS.iter().try_for_each(|parameter| parameter.define(&parameters))
-}
-
-fn clip<'a>(effect: &Effect<'a>, name: &CStr) -> Result<crate::ofx::Properties<'a>, Failure> {
-    let properties = effect.define_clip(name)?;
-    for (index, component) in COMPONENTS.into_iter().enumerate() {
-        properties.set_name(kOfxImageEffectPropSupportedComponents, index as i32, component)?;
-    }
-    properties.set_int(kOfxImageEffectPropSupportsTiles, 0, 1)?;
-    Ok(properties)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! done in **pixels with y turned down**: row `v` is the host's row `-1 - v`, so that nothing depends on the height of
 //! anything.
 
-use super::describe::{OUTPUT, SOURCE};
+use crate::description::{OUTPUT, SOURCE};
 use crate::ofx::effect::Region;
 use crate::ofx::{Bounds, Effect, Failure};
 use openfx::sys::image_effect_v1::image_effect::{kOfxImageEffectPropProjectOffset, kOfxImageEffectPropProjectSize};

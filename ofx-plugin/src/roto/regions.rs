@@ -1,11 +1,11 @@
 //! Where something is drawn, what of the source that needs, and of what kind the output is.
 
-use super::describe::SOURCE;
 use super::instance;
 use super::parts::selected;
 use super::picture::Picture;
 use super::placement::{Placement, window};
 use super::settings::{Output, Settings};
+use crate::description::SOURCE;
 use crate::ofx::effect::Region;
 use crate::ofx::entry::Action;
 use crate::ofx::{Bounds, Effect, Failure, host};

@@ -3,10 +3,10 @@
 //! The window is cut into bands of rows, which the host's threads draw one after the other; what is in a pixel depends on
 //! neither. At each row the host is asked whether it still wants the picture.
 
-use super::describe::{OUTPUT, SOURCE};
 use super::placement::window;
 use super::regions::{Drawn, drawn};
 use super::settings::Output;
+use crate::description::{OUTPUT, SOURCE};
 use crate::ofx::entry::Action;
 use crate::ofx::image::Rows;
 use crate::ofx::{Bounds, Effect, Failure, Image, threads};

@@ -3,15 +3,15 @@
 //! The tracker runs on threads of its own; the host is asked for frames, told of progress and asked whether to go on by the
 //! thread that the action came on, and by no other: hosts allow their functions there.
 
-use super::describe::SOURCE;
 use super::instance;
 use super::placement::Placement;
+use crate::description::SOURCE;
+use crate::encoding::Encoding;
 use crate::ofx::progress::Bar;
-use crate::ofx::{Clip, Effect, Failure, Image, host};
+use crate::ofx::{Clip, Effect, Failure, Image};
 use crate::parameters::shared;
-use crate::pixels::{CLEAR, Depth, Pixel};
+use crate::pixels::{CLEAR, Pixel};
 use rototoon::geometry::Point;
-use rototoon::image::colour;
 use rototoon::pipeline;
 use rototoon::project::Document;
 use rototoon::scene::{Cancelled, Colour, FrameError, FrameNumber, FrameSource, Progress, Raster, Scene};
@@ -26,9 +26,6 @@ use std::time::Duration;
 const PACE: Duration = Duration::from_millis(40);
 /// Bytes of frames that are kept.
 const KEPT: usize = 1 << 30;
-/// Hosts whose floats are light, not what the screen shows.
-const LINEAR_HOSTS: [&str; 4] = ["uk.co.thefoundry.nuke", "fr.inria.Natron", "com.eyeonline.Fusion", "com.blackmagicdesign.Fusion"];
-
 type Picture = Arc<Raster<Colour>>;
 
 /// Follows the document's keys through the source's frames and keeps the result in the document.
@@ -100,7 +97,7 @@ fn run(effect: &Effect, source: Clip, offset: i32, scene: &Scene, options: Track
     let pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("rototoon-{index}")).build();
     let pool = pool.map_err(|error| Failure::Told(format!("no threads to track on: {error}")))?;
     let bar = Bar::new(*effect, "Rototoon: tracking");
-    let clerk = Clerk { effect, source, offset, scene, linear: linear_host() };
+    let clerk = Clerk { effect, source, offset, scene };
     let result = std::thread::scope(|scope| {
         let worker = scope.spawn(|| pool.install(|| Tracker::new(options).track(scene, &frames, &board)));
         while !worker.is_finished() {
@@ -123,11 +120,6 @@ fn run(effect: &Effect, source: Clip, offset: i32, scene: &Scene, options: Track
 fn kept_frames(scene: &Scene) -> usize {
     let size = scene.footage.width * scene.footage.height * size_of::<Colour>();
     (KEPT / size.max(1)).max(4)
-}
-
-fn linear_host() -> bool {
-    let name = host::name().unwrap_or_default();
-    LINEAR_HOSTS.iter().any(|known| name.starts_with(known))
 }
 
 /// A frame that a thread of the tracker waits for.
@@ -173,7 +165,6 @@ struct Clerk<'a> {
     source: Clip<'a>,
     offset: i32,
     scene: &'a Scene,
-    linear: bool,
 }
 
 impl Clerk<'_> {
@@ -193,14 +184,13 @@ impl Clerk<'_> {
         let image = self.source.image(time).map_err(failed)?;
         let image = image.ok_or_else(|| unreadable(frame, "the host has no picture of it"))?;
         let placement = Placement::of(self.effect, &self.scene.footage, time, [1.0; 2]).map_err(failed)?;
-        let linear = self.linear && matches!(image.format.depth, Depth::Half | Depth::Float);
-        Ok(Arc::new(self.picture(&image, &placement, linear)))
+        Ok(Arc::new(self.picture(&image, &placement)))
     }
 
     /// The image as the footage's picture, colours as the screen shows them.
-    fn picture(&self, image: &Image, placement: &Placement, linear: bool) -> Raster<Colour> {
+    fn picture(&self, image: &Image, placement: &Placement) -> Raster<Colour> {
         let (width, height) = (self.scene.footage.width, self.scene.footage.height);
-        let bounds = image.bounds;
+        let (bounds, encoding) = (image.bounds, Encoding::of(&image.format));
         let mut rows = Raster::new(bounds.width(), (bounds.y2 - bounds.y1) as usize, CLEAR);
         for (row, y) in (bounds.y1..bounds.y2).rev().enumerate() {
             if let Some(bytes) = image.row(y, bounds.x1, bounds.x2) {
@@ -211,7 +201,7 @@ impl Clerk<'_> {
         Raster::from_fn(width, height, |x, y| {
             let p = placement.place(Point::new(x as f64 + 0.5, y as f64 + 0.5)) - corner - Point::splat(0.5);
             let [r, g, b, _] = sample(&rows, p);
-            [r, g, b].map(|value| if linear { colour::encode(value) } else { value })
+            [r, g, b].map(|value| encoding.shown(value))
         })
     }
 }

@@ -201,6 +201,11 @@ impl Effect<'_> {
         self.changed(name);
     }
 
+    /// Sets a text, as a script does: nobody is told.
+    pub fn set_text_silently(&mut self, name: &str, value: &str) {
+        self.pin().set_text(name, value);
+    }
+
     /// A text.
     pub fn text(&self, name: &str) -> String {
         self.inner.text(name)
