@@ -7,7 +7,9 @@ use super::failure::Failure;
 use super::property::Properties;
 use openfx::sys::generic::core::{OfxHost, kOfxPropName};
 use openfx::sys::generic::property::{OfxPropertySuiteV1, kOfxPropertySuite};
+use openfx::sys::image_effect_v1::draw_suite::{OfxDrawSuiteV1, kOfxDrawSuite};
 use openfx::sys::image_effect_v1::image_effect::{OfxImageEffectSuiteV1, kOfxImageEffectSuite};
+use openfx::sys::image_effect_v1::interact::{OfxInteractSuiteV1, kOfxInteractSuite};
 use openfx::sys::image_effect_v1::message::{OfxMessageSuiteV1, OfxMessageSuiteV2, kOfxMessageSuite};
 use openfx::sys::image_effect_v1::multi_thread::{OfxMultiThreadSuiteV1, kOfxMultiThreadSuite};
 use openfx::sys::image_effect_v1::param::{OfxParameterSuiteV1, kOfxParameterSuite};
@@ -29,6 +31,8 @@ pub struct Suites {
     pub(super) persistent: Option<&'static OfxMessageSuiteV2>,
     pub(super) threads: Option<&'static OfxMultiThreadSuiteV1>,
     pub(super) progress: Option<ProgressSuite>,
+    pub(super) interact: Option<&'static OfxInteractSuiteV1>,
+    pub(super) draw: Option<&'static OfxDrawSuiteV1>,
 }
 
 /// Either version of the progress suite.
@@ -59,6 +63,8 @@ pub fn load() -> Result<(), Failure> {
         message: suite(host, kOfxMessageSuite, 1),
         persistent: message,
         threads: suite(host, kOfxMultiThreadSuite, 1),
+        interact: suite(host, kOfxInteractSuite, 1),
+        draw: suite(host, kOfxDrawSuite, 1),
         progress: v2.or_else(|| suite(host, kOfxProgressSuite, 1).map(ProgressSuite::V1)),
     };
     *SUITES.write().unwrap_or_else(PoisonError::into_inner) = Some(suites);
@@ -75,6 +81,11 @@ pub fn load() -> Result<(), Failure> {
 /// The suites of the last load.
 pub fn suites() -> Result<Suites, Failure> {
     (*SUITES.read().unwrap_or_else(PoisonError::into_inner)).ok_or(Failure::Missing("property suite"))
+}
+
+/// Whether the host draws for overlays ([`super::interact`]).
+pub fn draws() -> bool {
+    suites().is_ok_and(|suites| suites.draw.is_some())
 }
 
 /// The host's own properties.

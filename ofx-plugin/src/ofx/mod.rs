@@ -6,6 +6,7 @@
 //! - [`property`]: typed access to properties
 //! - [`effect`]: effects, their clips and what they say to the user
 //! - [`image`]: images, released on every path
+//! - [`interact`]: what is drawn over the viewer, and the pen there
 //! - [`param`]: parameters
 //! - [`progress`]: how far long work has come
 //! - [`threads`]: work on the host's threads
@@ -22,6 +23,7 @@ pub mod entry;
 pub mod failure;
 pub mod host;
 pub mod image;
+pub mod interact;
 pub mod param;
 pub mod progress;
 pub mod property;

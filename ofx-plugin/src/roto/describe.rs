@@ -1,9 +1,14 @@
 //! Clips and parameters of the effect.
 
 use crate::description::{self, About};
-use crate::ofx::Failure;
+use crate::ofx::{Failure, host};
 use crate::ofx::entry::Action;
 use crate::parameters::{Kind, Parameter};
+use crate::plugins;
+use openfx::sys::image_effect_v1::image_effect::{
+    kOfxImageEffectPluginPropOverlayInteractV1, kOfxImageEffectPluginPropOverlayInteractV2,
+    kOfxImageEffectPropSupportsOverlays,
+};
 use std::ffi::CStr;
 
 const ABOUT: About = About {
@@ -130,7 +135,16 @@ pub const PARAMETERS: [Parameter; 24] = [
 
 /// What the effect can do.
 pub fn describe(action: &Action) -> Result<(), Failure> {
-    description::effect(&action.effect, &ABOUT)
+    description::effect(&action.effect, &ABOUT)?;
+    let properties = action.effect.properties()?;
+    // A host without overlays may have no place for them.
+    if host::properties()?.int(kOfxImageEffectPropSupportsOverlays, 0).is_ok_and(|supported| supported != 0) {
+        let _ = properties.set_pointer(kOfxImageEffectPluginPropOverlayInteractV1, 0, plugins::roto_overlay(false));
+    }
+    if host::draws() {
+        let _ = properties.set_pointer(kOfxImageEffectPluginPropOverlayInteractV2, 0, plugins::roto_overlay(true));
+    }
+    Ok(())
 }
 
 /// Clips and parameters in a context.

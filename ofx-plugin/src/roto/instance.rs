@@ -1,5 +1,6 @@
 //! What an instance keeps: its document, read once, and what the user was told.
 
+use super::overlay::Drag;
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::project::Document;
 use std::collections::BTreeSet;
@@ -15,6 +16,7 @@ const MOST_NOTES: usize = 20;
 pub struct Instance {
     read: Mutex<Option<Read>>,
     told: Mutex<BTreeSet<String>>,
+    drag: Mutex<Option<Drag>>,
 }
 
 /// A document that was read, or why it could not be.
@@ -77,6 +79,16 @@ impl Instance {
         if new {
             effect.note(text, error);
         }
+    }
+
+    /// The control point that is being dragged.
+    pub fn drag(&self) -> Option<Drag> {
+        *lock(&self.drag)
+    }
+
+    /// Remembers it.
+    pub fn set_drag(&self, drag: Option<Drag>) {
+        *lock(&self.drag) = drag;
     }
 
     /// The user changed something: what was told may hold no more.

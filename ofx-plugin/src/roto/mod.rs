@@ -8,12 +8,14 @@
 //! - [`picture`]: what is drawn
 //! - [`regions`]: where something is drawn, and what of the source that needs
 //! - [`render`]: pixels
+//! - [`overlay`]: contours over the viewer, control points that can be dragged
 //! - [`buttons`]: load, save, track
 //! - [`track`]: core's tracker on the source's frames
 
 pub mod buttons;
 pub mod describe;
 pub mod instance;
+pub mod overlay;
 pub mod parts;
 pub mod picture;
 pub mod placement;

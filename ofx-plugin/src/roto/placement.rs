@@ -55,6 +55,17 @@ impl Placement {
         p * self.factor + self.shift
     }
 
+    /// A point of the footage in canonical coordinates.
+    pub fn shown(&self, p: Point) -> [f64; 2] {
+        let placed = self.place(p) / self.scale;
+        [placed.x, -placed.y]
+    }
+
+    /// The reverse.
+    pub fn footage(&self, [x, y]: [f64; 2]) -> Point {
+        (Point::new(x, -y) * self.scale - self.shift) / self.factor
+    }
+
     /// Lengths in pixels at full size as pixels of the render scale.
     pub fn length(&self, pixels: f64) -> f64 {
         pixels * self.scale.y
@@ -97,6 +108,9 @@ mod tests {
         let half = Placement::new(&footage(100, 50), &region, 2.0, [0.5, 0.5], true);
         let bounds = mask::Bounds { least: half.place(Point::ZERO), most: half.place(Point::new(100.0, 50.0)) };
         assert_eq!(half.canonical(&bounds), region);
+        let p = Point::new(13.0, 37.5);
+        assert_eq!(half.footage(half.shown(p)), p);
+        assert_eq!(half.shown(Point::ZERO), [10.0, 70.0]);
         assert_eq!(half.place(Point::new(100.0, 50.0)), Point::new(27.5, -10.0));
     }
 
