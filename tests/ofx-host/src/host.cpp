@@ -724,7 +724,8 @@ Picture Effect::output() const {
   for (int y = w.y1; y < w.y2; ++y) {
     for (int x = w.x1; x < w.x2; ++x) {
       unsigned char *at = rest.data() + buffer.offset(x, y);
-      bool touched = pixel < 4;
+      // Shorter pixels may well have the very value.
+      bool touched = pixel < 12;
       for (size_t i = 0; i < pixel; ++i) touched = touched || at[i] != kCanary;
       picture.untouched += !touched;
       for (size_t c = 0; c < n; ++c) picture.values.push_back(decode(buffer.depth, at + c * buffer.depth.size));

@@ -67,6 +67,9 @@ pub fn footage() -> Footage {
 
 /// A part with tracks on frames 0 to 4.
 pub fn part(name: &str, depth: f64, closed: bool, contour: impl Fn(f64) -> Vec<Point>) -> Part {
+    // As exact as documents are.
+    let rounded = |p: Point| (p * 1e4).round() / 1e4;
+    let contour = |frame: f64| contour(frame).into_iter().map(rounded).collect::<Vec<_>>();
     let tracks = (0..=4).map(|frame| (frame, contour(f64::from(frame)))).collect();
     let keys = [0, 4].map(|frame| (frame, contour(f64::from(frame)))).into();
     Part { name: name.into(), closed, depth, keys, tracks, ..Part::default() }

@@ -66,9 +66,11 @@ fn the_matte_of_the_sample_cartoon_is_that_of_the_command_line_and_of_the_truth(
     let mut effect = host.effect(ROTO, FILTER);
     effect.set_clip("Source", &source);
     effect.set_clip("Output", &source);
-    effect.set("output", &[MATTE]);
     assert_eq!(effect.create(), "kOfxStatOK");
-    effect.set_text("document", &Document::new(scene.clone()).to_json());
+    effect.set("output", &[MATTE]);
+    let json = Document::new(scene).to_json();
+    effect.set_text("document", &json);
+    let scene = Document::parse(&json, "the sample").unwrap().scene;
     for frame in [0, 7, 14] {
         let window = Bounds { x1: 0, y1: 0, x2: width as i32, y2: height as i32 };
         let found = matte(&rendered(&host, &mut effect, f64::from(frame), window));
