@@ -175,5 +175,15 @@ pub mod ffi {
         fn text(self: &Effect, name: &str) -> String;
         fn changed(self: Pin<&mut Effect>, name: &str, reason: &str, time: f64) -> String;
         fn action(self: Pin<&mut Effect>, name: &str) -> String;
+        fn overlay(
+            self: Pin<&mut Effect>,
+            action: &str,
+            draw_suite: bool,
+            time: f64,
+            x: f64,
+            y: f64,
+            pixel: f64,
+        ) -> String;
+        fn drawn(self: &Effect) -> Vec<f64>;
     }
 }

@@ -17,6 +17,8 @@
 #include "ofxCore.h"
 #include "ofxImageEffect.h"
 #include "ofxPixels.h"
+#include "ofxDrawSuite.h"
+#include "ofxInteract.h"
 #include "ofxhBinary.h"
 #include "ofxhPropertySuite.h"
 #include "ofxhClip.h"
@@ -28,6 +30,35 @@
 #include "ofxhHost.h"
 #include "ofxhImageEffectAPI.h"
 #include "ofxhUtilities.h"
+
+// ---------------------------------------------------------------- lines that are drawn
+
+namespace {
+// Of each line: whether it is closed, how many points it has, and the points.
+std::vector<double> &drawn_lines() {
+  static std::vector<double> lines;
+  return lines;
+}
+size_t gl_line = 0;
+} // namespace
+
+extern "C" {
+void glBegin(unsigned mode) {
+  gl_line = drawn_lines().size();
+  drawn_lines().push_back(mode == 2);
+  drawn_lines().push_back(0);
+}
+void glEnd() {}
+void glVertex2d(double x, double y) {
+  drawn_lines()[gl_line + 1] += 1;
+  drawn_lines().push_back(x);
+  drawn_lines().push_back(y);
+}
+void glColor4f(float, float, float, float) {}
+void glLineWidth(float) {}
+void glPushAttrib(unsigned) {}
+void glPopAttrib() {}
+}
 
 namespace rototoon_host {
 
@@ -473,6 +504,37 @@ std::shared_ptr<Buffer> TestClip::draw(OfxTime time, const OfxRectI &bounds, dou
   return buffer;
 }
 
+OfxStatus draw_set_colour(OfxDrawContextHandle, const OfxRGBAColourF *) { return kOfxStatOK; }
+OfxStatus draw_get_colour(OfxDrawContextHandle, OfxStandardColour, OfxRGBAColourF *) { return kOfxStatFailed; }
+OfxStatus draw_set_width(OfxDrawContextHandle, float) { return kOfxStatOK; }
+OfxStatus draw_set_stipple(OfxDrawContextHandle, OfxDrawLineStipplePattern) { return kOfxStatOK; }
+OfxStatus draw_primitive(OfxDrawContextHandle, OfxDrawPrimitive primitive, const OfxPointD *points, int count) {
+  drawn_lines().push_back(primitive == kOfxDrawPrimitiveLineLoop);
+  drawn_lines().push_back(count);
+  for (int i = 0; i < count; ++i) {
+    drawn_lines().push_back(points[i].x);
+    drawn_lines().push_back(points[i].y);
+  }
+  return kOfxStatOK;
+}
+OfxStatus draw_text(OfxDrawContextHandle, const char *, const OfxPointD *, int) { return kOfxStatOK; }
+OfxDrawSuiteV1 draw_suite_v1 = {draw_get_colour, draw_set_colour, draw_set_width,
+                                draw_set_stipple, draw_primitive, draw_text};
+
+class TestOverlay : public fx::OverlayInteract {
+public:
+  explicit TestOverlay(fx::Instance &effect) : OverlayInteract(effect) {}
+  double pixel = 1;
+  void getPixelScale(double &x, double &y) const override { x = y = pixel; }
+  void getBackgroundColour(double &r, double &g, double &b) const override { r = g = b = 0; }
+  bool getSuggestedColour(double &, double &, double &) const override { return false; }
+  OfxStatus swapBuffers() override { return kOfxStatOK; }
+  OfxStatus redraw() override { return kOfxStatOK; }
+#ifdef kOfxInteractPropViewportSize
+  void getViewportSize(double &x, double &y) const override { x = y = 100; }
+#endif
+};
+
 class TestHost : public fx::Host {
 public:
   TestHost() {
@@ -494,13 +556,22 @@ public:
   const void *fetchSuite(const char *name, int version) override {
     for (const std::string &missing : controls().missing_suites)
       if (missing == name) return nullptr;
+    if (strcmp(name, kOfxDrawSuite) == 0) return version == 1 ? &draw_suite_v1 : nullptr;
     return fx::Host::fetchSuite(name, version);
   }
   fx::Instance *newInstance(void *, fx::ImageEffectPlugin *plugin, fx::Descriptor &descriptor,
                             const std::string &context) override {
     return new TestEffect(plugin, descriptor, context);
   }
-  fx::Descriptor *makeDescriptor(fx::ImageEffectPlugin *plugin) override { return new fx::Descriptor(plugin); }
+  fx::Descriptor *makeDescriptor(fx::ImageEffectPlugin *plugin) override {
+    fx::Descriptor *descriptor = new fx::Descriptor(plugin);
+    // The library is of OpenFX 1.4, which does not know it.
+    static const ofx::Property::PropSpec newer[] = {
+        {kOfxImageEffectPluginPropOverlayInteractV2, ofx::Property::ePointer, 1, false, nullptr},
+        ofx::Property::propSpecEnd};
+    descriptor->getProps().addProperties(newer);
+    return descriptor;
+  }
   fx::Descriptor *makeDescriptor(const fx::Descriptor &root, fx::ImageEffectPlugin *plugin) override {
     return new fx::Descriptor(root, plugin);
   }
@@ -824,6 +895,40 @@ rust::String Effect::changed(rust::Str name, rust::Str reason, double time) {
 
 rust::String Effect::action(rust::Str name) {
   return status_name(impl->effect->mainEntry(text_of(name).c_str(), impl->effect->getHandle(), nullptr, nullptr));
+}
+
+rust::Vec<double> Effect::drawn() const {
+  rust::Vec<double> lines;
+  for (double v : drawn_lines()) lines.push_back(v);
+  return lines;
+}
+
+rust::String Effect::overlay(rust::Str name, bool draw_suite, double time, double x, double y, double pixel) {
+  drawn_lines().clear();
+  const char *property =
+      draw_suite ? kOfxImageEffectPluginPropOverlayInteractV2 : kOfxImageEffectPluginPropOverlayInteractV1;
+  ofx::Property::Set &base = impl->effect->getPlugin()->getDescriptor().getProps();
+  OfxPluginEntryPoint *entry = reinterpret_cast<OfxPluginEntryPoint *>(base.getPointerProperty(property));
+  if (!entry) return "none";
+  TestOverlay interact(*impl->effect);
+  interact.pixel = pixel;
+  interact.createInstanceAction();
+  static const ofx::Property::PropSpec specs[] = {
+      {kOfxPropEffectInstance, ofx::Property::ePointer, 1, true, nullptr},
+      {kOfxInteractPropDrawContext, ofx::Property::ePointer, 1, true, nullptr},
+      {kOfxPropTime, ofx::Property::eDouble, 1, true, "0"},
+      {kOfxImageEffectPropRenderScale, ofx::Property::eDouble, 2, true, "1"},
+      {kOfxInteractPropPixelScale, ofx::Property::eDouble, 2, true, "1"},
+      {kOfxInteractPropPenPosition, ofx::Property::eDouble, 2, true, "0"},
+      ofx::Property::propSpecEnd};
+  ofx::Property::Set arguments(specs);
+  double scale[2] = {pixel, pixel}, pen[2] = {x, y};
+  arguments.setPointerProperty(kOfxPropEffectInstance, impl->effect->getHandle());
+  arguments.setPointerProperty(kOfxInteractPropDrawContext, &arguments);
+  arguments.setDoubleProperty(kOfxPropTime, time);
+  arguments.setDoublePropertyN(kOfxInteractPropPixelScale, scale, 2);
+  arguments.setDoublePropertyN(kOfxInteractPropPenPosition, pen, 2);
+  return status_name(entry(text_of(name).c_str(), interact.getHandle(), arguments.getHandle(), nullptr));
 }
 
 } // namespace rototoon_host

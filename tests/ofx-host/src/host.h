@@ -39,6 +39,8 @@ public:
   rust::String text(rust::Str name) const;
   rust::String changed(rust::Str name, rust::Str reason, double time);
   rust::String action(rust::Str name);
+  rust::String overlay(rust::Str action, bool draw_suite, double time, double x, double y, double pixel);
+  rust::Vec<double> drawn() const;
 
 private:
   std::unique_ptr<EffectImpl> impl;

@@ -229,4 +229,22 @@ impl Effect<'_> {
     pub fn action(&mut self, name: &str) -> String {
         self.pin().action(name)
     }
+
+    /// An event of the overlay with the pen at a place, canonical, and the size of a pixel of the screen; by the DrawSuite's
+    /// entry point or by that of OpenGL. Draw is `OfxInteractActionDraw`.
+    pub fn overlay(&mut self, action: &str, draw_suite: bool, time: f64, pen: [f64; 2], pixel: f64) -> String {
+        self.pin().overlay(action, draw_suite, time, pen[0], pen[1], pixel)
+    }
+
+    /// The lines that were drawn since the last event, whether closed, and their points.
+    pub fn drawn(&self) -> Vec<(bool, Vec<[f64; 2]>)> {
+        let (flat, mut at, mut lines) = (self.inner.drawn(), 0, Vec::new());
+        while at + 1 < flat.len() {
+            let (closed, count) = (flat[at] != 0.0, flat[at + 1] as usize);
+            let points = flat[at + 2..].chunks(2).take(count).map(|p| [p[0], p[1]]).collect();
+            lines.push((closed, points));
+            at += 2 + 2 * count;
+        }
+        lines
+    }
 }

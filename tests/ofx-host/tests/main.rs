@@ -6,6 +6,7 @@
 //! - `shapes`: the matte is that of the command line and of the truth
 //! - `actions`: regions, identity, abort, keys, what is wrong with documents
 //! - `buttons`: load, save, track
+//! - `overlay`: contours over the viewer, control points that can be dragged
 //! - `lines`: the effect that shows what a tracker of edges sees
 
 mod actions;
@@ -13,5 +14,6 @@ mod buttons;
 mod common;
 mod describing;
 mod lines;
+mod overlay;
 mod pixels;
 mod shapes;
