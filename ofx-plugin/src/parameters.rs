@@ -6,11 +6,11 @@ use crate::ofx::{Failure, Parameters};
 use openfx::sys::generic::core::{kOfxPropLabel, kOfxPropLongLabel, kOfxPropShortLabel};
 use openfx::sys::image_effect_v1::param::{
     kOfxParamPropAnimates, kOfxParamPropChoiceOption, kOfxParamPropDefault, kOfxParamPropDigits,
-    kOfxParamPropDisplayMax, kOfxParamPropDisplayMin, kOfxParamPropHint,
-    kOfxParamPropIncrement, kOfxParamPropMax, kOfxParamPropMin, kOfxParamPropParent, kOfxParamPropSecret,
-    kOfxParamPropStringFilePathExists, kOfxParamPropStringMode, kOfxParamStringIsFilePath,
-    kOfxParamStringIsSingleLine, kOfxParamTypeBoolean, kOfxParamTypeChoice, kOfxParamTypeDouble, kOfxParamTypeGroup,
-    kOfxParamTypeInteger, kOfxParamTypePushButton, kOfxParamTypeRGBA, kOfxParamTypeString,
+    kOfxParamPropDisplayMax, kOfxParamPropDisplayMin, kOfxParamPropHint, kOfxParamPropIncrement, kOfxParamPropMax,
+    kOfxParamPropMin, kOfxParamPropParent, kOfxParamPropSecret, kOfxParamPropStringFilePathExists,
+    kOfxParamPropStringMode, kOfxParamStringIsFilePath, kOfxParamStringIsSingleLine, kOfxParamTypeBoolean,
+    kOfxParamTypeChoice, kOfxParamTypeDouble, kOfxParamTypeGroup, kOfxParamTypeInteger, kOfxParamTypePushButton,
+    kOfxParamTypeRGBA, kOfxParamTypeString,
 };
 use rototoon::scene::parameters::{self, Kind as CoreKind};
 use std::ffi::CStr;

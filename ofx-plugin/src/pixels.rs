@@ -85,7 +85,9 @@ impl Format {
             match self.premultiplication {
                 _ if self.layout != Layout::Rgba => {}
                 Premultiplication::Opaque => to[3] = 1.0,
-                Premultiplication::Separate => to[..3].iter_mut().for_each(|colour| *colour *= from_alpha(from, &value)),
+                Premultiplication::Separate => {
+                    to[..3].iter_mut().for_each(|colour| *colour *= from_alpha(from, &value))
+                }
                 Premultiplication::Multiplied => {}
             }
         }

@@ -8,8 +8,7 @@ use openfx::sys::generic::core::{OfxHost, OfxPlugin, OfxPropertySetHandle, OfxSt
 use openfx::sys::image_effect_v1::image_effect::kOfxImageEffectPluginApi;
 use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
 
-type Main =
-    unsafe extern "C" fn(*const c_char, *const c_void, OfxPropertySetHandle, OfxPropertySetHandle) -> OfxStatus;
+type Main = unsafe extern "C" fn(*const c_char, *const c_void, OfxPropertySetHandle, OfxPropertySetHandle) -> OfxStatus;
 
 const fn plugin(id: &'static CStr, main: Main) -> OfxPlugin {
     OfxPlugin {

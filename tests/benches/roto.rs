@@ -11,7 +11,8 @@ use std::hint::black_box;
 /// Twelve limbs of a figure that fills the picture, overlapping, at a time in frames.
 fn parts(width: f64, height: f64, points: usize, time: f64) -> Vec<Vec<Point>> {
     let part = |index: usize| {
-        let middle = Point::new(width * (0.1 + 0.8 * (index % 4) as f64 / 3.0), height * (0.2 + 0.3 * (index / 4) as f64));
+        let middle =
+            Point::new(width * (0.1 + 0.8 * (index % 4) as f64 / 3.0), height * (0.2 + 0.3 * (index / 4) as f64));
         let turn = Point::from_angle(0.5 * index as f64 + 0.05 * time);
         let at = |k: usize| {
             let angle = std::f64::consts::TAU * k as f64 / points as f64;

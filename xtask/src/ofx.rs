@@ -6,15 +6,8 @@ use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
 
 /// What the plugin may need of the system: the families of libc and libm, and what unwinds.
-const SYSTEM: [&str; 7] = [
-    "libc.so.6",
-    "libm.so.6",
-    "libdl.so.2",
-    "libpthread.so.0",
-    "librt.so.1",
-    "libgcc_s.so.1",
-    "ld-linux-x86-64.so.2",
-];
+const SYSTEM: [&str; 7] =
+    ["libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "librt.so.1", "libgcc_s.so.1", "ld-linux-x86-64.so.2"];
 
 /// Lays the bundle out around the library; returns its folder.
 pub fn lay_out(library: &Path) -> Result<PathBuf> {
@@ -56,10 +49,8 @@ fn property_list() -> String {
         ("CFBundleShortVersionString", version),
         ("CFBundleVersion", version),
     ];
-    let lines: String = entries
-        .iter()
-        .map(|(key, value)| format!("    <key>{key}</key>\n    <string>{value}</string>\n"))
-        .collect();
+    let lines: String =
+        entries.iter().map(|(key, value)| format!("    <key>{key}</key>\n    <string>{value}</string>\n")).collect();
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE plist PUBLIC \"-//Apple//DTD PLIST 1.0//EN\" \
          \"http://www.apple.com/DTDs/PropertyList-1.0.dtd\">\n<plist version=\"1.0\">\n<dict>\n{lines}</dict>\n</plist>\n"

@@ -131,7 +131,16 @@ fn valgrind_tests() -> Result<Option<String>> {
     let runner = "valgrind --quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite";
     run(cargo()
         .args(["test", "--quiet", "-p", OFX_HOST, "--test", "main", "--"])
-        .args(["--skip", "track_follows", "--skip", "cancelled_track", "--skip", "every_kind", "--skip", "sample_cartoon"])
+        .args([
+            "--skip",
+            "track_follows",
+            "--skip",
+            "cancelled_track",
+            "--skip",
+            "every_kind",
+            "--skip",
+            "sample_cartoon",
+        ])
         .env("CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER", runner))?;
     Ok(None)
 }

@@ -235,11 +235,7 @@ impl<'a> Scan<'a> {
         let edges = &self.instant.edges;
         self.sides.clear();
         let inside = self.active.iter().filter(|&&edge| edges[edge].top <= top && bottom <= edges[edge].bottom);
-        self.sides.extend(inside.map(|&edge| Side {
-            edge,
-            above: edges[edge].at(top),
-            below: edges[edge].at(bottom),
-        }));
+        self.sides.extend(inside.map(|&edge| Side { edge, above: edges[edge].at(top), below: edges[edge].at(bottom) }));
         self.sides.sort_unstable_by(|a, b| (a.above + a.below).total_cmp(&(b.above + b.below)));
     }
 
@@ -279,7 +275,9 @@ impl<'a> Scan<'a> {
             if before == 0 {
                 if inside == 0 {
                     left = Some(match found.take() {
-                        Some((first, last)) if side.above - last.above <= NEAR && side.below - last.below <= NEAR => first,
+                        Some((first, last)) if side.above - last.above <= NEAR && side.below - last.below <= NEAR => {
+                            first
+                        }
                         Some((first, last)) => {
                             sink.interval(&first, &last, top, bottom);
                             *side
@@ -404,8 +402,7 @@ mod tests {
             polygons.iter().any(|points| {
                 let turns = polyline::segments(points, true).map(|(a, b)| {
                     let side = (b - a).perp_dot(q - a);
-                    i32::from(a.y <= q.y && b.y > q.y && side > 0.0)
-                        - i32::from(a.y > q.y && b.y <= q.y && side < 0.0)
+                    i32::from(a.y <= q.y && b.y > q.y && side > 0.0) - i32::from(a.y > q.y && b.y <= q.y && side < 0.0)
                 });
                 turns.sum::<i32>() != 0
             })

@@ -51,10 +51,7 @@ pub fn feathered(picture: &Raster<f32>, radius: f64, go_on: &mut dyn FnMut() -> 
 fn weights(radius: f64) -> Vec<f32> {
     let margin = reach(radius) as f64;
     let until = |x: f64| integral(1.5 * x / radius);
-    (0..=2 * reach(radius))
-        .map(|k| k as f64 - margin)
-        .map(|x| (until(x + 0.5) - until(x - 0.5)) as f32)
-        .collect()
+    (0..=2 * reach(radius)).map(|k| k as f64 - margin).map(|x| (until(x + 0.5) - until(x - 0.5)) as f32).collect()
 }
 
 /// The integral of the quadratic B-spline, whose support is -1.5 to 1.5.

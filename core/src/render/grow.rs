@@ -130,10 +130,8 @@ mod tests {
 
     #[test]
     fn any_window_has_the_same_values() {
-        let shapes = [
-            vec![Point::new(3.0, 2.0), Point::new(20.0, 9.0), Point::new(5.0, 18.0)],
-            rectangle(8.0, 3.0, 12.0, 19.5),
-        ];
+        let shapes =
+            [vec![Point::new(3.0, 2.0), Point::new(20.0, 9.0), Point::new(5.0, 18.0)], rectangle(8.0, 3.0, 12.0, 19.5)];
         for amount in [-1.7, 2.4] {
             let whole = grown(&shapes, amount, WINDOW, &mut || true).unwrap();
             let part = Window { left: 7, top: 5, right: 13, bottom: 12 };

@@ -126,7 +126,8 @@ mod tests {
     fn a_swinging_point_keeps_its_radius() {
         let part = arm(5);
         for time in [1.25, 1.5, 2.5, 2.9] {
-            for (p, radius) in outline_at(&part, time, false).unwrap().iter().zip([10.0, 401f64.sqrt(), 401f64.sqrt()]) {
+            for (p, radius) in outline_at(&part, time, false).unwrap().iter().zip([10.0, 401f64.sqrt(), 401f64.sqrt()])
+            {
                 assert!((p.length() - radius).abs() < 2e-3 * radius, "{time}: {}", p.length());
                 // A straight way between the frames would cut half a per cent off the radius.
             }

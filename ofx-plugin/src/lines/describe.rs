@@ -25,7 +25,12 @@ pub const PARAMETERS: [Parameter; 7] = [
         Kind::Choice(&["Colours", "Edges", "Distances"]),
         "The filtered colours, the edges found in them, or the distance to the nearest edge.",
     ),
-    parameter(c"filterRadius", "Filter radius", Kind::Integer(5, [1, 60], [1, 20]), "Half the filter's side, in pixels."),
+    parameter(
+        c"filterRadius",
+        "Filter radius",
+        Kind::Integer(5, [1, 60], [1, 20]),
+        "Half the filter's side, in pixels.",
+    ),
     parameter(
         c"filterRange",
         "Filter range",

@@ -8,7 +8,7 @@ pub mod describe;
 pub mod render;
 
 use crate::ofx::Failure;
-use crate::ofx::entry::Action;
+use crate::ofx::entry::{Action, Perform};
 use openfx::sys::generic::core::{
     kOfxActionCreateInstance, kOfxActionDescribe, kOfxActionDestroyInstance, kOfxActionLoad,
 };
@@ -27,7 +27,7 @@ pub fn perform(action: &Action) -> Result<(), Failure> {
     if [kOfxActionLoad, kOfxActionCreateInstance, kOfxActionDestroyInstance].contains(&name) {
         return Ok(());
     }
-    let known: [(&CStr, fn(&Action) -> Result<(), Failure>); 4] = [
+    let known: [(&CStr, Perform); 4] = [
         (kOfxActionDescribe, describe::describe),
         (kOfxImageEffectActionDescribeInContext, describe::describe_in_context),
         (kOfxImageEffectActionGetClipPreferences, describe::clip_preferences),

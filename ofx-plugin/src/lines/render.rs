@@ -18,8 +18,10 @@ pub fn render(action: &Action) -> Result<(), Failure> {
     let time = action.input.double(kOfxPropTime, 0)?;
     let [_, scale] = action.input.doubles(kOfxImageEffectPropRenderScale).unwrap_or([1.0; 2]);
     let [x1, y1, x2, y2] = action.input.ints(kOfxImageEffectPropRenderWindow)?;
-    let mut output =
-        effect.clip(OUTPUT)?.image(time)?.ok_or_else(|| Failure::Told("the host has no image for the output".into()))?;
+    let mut output = effect
+        .clip(OUTPUT)?
+        .image(time)?
+        .ok_or_else(|| Failure::Told("the host has no image for the output".into()))?;
     let clip = effect.clip(SOURCE)?;
     let source = if clip.connected() { clip.image(time)? } else { None };
     let seen = match &source {

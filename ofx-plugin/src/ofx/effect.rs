@@ -140,13 +140,7 @@ impl<'a> Effect<'a> {
         let Some(function) = self.suites.message.and_then(|suite| suite.message) else { return false };
         // SAFETY: the effect's own handle and terminated texts; `%s` takes the one that follows.
         let status = unsafe {
-            function(
-                self.handle.cast(),
-                kOfxMessageError.as_ptr(),
-                c"rototoon".as_ptr(),
-                c"%s".as_ptr(),
-                text.as_ptr(),
-            )
+            function(self.handle.cast(), kOfxMessageError.as_ptr(), c"rototoon".as_ptr(), c"%s".as_ptr(), text.as_ptr())
         };
         status == 0
     }

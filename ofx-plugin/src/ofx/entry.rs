@@ -24,6 +24,9 @@ pub struct Action<'a> {
     pub output: Properties<'a>,
 }
 
+/// What does an action.
+pub type Perform = fn(&Action) -> Result<(), Failure>;
+
 /// Does an action; the only way from a host into an effect.
 ///
 /// # Safety
@@ -33,7 +36,7 @@ pub unsafe fn entry(
     handle: *const c_void,
     input: OfxPropertySetHandle,
     output: OfxPropertySetHandle,
-    perform: fn(&Action) -> Result<(), Failure>,
+    perform: Perform,
 ) -> OfxStatus {
     if action.is_null() {
         return kOfxStatFailed;
@@ -70,7 +73,11 @@ pub unsafe fn entry(
             let _ = catch_unwind(AssertUnwindSafe(|| {
                 // Messages are about instances, which descriptions are not.
                 let described = [kOfxActionDescribe, kOfxImageEffectActionDescribeInContext].contains(&name);
-                if handle.is_null() || described { eprintln!("Rototoon: {text}") } else { action.effect.complain(&text) }
+                if handle.is_null() || described {
+                    eprintln!("Rototoon: {text}")
+                } else {
+                    action.effect.complain(&text)
+                }
             }));
             // What a panic carries may panic when it is dropped.
             let _ = catch_unwind(AssertUnwindSafe(|| drop(panic)));

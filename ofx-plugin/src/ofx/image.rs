@@ -163,8 +163,7 @@ impl Rows<'_> {
     /// The bytes of row `y` of the window.
     pub fn row(&mut self, y: i32) -> Option<&mut [u8]> {
         let w = self.window;
-        let (start, length) =
-            (w.y1..w.y2).contains(&y).then(|| self.image.place(y, w.x1, w.x2)).flatten()?;
+        let (start, length) = (w.y1..w.y2).contains(&y).then(|| self.image.place(y, w.x1, w.x2)).flatten()?;
         // SAFETY: as in `Image::row`; the rows of different bands are apart, and this one is borrowed as mutable.
         Some(unsafe { std::slice::from_raw_parts_mut(start, length) })
     }

@@ -9,8 +9,7 @@ use super::host;
 use super::property::{Properties, call};
 use openfx::sys::generic::core::{
     OfxPointD, OfxPropertySetHandle, OfxStatus, kOfxActionCreateInstance, kOfxActionDescribe,
-    kOfxActionDestroyInstance, kOfxPropEffectInstance, kOfxPropTime, kOfxStatFailed, kOfxStatOK,
-    kOfxStatReplyDefault,
+    kOfxActionDestroyInstance, kOfxPropEffectInstance, kOfxPropTime, kOfxStatFailed, kOfxStatOK, kOfxStatReplyDefault,
 };
 use openfx::sys::image_effect_v1::draw_suite::{
     OfxDrawContextHandle, OfxDrawSuiteV1, kOfxDrawPrimitiveLineLoop, kOfxDrawPrimitiveLineStrip,

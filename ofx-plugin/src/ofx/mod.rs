@@ -7,7 +7,7 @@
 //! - [`effect`]: effects, their clips and what they say to the user
 //! - [`image`]: images, released on every path
 //! - [`interact`]: what is drawn over the viewer, and the pen there
-//! - [`param`]: parameters
+//! - [`param`]: parameters described, read and set
 //! - [`progress`]: how far long work has come
 //! - [`threads`]: work on the host's threads
 //!

@@ -145,6 +145,7 @@ impl<'a> Properties<'a> {
     }
 
     /// Sets a pointer.
+    #[allow(clippy::not_unsafe_ptr_arg_deref, reason = "the host keeps the address; nothing is read through it here")]
     pub fn set_pointer(&self, name: &CStr, index: i32, value: *mut c_void) -> Result<(), Failure> {
         call!(self.suite, propSetPointer, self.handle()?, name.as_ptr(), index, value)
     }

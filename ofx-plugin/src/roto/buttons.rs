@@ -2,11 +2,14 @@
 //!
 //! Only what the user did counts: each value that the plugin sets comes back as a change of its own.
 
-use super::{instance, track};
+use super::instance::ORIGIN;
+use super::{instance, stored, track};
 use crate::description::SOURCE;
 use crate::ofx::entry::Action;
 use crate::ofx::{Effect, Failure};
-use openfx::sys::generic::core::{kOfxChangeUserEdited, kOfxPropChangeReason, kOfxPropName, kOfxPropTime, kOfxPropType};
+use openfx::sys::generic::core::{
+    kOfxChangeUserEdited, kOfxPropChangeReason, kOfxPropName, kOfxPropTime, kOfxPropType,
+};
 use openfx::sys::image_effect_v1::image_effect::kOfxTypeClip;
 use openfx::sys::image_effect_v1::param::kOfxTypeParameter;
 use rototoon::project::Document;
@@ -70,7 +73,7 @@ fn load(effect: &Effect) -> Result<(), Failure> {
     {
         *pattern = Path::new(&folder.replace('%', "%%")).join(&*pattern).to_string_lossy().into_owned();
     }
-    effect.parameters()?.set("Load project", &[(c"document", &document.to_json())])
+    effect.parameters()?.set("Load project", &[(c"document", &stored::encode(&document.to_json()))])
 }
 
 /// Writes the composition's shapes to the project's file; footage below its folder is named relative to it.
@@ -81,7 +84,8 @@ fn save(effect: &Effect) -> Result<(), Failure> {
         return Err(Failure::Told("there are no shapes to save: load a project first".into()));
     }
     let told = |error: &dyn std::fmt::Display| Failure::Told(error.to_string());
-    let mut document = Document::parse(&text, "the composition's document").map_err(|error| told(&error))?;
+    let json = stored::decode(&text).map_err(Failure::Told)?;
+    let mut document = Document::parse(&json, ORIGIN).map_err(|error| told(&error))?;
     let folder = folder(&path);
     let pattern = &mut document.scene.footage.pattern;
     if let Some(folder) = folder.to_str()

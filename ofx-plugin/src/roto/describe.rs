@@ -1,8 +1,8 @@
 //! Clips and parameters of the effect.
 
 use crate::description::{self, About};
-use crate::ofx::{Failure, host};
 use crate::ofx::entry::Action;
+use crate::ofx::{Failure, host};
 use crate::parameters::{Kind, Parameter};
 use crate::plugins;
 use openfx::sys::image_effect_v1::image_effect::{
@@ -69,7 +69,13 @@ pub const PARAMETERS: [Parameter; 24] = [
         PICTURE,
         "The source cut out by the parts, their matte, their outlines over the source, or a colour for each part.",
     ),
-    parameter(c"invert", "Invert", Kind::Flag(false), PICTURE, "Whether cutout and matte are of what is not in a part."),
+    parameter(
+        c"invert",
+        "Invert",
+        Kind::Flag(false),
+        PICTURE,
+        "Whether cutout and matte are of what is not in a part.",
+    ),
     parameter(
         c"grow",
         "Grow",
@@ -99,13 +105,7 @@ pub const PARAMETERS: [Parameter; 24] = [
         "Times within the shutter at which the outline is drawn.",
     ),
     parameter(c"lines", "Lines", Kind::Group(false), None, "How the overlay draws outlines."),
-    parameter(
-        c"lineWidth",
-        "Line width",
-        Kind::Number(2.0, [0.0, 200.0], [0.0, 20.0]),
-        LINES,
-        "Pixels across a line.",
-    ),
+    parameter(c"lineWidth", "Line width", Kind::Number(2.0, [0.0, 200.0], [0.0, 20.0]), LINES, "Pixels across a line."),
     parameter(c"lineColor", "Line colour", Kind::Colour([1.0, 0.3, 0.1, 1.0]), LINES, "Colour of the lines."),
     parameter(c"opacity", "Opacity", Kind::Number(1.0, [0.0, 1.0], [0.0, 1.0]), LINES, "Opacity of the lines."),
     parameter(c"tracking", "Tracking", Kind::Group(false), None, "Following the keys through the source's frames."),
@@ -117,13 +117,7 @@ pub const PARAMETERS: [Parameter; 24] = [
         TRACKING,
         "First frame that is tracked. The whole source where it is not before the last.",
     ),
-    parameter(
-        c"lastFrame",
-        "Last frame",
-        Kind::Integer(0, FRAMES, [0, 1000]),
-        TRACKING,
-        "Last frame that is tracked.",
-    ),
+    parameter(c"lastFrame", "Last frame", Kind::Integer(0, FRAMES, [0, 1000]), TRACKING, "Last frame that is tracked."),
     parameter(
         c"track",
         "Track",

@@ -1,6 +1,7 @@
 //! What an instance keeps: its document, read once, and what the user was told.
 
 use super::overlay::Drag;
+use super::stored;
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::project::Document;
 use std::collections::BTreeSet;
@@ -8,6 +9,8 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
+/// How messages name the document.
+pub const ORIGIN: &str = "the composition's document";
 /// Most different things that are told of until the user changes something.
 const MOST_NOTES: usize = 20;
 
@@ -52,10 +55,11 @@ impl Instance {
         let mut read = lock(&self.read);
         if read.as_ref().is_none_or(|read| read.origin != origin) {
             let result = match &origin {
-                Origin::Text(text) => Document::parse(text, "the composition's document"),
-                Origin::File(path, _) => Document::load(Path::new(path)),
+                Origin::Text(text) => stored::decode(text)
+                    .and_then(|json| Document::parse(&json, ORIGIN).map_err(|error| error.to_string())),
+                Origin::File(path, _) => Document::load(Path::new(path)).map_err(|error| error.to_string()),
             };
-            let result = result.map(Arc::new).map_err(|error| error.to_string());
+            let result = result.map(Arc::new);
             *read = Some(Read { origin, result });
         }
         match read.as_ref().map(|read| read.result.clone()) {

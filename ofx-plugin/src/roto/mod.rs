@@ -3,11 +3,12 @@
 //! - [`describe`]: clips and parameters
 //! - [`settings`]: what the parameters say at a time
 //! - [`instance`]: what an instance keeps: its document, read once, and what the user was told
+//! - [`stored`]: the document as the text that a host keeps
 //! - [`placement`]: where the footage's pixels are in the host's picture
 //! - [`parts`]: which parts are meant
 //! - [`picture`]: what is drawn
 //! - [`regions`]: where something is drawn, and what of the source that needs
-//! - [`render`]: pixels
+//! - [`render`]: the pixels of a window
 //! - [`overlay`]: contours over the viewer, control points that can be dragged
 //! - [`buttons`]: load, save, track
 //! - [`track`]: core's tracker on the source's frames
@@ -22,14 +23,15 @@ pub mod placement;
 pub mod regions;
 pub mod render;
 pub mod settings;
+pub mod stored;
 pub mod track;
 
-use crate::ofx::entry::Action;
+use crate::ofx::entry::{Action, Perform};
 use crate::ofx::{Effect, Failure};
 use instance::Instance;
 use openfx::sys::generic::core::{
-    kOfxActionCreateInstance, kOfxActionDescribe, kOfxActionDestroyInstance, kOfxActionInstanceChanged,
-    kOfxActionLoad, kOfxActionPurgeCaches,
+    kOfxActionCreateInstance, kOfxActionDescribe, kOfxActionDestroyInstance, kOfxActionInstanceChanged, kOfxActionLoad,
+    kOfxActionPurgeCaches,
 };
 use openfx::sys::image_effect_v1::image_effect::{
     kOfxImageEffectActionDescribeInContext, kOfxImageEffectActionGetClipPreferences,
@@ -47,7 +49,7 @@ pub fn perform(action: &Action) -> Result<(), Failure> {
     if name == kOfxActionLoad {
         return Ok(());
     }
-    let known: [(&CStr, fn(&Action) -> Result<(), Failure>); 11] = [
+    let known: [(&CStr, Perform); 11] = [
         (kOfxActionDescribe, describe::describe),
         (kOfxImageEffectActionDescribeInContext, describe::describe_in_context),
         (kOfxActionCreateInstance, create),

@@ -3,10 +3,10 @@
 //! A drag on a key frame moves the key's point; on a frame between keys it makes a pin, which **Track** then holds to. The
 //! point moves at once on that frame, and the document is written when the pen goes up.
 
-use super::instance;
 use super::parts::selected;
 use super::placement::Placement;
 use super::settings::Settings;
+use super::{instance, stored};
 use crate::ofx::Failure;
 use crate::ofx::interact::{Event, View};
 use rototoon::geometry::Point;
@@ -153,5 +153,5 @@ fn keep(view: &View, shown: &Shown, drag: Drag) -> Result<(), Failure> {
         view.effect.complain(&problems.to_string());
         return Err(Failure::Told(problems.to_string()));
     }
-    view.effect.parameters()?.set("Move point", &[(c"document", &document.to_json())])
+    view.effect.parameters()?.set("Move point", &[(c"document", &stored::encode(&document.to_json()))])
 }

@@ -48,7 +48,8 @@ impl Picture {
         order.sort_by(|&a, &b| scene.parts[a].depth.total_cmp(&scene.parts[b].depth));
         let (grow, feather) = (placement.length(settings.grow), placement.length(settings.feather));
         let mask = |parts: &[usize]| {
-            let closed: Vec<&Part> = parts.iter().map(|&index| &scene.parts[index]).filter(|part| part.closed).collect();
+            let closed: Vec<&Part> =
+                parts.iter().map(|&index| &scene.parts[index]).filter(|part| part.closed).collect();
             Mask::new(instants(&closed, settings, placement), grow, feather)
         };
         match settings.output {
@@ -188,6 +189,11 @@ fn over(pixel: &mut Pixel, colour: [f32; 3], alpha: f32) {
     if alpha > 0.0 {
         let [r, g, b] = colour;
         let rest = 1.0 - alpha;
-        *pixel = [r * alpha + pixel[0] * rest, g * alpha + pixel[1] * rest, b * alpha + pixel[2] * rest, alpha + pixel[3] * rest];
+        *pixel = [
+            r * alpha + pixel[0] * rest,
+            g * alpha + pixel[1] * rest,
+            b * alpha + pixel[2] * rest,
+            alpha + pixel[3] * rest,
+        ];
     }
 }

@@ -3,8 +3,8 @@
 //! The tracker runs on threads of its own; the host is asked for frames, told of progress and asked whether to go on by the
 //! thread that the action came on, and by no other: hosts allow their functions there.
 
-use super::instance;
 use super::placement::Placement;
+use super::{instance, stored};
 use crate::description::SOURCE;
 use crate::encoding::Encoding;
 use crate::ofx::progress::Bar;
@@ -32,13 +32,14 @@ type Picture = Arc<Raster<Colour>>;
 pub fn track(effect: &Effect, time: f64) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let document = instance.document(&parameters)?;
-    let document = document.ok_or_else(|| Failure::Told("there are no shapes to track: load a project first".into()))?;
+    let document =
+        document.ok_or_else(|| Failure::Told("there are no shapes to track: load a project first".into()))?;
     let source = effect.clip(SOURCE)?;
     let clip_range = source.connected().then(|| source.frame_range()).flatten();
     let clip_range = clip_range.ok_or_else(|| Failure::Told("connect the footage to the input Source first".into()))?;
     let offset = parameters.int(c"frameOffset", time)?;
-    let chosen = parameters.int(c"firstFrame", time)?..=parameters.int(c"lastFrame", time)?;
-    let range = range(clip_range, &chosen, offset);
+    let chosen = [parameters.int(c"firstFrame", time)?, parameters.int(c"lastFrame", time)?];
+    let range = range(clip_range, chosen, offset);
     let scene = within(&document.scene, range.clone());
     if scene.parts.iter().all(|part| part.keys.is_empty()) {
         let (first, last) = (range.start(), range.end());
@@ -54,14 +55,14 @@ pub fn track(effect: &Effect, time: f64) -> Result<(), Failure> {
     if problems.error_count() > 0 {
         return Err(Failure::Told(problems.to_string()));
     }
-    parameters.set("Track", &[(c"document", &document.to_json())])
+    parameters.set("Track", &[(c"document", &stored::encode(&document.to_json()))])
 }
 
 /// The document's frames that the source has and the user wants.
-fn range(clip: [f64; 2], chosen: &RangeInclusive<i32>, offset: i32) -> RangeInclusive<FrameNumber> {
+fn range(clip: [f64; 2], chosen: [i32; 2], offset: i32) -> RangeInclusive<FrameNumber> {
     let (first, last) = (clip[0].ceil() as i32, clip[1].floor() as i32);
-    let wanted = if chosen.start() < chosen.end() { chosen.clone() } else { first..=last };
-    let (first, last) = (first.max(*wanted.start()), last.min(*wanted.end()));
+    let wanted = if chosen[0] < chosen[1] { chosen } else { [first, last] };
+    let (first, last) = (first.max(wanted[0]), last.min(wanted[1]));
     first.saturating_sub(offset)..=last.saturating_sub(offset)
 }
 
@@ -83,7 +84,9 @@ fn merge(scene: &mut Scene, mut tracking: Tracking, range: &RangeInclusive<Frame
         // A part without keys there was not looked for.
         let untouched = found.tracks.is_empty();
         let kept = |frame: &FrameNumber| untouched || !range.contains(frame);
-        found.tracks.extend(part.tracks.iter().filter(|(frame, _)| kept(frame)).map(|(f, points)| (*f, points.clone())));
+        found
+            .tracks
+            .extend(part.tracks.iter().filter(|(frame, _)| kept(frame)).map(|(f, points)| (*f, points.clone())));
         let confidence = part.confidence.iter().filter(|(frame, _)| kept(frame));
         found.confidence.extend(confidence.map(|(frame, values)| (*frame, values.clone())));
     }
@@ -259,9 +262,9 @@ mod tests {
 
     #[test]
     fn frames_are_those_of_the_clip_and_the_user() {
-        assert_eq!(range([1.0, 34.0], &(0..=0), 1), 0..=33);
-        assert_eq!(range([1.0, 34.0], &(5..=80), 0), 5..=34);
-        assert_eq!(range([1.5, 9.9], &(7..=3), -10), 12..=19);
+        assert_eq!(range([1.0, 34.0], [0, 0], 1), 0..=33);
+        assert_eq!(range([1.0, 34.0], [5, 80], 0), 5..=34);
+        assert_eq!(range([1.5, 9.9], [7, 3], -10), 12..=19);
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Regions, identity, abort, keys, what is wrong with documents.
 
 use crate::common::{
-    CUTOUT, FILTER, GENERAL, HEIGHT, IDS, MATTE, OK, OVERLAY, WHOLE, WIDTH, bundles, clean, document, effect, footage, host,
-    p, part, pattern, rendered,
+    CUTOUT, FILTER, GENERAL, HEIGHT, IDS, MATTE, OK, OVERLAY, WHOLE, WIDTH, bundles, clean, document, effect, footage,
+    host, p, part, pattern, rendered,
 };
 use rototoon::project::Document;
 use rototoon::scene::Scene;
@@ -191,7 +191,8 @@ fn nothing_is_drawn_beyond_the_tracks_and_without_a_source() {
 #[test]
 fn a_host_with_few_suites_and_no_images() {
     let mut host = host();
-    let missing = ["OfxMessageSuite", "OfxProgressSuite", "OfxMultiThreadSuite", "OfxTimeLineSuite", "OfxInteractSuite"];
+    let missing =
+        ["OfxMessageSuite", "OfxProgressSuite", "OfxMultiThreadSuite", "OfxTimeLineSuite", "OfxInteractSuite"];
     let missing_suites = missing.map(String::from).to_vec();
     host.configure(&Settings { missing_suites: missing_suites.clone(), ..Settings::default() });
     // Suites are fetched when the plugin is loaded.

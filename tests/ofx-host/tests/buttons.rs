@@ -1,6 +1,6 @@
 //! Load, save, track.
 
-use crate::common::{FILTER, OK, ROTO, clean, document, effect, host, p};
+use crate::common::{FILTER, OK, ROTO, clean, document, effect, host, kept, p};
 use rototoon::geometry::{Point, polygon, polyline};
 use rototoon::project::Document;
 use rototoon::scene::{Footage, Part, Scene};
@@ -44,8 +44,7 @@ fn drawing(frame: i32) -> Vec<f32> {
 fn keyed() -> Document {
     let keys = [0, LAST].map(|frame| (frame, blob(frame))).into();
     let part = Part { name: "blob".into(), closed: true, keys, ..Part::default() };
-    let footage =
-        Footage { pattern: "%d.png".into(), first: 0, last: LAST, fps: 24.0, width: WIDTH, height: HEIGHT };
+    let footage = Footage { pattern: "%d.png".into(), first: 0, last: LAST, fps: 24.0, width: WIDTH, height: HEIGHT };
     Document::new(Scene { footage, parts: vec![part] })
 }
 
@@ -83,7 +82,7 @@ fn track_follows_the_drawing_and_keeps_the_result() {
         clean(&host);
         let after = effect.text("document");
         assert_ne!(after, before);
-        let found = Document::parse(&after, "after").unwrap();
+        let found = kept(&effect);
         let part = &found.scene.parts[0];
         assert_eq!(part.tracks.keys().copied().collect::<Vec<_>>(), (0..=LAST).collect::<Vec<_>>());
         for frame in 1..LAST {
@@ -149,7 +148,7 @@ fn load_and_save() {
     assert!(messages.len() == 2 && messages.iter().all(|text| text.contains("choose a project file")), "{messages:?}");
     // Choosing a file loads it.
     effect.set_text("project", file.to_str().unwrap());
-    let loaded = Document::parse(&effect.text("document"), "loaded").unwrap();
+    let loaded = kept(&effect);
     assert_eq!(loaded.scene.parts, crate::common::scene().parts);
     assert!(loaded.scene.footage.pattern.starts_with(folder.path().to_str().unwrap()));
     // Saved beside the footage again, it is named as before.

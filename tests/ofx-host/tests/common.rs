@@ -79,20 +79,28 @@ pub fn part(name: &str, depth: f64, closed: bool, contour: impl Fn(f64) -> Vec<P
 pub fn scene() -> Scene {
     let star = |frame: f64| {
         let at = |k: usize| {
-            let radius = if k % 2 == 0 { 16.0 } else { 7.3 };
+            let radius = if k.is_multiple_of(2) { 16.0 } else { 7.3 };
             p(26.0 + 2.0 * frame, 21.0) + Point::from_angle(0.1 + 0.2 * frame + 0.6283185 * k as f64) * radius
         };
         (0..10).map(at).collect()
     };
     let drop = |frame: f64| vec![p(30.0, 8.0 + frame), p(55.3, 20.1), p(50.0, 41.7), p(33.3, 39.0 - frame)];
     let line = |frame: f64| vec![p(3.0, 44.0), p(20.0, 40.0 - frame), p(60.0, 46.0)];
-    let parts = vec![part("star", 2.0, true, star), part("drop", 1.0, true, drop), part("ground line", 0.0, false, line)];
+    let parts =
+        vec![part("star", 2.0, true, star), part("drop", 1.0, true, drop), part("ground line", 0.0, false, line)];
     Scene { footage: footage(), parts }
 }
 
 /// The scene as a document.
 pub fn document() -> String {
     Document::new(scene()).to_json()
+}
+
+/// The document that an instance keeps.
+pub fn kept(effect: &Effect) -> Document {
+    let text = effect.text("document");
+    assert!(text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_'), "a host may mangle {text}");
+    Document::parse(&rototoon_ofx::roto::stored::decode(&text).unwrap(), "kept").unwrap()
 }
 
 /// An instance of the effect with the test document and source.

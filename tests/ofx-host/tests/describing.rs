@@ -5,9 +5,30 @@ use rototoon_ofx_host::{ClipSettings, Host};
 
 /// Ids are fixed for ever: old compositions hold them.
 const IDS: [&str; 24] = [
-    "shapes", "project", "load", "save", "document", "frameOffset", "parts", "useCurves", "picture", "output", "invert",
-    "grow", "feather", "motionBlur", "motionBlurSamples", "lines", "lineWidth", "lineColor", "opacity", "tracking",
-    "preset", "firstFrame", "lastFrame", "track",
+    "shapes",
+    "project",
+    "load",
+    "save",
+    "document",
+    "frameOffset",
+    "parts",
+    "useCurves",
+    "picture",
+    "output",
+    "invert",
+    "grow",
+    "feather",
+    "motionBlur",
+    "motionBlurSamples",
+    "lines",
+    "lineWidth",
+    "lineColor",
+    "opacity",
+    "tracking",
+    "preset",
+    "firstFrame",
+    "lastFrame",
+    "track",
 ];
 
 #[test]

@@ -1,8 +1,7 @@
 //! Contours over the viewer, control points that can be dragged.
 
-use crate::common::{FILTER, HEIGHT, OK, bundles, clean, effect, host, scene};
+use crate::common::{FILTER, HEIGHT, OK, bundles, clean, effect, host, kept, scene};
 use rototoon::geometry::Point;
-use rototoon::project::Document;
 use rototoon_ofx_host::{ClipSettings, Effect, Settings};
 
 const DRAW: &str = "OfxInteractActionDraw";
@@ -61,7 +60,7 @@ fn a_drag_moves_a_key_or_makes_a_pin() {
         let to = Point::new(60.0, 10.0);
         assert_eq!(drag(&mut effect, f64::from(frame), from, to), [OK; 3], "{:?}", host.messages());
     }
-    let after = Document::parse(&effect.text("document"), "after").unwrap().scene;
+    let after = kept(&effect).scene;
     let (part, was) = (&after.parts[1], &before.parts[1]);
     let to = Point::new(60.0, 10.0);
     assert_eq!((part.keys[&4][1], part.tracks[&4][1], part.keys[&4][0]), (to, to, was.keys[&4][0]));

@@ -59,13 +59,20 @@ fn every_kind_of_image_is_drawn_alike() {
                         set(&mut effect, output);
                         let mut first: Option<Picture> = None;
                         for (threads, tile_rows, cpus) in [(1, 0, 1), (1, 7, 1), (4, 5, 1), (1, 0, 4)] {
-                            let what = format!("{output} {scale} {depth} {components} {settings:?} {threads} {tile_rows} {cpus}");
+                            let what = format!(
+                                "{output} {scale} {depth} {components} {settings:?} {threads} {tile_rows} {cpus}"
+                            );
                             host.configure(&Settings { cpus, ..Settings::default() });
-                            assert_eq!(effect.render(2.0, scaled(WHOLE, scale), scale, threads, tile_rows), OK, "{what}");
+                            assert_eq!(
+                                effect.render(2.0, scaled(WHOLE, scale), scale, threads, tile_rows),
+                                OK,
+                                "{what}"
+                            );
                             let picture = effect.output();
                             assert_eq!((picture.damage, picture.untouched), (0, 0), "{what}");
                             let wanted = channels(&reference, picture.channels);
-                            let worst = picture.values.iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+                            let worst =
+                                picture.values.iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
                             assert!(picture.values.len() == wanted.len() && worst <= HALF_A_CODE, "{what}: {worst}");
                             // Tiles and threads change no bit.
                             assert!(first.get_or_insert_with(|| picture.clone()).values == picture.values, "{what}");
@@ -99,7 +106,8 @@ fn a_tile_is_a_piece_of_the_whole() {
 fn a_picture_off_the_origin_is_the_same_picture() {
     let host = host();
     let mut here = effect(&host, FILTER, &ClipSettings::default());
-    let there = ClipSettings { x1: -37, y1: 1000, x2: WIDTH as i32 - 37, y2: HEIGHT as i32 + 1000, ..ClipSettings::default() };
+    let there =
+        ClipSettings { x1: -37, y1: 1000, x2: WIDTH as i32 - 37, y2: HEIGHT as i32 + 1000, ..ClipSettings::default() };
     let mut there = effect(&host, FILTER, &there);
     for output in [CUTOUT, MATTE, OVERLAY, IDS] {
         here.set("output", &[output]);
