@@ -451,7 +451,7 @@ mod tests {
         ) {
             let polygons: Vec<Vec<Point>> =
                 corners.iter().map(|points| points.iter().map(|&(x, y)| p(x, y)).collect()).collect();
-            let picture = picture(&[polygons.clone()], size(5, 4));
+            let picture = picture(std::slice::from_ref(&polygons), size(5, 4));
             for y in 0..4 {
                 for x in 0..5 {
                     prop_assert!((f64::from(picture.get(x, y)) - sampled(&polygons, x, y)).abs() < 0.02);
@@ -464,7 +464,7 @@ mod tests {
             corners in proptest::collection::vec((-20.0..30.0, -20.0..30.0), 3..12), left in 0i64..6, top in 0i64..6
         ) {
             let polygons = vec![corners.iter().map(|&(x, y)| p(x, y)).collect::<Vec<_>>()];
-            let whole = picture(&[polygons.clone()], size(10, 10));
+            let whole = picture(std::slice::from_ref(&polygons), size(10, 10));
             let part = picture(&[polygons], Window { left, top, right: left + 3, bottom: top + 4 });
             for y in 0..4 {
                 for x in 0..3 {
