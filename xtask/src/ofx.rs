@@ -32,8 +32,7 @@ pub fn lay_out(library: &Path) -> Result<PathBuf> {
     }
     std::fs::copy(root().join("LICENSE"), resources.join("LICENSE"))?;
     println!("OpenFX: {}", place.display());
-    println!("  hosts look in /usr/OFX/Plugins and in the folders of OFX_PLUGIN_PATH: copy it there, or");
-    println!("  export OFX_PLUGIN_PATH={}", target().display());
+    println!("  hosts look in /usr/OFX/Plugins and in the folders that OFX_PLUGIN_PATH lists: copy it to one of them");
     Ok(place)
 }
 

@@ -118,8 +118,7 @@ fn ofx_tests(built: Option<&Bundle>) -> Result<Option<String>> {
         return Ok(Some(reason));
     }
     run(cargo().args(["clippy", "--quiet", "-p", OFX_HOST, "--all-targets", "--", "-D", "warnings"]))?;
-    let bundles = built.ofx.parent().unwrap_or(&built.ofx);
-    run(cargo().args(["test", "--quiet", "-p", OFX_HOST]).env("ROTOTOON_OFX_BUNDLES", bundles))?;
+    run(cargo().args(["test", "--quiet", "-p", OFX_HOST]).env("ROTOTOON_OFX_BUNDLE", &built.ofx))?;
     Ok(None)
 }
 

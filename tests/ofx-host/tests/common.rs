@@ -30,18 +30,18 @@ pub const OVERLAY: f64 = 2.0;
 /// Index of an output.
 pub const IDS: f64 = 3.0;
 
-/// A folder that holds the bundle: the one that a variable names, else one made of the library built with the tests.
+/// A folder that holds a bundle and nothing else, since hosts look through all that lies in it: of the bundle that a variable
+/// names, else of the library built with the tests.
 pub fn bundles() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
-        if let Some(folder) = std::env::var_os("ROTOTOON_OFX_BUNDLES") {
-            return folder.into();
-        }
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ofx-bundles");
         let inner = folder.join("Rototoon.ofx.bundle/Contents/Linux-x86-64");
         std::fs::create_dir_all(&inner).unwrap();
-        let tests = std::env::current_exe().unwrap();
-        let library = tests.with_file_name("librototoon_ofx.so");
+        let library = match std::env::var_os("ROTOTOON_OFX_BUNDLE") {
+            Some(bundle) => Path::new(&bundle).join("Contents/Linux-x86-64/Rototoon.ofx"),
+            None => std::env::current_exe().unwrap().with_file_name("librototoon_ofx.so"),
+        };
         // Under another name first: a running test may have the last one open.
         let new = inner.join(format!("new-{}", std::process::id()));
         std::fs::copy(&library, &new).unwrap_or_else(|error| panic!("{library:?}: {error}"));
