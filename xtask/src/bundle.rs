@@ -1,19 +1,20 @@
-//! `bundle`: the extension as a zip that Blender installs.
+//! `bundle`: the extension as a zip that Blender installs, and the OpenFX plugin ([`crate::ofx`]).
 //!
 //! The native library is built against an old glibc with zig as the linker (cargo-zigbuild and ziglang from PyPI, in an
 //! environment under `target/`), so that it loads on every Linux that Blender itself runs on; the symbol versions it needs are
 //! read back to make sure. Blender's own packager builds the zip and validates it.
 
 use crate::shell::{capture, command, copy_folder, empty_folder, root, run, target};
-use crate::{elf, python};
+use crate::{elf, ofx, python};
 use anyhow::{Context, Result, bail, ensure};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The newest glibc the library may need: that of the systems Blender's own builds support (VFX platform CY2023 on).
-const GLIBC: (u32, u32) = (2, 28);
+pub const GLIBC: (u32, u32) = (2, 28);
 const TRIPLE: &str = "x86_64-unknown-linux-gnu";
 const LIBRARY: &str = "librototoon_capi.so";
+const PLUGIN: &str = "librototoon_ofx.so";
 
 /// What `bundle` leaves behind.
 #[derive(Clone, Debug)]
@@ -24,6 +25,8 @@ pub struct Bundle {
     pub library: PathBuf,
     /// The command line, built with it.
     pub cli: PathBuf,
+    /// The OpenFX bundle, built with it.
+    pub ofx: PathBuf,
 }
 
 /// What packs the extension: Blender's packager from a wheel, or an installed Blender.
@@ -37,15 +40,16 @@ pub enum Packager {
 
 /// Builds, packs and validates.
 pub fn bundle(packager: &Packager) -> Result<Bundle> {
-    let (library, cli) = build()?;
+    let (library, cli, plugin) = build()?;
+    let ofx = ofx::lay_out(&plugin)?;
     let staged = stage(&library)?;
     let zip = pack(packager, &staged)?;
     println!("bundle: {}", zip.display());
-    Ok(Bundle { zip, library, cli })
+    Ok(Bundle { zip, library, cli, ofx })
 }
 
-/// Builds library and command line; both need only [`GLIBC`].
-fn build() -> Result<(PathBuf, PathBuf)> {
+/// Builds library, command line and OpenFX plugin; all need only [`GLIBC`].
+fn build() -> Result<(PathBuf, PathBuf, PathBuf)> {
     ensure!(cfg!(all(target_os = "linux", target_arch = "x86_64")), "the bundle is built on Linux x86-64 only");
     let tools = python::venv("venv-build", &python::find_any()?, &["cargo-zigbuild", "ziglang"])?;
     let bin = tools.parent().context("an interpreter lies in a folder")?;
@@ -57,7 +61,8 @@ fn build() -> Result<(PathBuf, PathBuf)> {
     }
     let versioned = format!("{TRIPLE}.{}.{}", GLIBC.0, GLIBC.1);
     run(command(bin.join("cargo-zigbuild"))
-        .args(["zigbuild", "--quiet", "--release", "-p", "rototoon-capi", "-p", "rototoon-cli", "--target", &versioned])
+        .args(["zigbuild", "--quiet", "--release", "--target", &versioned])
+        .args(["-p", "rototoon-capi", "-p", "rototoon-cli", "-p", "rototoon-ofx"])
         .env("PATH", path)
         // The zip is downloaded by artists: no line tables.
         .env("CARGO_PROFILE_RELEASE_DEBUG", "none")
@@ -66,7 +71,7 @@ fn build() -> Result<(PathBuf, PathBuf)> {
     let (library, cli) = (built.join(LIBRARY), built.join("rototoon"));
     elf::assert_glibc(&library, GLIBC)?;
     elf::assert_glibc(&cli, GLIBC)?;
-    Ok((library, cli))
+    Ok((library, cli, built.join(PLUGIN)))
 }
 
 /// The extension's folder as it is packed: the add-on's files, the library, the licence.

@@ -36,6 +36,29 @@ pub fn needed_versions(file: &[u8]) -> Result<Vec<String>> {
     Ok(versions)
 }
 
+/// The names of all libraries that a library links, such as `libc.so.6`.
+pub fn needed_libraries(file: &[u8]) -> Result<Vec<String>> {
+    const DYNAMIC: usize = 6;
+    const NEEDED: usize = 1;
+    ensure!(file.starts_with(b"\x7fELF\x02\x01"), "not a 64-bit little-endian ELF file");
+    let sections = number(file, 0x28, 8)?;
+    let (size, count) = (number(file, 0x3a, 2)?, number(file, 0x3c, 2)?);
+    let mut names = Vec::new();
+    for section in (0..count).map(|i| sections + i * size) {
+        if number(file, section + 4, 4)? != DYNAMIC {
+            continue;
+        }
+        let strings = number(file, sections + number(file, section + 0x28, 4)? * size + 0x18, 8)?;
+        let (start, length) = (number(file, section + 0x18, 8)?, number(file, section + 0x20, 8)?);
+        for entry in (start..start + length).step_by(16) {
+            if number(file, entry, 8)? == NEEDED {
+                names.push(string(file, strings + number(file, entry + 8, 8)?)?);
+            }
+        }
+    }
+    Ok(names)
+}
+
 /// Fails where a library needs a newer glibc than `most`, major and minor number.
 pub fn assert_glibc(path: &Path, most: (u32, u32)) -> Result<()> {
     let file = std::fs::read(path).with_context(|| format!("cannot read {path:?}"))?;
@@ -79,6 +102,8 @@ mod tests {
         assert!(versions.iter().any(|v| glibc(v).is_some_and(|v| v >= (2, 2))), "{versions:?}");
         assert!(assert_glibc(&path, (2, 0)).unwrap_err().to_string().contains("GLIBC_2."));
         assert_glibc(&path, (99, 0)).unwrap();
+        let libraries = needed_libraries(&std::fs::read(&path).unwrap()).unwrap();
+        assert!(libraries.iter().any(|name| name == "libc.so.6"), "{libraries:?}");
     }
 
     #[test]
@@ -91,7 +116,7 @@ mod tests {
 
     #[test]
     fn other_files_are_refused() {
-        assert!(needed_versions(b"MZ").is_err());
+        assert!(needed_versions(b"MZ").is_err() && needed_libraries(b"MZ").is_err());
         assert!(needed_versions(b"\x7fELF\x02\x01\x01").is_err());
     }
 }

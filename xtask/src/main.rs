@@ -8,6 +8,7 @@ mod bundle;
 mod demo;
 mod elf;
 mod generate;
+mod ofx;
 mod photograph;
 mod python;
 mod shell;
@@ -34,9 +35,13 @@ enum Command {
         #[arg(long)]
         blender: Option<PathBuf>,
     },
-    /// Run every check, in Blender too, and say what could not be run.
-    Test,
-    /// Build and validate the extension's zip.
+    /// Run every check, in Blender and in an OpenFX host too, and say what could not be run.
+    Test {
+        /// Also run the OpenFX plugin under valgrind.
+        #[arg(long)]
+        valgrind: bool,
+    },
+    /// Build and validate the extension's zip and the OpenFX bundle.
     Bundle,
     /// Write the C header and the Python bindings.
     Generate {
@@ -59,7 +64,7 @@ enum Command {
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Demo { project, blender } => demo::demo(project, blender),
-        Command::Test => test::test(),
+        Command::Test { valgrind } => test::test(valgrind),
         Command::Bundle => bundle::bundle(&bundle::Packager::from_wheel()?).map(|_| ()),
         Command::Generate { check } => generate::generate(check),
         Command::BenchFit(arguments) => bench_fit::bench_fit(&arguments),

@@ -3,9 +3,12 @@
 use crate::bundle::{Bundle, Packager, bundle};
 use crate::generate::generate;
 use crate::python::{self, WHEELS, Wheel};
-use crate::shell::{cargo, command, empty_folder, root, run, target, works};
+use crate::shell::{capture, cargo, command, empty_folder, root, run, target, works};
 use anyhow::{Result, bail};
 use std::time::Instant;
+
+/// The package that is built apart: it compiles C++.
+const OFX_HOST: &str = "rototoon-ofx-host";
 
 /// How a step ended.
 enum Outcome {
@@ -66,22 +69,29 @@ impl Report {
 }
 
 /// Runs all checks. Fails where one fails; what could not be run is said, and fails nothing.
-pub fn test() -> Result<()> {
+pub fn test(valgrind: bool) -> Result<()> {
     if !works("cc", &["--version"]) {
         bail!("no C compiler (cc) was found; install one, for example: apt-get install gcc");
     }
     let mut report = Report::default();
     report.step("format", || component("fmt", "rustfmt", &["fmt", "--all", "--check"]));
     report.step("clippy", || {
-        component("clippy", "clippy", &["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"])
+        let arguments = ["clippy", "--quiet", "--workspace", "--exclude", OFX_HOST, "--all-targets"];
+        component("clippy", "clippy", &[&arguments[..], &["--", "-D", "warnings"]].concat())
     });
-    report.step("Rust tests", || run(cargo().args(["test", "--quiet", "--workspace"])).map(|()| None));
+    report.step("Rust tests", || {
+        run(cargo().args(["test", "--quiet", "--workspace", "--exclude", OFX_HOST])).map(|()| None)
+    });
     report.step("generated files are current", || generate(true).map(|()| None));
     let mut built = None;
     report.step("extension bundle", || {
         built = Some(bundle(&Packager::from_wheel()?)?);
         Ok(None)
     });
+    report.step("OpenFX host", || ofx_tests(built.as_ref()));
+    if valgrind {
+        report.step("OpenFX host under valgrind", valgrind_tests);
+    }
     report.step("Python tests", || python_tests(built.as_ref()));
     for wheel in WHEELS {
         report.step(&format!("Blender {}", wheel.blender), || blender_tests(wheel, built.as_ref()));
@@ -99,6 +109,49 @@ fn component(subcommand: &str, name: &str, arguments: &[&str]) -> Result<Option<
         return Ok(Some(format!("cargo {subcommand} is missing; install it: rustup component add {name}")));
     }
     run(cargo().args(arguments)).map(|()| None)
+}
+
+/// The plugin in the official host library, which is compiled for it.
+fn ofx_tests(built: Option<&Bundle>) -> Result<Option<String>> {
+    let Some(built) = built else { return Ok(Some("the bundle failed".into())) };
+    if let Some(reason) = missing_package("c++", "g++") {
+        return Ok(Some(reason));
+    }
+    run(cargo().args(["clippy", "--quiet", "-p", OFX_HOST, "--all-targets", "--", "-D", "warnings"]))?;
+    run(cargo().args(["test", "--quiet", "-p", OFX_HOST]).env("ROTOTOON_OFX_BUNDLE", &built.ofx))?;
+    Ok(None)
+}
+
+/// The same, watched by valgrind; tracking would take it an hour.
+fn valgrind_tests() -> Result<Option<String>> {
+    if let Some(reason) = missing_package("valgrind", "valgrind").or_else(|| missing_package("c++", "g++")) {
+        return Ok(Some(reason));
+    }
+    let runner = "valgrind --quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite";
+    run(cargo()
+        .args(["test", "--quiet", "-p", OFX_HOST, "--test", "main", "--"])
+        .args([
+            "--skip",
+            "track_follows",
+            "--skip",
+            "cancelled_track",
+            "--skip",
+            "every_kind",
+            "--skip",
+            "sample_cartoon",
+        ])
+        .env("CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER", runner))?;
+    Ok(None)
+}
+
+/// Why a program cannot be had; where the system lets us, its package is installed first.
+fn missing_package(program: &str, package: &str) -> Option<String> {
+    let there = || works(program, &["--version"]);
+    if !there() && capture(command("id").arg("-u")).is_ok_and(|id| id == "0") {
+        let _ = run(command("apt-get").args(["update", "--quiet"]));
+        let _ = run(command("apt-get").args(["install", "--yes", "--quiet", package]));
+    }
+    (!there()).then(|| format!("{program} is missing; install it: apt-get install {package}"))
 }
 
 /// pytest without Blender, on the packed library.

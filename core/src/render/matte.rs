@@ -1,17 +1,8 @@
-//! Area coverage of the closed parts.
-//!
-//! Each pixel row is cut into slabs at the heights of all contour points in it, and further so that no slab is higher than
-//! 1/[`SLABS`]. On the middle line of a slab each part's interior is a set of intervals (non-zero winding, so that
-//! a contour that folds over itself has no hole); the union of all parts' intervals covers pixels by exact lengths, times
-//! the slab's height. Within a slab contours are straight, so the middle line gives their exact mean but where
-//! they pass from one pixel to the next or across each other: coverage is exact for upright and level borders, and within
-//! about 1/250 for others. Since intervals are united and not opacities, parts that touch leave no seam.
+//! Coverage of the closed parts on a frame; [`super::coverage`] has the areas.
 
+use super::coverage::{Shape, Window};
 use crate::geometry::Point;
 use crate::scene::{FrameNumber, Part, Raster, Scene};
-
-/// Least number of slabs of a pixel row.
-const SLABS: usize = 16;
 
 /// Coverage, 0 to 1, of the union of closed parts on a frame: of those with the given indices, or of all. Snapped paths
 /// are used where they are there. Parts that are open, or have no contour on the frame, cover nothing.
@@ -30,99 +21,12 @@ pub fn matte(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Rast
 /// Coverage of the union of closed polygons.
 pub fn coverage(polygons: &[Vec<Point>], width: usize, height: usize) -> Raster<f32> {
     let mut result = Raster::new(width, height, 0.0f32);
-    let rows = edges_by_row(polygons, height);
-    let mut sums = vec![0.0f64; width];
-    for (y, edges) in rows.iter().enumerate().filter(|(_, edges)| !edges.is_empty()) {
-        sums.fill(0.0);
-        for (top, bottom) in slabs(y as f64, edges) {
-            for (x0, x1) in covered(edges, 0.5 * (top + bottom)) {
-                add_interval(&mut sums, x0, x1, bottom - top);
-            }
-        }
-        for (pixel, sum) in result.row_mut(y).iter_mut().zip(&sums) {
-            *pixel = sum.clamp(0.0, 1.0) as f32;
-        }
-    }
+    let window = Window { left: 0, top: 0, right: width as i64, bottom: height as i64 };
+    Shape::new(&[polygons.to_vec()]).rows(window, &mut |y, row| {
+        result.row_mut(y as usize).copy_from_slice(row);
+        true
+    });
     result
-}
-
-/// A side of a polygon, from its upper to its lower end.
-#[derive(Clone, Copy)]
-struct Edge {
-    polygon: usize,
-    upper: Point,
-    lower: Point,
-    winding: i32,
-}
-
-fn edges_by_row(polygons: &[Vec<Point>], height: usize) -> Vec<Vec<Edge>> {
-    let mut rows = vec![Vec::new(); height];
-    for (polygon, points) in polygons.iter().enumerate() {
-        for (a, b) in crate::geometry::polyline::segments(points, true) {
-            let (upper, lower, winding) = if a.y < b.y { (a, b, 1) } else { (b, a, -1) };
-            if upper.y == lower.y || lower.y <= 0.0 || upper.y >= height as f64 {
-                continue;
-            }
-            let first = upper.y.max(0.0) as usize;
-            let last = (lower.y.ceil() as usize).min(height);
-            for row in &mut rows[first..last] {
-                row.push(Edge { polygon, upper, lower, winding });
-            }
-        }
-    }
-    rows
-}
-
-/// The slabs of row `y`, each from its top to its bottom.
-fn slabs(y: f64, edges: &[Edge]) -> Vec<(f64, f64)> {
-    let mut cuts: Vec<f64> = (0..=SLABS).map(|k| y + k as f64 / SLABS as f64).collect();
-    cuts.extend(edges.iter().flat_map(|edge| [edge.upper.y, edge.lower.y]).filter(|cut| *cut > y && *cut < y + 1.0));
-    cuts.sort_by(f64::total_cmp);
-    cuts.dedup();
-    cuts.windows(2).map(|pair| (pair[0], pair[1])).collect()
-}
-
-/// The intervals of a line that lie in any polygon, from left to right and apart from each other.
-fn covered(edges: &[Edge], line: f64) -> Vec<(f64, f64)> {
-    let mut crossings: Vec<(usize, f64, i32)> = edges
-        .iter()
-        .filter(|edge| edge.upper.y <= line && line < edge.lower.y)
-        .map(|edge| {
-            let share = (line - edge.upper.y) / (edge.lower.y - edge.upper.y);
-            (edge.polygon, edge.upper.x + share * (edge.lower.x - edge.upper.x), edge.winding)
-        })
-        .collect();
-    crossings.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let mut intervals = Vec::new();
-    let (mut winding, mut start) = (0, 0.0);
-    for (_, x, turn) in crossings {
-        if winding == 0 {
-            start = x;
-        }
-        winding += turn;
-        if winding == 0 {
-            intervals.push((start, x));
-        }
-    }
-    intervals.sort_by(|a: &(f64, f64), b| a.0.total_cmp(&b.0));
-    let mut union: Vec<(f64, f64)> = Vec::with_capacity(intervals.len());
-    for (x0, x1) in intervals {
-        match union.last_mut() {
-            Some(last) if x0 <= last.1 => last.1 = last.1.max(x1),
-            _ => union.push((x0, x1)),
-        }
-    }
-    union
-}
-
-fn add_interval(sums: &mut [f64], x0: f64, x1: f64, height: f64) {
-    let (x0, x1) = (x0.max(0.0), x1.min(sums.len() as f64));
-    if x0 >= x1 {
-        return;
-    }
-    for (x, sum) in sums.iter_mut().enumerate().take(x1.ceil() as usize).skip(x0 as usize) {
-        *sum += height * (x1.min(x as f64 + 1.0) - x0.max(x as f64));
-    }
 }
 
 #[cfg(test)]

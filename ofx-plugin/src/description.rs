@@ -1,0 +1,83 @@
+//! What the effects say of themselves alike.
+
+use crate::ofx::entry::Action;
+use crate::ofx::{Effect, Failure, Properties};
+use openfx::sys::generic::core::{
+    kOfxBitDepthByte, kOfxBitDepthFloat, kOfxBitDepthHalf, kOfxBitDepthShort, kOfxPropLabel, kOfxPropLongLabel,
+    kOfxPropPluginDescription, kOfxPropShortLabel,
+};
+use openfx::sys::image_effect_v1::image_effect::{
+    kOfxImageClipPropOptional, kOfxImageComponentAlpha, kOfxImageComponentRGB, kOfxImageComponentRGBA,
+    kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral, kOfxImageEffectOutputClipName,
+    kOfxImageEffectPluginPropGrouping, kOfxImageEffectPluginPropHostFrameThreading,
+    kOfxImageEffectPluginRenderThreadSafety, kOfxImageEffectPropClipPreferencesSlaveParam, kOfxImageEffectPropContext,
+    kOfxImageEffectPropSupportedComponents, kOfxImageEffectPropSupportedContexts,
+    kOfxImageEffectPropSupportedPixelDepths, kOfxImageEffectPropSupportsMultiResolution,
+    kOfxImageEffectPropSupportsMultipleClipDepths, kOfxImageEffectPropSupportsTiles,
+    kOfxImageEffectPropTemporalClipAccess, kOfxImageEffectRenderFullySafe, kOfxImageEffectSimpleSourceClipName,
+};
+use std::ffi::CStr;
+
+/// The input.
+pub const SOURCE: &CStr = kOfxImageEffectSimpleSourceClipName;
+/// The output.
+pub const OUTPUT: &CStr = kOfxImageEffectOutputClipName;
+
+const COMPONENTS: [&CStr; 3] = [kOfxImageComponentRGBA, kOfxImageComponentRGB, kOfxImageComponentAlpha];
+const DEPTHS: [&CStr; 4] = [kOfxBitDepthFloat, kOfxBitDepthHalf, kOfxBitDepthShort, kOfxBitDepthByte];
+
+/// In what effects differ.
+#[derive(Clone, Copy, Debug)]
+pub struct About {
+    /// A name for people.
+    pub label: &'static str,
+    /// A sentence.
+    pub description: &'static str,
+    /// Whether a piece of the picture can be made by itself.
+    pub tiles: bool,
+}
+
+/// What an effect can do.
+pub fn effect(effect: &Effect, about: &About) -> Result<(), Failure> {
+    let properties = effect.properties()?;
+    for name in [kOfxPropLabel, kOfxPropShortLabel, kOfxPropLongLabel] {
+        properties.set_text(name, 0, about.label)?;
+    }
+    properties.set_text(kOfxImageEffectPluginPropGrouping, 0, "Rototoon")?;
+    // Hosts before 1.2 have no place for a description.
+    let _ = properties.set_text(kOfxPropPluginDescription, 0, about.description);
+    for (index, context) in [kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral].into_iter().enumerate() {
+        properties.set_name(kOfxImageEffectPropSupportedContexts, index as i32, context)?;
+    }
+    for (index, depth) in DEPTHS.into_iter().enumerate() {
+        properties.set_name(kOfxImageEffectPropSupportedPixelDepths, index as i32, depth)?;
+    }
+    properties.set_int(kOfxImageEffectPropSupportsMultiResolution, 0, 1)?;
+    properties.set_int(kOfxImageEffectPropSupportsTiles, 0, about.tiles.into())?;
+    properties.set_int(kOfxImageEffectPropTemporalClipAccess, 0, 1)?;
+    properties.set_int(kOfxImageEffectPropSupportsMultipleClipDepths, 0, 0)?;
+    properties.set_name(kOfxImageEffectPluginRenderThreadSafety, 0, kOfxImageEffectRenderFullySafe)?;
+    // An effect shares its rows among the host's threads by itself: what they have in common is prepared once.
+    properties.set_int(kOfxImageEffectPluginPropHostFrameThreading, 0, 0)?;
+    properties.set_name(kOfxImageEffectPropClipPreferencesSlaveParam, 0, c"output")
+}
+
+/// Input and output in the action's context: the input may be missing where the context allows it.
+pub fn clips(action: &Action, about: &About) -> Result<(), Failure> {
+    let context = action.input.text(kOfxImageEffectPropContext, 0)?;
+    let source = clip(&action.effect, SOURCE, about)?;
+    source.set_int(kOfxImageEffectPropTemporalClipAccess, 0, 1)?;
+    if context.as_bytes() != kOfxImageEffectContextFilter.to_bytes() {
+        source.set_int(kOfxImageClipPropOptional, 0, 1)?;
+    }
+    clip(&action.effect, OUTPUT, about).map(|_| ())
+}
+
+fn clip<'a>(effect: &Effect<'a>, name: &CStr, about: &About) -> Result<Properties<'a>, Failure> {
+    let properties = effect.define_clip(name)?;
+    for (index, component) in COMPONENTS.into_iter().enumerate() {
+        properties.set_name(kOfxImageEffectPropSupportedComponents, index as i32, component)?;
+    }
+    properties.set_int(kOfxImageEffectPropSupportsTiles, 0, about.tiles.into())?;
+    Ok(properties)
+}

@@ -1,0 +1,109 @@
+//! The suites that the host offers.
+//!
+//! A host loads a plugin, unloads it and may load it again, each effect of a bundle by itself; every load fetches the suites
+//! anew. They are the host's own static tables.
+
+use super::failure::Failure;
+use super::property::Properties;
+use openfx::sys::generic::core::{OfxHost, kOfxPropName};
+use openfx::sys::generic::property::{OfxPropertySuiteV1, kOfxPropertySuite};
+use openfx::sys::image_effect_v1::draw_suite::{OfxDrawSuiteV1, kOfxDrawSuite};
+use openfx::sys::image_effect_v1::image_effect::{OfxImageEffectSuiteV1, kOfxImageEffectSuite};
+use openfx::sys::image_effect_v1::interact::{OfxInteractSuiteV1, kOfxInteractSuite};
+use openfx::sys::image_effect_v1::message::{OfxMessageSuiteV1, OfxMessageSuiteV2, kOfxMessageSuite};
+use openfx::sys::image_effect_v1::multi_thread::{OfxMultiThreadSuiteV1, kOfxMultiThreadSuite};
+use openfx::sys::image_effect_v1::param::{OfxParameterSuiteV1, kOfxParameterSuite};
+use openfx::sys::image_effect_v1::progress::{OfxProgressSuiteV1, OfxProgressSuiteV2, kOfxProgressSuite};
+use std::ffi::CStr;
+use std::sync::atomic::{AtomicPtr, Ordering};
+use std::sync::{PoisonError, RwLock};
+
+static HOST: AtomicPtr<OfxHost> = AtomicPtr::new(std::ptr::null_mut());
+static SUITES: RwLock<Option<Suites>> = RwLock::new(None);
+
+/// The host's functions; all but the first three may be missing.
+#[derive(Clone, Copy)]
+pub struct Suites {
+    pub(super) property: &'static OfxPropertySuiteV1,
+    pub(super) effect: &'static OfxImageEffectSuiteV1,
+    pub(super) parameter: &'static OfxParameterSuiteV1,
+    pub(super) message: Option<&'static OfxMessageSuiteV1>,
+    pub(super) persistent: Option<&'static OfxMessageSuiteV2>,
+    pub(super) threads: Option<&'static OfxMultiThreadSuiteV1>,
+    pub(super) progress: Option<ProgressSuite>,
+    pub(super) interact: Option<&'static OfxInteractSuiteV1>,
+    pub(super) draw: Option<&'static OfxDrawSuiteV1>,
+}
+
+/// Either version of the progress suite.
+#[derive(Clone, Copy)]
+pub(super) enum ProgressSuite {
+    /// With a label alone.
+    V1(&'static OfxProgressSuiteV1),
+    /// With the label's id.
+    V2(&'static OfxProgressSuiteV2),
+}
+
+/// Remembers the host.
+pub fn set(host: *mut OfxHost) {
+    HOST.store(host, Ordering::Release);
+}
+
+/// Fetches the suites.
+pub fn load() -> Result<(), Failure> {
+    let host = HOST.load(Ordering::Acquire);
+    // SAFETY: OpenFX has `setHost` called before any action, with a host that lives as long as the plugin is loaded.
+    let host = unsafe { host.as_ref() }.ok_or(Failure::Missing("host"))?;
+    let message = suite::<OfxMessageSuiteV2>(host, kOfxMessageSuite, 2);
+    let v2 = suite(host, kOfxProgressSuite, 2).map(ProgressSuite::V2);
+    let suites = Suites {
+        property: suite(host, kOfxPropertySuite, 1).ok_or(Failure::Missing("property suite"))?,
+        effect: suite(host, kOfxImageEffectSuite, 1).ok_or(Failure::Missing("image effect suite"))?,
+        parameter: suite(host, kOfxParameterSuite, 1).ok_or(Failure::Missing("parameter suite"))?,
+        message: suite(host, kOfxMessageSuite, 1),
+        persistent: message,
+        threads: suite(host, kOfxMultiThreadSuite, 1),
+        interact: suite(host, kOfxInteractSuite, 1),
+        draw: suite(host, kOfxDrawSuite, 1),
+        progress: v2.or_else(|| suite(host, kOfxProgressSuite, 1).map(ProgressSuite::V1)),
+    };
+    *SUITES.write().unwrap_or_else(PoisonError::into_inner) = Some(suites);
+    let name = name().unwrap_or_default();
+    // Their persistent messages fail or show nothing.
+    if ["DaVinciResolve", "com.blackmagicdesign", "com.eyeonline"].iter().any(|known| name.starts_with(known))
+        && let Some(suites) = SUITES.write().unwrap_or_else(PoisonError::into_inner).as_mut()
+    {
+        suites.persistent = None;
+    }
+    Ok(())
+}
+
+/// The suites of the last load.
+pub fn suites() -> Result<Suites, Failure> {
+    (*SUITES.read().unwrap_or_else(PoisonError::into_inner)).ok_or(Failure::Missing("property suite"))
+}
+
+/// Whether the host draws for overlays ([`super::interact`]).
+pub fn draws() -> bool {
+    suites().is_ok_and(|suites| suites.draw.is_some())
+}
+
+/// The host's own properties.
+pub fn properties() -> Result<Properties<'static>, Failure> {
+    // SAFETY: as in `load`.
+    let host = unsafe { HOST.load(Ordering::Acquire).as_ref() }.ok_or(Failure::Missing("host"))?;
+    // SAFETY: the host's handle lives as long as the host.
+    Ok(unsafe { Properties::new(host.host, suites()?.property) })
+}
+
+/// The host's name, such as `uk.co.thefoundry.nuke`.
+pub fn name() -> Option<String> {
+    properties().ok()?.text(kOfxPropName, 0).ok()
+}
+
+fn suite<T>(host: &OfxHost, name: &CStr, version: i32) -> Option<&'static T> {
+    let fetch = host.fetchSuite?;
+    // SAFETY: the host's own handle and a terminated name. What comes back is null or the suite of this name and version,
+    // whose table `T` is, and which the host keeps.
+    unsafe { fetch(host.host, name.as_ptr(), version).cast::<T>().as_ref() }
+}

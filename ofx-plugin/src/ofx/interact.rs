@@ -1,0 +1,240 @@
+//! What an effect draws over the host's viewer, and the pen there.
+//!
+//! Two ways to draw: the DrawSuite of OpenFX 1.5, and in older hosts OpenGL, whose functions are looked up in the host's own
+//! process, since the plugin links none. Where there is neither, nothing is drawn.
+
+use super::effect::Effect;
+use super::failure::Failure;
+use super::host;
+use super::property::{Properties, call};
+use openfx::sys::generic::core::{
+    OfxPointD, OfxPropertySetHandle, OfxStatus, kOfxActionCreateInstance, kOfxActionDescribe,
+    kOfxActionDestroyInstance, kOfxPropEffectInstance, kOfxPropTime, kOfxStatFailed, kOfxStatOK, kOfxStatReplyDefault,
+};
+use openfx::sys::image_effect_v1::draw_suite::{
+    OfxDrawContextHandle, OfxDrawSuiteV1, kOfxDrawPrimitiveLineLoop, kOfxDrawPrimitiveLineStrip,
+    kOfxInteractPropDrawContext,
+};
+use openfx::sys::image_effect_v1::interact::{
+    kOfxInteractActionDraw, kOfxInteractActionPenDown, kOfxInteractActionPenMotion, kOfxInteractActionPenUp,
+    kOfxInteractPropPenPosition, kOfxInteractPropPixelScale,
+};
+use openfx::sys::image_effect_v1::pixels::OfxRGBAColourF;
+use std::ffi::{CStr, c_char, c_double, c_float, c_int, c_uint, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// What happens in the viewer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// It is to be drawn.
+    Draw,
+    /// The pen goes down.
+    Down,
+    /// The pen moves.
+    Move,
+    /// The pen goes up.
+    Up,
+}
+
+/// What an event came with.
+pub struct View<'a> {
+    /// What happens.
+    pub event: Event,
+    /// The effect whose viewer it is.
+    pub effect: Effect<'a>,
+    /// Time of the viewer.
+    pub time: f64,
+    /// Size of a pixel of the screen, canonical.
+    pub pixel: f64,
+    /// Where the pen is, canonical.
+    pub pen: [f64; 2],
+    canvas: Option<Canvas>,
+    interact: *mut c_void,
+}
+
+/// Deals with an event of an effect's viewer; the only way from a host's overlay into an effect.
+///
+/// # Safety
+/// The arguments are those of a call by the host: a terminated name, and handles that are null or live for the call.
+pub unsafe fn entry(
+    action: *const c_char,
+    handle: *const c_void,
+    input: OfxPropertySetHandle,
+    draw_suite: bool,
+    perform: fn(&View) -> Result<(), Failure>,
+) -> OfxStatus {
+    if action.is_null() {
+        return kOfxStatFailed;
+    }
+    // SAFETY: a terminated name, as promised.
+    let name = unsafe { CStr::from_ptr(action) };
+    if [kOfxActionDescribe, kOfxActionCreateInstance, kOfxActionDestroyInstance].contains(&name) {
+        return kOfxStatOK;
+    }
+    let events = [
+        (kOfxInteractActionDraw, Event::Draw),
+        (kOfxInteractActionPenDown, Event::Down),
+        (kOfxInteractActionPenMotion, Event::Move),
+        (kOfxInteractActionPenUp, Event::Up),
+    ];
+    let Some((_, event)) = events.into_iter().find(|(known, _)| *known == name) else { return kOfxStatReplyDefault };
+    let act = || {
+        // SAFETY: the handles live for the call, and the view made of them ends before it.
+        let view = unsafe { View::new(event, handle.cast_mut(), input, draw_suite) }?;
+        perform(&view)
+    };
+    match catch_unwind(AssertUnwindSafe(act)) {
+        Ok(Ok(())) => kOfxStatOK,
+        Ok(Err(failure)) => failure.status(),
+        Err(panic) => {
+            let _ = catch_unwind(AssertUnwindSafe(|| {
+                eprintln!("Rototoon: internal error in the overlay");
+                drop(panic);
+            }));
+            kOfxStatFailed
+        }
+    }
+}
+
+impl View<'_> {
+    /// # Safety
+    /// As for [`entry`].
+    unsafe fn new(
+        event: Event,
+        interact: *mut c_void,
+        input: OfxPropertySetHandle,
+        draw_suite: bool,
+    ) -> Result<Self, Failure> {
+        let suites = host::suites()?;
+        // SAFETY: promised by the caller.
+        let input = unsafe { Properties::new(input, suites.property) };
+        let effect = input.pointer(kOfxPropEffectInstance, 0)?;
+        if effect.is_null() {
+            return Err(Failure::Default);
+        }
+        let canvas = match (event, draw_suite) {
+            (Event::Draw, true) => {
+                let context: OfxDrawContextHandle = input.pointer(kOfxInteractPropDrawContext, 0)?.cast();
+                suites.draw.map(|suite| Canvas::Suite(suite, context))
+            }
+            (Event::Draw, false) => OpenGl::find().map(Canvas::OpenGl),
+            _ => None,
+        };
+        let scale: [f64; 2] = input.doubles(kOfxInteractPropPixelScale).unwrap_or([1.0; 2]);
+        let pen = if event == Event::Draw { [0.0; 2] } else { input.doubles(kOfxInteractPropPenPosition)? };
+        Ok(Self {
+            event,
+            // SAFETY: the handle of an effect that lives at least as long as what is drawn over it.
+            effect: unsafe { Effect::new(effect, suites) },
+            time: input.double(kOfxPropTime, 0)?,
+            pixel: if scale[0].is_finite() && scale[0] > 0.0 { scale[0] } else { 1.0 },
+            pen,
+            canvas,
+            interact,
+        })
+    }
+
+    /// Asks the host to draw again.
+    pub fn redraw(&self) {
+        if let Some(redraw) = self.effect.suites.interact.and_then(|suite| suite.interactRedraw) {
+            // SAFETY: the host's own handle.
+            unsafe { redraw(self.interact.cast()) };
+        }
+    }
+
+    /// Draws a line through points, canonical; closed or open.
+    pub fn line(&self, points: &[[f64; 2]], closed: bool, colour: [f32; 4], width: f32) {
+        match &self.canvas {
+            Some(Canvas::Suite(suite, context)) => draw_by_suite(suite, *context, points, closed, colour, width),
+            Some(Canvas::OpenGl(gl)) => gl.line(points, closed, colour, width),
+            None => {}
+        }
+    }
+}
+
+/// What is drawn on.
+enum Canvas {
+    Suite(&'static OfxDrawSuiteV1, OfxDrawContextHandle),
+    OpenGl(OpenGl),
+}
+
+fn draw_by_suite(
+    suite: &OfxDrawSuiteV1,
+    context: OfxDrawContextHandle,
+    points: &[[f64; 2]],
+    closed: bool,
+    [r, g, b, a]: [f32; 4],
+    width: f32,
+) {
+    let points: Vec<OfxPointD> = points.iter().map(|&[x, y]| OfxPointD { x, y }).collect();
+    let colour = OfxRGBAColourF { r, g, b, a };
+    let primitive = if closed { kOfxDrawPrimitiveLineLoop } else { kOfxDrawPrimitiveLineStrip };
+    // What a host cannot draw is not drawn.
+    let _ = call!(suite, setColour, context, &colour);
+    let _ = call!(suite, setLineWidth, context, width);
+    let _ = call!(suite, draw, context, primitive, points.as_ptr(), points.len() as c_int);
+}
+
+/// The few functions of OpenGL 1 that draw lines.
+struct OpenGl {
+    begin: unsafe extern "C" fn(c_uint),
+    end: unsafe extern "C" fn(),
+    vertex: unsafe extern "C" fn(c_double, c_double),
+    colour: unsafe extern "C" fn(c_float, c_float, c_float, c_float),
+    width: unsafe extern "C" fn(c_float),
+    push: unsafe extern "C" fn(c_uint),
+    pop: unsafe extern "C" fn(),
+}
+
+#[cfg(unix)]
+unsafe extern "C" {
+    fn dlsym(handle: *mut c_void, name: *const c_char) -> *mut c_void;
+}
+
+impl OpenGl {
+    const LINE_LOOP: c_uint = 2;
+    const LINE_STRIP: c_uint = 3;
+    /// The current colour, and what is set for lines.
+    const BITS: c_uint = 0x1 | 0x4;
+
+    /// The functions, where the host's process has them all.
+    #[cfg(unix)]
+    fn find() -> Option<Self> {
+        fn function<T: Copy>(name: &CStr) -> Option<T> {
+            const { assert!(size_of::<T>() == size_of::<*mut c_void>()) };
+            // SAFETY: a terminated name; null as the handle means the process itself.
+            let found = unsafe { dlsym(std::ptr::null_mut(), name.as_ptr()) };
+            // SAFETY: a function pointer of the size of the address, of the type that OpenGL 1.1 gives this name.
+            (!found.is_null()).then(|| unsafe { std::mem::transmute_copy(&found) })
+        }
+        Some(Self {
+            begin: function(c"glBegin")?,
+            end: function(c"glEnd")?,
+            vertex: function(c"glVertex2d")?,
+            colour: function(c"glColor4f")?,
+            width: function(c"glLineWidth")?,
+            push: function(c"glPushAttrib")?,
+            pop: function(c"glPopAttrib")?,
+        })
+    }
+
+    #[cfg(not(unix))]
+    fn find() -> Option<Self> {
+        None
+    }
+
+    fn line(&self, points: &[[f64; 2]], closed: bool, [r, g, b, a]: [f32; 4], width: f32) {
+        // SAFETY: OpenFX has the host's context current, in canonical coordinates, while an overlay is drawn.
+        unsafe {
+            (self.push)(Self::BITS);
+            (self.colour)(r, g, b, a);
+            (self.width)(width);
+            (self.begin)(if closed { Self::LINE_LOOP } else { Self::LINE_STRIP });
+            for &[x, y] in points {
+                (self.vertex)(x, y);
+            }
+            (self.end)();
+            (self.pop)();
+        }
+    }
+}

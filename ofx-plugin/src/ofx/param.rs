@@ -1,0 +1,87 @@
+//! Parameters of an effect: described, read at a time, set.
+
+use super::failure::Failure;
+use super::host::Suites;
+use super::property::{Properties, call, copied, terminated};
+use openfx::sys::image_effect_v1::param::{OfxParamHandle, OfxParamSetHandle};
+use std::ffi::{CStr, c_char, c_int};
+use std::marker::PhantomData;
+
+/// The parameters of an effect.
+#[derive(Clone, Copy)]
+pub struct Parameters<'a> {
+    set: OfxParamSetHandle,
+    suites: Suites,
+    effect: PhantomData<&'a ()>,
+}
+
+impl<'a> Parameters<'a> {
+    /// # Safety
+    /// The handle is that of a parameter set that lives for `'a`.
+    pub(super) unsafe fn new(set: OfxParamSetHandle, suites: Suites) -> Self {
+        Self { set, suites, effect: PhantomData }
+    }
+
+    /// Describes a parameter.
+    pub fn define(&self, kind: &CStr, id: &CStr) -> Result<Properties<'a>, Failure> {
+        let mut properties = std::ptr::null_mut();
+        call!(self.suites.parameter, paramDefine, self.set, kind.as_ptr(), id.as_ptr(), &mut properties)?;
+        // SAFETY: the set of the parameter described, which lives for the action.
+        Ok(unsafe { Properties::new(properties, self.suites.property) })
+    }
+
+    fn handle(&self, id: &CStr) -> Result<OfxParamHandle, Failure> {
+        let mut handle = std::ptr::null_mut();
+        call!(self.suites.parameter, paramGetHandle, self.set, id.as_ptr(), &mut handle, std::ptr::null_mut())?;
+        Ok(handle)
+    }
+
+    /// The value of a number at a time.
+    pub fn double(&self, id: &CStr, time: f64) -> Result<f64, Failure> {
+        let mut value = 0.0f64;
+        let place: *mut f64 = &mut value;
+        call!(self.suites.parameter, paramGetValueAtTime, self.handle(id)?, time, place)?;
+        Ok(value)
+    }
+
+    /// The value of a whole number, a flag (0 or 1) or a choice (its index) at a time.
+    pub fn int(&self, id: &CStr, time: f64) -> Result<i32, Failure> {
+        let mut value: c_int = 0;
+        let place: *mut c_int = &mut value;
+        call!(self.suites.parameter, paramGetValueAtTime, self.handle(id)?, time, place)?;
+        Ok(value)
+    }
+
+    /// The value of a colour with opacity at a time.
+    pub fn colour(&self, id: &CStr, time: f64) -> Result<[f64; 4], Failure> {
+        let mut value = [0.0f64; 4];
+        let [r, g, b, a] = &mut value;
+        let (r, g, b, a): (*mut f64, *mut f64, *mut f64, *mut f64) = (r, g, b, a);
+        call!(self.suites.parameter, paramGetValueAtTime, self.handle(id)?, time, r, g, b, a)?;
+        Ok(value)
+    }
+
+    /// The value of a text.
+    pub fn text(&self, id: &CStr) -> Result<String, Failure> {
+        let mut value: *const c_char = std::ptr::null();
+        let place: *mut *const c_char = &mut value;
+        call!(self.suites.parameter, paramGetValue, self.handle(id)?, place)?;
+        // SAFETY: the host gave a terminated string that lives until the parameter changes.
+        Ok(unsafe { copied(value) })
+    }
+
+    /// Sets texts and whole numbers as one step of the host's undo.
+    pub fn set(&self, label: &str, texts: &[(&CStr, &str)]) -> Result<(), Failure> {
+        let label = terminated(label);
+        // A host without edit blocks makes several steps of it.
+        let begun = call!(self.suites.parameter, paramEditBegin, self.set, label.as_ptr()).is_ok();
+        let result = texts.iter().try_for_each(|(id, value)| {
+            let value = terminated(value);
+            call!(self.suites.parameter, paramSetValue, self.handle(id)?, value.as_ptr())
+        });
+        if begun {
+            let _ = call!(self.suites.parameter, paramEditEnd, self.set);
+        }
+        result
+    }
+}

@@ -1,0 +1,102 @@
+//! Load, save and track.
+//!
+//! Only what the user did counts: each value that the plugin sets comes back as a change of its own.
+
+use super::instance::ORIGIN;
+use super::{instance, stored, track};
+use crate::description::SOURCE;
+use crate::ofx::entry::Action;
+use crate::ofx::{Effect, Failure};
+use openfx::sys::generic::core::{
+    kOfxChangeUserEdited, kOfxPropChangeReason, kOfxPropName, kOfxPropTime, kOfxPropType,
+};
+use openfx::sys::image_effect_v1::image_effect::kOfxTypeClip;
+use openfx::sys::image_effect_v1::param::kOfxTypeParameter;
+use rototoon::project::Document;
+use std::path::{Path, PathBuf};
+
+/// Something of the instance was changed.
+pub fn changed(action: &Action) -> Result<(), Failure> {
+    let is = |name: &std::ffi::CStr, text: &str| text.as_bytes() == name.to_bytes();
+    let kind = action.input.text(kOfxPropType, 0)?;
+    let reason = action.input.text(kOfxPropChangeReason, 0)?;
+    if !is(kOfxChangeUserEdited, &reason) {
+        return Err(Failure::Default);
+    }
+    let (effect, name) = (&action.effect, action.input.text(kOfxPropName, 0)?);
+    if is(kOfxTypeClip, &kind) && is(SOURCE, &name) || is(kOfxTypeParameter, &kind) {
+        instance(effect)?.changed(effect);
+    }
+    if !is(kOfxTypeParameter, &kind) {
+        return Err(Failure::Default);
+    }
+    let time = action.input.double(kOfxPropTime, 0).unwrap_or(0.0);
+    let done = match name.as_str() {
+        "load" => load(effect),
+        "project" if path(effect)?.is_file() => load(effect),
+        "save" => save(effect),
+        "track" => track::track(effect, time),
+        _ => Err(Failure::Default),
+    };
+    match done {
+        Err(Failure::Told(text)) => {
+            effect.complain(&text);
+            Err(Failure::Told(text))
+        }
+        // Cancelled by the user, who need not be told.
+        Err(Failure::Aborted) => Ok(()),
+        other => other,
+    }
+}
+
+fn path(effect: &Effect) -> Result<PathBuf, Failure> {
+    Ok(PathBuf::from(effect.parameters()?.text(c"project")?.trim()))
+}
+
+fn chosen(effect: &Effect) -> Result<PathBuf, Failure> {
+    let path = path(effect)?;
+    if path.as_os_str().is_empty() {
+        return Err(Failure::Told("choose a project file first".into()));
+    }
+    Ok(path)
+}
+
+/// Takes the project's shapes into the composition. The footage is then named by its whole path, since the composition lies
+/// in no folder.
+fn load(effect: &Effect) -> Result<(), Failure> {
+    let path = chosen(effect)?;
+    let mut document = Document::load(&path).map_err(|error| Failure::Told(error.to_string()))?;
+    let folder = folder(&path);
+    let pattern = &mut document.scene.footage.pattern;
+    if Path::new(pattern.as_str()).is_relative()
+        && let Some(folder) = folder.to_str()
+    {
+        *pattern = Path::new(&folder.replace('%', "%%")).join(&*pattern).to_string_lossy().into_owned();
+    }
+    effect.parameters()?.set("Load project", &[(c"document", &stored::encode(&document.to_json()))])
+}
+
+/// Writes the composition's shapes to the project's file; footage below its folder is named relative to it.
+fn save(effect: &Effect) -> Result<(), Failure> {
+    let path = chosen(effect)?;
+    let text = effect.parameters()?.text(c"document")?;
+    if text.trim().is_empty() {
+        return Err(Failure::Told("there are no shapes to save: load a project first".into()));
+    }
+    let told = |error: &dyn std::fmt::Display| Failure::Told(error.to_string());
+    let json = stored::decode(&text).map_err(Failure::Told)?;
+    let mut document = Document::parse(&json, ORIGIN).map_err(|error| told(&error))?;
+    let folder = folder(&path);
+    let pattern = &mut document.scene.footage.pattern;
+    if let Some(folder) = folder.to_str()
+        && let Ok(relative) = Path::new(pattern.as_str()).strip_prefix(folder.replace('%', "%%"))
+    {
+        *pattern = relative.to_string_lossy().into_owned();
+    }
+    document.save(&path).map_err(|error| told(&error))
+}
+
+fn folder(path: &Path) -> PathBuf {
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    whole.parent().map_or_else(PathBuf::new, Path::to_path_buf)
+}

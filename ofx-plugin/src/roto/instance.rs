@@ -1,0 +1,109 @@
+//! What an instance keeps: its document, read once, and what the user was told.
+
+use super::overlay::Drag;
+use super::stored;
+use crate::ofx::{Effect, Failure, Parameters};
+use rototoon::project::Document;
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
+
+/// How messages name the document.
+pub const ORIGIN: &str = "the composition's document";
+/// Most different things that are told of until the user changes something.
+const MOST_NOTES: usize = 20;
+
+/// What an instance keeps between actions.
+#[derive(Debug, Default)]
+pub struct Instance {
+    read: Mutex<Option<Read>>,
+    told: Mutex<BTreeSet<String>>,
+    drag: Mutex<Option<Drag>>,
+}
+
+/// A document that was read, or why it could not be.
+#[derive(Clone, Debug)]
+struct Read {
+    origin: Origin,
+    result: Result<Arc<Document>, String>,
+}
+
+/// Where a document came from; equal where it would come out the same.
+#[derive(Clone, Debug, PartialEq)]
+enum Origin {
+    /// The text in the composition.
+    Text(String),
+    /// A file with its time and size.
+    File(String, Option<(SystemTime, u64)>),
+}
+
+impl Instance {
+    /// The document: that in the composition, else the project's file. None where there is neither.
+    pub fn document(&self, parameters: &Parameters) -> Result<Option<Arc<Document>>, Failure> {
+        let text = parameters.text(c"document")?;
+        let origin = if text.trim().is_empty() {
+            let path = parameters.text(c"project")?;
+            if path.trim().is_empty() {
+                return Ok(None);
+            }
+            let stamp = std::fs::metadata(&path).and_then(|data| Ok((data.modified()?, data.len()))).ok();
+            Origin::File(path, stamp)
+        } else {
+            Origin::Text(text)
+        };
+        let mut read = lock(&self.read);
+        if read.as_ref().is_none_or(|read| read.origin != origin) {
+            let result = match &origin {
+                Origin::Text(text) => stored::decode(text)
+                    .and_then(|json| Document::parse(&json, ORIGIN).map_err(|error| error.to_string())),
+                Origin::File(path, _) => Document::load(Path::new(path)).map_err(|error| error.to_string()),
+            };
+            let result = result.map(Arc::new);
+            *read = Some(Read { origin, result });
+        }
+        match read.as_ref().map(|read| read.result.clone()) {
+            Some(Ok(document)) => Ok(Some(document)),
+            Some(Err(error)) => Err(Failure::Told(error)),
+            None => Ok(None),
+        }
+    }
+
+    /// Lets go of what can be read again.
+    pub fn forget(&self) {
+        *lock(&self.read) = None;
+    }
+
+    /// Tells the user of something about what is shown: once, until something is changed.
+    pub fn note(&self, effect: &Effect, text: &str, error: bool) {
+        let new = {
+            let mut told = lock(&self.told);
+            told.len() < MOST_NOTES && told.insert(text.to_owned())
+        };
+        if new {
+            effect.note(text, error);
+        }
+    }
+
+    /// The control point that is being dragged.
+    pub fn drag(&self) -> Option<Drag> {
+        *lock(&self.drag)
+    }
+
+    /// Remembers it.
+    pub fn set_drag(&self, drag: Option<Drag>) {
+        *lock(&self.drag) = drag;
+    }
+
+    /// The user changed something: what was told may hold no more.
+    pub fn changed(&self, effect: &Effect) {
+        let told = std::mem::take(&mut *lock(&self.told));
+        if !told.is_empty() {
+            effect.clear_note();
+        }
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,56 @@
+//! Which parts are meant.
+
+use rototoon::scene::Part;
+
+/// The indices of the parts that a list of names means, in the document's order, and the names that mean none. Names are
+/// separated by commas, and `*` stands for any text; an empty list means all parts.
+pub fn selected<'a>(parts: &[Part], names: &'a str) -> (Vec<usize>, Vec<&'a str>) {
+    let patterns: Vec<&str> = names.split(',').map(str::trim).filter(|name| !name.is_empty()).collect();
+    if patterns.is_empty() {
+        return ((0..parts.len()).collect(), Vec::new());
+    }
+    let meant = |part: &Part| patterns.iter().any(|pattern| matches(pattern, &part.name));
+    let indices = (0..parts.len()).filter(|&index| meant(&parts[index])).collect();
+    let missing = patterns.iter().filter(|pattern| !parts.iter().any(|part| matches(pattern, &part.name)));
+    (indices, missing.copied().collect())
+}
+
+/// Whether a name fits a pattern.
+fn matches(pattern: &str, name: &str) -> bool {
+    let mut pieces = pattern.split('*');
+    let first = pieces.next().unwrap_or_default();
+    let Some(mut rest) = name.strip_prefix(first) else { return false };
+    let Some(last) = pieces.next_back() else { return rest.is_empty() };
+    for piece in pieces {
+        let Some(at) = rest.find(piece) else { return false };
+        rest = &rest[at + piece.len()..];
+    }
+    rest.ends_with(last)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_wildcards() {
+        let parts: Vec<Part> = ["head", "near arm", "far arm", "größe"]
+            .iter()
+            .map(|name| Part { name: (*name).into(), ..Part::default() })
+            .collect();
+        for (names, indices, missing) in [
+            ("", vec![0, 1, 2, 3], vec![]),
+            (" , ", vec![0, 1, 2, 3], vec![]),
+            ("far arm, head", vec![0, 2], vec![]),
+            ("*arm", vec![1, 2], vec![]),
+            ("*a*", vec![0, 1, 2], vec![]),
+            ("n*a*m,gr*e", vec![1, 3], vec![]),
+            ("leg, hea", vec![], vec!["leg", "hea"]),
+            ("near armx*", vec![], vec!["near armx*"]),
+            ("*", vec![0, 1, 2, 3], vec![]),
+            ("head*head", vec![], vec!["head*head"]),
+        ] {
+            assert_eq!(selected(&parts, names), (indices, missing), "{names:?}");
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Where the footage's pixels are in the host's picture: the border between core's coordinates and the host's.
+//!
+//! Core counts y down from the upper left corner of the footage. The host's canonical coordinates have y up and square
+//! pixels at full size; its pixels are those times the render scale, divided by the pixel aspect ratio across. Drawing is
+//! done in **pixels with y turned down**: row `v` is the host's row `-1 - v`, so that nothing depends on the height of
+//! anything.
+
+use crate::description::{OUTPUT, SOURCE};
+use crate::ofx::effect::Region;
+use crate::ofx::{Bounds, Effect, Failure};
+use openfx::sys::image_effect_v1::image_effect::{kOfxImageEffectPropProjectOffset, kOfxImageEffectPropProjectSize};
+use rototoon::geometry::Point;
+use rototoon::render::coverage::Window;
+use rototoon::render::mask;
+use rototoon::scene::Footage;
+
+/// From footage to pixels with y turned down, and between these and canonical coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    factor: Point,
+    shift: Point,
+    /// Pixels for a canonical unit.
+    scale: Point,
+    /// Whether a pixel of the footage is a pixel of the host's picture at full size.
+    pub matches: bool,
+}
+
+impl Placement {
+    /// Where the footage is: where the source is if it has its size, else where the project's format is if that has, else
+    /// stretched over the source, or over the format where there is none.
+    pub fn of(effect: &Effect, footage: &Footage, time: f64, render_scale: [f64; 2]) -> Result<Self, Failure> {
+        let source = effect.clip(SOURCE)?;
+        let aspect = effect.clip(OUTPUT)?.pixel_aspect();
+        let region = if source.connected() { source.region(time) } else { None };
+        let known: Vec<Region> = region.into_iter().chain(format(effect)).collect();
+        let own = Region { x1: 0.0, y1: 0.0, x2: footage.width as f64 * aspect, y2: footage.height as f64 };
+        let fits = |region: &&Region| {
+            ((region.x2 - region.x1) / aspect - footage.width as f64).abs() < 0.5
+                && (region.y2 - region.y1 - footage.height as f64).abs() < 0.5
+        };
+        let fitting = known.iter().find(fits);
+        let region = fitting.or(known.first()).unwrap_or(&own);
+        Ok(Self::new(footage, region, aspect, render_scale, fitting.is_some() || known.is_empty()))
+    }
+
+    fn new(footage: &Footage, region: &Region, aspect: f64, render_scale: [f64; 2], matches: bool) -> Self {
+        let scale = Point::new(render_scale[0] / aspect, render_scale[1]);
+        let size = Point::new(region.x2 - region.x1, region.y2 - region.y1);
+        let factor = size * scale / Point::new(footage.width.max(1) as f64, footage.height.max(1) as f64);
+        Self { factor, shift: Point::new(region.x1, -region.y2) * scale, scale, matches }
+    }
+
+    /// A point of the footage in pixels.
+    pub fn place(&self, p: Point) -> Point {
+        p * self.factor + self.shift
+    }
+
+    /// A point of the footage in canonical coordinates.
+    pub fn shown(&self, p: Point) -> [f64; 2] {
+        let placed = self.place(p) / self.scale;
+        [placed.x, -placed.y]
+    }
+
+    /// The reverse.
+    pub fn footage(&self, [x, y]: [f64; 2]) -> Point {
+        (Point::new(x, -y) * self.scale - self.shift) / self.factor
+    }
+
+    /// Lengths in pixels at full size as pixels of the render scale.
+    pub fn length(&self, pixels: f64) -> f64 {
+        pixels * self.scale.y
+    }
+
+    /// Bounds of what is drawn in canonical coordinates.
+    pub fn canonical(&self, bounds: &mask::Bounds) -> Region {
+        let (least, most) = (bounds.least / self.scale, bounds.most / self.scale);
+        Region { x1: least.x, y1: -most.y, x2: most.x, y2: -least.y }
+    }
+}
+
+/// The host's pixels as a window to draw.
+pub fn window(bounds: &Bounds) -> Window {
+    Window { left: bounds.x1.into(), top: (-bounds.y2).into(), right: bounds.x2.into(), bottom: (-bounds.y1).into() }
+}
+
+fn format(effect: &Effect) -> Option<Region> {
+    let properties = effect.properties().ok()?;
+    let [width, height] = properties.doubles(kOfxImageEffectPropProjectSize).ok()?;
+    let [x, y] = properties.doubles(kOfxImageEffectPropProjectOffset).unwrap_or_default();
+    let whole = Region { x1: x, y1: y, x2: x + width, y2: y + height };
+    (whole.x1 < whole.x2 && whole.y1 < whole.y2).then_some(whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn footage(width: usize, height: usize) -> Footage {
+        Footage { pattern: "%d.png".into(), first: 0, last: 1, fps: 24.0, width, height }
+    }
+
+    #[test]
+    fn corners_go_where_they_belong_and_back() {
+        let region = Region { x1: 10.0, y1: 20.0, x2: 110.0, y2: 70.0 };
+        let placement = Placement::new(&footage(100, 50), &region, 1.0, [1.0, 1.0], true);
+        assert_eq!(placement.place(Point::ZERO), Point::new(10.0, -70.0));
+        assert_eq!(placement.place(Point::new(100.0, 50.0)), Point::new(110.0, -20.0));
+        let half = Placement::new(&footage(100, 50), &region, 2.0, [0.5, 0.5], true);
+        let bounds = mask::Bounds { least: half.place(Point::ZERO), most: half.place(Point::new(100.0, 50.0)) };
+        assert_eq!(half.canonical(&bounds), region);
+        let p = Point::new(13.0, 37.5);
+        assert_eq!(half.footage(half.shown(p)), p);
+        assert_eq!(half.shown(Point::ZERO), [10.0, 70.0]);
+        assert_eq!(half.place(Point::new(100.0, 50.0)), Point::new(27.5, -10.0));
+    }
+
+    #[test]
+    fn rows_are_turned_round() {
+        let bounds = Bounds { x1: 1, y1: 2, x2: 5, y2: 9 };
+        assert_eq!(window(&bounds), Window { left: 1, top: -9, right: 5, bottom: -2 });
+    }
+}

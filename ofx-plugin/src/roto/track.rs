@@ -1,0 +1,277 @@
+//! Core's tracker on the source's frames.
+//!
+//! The tracker runs on threads of its own; the host is asked for frames, told of progress and asked whether to go on by the
+//! thread that the action came on, and by no other: hosts allow their functions there.
+
+use super::placement::Placement;
+use super::{instance, stored};
+use crate::description::SOURCE;
+use crate::encoding::Encoding;
+use crate::ofx::progress::Bar;
+use crate::ofx::{Clip, Effect, Failure, Image};
+use crate::parameters::shared;
+use crate::pixels::{CLEAR, Pixel};
+use rototoon::geometry::Point;
+use rototoon::pipeline;
+use rototoon::project::Document;
+use rototoon::scene::{Cancelled, Colour, FrameError, FrameNumber, FrameSource, Progress, Raster, Scene};
+use rototoon::track::{Preset, TrackError, TrackOptions, Tracker, Tracking};
+use std::collections::VecDeque;
+use std::ops::RangeInclusive;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// Between two looks at the host's wish.
+const PACE: Duration = Duration::from_millis(40);
+/// Bytes of frames that are kept.
+const KEPT: usize = 1 << 30;
+type Picture = Arc<Raster<Colour>>;
+
+/// Follows the document's keys through the source's frames and keeps the result in the document.
+pub fn track(effect: &Effect, time: f64) -> Result<(), Failure> {
+    let (instance, parameters) = (instance(effect)?, effect.parameters()?);
+    let document = instance.document(&parameters)?;
+    let document =
+        document.ok_or_else(|| Failure::Told("there are no shapes to track: load a project first".into()))?;
+    let source = effect.clip(SOURCE)?;
+    let clip_range = source.connected().then(|| source.frame_range()).flatten();
+    let clip_range = clip_range.ok_or_else(|| Failure::Told("connect the footage to the input Source first".into()))?;
+    let offset = parameters.int(c"frameOffset", time)?;
+    let chosen = [parameters.int(c"firstFrame", time)?, parameters.int(c"lastFrame", time)?];
+    let range = range(clip_range, chosen, offset);
+    let scene = within(&document.scene, range.clone());
+    if scene.parts.iter().all(|part| part.keys.is_empty()) {
+        let (first, last) = (range.start(), range.end());
+        return Err(Failure::Told(format!("no part has a key in the project's frames {first} to {last}")));
+    }
+    let known = shared("preset").0;
+    let preset = known.get(parameters.int(c"preset", time)?.max(0) as usize).and_then(|(id, _)| Preset::from_id(id));
+    let options = TrackOptions { preset: preset.unwrap_or_default() };
+    let tracking = run(effect, source, offset, &scene, options)?;
+    let mut document = Document::clone(&document);
+    merge(&mut document.scene, tracking, &range);
+    let problems = document.problems();
+    if problems.error_count() > 0 {
+        return Err(Failure::Told(problems.to_string()));
+    }
+    parameters.set("Track", &[(c"document", &stored::encode(&document.to_json()))])
+}
+
+/// The document's frames that the source has and the user wants.
+fn range(clip: [f64; 2], chosen: [i32; 2], offset: i32) -> RangeInclusive<FrameNumber> {
+    let (first, last) = (clip[0].ceil() as i32, clip[1].floor() as i32);
+    let wanted = if chosen[0] < chosen[1] { chosen } else { [first, last] };
+    let (first, last) = (first.max(wanted[0]), last.min(wanted[1]));
+    first.saturating_sub(offset)..=last.saturating_sub(offset)
+}
+
+/// The scene with those frames, keys and corrections alone.
+fn within(scene: &Scene, range: RangeInclusive<FrameNumber>) -> Scene {
+    let mut scene = scene.clone();
+    (scene.footage.first, scene.footage.last) = (*range.start(), *range.end());
+    for part in &mut scene.parts {
+        part.keys.retain(|frame, _| range.contains(frame));
+        part.pins.retain(|frame, _| range.contains(frame));
+        part.centers.retain(|frame, _| range.contains(frame));
+    }
+    pipeline::in_effect(&scene)
+}
+
+/// Puts tracks into the scene, beside what it has on frames that were not asked for.
+fn merge(scene: &mut Scene, mut tracking: Tracking, range: &RangeInclusive<FrameNumber>) {
+    for (part, found) in scene.parts.iter().zip(&mut tracking.parts) {
+        // A part without keys there was not looked for.
+        let untouched = found.tracks.is_empty();
+        let kept = |frame: &FrameNumber| untouched || !range.contains(frame);
+        found
+            .tracks
+            .extend(part.tracks.iter().filter(|(frame, _)| kept(frame)).map(|(f, points)| (*f, points.clone())));
+        let confidence = part.confidence.iter().filter(|(frame, _)| kept(frame));
+        found.confidence.extend(confidence.map(|(frame, values)| (*frame, values.clone())));
+    }
+    pipeline::store(scene, &tracking);
+}
+
+fn run(effect: &Effect, source: Clip, offset: i32, scene: &Scene, options: TrackOptions) -> Result<Tracking, Failure> {
+    let (ask, asked) = channel();
+    let frames = HostFrames { ask: Mutex::new(ask), kept: Mutex::default(), most: kept_frames(scene) };
+    let board = Board::default();
+    let pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("rototoon-{index}")).build();
+    let pool = pool.map_err(|error| Failure::Told(format!("no threads to track on: {error}")))?;
+    let bar = Bar::new(*effect, "Rototoon: tracking");
+    let clerk = Clerk { effect, source, offset, scene };
+    let result = std::thread::scope(|scope| {
+        let worker = scope.spawn(|| pool.install(|| Tracker::new(options).track(scene, &frames, &board)));
+        while !worker.is_finished() {
+            clerk.serve(&asked);
+            if !board.cancelled() && !bar.update(board.done()) {
+                board.cancel();
+            }
+        }
+        worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    });
+    if board.cancelled() {
+        return Err(Failure::Aborted);
+    }
+    result.map_err(|error| match error {
+        TrackError::Cancelled(_) => Failure::Aborted,
+        other => Failure::Told(other.to_string()),
+    })
+}
+
+fn kept_frames(scene: &Scene) -> usize {
+    let size = scene.footage.width * scene.footage.height * size_of::<Colour>();
+    (KEPT / size.max(1)).max(4)
+}
+
+/// A frame that a thread of the tracker waits for.
+struct Request {
+    frame: FrameNumber,
+    answer: SyncSender<Result<Picture, FrameError>>,
+}
+
+/// Frames asked of the thread that may ask the host; the last ones are kept.
+struct HostFrames {
+    ask: Mutex<Sender<Request>>,
+    kept: Mutex<VecDeque<(FrameNumber, Picture)>>,
+    most: usize,
+}
+
+impl FrameSource for HostFrames {
+    fn picture(&self, frame: FrameNumber) -> Result<Picture, FrameError> {
+        let kept = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, picture)) = kept().iter().find(|(known, _)| *known == frame) {
+            return Ok(picture.clone());
+        }
+        let (answer, answered) = sync_channel(1);
+        let gone = |_| unreadable(frame, "the host was not asked");
+        let request = Request { frame, answer };
+        self.ask.lock().unwrap_or_else(PoisonError::into_inner).send(request).map_err(|_| gone(()))?;
+        let picture = answered.recv().map_err(|_| gone(()))??;
+        let mut kept = kept();
+        if kept.len() >= self.most {
+            kept.pop_front();
+        }
+        kept.push_back((frame, picture.clone()));
+        Ok(picture)
+    }
+}
+
+fn unreadable(frame: FrameNumber, reason: &str) -> FrameError {
+    FrameError::Unreadable { frame, path: "Source".into(), reason: reason.into() }
+}
+
+/// Answers for the host.
+struct Clerk<'a> {
+    effect: &'a Effect<'a>,
+    source: Clip<'a>,
+    offset: i32,
+    scene: &'a Scene,
+}
+
+impl Clerk<'_> {
+    /// Answers what is asked, for a while.
+    fn serve(&self, asked: &Receiver<Request>) {
+        let mut next = asked.recv_timeout(PACE);
+        while let Ok(request) = next {
+            // Whoever asked may have been cancelled.
+            let _ = request.answer.send(self.fetch(request.frame));
+            next = asked.try_recv().map_err(|_| RecvTimeoutError::Timeout);
+        }
+    }
+
+    fn fetch(&self, frame: FrameNumber) -> Result<Picture, FrameError> {
+        let time = f64::from(frame) + f64::from(self.offset);
+        let failed = |failure: Failure| unreadable(frame, &failure.to_string());
+        let image = self.source.image(time).map_err(failed)?;
+        let image = image.ok_or_else(|| unreadable(frame, "the host has no picture of it"))?;
+        let placement = Placement::of(self.effect, &self.scene.footage, time, [1.0; 2]).map_err(failed)?;
+        Ok(Arc::new(self.picture(&image, &placement)))
+    }
+
+    /// The image as the footage's picture, colours as the screen shows them.
+    fn picture(&self, image: &Image, placement: &Placement) -> Raster<Colour> {
+        let (width, height) = (self.scene.footage.width, self.scene.footage.height);
+        let (bounds, encoding) = (image.bounds, Encoding::of(&image.format));
+        let mut rows = Raster::new(bounds.width(), (bounds.y2 - bounds.y1) as usize, CLEAR);
+        for (row, y) in (bounds.y1..bounds.y2).rev().enumerate() {
+            if let Some(bytes) = image.row(y, bounds.x1, bounds.x2) {
+                image.format.read(bytes, rows.row_mut(row));
+            }
+        }
+        let corner = Point::new(f64::from(bounds.x1), f64::from(-bounds.y2));
+        Raster::from_fn(width, height, |x, y| {
+            let p = placement.place(Point::new(x as f64 + 0.5, y as f64 + 0.5)) - corner - Point::splat(0.5);
+            let [r, g, b, _] = sample(&rows, p);
+            [r, g, b].map(|value| encoding.shown(value))
+        })
+    }
+}
+
+/// The value between the four pixels around a point, whose centres are at whole numbers.
+fn sample(picture: &Raster<Pixel>, p: Point) -> Pixel {
+    let (whole, share) = (p.floor(), p - p.floor());
+    let at = |dx: isize, dy: isize| picture.clamped(whole.x as isize + dx, whole.y as isize + dy);
+    let mut sum = CLEAR;
+    for (dx, wx) in [(0, 1.0 - share.x), (1, share.x)] {
+        for (dy, wy) in [(0, 1.0 - share.y), (1, share.y)] {
+            let weight = (wx * wy) as f32;
+            if weight > 0.0 {
+                sum.iter_mut().zip(at(dx, dy)).for_each(|(sum, value)| *sum += weight * value);
+            }
+        }
+    }
+    sum
+}
+
+/// What the tracker has come to, and whether it is to go on.
+#[derive(Default)]
+struct Board(Mutex<(f64, bool)>);
+
+impl Board {
+    fn with<T>(&self, look: impl FnOnce(&mut (f64, bool)) -> T) -> T {
+        look(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn done(&self) -> f64 {
+        self.with(|board| board.0)
+    }
+
+    fn cancelled(&self) -> bool {
+        self.with(|board| board.1)
+    }
+
+    fn cancel(&self) {
+        self.with(|board| board.1 = true);
+    }
+}
+
+impl Progress for Board {
+    fn report(&self, _step: &str, done: f64) -> Result<(), Cancelled> {
+        self.with(|board| {
+            board.0 = board.0.max(done.min(1.0));
+            if board.1 { Err(Cancelled) } else { Ok(()) }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_those_of_the_clip_and_the_user() {
+        assert_eq!(range([1.0, 34.0], [0, 0], 1), 0..=33);
+        assert_eq!(range([1.0, 34.0], [5, 80], 0), 5..=34);
+        assert_eq!(range([1.5, 9.9], [7, 3], -10), 12..=19);
+    }
+
+    #[test]
+    fn samples_lie_between_pixels() {
+        let picture = Raster::from_fn(3, 2, |x, y| [x as f32, y as f32, 0.0, 1.0]);
+        assert_eq!(sample(&picture, Point::new(1.0, 1.0)), [1.0, 1.0, 0.0, 1.0]);
+        assert_eq!(sample(&picture, Point::new(0.5, 0.25)), [0.5, 0.25, 0.0, 1.0]);
+        assert_eq!(sample(&picture, Point::new(-5.0, 9.0)), [0.0, 1.0, 0.0, 1.0]);
+    }
+}

@@ -1,0 +1,189 @@
+//! The bridge to `host.cpp`.
+#![allow(unsafe_code, reason = "cxx writes calls of C++ functions, whose signatures it checks on both sides")]
+
+/// A float as the bits of a half.
+fn to_half(value: f32) -> u16 {
+    half::f16::from_f32(value).to_bits()
+}
+
+/// The bits of a half as a float.
+fn from_half(bits: u16) -> f32 {
+    half::f16::from_bits(bits).to_f32()
+}
+
+impl Default for ffi::Settings {
+    fn default() -> Self {
+        Self {
+            name: "RototoonTestHost".into(),
+            missing_suites: Vec::new(),
+            abort_after: -1,
+            cancel_after: -1,
+            no_images: false,
+            multi_resolution: true,
+            cpus: 1,
+        }
+    }
+}
+
+impl Default for ffi::ClipSettings {
+    fn default() -> Self {
+        Self {
+            depth: "OfxBitDepthFloat".into(),
+            components: "OfxImageComponentRGBA".into(),
+            premultiplication: "OfxImageAlphaPremultiplied".into(),
+            connected: true,
+            x1: 0,
+            y1: 0,
+            x2: 64,
+            y2: 48,
+            aspect: 1.0,
+            first: 0.0,
+            last: 10.0,
+            padding: 0,
+            top_down: false,
+            margin: 0,
+        }
+    }
+}
+
+/// What both sides share.
+#[allow(missing_docs, reason = "cxx's own items")]
+#[cxx::bridge(namespace = "rototoon_host")]
+pub mod ffi {
+    /// A rectangle of pixels.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    struct Bounds {
+        x1: i32,
+        y1: i32,
+        x2: i32,
+        y2: i32,
+    }
+
+    /// A canonical rectangle, and the status that came with it.
+    #[derive(Clone, Debug, PartialEq)]
+    struct Region {
+        status: String,
+        x1: f64,
+        y1: f64,
+        x2: f64,
+        y2: f64,
+    }
+
+    /// How the host behaves.
+    #[derive(Clone, Debug)]
+    struct Settings {
+        /// The host's name.
+        name: String,
+        /// Suites that it has not.
+        missing_suites: Vec<String>,
+        /// Rendering is aborted after that many questions; never where negative.
+        abort_after: i32,
+        /// Progress is cancelled after that many updates; never where negative.
+        cancel_after: i32,
+        /// Whether no image can be had.
+        no_images: bool,
+        /// Whether clips may differ in size.
+        multi_resolution: bool,
+        /// Processors that the multi-thread suite tells of.
+        cpus: u32,
+    }
+
+    /// What a clip is connected to.
+    #[derive(Clone, Debug)]
+    struct ClipSettings {
+        depth: String,
+        components: String,
+        premultiplication: String,
+        connected: bool,
+        /// Region of definition, in pixels at scale 1.
+        x1: i32,
+        y1: i32,
+        x2: i32,
+        y2: i32,
+        /// Width of a pixel over its height.
+        aspect: f64,
+        first: f64,
+        last: f64,
+        /// Bytes after each row.
+        padding: i32,
+        /// Whether rows lie in memory from the top, so that the bytes from a row to the next are negative.
+        top_down: bool,
+        /// Pixels that images reach over what was asked for, on each side.
+        margin: i32,
+    }
+
+    /// What was rendered.
+    #[derive(Clone, Debug, PartialEq)]
+    struct Picture {
+        width: usize,
+        height: usize,
+        channels: usize,
+        /// Rows from the bottom.
+        values: Vec<f32>,
+        /// Bytes outside the window that were written.
+        damage: usize,
+        /// Pixels of the window that were not written.
+        untouched: usize,
+    }
+
+    extern "Rust" {
+        fn to_half(value: f32) -> u16;
+        fn from_half(bits: u16) -> f32;
+    }
+
+    unsafe extern "C++" {
+        include!("rototoon-ofx-host/src/host.h");
+
+        type Effect;
+
+        fn open(folder: &str);
+        fn close();
+        fn plugins() -> Vec<String>;
+        fn contexts(id: &str) -> Vec<String>;
+        fn configure(settings: &Settings);
+        fn take_log() -> Vec<String>;
+        fn take_messages() -> Vec<String>;
+        fn live_images() -> i32;
+        fn furthest_progress() -> f64;
+        fn new_effect(id: &str, context: &str) -> UniquePtr<Effect>;
+
+        fn valid(self: &Effect) -> bool;
+        fn set_clip(self: Pin<&mut Effect>, name: &str, settings: &ClipSettings);
+        fn set_frame(self: Pin<&mut Effect>, clip: &str, time: f64, width: i32, height: i32, rgba: &[f32]);
+        fn create(self: Pin<&mut Effect>) -> String;
+        fn destroy(self: Pin<&mut Effect>) -> String;
+        fn render(
+            self: Pin<&mut Effect>,
+            time: f64,
+            window: &Bounds,
+            scale: f64,
+            threads: i32,
+            tile_rows: i32,
+        ) -> String;
+        fn output(self: &Effect) -> Picture;
+        fn region_of_definition(self: Pin<&mut Effect>, time: f64, scale: f64) -> Region;
+        fn region_of_interest(self: Pin<&mut Effect>, clip: &str, time: f64, scale: f64, wanted: &Region) -> Region;
+        fn identity(self: Pin<&mut Effect>, time: f64, window: &Bounds, scale: f64) -> String;
+        fn frames_needed(self: Pin<&mut Effect>, clip: &str, time: f64) -> Vec<f64>;
+        fn preferences(self: Pin<&mut Effect>) -> String;
+        fn parameters(self: &Effect) -> Vec<String>;
+        fn parameter_property(self: &Effect, name: &str, property: &str, index: i32) -> String;
+        fn set_numbers(self: Pin<&mut Effect>, name: &str, values: &[f64]);
+        fn set_numbers_at(self: Pin<&mut Effect>, name: &str, time: f64, values: &[f64]);
+        fn numbers(self: &Effect, name: &str, time: f64) -> Vec<f64>;
+        fn set_text(self: Pin<&mut Effect>, name: &str, value: &str);
+        fn text(self: &Effect, name: &str) -> String;
+        fn changed(self: Pin<&mut Effect>, name: &str, reason: &str, time: f64) -> String;
+        fn action(self: Pin<&mut Effect>, name: &str) -> String;
+        fn overlay(
+            self: Pin<&mut Effect>,
+            action: &str,
+            draw_suite: bool,
+            time: f64,
+            x: f64,
+            y: f64,
+            pixel: f64,
+        ) -> String;
+        fn drawn(self: &Effect) -> Vec<f64>;
+    }
+}

@@ -1,0 +1,250 @@
+//! An OpenFX host for tests.
+//!
+//! Plugin cache, properties, parameters, clips and actions are the official HostSupport library's; `host.cpp` adds what
+//! each host must: images, values and keys of parameters, threads, progress, messages. The library's debug log of every
+//! call with its status is kept by line, so that a test can refuse any unexpected error status.
+//!
+//! The library has one plugin cache a process: [`Host::open`] waits until no other test has one.
+
+mod bridge;
+
+pub use bridge::ffi::{Bounds, ClipSettings, Picture, Region, Settings};
+
+use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+static ONE: Mutex<()> = Mutex::new(());
+
+/// A host with its plugins loaded.
+pub struct Host {
+    _only: MutexGuard<'static, ()>,
+}
+
+impl Host {
+    /// Loads all plugins in the bundles of a folder; waits for any other host to be dropped.
+    pub fn open(folder: &Path) -> Self {
+        let only = ONE.lock().unwrap_or_else(PoisonError::into_inner);
+        bridge::ffi::configure(&Settings::default());
+        let _ = (bridge::ffi::take_log(), bridge::ffi::take_messages());
+        bridge::ffi::open(folder.to_str().expect("the folder's name is UTF-8"));
+        Self { _only: only }
+    }
+
+    /// Unloads all plugins, and loads those of a folder.
+    pub fn reload(&mut self, folder: &Path) {
+        bridge::ffi::close();
+        bridge::ffi::open(folder.to_str().expect("the folder's name is UTF-8"));
+    }
+
+    /// The ids of the plugins found.
+    pub fn plugins(&self) -> Vec<String> {
+        bridge::ffi::plugins()
+    }
+
+    /// The contexts that a plugin says it supports.
+    pub fn contexts(&self, id: &str) -> Vec<String> {
+        bridge::ffi::contexts(id)
+    }
+
+    /// How the host behaves from now on.
+    pub fn configure(&self, settings: &Settings) {
+        bridge::ffi::configure(settings);
+    }
+
+    /// Describes an effect in a context and makes its clips and parameters; [`Effect::create`] tells the plugin.
+    pub fn effect(&self, id: &str, context: &str) -> Effect<'_> {
+        let effect = bridge::ffi::new_effect(id, context);
+        assert!(effect.is_some_and_valid(), "{id} could not be described in {context}: {:?}", self.log());
+        Effect { inner: effect, _host: self }
+    }
+
+    /// The lines of the library's log since it was last asked for.
+    pub fn log(&self) -> Vec<String> {
+        bridge::ffi::take_log()
+    }
+
+    /// The lines of the log that tell of an error, since it was last asked for.
+    pub fn errors(&self) -> Vec<String> {
+        let told = |line: &String| line.contains("kOfxStatErr") || line.contains("kOfxStatFailed");
+        self.log().into_iter().filter(told).collect()
+    }
+
+    /// What plugins said to the user since it was last asked for, as `type: text`.
+    pub fn messages(&self) -> Vec<String> {
+        bridge::ffi::take_messages()
+    }
+
+    /// How many images are fetched and not released.
+    pub fn live_images(&self) -> i32 {
+        bridge::ffi::live_images()
+    }
+
+    /// The largest progress that was reported since the last [`Host::configure`].
+    pub fn furthest_progress(&self) -> f64 {
+        bridge::ffi::furthest_progress()
+    }
+}
+
+impl Drop for Host {
+    fn drop(&mut self) {
+        bridge::ffi::close();
+    }
+}
+
+trait Valid {
+    fn is_some_and_valid(&self) -> bool;
+}
+
+impl Valid for cxx::UniquePtr<bridge::ffi::Effect> {
+    fn is_some_and_valid(&self) -> bool {
+        self.as_ref().is_some_and(bridge::ffi::Effect::valid)
+    }
+}
+
+/// An instance of an effect; the host must outlive it.
+pub struct Effect<'a> {
+    inner: cxx::UniquePtr<bridge::ffi::Effect>,
+    _host: &'a Host,
+}
+
+impl Effect<'_> {
+    fn pin(&mut self) -> std::pin::Pin<&mut bridge::ffi::Effect> {
+        self.inner.pin_mut()
+    }
+
+    /// What a clip is connected to.
+    pub fn set_clip(&mut self, name: &str, settings: &ClipSettings) {
+        self.pin().set_clip(name, settings);
+    }
+
+    /// The picture of an input clip at a time: RGBA from the bottom row up, at the lower left of the clip's region.
+    pub fn set_frame(&mut self, clip: &str, time: f64, width: usize, rgba: &[f32]) {
+        let height = rgba.len() / 4 / width.max(1);
+        self.pin().set_frame(clip, time, width as i32, height as i32, rgba);
+    }
+
+    /// The action CreateInstance, and the clip preferences; the status of the first that failed.
+    pub fn create(&mut self) -> String {
+        self.pin().create()
+    }
+
+    /// The action DestroyInstance, by which the instance ends.
+    pub fn destroy(mut self) -> String {
+        self.pin().destroy()
+    }
+
+    /// Renders a window, in pixels of the scale. More than one thread: that many windows of `tile_rows` rows at once.
+    pub fn render(&mut self, time: f64, window: Bounds, scale: f64, threads: i32, tile_rows: i32) -> String {
+        self.pin().render(time, &window, scale, threads, tile_rows)
+    }
+
+    /// What was last rendered.
+    pub fn output(&self) -> Picture {
+        self.inner.output()
+    }
+
+    /// The region of definition, canonical; empty status where the plugin left it to the host.
+    pub fn region_of_definition(&mut self, time: f64, scale: f64) -> Region {
+        self.pin().region_of_definition(time, scale)
+    }
+
+    /// What of an input clip is needed for a region of the output.
+    pub fn region_of_interest(&mut self, clip: &str, time: f64, scale: f64, wanted: &Region) -> Region {
+        self.pin().region_of_interest(clip, time, scale, wanted)
+    }
+
+    /// The clip that the output is identical to; empty where it is none.
+    pub fn identity(&mut self, time: f64, window: Bounds, scale: f64) -> String {
+        self.pin().identity(time, &window, scale)
+    }
+
+    /// The frame ranges needed of an input clip.
+    pub fn frames_needed(&mut self, clip: &str, time: f64) -> Vec<f64> {
+        self.pin().frames_needed(clip, time)
+    }
+
+    /// Depth, components and premultiplication of the output.
+    pub fn preferences(&mut self) -> String {
+        self.pin().preferences()
+    }
+
+    /// Names of the parameters, in order.
+    pub fn parameters(&self) -> Vec<String> {
+        self.inner.parameters()
+    }
+
+    /// A property of a parameter as text; empty where it has none.
+    pub fn parameter_property(&self, name: &str, property: &str, index: i32) -> String {
+        self.inner.parameter_property(name, property, index)
+    }
+
+    /// Sets a number, flag, choice or colour for all times, as a user does.
+    pub fn set(&mut self, name: &str, values: &[f64]) {
+        self.pin().set_numbers(name, values);
+        self.changed(name);
+    }
+
+    /// Sets a key.
+    pub fn set_at(&mut self, name: &str, time: f64, values: &[f64]) {
+        self.pin().set_numbers_at(name, time, values);
+        self.changed(name);
+    }
+
+    /// The value at a time.
+    pub fn get(&self, name: &str, time: f64) -> Vec<f64> {
+        self.inner.numbers(name, time)
+    }
+
+    /// Sets a text, as a user does.
+    pub fn set_text(&mut self, name: &str, value: &str) {
+        self.pin().set_text(name, value);
+        self.changed(name);
+    }
+
+    /// Sets a text, as a script does: nobody is told.
+    pub fn set_text_silently(&mut self, name: &str, value: &str) {
+        self.pin().set_text(name, value);
+    }
+
+    /// A text.
+    pub fn text(&self, name: &str) -> String {
+        self.inner.text(name)
+    }
+
+    /// Presses a button; the status.
+    pub fn press(&mut self, name: &str) -> String {
+        self.changed(name)
+    }
+
+    fn changed(&mut self, name: &str) -> String {
+        self.pin().changed(name, "OfxChangeUserEdited", 0.0)
+    }
+
+    /// Tells of a change that the plugin itself made.
+    pub fn changed_by_plugin(&mut self, name: &str) -> String {
+        self.pin().changed(name, "OfxChangePluginEdited", 0.0)
+    }
+
+    /// Any action without arguments.
+    pub fn action(&mut self, name: &str) -> String {
+        self.pin().action(name)
+    }
+
+    /// An event of the overlay with the pen at a place, canonical, and the size of a pixel of the screen; by the DrawSuite's
+    /// entry point or by that of OpenGL. Draw is `OfxInteractActionDraw`.
+    pub fn overlay(&mut self, action: &str, draw_suite: bool, time: f64, pen: [f64; 2], pixel: f64) -> String {
+        self.pin().overlay(action, draw_suite, time, pen[0], pen[1], pixel)
+    }
+
+    /// The lines that were drawn since the last event, whether closed, and their points.
+    pub fn drawn(&self) -> Vec<(bool, Vec<[f64; 2]>)> {
+        let (flat, mut at, mut lines) = (self.inner.drawn(), 0, Vec::new());
+        while at + 1 < flat.len() {
+            let (closed, count) = (flat[at] != 0.0, flat[at + 1] as usize);
+            let points = flat[at + 2..].chunks(2).take(count).map(|p| [p[0], p[1]]).collect();
+            lines.push((closed, points));
+            at += 2 + 2 * count;
+        }
+        lines
+    }
+}

@@ -1,0 +1,148 @@
+//! The bundle, documents and pictures to test with.
+
+use rototoon::geometry::Point;
+use rototoon::project::Document;
+use rototoon::scene::{Footage, Part, Scene};
+use rototoon_ofx_host::{Bounds, ClipSettings, Effect, Host, Picture};
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// The effect's id.
+pub const ROTO: &str = "org.rototoon.Roto";
+/// The context with one input.
+pub const FILTER: &str = "OfxImageEffectContextFilter";
+/// The context with any inputs.
+pub const GENERAL: &str = "OfxImageEffectContextGeneral";
+/// What succeeded.
+pub const OK: &str = "kOfxStatOK";
+
+/// Width of the test footage.
+pub const WIDTH: usize = 64;
+/// Height of the test footage.
+pub const HEIGHT: usize = 48;
+
+/// Index of an output.
+pub const CUTOUT: f64 = 0.0;
+/// Index of an output.
+pub const MATTE: f64 = 1.0;
+/// Index of an output.
+pub const OVERLAY: f64 = 2.0;
+/// Index of an output.
+pub const IDS: f64 = 3.0;
+
+/// A folder that holds a bundle and nothing else, since hosts look through all that lies in it: of the bundle that a variable
+/// names, else of the library built with the tests.
+pub fn bundles() -> &'static Path {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    FOLDER.get_or_init(|| {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ofx-bundles");
+        let inner = folder.join("Rototoon.ofx.bundle/Contents/Linux-x86-64");
+        std::fs::create_dir_all(&inner).unwrap();
+        let library = match std::env::var_os("ROTOTOON_OFX_BUNDLE") {
+            Some(bundle) => Path::new(&bundle).join("Contents/Linux-x86-64/Rototoon.ofx"),
+            None => std::env::current_exe().unwrap().with_file_name("librototoon_ofx.so"),
+        };
+        // Under another name first: a running test may have the last one open.
+        let new = inner.join(format!("new-{}", std::process::id()));
+        std::fs::copy(&library, &new).unwrap_or_else(|error| panic!("{library:?}: {error}"));
+        std::fs::rename(new, inner.join("Rototoon.ofx")).unwrap();
+        folder
+    })
+}
+
+/// A host with the plugin.
+pub fn host() -> Host {
+    Host::open(bundles())
+}
+
+/// A point.
+pub fn p(x: f64, y: f64) -> Point {
+    Point::new(x, y)
+}
+
+/// Footage of the test size.
+pub fn footage() -> Footage {
+    Footage { pattern: "f_%d.png".into(), first: 0, last: 4, fps: 24.0, width: WIDTH, height: HEIGHT }
+}
+
+/// A part with tracks on frames 0 to 4.
+pub fn part(name: &str, depth: f64, closed: bool, contour: impl Fn(f64) -> Vec<Point>) -> Part {
+    // As exact as documents are.
+    let rounded = |p: Point| (p * 1e4).round() / 1e4;
+    let contour = |frame: f64| contour(frame).into_iter().map(rounded).collect::<Vec<_>>();
+    let tracks = (0..=4).map(|frame| (frame, contour(f64::from(frame)))).collect();
+    let keys = [0, 4].map(|frame| (frame, contour(f64::from(frame)))).into();
+    Part { name: name.into(), closed, depth, keys, tracks, ..Part::default() }
+}
+
+/// A star, a drop behind it, and an open line, all moving.
+pub fn scene() -> Scene {
+    let star = |frame: f64| {
+        let at = |k: usize| {
+            let radius = if k.is_multiple_of(2) { 16.0 } else { 7.3 };
+            p(26.0 + 2.0 * frame, 21.0) + Point::from_angle(0.1 + 0.2 * frame + 0.6283185 * k as f64) * radius
+        };
+        (0..10).map(at).collect()
+    };
+    let drop = |frame: f64| vec![p(30.0, 8.0 + frame), p(55.3, 20.1), p(50.0, 41.7), p(33.3, 39.0 - frame)];
+    let line = |frame: f64| vec![p(3.0, 44.0), p(20.0, 40.0 - frame), p(60.0, 46.0)];
+    let parts =
+        vec![part("star", 2.0, true, star), part("drop", 1.0, true, drop), part("ground line", 0.0, false, line)];
+    Scene { footage: footage(), parts }
+}
+
+/// The scene as a document.
+pub fn document() -> String {
+    Document::new(scene()).to_json()
+}
+
+/// The document that an instance keeps.
+pub fn kept(effect: &Effect) -> Document {
+    let text = effect.text("document");
+    assert!(text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_'), "a host may mangle {text}");
+    Document::parse(&rototoon_ofx::roto::stored::decode(&text).unwrap(), "kept").unwrap()
+}
+
+/// An instance of the effect with the test document and source.
+pub fn effect<'a>(host: &'a Host, context: &str, source: &ClipSettings) -> Effect<'a> {
+    let mut effect = host.effect(ROTO, context);
+    effect.set_clip("Source", source);
+    effect.set_clip("Output", &ClipSettings { connected: true, ..source.clone() });
+    for frame in 0..=4 {
+        effect.set_frame("Source", f64::from(frame), WIDTH, &pattern(frame));
+    }
+    assert_eq!(effect.create(), OK);
+    effect.set_text("document", &document());
+    effect
+}
+
+/// A picture of byte values in blocks of 2 × 2 pixels, premultiplied, so that neither depth nor half size rounds it.
+pub fn pattern(frame: i32) -> Vec<f32> {
+    let pixel = |k: usize| {
+        let (x, y) = (k % WIDTH / 2, k / WIDTH / 2);
+        let byte = |n: usize| (n % 256) as f32 / 255.0;
+        let alpha = 155 + (x * 5 + y * 3) % 101;
+        let colour = |n: usize| byte(n * alpha / 300 % (alpha + 1));
+        [colour(x * 7 + frame as usize), colour(y * 11), colour(x * 3 + y * 5), byte(alpha)]
+    };
+    (0..WIDTH * HEIGHT).flat_map(pixel).collect()
+}
+
+/// All pixels of the test footage.
+pub const WHOLE: Bounds = Bounds { x1: 0, y1: 0, x2: WIDTH as i32, y2: HEIGHT as i32 };
+
+/// Renders and returns the picture; nothing may be amiss.
+pub fn rendered(host: &Host, effect: &mut Effect, time: f64, window: Bounds) -> Picture {
+    assert_eq!(effect.render(time, window, 1.0, 1, 0), OK, "{:?}", host.messages());
+    clean(host);
+    let picture = effect.output();
+    assert_eq!((picture.damage, picture.untouched), (0, 0));
+    picture
+}
+
+/// No error status was given or had, and no image is left.
+pub fn clean(host: &Host) {
+    let errors = host.errors();
+    assert!(errors.is_empty(), "{errors:#?}");
+    assert_eq!(host.live_images(), 0, "images that were not released");
+}

@@ -1,0 +1,88 @@
+//! Contexts, parameters, loading again.
+
+use crate::common::{FILTER, GENERAL, OK, ROTO, WHOLE, bundles, clean, effect, host, rendered};
+use rototoon_ofx_host::{ClipSettings, Host};
+
+/// Ids are fixed for ever: old compositions hold them.
+const IDS: [&str; 24] = [
+    "shapes",
+    "project",
+    "load",
+    "save",
+    "document",
+    "frameOffset",
+    "parts",
+    "useCurves",
+    "picture",
+    "output",
+    "invert",
+    "grow",
+    "feather",
+    "motionBlur",
+    "motionBlurSamples",
+    "lines",
+    "lineWidth",
+    "lineColor",
+    "opacity",
+    "tracking",
+    "preset",
+    "firstFrame",
+    "lastFrame",
+    "track",
+];
+
+#[test]
+fn the_effect_is_described_in_each_of_its_contexts() {
+    let host = host();
+    assert!(host.plugins().iter().any(|id| id == ROTO), "{:?}", host.plugins());
+    assert_eq!(host.contexts(ROTO), [FILTER, GENERAL]);
+    for context in [FILTER, GENERAL] {
+        let mut effect = host.effect(ROTO, context);
+        assert_eq!(effect.parameters(), IDS);
+        assert_eq!(effect.create(), OK);
+        assert_eq!(effect.destroy(), OK);
+    }
+    clean(&host);
+}
+
+#[test]
+fn numbers_have_ranges_and_choices_their_order() {
+    let host = host();
+    let effect = host.effect(ROTO, FILTER);
+    for id in ["grow", "feather", "motionBlur", "lineWidth", "opacity", "motionBlurSamples", "frameOffset"] {
+        for property in ["OfxParamPropMin", "OfxParamPropMax", "OfxParamPropDisplayMin", "OfxParamPropDisplayMax"] {
+            let value: f64 = effect.parameter_property(id, property, 0).parse().unwrap();
+            assert!(value.abs() <= 1e6, "{id} {property}");
+        }
+    }
+    let options = |id| (0..4).map(|k| effect.parameter_property(id, "OfxParamPropChoiceOption", k)).collect::<Vec<_>>();
+    assert_eq!(options("output"), ["Cutout", "Matte", "Overlay", "Ids"]);
+    assert_eq!(options("preset")[..2], ["Rototoon", "Zhou & Xiao 2011"]);
+    assert_eq!(effect.parameter_property("document", "OfxParamPropSecret", 0), "1");
+    assert_eq!(effect.parameter_property("project", "OfxParamPropStringMode", 0), "OfxParamStringIsFilePath");
+}
+
+#[test]
+fn it_works_after_it_was_unloaded() {
+    let mut host = host();
+    let draw = |host: &Host| {
+        let mut effect = effect(host, FILTER, &ClipSettings::default());
+        rendered(host, &mut effect, 1.0, WHOLE)
+    };
+    let first = draw(&host);
+    for _ in 0..2 {
+        host.reload(bundles());
+        assert!(draw(&host) == first);
+    }
+    let log = host.log();
+    assert!(!log.iter().any(|line| line.contains("kOfxStatErr")));
+}
+
+#[test]
+fn unknown_actions_are_left_to_the_host() {
+    let host = host();
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    assert_eq!(effect.action("OfxActionOfTheFuture"), "kOfxStatReplyDefault");
+    assert_eq!(effect.action("OfxActionPurgeCaches"), OK);
+    clean(&host);
+}

@@ -1,0 +1,79 @@
+//! The OpenFX bundle: `target/Rototoon.ofx.bundle`, laid out as OpenFX 1.4 wants ("Packaging OFX Plug-ins").
+
+use crate::shell::{empty_folder, root, target};
+use crate::{bundle, elf};
+use anyhow::{Context, Result, ensure};
+use std::path::{Path, PathBuf};
+
+/// What the plugin may need of the system: the families of libc and libm, and what unwinds.
+const SYSTEM: [&str; 7] =
+    ["libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "librt.so.1", "libgcc_s.so.1", "ld-linux-x86-64.so.2"];
+
+/// Lays the bundle out around the library; returns its folder.
+pub fn lay_out(library: &Path) -> Result<PathBuf> {
+    elf::assert_glibc(library, bundle::GLIBC)?;
+    let file = std::fs::read(library).with_context(|| format!("cannot read {library:?}"))?;
+    let needed = elf::needed_libraries(&file).with_context(|| format!("{library:?}"))?;
+    let foreign: Vec<_> = needed.iter().filter(|name| !SYSTEM.contains(&name.as_str())).collect();
+    ensure!(foreign.is_empty(), "{library:?} needs {foreign:?}, expected nothing beyond {SYSTEM:?}");
+    let place = target().join("Rototoon.ofx.bundle");
+    empty_folder(&place)?;
+    let contents = place.join("Contents");
+    let (binaries, resources) = (contents.join("Linux-x86-64"), contents.join("Resources"));
+    std::fs::create_dir_all(&binaries)?;
+    std::fs::create_dir_all(&resources)?;
+    std::fs::write(contents.join("Info.plist"), property_list())?;
+    let binary = binaries.join("Rototoon.ofx");
+    std::fs::copy(library, &binary).with_context(|| format!("cannot copy {library:?}"))?;
+    let icons = root().join("ofx-plugin/resources");
+    for entry in std::fs::read_dir(&icons).with_context(|| format!("cannot read {icons:?}"))? {
+        let icon = entry?;
+        std::fs::copy(icon.path(), resources.join(icon.file_name()))?;
+    }
+    std::fs::copy(root().join("LICENSE"), resources.join("LICENSE"))?;
+    println!("OpenFX: {}", place.display());
+    println!("  hosts look in /usr/OFX/Plugins and in the folders that OFX_PLUGIN_PATH lists: copy it to one of them");
+    Ok(place)
+}
+
+fn property_list() -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    let entries = [
+        ("CFBundleDevelopmentRegion", "English"),
+        ("CFBundleExecutable", "Rototoon.ofx"),
+        ("CFBundleIdentifier", "org.rototoon.ofx"),
+        ("CFBundleInfoDictionaryVersion", "6.0"),
+        ("CFBundleName", "Rototoon"),
+        ("CFBundlePackageType", "BNDL"),
+        ("CFBundleShortVersionString", version),
+        ("CFBundleVersion", version),
+    ];
+    let lines: String =
+        entries.iter().map(|(key, value)| format!("    <key>{key}</key>\n    <string>{value}</string>\n")).collect();
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE plist PUBLIC \"-//Apple//DTD PLIST 1.0//EN\" \
+         \"http://www.apple.com/DTDs/PropertyList-1.0.dtd\">\n<plist version=\"1.0\">\n<dict>\n{lines}</dict>\n</plist>\n"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_property_list_names_the_binary() {
+        let text = property_list();
+        assert!(text.contains("<key>CFBundleExecutable</key>\n    <string>Rototoon.ofx</string>"));
+        assert_eq!(text.matches("<key>").count(), text.matches("<string>").count());
+    }
+
+    #[test]
+    fn what_links_something_else_is_refused() {
+        let folder = target().join("xtask-ofx-test");
+        empty_folder(&folder).unwrap();
+        let other = folder.join("not-elf.so");
+        std::fs::write(&other, "text").unwrap();
+        assert!(lay_out(&other).is_err());
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}
