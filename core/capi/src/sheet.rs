@@ -467,8 +467,9 @@ mod tests {
     #[test]
     fn given_pegs_carry() {
         let options = r#"{"spans": [{"key": 0, "frames": [3]}], "pegs": [{"name": "arm", "pivot": [0, 0], "keys":
-            [{"frame": 1}, {"frame": 5, "shift": [8, 0]}]}], "hung": ["arm", "arm", null, null, null]}"#;
+            [{"frame": 1}, {"frame": 5, "turn": 360}]}], "hung": ["arm", null, null, null, null], "arcs": 0}"#;
         let (found, _) = in_betweens(&drawings(&[]), options, None).unwrap();
-        assert!((found.points[0] - 4.0).abs() < 1e-6);
+        // Half-way round: (0, 0) to (8, 0) and (20, 0) to (28, 0) in the peg's frame, turned by half a turn.
+        assert!((found.points[0] + 4.0).abs() < 1e-6 && (found.points[4] + 24.0).abs() < 1e-6, "{:?}", &found.points[..6]);
     }
 }
