@@ -470,6 +470,10 @@ mod tests {
             [{"frame": 1}, {"frame": 5, "turn": 360}]}], "hung": ["arm", null, null, null, null], "arcs": 0}"#;
         let (found, _) = in_betweens(&drawings(&[]), options, None).unwrap();
         // Half-way round: (0, 0) to (8, 0) and (20, 0) to (28, 0) in the peg's frame, turned by half a turn.
-        assert!((found.points[0] + 4.0).abs() < 1e-6 && (found.points[4] + 24.0).abs() < 1e-6, "{:?}", &found.points[..6]);
+        assert!(
+            (found.points[0] + 4.0).abs() < 1e-6 && (found.points[4] + 24.0).abs() < 1e-6,
+            "{:?}",
+            &found.points[..6]
+        );
     }
 }

@@ -5,6 +5,7 @@
 //! most at the contact and ever less along half their length. Several contacts are closed in turn, a few times over.
 
 use crate::geometry::{Point, polygon, polyline};
+use std::collections::BTreeMap;
 
 /// Largest distance in pixels on the keys.
 const TOUCHING: f64 = 2.0;
@@ -126,6 +127,12 @@ pub(super) fn close(contacts: &[Contact], points: &mut [Vec<Point>], closed: &[b
     if contacts.is_empty() {
         return;
     }
+    let mut falls: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    for contact in contacts {
+        for n in [points[contact.a].len(), points[contact.b].len()] {
+            falls.entry(n).or_insert_with(|| fall(n));
+        }
+    }
     let lengths: Vec<f64> = points.iter().zip(closed).map(|(p, &c)| polyline::length(p, c)).collect();
     for _ in 0..ROUNDS {
         let mut worst = 0.0f64;
@@ -135,8 +142,12 @@ pub(super) fn close(contacts: &[Contact], points: &mut [Vec<Point>], closed: &[b
             worst = worst.max(off.length());
             let total = (lengths[contact.a] + lengths[contact.b]).max(1e-9);
             let share = lengths[contact.b] / total;
-            give_way(&mut points[contact.a], closed[contact.a], contact.point, off * share);
-            give_way(&mut points[contact.b], closed[contact.b], contact.segment, -off * (1.0 - share));
+            for (stroke, at, shift) in
+                [(contact.a, contact.point, off * share), (contact.b, contact.segment, -off * (1.0 - share))]
+            {
+                let fall = &falls[&points[stroke].len()];
+                give_way(&mut points[stroke], closed[stroke], at, shift, fall);
+            }
         }
         if worst < 0.01 {
             break;
@@ -144,15 +155,25 @@ pub(super) fn close(contacts: &[Contact], points: &mut [Vec<Point>], closed: &[b
     }
 }
 
-/// Shifts a stroke at one of its points, and ever less along it, by half a cosine wave.
-fn give_way(points: &mut [Point], closed: bool, at: usize, shift: Point) {
-    let n = points.len();
+/// By how many points away the share of a shift: half a cosine wave.
+fn fall(n: usize) -> Vec<f64> {
     let reach = (REACH * n as f64).max(1.0);
-    for k in 0..n {
-        let apart = k.abs_diff(at);
-        let apart = if closed { apart.min(n - apart) } else { apart } as f64;
-        if apart < reach {
-            points[k] += shift * (0.5 + 0.5 * (std::f64::consts::PI * apart / reach).cos());
+    let share = |apart: usize| 0.5 + 0.5 * (std::f64::consts::PI * apart as f64 / reach).cos();
+    (0..n).take_while(|&apart| (apart as f64) < reach).map(share).collect()
+}
+
+/// Shifts a stroke at one of its points, and ever less along it.
+fn give_way(points: &mut [Point], closed: bool, at: usize, shift: Point, fall: &[f64]) {
+    let n = points.len();
+    for (apart, &share) in fall.iter().enumerate() {
+        let (before, after) = (at.checked_sub(apart), Some(at + apart).filter(|&k| k < n));
+        let round = |k: Option<usize>, other: usize| if closed { Some(k.unwrap_or(other % n)) } else { k };
+        let (before, after) = (round(before, at + n - apart), round(after, at + apart));
+        if let Some(k) = before {
+            points[k] += shift * share;
+        }
+        if let Some(k) = after.filter(|_| after != before) {
+            points[k] += shift * share;
         }
     }
 }

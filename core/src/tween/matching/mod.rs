@@ -160,12 +160,17 @@ pub fn match_strokes(
     progress.report("matching strokes", 0.1)?;
     let held = movement::of_whole(&a, &b, &fixed, options);
     let ways = Ways::new(&a, &b);
+    let neighbours = relaxation::Neighbours::new(&a);
     let mut around = vec![held; first.len()];
     let mut found = Vec::new();
     for round in 0..ROUNDS {
         progress.report("matching strokes", 0.3 + 0.2 * round as f64)?;
         let rows = Rows::new((&a, &b), &ways, &around, &fixed, options);
-        found = relaxation::relaxed(&a, &b, &rows, options).chosen;
+        let last = std::mem::replace(&mut found, relaxation::relaxed(&neighbours, &b, &rows, options).chosen);
+        // The same pairs move their surroundings the same way again.
+        if round > 0 && found == last {
+            break;
+        }
         around = movement::around_each(&a, &b, &found, &held);
     }
     progress.report("matching strokes", 0.9)?;

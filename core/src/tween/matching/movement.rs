@@ -2,7 +2,7 @@
 
 use super::super::grid::Grid;
 use super::costs::{Figure, Rows, Ways, bound};
-use super::relaxation::{self, Chosen};
+use super::relaxation::{self, Chosen, Neighbours};
 use super::{Fixed, Options};
 use crate::geometry::Point;
 use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -17,6 +17,8 @@ const MOST_PROPOSALS: usize = 120;
 const PROPOSING: f64 = 0.15;
 /// Movements that are tried by matching the strokes.
 const FINALISTS: usize = 6;
+/// Difference in turn (rad), growth (logarithm) and place (in units of the drawing's radius) below which two movements are one.
+const SAME: f64 = 0.01;
 /// Preference, for each stroke and rad², for drawings that have turned little.
 const STILLNESS: f64 = 0.02;
 /// The same for each stroke and squared shift in units of the drawing's radius.
@@ -51,20 +53,35 @@ pub(super) fn of_whole(a: &Figure, b: &Figure, fixed: &[Fixed], options: &Option
     let mut scores: Vec<_> = proposals(&a, &b, &ways, options).into_par_iter().map(scored).collect();
     scores.sort_by(|x, y| x.0.total_cmp(&y.0));
     scores.truncate(FINALISTS);
+    let mut tried: Vec<Movement> = Vec::new();
+    scores.retain(|(_, movement)| {
+        let fresh = !tried.iter().any(|other| alike(&a, movement, other));
+        tried.push(*movement);
+        fresh
+    });
+    let neighbours = Neighbours::new(&a);
     let tried: Vec<(f64, Movement)> = scores
         .into_par_iter()
         .map(|(_, movement)| {
             let rows = Rows::new((&a, &b), &ways, &vec![movement; a.outlines.len()], fixed, options);
-            let first = relaxation::relaxed(&a, &b, &rows, options);
+            let first = relaxation::relaxed(&neighbours, &b, &rows, options);
             let around = around_each(&a, &b, &first.chosen, &movement);
             let rows = Rows::new((&a, &b), &ways, &around, fixed, options);
-            (relaxation::relaxed(&a, &b, &rows, options).energy + prior(&a, &movement), movement)
+            (relaxation::relaxed(&neighbours, &b, &rows, options).energy + prior(&a, &movement), movement)
         })
         .collect();
     tried.into_iter().reduce(|best, next| if next.0 < best.0 { next } else { best }).map_or_else(
         || Movement { turn: 0.0, scale: 1.0, source: Point::ZERO, target: Point::ZERO },
         |(_, movement)| movement,
     )
+}
+
+/// Whether two movements take the drawing to about the same place.
+fn alike(a: &Figure, one: &Movement, other: &Movement) -> bool {
+    let apart = one.apply(a.middle).distance(other.apply(a.middle));
+    super::outline::wrap(one.turn - other.turn).abs() < SAME
+        && (one.scale / other.scale).ln().abs() < SAME
+        && apart < SAME * a.radius * one.scale.max(other.scale)
 }
 
 fn prior(a: &Figure, movement: &Movement) -> f64 {

@@ -8,7 +8,7 @@
 
 use super::super::grid::Grid;
 use super::Options;
-use super::costs::{Figure, Label, Rows};
+use super::costs::{Figure, Rows};
 use super::outline::{Outline, Way};
 use crate::geometry::Point;
 use crate::numeric::sparse_assignment::{Choice, assign_sparse};
@@ -50,6 +50,24 @@ pub(super) struct Relaxed {
     pub energy: f64,
 }
 
+/// Where the labels take the places of the links: `own[l][k]` label `k` of the stroke, `other[l][k]` of the neighbour.
+struct Images {
+    own: Vec<Vec<Point>>,
+    other: Vec<Vec<Point>>,
+}
+
+impl Images {
+    fn new(i: usize, rows: &Rows, links: &[Link]) -> Self {
+        let of = |stroke: usize, link: &Link| -> Vec<Point> {
+            rows.labels[stroke].iter().map(|label| label.map.apply(link.place)).collect()
+        };
+        Self {
+            own: links.iter().map(|link| of(i, link)).collect(),
+            other: links.iter().map(|link| of(link.to, link)).collect(),
+        }
+    }
+}
+
 /// A neighbour, the place where it nearly touches, its weight, and the distance that tears the two apart.
 struct Link {
     to: usize,
@@ -65,8 +83,18 @@ struct Weights {
     none: f64,
 }
 
-pub(super) fn relaxed(a: &Figure, b: &Figure, rows: &Rows, options: &Options) -> Relaxed {
-    let links = links(a);
+/// The links of all strokes, and their images.
+#[derive(Clone, Copy)]
+struct Links<'a> {
+    links: &'a [Vec<Link>],
+    images: &'a [Images],
+}
+
+/// Choices for the rows, `neighbours` being those of the first drawing.
+pub(super) fn relaxed(neighbours: &Neighbours, b: &Figure, rows: &Rows, options: &Options) -> Relaxed {
+    let links = &neighbours.0;
+    let images: Vec<Images> = (0..links.len()).into_par_iter().map(|i| Images::new(i, rows, &links[i])).collect();
+    let links = Links { links, images: &images };
     let columns = b.outlines.len();
     let mut weights: Vec<Weights> =
         rows.labels.iter().map(|l| Weights { labels: vec![0.0; l.len()], none: 1.0 }).collect();
@@ -76,11 +104,11 @@ pub(super) fn relaxed(a: &Figure, b: &Figure, rows: &Rows, options: &Options) ->
     }
     for round in 0..ROUNDS {
         let beta = BETA.0 * (BETA.1 / BETA.0).powf(round as f64 / (ROUNDS - 1) as f64);
-        let costs = supported(rows, &links, &weights);
+        let costs = supported(rows, links, &weights);
         let next = costs.par_iter().enumerate().map(|(i, c)| softened(c, none_cost(rows, i, options), beta)).collect();
         weights = normalised(next, rows, columns);
     }
-    harden(rows, &links, weights, columns, options)
+    harden(rows, links, weights, columns, options)
 }
 
 fn none_cost(rows: &Rows, i: usize, options: &Options) -> f64 {
@@ -96,20 +124,31 @@ fn softened(costs: &[f64], none: f64, beta: f64) -> Weights {
 }
 
 /// What each label costs under the neighbours' weights.
-fn supported(rows: &Rows, links: &[Vec<Link>], weights: &[Weights]) -> Vec<Vec<f64>> {
-    let of_label = |i: usize, label: &Label| {
-        let support: f64 = links[i].iter().map(|link| link.weight * torn(label, link, rows, &weights[link.to])).sum();
-        label.cost + support
+fn supported(rows: &Rows, links: Links, weights: &[Weights]) -> Vec<Vec<f64>> {
+    let of_stroke = |i: usize| {
+        let mut costs: Vec<f64> = vec![0.0; rows.labels[i].len()];
+        let images = &links.images[i];
+        let mut likely: Vec<(f64, Point)> = Vec::new();
+        for (l, link) in links.links[i].iter().enumerate() {
+            let neighbour = &weights[link.to];
+            likely.clear();
+            let all = neighbour.labels.iter().copied().zip(images.other[l].iter().copied());
+            likely.extend(all.filter(|(w, _)| *w > 1e-6));
+            for (cost, here) in costs.iter_mut().zip(&images.own[l]) {
+                *cost += link.weight * (torn(*here, link, &likely) + MISSING * neighbour.none);
+            }
+        }
+        costs.iter_mut().zip(&rows.labels[i]).for_each(|(cost, label)| *cost += label.cost);
+        costs
     };
-    (0..rows.labels.len()).into_par_iter().map(|i| rows.labels[i].iter().map(|l| of_label(i, l)).collect()).collect()
+    (0..rows.labels.len()).into_par_iter().with_min_len(16).map(of_stroke).collect()
 }
 
-/// Expected share of a neighbour's weight that a label costs.
-fn torn(label: &Label, link: &Link, rows: &Rows, neighbour: &Weights) -> f64 {
-    let here = label.map.apply(link.place);
-    let of = |other: &Label| (here.distance_squared(other.map.apply(link.place)) / (link.torn * link.torn)).min(1.0);
-    let with = rows.labels[link.to].iter().zip(&neighbour.labels).filter(|(_, w)| **w > 1e-6);
-    with.map(|(other, w)| w * of(other)).sum::<f64>() + MISSING * neighbour.none
+/// Expected share of a neighbour's weight that a label costs which takes the link's place `here`, by the neighbour's likely
+/// labels: their weights, and where they take it.
+fn torn(here: Point, link: &Link, likely: &[(f64, Point)]) -> f64 {
+    let square = link.torn * link.torn;
+    likely.iter().map(|(w, there)| w * (here.distance_squared(*there) / square).min(1.0)).sum()
 }
 
 fn normalised(mut weights: Vec<Weights>, rows: &Rows, columns: usize) -> Vec<Weights> {
@@ -137,7 +176,7 @@ fn normalised(mut weights: Vec<Weights>, rows: &Rows, columns: usize) -> Vec<Wei
 type Assigned = (f64, Vec<Option<usize>>, Vec<Vec<f64>>);
 
 /// Exact assignments under the costs that the weights, then the assignments themselves, imply.
-fn harden(rows: &Rows, links: &[Vec<Link>], soft: Vec<Weights>, columns: usize, options: &Options) -> Relaxed {
+fn harden(rows: &Rows, links: Links, soft: Vec<Weights>, columns: usize, options: &Options) -> Relaxed {
     let mut weights = soft;
     let mut best: Option<Assigned> = None;
     for _ in 0..EXACT {
@@ -209,6 +248,14 @@ fn sureness(rows: &Rows, costs: &[Vec<f64>], i: usize, k: usize, options: &Optio
 }
 
 /// The neighbours of each stroke of a drawing.
+pub(super) struct Neighbours(Vec<Vec<Link>>);
+
+impl Neighbours {
+    pub fn new(a: &Figure) -> Self {
+        Self(links(a))
+    }
+}
+
 fn links(a: &Figure) -> Vec<Vec<Link>> {
     let numbers: Vec<usize> = (0..a.outlines.len()).filter(|&i| a.outlines[i].is_some()).collect();
     let centres: Vec<Point> = numbers.iter().filter_map(|&i| Some(a.outlines[i].as_ref()?.centre)).collect();
