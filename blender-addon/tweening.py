@@ -164,7 +164,7 @@ def finish(ob, plan: Plan) -> Done:
         adopt(ob.data.layers[name], found.edited)
     pairs: dict[str, dict[int, list[tuple[int, int]]]] = {}
     for call in plan.calls:
-        _collect_pairs(call, pairs)
+        collect_pairs(call, pairs)
     numbers = {name: number_keys(ob, name, plan, pairs.get(name, {})) for name in plan.frames if name in pairs}
     for call in plan.calls:
         done.spans += len(call.spans)
@@ -200,7 +200,7 @@ def _note(record: records.Layer, block: between.Block, sheet: sheets.Sheet, span
     record.spans[block.first] = records.Span(block.last, sheet.digests[span], sheet.wanted[span], sums)
 
 
-def _collect_pairs(call: Call, into: dict[str, dict[int, list[tuple[int, int]]]]) -> None:
+def collect_pairs(call: Call, into: dict[str, dict[int, list[tuple[int, int]]]]) -> None:
     """By layer and frame of the earlier key the pairs of strokes by index."""
     sheet, first = call.sheet, call.laid.first_stroke
     offsets, rows = np.asarray(call.matches.offsets), np.asarray(call.matches.rows).reshape(-1, 4)

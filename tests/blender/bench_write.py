@@ -137,8 +137,39 @@ def beside_blender(addon):
         block.curve[name] = np.repeat(gp.blank(name, PARTS)[None], FRAMES, 0)
     block.curve[gp.MADE][:] = True
     ours = clock(lambda: writing.write(layer, block, []), clear)
+    clear()
+    in_between(addon, ob, layer, clear)
     print(f"  interpolate_sequence        {blender:7.1f} ms (median of ten, on the wall)")
     print(f"  in-betweens as many, written {ours:6.1f} ms (the same)")
+
+
+def in_between(addon, ob, layer, clear):
+    """The operator In-between as a whole: read, match, compute, write; and its steps."""
+    data, kept = ob.data, addon("tween_records").PROPERTY
+
+    def forget():
+        clear()
+        if kept in data:
+            del data[kept]
+
+    whole = clock(lambda: bpy.ops.rototoon.in_between(), forget)
+    assert len(layer.frames) == FRAMES + 2
+    tweening, charts = addon("tweening"), addon("charts")
+    choose = lambda name, found, record: {(0, FRAMES + 1): charts.Choices()}  # noqa: E731
+    steps = {"plan": [], "compute": [], "write": []}
+    for _ in range(11):
+        forget()
+        marks = [time.perf_counter()]
+        plan = tweening.plan(ob, [layer], choose)
+        marks.append(time.perf_counter())
+        tweening.draw(plan, lambda share, step: True)
+        marks.append(time.perf_counter())
+        tweening.finish(ob, plan)
+        marks.append(time.perf_counter())
+        for times, start, end in zip(steps.values(), marks, marks[1:]):
+            times.append(1000 * (end - start))
+    parts = ", ".join(f"{name} {sorted(times)[5]:.1f}" for name, times in steps.items())
+    print(f"  In-between, the whole operator {whole:5.1f} ms (the same; {parts})")
 
 
 def tracked(session, part, writing):

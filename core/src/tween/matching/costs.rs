@@ -124,6 +124,11 @@ impl Ways {
         Self { columns, known: (0..rows * columns).into_par_iter().map(pair).collect() }
     }
 
+    /// Whether they are remembered.
+    pub fn are_known(&self) -> bool {
+        !self.known.is_empty()
+    }
+
     /// The least of the costs of all ways to lay stroke `i` upon `j`.
     fn least(&self, a: &Figure, i: usize, b: &Figure, j: usize, cost: impl Fn(&Way) -> f64) -> f64 {
         let least = |all: &[Vec<Way>]| all.iter().flatten().map(&cost).fold(f64::INFINITY, f64::min);

@@ -158,8 +158,8 @@ pub fn match_strokes(
     let fixed = fixed(first.len(), second.len(), by_hand)?;
     let (a, b) = (Figure::new(first), Figure::new(second));
     progress.report("matching strokes", 0.1)?;
-    let held = movement::of_whole(&a, &b, &fixed, options);
     let ways = Ways::new(&a, &b);
+    let held = movement::of_whole(&a, &b, &ways, &fixed, options);
     let neighbours = relaxation::Neighbours::new(&a);
     let mut around = vec![held; first.len()];
     let mut found = Vec::new();

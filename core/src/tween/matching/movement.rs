@@ -44,36 +44,37 @@ impl Movement {
 }
 
 /// The movement of the whole drawing.
-pub(super) fn of_whole(a: &Figure, b: &Figure, fixed: &[Fixed], options: &Options) -> Movement {
+pub(super) fn of_whole(a: &Figure, b: &Figure, ways: &Ways, fixed: &[Fixed], options: &Options) -> Movement {
     let pinned = fixed.iter().enumerate().filter_map(|(i, f)| if let Fixed::To(j) = f { Some((i, *j)) } else { None });
     let (rows, columns): (Vec<usize>, Vec<usize>) = pinned.unzip();
     let (a, b) = (a.only(&largest(a, &rows)), b.only(&largest(b, &columns)));
-    let ways = Ways::new(&a, &b);
-    let scored = |movement: Movement| (bound((&a, &b), &ways, &movement, options) + prior(&a, &movement), movement);
-    let mut scores: Vec<_> = proposals(&a, &b, &ways, options).into_par_iter().map(scored).collect();
+    // The strokes keep their numbers, so what is known of them holds.
+    let own = (!ways.are_known()).then(|| Ways::new(&a, &b));
+    let ways = own.as_ref().unwrap_or(ways);
+    let scored = |movement: Movement| (bound((&a, &b), ways, &movement, options) + prior(&a, &movement), movement);
+    let mut scores: Vec<_> = proposals(&a, &b, ways, options).into_par_iter().map(scored).collect();
     scores.sort_by(|x, y| x.0.total_cmp(&y.0));
     scores.truncate(FINALISTS);
-    let mut tried: Vec<Movement> = Vec::new();
-    scores.retain(|(_, movement)| {
-        let fresh = !tried.iter().any(|other| alike(&a, movement, other));
-        tried.push(*movement);
-        fresh
-    });
     let neighbours = Neighbours::new(&a);
-    let tried: Vec<(f64, Movement)> = scores
-        .into_par_iter()
-        .map(|(_, movement)| {
-            let rows = Rows::new((&a, &b), &ways, &vec![movement; a.outlines.len()], fixed, options);
-            let first = relaxation::relaxed(&neighbours, &b, &rows, options);
-            let around = around_each(&a, &b, &first.chosen, &movement);
-            let rows = Rows::new((&a, &b), &ways, &around, fixed, options);
-            (relaxation::relaxed(&neighbours, &b, &rows, options).energy + prior(&a, &movement), movement)
-        })
-        .collect();
-    tried.into_iter().reduce(|best, next| if next.0 < best.0 { next } else { best }).map_or_else(
-        || Movement { turn: 0.0, scale: 1.0, source: Point::ZERO, target: Point::ZERO },
-        |(_, movement)| movement,
-    )
+    let energy = |movement: &Movement| {
+        let rows = Rows::new((&a, &b), ways, &vec![*movement; a.outlines.len()], fixed, options);
+        let first = relaxation::relaxed(&neighbours, &b, &rows, options);
+        let around = around_each(&a, &b, &first.chosen, movement);
+        let rows = Rows::new((&a, &b), ways, &around, fixed, options);
+        relaxation::relaxed(&neighbours, &b, &rows, options).energy + prior(&a, movement)
+    };
+    let mut best: Option<(f64, Movement)> = None;
+    for (score, movement) in scores {
+        // What costs more at least than another one does indeed is none.
+        if best.is_some_and(|(least, _)| score >= least) {
+            break;
+        }
+        let found = energy(&movement);
+        if best.is_none_or(|(least, _)| found < least) {
+            best = Some((found, movement));
+        }
+    }
+    best.map_or(Movement { turn: 0.0, scale: 1.0, source: Point::ZERO, target: Point::ZERO }, |(_, movement)| movement)
 }
 
 /// Whether two movements take the drawing to about the same place.
@@ -133,7 +134,11 @@ fn proposals(a: &Figure, b: &Figure, ways: &Ways, options: &Options) -> Vec<Move
         }
     }
     by_pairs.sort_by(|x, y| x.0.total_cmp(&y.0));
-    result.extend(by_pairs.into_iter().take(MOST_PROPOSALS).map(|(_, movement)| movement));
+    for (_, movement) in by_pairs.into_iter().take(MOST_PROPOSALS) {
+        if !result.iter().any(|other| alike(a, &movement, other)) {
+            result.push(movement);
+        }
+    }
     result
 }
 

@@ -29,6 +29,8 @@ const MISSING: f64 = 0.4;
 /// β of the first and of the last round.
 const BETA: (f64, f64) = (1.5, 30.0);
 const ROUNDS: usize = 12;
+/// Weight of a choice that no further round would change.
+const SETTLED: f64 = 1.0 - 1e-5;
 /// Normalisations in each round.
 const SINKHORN: usize = 4;
 /// Exact assignments at the end, at most.
@@ -107,6 +109,10 @@ pub(super) fn relaxed(neighbours: &Neighbours, b: &Figure, rows: &Rows, options:
         let costs = supported(rows, links, &weights);
         let next = costs.par_iter().enumerate().map(|(i, c)| softened(c, none_cost(rows, i, options), beta)).collect();
         weights = normalised(next, rows, columns);
+        let settled = |w: &Weights| w.none > SETTLED || w.labels.iter().any(|&v| v > SETTLED);
+        if weights.iter().all(settled) {
+            break;
+        }
     }
     harden(rows, links, weights, columns, options)
 }
