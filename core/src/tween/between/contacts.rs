@@ -5,6 +5,7 @@
 //! most at the contact and ever less along half their length. Several contacts are closed in turn, a few times over.
 
 use crate::geometry::{Point, polygon, polyline};
+use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 
 /// Largest distance in pixels on the keys.
@@ -17,6 +18,8 @@ const SLIDE: f64 = 0.06;
 const MOST: usize = 24;
 /// Points of one stroke and segments of another, multiplied, up to which all points are looked at.
 const MOST_TRIED: usize = 1_000_000;
+/// Segments of a run that have a box together.
+const CHUNK: usize = 6;
 /// Rounds of closing.
 const ROUNDS: usize = 8;
 /// Share of a stroke's length along which it gives way.
@@ -60,16 +63,37 @@ pub(super) fn find(strokes: &[Between]) -> Vec<Contact> {
         }
     }
     pairs.sort_unstable();
-    pairs.into_iter().flat_map(|(i, j)| of_pair(strokes, i, j)).collect()
+    let chunks: Vec<Chunks> = strokes.par_iter().map(|stroke| Chunks::new(stroke.ends[0], stroke.closed)).collect();
+    let found: Vec<Vec<Contact>> = pairs.into_par_iter().map(|(i, j)| of_pair(strokes, &chunks, i, j)).collect();
+    found.concat()
 }
 
-fn of_pair(strokes: &[Between], i: usize, j: usize) -> Vec<Contact> {
+/// The boxes of runs of a line's segments: what is far from a box need not be looked at.
+struct Chunks(Vec<(Point, Point)>);
+
+impl Chunks {
+    fn new(points: &[Point], closed: bool) -> Self {
+        let segments: Vec<(Point, Point)> = polyline::segments(points, closed).collect();
+        let bounds = |run: &[(Point, Point)]| {
+            run.iter().fold((run[0].0, run[0].0), |(low, high), (a, b)| (low.min(*a).min(*b), high.max(*a).max(*b)))
+        };
+        Self(segments.chunks(CHUNK).map(bounds).collect())
+    }
+
+    /// Whether anything of the line may lie within a distance of a point.
+    fn near(&self, p: Point, distance: f64) -> bool {
+        self.0.is_empty()
+            || self.0.iter().any(|(low, high)| p.distance_squared(p.clamp(*low, *high)) <= distance * distance)
+    }
+}
+
+fn of_pair(strokes: &[Between], chunks: &[Chunks], i: usize, j: usize) -> Vec<Contact> {
     let mut found = Vec::new();
     for (a, b) in [(i, j), (j, i)] {
         let n = strokes[a].ends[0].len();
         let step = (n * strokes[b].ends[0].len() / MOST_TRIED).max(1);
         let tried = (0..n).step_by(step).chain((step > 1).then_some(n - 1));
-        let mut own: Vec<Contact> = tried.filter_map(|point| contact(strokes, a, point, b)).collect();
+        let mut own: Vec<Contact> = tried.filter_map(|point| contact(strokes, &chunks[b], a, point, b)).collect();
         if own.len() > MOST {
             let step = own.len().div_ceil(MOST);
             own = own.into_iter().step_by(step).collect();
@@ -79,10 +103,13 @@ fn of_pair(strokes: &[Between], i: usize, j: usize) -> Vec<Contact> {
     found
 }
 
-fn contact(strokes: &[Between], a: usize, point: usize, b: usize) -> Option<Contact> {
+fn contact(strokes: &[Between], chunks: &Chunks, a: usize, point: usize, b: usize) -> Option<Contact> {
     let (own, other) = (&strokes[a], &strokes[b]);
     let end = !own.closed && (point == 0 || point + 1 == own.ends[0].len());
     let tolerance = if end { TOUCHING } else { COINCIDENT };
+    if !chunks.near(own.ends[0][point], tolerance) {
+        return None;
+    }
     let near = |key: usize| {
         let p = own.ends[key][point];
         let within = |q: &Point| p.distance(*q) <= tolerance;

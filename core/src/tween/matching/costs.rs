@@ -201,11 +201,26 @@ impl Rows {
                 let found = grid.nearest(around[i].apply(outline.centre), NEAREST);
                 found.into_iter().map(|k| numbers[k]).collect()
             };
-            let mut found: Vec<Vec<Label>> =
-                near.into_iter().filter(|&j| !taken[j]).map(|j| labels((a, b), ways, (i, j), &around[i])).collect();
-            found.retain(|row| row.first().is_some_and(|label| label.cost < options.max_cost));
-            found.sort_by(|x, y| x[0].cost.total_cmp(&y[0].cost).then(x[0].to.cmp(&y[0].to)));
-            found.truncate(KEPT);
+            let expected = Expected::new(a, i, &around[i]);
+            let mut near: Vec<(f64, usize)> = near
+                .into_iter()
+                .filter(|&j| !taken[j])
+                .filter_map(|j| Some((ways.unlike(a, i, b, j)?.under(&expected), j)))
+                .filter(|(base, _)| *base < options.max_cost)
+                .collect();
+            near.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+            // The cheapest so far, by their cost; what costs more at least than the last of them is none of them.
+            let mut found: Vec<Vec<Label>> = Vec::with_capacity(KEPT + 1);
+            for (base, j) in near {
+                if found.len() == KEPT && base > found[KEPT - 1][0].cost {
+                    break;
+                }
+                let row = labels((a, b), ways, (i, j), &around[i]);
+                let Some(first) = row.first().filter(|label| label.cost < options.max_cost) else { continue };
+                let place = found.partition_point(|x| x[0].cost.total_cmp(&first.cost).then(x[0].to.cmp(&j)).is_lt());
+                found.insert(place, row);
+                found.truncate(KEPT);
+            }
             found.concat()
         };
         let labels: Vec<Vec<Label>> = (0..a.outlines.len()).into_par_iter().map(row).collect();
@@ -265,8 +280,8 @@ impl Unlike {
     /// What taking one for the other costs before it is known how they are laid upon each other.
     fn under(&self, expected: &Expected) -> f64 {
         let size = self.growth - expected.growth;
-        let away = expected.centre.distance(self.centre) / expected.radius;
-        self.cost + SIZE * size * size + POSITION * away * away / (1.0 + away * away / FAR)
+        let square = expected.centre.distance_squared(self.centre) / (expected.radius * expected.radius);
+        self.cost + SIZE * size * size + POSITION * square / (1.0 + square / FAR)
     }
 }
 
@@ -278,22 +293,17 @@ pub(super) fn bound((a, b): (&Figure, &Figure), ways: &Ways, movement: &Movement
     let columns = there(b);
     let of = |i: usize| {
         let expected = Expected::new(a, i, movement);
-        let mut near: Vec<(f64, usize)> = columns
-            .iter()
-            .filter_map(|&j| Some((ways.unlike(a, i, b, j)?.under(&expected), j)))
-            .filter(|(base, _)| *base < options.max_cost)
-            .collect();
-        // The likeliest first, so that most need no look at all.
-        near.sort_by(|x, y| x.0.total_cmp(&y.0));
-        let mut least = options.max_cost;
-        for (base, j) in near {
-            if base >= least {
-                break;
-            }
+        let base = |&j: &usize| ways.unlike(a, i, b, j).map_or(f64::INFINITY, |unlike| unlike.under(&expected));
+        let bases: Vec<f64> = columns.iter().map(base).collect();
+        let whole = |k: usize| {
             let way = |way: &Way| SHAPE * way.residual + TURN * wrap(way.turn - movement.turn).powi(2);
-            least = least.min(base + ways.least(a, i, b, j, way));
-        }
-        least
+            bases[k] + ways.least(a, i, b, columns[k], way)
+        };
+        // The likeliest first, so that most need no look at all.
+        let first = (0..bases.len()).min_by(|&x, &y| bases[x].total_cmp(&bases[y]));
+        let least = first.filter(|&k| bases[k] < options.max_cost).map_or(options.max_cost, |k| whole(k));
+        let least = least.min(options.max_cost);
+        (0..bases.len()).fold(least, |least, k| if bases[k] < least { least.min(whole(k)) } else { least })
     };
     there(a).into_iter().map(of).sum()
 }

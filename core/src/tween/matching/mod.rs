@@ -159,14 +159,19 @@ pub fn match_strokes(
     let (a, b) = (Figure::new(first), Figure::new(second));
     progress.report("matching strokes", 0.1)?;
     let ways = Ways::new(&a, &b);
-    let held = movement::of_whole(&a, &b, &ways, &fixed, options);
+    let whole = movement::of_whole(&a, &b, &ways, &fixed, options);
+    let held = whole.movement;
     let neighbours = relaxation::Neighbours::new(&a);
     let mut around = vec![held; first.len()];
     let mut found = Vec::new();
+    let mut known = whole.found.into_iter().flatten();
     for round in 0..ROUNDS {
         progress.report("matching strokes", 0.3 + 0.2 * round as f64)?;
-        let rows = Rows::new((&a, &b), &ways, &around, &fixed, options);
-        let last = std::mem::replace(&mut found, relaxation::relaxed(&neighbours, &b, &rows, options).chosen);
+        let next = known.next().unwrap_or_else(|| {
+            let rows = Rows::new((&a, &b), &ways, &around, &fixed, options);
+            relaxation::relaxed(&neighbours, &b, &rows, options).chosen
+        });
+        let last = std::mem::replace(&mut found, next);
         // The same pairs move their surroundings the same way again.
         if round > 0 && found == last {
             break;

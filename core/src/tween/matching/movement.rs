@@ -10,7 +10,7 @@ use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIter
 /// Step in radians of the proposed turns of the whole drawing.
 const TURN_STEP: f64 = std::f64::consts::PI / 12.0;
 /// Strokes on which movements are tried: the largest.
-const TRIED_ON: usize = 48;
+const TRIED_ON: usize = 63;
 /// Movements proposed by pairs, at most.
 const MOST_PROPOSALS: usize = 120;
 /// Unexplained share of the shape up to which a pair proposes a movement.
@@ -43,10 +43,20 @@ impl Movement {
     }
 }
 
+/// The movement of the whole drawing, and what matching under it found.
+pub(super) struct Whole {
+    pub movement: Movement,
+    /// The counterparts under that movement, and under those around each stroke which follow from them; `None` where the
+    /// movement was tried on some strokes only.
+    pub found: Option<[Vec<Option<Chosen>>; 2]>,
+}
+
 /// The movement of the whole drawing.
-pub(super) fn of_whole(a: &Figure, b: &Figure, ways: &Ways, fixed: &[Fixed], options: &Options) -> Movement {
+pub(super) fn of_whole(a: &Figure, b: &Figure, ways: &Ways, fixed: &[Fixed], options: &Options) -> Whole {
     let pinned = fixed.iter().enumerate().filter_map(|(i, f)| if let Fixed::To(j) = f { Some((i, *j)) } else { None });
     let (rows, columns): (Vec<usize>, Vec<usize>) = pinned.unzip();
+    let there = |figure: &Figure| figure.outlines.iter().flatten().count();
+    let all = there(a).max(there(b)) <= TRIED_ON;
     let (a, b) = (a.only(&largest(a, &rows)), b.only(&largest(b, &columns)));
     // The strokes keep their numbers, so what is known of them holds.
     let own = (!ways.are_known()).then(|| Ways::new(&a, &b));
@@ -61,20 +71,22 @@ pub(super) fn of_whole(a: &Figure, b: &Figure, ways: &Ways, fixed: &[Fixed], opt
         let first = relaxation::relaxed(&neighbours, &b, &rows, options);
         let around = around_each(&a, &b, &first.chosen, movement);
         let rows = Rows::new((&a, &b), ways, &around, fixed, options);
-        relaxation::relaxed(&neighbours, &b, &rows, options).energy + prior(&a, movement)
+        let second = relaxation::relaxed(&neighbours, &b, &rows, options);
+        (second.energy + prior(&a, movement), [first.chosen, second.chosen])
     };
-    let mut best: Option<(f64, Movement)> = None;
+    let mut best: Option<(f64, Whole)> = None;
     for (score, movement) in scores {
         // What costs more at least than another one does indeed is none.
-        if best.is_some_and(|(least, _)| score >= least) {
+        if best.as_ref().is_some_and(|(least, _)| score >= *least) {
             break;
         }
-        let found = energy(&movement);
-        if best.is_none_or(|(least, _)| found < least) {
-            best = Some((found, movement));
+        let (energy, found) = energy(&movement);
+        if best.as_ref().is_none_or(|(least, _)| energy < *least) {
+            best = Some((energy, Whole { movement, found: all.then_some(found) }));
         }
     }
-    best.map_or(Movement { turn: 0.0, scale: 1.0, source: Point::ZERO, target: Point::ZERO }, |(_, movement)| movement)
+    let still = Movement { turn: 0.0, scale: 1.0, source: Point::ZERO, target: Point::ZERO };
+    best.map_or(Whole { movement: still, found: None }, |(_, whole)| whole)
 }
 
 /// Whether two movements take the drawing to about the same place.
