@@ -3,6 +3,7 @@
 import bpy
 
 from .. import charts, jobs, preferences, tweening
+from .. import grease_pencil as gp
 from .. import keys as ks
 from .. import strokes as st
 from ..charts import Choices
@@ -164,12 +165,8 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
             around = ks.around(found.keys, self._now)
             # A drawing between that was changed is a key: what was around it is drawn again on both its sides.
             held = record.holding(*around) if around is not None else None
-            spans = [
-                span
-                for span in spans
-                if span == around
-                or (held is not None and found.edited and record.holding(*span) is held)
-            ]
+            touched = held is not None and bool(found.edited)
+            spans = [span for span in spans if span == around or (touched and record.holding(*span) is held)]
         elif self.frames == "SELECTED":
             spans = [span for span in spans if set(span) <= self._selected[name]]
         elif self.frames == "RANGE":
@@ -228,7 +225,7 @@ class ROTOTOON_OT_clear_in_betweens(Guarded, bpy.types.Operator):
         for layer in st.editable_layers(ob, self.layers == "ACTIVE"):
             span = (None, None)
             if self.frames == "CURRENT":
-                keys = [n for n, found in tweening.gp.drawings(layer).items() if not ks.is_tweened(*found)]
+                keys = [n for n, found in gp.drawings(layer).items() if not ks.is_tweened(*found)]
                 span = ks.around(keys, context.scene.frame_current)
                 if span is None:
                     continue
