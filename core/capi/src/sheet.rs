@@ -362,11 +362,13 @@ impl RototoonInBetweens {
             self.push_stroke(drawn, drawings, firsts);
         }
         self.stroke_offsets.push((self.strokes.len() / 3) as i32);
-        for drawing in &span.drawings {
-            for stroke in drawing {
-                self.points.extend(stroke.stroke.points.iter().flat_map(|p| [p.x, p.y]));
-                self.opacities.push(stroke.opacity);
+        let points: usize = span.strokes.iter().map(|stroke| stroke.points).sum();
+        self.points.reserve(2 * points * span.drawings.len());
+        for stroke in span.drawings.iter().flatten() {
+            for p in &stroke.stroke.points {
+                self.points.extend_from_slice(&[p.x, p.y]);
             }
+            self.opacities.push(stroke.opacity);
         }
     }
 

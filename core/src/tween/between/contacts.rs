@@ -18,6 +18,8 @@ const SLIDE: f64 = 0.06;
 const MOST: usize = 24;
 /// Points of one stroke and segments of another, multiplied, up to which all points are looked at.
 const MOST_TRIED: usize = 1_000_000;
+/// Gap in pixels that counts as closed.
+const CLOSED: f64 = 1e-6;
 /// Segments of a run that have a box together.
 const CHUNK: usize = 6;
 /// Rounds of closing.
@@ -166,6 +168,9 @@ pub(super) fn close(contacts: &[Contact], points: &mut [Vec<Point>], closed: &[b
         for contact in contacts {
             let on = place(&points[contact.b], contact.segment, contact.along);
             let off = on + contact.gaps[0].lerp(contact.gaps[1], s) - points[contact.a][contact.point];
+            if off.length_squared() < CLOSED * CLOSED {
+                continue;
+            }
             worst = worst.max(off.length());
             let total = (lengths[contact.a] + lengths[contact.b]).max(1e-9);
             let share = lengths[contact.b] / total;

@@ -13,6 +13,8 @@ use crate::geometry::polygon;
 
 /// The edges to each side that tell an edge's turn, as a share of all.
 const WINDOW: f64 = 1.0 / 24.0;
+/// Turn in radians that moves nothing by as much as a rounding error of single precision.
+const NO_TURN: f64 = 1e-9;
 /// Share of the edges' products that must agree for their turn to be one.
 const AGREEMENT: f64 = 0.2;
 
@@ -41,8 +43,7 @@ impl Deform {
     pub fn at(&self, s: f64) -> Vec<Point> {
         let straight = || self.from.iter().zip(&self.to).map(|(p, q)| p.lerp(*q, s));
         let Some(turns) = &self.turns else { return straight().collect() };
-        let mut steps: Vec<Point> =
-            turns.iter().map(|(turn, a, b)| Point::from_angle(s * turn).rotate(a.lerp(*b, s))).collect();
+        let mut steps: Vec<Point> = turns.iter().map(|(turn, a, b)| turned(a.lerp(*b, s), s * turn)).collect();
         if self.closed {
             let gap = steps.iter().sum::<Point>();
             let total = steps.iter().map(|e| e.length()).sum::<f64>().max(f64::MIN_POSITIVE);
@@ -64,6 +65,11 @@ impl Deform {
     pub fn way(&self) -> Vec<f64> {
         self.from.iter().zip(&self.to).flat_map(|(p, q)| (*q - *p).to_array()).collect()
     }
+}
+
+/// A vector turned by an angle; by none, which is what most of a rigid shape turns by, without work.
+fn turned(v: Point, angle: f64) -> Point {
+    if angle.abs() < NO_TURN { v } else { Point::from_angle(angle).rotate(v) }
 }
 
 fn edges(points: &[Point], closed: bool) -> Vec<Point> {
