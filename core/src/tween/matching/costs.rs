@@ -301,7 +301,7 @@ pub(super) fn bound((a, b): (&Figure, &Figure), ways: &Ways, movement: &Movement
         };
         // The likeliest first, so that most need no look at all.
         let first = (0..bases.len()).min_by(|&x, &y| bases[x].total_cmp(&bases[y]));
-        let least = first.filter(|&k| bases[k] < options.max_cost).map_or(options.max_cost, |k| whole(k));
+        let least = first.filter(|&k| bases[k] < options.max_cost).map_or(options.max_cost, &whole);
         let least = least.min(options.max_cost);
         (0..bases.len()).fold(least, |least, k| if bases[k] < least { least.min(whole(k)) } else { least })
     };
