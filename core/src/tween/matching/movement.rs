@@ -18,7 +18,7 @@ const PROPOSING: f64 = 0.15;
 /// Movements that are tried by matching the strokes.
 const FINALISTS: usize = 6;
 /// Difference in turn (rad), growth (logarithm) and place (in units of the drawing's radius) below which two movements are one.
-const SAME: f64 = 0.01;
+const SAME: f64 = 1e-3;
 /// Preference, for each stroke and rad², for drawings that have turned little.
 const STILLNESS: f64 = 0.02;
 /// The same for each stroke and squared shift in units of the drawing's radius.
