@@ -10,7 +10,9 @@ use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIter
 /// Step in radians of the proposed turns of the whole drawing.
 const TURN_STEP: f64 = std::f64::consts::PI / 12.0;
 /// Strokes on which movements are tried: the largest.
-const TRIED_ON: usize = 63;
+const TRIED_ON: usize = 48;
+/// Strokes up to which movements are tried on all: what is known of their pairs is remembered anyway.
+const FEW: usize = 63;
 /// Movements proposed by pairs, at most.
 const MOST_PROPOSALS: usize = 120;
 /// Unexplained share of the shape up to which a pair proposes a movement.
@@ -56,7 +58,7 @@ pub(super) fn of_whole(a: &Figure, b: &Figure, ways: &Ways, fixed: &[Fixed], opt
     let pinned = fixed.iter().enumerate().filter_map(|(i, f)| if let Fixed::To(j) = f { Some((i, *j)) } else { None });
     let (rows, columns): (Vec<usize>, Vec<usize>) = pinned.unzip();
     let there = |figure: &Figure| figure.outlines.iter().flatten().count();
-    let all = there(a).max(there(b)) <= TRIED_ON;
+    let all = there(a).max(there(b)) <= FEW;
     let (a, b) = (a.only(&largest(a, &rows)), b.only(&largest(b, &columns)));
     // The strokes keep their numbers, so what is known of them holds.
     let own = (!ways.are_known()).then(|| Ways::new(&a, &b));
@@ -108,7 +110,9 @@ fn largest(figure: &Figure, named: &[usize]) -> Vec<usize> {
     let radius = |i: usize| figure.outlines[i].as_ref().map_or(0.0, |o| o.radius);
     let mut order: Vec<usize> = (0..figure.outlines.len()).filter(|&i| figure.outlines[i].is_some()).collect();
     order.sort_by(|&i, &j| radius(j).total_cmp(&radius(i)).then(i.cmp(&j)));
-    order.truncate(TRIED_ON);
+    if order.len() > FEW {
+        order.truncate(TRIED_ON);
+    }
     order.extend(named);
     order.sort_unstable();
     order.dedup();
