@@ -44,7 +44,22 @@ INTERVAL = "rototoon_interval"
 """From which parameter of that stroke to which a part reaches; both 0 for a whole stroke. Whole numbers are its points, or
 the joints of its pieces where it is a curve."""
 
+TRACK = "rototoon_track"
+"""Which stroke of the whole film a stroke is: the same number on the keys of a layer and on the in-betweens; 0 for none."""
+TWEENED = "rototoon_tweened"
+"""Whether a stroke was drawn between keys."""
+NEXT = "rototoon_next"
+"""What the artist decided of a stroke and the next key: the number of the pair that it is in, -1 that it has no counterpart
+there, 0 nothing."""
+BEFORE = "rototoon_before"
+"""The same of the key before: a pair is a stroke whose `NEXT` is the `BEFORE` of one on the next key."""
+
 TYPES = {
+    TRACK: ("INT", "CURVE"),
+    TWEENED: ("BOOLEAN", "CURVE"),
+    NEXT: ("INT", "CURVE"),
+    BEFORE: ("INT", "CURVE"),
+    "fill_opacity": ("FLOAT", "CURVE"),
     PART: ("INT", "CURVE"),
     MADE: ("BOOLEAN", "CURVE"),
     CENTER: ("FLOAT_VECTOR", "CURVE"),
@@ -70,7 +85,7 @@ TYPES = {
 }
 """Data type and domain of each attribute that is ever created here."""
 
-DEFAULTS = {"radius": 0.01, "opacity": 1.0, CONFIDENCE: 1.0, "nurbs_order": 4, "resolution": 12}
+DEFAULTS = {"radius": 0.01, "opacity": 1.0, "fill_opacity": 1.0, CONFIDENCE: 1.0, "nurbs_order": 4, "resolution": 12}
 """What a missing attribute means to Blender, where it is not 0."""
 
 FILL_BY_ID = bpy.app.version >= (5, 1, 0)

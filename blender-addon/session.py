@@ -33,6 +33,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from .native import handles, library
+from .native.arrays import as_json, buffer, text
 from .native.errors import Cancelled, LibraryError, RototoonError
 
 __all__ = [
@@ -200,13 +201,13 @@ class Session:
     @classmethod
     def open(cls, path: str | os.PathLike[str]) -> Session:
         """The session of a project file; footage is sought relative to the file's folder."""
-        handle = handles.Session.make("rototoon_session_open", *_text(os.fspath(path)))
+        handle = handles.Session.make("rototoon_session_open", *text(os.fspath(path)))
         return cls(handle)
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any], folder: str | os.PathLike[str]) -> Session:
         """The session of a document in memory; a relative footage pattern is relative to `folder`."""
-        handle = handles.Session.make("rototoon_session_new", *_json(document), *_text(os.fspath(folder)))
+        handle = handles.Session.make("rototoon_session_new", *as_json(document), *text(os.fspath(folder)))
         return cls(handle)
 
     def document(self) -> Document:
@@ -218,18 +219,18 @@ class Session:
 
         The next `track` solves only what differs. Refused as a whole where the document is not valid.
         """
-        self._handle.call("rototoon_session_set_document", *_json(document))
+        self._handle.call("rototoon_session_set_document", *as_json(document))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the document; the file appears whole or not at all.
 
         In another folder than the session's, a relative footage pattern is rewritten so that it names the same files.
         """
-        self._handle.call("rototoon_session_save", *_text(os.fspath(path)))
+        self._handle.call("rototoon_session_save", *text(os.fspath(path)))
 
     def set_footage(self, footage: Mapping[str, Any]) -> None:
         """Replaces the document's ``footage``; what is known of the pictures is forgotten if they are others."""
-        self._handle.call("rototoon_session_set_footage", *_json(footage))
+        self._handle.call("rototoon_session_set_footage", *as_json(footage))
 
     # -- the artist's input --------------------------------------------------------------------------------------
 
@@ -239,11 +240,11 @@ class Session:
 
     def add_part(self, part: Mapping[str, Any]) -> None:
         """Adds a part, given as the document holds it (``name``, ``closed``, ``depth``, ``keys``, ...), at the end."""
-        self._handle.call("rototoon_session_add_part", *_json(part))
+        self._handle.call("rototoon_session_add_part", *as_json(part))
 
     def remove_part(self, part: str) -> None:
         """Removes a part and all that belongs to it."""
-        self._handle.call("rototoon_session_remove_part", *_text(part))
+        self._handle.call("rototoon_session_remove_part", *text(part))
 
     def set_key(self, part: str, frame: int, points: Points) -> None:
         """Sets the artist's contour on a frame: as many points as the part's other keys have.
@@ -252,29 +253,29 @@ class Session:
         """
         values = _flat(points)
         data = (ctypes.c_double * len(values)).from_buffer(values) if values else None
-        self._handle.call("rototoon_session_set_key", *_text(part), frame, data, len(values))
+        self._handle.call("rototoon_session_set_key", *text(part), frame, data, len(values))
 
     def remove_key(self, part: str, frame: int) -> None:
         """Removes the key on a frame; an error where there is none."""
-        self._handle.call("rototoon_session_remove_key", *_text(part), frame)
+        self._handle.call("rototoon_session_remove_key", *text(part), frame)
 
     def pin(self, part: str, frame: int, point: int, xy: Sequence[float]) -> None:
         """Fixes one control point on a frame between keys, or beside a single one: tracking passes through it exactly."""
         x, y = xy
-        self._handle.call("rototoon_session_pin", *_text(part), frame, point, x, y)
+        self._handle.call("rototoon_session_pin", *text(part), frame, point, x, y)
 
     def unpin(self, part: str, frame: int, point: int | None = None) -> None:
         """Releases a pin, or with ``point=None`` all pins of the frame; nothing happens where there is none."""
-        self._handle.call("rototoon_session_unpin", *_text(part), frame, -1 if point is None else point)
+        self._handle.call("rototoon_session_unpin", *text(part), frame, -1 if point is None else point)
 
     def set_center(self, part: str, frame: int, xy: Sequence[float]) -> None:
         """Fixes the mean of the part's control points on a frame between keys."""
         x, y = xy
-        self._handle.call("rototoon_session_set_center", *_text(part), frame, x, y)
+        self._handle.call("rototoon_session_set_center", *text(part), frame, x, y)
 
     def clear_center(self, part: str, frame: int) -> None:
         """Releases a corrected centre; nothing happens where there is none."""
-        self._handle.call("rototoon_session_clear_center", *_text(part), frame)
+        self._handle.call("rototoon_session_clear_center", *text(part), frame)
 
     # -- work ----------------------------------------------------------------------------------------------------
 
@@ -305,19 +306,19 @@ class Session:
 
     def tracks(self, part: str) -> Track:
         """The tracked control points of a part."""
-        frames, points, _ = self._handle.give(handles.TrackArrays, "rototoon_session_track_of", *_text(part))
+        frames, points, _ = self._handle.give(handles.TrackArrays, "rototoon_session_track_of", *text(part))
         return Track(frames, points)
 
     def confidence(self, part: str) -> memoryview:
         """How sure each point of `tracks` is, 0 to 1: float64, shape (F, N); 1 on keys."""
-        return self._handle.give(handles.TrackArrays, "rototoon_session_track_of", *_text(part))[2]
+        return self._handle.give(handles.TrackArrays, "rototoon_session_track_of", *text(part))[2]
 
     def curves(self, part: str, frame: int) -> list[memoryview]:
         """The snapped paths of a part on a frame: for each segment between control points float64 of shape (M, 2).
 
         Empty where the frame has not been snapped.
         """
-        return self._handle.give(handles.CurveArrays, "rototoon_session_curves_of", *_text(part), frame)
+        return self._handle.give(handles.CurveArrays, "rototoon_session_curves_of", *text(part), frame)
 
     def weakest_frame(self) -> WeakestFrame | None:
         """The frame, neither a part's key nor beside one, where the next key helps most; `None` if there is none."""
@@ -349,7 +350,7 @@ class Session:
     def _long(self, name: str, options: Mapping[str, Any], progress: Progress | None) -> Any:
         """Makes a call that reports progress; an exception of `progress` cancels it and comes out here."""
         with handles.progress_callback(progress) as callback:
-            return json.loads(self._handle.give(handles.Text, name, *_json(options), callback, None))
+            return json.loads(self._handle.give(handles.Text, name, *as_json(options), callback, None))
 
 
 def match_contours(request: Mapping[str, Any]) -> Any:
@@ -361,7 +362,7 @@ def match_contours(request: Mapping[str, Any]) -> Any:
     on the drawn line; the cost is 0 for equal contours. What has no counterpart is left out. Contours may have a
     ``"color": [r, g, b]``, sRGB from 0 to 1, which is compared where both have one.
     """
-    return json.loads(handles.take(handles.Text, "rototoon_match_contours", *_json(request)))
+    return json.loads(handles.take(handles.Text, "rototoon_match_contours", *as_json(request)))
 
 
 def fit_strokes(strokes: Strokes, tolerance: float, values: Any = None, channels: int = 0) -> Guides:
@@ -370,8 +371,8 @@ def fit_strokes(strokes: Strokes, tolerance: float, values: Any = None, channels
     `values` (float64, N × `channels`) are numbers that the points carry and the guides carry on. A stroke with a point
     that is no place is an error that names it; a stroke without points gives no guides.
     """
-    given = _strokes(strokes)
-    carried, numbers = _buffer([] if values is None else values, "d")
+    given = stroke_buffers(strokes)
+    carried, numbers = buffer([] if values is None else values, "d")
     expected = channels * (len(given[2]) // 2)
     if channels < 0 or numbers != expected:
         raise RototoonError(f"values: {numbers} numbers, expected {expected}, {channels} a point")
@@ -391,7 +392,7 @@ def hidden_lines(
     number fill one shape. What is nearer to an outline than `border` pixels lies on it; parts shorter than `sliver` pixels
     take after their surroundings. Parts of polylines are polylines, all others are of form 2; all are open.
     """
-    given = _strokes(strokes)
+    given = stroke_buffers(strokes)
     count = given[1]
     placing = []
     for name, values, kind, length in (
@@ -399,7 +400,7 @@ def hidden_lines(
         ("depths", depths, "i", 2 * count),
         ("fills", fills, "i", count),
     ):
-        pointer, found = _buffer(values, kind)
+        pointer, found = buffer(values, kind)
         if found != length:
             raise RototoonError(f"{name}: {found} values, expected {length}")
         placing.append(pointer)
@@ -422,42 +423,16 @@ def library_path() -> Path:
     return library.load().path
 
 
-def _text(text: str) -> tuple[bytes, int]:
-    data = text.encode("utf-8", "surrogatepass")
-    return data, len(data)
-
-
-def _json(value: Mapping[str, Any]) -> tuple[bytes, int]:
-    try:
-        return _text(json.dumps(value, allow_nan=False))
-    except (TypeError, ValueError) as error:
-        raise RototoonError(f"not a JSON document: {error}") from error
-
-
-def _strokes(strokes: Strokes) -> tuple[Any, int, Any, Any]:
+def stroke_buffers(strokes: Strokes) -> tuple[Any, int, Any, Any]:
     """Pointers to the arrays of strokes, and their number, as the library takes them; checked against each other."""
-    offsets, count = _buffer(strokes.offsets, "i")
-    points, numbers = _buffer(strokes.points, "d")
-    closed, flags = _buffer(strokes.closed, "B")
+    offsets, count = buffer(strokes.offsets, "i")
+    points, numbers = buffer(strokes.points, "d")
+    closed, flags = buffer(strokes.closed, "B")
     if count < 1 or flags != count - 1:
         raise RototoonError(f"closed: {flags} values, expected {max(count - 1, 0)}, one less than offsets")
     if numbers != 2 * max(offsets[count - 1], 0):
         raise RototoonError(f"points: {numbers} numbers, expected x and y of {offsets[count - 1]} points")
     return offsets, count - 1, points, closed
-
-
-def _buffer(values: Any, kind: str) -> tuple[Any, int]:
-    """A C array with a copy of the numbers of a buffer or a flat sequence, and how many they are."""
-    try:
-        data = memoryview(values)
-    except TypeError:
-        flat = array.array(kind, values)
-    else:
-        if {"l": "i", "?": "B"}.get(data.format, data.format) != kind or data.itemsize != array.array(kind).itemsize:
-            raise RototoonError(f"expected numbers of type {kind}, found {data.format}")
-        flat = array.array(kind, data.tobytes())
-    ctype = {"i": ctypes.c_int32, "d": ctypes.c_double, "B": ctypes.c_uint8}[kind]
-    return (ctype * len(flat)).from_buffer(flat) if len(flat) else (ctype * 0)(), len(flat)
 
 
 def _flat(points: Points) -> array.array[float]:

@@ -2,9 +2,14 @@
 
 import ctypes
 
-HEADER_HASH = 0x8b03e54ad5c46098
+HEADER_HASH = 0x67dd844d17339a0e
 
 ROTOTOON_ABI_VERSION = 1
+PAIR = 0
+SPLIT = 1
+JOINED = 2
+VANISHED = 3
+APPEARED = 4
 ROTOTOON_STATUS_OK = 0
 ROTOTOON_STATUS_ERROR = 1
 ROTOTOON_STATUS_CANCELLED = 2
@@ -356,6 +361,79 @@ def declare(library: ctypes.CDLL) -> None:
     library.rototoon_pieces_free.argtypes = [
         ctypes.c_void_p,
     ]
+    library.rototoon_match_strokes.restype = ctypes.c_int32
+    library.rototoon_match_strokes.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_matches_read.restype = ctypes.c_int32
+    library.rototoon_matches_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_matches_free.restype = None
+    library.rototoon_matches_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_draw_in_betweens.restype = ctypes.c_int32
+    library.rototoon_draw_in_betweens.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_in_betweens_read.restype = ctypes.c_int32
+    library.rototoon_in_betweens_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_in_betweens_free.restype = None
+    library.rototoon_in_betweens_free.argtypes = [
+        ctypes.c_void_p,
+    ]
     library.rototoon_session_new.restype = ctypes.c_int32
     library.rototoon_session_new.argtypes = [
         ctypes.c_void_p,
@@ -577,5 +655,78 @@ def declare(library: ctypes.CDLL) -> None:
     ]
     library.rototoon_pieces_free.restype = None
     library.rototoon_pieces_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_match_strokes.restype = ctypes.c_int32
+    library.rototoon_match_strokes.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_matches_read.restype = ctypes.c_int32
+    library.rototoon_matches_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_matches_free.restype = None
+    library.rototoon_matches_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_draw_in_betweens.restype = ctypes.c_int32
+    library.rototoon_draw_in_betweens.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_in_betweens_read.restype = ctypes.c_int32
+    library.rototoon_in_betweens_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_in_betweens_free.restype = None
+    library.rototoon_in_betweens_free.argtypes = [
         ctypes.c_void_p,
     ]

@@ -163,6 +163,49 @@ class PieceArrays(Handle):
         )
 
 
+class MatchArrays(Handle):
+    """Which stroke is which."""
+
+    _free = "rototoon_matches_free"
+
+    def read(self) -> tuple[memoryview, ...]:
+        """Offsets (spans + 1) int32, rows (R, 4) int32 and values (R, 2) float64: copies that outlive the handle."""
+        count = ctypes.c_size_t()
+        out = [ctypes.c_void_p() for _ in range(3)]
+        call("rototoon_matches_read", self.pointer(), ctypes.byref(count), *map(ctypes.byref, out))
+        offsets, rows, values = out
+        bounds = view(offsets, "i", count.value + 1)
+        return bounds, view(rows, "i", bounds[count.value], 4), view(values, "d", bounds[count.value], 2)
+
+
+class InBetweenArrays(Handle):
+    """Drawings between others."""
+
+    _free = "rototoon_in_betweens_free"
+
+    def read(self) -> tuple[memoryview, ...]:
+        """Copies that outlive the handle, in the order of `tween.InBetweens`."""
+        spans, points = ctypes.c_size_t(), ctypes.c_size_t()
+        out = [ctypes.c_void_p() for _ in range(9)]
+        call("rototoon_in_betweens_read", self.pointer(), *map(ctypes.byref, (spans, points, *out)))
+        frame_offsets, shares, stroke_offsets, strokes, point_offsets, indices, weights, places, opacities = out
+        frames, drawn = view(frame_offsets, "i", spans.value + 1), view(stroke_offsets, "i", spans.value + 1)
+        count = drawn[spans.value]
+        bounds = view(point_offsets, "i", count + 1)
+        opaque = sum((frames[s + 1] - frames[s]) * (drawn[s + 1] - drawn[s]) for s in range(spans.value))
+        return (
+            frames,
+            view(shares, "d", frames[spans.value]),
+            drawn,
+            view(strokes, "i", count, 3),
+            bounds,
+            view(indices, "i", bounds[count], 4),
+            view(weights, "d", bounds[count], 2),
+            view(places, "d", points.value, 2),
+            view(opacities, "d", opaque),
+        )
+
+
 class Session(Handle):
     """A session of the library, guarded: a call during another one is refused, so nothing is freed while in use."""
 
@@ -219,6 +262,18 @@ def take(kind: type[Handle], name: str, *arguments: Any, sizes: tuple[int, ...] 
         return handle.read(*sizes)
     finally:
         handle.close()
+
+
+def take_both(first: type[Handle], second: type[Handle], name: str, *arguments: Any) -> tuple[Any, Any]:
+    """What the two handles read that a function gives; they are freed."""
+    pointers = ctypes.c_void_p(), ctypes.c_void_p()
+    call(name, *arguments, *map(ctypes.byref, pointers))
+    one, other = first(pointers[0]), second(pointers[1])
+    try:
+        return one.read(), other.read()
+    finally:
+        one.close()
+        other.close()
 
 
 def view(data: ctypes.c_void_p, kind: str, *shape: int) -> memoryview:

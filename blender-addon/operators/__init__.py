@@ -9,7 +9,9 @@ from . import (
     footage_from_reference,
     hidden_lines,
     import_document,
+    in_between,
     match_contours,
+    match_strokes,
     new_key,
     release_pins,
     setup,
@@ -34,6 +36,8 @@ _MODULES = (
     clear_generated,
     fit_strokes,
     hidden_lines,
+    match_strokes,
+    in_between,
     import_document,
     export_document,
 )

@@ -1,4 +1,4 @@
-"""The panels, in the order of the work: footage, parts, track, snap, strokes, document."""
+"""The panels, in the order of the work: footage, parts, track, snap, strokes, tween, document."""
 
 import bpy
 
@@ -150,6 +150,39 @@ class ROTOTOON_PT_strokes(_Panel, bpy.types.Panel):
         column.operator("rototoon.hidden_lines", icon="MOD_MASK")
 
 
+class ROTOTOON_PT_tween(_Panel, bpy.types.Panel):
+    bl_idname = "ROTOTOON_PT_tween"
+    bl_label = "Tween"
+
+    @classmethod
+    def poll(cls, context):
+        return _settings(context) is not None
+
+    def draw(self, context):
+        layout = self.layout
+        layout.operator("rototoon.match_strokes", icon="UV_SYNC_SELECT")
+        column = layout.column(align=True)
+        row = column.row(align=True)
+        row.scale_y = 1.5
+        row.operator("rototoon.in_between", icon="IPO_EASE_IN_OUT").frames = "CURRENT"
+        grid = column.grid_flow(columns=3, align=True, even_columns=True)
+        for spacing, name in (
+            ("LINEAR", "Linear"),
+            ("EASE_IN", "Ease In"),
+            ("EASE_OUT", "Ease Out"),
+            ("EASE_IN_OUT", "In and Out"),
+            ("BOUNCE", "Bounce"),
+            ("CHART", "Chart"),
+        ):
+            button = grid.operator("rototoon.in_between", text=name)
+            button.frames, button.spacing = "CURRENT", spacing
+        column = layout.column(align=True)
+        button = column.operator("rototoon.in_between", text="All Keys", icon="NEXT_KEYFRAME")
+        button.frames = "ALL"
+        column.operator("rototoon.update_in_betweens", icon="FILE_REFRESH")
+        layout.operator("rototoon.clear_in_betweens", icon="TRASH")
+
+
 class ROTOTOON_PT_document(_Panel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_document"
     bl_label = "Document"
@@ -166,5 +199,6 @@ CLASSES = (
     ROTOTOON_PT_track,
     ROTOTOON_PT_snap,
     ROTOTOON_PT_strokes,
+    ROTOTOON_PT_tween,
     ROTOTOON_PT_document,
 )

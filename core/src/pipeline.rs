@@ -3,9 +3,10 @@
 //! This is the only file that knows all stages. A stage's result enters the document as a whole or, after an error or
 //! when cancelled, not at all.
 
+pub mod spans;
 mod tween;
 
-pub use tween::tween;
+pub use tween::{pegs_of, spacing_of, tween};
 
 use crate::export::{SvgOptions, svg};
 use crate::fit::{self, FitError};

@@ -1,7 +1,9 @@
 """How long tracked contours take into Blender and out of it: 100 frames x 50 strokes x 64 points.
 
-Beside it, in the same process, Blender's own `grease_pencil.interpolate_sequence` on two keys as large, which makes as
-many frames, and in-betweens written as tracked contours are, with the attributes that Blender's have. Run with the Python that has `bpy`: `python bench_write.py`. Prints the best of several runs in processor time.
+Beside it, in the same process, Blender's own `grease_pencil.interpolate_sequence` and our In-between, both from the call of
+the operator to the last stroke, on two keys as large, which make as many frames. Run with the Python that has `bpy`:
+`python bench_write.py [--between]`. Prints the best of several runs in processor time, where no other is named; with
+`--between` the in-betweens alone.
 """
 
 import os
@@ -47,6 +49,10 @@ def best(function, runs=7):
 def main():
     conftest.install()
     addon = conftest.module
+    print(f"Blender {bpy.app.version_string}: {FRAMES} frames x {PARTS} strokes x {POINTS} points")
+    if "--between" in sys.argv:
+        beside_blender(addon)
+        return
     import stand_in
 
     sessions = addon("sessions")
@@ -78,7 +84,6 @@ def main():
     fresh.times = []
     for _ in range(7):
         fresh()
-    print(f"Blender {bpy.app.version_string}: {FRAMES} frames x {PARTS} strokes x {POINTS} points")
     print(f"  lay out (plane, style)      {best(lambda: writing.lay_out(*arguments)):7.1f} ms")
     print(f"  write, new frames           {min(fresh.times):7.1f} ms")
     print(f"  write, frames there already {best(lambda: writing.write(layer, block, list(gp.drawings(layer)))):7.1f} ms")
@@ -88,20 +93,21 @@ def main():
     beside_blender(addon)
 
 
-def clock(function, prepare, runs=10):
-    """The median time in milliseconds on the wall, after one run that does not count."""
-    times = []
+def clocks(rivals, runs=10):
+    """Median times in milliseconds on the wall of pairs (prepare, work), taken in turns, after one round that does not count."""
+    times = [[] for _ in rivals]
     for _ in range(runs + 1):
-        prepare()
-        start = time.perf_counter()
-        function()
-        times.append(1000 * (time.perf_counter() - start))
-    return sorted(times[1:])[runs // 2]
+        for (prepare, work), mine in zip(rivals, times):
+            prepare()
+            start = time.perf_counter()
+            work()
+            mine.append(1000 * (time.perf_counter() - start))
+    return [sorted(mine[1:])[runs // 2] for mine in times]
 
 
-def beside_blender(addon):
-    """Blender's in-betweens, and ours written."""
-    gp, writing = addon("grease_pencil"), addon("writing")
+def two_keys(addon):
+    """An object with 50 circles on the first and last of 102 frames."""
+    gp = addon("grease_pencil")
     ob = gp.new_object("Two Keys", bpy.context.collection)
     bpy.context.view_layer.objects.active = ob
     layer = ob.data.layers.new("Lines")
@@ -111,22 +117,20 @@ def beside_blender(addon):
     for frame in (0, FRAMES + 1):
         drawing = layer.frames.new(frame).drawing
         drawing.add_strokes([POINTS] * PARTS)
-        gp.put(drawing, "position", np.concatenate([shape + [i + 0.01 * frame, 0, 0] for i in range(PARTS)]))
+        gp.put(drawing, "position", np.concatenate([shape + [i, 0, 0.01 * frame] for i in range(PARTS)]))
         for name in ("radius", "opacity", "vertex_color"):
             gp.put(drawing, name, gp.blank(name, total))
         for name in ("cyclic", "material_index"):
             gp.put(drawing, name, gp.blank(name, PARTS))
         drawing.tag_positions_changed()
-
-    def clear():
-        gp.remove_frames(layer, [number for number in gp.drawings(layer) if 0 < number <= FRAMES])
-        bpy.context.view_layer.update()
-
     bpy.context.scene.frame_set(FRAMES // 2)
-    bpy.ops.object.mode_set(mode="EDIT")
-    blender = clock(lambda: bpy.ops.grease_pencil.interpolate_sequence(step=1), clear)
-    assert len(layer.frames) == FRAMES + 2
-    bpy.ops.object.mode_set(mode="OBJECT")
+    return ob, layer
+
+
+def written(addon):
+    """In-betweens as many as tracked contours are laid out."""
+    gp, writing = addon("grease_pencil"), addon("writing")
+    total = PARTS * POINTS
     columns = [slice(i * POINTS, (i + 1) * POINTS) for i in range(PARTS)]
     present = np.ones((FRAMES, PARTS), bool)
     block = writing.Block(np.arange(1, FRAMES + 1), np.full(PARTS, POINTS, np.int32), present, columns)
@@ -136,9 +140,55 @@ def beside_blender(addon):
     for name in ("cyclic", "material_index", gp.PART, gp.MADE):
         block.curve[name] = np.repeat(gp.blank(name, PARTS)[None], FRAMES, 0)
     block.curve[gp.MADE][:] = True
-    ours = clock(lambda: writing.write(layer, block, []), clear)
-    print(f"  interpolate_sequence        {blender:7.1f} ms (median of ten, on the wall)")
-    print(f"  in-betweens as many, written {ours:6.1f} ms (the same)")
+    return block
+
+
+def beside_blender(addon):
+    """Blender's in-betweens, ours, each the whole operator; and as many strokes written as tracking writes them."""
+    gp, writing = addon("grease_pencil"), addon("writing")
+    ob, layer = two_keys(addon)
+    kept = addon("tween_records").PROPERTY
+
+    def clear(mode="OBJECT"):
+        bpy.ops.object.mode_set(mode=mode)
+        gp.remove_frames(layer, [number for number in gp.drawings(layer) if 0 < number <= FRAMES])
+        if kept in ob.data:
+            del ob.data[kept]
+        bpy.context.view_layer.update()
+
+    block = written(addon)
+    rivals = [
+        (lambda: clear("EDIT"), lambda: bpy.ops.grease_pencil.interpolate_sequence(step=1)),
+        (clear, lambda: bpy.ops.rototoon.in_between()),
+        (clear, lambda: writing.write(layer, block, [])),
+    ]
+    for prepare, work in rivals:
+        prepare()
+        work()
+        assert len(layer.frames) == FRAMES + 2
+    blender, whole, ours = clocks(rivals)
+    print(f"  interpolate_sequence        {blender:7.1f} ms (median of ten, on the wall, in turns)")
+    print(f"  In-between                  {whole:7.1f} ms (the same; {steps(addon, ob, layer, clear)})")
+    print(f"  tracked contours as many    {ours:7.1f} ms (the same, writing alone)")
+
+
+def steps(addon, ob, layer, clear):
+    """Median times of the steps of In-between, in words."""
+    tweening, charts = addon("tweening"), addon("charts")
+    choose = lambda name, found, record: {(0, FRAMES + 1): charts.Choices()}  # noqa: E731
+    times = {"read": [], "compute": [], "write": []}
+    for _ in range(10):
+        clear()
+        marks = [time.perf_counter()]
+        plan = tweening.plan(ob, [layer], choose)
+        marks.append(time.perf_counter())
+        tweening.draw(plan, lambda share, step: True)
+        marks.append(time.perf_counter())
+        tweening.finish(ob, plan)
+        marks.append(time.perf_counter())
+        for mine, start, end in zip(times.values(), marks, marks[1:]):
+            mine.append(1000 * (end - start))
+    return ", ".join(f"{name} {sorted(mine)[5]:.1f}" for name, mine in times.items())
 
 
 def tracked(session, part, writing):

@@ -29,6 +29,21 @@
 // Rises with every change that an old caller would not survive.
 #define ROTOTOON_ABI_VERSION 1
 
+// One stroke is one.
+#define PAIR 0
+
+// The earlier stroke is whole, the later one a piece.
+#define SPLIT 1
+
+// The earlier stroke is a piece, the later one whole.
+#define JOINED 2
+
+// The earlier stroke has no counterpart.
+#define VANISHED 3
+
+// The later stroke has no counterpart.
+#define APPEARED 4
+
 // How a call ended.
 enum RototoonStatus
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -61,6 +76,12 @@ typedef struct RototoonCurves RototoonCurves;
 
 // Guiding points of fitted strokes.
 typedef struct RototoonGuides RototoonGuides;
+
+// Drawings between others.
+typedef struct RototoonInBetweens RototoonInBetweens;
+
+// Which stroke of a drawing is which of the next one.
+typedef struct RototoonMatches RototoonMatches;
 
 // Parts of strokes that are seen or hidden, by stroke and along it.
 typedef struct RototoonPieces RototoonPieces;
@@ -424,6 +445,102 @@ RototoonStatus rototoon_pieces_read(const struct RototoonPieces *pieces,
 // Frees cut strokes; null is allowed.
 void rototoon_pieces_free(struct RototoonPieces *pieces);
 
+// Finds which stroke of a drawing is which of the next one, for all neighbours of several drawings.
+//
+// The strokes of all drawings are given as to `rototoon_fit_strokes`, one drawing after the other: drawing `d` has the
+// strokes `drawings[d]` to `drawings[d + 1]` (excluded), from behind to the front; `drawings` has `drawing_count` + 1
+// numbers. `colours` are three numbers for each stroke (sRGB, 0 to 1; NaN where it has none), `labels` two (material and
+// layer; -1 where it has none); both may be null. `by_hand` are `by_hand_count` pairs that are kept: a stroke and its
+// counterpart in the next drawing, by their numbers among all strokes; with -1 in the place of either the other one has
+// none. `options` is a JSON object: `max_cost`, `max_turn`, `max_scale`, `threads`; all may be left out.
+RototoonStatus rototoon_match_strokes(const int32_t *offsets,
+                                      size_t stroke_count,
+                                      const double *points,
+                                      const uint8_t *closed,
+                                      const double *colours,
+                                      const int32_t *labels,
+                                      const int32_t *drawings_of,
+                                      size_t drawing_count,
+                                      const int32_t *by_hand,
+                                      size_t by_hand_count,
+                                      const uint8_t *options,
+                                      size_t options_length,
+                                      RototoonProgress progress,
+                                      void *user,
+                                      struct RototoonMatches **found,
+                                      struct RototoonText **error);
+
+// The arrays of matches, which live as long as the handle. The drawings `d` and `d` + 1 have the rows `offsets[d]` to
+// `offsets[d + 1]` (excluded; none where they were not asked for). A row has four numbers in `rows`: kind, stroke of the
+// earlier drawing, stroke of the later one (by their numbers among all, -1 for none), and flags; and two in `values`.
+// Kinds: 0 a pair, 1 the later stroke is a piece of the earlier one, 2 the earlier is a piece of the later one, 3 vanished,
+// 4 appeared. Flags: 1 the later stroke is walked backwards, 2 made by hand. Values: of closed strokes the share of the
+// later one's length at which the first point of the earlier one lies; how sure the pair is, 0 to 1. Pieces stand in the
+// order along the whole.
+RototoonStatus rototoon_matches_read(const struct RototoonMatches *matches,
+                                     size_t *span_count,
+                                     const int32_t **offsets,
+                                     const int32_t **rows,
+                                     const double **values,
+                                     struct RototoonText **error);
+
+// Frees matches; null is allowed.
+void rototoon_matches_free(struct RototoonMatches *matches);
+
+// Draws between drawings on key frames, all wanted frames in one call.
+//
+// The drawings are given as to `rototoon_match_strokes`; drawing `d` lies on `frames[d]`, which rise. `options` is a JSON
+// object, in which all but `spans` may be left out: `spans`, a list of `{"key": d, "frames": [...]}`, frames between
+// drawing `d` and the next one; `spacing`, by drawing how the movement to the next one runs, as documents write it
+// (`"smooth"`, `"linear"`, `"ease_in"`, ..., a curve, or a chart); `corners`, the drawings at which velocities do not join;
+// `arcs` (0 to 1), `rigid`, `contacts`, `rest`; `leaving`, what strokes do that only one of two drawings has: `"grow"`,
+// `"fade"` or `{"leave": [width, height]}`; `pegs` as documents write them, with `hung`, the name of the peg of each stroke,
+// or null; and the options of `rototoon_match_strokes`. Without pegs these are found. A span depends on the drawings at its
+// ends, and if its spacing is smooth also on those beside them, on nothing else.
+RototoonStatus rototoon_draw_in_betweens(const int32_t *offsets,
+                                         size_t stroke_count,
+                                         const double *points,
+                                         const uint8_t *closed,
+                                         const double *colours,
+                                         const int32_t *labels,
+                                         const int32_t *drawings_of,
+                                         size_t drawing_count,
+                                         const int32_t *frames,
+                                         const int32_t *by_hand,
+                                         size_t by_hand_count,
+                                         const uint8_t *options,
+                                         size_t options_length,
+                                         RototoonProgress progress,
+                                         void *user,
+                                         struct RototoonMatches **found,
+                                         struct RototoonInBetweens **drawn,
+                                         struct RototoonText **error);
+
+// The arrays of in-betweens, which live as long as the handle. There are `span_count` spans, as they were asked. Span `s`
+// has the frames `frame_offsets[s]` to `frame_offsets[s + 1]` (excluded), whose share of the way is in `shares`, and draws
+// the strokes `stroke_offsets[s]` to `stroke_offsets[s + 1]` on all of them, from behind to the front. A stroke has three
+// numbers in `strokes`: that of the earlier and of the later drawing (-1 for none), and flags (1 closed, 2 only a part of the
+// earlier one, 4 only a part of the later one). Stroke `i` has `point_offsets[i + 1] - point_offsets[i]` points on each
+// frame. Each point of it has four numbers in `indices`, the given points of the earlier and of the later drawing between
+// which its place lies, and in `weights` the weights of the second of either two. `points` are x, y by span, frame and
+// point, `opacities` by span, frame and stroke.
+RototoonStatus rototoon_in_betweens_read(const struct RototoonInBetweens *in_betweens,
+                                         size_t *span_count,
+                                         size_t *point_count,
+                                         const int32_t **frame_offsets,
+                                         const double **shares,
+                                         const int32_t **stroke_offsets,
+                                         const int32_t **strokes,
+                                         const int32_t **point_offsets,
+                                         const int32_t **indices,
+                                         const double **weights,
+                                         const double **points,
+                                         const double **opacities,
+                                         struct RototoonText **error);
+
+// Frees in-betweens; null is allowed.
+void rototoon_in_betweens_free(struct RototoonInBetweens *in_betweens);
+
 // A session of a JSON document. A relative footage pattern is relative to `folder`. Pictures are read when needed.
 RototoonStatus rototoon_session_new(const uint8_t *document,
                                     size_t document_length,
@@ -653,6 +770,102 @@ RototoonStatus rototoon_pieces_read(const struct RototoonPieces *pieces,
 
 // Frees cut strokes; null is allowed.
 void rototoon_pieces_free(struct RototoonPieces *pieces);
+
+// Finds which stroke of a drawing is which of the next one, for all neighbours of several drawings.
+//
+// The strokes of all drawings are given as to `rototoon_fit_strokes`, one drawing after the other: drawing `d` has the
+// strokes `drawings[d]` to `drawings[d + 1]` (excluded), from behind to the front; `drawings` has `drawing_count` + 1
+// numbers. `colours` are three numbers for each stroke (sRGB, 0 to 1; NaN where it has none), `labels` two (material and
+// layer; -1 where it has none); both may be null. `by_hand` are `by_hand_count` pairs that are kept: a stroke and its
+// counterpart in the next drawing, by their numbers among all strokes; with -1 in the place of either the other one has
+// none. `options` is a JSON object: `max_cost`, `max_turn`, `max_scale`, `threads`; all may be left out.
+RototoonStatus rototoon_match_strokes(const int32_t *offsets,
+                                      size_t stroke_count,
+                                      const double *points,
+                                      const uint8_t *closed,
+                                      const double *colours,
+                                      const int32_t *labels,
+                                      const int32_t *drawings_of,
+                                      size_t drawing_count,
+                                      const int32_t *by_hand,
+                                      size_t by_hand_count,
+                                      const uint8_t *options,
+                                      size_t options_length,
+                                      RototoonProgress progress,
+                                      void *user,
+                                      struct RototoonMatches **found,
+                                      struct RototoonText **error);
+
+// The arrays of matches, which live as long as the handle. The drawings `d` and `d` + 1 have the rows `offsets[d]` to
+// `offsets[d + 1]` (excluded; none where they were not asked for). A row has four numbers in `rows`: kind, stroke of the
+// earlier drawing, stroke of the later one (by their numbers among all, -1 for none), and flags; and two in `values`.
+// Kinds: 0 a pair, 1 the later stroke is a piece of the earlier one, 2 the earlier is a piece of the later one, 3 vanished,
+// 4 appeared. Flags: 1 the later stroke is walked backwards, 2 made by hand. Values: of closed strokes the share of the
+// later one's length at which the first point of the earlier one lies; how sure the pair is, 0 to 1. Pieces stand in the
+// order along the whole.
+RototoonStatus rototoon_matches_read(const struct RototoonMatches *matches,
+                                     size_t *span_count,
+                                     const int32_t **offsets,
+                                     const int32_t **rows,
+                                     const double **values,
+                                     struct RototoonText **error);
+
+// Frees matches; null is allowed.
+void rototoon_matches_free(struct RototoonMatches *matches);
+
+// Draws between drawings on key frames, all wanted frames in one call.
+//
+// The drawings are given as to `rototoon_match_strokes`; drawing `d` lies on `frames[d]`, which rise. `options` is a JSON
+// object, in which all but `spans` may be left out: `spans`, a list of `{"key": d, "frames": [...]}`, frames between
+// drawing `d` and the next one; `spacing`, by drawing how the movement to the next one runs, as documents write it
+// (`"smooth"`, `"linear"`, `"ease_in"`, ..., a curve, or a chart); `corners`, the drawings at which velocities do not join;
+// `arcs` (0 to 1), `rigid`, `contacts`, `rest`; `leaving`, what strokes do that only one of two drawings has: `"grow"`,
+// `"fade"` or `{"leave": [width, height]}`; `pegs` as documents write them, with `hung`, the name of the peg of each stroke,
+// or null; and the options of `rototoon_match_strokes`. Without pegs these are found. A span depends on the drawings at its
+// ends, and if its spacing is smooth also on those beside them, on nothing else.
+RototoonStatus rototoon_draw_in_betweens(const int32_t *offsets,
+                                         size_t stroke_count,
+                                         const double *points,
+                                         const uint8_t *closed,
+                                         const double *colours,
+                                         const int32_t *labels,
+                                         const int32_t *drawings_of,
+                                         size_t drawing_count,
+                                         const int32_t *frames,
+                                         const int32_t *by_hand,
+                                         size_t by_hand_count,
+                                         const uint8_t *options,
+                                         size_t options_length,
+                                         RototoonProgress progress,
+                                         void *user,
+                                         struct RototoonMatches **found,
+                                         struct RototoonInBetweens **drawn,
+                                         struct RototoonText **error);
+
+// The arrays of in-betweens, which live as long as the handle. There are `span_count` spans, as they were asked. Span `s`
+// has the frames `frame_offsets[s]` to `frame_offsets[s + 1]` (excluded), whose share of the way is in `shares`, and draws
+// the strokes `stroke_offsets[s]` to `stroke_offsets[s + 1]` on all of them, from behind to the front. A stroke has three
+// numbers in `strokes`: that of the earlier and of the later drawing (-1 for none), and flags (1 closed, 2 only a part of the
+// earlier one, 4 only a part of the later one). Stroke `i` has `point_offsets[i + 1] - point_offsets[i]` points on each
+// frame. Each point of it has four numbers in `indices`, the given points of the earlier and of the later drawing between
+// which its place lies, and in `weights` the weights of the second of either two. `points` are x, y by span, frame and
+// point, `opacities` by span, frame and stroke.
+RototoonStatus rototoon_in_betweens_read(const struct RototoonInBetweens *in_betweens,
+                                         size_t *span_count,
+                                         size_t *point_count,
+                                         const int32_t **frame_offsets,
+                                         const double **shares,
+                                         const int32_t **stroke_offsets,
+                                         const int32_t **strokes,
+                                         const int32_t **point_offsets,
+                                         const int32_t **indices,
+                                         const double **weights,
+                                         const double **points,
+                                         const double **opacities,
+                                         struct RototoonText **error);
+
+// Frees in-betweens; null is allowed.
+void rototoon_in_betweens_free(struct RototoonInBetweens *in_betweens);
 
 #ifdef __cplusplus
 }  // extern "C"

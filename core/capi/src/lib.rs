@@ -2,8 +2,8 @@
 //!
 //! The header `include/rototoon.h` is generated from this crate and the Python bindings from the header
 //! (`cargo xtask generate`). Layers, from the outside: the exported functions ([`session_abi`], [`strokes_abi`],
-//! [`functions`], [`handles`]) read their arguments through [`entry`]; below them all is safe Rust ([`session`], [`edit`], [`options`],
-//! [`matching`], [`strokes`], [`work`]).
+//! [`tween_abi`], [`functions`], [`handles`]) read their arguments through [`entry`]; below them all is safe Rust ([`session`], [`edit`], [`options`],
+//! [`matching`], [`strokes`], [`sheet`], [`work`]).
 //!
 //! # Contract
 //!
@@ -42,9 +42,11 @@ pub mod matching;
 pub mod options;
 pub mod session;
 pub mod session_abi;
+pub mod sheet;
 pub mod status;
 pub mod strokes;
 pub mod strokes_abi;
+pub mod tween_abi;
 pub mod work;
 
 #[cfg(test)]

@@ -52,7 +52,11 @@ impl RototoonSession {
 /// Calls `body` with the caller's callback as a Rust one.
 ///
 /// # Safety `progress` is null or may be called with `user` during the call.
-unsafe fn with_progress<T>(progress: RototoonProgress, user: *mut c_void, body: impl FnOnce(GoOn<'_>) -> T) -> T {
+pub(crate) unsafe fn with_progress<T>(
+    progress: RototoonProgress,
+    user: *mut c_void,
+    body: impl FnOnce(GoOn<'_>) -> T,
+) -> T {
     let Some(progress) = progress else { return body(None) };
     let mut go_on = |fraction: f64, step: &str| {
         // SAFETY: this function's contract; the text is alive during the call.

@@ -73,7 +73,8 @@ impl Strokes<'_> {
         self.offsets[stroke] as usize..self.offsets[stroke + 1] as usize
     }
 
-    fn points_of(&self, stroke: usize) -> Vec<Point> {
+    /// The points of a stroke.
+    pub fn points_of(&self, stroke: usize) -> Vec<Point> {
         self.range(stroke).map(|k| Point::new(self.points[2 * k], self.points[2 * k + 1])).collect()
     }
 }

@@ -10,7 +10,7 @@ use rototoon::tween::hidden;
 ///
 /// # Safety
 /// As `slice`: `stroke_count` + 1 offsets, two coordinates for each point that they count, `stroke_count` flags.
-unsafe fn strokes<'a>(
+pub(crate) unsafe fn strokes<'a>(
     offsets: *const i32,
     stroke_count: usize,
     points: *const f64,

@@ -82,6 +82,8 @@ pub fn run<T: Send>(
         return Err(Failure::Cancelled);
     }
     let shared = Shared::default();
+    // What is told if the work has nothing to report yet.
+    "starting".clone_into(&mut shared.board().step);
     let result = std::thread::scope(|scope| {
         let worker = scope.spawn(|| {
             let _finish = Finish(&shared);

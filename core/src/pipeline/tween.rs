@@ -2,7 +2,9 @@
 
 use super::PipelineError;
 use crate::project::Document;
-use crate::project::drawings::{Drawing, Drawings, DrawnBetween, DrawnPeg, DrawnStroke, WrittenTiming};
+use crate::project::drawings::{
+    Drawing, Drawings, DrawnBetween, DrawnPeg, DrawnStroke, WrittenTiming, read_pegs, read_timing,
+};
 use crate::scene::Progress;
 use crate::tween::Stroke;
 use crate::tween::between::{GivenPegs, InBetween, Key, Options, Sequence, Spacing};
@@ -52,13 +54,28 @@ fn key(drawing: &Drawing, k: usize) -> Result<Key, PipelineError> {
         material: s.material,
         layer: s.layer,
     };
-    let spacing = match &drawing.spacing {
-        WrittenTiming::Smooth => Spacing::Smooth,
-        WrittenTiming::Chart(shares) => Spacing::Chart(shares.clone()),
-        other => Spacing::Timing(timing(other, &format!("drawings[{k}].spacing"))?),
-    };
+    let spacing = spacing(&drawing.spacing, &format!("drawings[{k}].spacing"))?;
     let strokes = drawing.strokes.iter().map(stroke).collect();
     Ok(Key { frame: drawing.frame, strokes, spacing, corner: drawing.corner })
+}
+
+/// The spacing that a JSON value means, as documents write it; `place` names it in errors.
+pub fn spacing_of(value: &Value, place: &str) -> Result<Spacing, PipelineError> {
+    let written = read_timing(value, place).map_err(|error| PipelineError::Tween(error.to_string()))?;
+    spacing(&written, place)
+}
+
+/// The pegs of a list of JSON values, as documents write them, with their names.
+pub fn pegs_of(values: &[Value]) -> Result<PegTree, PipelineError> {
+    tree(&read_pegs(values).map_err(|error| PipelineError::Tween(error.to_string()))?)
+}
+
+fn spacing(written: &WrittenTiming, place: &str) -> Result<Spacing, PipelineError> {
+    Ok(match written {
+        WrittenTiming::Smooth => Spacing::Smooth,
+        WrittenTiming::Chart(shares) => Spacing::Chart(shares.clone()),
+        other => Spacing::Timing(timing(other, place)?),
+    })
 }
 
 fn timing(written: &WrittenTiming, place: &str) -> Result<Timing, PipelineError> {
@@ -77,6 +94,11 @@ fn timing(written: &WrittenTiming, place: &str) -> Result<Timing, PipelineError>
 }
 
 fn given(read: &Drawings) -> Result<GivenPegs, PipelineError> {
+    let of = read.drawings.iter().map(|d| d.strokes.iter().map(|s| s.peg).collect()).collect();
+    Ok(GivenPegs { tree: tree(&read.pegs)?, of })
+}
+
+fn tree(pegs: &[DrawnPeg]) -> Result<PegTree, PipelineError> {
     let peg = |(k, peg): (usize, &DrawnPeg)| {
         let keys = peg.keys.iter().enumerate().map(|(j, key)| {
             let timing = timing(&key.timing, &format!("pegs[{k}].keys[{j}].timing"))?;
@@ -85,9 +107,8 @@ fn given(read: &Drawings) -> Result<GivenPegs, PipelineError> {
         let keys = keys.collect::<Result<_, PipelineError>>()?;
         Ok(Peg { name: peg.name.clone(), parent: peg.parent, pivot: peg.pivot, keys })
     };
-    let pegs = read.pegs.iter().enumerate().map(peg).collect::<Result<Vec<_>, PipelineError>>()?;
-    let tree = PegTree::new(pegs).map_err(|error| PipelineError::Tween(format!("pegs: {error}")))?;
-    Ok(GivenPegs { tree, of: read.drawings.iter().map(|d| d.strokes.iter().map(|s| s.peg).collect()).collect() })
+    let pegs = pegs.iter().enumerate().map(peg).collect::<Result<Vec<_>, PipelineError>>()?;
+    PegTree::new(pegs).map_err(|error| PipelineError::Tween(format!("pegs: {error}")))
 }
 
 fn stroke_of(drawn: InBetween) -> (usize, f64, DrawnStroke) {

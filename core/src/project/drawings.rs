@@ -234,6 +234,16 @@ impl Document {
     }
 }
 
+/// A movement function or chart of a JSON value; `place` names it in errors.
+pub fn read_timing(value: &Value, place: &str) -> Result<WrittenTiming, DrawingsError> {
+    timing(Some(value), place)
+}
+
+/// Pegs of JSON values.
+pub fn read_pegs(values: &[Value]) -> Result<Vec<DrawnPeg>, DrawingsError> {
+    pegs(values)
+}
+
 /// A list with one element a line.
 fn lines(values: impl Iterator<Item = Value>) -> String {
     let lines: Vec<String> = values.map(|value| format!("\n    {value}")).collect();

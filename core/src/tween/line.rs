@@ -33,9 +33,15 @@ impl<'a> Line<'a> {
     /// The place at a share.
     pub fn at(&self, share: f64) -> Point {
         let points = &self.stroke.points;
+        let (k, next, within) = self.between(share);
+        points[k].lerp(points[next], within)
+    }
+
+    /// The points of the stroke around the place at a share, and how far it is from the one to the other, 0 to 1.
+    pub fn between(&self, share: f64) -> (usize, usize, f64) {
         let k = self.shares.partition_point(|&s| s <= share).clamp(1, self.shares.len().max(2) - 1);
-        let (Some(&from), Some(&to)) = (self.shares.get(k - 1), self.shares.get(k)) else { return points[0] };
+        let (Some(&from), Some(&to)) = (self.shares.get(k - 1), self.shares.get(k)) else { return (0, 0, 0.0) };
         let within = if to > from { ((share - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
-        points[k - 1].lerp(points[k % points.len()], within)
+        (k - 1, k % self.stroke.points.len(), within)
     }
 }

@@ -5,6 +5,8 @@
 //! most at the contact and ever less along half their length. Several contacts are closed in turn, a few times over.
 
 use crate::geometry::{Point, polygon, polyline};
+use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use std::collections::BTreeMap;
 
 /// Largest distance in pixels on the keys.
 const TOUCHING: f64 = 2.0;
@@ -16,6 +18,10 @@ const SLIDE: f64 = 0.06;
 const MOST: usize = 24;
 /// Points of one stroke and segments of another, multiplied, up to which all points are looked at.
 const MOST_TRIED: usize = 1_000_000;
+/// Gap in pixels that counts as closed.
+const CLOSED: f64 = 1e-6;
+/// Segments of a run that have a box together.
+const CHUNK: usize = 6;
 /// Rounds of closing.
 const ROUNDS: usize = 8;
 /// Share of a stroke's length along which it gives way.
@@ -59,16 +65,37 @@ pub(super) fn find(strokes: &[Between]) -> Vec<Contact> {
         }
     }
     pairs.sort_unstable();
-    pairs.into_iter().flat_map(|(i, j)| of_pair(strokes, i, j)).collect()
+    let chunks: Vec<Chunks> = strokes.par_iter().map(|stroke| Chunks::new(stroke.ends[0], stroke.closed)).collect();
+    let found: Vec<Vec<Contact>> = pairs.into_par_iter().map(|(i, j)| of_pair(strokes, &chunks, i, j)).collect();
+    found.concat()
 }
 
-fn of_pair(strokes: &[Between], i: usize, j: usize) -> Vec<Contact> {
+/// The boxes of runs of a line's segments: what is far from a box need not be looked at.
+struct Chunks(Vec<(Point, Point)>);
+
+impl Chunks {
+    fn new(points: &[Point], closed: bool) -> Self {
+        let segments: Vec<(Point, Point)> = polyline::segments(points, closed).collect();
+        let bounds = |run: &[(Point, Point)]| {
+            run.iter().fold((run[0].0, run[0].0), |(low, high), (a, b)| (low.min(*a).min(*b), high.max(*a).max(*b)))
+        };
+        Self(segments.chunks(CHUNK).map(bounds).collect())
+    }
+
+    /// Whether anything of the line may lie within a distance of a point.
+    fn near(&self, p: Point, distance: f64) -> bool {
+        self.0.is_empty()
+            || self.0.iter().any(|(low, high)| p.distance_squared(p.clamp(*low, *high)) <= distance * distance)
+    }
+}
+
+fn of_pair(strokes: &[Between], chunks: &[Chunks], i: usize, j: usize) -> Vec<Contact> {
     let mut found = Vec::new();
     for (a, b) in [(i, j), (j, i)] {
         let n = strokes[a].ends[0].len();
         let step = (n * strokes[b].ends[0].len() / MOST_TRIED).max(1);
         let tried = (0..n).step_by(step).chain((step > 1).then_some(n - 1));
-        let mut own: Vec<Contact> = tried.filter_map(|point| contact(strokes, a, point, b)).collect();
+        let mut own: Vec<Contact> = tried.filter_map(|point| contact(strokes, &chunks[b], a, point, b)).collect();
         if own.len() > MOST {
             let step = own.len().div_ceil(MOST);
             own = own.into_iter().step_by(step).collect();
@@ -78,10 +105,13 @@ fn of_pair(strokes: &[Between], i: usize, j: usize) -> Vec<Contact> {
     found
 }
 
-fn contact(strokes: &[Between], a: usize, point: usize, b: usize) -> Option<Contact> {
+fn contact(strokes: &[Between], chunks: &Chunks, a: usize, point: usize, b: usize) -> Option<Contact> {
     let (own, other) = (&strokes[a], &strokes[b]);
     let end = !own.closed && (point == 0 || point + 1 == own.ends[0].len());
     let tolerance = if end { TOUCHING } else { COINCIDENT };
+    if !chunks.near(own.ends[0][point], tolerance) {
+        return None;
+    }
     let near = |key: usize| {
         let p = own.ends[key][point];
         let within = |q: &Point| p.distance(*q) <= tolerance;
@@ -126,17 +156,30 @@ pub(super) fn close(contacts: &[Contact], points: &mut [Vec<Point>], closed: &[b
     if contacts.is_empty() {
         return;
     }
+    let mut falls: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    for contact in contacts {
+        for n in [points[contact.a].len(), points[contact.b].len()] {
+            falls.entry(n).or_insert_with(|| fall(n));
+        }
+    }
     let lengths: Vec<f64> = points.iter().zip(closed).map(|(p, &c)| polyline::length(p, c)).collect();
     for _ in 0..ROUNDS {
         let mut worst = 0.0f64;
         for contact in contacts {
             let on = place(&points[contact.b], contact.segment, contact.along);
             let off = on + contact.gaps[0].lerp(contact.gaps[1], s) - points[contact.a][contact.point];
+            if off.length_squared() < CLOSED * CLOSED {
+                continue;
+            }
             worst = worst.max(off.length());
             let total = (lengths[contact.a] + lengths[contact.b]).max(1e-9);
             let share = lengths[contact.b] / total;
-            give_way(&mut points[contact.a], closed[contact.a], contact.point, off * share);
-            give_way(&mut points[contact.b], closed[contact.b], contact.segment, -off * (1.0 - share));
+            for (stroke, at, shift) in
+                [(contact.a, contact.point, off * share), (contact.b, contact.segment, -off * (1.0 - share))]
+            {
+                let fall = &falls[&points[stroke].len()];
+                give_way(&mut points[stroke], closed[stroke], at, shift, fall);
+            }
         }
         if worst < 0.01 {
             break;
@@ -144,15 +187,25 @@ pub(super) fn close(contacts: &[Contact], points: &mut [Vec<Point>], closed: &[b
     }
 }
 
-/// Shifts a stroke at one of its points, and ever less along it, by half a cosine wave.
-fn give_way(points: &mut [Point], closed: bool, at: usize, shift: Point) {
-    let n = points.len();
+/// By how many points away the share of a shift: half a cosine wave.
+fn fall(n: usize) -> Vec<f64> {
     let reach = (REACH * n as f64).max(1.0);
-    for k in 0..n {
-        let apart = k.abs_diff(at);
-        let apart = if closed { apart.min(n - apart) } else { apart } as f64;
-        if apart < reach {
-            points[k] += shift * (0.5 + 0.5 * (std::f64::consts::PI * apart / reach).cos());
+    let share = |apart: usize| 0.5 + 0.5 * (std::f64::consts::PI * apart as f64 / reach).cos();
+    (0..n).take_while(|&apart| (apart as f64) < reach).map(share).collect()
+}
+
+/// Shifts a stroke at one of its points, and ever less along it.
+fn give_way(points: &mut [Point], closed: bool, at: usize, shift: Point, fall: &[f64]) {
+    let n = points.len();
+    for (apart, &share) in fall.iter().enumerate() {
+        let (before, after) = (at.checked_sub(apart), Some(at + apart).filter(|&k| k < n));
+        let round = |k: Option<usize>, other: usize| if closed { Some(k.unwrap_or(other % n)) } else { k };
+        let (before, after) = (round(before, at + n - apart), round(after, at + apart));
+        if let Some(k) = before {
+            points[k] += shift * share;
+        }
+        if let Some(k) = after.filter(|_| after != before) {
+            points[k] += shift * share;
         }
     }
 }

@@ -30,10 +30,9 @@ impl Places {
         Self { points: stroke.points.clone(), shares, own: Some((0..stroke.points.len()).collect()) }
     }
 
-    /// Evenly spaced places of a stroke between two shares of its length.
-    pub(super) fn part(stroke: &Stroke, from: f64, to: f64, count: usize) -> Self {
-        let at = |k: usize| from + (to - from) * k as f64 / (count.max(2) - 1) as f64;
-        let shares: Vec<f64> = (0..count).map(at).collect();
+    /// Places of a stroke between two shares of its length, at shares of that part.
+    pub(super) fn part(stroke: &Stroke, from: f64, to: f64, shares: &[f64]) -> Self {
+        let shares: Vec<f64> = shares.iter().map(|s| from + (to - from) * s).collect();
         let line = Line::new(stroke);
         Self { points: shares.iter().map(|&s| line.at(s)).collect(), shares, own: None }
     }
@@ -61,6 +60,18 @@ impl Places {
         let shares: Vec<f64> = self.shares.iter().map(|&s| along(s)).collect();
         let line = Line::new(other);
         Self { points: shares.iter().map(|&s| line.at(s)).collect(), shares, own: None }
+    }
+
+    /// For each place the two points of the stroke around it, and the weight of the second, 0 to 1.
+    pub fn blends(&self, stroke: &Stroke) -> Vec<(usize, usize, f64)> {
+        match &self.own {
+            Some(own) => own.iter().map(|&i| (i, i, 0.0)).collect(),
+            None if stroke.points.is_empty() => vec![(0, 0, 0.0); self.points.len()],
+            None => {
+                let line = Line::new(stroke);
+                self.shares.iter().map(|&share| line.between(share)).collect()
+            }
+        }
     }
 
     /// The counterpart's own points, where there are as many and they lie alike.

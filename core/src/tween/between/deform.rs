@@ -13,6 +13,8 @@ use crate::geometry::polygon;
 
 /// The edges to each side that tell an edge's turn, as a share of all.
 const WINDOW: f64 = 1.0 / 24.0;
+/// Turn in radians that moves nothing by as much as a rounding error of single precision.
+const NO_TURN: f64 = 1e-9;
 /// Share of the edges' products that must agree for their turn to be one.
 const AGREEMENT: f64 = 0.2;
 
@@ -22,16 +24,18 @@ pub(super) struct Deform {
     from: Vec<Point>,
     to: Vec<Point>,
     closed: bool,
-    /// Turn of each edge; `None` for straight lines.
-    turns: Option<Vec<f64>>,
+    /// Of each edge its turn, itself, and what it becomes, turned back; `None` for straight lines.
+    turns: Option<Vec<(f64, Point, Point)>>,
 }
 
 impl Deform {
     /// The change from some points to as many others.
     pub fn new(from: &[Point], to: &[Point], closed: bool, rigid: bool) -> Self {
         assert_eq!(from.len(), to.len(), "points are deformed to as many points");
-        let turns =
-            if rigid && from.len() > 2 { turns(&edges(from, closed), &edges(to, closed), closed) } else { None };
+        let (a, b) = (edges(from, closed), edges(to, closed));
+        let turns = if rigid && from.len() > 2 { turns(&a, &b, closed) } else { None };
+        let back = |(turn, (a, b)): (f64, (&Point, &Point))| (turn, *a, Point::from_angle(-turn).rotate(*b));
+        let turns = turns.map(|turns| turns.into_iter().zip(a.iter().zip(&b)).map(back).collect());
         Self { from: from.into(), to: to.into(), closed, turns }
     }
 
@@ -39,13 +43,7 @@ impl Deform {
     pub fn at(&self, s: f64) -> Vec<Point> {
         let straight = || self.from.iter().zip(&self.to).map(|(p, q)| p.lerp(*q, s));
         let Some(turns) = &self.turns else { return straight().collect() };
-        let (a, b) = (edges(&self.from, self.closed), edges(&self.to, self.closed));
-        let mut steps: Vec<Point> = a
-            .iter()
-            .zip(&b)
-            .zip(turns)
-            .map(|((a, b), &turn)| Point::from_angle(s * turn).rotate(a.lerp(Point::from_angle(-turn).rotate(*b), s)))
-            .collect();
+        let mut steps: Vec<Point> = turns.iter().map(|(turn, a, b)| turned(a.lerp(*b, s), s * turn)).collect();
         if self.closed {
             let gap = steps.iter().sum::<Point>();
             let total = steps.iter().map(|e| e.length()).sum::<f64>().max(f64::MIN_POSITIVE);
@@ -69,9 +67,14 @@ impl Deform {
     }
 }
 
+/// A vector turned by an angle; by none, which is what most of a rigid shape turns by, without work.
+fn turned(v: Point, angle: f64) -> Point {
+    if angle.abs() < NO_TURN { v } else { Point::from_angle(angle).rotate(v) }
+}
+
 fn edges(points: &[Point], closed: bool) -> Vec<Point> {
     let n = points.len();
-    (0..if closed { n } else { n - 1 }).map(|i| points[(i + 1) % n] - points[i]).collect()
+    (0..if closed { n } else { n.saturating_sub(1) }).map(|i| points[(i + 1) % n] - points[i]).collect()
 }
 
 /// The turn of each edge; `None` where a closed line does not come back to the turn with which it began.

@@ -174,8 +174,37 @@ impl Sequence {
         pegs: &GivenPegs,
         options: &Options,
     ) -> Result<Self, BetweenError> {
+        Self::built(keys, matchings, pegs, options, None)
+    }
+
+    /// As [`Self::new`], for the frames of one span alone: that after key `base`, whose strokes' own points are followed. The
+    /// other keys give the velocities at its ends.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::new`].
+    pub fn of_span(
+        keys: Vec<Key>,
+        matchings: &[Matching],
+        pegs: &GivenPegs,
+        options: &Options,
+        base: usize,
+    ) -> Result<Self, BetweenError> {
+        Self::built(keys, matchings, pegs, options, Some(base))
+    }
+
+    fn built(
+        keys: Vec<Key>,
+        matchings: &[Matching],
+        pegs: &GivenPegs,
+        options: &Options,
+        base: Option<usize>,
+    ) -> Result<Self, BetweenError> {
         check::check(&keys, matchings, pegs, options)?;
-        let tracks = tracks::chained(&keys, matchings);
+        let tracks = match base {
+            Some(base) => tracks::around(&keys, matchings, base.min(matchings.len())),
+            None => tracks::chained(&keys, matchings),
+        };
         let places = motion::by_key(&tracks, keys.len());
         let moving: Vec<Moving> =
             tracks.iter().zip(&places).map(|(t, places)| Moving { places, closed: t.closed }).collect();
@@ -198,7 +227,10 @@ impl Sequence {
         let mut sequence =
             Self { keys, tracks, motion, changes, local, contacts: vec![Vec::new(); spans], options: *options };
         if options.contacts {
-            sequence.contacts = (0..spans).into_par_iter().map(|k| sequence.touching(k)).collect();
+            sequence.contacts = (0..spans)
+                .into_par_iter()
+                .map(|k| if base.is_none_or(|base| base == k) { sequence.touching(k) } else { Vec::new() })
+                .collect();
         }
         Ok(sequence)
     }
@@ -234,8 +266,9 @@ impl Sequence {
         strokes.iter().zip(tracks).map(drawn).collect()
     }
 
-    /// The tracks that are drawn in a span, with their stacking order: of a stroke in pieces the pieces alone.
-    fn present(&self, k: usize) -> Vec<usize> {
+    /// The tracks that are drawn between key `k` and the next one, from behind to the front: of a stroke in pieces the pieces
+    /// alone.
+    pub fn present(&self, k: usize) -> Vec<usize> {
         let parts = |key: usize| -> BTreeSet<usize> {
             let part = |track: &Track| {
                 let in_span = track.at(k).is_some() && track.at(k + 1).is_some();
@@ -247,11 +280,12 @@ impl Sequence {
         let whole = |track: &Track, key: usize, parts: &BTreeSet<usize>| {
             track.at(key).is_some_and(|stand| !stand.part && parts.contains(&stand.stroke))
         };
-        let there = |track: &Track| match (track.at(k).is_some(), track.at(k + 1).is_some()) {
-            (true, true) => true,
-            (true, false) => !whole(track, k, &split),
-            (false, true) => !whole(track, k + 1, &joined),
-            (false, false) => false,
+        // What became one with others on this key, or comes out of one on the next, neither vanishes nor appears.
+        let there = |track: &Track| match (track.at(k), track.at(k + 1)) {
+            (Some(_), Some(_)) => true,
+            (Some(stand), None) => !stand.part && !whole(track, k, &split),
+            (None, Some(stand)) => !stand.part && !whole(track, k + 1, &joined),
+            (None, None) => false,
         };
         let mut found: Vec<usize> = (0..self.tracks.len()).filter(|&t| there(&self.tracks[t])).collect();
         let mut rank = vec![0.0; self.tracks.len()];

@@ -220,3 +220,99 @@ proptest! {
         }
     }
 }
+
+/// A line in one go, and in three pieces drawn in other directions.
+fn whole_and_pieces() -> (Stroke, Vec<Stroke>) {
+    let line = |from: i32, to: i32| {
+        let step = if to > from { 1 } else { -1 };
+        let at = |k: i32| f64::from(from + step * k);
+        Stroke::new((0..=(to - from).abs()).map(|k| Point::new(at(k), (at(k) / 9.0).sin() * 20.0)).collect(), false)
+    };
+    (line(0, 90), vec![line(30, 0), line(30, 70), line(90, 70)])
+}
+
+#[test]
+fn pieces_stay_where_nothing_moves() {
+    let (whole, pieces) = whole_and_pieces();
+    let inside = matching::InPieces { whole: 0, pieces: vec![(0, true), (1, false), (2, true)] };
+    let split = Matching { split: vec![inside.clone()], ..Matching::default() };
+    let joined = Matching { joined: vec![inside], ..Matching::default() };
+    let pieces_key = |frame| key(frame, pieces.clone());
+    let whole_key = |frame| key(frame, vec![whole.clone()]);
+    let keys = vec![pieces_key(0), whole_key(4), pieces_key(8)];
+    let through = [joined.clone(), split.clone()];
+    let given = GivenPegs::default();
+    let long = Sequence::new(keys, &through, &given, &Options::default()).unwrap();
+    let back = vec![whole_key(0), pieces_key(4), pieces_key(8)];
+    let around = Sequence::of_span(back, &[split, by_index(3)], &given, &Options::default(), 1).unwrap();
+    for (sequence, frame) in [(&long, 2), (&long, 6), (&around, 6)] {
+        let drawn = sequence.at(frame);
+        assert_eq!(drawn.len(), 3);
+        for (between, piece) in drawn.iter().zip(&pieces) {
+            for (p, q) in between.stroke.points.iter().zip(&piece.points) {
+                assert!(p.distance(*q) < 0.7, "frame {frame}: {p} {q}");
+            }
+        }
+    }
+    // The places on the whole are shares of the whole.
+    let stand = long.tracks()[2].at(1).unwrap();
+    let (low, high) = (stand.places.shares[20], stand.places.shares[0]);
+    assert!((low - 7.0 / 9.0).abs() < 0.03 && (high - 1.0).abs() < 1e-9, "{low} {high}");
+}
+
+#[test]
+fn a_span_alone_follows_its_own_points() {
+    let at = |frame: i32, count: usize| {
+        let turn = f64::from(frame) * 0.1;
+        let place = |k: usize| Point::from_angle(turn) * (100.0 * k as f64 / (count - 1) as f64);
+        key(frame, vec![Stroke::new((0..count).map(place).collect(), false)])
+    };
+    let keys = vec![at(0, 5), at(6, 21), at(12, 9), at(18, 30)];
+    let found = vec![by_index(1); 3];
+    let given = GivenPegs::default();
+    let all = Sequence::new(keys.clone(), &found, &given, &Options::default()).unwrap();
+    for (base, count) in [(0, 5), (1, 21), (2, 9)] {
+        let one = Sequence::of_span(keys.clone(), &found, &given, &Options::default(), base).unwrap();
+        let frame = keys[base].frame + 2;
+        let (points, line) = (&one.at(frame)[0].stroke.points, &all.at(frame)[0].stroke.points);
+        assert_eq!(points.len(), count);
+        assert_eq!(one.present(base), [0]);
+        for (p, q) in [(points[0], line[0]), (points[count - 1], line[4])] {
+            assert!(p.distance(q) < 0.5, "{base}: {p} {q}");
+        }
+        let blends = one.tracks()[0].at(base + 1).unwrap().places.blends(&keys[base + 1].strokes[0]);
+        assert_eq!(
+            (blends.len(), blends[0], blends[count - 1].1),
+            (count, (0, 1, 0.0), keys[base + 1].strokes[0].points.len() - 1)
+        );
+    }
+}
+
+#[test]
+fn closed_strokes_are_followed_back_from_any_start() {
+    let centre = Point::new(5.0, 5.0);
+    let blob = |count: usize, start: f64, backwards: bool| {
+        let at = |k: usize| {
+            let t = std::f64::consts::TAU * (start + k as f64 / count as f64 * if backwards { -1.0 } else { 1.0 });
+            centre + Point::from_angle(t) * (40.0 + 9.0 * (2.0 * t).cos() + 5.0 * (3.0 * t).sin())
+        };
+        Stroke::new((0..count).map(at).collect(), true)
+    };
+    for backwards in [false, true] {
+        let keys = vec![
+            key(0, vec![blob(150, 0.3, backwards)]),
+            key(5, vec![blob(100, 0.0, false)]),
+            key(9, vec![blob(90, 0.6, false)]),
+        ];
+        let found: Vec<Matching> = keys
+            .windows(2)
+            .map(|k| match_strokes(&k[0].strokes, &k[1].strokes, &[], &matching::Options::default(), &Silent).unwrap())
+            .collect();
+        let one = Sequence::of_span(keys, &found, &GivenPegs::default(), &Options::default(), 1).unwrap();
+        let track = &one.tracks()[0];
+        assert_eq!((track.first, track.last()), (0, 2));
+        for (p, q) in track.at(0).unwrap().places.points.iter().zip(&track.at(1).unwrap().places.points) {
+            assert!(p.distance(*q) < 2.0, "{backwards}: {p} {q}");
+        }
+    }
+}

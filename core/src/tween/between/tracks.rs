@@ -83,16 +83,8 @@ pub(super) fn chained(keys: &[Key], matchings: &[Matching]) -> Vec<Track> {
             for (piece, places) in parts(&next.strokes[joined.whole], joined, &here.strokes) {
                 let track = of[piece];
                 let Some(stand) = tracks[track].at(k) else { continue };
-                // Places of the piece in the order of the track.
-                let reversed = joined.pieces.iter().any(|p| p.0 == piece && p.1);
-                let part = Stroke::new(places.0.points.clone(), false);
-                let pair = Pair { from: 0, to: 0, reversed, start: 0.0, confidence: 1.0, by_hand: false };
-                let places = stand.places.on(&here.strokes[piece], &part, &pair);
-                tracks[track].stands.push(Stand {
-                    stroke: joined.whole,
-                    part: true,
-                    places: Places { own: None, ..places },
-                });
+                let places = on_part(stand, &here.strokes[piece], places.0);
+                tracks[track].stands.push(Stand { stroke: joined.whole, part: true, places });
             }
         }
         for (j, track) in of_next.iter_mut().enumerate().filter(|(_, track)| **track == usize::MAX) {
@@ -102,6 +94,53 @@ pub(super) fn chained(keys: &[Key], matchings: &[Matching]) -> Vec<Track> {
         of = of_next;
     }
     tracks
+}
+
+/// The tracks that stand on drawing `base` or come after it, their places being the points of the strokes there, followed back
+/// to the drawings before as far as they go one to one or were pieces of one stroke.
+pub(super) fn around(keys: &[Key], matchings: &[Matching], base: usize) -> Vec<Track> {
+    let mut tracks = chained(&keys[base..], &matchings[base..]);
+    tracks.iter_mut().for_each(|track| track.first += base);
+    for k in (0..base).rev() {
+        let (before, here) = (&keys[k].strokes, &keys[k + 1].strokes);
+        for track in tracks.iter_mut().filter(|track| track.first == k + 1) {
+            let Some(stand) = track.stands.first().filter(|stand| !stand.part) else { continue };
+            let i = stand.stroke;
+            let back = matchings[k].pairs.iter().find(|pair| pair.to == i).map(|pair| Stand {
+                stroke: pair.from,
+                part: false,
+                places: stand.places.on(&here[i], &before[pair.from], &inverse(pair)),
+            });
+            let whole = || matchings[k].split.iter().find(|split| split.pieces.iter().any(|piece| piece.0 == i));
+            let part = || {
+                let split = whole()?;
+                let (_, (on_whole, _)) =
+                    parts(&before[split.whole], split, here).into_iter().find(|part| part.0 == i)?;
+                Some(Stand { stroke: split.whole, part: true, places: on_part(stand, &here[i], on_whole) })
+            };
+            if let Some(stand) = back.or_else(part) {
+                track.stands.insert(0, stand);
+                track.first = k;
+            }
+        }
+    }
+    tracks
+}
+
+/// The places of a track on a piece, taken to the part of the whole that the piece covers, `covered`, in the piece's order.
+fn on_part(stand: &Stand, piece: &Stroke, covered: Places) -> Places {
+    let ends = (covered.shares.first().copied().unwrap_or(0.0), covered.shares.last().copied().unwrap_or(1.0));
+    let part = Stroke::new(covered.points, false);
+    let straight = Pair { from: 0, to: 0, reversed: false, start: 0.0, confidence: 1.0, by_hand: false };
+    let places = stand.places.on(piece, &part, &straight);
+    let shares = places.shares.iter().map(|s| ends.0 + (ends.1 - ends.0) * s).collect();
+    Places { points: places.points, shares, own: None }
+}
+
+/// The pair seen from the counterpart.
+fn inverse(pair: &Pair) -> Pair {
+    let start = if pair.reversed { pair.start } else { (1.0 - pair.start).rem_euclid(1.0) };
+    Pair { from: pair.to, to: pair.from, start, ..*pair }
 }
 
 /// For each piece of a whole its index, the places of the whole that it covers, and those of the piece: the piece's points
@@ -116,8 +155,7 @@ fn parts(whole: &Stroke, pieces: &InPieces, strokes: &[Stroke]) -> Vec<(usize, (
         walked += length;
         let own = Places::all(&strokes[piece]);
         let ends = if reversed { (to, from) } else { (from, to) };
-        let count = own.points.len();
-        result.push((piece, (Places::part(whole, ends.0, ends.1, count), Places { own: None, ..own })));
+        result.push((piece, (Places::part(whole, ends.0, ends.1, &own.shares), Places { own: None, ..own })));
     }
     result
 }

@@ -100,7 +100,13 @@ impl<'a> Figure<'a> {
 /// How the strokes of two drawings can be laid upon each other, remembered where they are few.
 pub(super) struct Ways {
     columns: usize,
-    known: Vec<Option<Vec<Vec<Way>>>>,
+    known: Vec<Option<Known>>,
+}
+
+/// What is known of two strokes whatever the movement.
+struct Known {
+    ways: Vec<Vec<Way>>,
+    unlike: Unlike,
 }
 
 impl Ways {
@@ -110,15 +116,24 @@ impl Ways {
         if there(a) * there(b) > REMEMBERED || rows.saturating_mul(columns) > MOST_SLOTS {
             return Self { columns, known: Vec::new() };
         }
-        let pair = |k: usize| a.comparable(k / columns, b, k % columns).map(|(p, q)| p.all_ways(q));
+        let pair = |k: usize| {
+            let (i, j) = (k / columns, k % columns);
+            let (p, q) = a.comparable(i, b, j)?;
+            Some(Known { ways: p.all_ways(q), unlike: Unlike::new(a, b, (i, j))? })
+        };
         Self { columns, known: (0..rows * columns).into_par_iter().map(pair).collect() }
+    }
+
+    /// Whether they are remembered.
+    pub fn are_known(&self) -> bool {
+        !self.known.is_empty()
     }
 
     /// The least of the costs of all ways to lay stroke `i` upon `j`.
     fn least(&self, a: &Figure, i: usize, b: &Figure, j: usize, cost: impl Fn(&Way) -> f64) -> f64 {
         let least = |all: &[Vec<Way>]| all.iter().flatten().map(&cost).fold(f64::INFINITY, f64::min);
         match self.known.get(i * self.columns + j) {
-            Some(known) => known.as_ref().map_or(f64::INFINITY, |all| least(all)),
+            Some(known) => known.as_ref().map_or(f64::INFINITY, |known| least(&known.ways)),
             None => a.comparable(i, b, j).map_or(f64::INFINITY, |(p, q)| least(&p.all_ways(q))),
         }
     }
@@ -126,9 +141,16 @@ impl Ways {
     /// The likely ways to lay stroke `i` upon `j` for an expected turn.
     pub fn likely(&self, a: &Figure, i: usize, b: &Figure, j: usize, expected: f64, stiffness: f64) -> Vec<Way> {
         if let Some(known) = self.known.get(i * self.columns + j) {
-            return known.as_ref().map_or_else(Vec::new, |all| likely(all, expected, stiffness));
+            return known.as_ref().map_or_else(Vec::new, |known| likely(&known.ways, expected, stiffness));
         }
         a.comparable(i, b, j).map_or_else(Vec::new, |(p, q)| p.ways(q, expected, stiffness))
+    }
+
+    fn unlike(&self, a: &Figure, i: usize, b: &Figure, j: usize) -> Option<Unlike> {
+        match self.known.get(i * self.columns + j) {
+            Some(known) => known.as_ref().map(|known| known.unlike),
+            None => Unlike::new(a, b, (i, j)),
+        }
     }
 }
 
@@ -179,11 +201,26 @@ impl Rows {
                 let found = grid.nearest(around[i].apply(outline.centre), NEAREST);
                 found.into_iter().map(|k| numbers[k]).collect()
             };
-            let mut found: Vec<Vec<Label>> =
-                near.into_iter().filter(|&j| !taken[j]).map(|j| labels((a, b), ways, (i, j), &around[i])).collect();
-            found.retain(|row| row.first().is_some_and(|label| label.cost < options.max_cost));
-            found.sort_by(|x, y| x[0].cost.total_cmp(&y[0].cost).then(x[0].to.cmp(&y[0].to)));
-            found.truncate(KEPT);
+            let expected = Expected::new(a, i, &around[i]);
+            let mut near: Vec<(f64, usize)> = near
+                .into_iter()
+                .filter(|&j| !taken[j])
+                .filter_map(|j| Some((ways.unlike(a, i, b, j)?.under(&expected), j)))
+                .filter(|(base, _)| *base < options.max_cost)
+                .collect();
+            near.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+            // The cheapest so far, by their cost; what costs more at least than the last of them is none of them.
+            let mut found: Vec<Vec<Label>> = Vec::with_capacity(KEPT + 1);
+            for (base, j) in near {
+                if found.len() == KEPT && base > found[KEPT - 1][0].cost {
+                    break;
+                }
+                let row = labels((a, b), ways, (i, j), &around[i]);
+                let Some(first) = row.first().filter(|label| label.cost < options.max_cost) else { continue };
+                let place = found.partition_point(|x| x[0].cost.total_cmp(&first.cost).then(x[0].to.cmp(&j)).is_lt());
+                found.insert(place, row);
+                found.truncate(KEPT);
+            }
             found.concat()
         };
         let labels: Vec<Vec<Label>> = (0..a.outlines.len()).into_par_iter().map(row).collect();
@@ -194,7 +231,8 @@ impl Rows {
 
 /// The ways to lay stroke `i` upon `j`, the cheapest first.
 fn labels((a, b): (&Figure, &Figure), ways: &Ways, (i, j): (usize, usize), around: &Movement) -> Vec<Label> {
-    let (Some(base), Some((p, q))) = (base(a, b, (i, j), around), a.comparable(i, b, j)) else { return Vec::new() };
+    let (Some(unlike), Some((p, q))) = (ways.unlike(a, i, b, j), a.comparable(i, b, j)) else { return Vec::new() };
+    let base = unlike.under(&Expected::new(a, i, around));
     let ways = ways.likely(a, i, b, j, around.turn, TURN / SHAPE).into_iter().map(|way| {
         let turn = wrap(way.turn - around.turn);
         let cost = base + SHAPE * way.residual + TURN * turn * turn;
@@ -203,20 +241,48 @@ fn labels((a, b): (&Figure, &Figure), ways: &Ways, (i, j): (usize, usize), aroun
     ways.collect()
 }
 
-/// What taking stroke `j` for `i` costs before it is known how they are laid upon each other.
-fn base(a: &Figure, b: &Figure, (i, j): (usize, usize), around: &Movement) -> Option<f64> {
-    let (p, q) = a.comparable(i, b, j)?;
-    let (from, to) = (a.outlines[i].as_ref()?, b.outlines[j].as_ref()?);
-    let growth = (q.radius / p.radius).ln();
-    let length = (q.length.max(1.0) / p.length.max(1.0)).ln() - growth;
-    let size = growth - around.scale.ln();
-    let away = around.apply(from.centre).distance(to.centre) / (a.radius * around.scale);
-    Some(
-        likeness(&a.strokes[i], &b.strokes[j])
-            + LENGTH * length * length
-            + SIZE * size * size
-            + POSITION * away * away / (1.0 + away * away / FAR),
-    )
+/// What two strokes differ in, whatever the movement.
+#[derive(Clone, Copy)]
+struct Unlike {
+    /// The cost of it.
+    cost: f64,
+    /// Logarithm of the growth from one to the other.
+    growth: f64,
+    /// Where the other one is.
+    centre: Point,
+}
+
+/// Where a movement takes a stroke.
+struct Expected {
+    centre: Point,
+    /// Logarithm of the growth.
+    growth: f64,
+    /// The drawing's radius.
+    radius: f64,
+}
+
+impl Expected {
+    fn new(a: &Figure, i: usize, around: &Movement) -> Self {
+        let centre = a.outlines[i].as_ref().map_or(Point::ZERO, |outline| around.apply(outline.centre));
+        Self { centre, growth: around.scale.ln(), radius: a.radius * around.scale }
+    }
+}
+
+impl Unlike {
+    fn new(a: &Figure, b: &Figure, (i, j): (usize, usize)) -> Option<Self> {
+        let (p, q) = a.comparable(i, b, j)?;
+        let growth = (q.radius / p.radius).ln();
+        let length = (q.length.max(1.0) / p.length.max(1.0)).ln() - growth;
+        let cost = likeness(&a.strokes[i], &b.strokes[j]) + LENGTH * length * length;
+        Some(Self { cost, growth, centre: b.outlines[j].as_ref()?.centre })
+    }
+
+    /// What taking one for the other costs before it is known how they are laid upon each other.
+    fn under(&self, expected: &Expected) -> f64 {
+        let size = self.growth - expected.growth;
+        let square = expected.centre.distance_squared(self.centre) / (expected.radius * expected.radius);
+        self.cost + SIZE * size * size + POSITION * square / (1.0 + square / FAR)
+    }
 }
 
 /// What all strokes cost at least under a movement: each takes its best counterpart, though others may want it too.
@@ -226,13 +292,18 @@ pub(super) fn bound((a, b): (&Figure, &Figure), ways: &Ways, movement: &Movement
     };
     let columns = there(b);
     let of = |i: usize| {
-        columns.iter().fold(options.max_cost, |least, &j| match base(a, b, (i, j), movement) {
-            Some(base) if base < least => {
-                let way = |way: &Way| SHAPE * way.residual + TURN * wrap(way.turn - movement.turn).powi(2);
-                least.min(base + ways.least(a, i, b, j, way))
-            }
-            _ => least,
-        })
+        let expected = Expected::new(a, i, movement);
+        let base = |&j: &usize| ways.unlike(a, i, b, j).map_or(f64::INFINITY, |unlike| unlike.under(&expected));
+        let bases: Vec<f64> = columns.iter().map(base).collect();
+        let whole = |k: usize| {
+            let way = |way: &Way| SHAPE * way.residual + TURN * wrap(way.turn - movement.turn).powi(2);
+            bases[k] + ways.least(a, i, b, columns[k], way)
+        };
+        // The likeliest first, so that most need no look at all.
+        let first = (0..bases.len()).min_by(|&x, &y| bases[x].total_cmp(&bases[y]));
+        let least = first.filter(|&k| bases[k] < options.max_cost).map_or(options.max_cost, &whole);
+        let least = least.min(options.max_cost);
+        (0..bases.len()).fold(least, |least, k| if bases[k] < least { least.min(whole(k)) } else { least })
     };
     there(a).into_iter().map(of).sum()
 }

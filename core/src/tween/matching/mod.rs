@@ -158,14 +158,24 @@ pub fn match_strokes(
     let fixed = fixed(first.len(), second.len(), by_hand)?;
     let (a, b) = (Figure::new(first), Figure::new(second));
     progress.report("matching strokes", 0.1)?;
-    let held = movement::of_whole(&a, &b, &fixed, options);
     let ways = Ways::new(&a, &b);
+    let whole = movement::of_whole(&a, &b, &ways, &fixed, options);
+    let held = whole.movement;
+    let neighbours = relaxation::Neighbours::new(&a);
     let mut around = vec![held; first.len()];
     let mut found = Vec::new();
+    let mut known = whole.found.into_iter().flatten();
     for round in 0..ROUNDS {
         progress.report("matching strokes", 0.3 + 0.2 * round as f64)?;
-        let rows = Rows::new((&a, &b), &ways, &around, &fixed, options);
-        found = relaxation::relaxed(&a, &b, &rows, options).chosen;
+        let next = known.next().unwrap_or_else(|| {
+            let rows = Rows::new((&a, &b), &ways, &around, &fixed, options);
+            relaxation::relaxed(&neighbours, &b, &rows, options).chosen
+        });
+        let last = std::mem::replace(&mut found, next);
+        // The same pairs move their surroundings the same way again.
+        if round > 0 && found == last {
+            break;
+        }
         around = movement::around_each(&a, &b, &found, &held);
     }
     progress.report("matching strokes", 0.9)?;

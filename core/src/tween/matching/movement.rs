@@ -2,7 +2,7 @@
 
 use super::super::grid::Grid;
 use super::costs::{Figure, Rows, Ways, bound};
-use super::relaxation::{self, Chosen};
+use super::relaxation::{self, Chosen, Neighbours};
 use super::{Fixed, Options};
 use crate::geometry::Point;
 use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -11,12 +11,16 @@ use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIter
 const TURN_STEP: f64 = std::f64::consts::PI / 12.0;
 /// Strokes on which movements are tried: the largest.
 const TRIED_ON: usize = 48;
+/// Strokes up to which movements are tried on all: what is known of their pairs is remembered anyway.
+const FEW: usize = 63;
 /// Movements proposed by pairs, at most.
 const MOST_PROPOSALS: usize = 120;
 /// Unexplained share of the shape up to which a pair proposes a movement.
 const PROPOSING: f64 = 0.15;
 /// Movements that are tried by matching the strokes.
 const FINALISTS: usize = 6;
+/// Difference in turn (rad), growth (logarithm) and place (in units of the drawing's radius) below which two movements are one.
+const SAME: f64 = 1e-3;
 /// Preference, for each stroke and rad², for drawings that have turned little.
 const STILLNESS: f64 = 0.02;
 /// The same for each stroke and squared shift in units of the drawing's radius.
@@ -41,30 +45,58 @@ impl Movement {
     }
 }
 
+/// The movement of the whole drawing, and what matching under it found.
+pub(super) struct Whole {
+    pub movement: Movement,
+    /// The counterparts under that movement, and under those around each stroke which follow from them; `None` where the
+    /// movement was tried on some strokes only.
+    pub found: Option<[Vec<Option<Chosen>>; 2]>,
+}
+
 /// The movement of the whole drawing.
-pub(super) fn of_whole(a: &Figure, b: &Figure, fixed: &[Fixed], options: &Options) -> Movement {
+pub(super) fn of_whole(a: &Figure, b: &Figure, ways: &Ways, fixed: &[Fixed], options: &Options) -> Whole {
     let pinned = fixed.iter().enumerate().filter_map(|(i, f)| if let Fixed::To(j) = f { Some((i, *j)) } else { None });
     let (rows, columns): (Vec<usize>, Vec<usize>) = pinned.unzip();
+    let there = |figure: &Figure| figure.outlines.iter().flatten().count();
+    let all = there(a).max(there(b)) <= FEW;
     let (a, b) = (a.only(&largest(a, &rows)), b.only(&largest(b, &columns)));
-    let ways = Ways::new(&a, &b);
-    let scored = |movement: Movement| (bound((&a, &b), &ways, &movement, options) + prior(&a, &movement), movement);
-    let mut scores: Vec<_> = proposals(&a, &b, &ways, options).into_par_iter().map(scored).collect();
+    // The strokes keep their numbers, so what is known of them holds.
+    let own = (!ways.are_known()).then(|| Ways::new(&a, &b));
+    let ways = own.as_ref().unwrap_or(ways);
+    let scored = |movement: Movement| (bound((&a, &b), ways, &movement, options) + prior(&a, &movement), movement);
+    let mut scores: Vec<_> = proposals(&a, &b, ways, options).into_par_iter().map(scored).collect();
     scores.sort_by(|x, y| x.0.total_cmp(&y.0));
     scores.truncate(FINALISTS);
-    let tried: Vec<(f64, Movement)> = scores
-        .into_par_iter()
-        .map(|(_, movement)| {
-            let rows = Rows::new((&a, &b), &ways, &vec![movement; a.outlines.len()], fixed, options);
-            let first = relaxation::relaxed(&a, &b, &rows, options);
-            let around = around_each(&a, &b, &first.chosen, &movement);
-            let rows = Rows::new((&a, &b), &ways, &around, fixed, options);
-            (relaxation::relaxed(&a, &b, &rows, options).energy + prior(&a, &movement), movement)
-        })
-        .collect();
-    tried.into_iter().reduce(|best, next| if next.0 < best.0 { next } else { best }).map_or_else(
-        || Movement { turn: 0.0, scale: 1.0, source: Point::ZERO, target: Point::ZERO },
-        |(_, movement)| movement,
-    )
+    let neighbours = Neighbours::new(&a);
+    let energy = |movement: &Movement| {
+        let rows = Rows::new((&a, &b), ways, &vec![*movement; a.outlines.len()], fixed, options);
+        let first = relaxation::relaxed(&neighbours, &b, &rows, options);
+        let around = around_each(&a, &b, &first.chosen, movement);
+        let rows = Rows::new((&a, &b), ways, &around, fixed, options);
+        let second = relaxation::relaxed(&neighbours, &b, &rows, options);
+        (second.energy + prior(&a, movement), [first.chosen, second.chosen])
+    };
+    let mut best: Option<(f64, Whole)> = None;
+    for (score, movement) in scores {
+        // What costs more at least than another one does indeed is none.
+        if best.as_ref().is_some_and(|(least, _)| score >= *least) {
+            break;
+        }
+        let (energy, found) = energy(&movement);
+        if best.as_ref().is_none_or(|(least, _)| energy < *least) {
+            best = Some((energy, Whole { movement, found: all.then_some(found) }));
+        }
+    }
+    let still = Movement { turn: 0.0, scale: 1.0, source: Point::ZERO, target: Point::ZERO };
+    best.map_or(Whole { movement: still, found: None }, |(_, whole)| whole)
+}
+
+/// Whether two movements take the drawing to about the same place.
+fn alike(a: &Figure, one: &Movement, other: &Movement) -> bool {
+    let apart = one.apply(a.middle).distance(other.apply(a.middle));
+    super::outline::wrap(one.turn - other.turn).abs() < SAME
+        && (one.scale / other.scale).ln().abs() < SAME
+        && apart < SAME * a.radius * one.scale.max(other.scale)
 }
 
 fn prior(a: &Figure, movement: &Movement) -> f64 {
@@ -78,7 +110,9 @@ fn largest(figure: &Figure, named: &[usize]) -> Vec<usize> {
     let radius = |i: usize| figure.outlines[i].as_ref().map_or(0.0, |o| o.radius);
     let mut order: Vec<usize> = (0..figure.outlines.len()).filter(|&i| figure.outlines[i].is_some()).collect();
     order.sort_by(|&i, &j| radius(j).total_cmp(&radius(i)).then(i.cmp(&j)));
-    order.truncate(TRIED_ON);
+    if order.len() > FEW {
+        order.truncate(TRIED_ON);
+    }
     order.extend(named);
     order.sort_unstable();
     order.dedup();
@@ -116,7 +150,11 @@ fn proposals(a: &Figure, b: &Figure, ways: &Ways, options: &Options) -> Vec<Move
         }
     }
     by_pairs.sort_by(|x, y| x.0.total_cmp(&y.0));
-    result.extend(by_pairs.into_iter().take(MOST_PROPOSALS).map(|(_, movement)| movement));
+    for (_, movement) in by_pairs.into_iter().take(MOST_PROPOSALS) {
+        if !result.iter().any(|other| alike(a, &movement, other)) {
+            result.push(movement);
+        }
+    }
     result
 }
 

@@ -74,10 +74,28 @@ impl Outline {
             if self.turning * other.turning != 0 && reversed != opposed {
                 continue;
             }
-            let starts = if self.closed { SAMPLES } else { 1 };
-            found.push((0..starts).map(|start| self.lay(other, start, reversed)).collect());
+            found.push(if self.closed { self.around(other, reversed) } else { vec![self.lay(other, reversed)] });
         }
         found
+    }
+
+    /// The ways to lay this closed curve upon another one, by the start, all starts side by side for vector instructions.
+    fn around(&self, other: &Self, reversed: bool) -> Vec<Way> {
+        let twice = |axis: fn(&Point) -> f64| -> Vec<f64> {
+            other.shape.iter().chain(&other.shape).chain(&other.shape[..1]).map(axis).collect()
+        };
+        let (xs, ys) = (twice(|p| p.x), twice(|p| p.y));
+        let (mut along, mut across) = ([0.0; SAMPLES], [0.0; SAMPLES]);
+        for (k, p) in self.shape.iter().enumerate() {
+            let first = if reversed { SAMPLES - k } else { k };
+            let others = xs[first..first + SAMPLES].iter().zip(&ys[first..first + SAMPLES]);
+            for ((along, across), (x, y)) in along.iter_mut().zip(&mut across).zip(others) {
+                *along += p.x * x + p.y * y;
+                *across += p.x * y - p.y * x;
+            }
+        }
+        let way = |start: usize| self.way(other, Point::new(along[start], across[start]), start, reversed);
+        (0..SAMPLES).map(way).collect()
     }
 
     /// The most likely ways to lay this curve upon `other`, when a turn is expected that is worth `stiffness` residual for
@@ -86,14 +104,20 @@ impl Outline {
         likely(&self.all_ways(other), expected, stiffness)
     }
 
-    fn lay(&self, other: &Self, start: usize, reversed: bool) -> Way {
-        let first = if reversed && !self.closed { SAMPLES - 1 } else { start };
+    /// The way to lay this open curve upon another one.
+    fn lay(&self, other: &Self, reversed: bool) -> Way {
+        let first = if reversed { SAMPLES - 1 } else { 0 };
         let mut factor = Point::ZERO;
         for (k, p) in self.shape.iter().enumerate() {
-            let q = other.shape[if reversed { first + SAMPLES - k } else { first + k } % SAMPLES];
+            let q = other.shape[if reversed { first - k } else { k }];
             factor += Point::new(p.dot(q), p.perp_dot(q));
         }
-        factor /= SAMPLES as f64;
+        self.way(other, factor, first, reversed)
+    }
+
+    /// The way whose products add up to `sum`.
+    fn way(&self, other: &Self, sum: Point, first: usize, reversed: bool) -> Way {
+        let factor = sum / SAMPLES as f64;
         // Two dots have nothing that could disagree.
         let flat = |outline: &Self| outline.shape.iter().all(|p| *p == Point::ZERO);
         let residual = if flat(self) && flat(other) { 0.0 } else { (1.0 - factor.length_squared()).clamp(0.0, 1.0) };

@@ -8,7 +8,7 @@
 
 use super::super::grid::Grid;
 use super::Options;
-use super::costs::{Figure, Label, Rows};
+use super::costs::{Figure, Rows};
 use super::outline::{Outline, Way};
 use crate::geometry::Point;
 use crate::numeric::sparse_assignment::{Choice, assign_sparse};
@@ -29,6 +29,8 @@ const MISSING: f64 = 0.4;
 /// β of the first and of the last round.
 const BETA: (f64, f64) = (1.5, 30.0);
 const ROUNDS: usize = 12;
+/// Weight of a choice that no further round would change.
+const SETTLED: f64 = 1.0 - 1e-5;
 /// Normalisations in each round.
 const SINKHORN: usize = 4;
 /// Exact assignments at the end, at most.
@@ -50,6 +52,25 @@ pub(super) struct Relaxed {
     pub energy: f64,
 }
 
+/// Where the labels take the places of the links: `own[l]` those of the stroke (all x, then all y), `other[l][k]` label `k` of
+/// the neighbour.
+struct Images {
+    own: Vec<(Vec<f64>, Vec<f64>)>,
+    other: Vec<Vec<Point>>,
+}
+
+impl Images {
+    fn new(i: usize, rows: &Rows, links: &[Link]) -> Self {
+        let of = |stroke: usize, link: &Link| -> Vec<Point> {
+            rows.labels[stroke].iter().map(|label| label.map.apply(link.place)).collect()
+        };
+        Self {
+            own: links.iter().map(|link| of(i, link).into_iter().map(|p| (p.x, p.y)).unzip()).collect(),
+            other: links.iter().map(|link| of(link.to, link)).collect(),
+        }
+    }
+}
+
 /// A neighbour, the place where it nearly touches, its weight, and the distance that tears the two apart.
 struct Link {
     to: usize,
@@ -65,8 +86,18 @@ struct Weights {
     none: f64,
 }
 
-pub(super) fn relaxed(a: &Figure, b: &Figure, rows: &Rows, options: &Options) -> Relaxed {
-    let links = links(a);
+/// The links of all strokes, and their images.
+#[derive(Clone, Copy)]
+struct Links<'a> {
+    links: &'a [Vec<Link>],
+    images: &'a [Images],
+}
+
+/// Choices for the rows, `neighbours` being those of the first drawing.
+pub(super) fn relaxed(neighbours: &Neighbours, b: &Figure, rows: &Rows, options: &Options) -> Relaxed {
+    let links = &neighbours.0;
+    let images: Vec<Images> = (0..links.len()).into_par_iter().map(|i| Images::new(i, rows, &links[i])).collect();
+    let links = Links { links, images: &images };
     let columns = b.outlines.len();
     let mut weights: Vec<Weights> =
         rows.labels.iter().map(|l| Weights { labels: vec![0.0; l.len()], none: 1.0 }).collect();
@@ -76,11 +107,15 @@ pub(super) fn relaxed(a: &Figure, b: &Figure, rows: &Rows, options: &Options) ->
     }
     for round in 0..ROUNDS {
         let beta = BETA.0 * (BETA.1 / BETA.0).powf(round as f64 / (ROUNDS - 1) as f64);
-        let costs = supported(rows, &links, &weights);
+        let costs = supported(rows, links, &weights);
         let next = costs.par_iter().enumerate().map(|(i, c)| softened(c, none_cost(rows, i, options), beta)).collect();
         weights = normalised(next, rows, columns);
+        let settled = |w: &Weights| w.none > SETTLED || w.labels.iter().any(|&v| v > SETTLED);
+        if weights.iter().all(settled) {
+            break;
+        }
     }
-    harden(rows, &links, weights, columns, options)
+    harden(rows, links, weights, columns, options)
 }
 
 fn none_cost(rows: &Rows, i: usize, options: &Options) -> f64 {
@@ -96,20 +131,34 @@ fn softened(costs: &[f64], none: f64, beta: f64) -> Weights {
 }
 
 /// What each label costs under the neighbours' weights.
-fn supported(rows: &Rows, links: &[Vec<Link>], weights: &[Weights]) -> Vec<Vec<f64>> {
-    let of_label = |i: usize, label: &Label| {
-        let support: f64 = links[i].iter().map(|link| link.weight * torn(label, link, rows, &weights[link.to])).sum();
-        label.cost + support
+fn supported(rows: &Rows, links: Links, weights: &[Weights]) -> Vec<Vec<f64>> {
+    let of_stroke = |i: usize| {
+        let mut costs: Vec<f64> = vec![0.0; rows.labels[i].len()];
+        let images = &links.images[i];
+        let mut torn = vec![0.0; costs.len()];
+        for (l, link) in links.links[i].iter().enumerate() {
+            let neighbour = &weights[link.to];
+            torn.fill(0.0);
+            for (&weight, &there) in neighbour.labels.iter().zip(&images.other[l]).filter(|(w, _)| **w > 1e-6) {
+                add_torn(&mut torn, &images.own[l], there, weight, 1.0 / (link.torn * link.torn));
+            }
+            for (cost, torn) in costs.iter_mut().zip(&torn) {
+                *cost += link.weight * (torn + MISSING * neighbour.none);
+            }
+        }
+        costs.iter_mut().zip(&rows.labels[i]).for_each(|(cost, label)| *cost += label.cost);
+        costs
     };
-    (0..rows.labels.len()).into_par_iter().map(|i| rows.labels[i].iter().map(|l| of_label(i, l)).collect()).collect()
+    (0..rows.labels.len()).into_par_iter().with_min_len(16).map(of_stroke).collect()
 }
 
-/// Expected share of a neighbour's weight that a label costs.
-fn torn(label: &Label, link: &Link, rows: &Rows, neighbour: &Weights) -> f64 {
-    let here = label.map.apply(link.place);
-    let of = |other: &Label| (here.distance_squared(other.map.apply(link.place)) / (link.torn * link.torn)).min(1.0);
-    let with = rows.labels[link.to].iter().zip(&neighbour.labels).filter(|(_, w)| **w > 1e-6);
-    with.map(|(other, w)| w * of(other)).sum::<f64>() + MISSING * neighbour.none
+/// Adds what a neighbour's label of some weight, which takes the link's place to `there`, costs each label that takes it to
+/// `own`: the squared distance in units of that which tears, at most 1. All labels side by side, for vector instructions.
+fn add_torn(torn: &mut [f64], own: &(Vec<f64>, Vec<f64>), there: Point, weight: f64, scale: f64) {
+    for ((torn, x), y) in torn.iter_mut().zip(&own.0).zip(&own.1) {
+        let (dx, dy) = (x - there.x, y - there.y);
+        *torn += weight * ((dx * dx + dy * dy) * scale).min(1.0);
+    }
 }
 
 fn normalised(mut weights: Vec<Weights>, rows: &Rows, columns: usize) -> Vec<Weights> {
@@ -137,7 +186,7 @@ fn normalised(mut weights: Vec<Weights>, rows: &Rows, columns: usize) -> Vec<Wei
 type Assigned = (f64, Vec<Option<usize>>, Vec<Vec<f64>>);
 
 /// Exact assignments under the costs that the weights, then the assignments themselves, imply.
-fn harden(rows: &Rows, links: &[Vec<Link>], soft: Vec<Weights>, columns: usize, options: &Options) -> Relaxed {
+fn harden(rows: &Rows, links: Links, soft: Vec<Weights>, columns: usize, options: &Options) -> Relaxed {
     let mut weights = soft;
     let mut best: Option<Assigned> = None;
     for _ in 0..EXACT {
@@ -209,6 +258,14 @@ fn sureness(rows: &Rows, costs: &[Vec<f64>], i: usize, k: usize, options: &Optio
 }
 
 /// The neighbours of each stroke of a drawing.
+pub(super) struct Neighbours(Vec<Vec<Link>>);
+
+impl Neighbours {
+    pub fn new(a: &Figure) -> Self {
+        Self(links(a))
+    }
+}
+
 fn links(a: &Figure) -> Vec<Vec<Link>> {
     let numbers: Vec<usize> = (0..a.outlines.len()).filter(|&i| a.outlines[i].is_some()).collect();
     let centres: Vec<Point> = numbers.iter().filter_map(|&i| Some(a.outlines[i].as_ref()?.centre)).collect();

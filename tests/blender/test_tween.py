@@ -1,0 +1,450 @@
+"""Match Strokes and In-between, in background, with the real library."""
+
+import json
+
+import bpy
+import numpy as np
+import pytest
+from test_strokes import add, circle, content, drawing, drawing_object
+
+pytestmark = pytest.mark.usefixtures("library")
+
+
+def limb(x, z, angle, count=24, length=2.0):
+    """A bent line from (x, z) on."""
+    share = np.linspace(0, 1, count)
+    turn = angle + 0.8 * share
+    steps = length / count * np.stack([np.cos(turn), np.sin(turn)], 1)
+    return np.array([x, z]) + np.cumsum(steps, 0)
+
+
+def figure(shift=0.0, lift=0.0):
+    """Three strokes that look different."""
+    return [limb(shift, 0, 0.2 + lift), limb(3 + shift, 0, 1.4 + lift, 30, 3.0), limb(shift, 3, -0.5 + lift, 18, 1.2)]
+
+
+def keyed(addon, frames=(1, 9), layers=("Lines",), **more):
+    """An object with the figure on some keys, farther on each."""
+    ob = drawing_object(addon, layers)
+    for layer in layers:
+        for k, frame in enumerate(frames):
+            add(addon, ob, layer, frame, figure(1.5 * k, 0.3 * k), **more)
+    bpy.context.scene.frame_set(frames[0])
+    return ob
+
+
+def frames(addon, ob, layer="Lines"):
+    """Keyframe type by frame."""
+    return {n: kind for n, (_, kind) in addon("grease_pencil").drawings(ob.data.layers[layer]).items()}
+
+
+def tracks(addon, ob, frame, layer="Lines"):
+    return content(addon, ob, layer, frame).curve["rototoon_track"].tolist()
+
+
+def looks(addon, ob, frame, layer="Lines"):
+    """All that the artist's drawing holds, without our marks."""
+    found = content(addon, ob, layer, frame)
+    ours = addon("keys").OURS
+    found.point = {n: v for n, v in found.point.items() if n not in ours}
+    found.curve = {n: v for n, v in found.curve.items() if n not in ours}
+    return found
+
+
+def points(addon, ob, frame, layer="Lines"):
+    found = content(addon, ob, layer, frame)
+    return np.split(found.point["position"][:, [0, 2]], found.starts[1:-1])
+
+
+def test_every_frame_gets_a_drawing_of_its_own_type(addon):
+    ob = keyed(addon)
+    before = [looks(addon, ob, frame) for frame in (1, 9)]
+    assert bpy.ops.rototoon.in_between(spacing="LINEAR", arcs=0.0) == {"FINISHED"}
+    assert frames(addon, ob) == {1: "KEYFRAME", 9: "KEYFRAME", **dict.fromkeys(range(2, 9), "GENERATED")}
+    assert all(looks(addon, ob, frame).equals(kept) for frame, kept in zip((1, 9), before))
+    middle = points(addon, ob, 5)
+    for stroke, a, b in zip(middle, figure(0, 0), figure(1.5, 0.3)):
+        assert len(stroke) == len(a)
+        assert stroke.mean(0) == pytest.approx((a.mean(0) + b.mean(0)) / 2, abs=0.08)
+        length = lambda p: np.linalg.norm(np.diff(p, axis=0), axis=1).sum()  # noqa: E731
+        assert length(stroke) == pytest.approx(length(a), rel=0.02)
+
+
+def test_order_and_direction_do_not_matter(addon):
+    ob = keyed(addon)
+    bpy.ops.rototoon.in_between()
+    expected = {frame: points(addon, ob, frame) for frame in range(2, 9)}
+    other = drawing_object(addon)
+    first, second = figure(0, 0), figure(1.5, 0.3)
+    add(addon, other, "Lines", 1, first)
+    add(addon, other, "Lines", 9, [second[2][::-1], second[0], second[1][::-1]])
+    bpy.ops.rototoon.in_between()
+    for frame, strokes in expected.items():
+        for one, two in zip(points(addon, other, frame), strokes, strict=True):
+            assert one == pytest.approx(two, abs=2e-3)
+    assert tracks(addon, other, 9) == [tracks(addon, other, 1)[k] for k in (2, 0, 1)]
+
+
+def test_strokes_keep_their_numbers(addon):
+    ob = keyed(addon, (1, 5, 9, 13))
+    bpy.ops.rototoon.in_between(frames="ALL")
+    numbers = tracks(addon, ob, 1)
+    assert sorted(numbers) == [1, 2, 3]
+    assert all(tracks(addon, ob, frame) == numbers for frame in range(1, 14))
+
+
+def test_what_strokes_carry_follows(addon):
+    ob = drawing_object(addon)
+    gp = addon("grease_pencil")
+    shapes, n = figure(), sum(map(len, figure()))
+    for frame, size in ((1, 0.02), (11, 0.06)):
+        ramp = np.linspace(size, 2 * size, n).astype(np.float32)
+        handle = add(addon, ob, "Lines", frame, shapes, radius=ramp, opacity=np.full(n, 1.1 - frame * 0.05))
+        gp.put(handle, "vertex_color", np.tile([frame / 11, 0.5, 0, 0.8], (n, 1)))
+        gp.put(handle, "material_index", np.array([0, 1, 0]))
+        gp.put(handle, "cyclic", np.array([False, True, False]))
+        gp.put(handle, "fill_color", np.tile([0, frame / 11, 1, 1], (3, 1)))
+        gp.put(handle, "fill_id", np.array([0, frame, 0]))
+        handle.attributes.new("mine", "INT", "POINT").data.foreach_set("value", np.arange(n, dtype=np.int32))
+        handle.attributes.new("heat", "FLOAT", "POINT").data.foreach_set("value", ramp * 100)
+    ob.data.materials.append(bpy.data.materials.new("Second"))
+    bpy.ops.rototoon.in_between(spacing="LINEAR")
+    found = content(addon, ob, "Lines", 6)
+    ramp = np.linspace(0.04, 0.08, n)
+    assert found.point["radius"] == pytest.approx(ramp, abs=1e-4)
+    assert found.point["heat"] == pytest.approx(100 * ramp, abs=0.01)
+    assert found.point["opacity"] == pytest.approx(np.full(n, 0.8), abs=1e-5)
+    assert found.point["vertex_color"][0] == pytest.approx([6 / 11, 0.5, 0, 0.8], abs=1e-5)
+    assert found.curve["fill_color"][2] == pytest.approx([0, 6 / 11, 1, 1], abs=1e-5)
+    assert found.curve["material_index"].tolist() == [0, 1, 0] and found.curve["cyclic"].tolist() == [False, True, False]
+    assert found.curve["fill_id"].tolist() == [0, 1, 0] and found.point["mine"].tolist() == list(range(n))
+
+
+def mark(addon, ob, layer="Lines"):
+    """Marks all drawings between keys: what is drawn again loses the mark."""
+    for frame, kind in frames(addon, ob, layer).items():
+        if kind == "GENERATED":
+            handle = drawing(addon, ob, layer, frame)
+            count = len(content(addon, ob, layer, frame).sizes)
+            handle.attributes.new("mark", "INT", "CURVE").data.foreach_set("value", np.ones(count, np.int32))
+
+
+def drawn_again(addon, ob, layer="Lines"):
+    kinds = frames(addon, ob, layer)
+    return [n for n in kinds if kinds[n] == "GENERATED" and "mark" not in content(addon, ob, layer, n).curve]
+
+
+def move(addon, ob, frame, index=3, by=0.05, layer="Lines"):
+    gp = addon("grease_pencil")
+    handle = drawing(addon, ob, layer, frame)
+    moved = gp.positions(handle, int(gp.offsets(handle)[-1]))
+    moved[index, 0] += by
+    gp.put(handle, "position", moved)
+    handle.tag_positions_changed()
+
+
+KEYS = (1, 9, 17, 25, 33, 41)
+
+
+@pytest.mark.parametrize(("spacing", "span"), [("EASE_IN_OUT", (9, 25)), ("SMOOTH", (1, 33))])
+def test_only_the_touched_spans_are_drawn_again(addon, spacing, span):
+    ob = keyed(addon, KEYS)
+    bpy.ops.rototoon.in_between(frames="ALL", spacing=spacing)
+    mark(addon, ob)
+    assert bpy.ops.rototoon.update_in_betweens() == {"FINISHED"}
+    assert drawn_again(addon, ob) == []
+    move(addon, ob, 17)
+    bpy.ops.rototoon.update_in_betweens()
+    expected = [frame for frame in range(span[0] + 1, span[1]) if frame not in KEYS]
+    assert drawn_again(addon, ob) == expected
+    # What is drawn again is what would be drawn afresh.
+    found = {frame: content(addon, ob, "Lines", frame).point["position"] for frame in range(1, 42)}
+    bpy.ops.rototoon.clear_in_betweens()
+    bpy.ops.rototoon.in_between(frames="ALL", spacing=spacing)
+    for frame, kept in found.items():
+        assert np.array_equal(content(addon, ob, "Lines", frame).point["position"], kept)
+
+
+def test_other_choices_draw_again_where_they_hold(addon):
+    ob = keyed(addon, KEYS)
+    bpy.ops.rototoon.in_between(frames="ALL", spacing="LINEAR")
+    mark(addon, ob)
+    bpy.context.scene.frame_set(20)
+    bpy.ops.rototoon.in_between(frames="CURRENT", spacing="CHART", chart="5, 10 20 50 80% 90, 95")
+    assert drawn_again(addon, ob) == list(range(18, 25))
+    mark(addon, ob)
+    bpy.ops.rototoon.in_between(frames="CURRENT", spacing="CHART", chart="5, 10 20 50 80% 90, 95")
+    assert drawn_again(addon, ob) == []
+    # An update keeps each span's own choices.
+    move(addon, ob, 17)
+    bpy.ops.rototoon.update_in_betweens()
+    assert drawn_again(addon, ob) == [*range(10, 17), *range(18, 25)]
+    kept = json.loads(ob.data["rototoon_tween"])["Lines"]["spans"]
+    assert kept["17"]["choices"]["spacing"] == "CHART" and kept["9"]["choices"]["spacing"] == "LINEAR"
+
+
+def test_a_chart_says_how_far_each_drawing_has_come(addon):
+    ob = drawing_object(addon)
+    for frame, x in ((1, 0.0), (5, 4.0)):
+        add(addon, ob, "Lines", frame, [wave_at(x)])
+    bpy.context.scene.frame_set(1)
+    bpy.ops.rototoon.in_between(spacing="CHART", chart="50 -10 110")
+    assert [points(addon, ob, f)[0][0, 0] for f in (2, 3, 4)] == pytest.approx([2.0, -0.4, 4.4], abs=1e-4)
+    bpy.ops.rototoon.in_between(spacing="LINEAR", step=2)
+    assert sorted(frames(addon, ob)) == [1, 3, 5]
+    assert points(addon, ob, 3)[0][0, 0] == pytest.approx(2.0, abs=1e-4)
+    for chart, message in (("", "empty"), ("10, x", '"x"'), ("99999", "-1000 to 1000")):
+        with pytest.raises(RuntimeError, match=message):
+            bpy.ops.rototoon.in_between(spacing="CHART", chart=chart)
+
+
+def wave_at(x, count=20):
+    return np.stack([x + np.linspace(0, 1, count), np.sin(np.linspace(0, 3, count))], 1)
+
+
+def test_a_new_key_within_a_span_splits_it(addon):
+    ob = keyed(addon, (1, 17))
+    bpy.ops.rototoon.in_between(spacing="EASE_IN")
+    gp = addon("grease_pencil")
+    gp.remove_frames(ob.data.layers["Lines"], [9])
+    add(addon, ob, "Lines", 9, figure(4, 0.1))
+    kept = looks(addon, ob, 9)
+    bpy.ops.rototoon.update_in_betweens()
+    assert looks(addon, ob, 9).equals(kept) and frames(addon, ob)[9] == "KEYFRAME"
+    assert set(frames(addon, ob)) == set(range(1, 18))
+    spans = json.loads(ob.data["rototoon_tween"])["Lines"]["spans"]
+    assert {k: (v["last"], v["choices"]["spacing"]) for k, v in spans.items()} == {"1": (9, "EASE_IN"), "9": (17, "EASE_IN")}
+    # And one that is gone joins its neighbours.
+    gp.remove_frames(ob.data.layers["Lines"], [9])
+    bpy.ops.rototoon.update_in_betweens()
+    assert frames(addon, ob)[9] == "GENERATED"
+
+
+def test_a_drawing_between_that_was_changed_becomes_a_key(addon):
+    ob = keyed(addon, (1, 17))
+    bpy.ops.rototoon.in_between()
+    move(addon, ob, 9, index=slice(None), by=0.7)
+    kept = content(addon, ob, "Lines", 9).point["position"]
+    bpy.ops.rototoon.update_in_betweens()
+    kinds = frames(addon, ob)
+    assert kinds[9] == "BREAKDOWN" and kinds[8] == kinds[10] == "GENERATED"
+    assert np.array_equal(content(addon, ob, "Lines", 9).point["position"], kept)
+    near = points(addon, ob, 8)[0][3] - points(addon, ob, 9)[0][3]
+    assert np.linalg.norm(near) < 0.3
+    bpy.ops.rototoon.clear_in_betweens()
+    assert sorted(frames(addon, ob)) == [1, 9, 17]
+    assert "rototoon_tween" not in ob.data or not json.loads(ob.data["rototoon_tween"])["Lines"]["spans"]
+
+
+def test_only_what_was_drawn_between_is_cleared(addon):
+    ob = keyed(addon, KEYS, ("Lines", "Colours"))
+    gp = addon("grease_pencil")
+    add(addon, ob, "Lines", 44, figure())
+    gp.set_keyframe_type(ob.data.layers["Lines"], {44: "GENERATED"})
+    bpy.ops.rototoon.in_between(frames="ALL")
+    assert len(frames(addon, ob, "Colours")) == 41
+    bpy.context.scene.frame_set(12)
+    bpy.ops.rototoon.clear_in_betweens(frames="CURRENT", layers="ACTIVE")
+    left = frames(addon, ob, ob.data.layers.active.name)
+    assert 8 in left and not set(left) & set(range(10, 17))
+    bpy.ops.rototoon.clear_in_betweens()
+    assert set(frames(addon, ob)) == {*KEYS, 44} and set(frames(addon, ob, "Colours")) == set(KEYS)
+
+
+def test_layers_with_the_same_keys_move_together_and_locked_ones_stay(addon):
+    ob = keyed(addon, (1, 9), ("Lines", "Colours", "Locked"))
+    ob.data.layers["Locked"].lock = True
+    bpy.ops.rototoon.in_between()
+    for frame in range(2, 9):
+        for one, two in zip(points(addon, ob, frame), points(addon, ob, frame, "Colours"), strict=True):
+            assert one == pytest.approx(two, abs=1e-4)
+    assert sorted(frames(addon, ob, "Locked")) == [1, 9]
+
+
+def test_strokes_appear_vanish_and_fall_into_pieces(addon):
+    ob = drawing_object(addon)
+    whole = limb(0, 0, 0.2, 60, 4.0)
+    extra = circle((0, 3), 0.5, 20)
+    add(addon, ob, "Lines", 1, [figure()[1], whole])
+    add(addon, ob, "Lines", 9, [whole[30:], extra, figure()[1], whole[:31]])
+    gp = addon("grease_pencil")
+    for frame, ids in ((1, [4, 0]), (9, [0, 4, 4, 0])):
+        gp.put(drawing(addon, ob, "Lines", frame), "fill_id", np.array(ids))
+    bpy.context.scene.frame_set(1)
+    bpy.ops.rototoon.in_between(spacing="LINEAR", leaving="FADE")
+    found = content(addon, ob, "Lines", 5)
+    assert sorted(found.sizes.tolist()) == [20, 30, 30, 31]
+    shown = np.minimum.reduceat(found.point["opacity"], found.starts[:-1])
+    new = found.sizes.tolist().index(20)
+    assert shown[new] == pytest.approx(0.5, abs=1e-5) and (np.delete(shown, new) == 1).all()
+    assert found.curve["fill_opacity"][new] == pytest.approx(0.5, abs=1e-5)
+    # The new stroke belongs to the fill of the one beside it.
+    assert found.curve["fill_id"][new] == 4
+    later = tracks(addon, ob, 9)
+    assert {tracks(addon, ob, 5)[k] for k in range(4)} == set(later)
+    bpy.ops.rototoon.in_between(spacing="LINEAR", leaving="GROW")
+    strokes = points(addon, ob, 5)
+    ring = next(s for s in strokes if len(s) == 20)
+    assert np.ptp(ring, axis=0) == pytest.approx([0.5, 0.5], abs=0.01)
+
+
+def test_bad_input_is_told_or_left_alone(addon):
+    ob = drawing_object(addon)
+    with pytest.raises(RuntimeError, match="two keys"):
+        bpy.ops.rototoon.in_between()
+    dot = np.array([[0.5, 0.5]])
+    for frame in (1, 9):
+        add(addon, ob, "Lines", frame, [dot + 0.1 * frame, np.repeat(dot, 5, 0), figure()[0], figure()[2]])
+    gp = addon("grease_pencil")
+    handle = drawing(addon, ob, "Lines", 9)
+    bad = gp.positions(handle, int(gp.offsets(handle)[-1]))
+    bad[-1] = np.nan
+    gp.put(handle, "position", bad)
+    ob.data.layers["Lines"].frames.new(17)
+    add(addon, ob, "Lines", 25, figure())
+    add(addon, ob, "Lines", 26, figure())
+    assert bpy.ops.rototoon.in_between(frames="ALL") == {"FINISHED"}
+    assert set(frames(addon, ob)) == {*range(1, 10), 17, 25, 26}
+    found = content(addon, ob, "Lines", 5)
+    assert np.isfinite(found.point["position"]).all() and found.sizes.tolist()[:2] == [1, 5]
+    bpy.context.scene.frame_set(20)
+    with pytest.raises(RuntimeError, match="blank"):
+        bpy.ops.rototoon.in_between()
+    bpy.context.scene.frame_set(25)
+    with pytest.raises(RuntimeError, match="No frames between"):
+        bpy.ops.rototoon.in_between()
+
+
+def test_a_text_that_is_not_understood_counts_as_none(addon):
+    ob = keyed(addon)
+    for text in ("{", "[]", '{"Lines": 3}', '{"Lines": {"next": 1, "spans": {"1": {}}}}'):
+        ob.data["rototoon_tween"] = text
+        assert bpy.ops.rototoon.in_between() == {"FINISHED"}
+        assert len(frames(addon, ob)) == 9
+
+
+def test_beziers_keep_their_handles(addon):
+    ob = drawing_object(addon)
+    gp = addon("grease_pencil")
+    turned = lambda p, a: p @ np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]])  # noqa: E731
+    line = wave_at(0, 6)
+    for frame, angle in ((1, 0.0), (9, 1.0)):
+        handle = add(addon, ob, "Lines", frame, [turned(line, angle)])
+        handle.set_types(type="BEZIER", indices=[0])
+        for name, way in (("handle_left", -0.2), ("handle_right", 0.2)):
+            values = np.zeros((6, 3), np.float32)
+            values[:, [0, 2]] = turned(line + [way, 0.0], angle)
+            if handle.attributes.get(name) is None:
+                handle.attributes.new(name, "FLOAT_VECTOR", "POINT")
+            gp.put(handle, name, values)
+    bpy.context.scene.frame_set(1)
+    bpy.ops.rototoon.in_between(spacing="LINEAR")
+    found = content(addon, ob, "Lines", 5)
+    assert found.types.tolist() == [2]
+    reach = found.point["handle_right"] - found.point["position"]
+    assert np.linalg.norm(reach, axis=1) == pytest.approx(np.full(6, 0.2), abs=2e-3)
+    assert reach[2, [0, 2]] == pytest.approx(turned(np.array([0.2, 0.0]), 0.5), abs=5e-3)
+
+
+# -- pairs by hand ----------------------------------------------------------------------------------------------------
+
+
+def pairing_of(addon, ob, frame=1):
+    module = addon("pairing")
+    found = module.Pairing(ob, list(ob.data.layers), frame)
+    found.take(found.match())
+    return module, found
+
+
+def test_pairs_made_by_hand_are_kept_through_a_file(addon, tmp_path):
+    ob = keyed(addon)
+    bpy.context.scene.frame_set(4)
+    bpy.ops.rototoon.match_strokes()
+    assert tracks(addon, ob, 1) == tracks(addon, ob, 9)
+    module, found = pairing_of(addon, ob, 4)
+    assert not found.click(module.Item(0, 0, 0))
+    assert found.click(module.Item(0, 1, 1))
+    found.take(found.match())
+    assert found.row_of(module.Item(0, 0, 0)).later == 1 and found.row_of(module.Item(0, 0, 0)).by_hand
+    found.store()
+    path = str(tmp_path / "pairs.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    ob = bpy.data.objects["Drawing"]
+    bpy.context.view_layer.objects.active = ob
+    bpy.ops.rototoon.in_between()
+    numbers = tracks(addon, ob, 1)
+    assert tracks(addon, ob, 9)[1] == numbers[0]
+    # The pair goes with the strokes, whatever their order.
+    handle = drawing(addon, ob, "Lines", 9)
+    handle.reorder_strokes([2, 1, 0]) if hasattr(handle, "reorder_strokes") else None
+    addon("grease_pencil").remove_frames(ob.data.layers["Lines"], range(2, 9))
+    before = content(addon, ob, "Lines", 9).curve["rototoon_before"]
+    bpy.ops.rototoon.in_between()
+    assert tracks(addon, ob, 9)[int(np.flatnonzero(before)[0])] == numbers[0]
+
+
+def test_pairs_touch_their_span_alone(addon):
+    ob = keyed(addon, KEYS)
+    bpy.ops.rototoon.in_between(frames="ALL", spacing="LINEAR")
+    mark(addon, ob)
+    module, found = pairing_of(addon, ob, 20)
+    found.click(module.Item(0, 1, 2))
+    assert found.click(module.Item(0, 0, 0))
+    bpy.ops.rototoon.update_in_betweens()
+    assert drawn_again(addon, ob) == list(range(18, 25))
+    # Behind it strokes have the numbers of those that they follow from now on.
+    for first, last in zip(KEYS[3:], KEYS[4:]):
+        assert all(tracks(addon, ob, f) == tracks(addon, ob, first) for f in range(first, last + 1))
+
+
+def test_strokes_are_freed_and_decisions_taken_back(addon):
+    ob = keyed(addon)
+    module, found = pairing_of(addon, ob)
+    item = module.Item(0, 0, 1)
+    assert found.free(item)
+    found.take(found.match())
+    row = found.row_of(item)
+    assert (row.later, row.by_hand) == (-1, True)
+    assert [m.label for m in found.marks()].count("–") == 2
+    assert found.free(item)
+    found.take(found.match())
+    assert found.row_of(item).later == 1 and not found.row_of(item).by_hand
+    found.click(item)
+    found.click(module.Item(0, 1, 0))
+    assert found.free(module.Item(0, 1, 2))
+    found.take(found.match())
+    assert "2 decided by hand" in found.summary()
+    assert found.undo() and found.undo() and found.undo() and found.undo() and not found.undo()
+    found.take(found.match())
+    assert found.summary() == "3 pairs"
+    assert found.free(None) is False and found.click(None) is False
+
+
+def test_clicks_find_strokes(addon):
+    ob = keyed(addon)
+    module, found = pairing_of(addon, ob)
+    # The front view, 100 pixels a unit, (0, 0) in the middle of 800 by 600.
+    view = np.array([[0.25, 0, 0, 0], [0, 0, 1 / 3, 0], [0, 0, 0, 0], [0, 0, 0, 1]])
+    size = (800, 600)
+    at = lambda p: (400 + 100 * p[0], 300 + 100 * p[1])  # noqa: E731
+    first, second = figure(0, 0), figure(1.5, 0.3)
+    assert found.pick(at(first[1][9] + [0.05, 0]), view, size) == module.Item(0, 0, 1)
+    assert found.pick(at(second[0][20]), view, size) == module.Item(0, 1, 0)
+    assert found.pick((5, 5), view, size) is None
+    found.click(module.Item(0, 1, 0))
+    assert found.marks()[[m.side for m in found.marks()].index(1)].colour == module.PICKED
+    # With a stroke of the later key picked, one of the earlier key is looked for first.
+    across = found.pick(at(second[0][3]), view, size)
+    assert across is None or across.side == 0 or across == module.Item(0, 1, 0)
+
+
+def test_everything_is_one_undo_step(addon):
+    bpy.context.preferences.edit.use_global_undo = True
+    ob = keyed(addon)
+    bpy.ops.ed.undo_push(message="keys")
+    bpy.ops.rototoon.in_between("EXEC_DEFAULT", True)
+    assert len(frames(addon, ob)) == 9
+    bpy.ops.ed.undo()
+    ob = bpy.data.objects["Drawing"]
+    assert sorted(frames(addon, ob)) == [1, 9] and "rototoon_tween" not in ob.data

@@ -1,0 +1,122 @@
+"""Matching and in-betweens through the Python API."""
+
+import array
+import math
+
+import pytest
+from rototoon import tween
+from rototoon.native.errors import Cancelled
+from rototoon.session import RototoonError, Strokes
+
+
+def line(x, count, reverse=False):
+    points = [(x + 3 * math.sin(k / count * 3), 60.0 * k / (count - 1)) for k in range(count)]
+    return points[::-1] if reverse else points
+
+
+def drawings(sheets, **more):
+    """Drawings of lists of strokes on frames 1, 9, 17, ..."""
+    offsets, points, bounds = array.array("i", [0]), array.array("d"), [0]
+    for strokes in sheets:
+        for stroke in strokes:
+            for point in stroke:
+                points.extend(point)
+            offsets.append(len(points) // 2)
+        bounds.append(bounds[-1] + len(strokes))
+    flags = array.array("B", [0] * bounds[-1])
+    frames = [1 + 8 * k for k in range(len(sheets))]
+    return tween.Drawings(Strokes(offsets, points, flags), bounds, frames, **more)
+
+
+SHEETS = [
+    [line(0, 10), line(40, 20), line(90, 8)],
+    [line(95, 30, reverse=True), line(5, 10), line(45, 12)],
+    [line(10, 10), line(50, 12), line(100, 8), [(0, 90), (40, 95), (90, 92)]],
+]
+
+
+def test_strokes_find_each_other_in_any_order_and_direction():
+    found = tween.match_strokes(drawings(SHEETS))
+    assert found.offsets.tolist() == [0, 3, 7]
+    rows = found.rows.tolist()
+    assert [row[:3] for row in rows[:3]] == [[tween.PAIR, 0, 4], [tween.PAIR, 1, 5], [tween.PAIR, 2, 3]]
+    assert [bool(row[3] & tween.REVERSED) for row in rows[:3]] == [False, False, True]
+    assert rows[6][:3] == [tween.APPEARED, -1, 9]
+    assert all(0 <= confidence <= 1 for _, confidence in found.values.tolist())
+
+
+def test_pairs_made_by_hand_are_kept():
+    found = tween.match_strokes(drawings(SHEETS[:2], by_hand=[0, 3, 1, -1, -1, 5]))
+    rows = found.rows.tolist()
+    assert rows[0][:3] == [tween.PAIR, 0, 3] and rows[0][3] & tween.BY_HAND
+    assert [tween.VANISHED, 1, -1, 0] in rows and [tween.APPEARED, -1, 5, 0] in rows
+
+
+def test_all_frames_in_one_call():
+    given = drawings(SHEETS)
+    spans = [(0, range(2, 9)), (1, [13])]
+    drawn, matches = tween.draw_in_betweens(given, spans, spacing=["linear", "ease_in"], arcs=0.0)
+    assert drawn.frame_offsets.tolist() == [0, 7, 8]
+    assert drawn.shares.tolist() == [k / 8 for k in range(1, 8)] + [0.25]
+    assert drawn.strokes.tolist()[:3] == [[0, 4, 0], [1, 5, 0], [2, 3, 0]]
+    assert drawn.point_offsets.tolist()[:4] == [0, 10, 30, 38]
+    points = drawn.points.tolist()
+    assert len(points) == 7 * 38 + sum(len(s) for s in (SHEETS[1])) + 3
+    # On frame 5 the middle of the way; the third stroke was drawn from the other end.
+    middle = points[3 * 38 : 4 * 38]
+    assert middle[0] == pytest.approx((2.5, 0.0), abs=0.01) and middle[30] == pytest.approx((92.5, 0.0), abs=0.05)
+    first = drawn.indices.tolist()[30]
+    assert first[:2] == [30, 30] and max(first[2:]) == 67 and matches.offsets.tolist() == [0, 3, 7]
+    # A span alone is the same as among others.
+    alone, _ = tween.draw_in_betweens(given, spans[:1], spacing=["linear", "ease_in"], arcs=0.0)
+    assert alone.points.tolist() == points[: 7 * 38]
+
+
+def test_what_only_one_drawing_has():
+    sheets = [SHEETS[0], SHEETS[0][:2]]
+    drawn, matches = tween.draw_in_betweens(drawings(sheets), [(0, [5])], spacing=["linear"], leaving="fade")
+    assert matches.rows.tolist()[2] == [tween.VANISHED, 2, -1, 0]
+    assert drawn.strokes.tolist()[2] == [2, -1, 0] and drawn.opacities.tolist() == [1.0, 1.0, 0.5]
+    row = drawn.indices.tolist()[30]
+    assert row == [30, 30, 30, 30]
+
+
+def test_pegs_may_be_given():
+    pegs = [{"name": "arm", "pivot": [0, 0], "keys": [{"frame": 1}, {"frame": 9, "turn": 360}]}]
+    drawn, _ = tween.draw_in_betweens(drawings([SHEETS[0]] * 2), [(0, [5])], pegs=pegs, hung=["arm"] * 3 + [None] * 3)
+    x, y = SHEETS[0][0][5]
+    assert drawn.points.tolist()[5] == pytest.approx((-x, -y), abs=1e-6)
+
+
+def test_progress_is_told_and_may_stop():
+    told = []
+    tween.draw_in_betweens(drawings(SHEETS), [(0, [5])], lambda share, step: told.append(share))
+    assert told == sorted(told) and told[0] == 0 and told[-1] == 1
+    with pytest.raises(Cancelled):
+        tween.match_strokes(drawings(SHEETS), lambda share, step: False)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: tween.match_strokes(drawings(SHEETS), colour=1), "unknown field `colour`"),
+        (lambda: tween.match_strokes(drawings(SHEETS, by_hand=[0, 1])), r"pair 0 is \(0, 1\)"),
+        (lambda: tween.match_strokes(drawings(SHEETS, by_hand=[0])), "by_hand: 1 numbers"),
+        (lambda: tween.match_strokes(drawings([[[(0.0, math.nan)]], []])), "first drawing: stroke 0: point 0"),
+        (lambda: tween.match_strokes(drawings(SHEETS, labels=[1])), "labels: 1 values, expected 20"),
+        (lambda: tween.draw_in_betweens(drawings(SHEETS), [(2, [20])]), "found span 2, expected less than 2"),
+        (lambda: tween.draw_in_betweens(drawings(SHEETS), [(0, [9])]), "found frame 9, expected one between 1 and 9"),
+        (lambda: tween.draw_in_betweens(drawings(SHEETS), [(0, [2])], arcs=2.0), "arcs are 2"),
+        (lambda: tween.draw_in_betweens(drawings(SHEETS), [], spacing=["fast"]), "spacing"),
+    ],
+)
+def test_bad_input_is_named(call, message):
+    with pytest.raises(RototoonError, match=message):
+        call()
+
+
+def test_nothing_gives_nothing():
+    assert tween.match_strokes(drawings([])).offsets.tolist() == [0]
+    assert tween.match_strokes(drawings([[], []])).rows.tolist() == []
+    drawn, _ = tween.draw_in_betweens(drawings([[], [[]]]), [(0, [3])])
+    assert drawn.points.tolist() == []
