@@ -7,9 +7,10 @@
 //! 3. [`track`]: contours from key frames to every frame.
 //! 4. [`snap`]: contours onto the drawn ink.
 //! 5. [`tween`]: the drawings between drawings on key frames, hidden lines.
-//! 6. [`render`]: pictures of what was found. [`export`]: the same for other programs.
-//! 7. [`project`]: the document that holds all of it.
-//! 8. [`pipeline`]: the stages joined.
+//! 6. [`style`]: a motion re-made in another character's manner.
+//! 7. [`render`]: pictures of what was found. [`export`]: the same for other programs.
+//! 8. [`project`]: the document that holds all of it.
+//! 9. [`pipeline`]: the stages joined.
 //!
 //! [`geometry`] and [`numeric`] serve them all; [`curve`] holds quadratic B-splines, and [`fit`] makes them from points.
 //!
@@ -29,5 +30,6 @@ pub mod project;
 pub mod render;
 pub mod scene;
 pub mod snap;
+pub mod style;
 pub mod track;
 pub mod tween;
