@@ -16,8 +16,8 @@ use crate::numeric::dense::DenseCholesky;
 use crate::scene::clip::resample;
 use crate::scene::skeleton::{COUNT, LEGS, LIMBS, PARENTS, Posture, limb_lengths, torso};
 
-/// Rounds of the limb constraints; the second already leaves little.
-const ROUNDS: usize = 4;
+/// Most rounds of the limb constraints. The second already leaves little of long limbs, short ones take a few more.
+const ROUNDS: usize = 12;
 /// A foot stands where it moves less than this between frames, in torso lengths.
 const STANDING: f64 = 0.015;
 /// For at least this many frames.

@@ -15,14 +15,14 @@
 
 pub mod align;
 mod basis;
-// pub mod bilinear;
-// pub mod factorisation;
+pub mod bilinear;
+pub mod factorisation;
 pub mod finish;
 pub mod gaussian;
 mod grid;
 mod kernels;
 mod key_pose;
-// pub mod liang2012;
+pub mod liang2012;
 
 use crate::scene::Clip;
 use crate::scene::clip::resample;
@@ -212,9 +212,9 @@ pub fn translate(clips: &[Clip], request: &Request, options: &Options) -> Result
     let keys = keys(&grid, request);
     let mut made = match options.preset {
         Preset::Rototoon => gaussian::predict(&grid, &keys, options.strength),
-        // Preset::Bilinear => bilinear::predict(&grid, &keys, bilinear::Model::Asymmetric),
-        // Preset::BilinearSymmetric => bilinear::predict(&grid, &keys, bilinear::Model::Symmetric),
-        _ => gaussian::predict(&grid, &keys, 1.0),
+        Preset::Bilinear => bilinear::predict(&grid, &keys, bilinear::Model::Asymmetric),
+        Preset::BilinearSymmetric => bilinear::predict(&grid, &keys, bilinear::Model::Symmetric),
+        Preset::Liang2012 => liang2012::predict(&grid, &keys),
     };
     meet(&mut made, &keys);
     let mut postures: Vec<Posture> = made.rows.iter().map(grid::posture).collect();
@@ -295,4 +295,5 @@ fn place(postures: &mut [Posture], content: &[Posture], size: f64, content_size:
     }
 }
 
-
+#[cfg(test)]
+mod tests;
