@@ -33,7 +33,13 @@ fn name(id: &'static str, help: &'static str) -> Arg {
 
 fn on_or_off(id: &'static str, help: &'static str) -> Arg {
     let values = PossibleValuesParser::new(["on", "off"]);
-    Arg::new(id).long(id).value_name("on|off").hide_possible_values(true).help(help).default_value("on").value_parser(values)
+    Arg::new(id)
+        .long(id)
+        .value_name("on|off")
+        .hide_possible_values(true)
+        .help(help)
+        .default_value("on")
+        .value_parser(values)
 }
 
 fn translate_command() -> Command {
@@ -96,8 +102,7 @@ fn run_translate(given: &ArgMatches) -> Result<(), Failure> {
         Some(path) => load_key_poses(path).map_err(|e| other(&e))?,
         None => Vec::new(),
     };
-    let keys: Vec<KeyPose> =
-        keys.into_iter().map(|key| KeyPose { frame: key.frame, posture: key.posture }).collect();
+    let keys: Vec<KeyPose> = keys.into_iter().map(|key| KeyPose { frame: key.frame, posture: key.posture }).collect();
     check_writable(to)?;
     let preset = text("style_preset");
     let options = Options {

@@ -167,8 +167,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn json(&self, text: &str) -> Result<Value, ClipsError> {
-        serde_json::from_str(text)
-            .map_err(|e| ClipsError::Syntax { origin: self.origin.into(), reason: e.to_string() })
+        serde_json::from_str(text).map_err(|e| ClipsError::Syntax { origin: self.origin.into(), reason: e.to_string() })
     }
 
     fn field(&self, place: impl Into<String>, found: impl Into<String>, expected: impl Into<String>) -> ClipsError {
@@ -201,9 +200,7 @@ impl Reader<'_> {
         }
         match names.iter().zip(NAMES).position(|(name, expected)| name.as_str() != Some(expected)) {
             None => Ok(()),
-            Some(k) => {
-                Err(self.field(format!("keypoints[{k}]"), names[k].to_string(), format!("{:?}", NAMES[k])))
-            }
+            Some(k) => Err(self.field(format!("keypoints[{k}]"), names[k].to_string(), format!("{:?}", NAMES[k]))),
         }
     }
 
@@ -286,7 +283,9 @@ mod tests {
     use super::*;
 
     fn file(points: &str) -> String {
-        format!(r#"{{"rototoon_clips": 1, "fps": 12, "clips": [{{"character": "a", "motion": "walk", "points": {points}}}]}}"#)
+        format!(
+            r#"{{"rototoon_clips": 1, "fps": 12, "clips": [{{"character": "a", "motion": "walk", "points": {points}}}]}}"#
+        )
     }
 
     fn posture() -> String {

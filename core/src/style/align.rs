@@ -86,9 +86,8 @@ pub fn warped(clip: &[Posture], leading: &[Posture]) -> Vec<Posture> {
 /// Frames of one cycle of a clip; `None` of one that does not repeat itself.
 pub fn cycle_length(postures: &[Posture]) -> Option<usize> {
     let n = postures.len();
-    let apart = |lag: usize| {
-        (0..n - lag).map(|i| distance(&postures[i], &postures[i + lag])).sum::<f64>() / (n - lag) as f64
-    };
+    let apart =
+        |lag: usize| (0..n - lag).map(|i| distance(&postures[i], &postures[i + lag])).sum::<f64>() / (n - lag) as f64;
     let longest = n * 2 / 3;
     let mut sum = 0.0;
     let mut normalised = vec![1.0];
@@ -108,7 +107,8 @@ pub fn cycles(postures: &[Posture]) -> Vec<Vec<Posture>> {
     let mut cuts = vec![0];
     while let Some(next) = cuts.last().map(|cut| cut + length).filter(|next| *next < postures.len()) {
         let near = next - reach..(next + reach + 1).min(postures.len());
-        let best = near.min_by(|&i, &j| distance(&postures[i], &postures[0]).total_cmp(&distance(&postures[j], &postures[0])));
+        let best =
+            near.min_by(|&i, &j| distance(&postures[i], &postures[0]).total_cmp(&distance(&postures[j], &postures[0])));
         cuts.extend(best);
     }
     cuts.windows(2).map(|cut| postures[cut[0]..cut[1]].to_vec()).collect()
@@ -143,7 +143,9 @@ mod tests {
     use crate::geometry::Point;
 
     fn swing(phase: f64) -> Posture {
-        std::array::from_fn(|k| Point::new(k as f64 * phase.sin(), (2.0 * phase).cos() + k as f64 * phase.cos()) * (k.min(1) as f64))
+        std::array::from_fn(|k| {
+            Point::new(k as f64 * phase.sin(), (2.0 * phase).cos() + k as f64 * phase.cos()) * (k.min(1) as f64)
+        })
     }
 
     #[test]
@@ -154,7 +156,12 @@ mod tests {
         let back = warped(&uneven, &lead);
         assert_eq!(back.len(), 40);
         let error = |clip: &[Posture]| clip.iter().zip(&lead).map(|(a, b)| distance(a, b)).sum::<f64>();
-        assert!(error(&back) < 0.02 * error(&resample(&uneven, 40)), "{} {}", error(&back), error(&resample(&uneven, 40)));
+        assert!(
+            error(&back) < 0.02 * error(&resample(&uneven, 40)),
+            "{} {}",
+            error(&back),
+            error(&resample(&uneven, 40))
+        );
         assert_eq!(time_warp(&lead, &lead), (0..40).map(|i| (i, i)).collect::<Vec<_>>());
     }
 

@@ -131,8 +131,9 @@ mod tests {
 
     #[test]
     fn axes_are_even_or_odd_and_span_what_varies() {
-        let rows: Vec<Row> =
-            (0..80).map(|i| std::array::from_fn(|d| (1.7 * i as f64 + 3.1 * d as f64 + (i * d) as f64).sin())).collect();
+        let rows: Vec<Row> = (0..80)
+            .map(|i| std::array::from_fn(|d| (1.7 * i as f64 + 3.1 * d as f64 + (i * d) as f64).sin()))
+            .collect();
         let axes = Axes::of(rows.iter());
         assert_eq!(axes.len(), WIDTH);
         for (a, axis) in axes.vectors.iter().enumerate() {

@@ -85,7 +85,8 @@ impl Fitted {
         let count = others.len();
         let style = |maps: &Mat<f64>, k: usize| maps.subrows(k * WIDTH, WIDTH).to_owned();
         let mean_of = |maps: &Mat<f64>| {
-            (0..count).fold(Mat::zeros(WIDTH, maps.ncols()), |sum, k| sum + style(maps, k)) * faer::Scale(1.0 / count as f64)
+            (0..count).fold(Mat::zeros(WIDTH, maps.ncols()), |sum, k| sum + style(maps, k))
+                * faer::Scale(1.0 / count as f64)
         };
         if model == Model::Asymmetric {
             let mean = mean_of(&(&stacked * contents.transpose()));
@@ -240,7 +241,8 @@ pub(super) fn spread(grid: &Grid, mut rows: Vec<Row>, errors: &[Vec<Row>], keys:
     let mut variance = [0.0; COUNT];
     for clip in sample {
         for d in 0..WIDTH {
-            let middle = if keys.is_empty() { 0.0 } else { clip.iter().map(|row| row[d]).sum::<f64>() / clip.len() as f64 };
+            let middle =
+                if keys.is_empty() { 0.0 } else { clip.iter().map(|row| row[d]).sum::<f64>() / clip.len() as f64 };
             let total: f64 = clip.iter().map(|row| (row[d] - middle).powi(2)).sum();
             variance[d / 2] += 0.5 * total / (clip.len() * sample.len()) as f64;
         }

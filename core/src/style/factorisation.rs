@@ -31,6 +31,11 @@ const LOOK: usize = 10;
 const TINY: f64 = 1e-12;
 /// Ridge of the class regression, as a share of the mean squared code.
 const CLASS_RIDGE: f64 = 1e-2;
+/// Steps of V a round: with UᵀU and UᵀX at hand another costs next to nothing (Gillis & Glineur 2012, "Accelerated
+/// Multiplicative Updates").
+const BASIS_STEPS: usize = 4;
+/// Steps of U a round where there are few codes, so that XVᵀ costs more than they do.
+const CODE_STEPS: usize = 3;
 /// Power iterations that bound λ each round; V changes little between rounds.
 const POWER_STEPS: usize = 2;
 
@@ -224,6 +229,7 @@ fn start(x: MatRef<'_, f64>, options: &Options) -> (Mat<f64>, Mat<f64>) {
 struct Work {
     vv: Mat<f64>,
     step: Mat<f64>,
+    target: Mat<f64>,
     direction: Mat<f64>,
     uu: Mat<f64>,
     ux: Mat<f64>,
@@ -235,6 +241,7 @@ impl Work {
         Self {
             vv: Mat::zeros(k, k),
             step: Mat::zeros(n, k),
+            target: Mat::zeros(n, k),
             direction: Mat::from_fn(k, 1, |_, _| 1.0),
             uu: Mat::zeros(k, k),
             ux: Mat::zeros(k, d),
@@ -252,20 +259,24 @@ impl Work {
         options: &Options,
     ) {
         matmul(&mut self.vv, Accum::Replace, v, v.transpose(), 1.0, Par::Seq);
-        matmul(&mut self.step, Accum::Replace, x, v.transpose(), 1.0, Par::Seq);
+        matmul(&mut self.target, Accum::Replace, x, v.transpose(), 1.0, Par::Seq);
         let beta = options.class_weight;
         if beta > 0.0 && y.ncols() > 0 {
             matmul(&mut self.vv, Accum::Add, w, w.transpose(), beta, Par::Seq);
-            matmul(&mut self.step, Accum::Add, y, w.transpose(), beta, Par::Seq);
+            matmul(&mut self.target, Accum::Add, y, w.transpose(), beta, Par::Seq);
         }
         let mu = 1.0 / self.largest().max(TINY);
-        matmul(&mut self.step, Accum::Add, &*u, &self.vv, -1.0, Par::Seq);
         let mut negative = false;
-        for j in 0..u.ncols() {
-            for (value, step) in u.col_as_slice_mut(j).iter_mut().zip(self.step.col_as_slice(j)) {
-                *value += mu * step;
-                negative |= *value < 0.0;
-                *value = value.max(0.0);
+        let few = 2 * u.ncols() <= x.ncols() && options.reading == Reading::Consistent;
+        for _ in 0..if few { CODE_STEPS } else { 1 } {
+            matmul(&mut self.step, Accum::Replace, &*u, &self.vv, -1.0, Par::Seq);
+            for j in 0..u.ncols() {
+                let steps = self.step.col_as_slice(j).iter().zip(self.target.col_as_slice(j));
+                for (value, (step, target)) in u.col_as_slice_mut(j).iter_mut().zip(steps) {
+                    *value += mu * (step + target);
+                    negative |= *value < 0.0;
+                    *value = value.max(0.0);
+                }
             }
         }
         if negative && options.reading == Reading::Literal {
@@ -292,18 +303,24 @@ impl Work {
 
     /// Step 4; gives ‖X − UV‖² of the V before it.
     fn step_basis(&mut self, x: MatRef<'_, f64>, u: &Mat<f64>, v: &mut Mat<f64>, alpha: f64, norm: f64) -> f64 {
+        let mut first = 0.0;
         matmul(&mut self.uu, Accum::Replace, u.transpose(), u, 1.0, Par::Seq);
         matmul(&mut self.ux, Accum::Replace, u.transpose(), x, 1.0, Par::Seq);
-        matmul(&mut self.uuv, Accum::Replace, &self.uu, &*v, 1.0, Par::Seq);
-        let mut residual = norm;
-        for j in 0..v.ncols() {
-            let (ux, uuv) = (self.ux.col_as_slice(j), self.uuv.col_as_slice(j));
-            for (k, value) in v.col_as_slice_mut(j).iter_mut().enumerate() {
-                residual += *value * (uuv[k] - 2.0 * ux[k]);
-                *value *= ux[k] / (uuv[k] + alpha + TINY);
+        for step in 0..BASIS_STEPS {
+            matmul(&mut self.uuv, Accum::Replace, &self.uu, &*v, 1.0, Par::Seq);
+            let mut residual = norm;
+            for j in 0..v.ncols() {
+                let (ux, uuv) = (self.ux.col_as_slice(j), self.uuv.col_as_slice(j));
+                for (k, value) in v.col_as_slice_mut(j).iter_mut().enumerate() {
+                    residual += *value * (uuv[k] - 2.0 * ux[k]);
+                    *value *= ux[k] / (uuv[k] + alpha + TINY);
+                }
+            }
+            if step == 0 {
+                first = residual;
             }
         }
-        residual
+        first
     }
 }
 
@@ -389,7 +406,7 @@ mod tests {
         let (u, v) = start(x.as_ref(), &options);
         let (u, v) = naive(&x, u, v, 200);
         let plain = (&u * &v - &x).norm_l2() / x.norm_l2();
-        assert!((found.error - plain).abs() < 0.2 * plain, "{} {plain}", found.error);
+        assert!(found.error < 1.02 * plain && found.error > 0.3 * plain, "{} {plain}", found.error);
         assert!(found.error < 0.05);
         assert_eq!((found.rounds, found.ended), (200, Ended::Rounds));
         let smallest = |m: &Mat<f64>| (0..m.ncols()).flat_map(|j| m.col_as_slice(j).to_vec()).fold(0.0, f64::min);

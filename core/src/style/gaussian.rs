@@ -137,7 +137,13 @@ impl Cells {
             for &s in &others {
                 mean.iter_mut().zip(self.block(s, m)).for_each(|(a, b)| *a += b / others.len() as f64);
             }
-            rest.push(others.iter().flat_map(|&s| (0..d).map(move |k| (s, k))).map(|(s, k)| self.block(s, m)[k] - mean[k]).collect());
+            rest.push(
+                others
+                    .iter()
+                    .flat_map(|&s| (0..d).map(move |k| (s, k)))
+                    .map(|(s, k)| self.block(s, m)[k] - mean[k])
+                    .collect(),
+            );
         }
         let variance: Vec<f64> =
             (0..d).map(|k| rest.iter().flat_map(|r| r.iter().skip(k).step_by(d)).map(|v| v * v).sum()).collect();
@@ -213,9 +219,10 @@ fn left_out(shared: &Shared, weights: Weights, observed: &[f64]) -> Vec<LeftOut>
                 let precision = split.as_ref().and_then(|split| split.drawn(&shared.observed[s], g));
                 for q in 0..shared.styles.len() {
                     let place = &mut found[k * shared.styles.len() + q];
-                    let done = place.as_mut().zip(precision.as_ref()).and_then(|(into, precision)| {
-                        clips_of(shared, precision, q, s, columns.clone(), &mut into[s])
-                    });
+                    let done = place
+                        .as_mut()
+                        .zip(precision.as_ref())
+                        .and_then(|(into, precision)| clips_of(shared, precision, q, s, columns.clone(), &mut into[s]));
                     if done.is_none() {
                         *place = None;
                     }
@@ -298,9 +305,8 @@ impl Split {
     fn drawn(&self, observed: &[f64], share: f64) -> Option<Vec<f64>> {
         let m = self.n / COSINES;
         let scale = (0..m).map(|i| self.fixed[i * m + i]).sum::<f64>() / m as f64;
-        let changed: Vec<f64> = (0..m * m)
-            .map(|k| self.complement[k] + share * (observed[k] * scale - self.fixed[k]))
-            .collect();
+        let changed: Vec<f64> =
+            (0..m * m).map(|k| self.complement[k] + share * (observed[k] * scale - self.fixed[k])).collect();
         let middle = DenseCholesky::new(m, &changed)?.inverse();
         let mut inverse = self.rest.clone();
         add_product(&mut inverse, &self.q, &middle, self.n, m, 1.0);
@@ -354,7 +360,8 @@ fn averaged(cells: &Cells, found: &[Vec<Vec<f64>>], target: (usize, usize)) -> (
     for axis in 0..d {
         for band in [0..1, 1..COSINES] {
             let wrong = |setting: &Vec<Vec<f64>>| {
-                let part = clips.iter().flat_map(|&(s, m)| band.clone().map(move |k| (s, (m * COSINES + k) * d + axis)));
+                let part =
+                    clips.iter().flat_map(|&(s, m)| band.clone().map(move |k| (s, (m * COSINES + k) * d + axis)));
                 part.map(|(s, at)| (setting[s][at] - cells.x[s][at]).powi(2)).sum::<f64>() + 1e-9
             };
             let log: Vec<f64> = found.iter().map(|setting| wrong(setting).ln()).collect();

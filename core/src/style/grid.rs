@@ -190,7 +190,10 @@ fn check(clips: &[Clip], request: &Request) -> Result<(), StyleError> {
     };
     let shared = clips.iter().any(|c| c.character == request.style && c.motion != request.motion);
     if !shared && request.keys.is_empty() {
-        return Err(StyleError::NothingKnown { character: request.style.to_owned(), motion: request.motion.to_owned() });
+        return Err(StyleError::NothingKnown {
+            character: request.style.to_owned(),
+            motion: request.motion.to_owned(),
+        });
     }
     let frames = content.postures.len();
     for key in request.keys {

@@ -52,8 +52,12 @@ impl Kernels {
     /// From the mean motions, each in [`MODEL_FRAMES`] frames.
     pub fn new(means: &[Vec<Row>]) -> Self {
         let size = means.len() * COSINES;
-        let mut kernels =
-            Self { size, fixed: vec![0.0; size * size], posture: vec![0.0; size * size], mirrored: vec![0.0; size * size] };
+        let mut kernels = Self {
+            size,
+            fixed: vec![0.0; size * size],
+            posture: vec![0.0; size * size],
+            mirrored: vec![0.0; size * size],
+        };
         let swapped: Vec<Vec<Row>> = means.iter().map(|rows| rows.iter().map(mirror).collect()).collect();
         let basis = cosines(MODEL_FRAMES);
         let bell = |square: f64, length: f64| (-square / (2.0 * length * length)).exp();
@@ -68,7 +72,12 @@ impl Kernels {
                 };
                 let at = (a, b, size);
                 project(&basis, &fixed, &mut kernels.fixed, at);
-                project(&basis, &|t, u| bell(square(&means[a][t], &means[b][u]), POSTURE_LENGTH), &mut kernels.posture, at);
+                project(
+                    &basis,
+                    &|t, u| bell(square(&means[a][t], &means[b][u]), POSTURE_LENGTH),
+                    &mut kernels.posture,
+                    at,
+                );
                 let swap = |t: usize, u: usize| bell(square(&means[a][t], &swapped[b][u]), POSTURE_LENGTH);
                 project(&basis, &swap, &mut kernels.mirrored, at);
             }

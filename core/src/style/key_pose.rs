@@ -133,7 +133,9 @@ pub(super) fn deviation(covariances: &[Vec<f64>], axes: &Axes, basis: &[[f64; CO
     let at = |cosine: &[f64; COSINES]| {
         let along: Vec<f64> = covariances
             .iter()
-            .map(|c| (0..COSINES * COSINES).map(|k| cosine[k / COSINES] * c[k] * cosine[k % COSINES]).sum::<f64>().max(0.0))
+            .map(|c| {
+                (0..COSINES * COSINES).map(|k| cosine[k / COSINES] * c[k] * cosine[k % COSINES]).sum::<f64>().max(0.0)
+            })
             .collect();
         std::array::from_fn(|point| {
             let variance = |d: usize| axes.vectors.iter().zip(&along).map(|(v, a)| v[d] * v[d] * a).sum::<f64>();

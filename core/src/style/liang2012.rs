@@ -43,7 +43,8 @@ fn from_motions(grid: &Grid, known: &[usize], wanted: usize) -> Vec<Row> {
     let clips: Vec<Vec<Vec<Row>>> = others
         .iter()
         .map(|&s| {
-            let clip = |&m: &usize| grid.rows(s, m, MODEL_FRAMES).or_else(|| grid.mean_without(grid.style, m, MODEL_FRAMES));
+            let clip =
+                |&m: &usize| grid.rows(s, m, MODEL_FRAMES).or_else(|| grid.mean_without(grid.style, m, MODEL_FRAMES));
             order.iter().map(|m| clip(m).unwrap_or_else(|| vec![[0.0; WIDTH]; MODEL_FRAMES])).collect()
         })
         .collect();

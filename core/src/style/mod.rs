@@ -268,10 +268,8 @@ const KEY_REACH: f64 = 3.0;
 
 /// Meets key poses exactly: what is left of the way to them fades over a few frames.
 fn meet(made: &mut Prediction, keys: &[(usize, Row)]) {
-    let left: Vec<(usize, Row)> = keys
-        .iter()
-        .map(|(frame, key)| (*frame, std::array::from_fn(|d| key[d] - made.rows[*frame][d])))
-        .collect();
+    let left: Vec<(usize, Row)> =
+        keys.iter().map(|(frame, key)| (*frame, std::array::from_fn(|d| key[d] - made.rows[*frame][d]))).collect();
     let weight = |frame: usize, key: usize| (-0.5 * ((frame as f64 - key as f64) / KEY_REACH).powi(2)).exp();
     for (frame, row) in made.rows.iter_mut().enumerate() {
         if let Some((_, key)) = keys.iter().find(|(at, _)| *at == frame) {
