@@ -130,7 +130,8 @@ impl Mesh {
             let [a, b, c] = corners.map(|corner| vertices[corner]);
             let area = 0.5 * (b - a).perp_dot(c - a);
             let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
-            if !(area.abs() > SLIVER * 0.433 * longest) {
+            // Not finite or zero: no frame either.
+            if area.abs().partial_cmp(&(SLIVER * 0.433 * longest)) != Some(std::cmp::Ordering::Greater) {
                 return Err(ArapError::Sliver { triangle, found: area });
             }
         }

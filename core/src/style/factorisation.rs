@@ -33,9 +33,9 @@ const TINY: f64 = 1e-12;
 const CLASS_RIDGE: f64 = 1e-2;
 /// Steps of V a round: with UᵀU and UᵀX at hand another costs next to nothing (Gillis & Glineur 2012, "Accelerated
 /// Multiplicative Updates").
-const BASIS_STEPS: usize = 4;
+const BASIS_STEPS: usize = 3;
 /// Steps of U a round where there are few codes, so that XVᵀ costs more than they do.
-const CODE_STEPS: usize = 3;
+const CODE_STEPS: usize = 2;
 /// Power iterations that bound λ each round; V changes little between rounds.
 const POWER_STEPS: usize = 2;
 

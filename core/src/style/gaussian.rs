@@ -171,8 +171,16 @@ struct Shared<'a> {
     kernels: &'a Kernels,
     even: usize,
     observed: Vec<Vec<f64>>,
-    /// For each γ: precisions by motion, and Σ_t (K_s⁻¹)[s, t] Z[t] by character and left-out motion.
-    styles: Vec<(Vec<Vec<f64>>, Vec<Vec<Vec<f64>>>)>,
+    /// For each γ.
+    styles: Vec<Styles>,
+}
+
+/// Characters beside each other.
+struct Styles {
+    /// The precision by left-out motion.
+    precisions: Vec<Vec<f64>>,
+    /// Σ_t (K_s⁻¹)[s, t] Z[t] by character s and left-out motion.
+    mixed: Vec<Vec<Vec<f64>>>,
 }
 
 impl<'a> Shared<'a> {
@@ -181,7 +189,7 @@ impl<'a> Shared<'a> {
         let styles = shrinks.par_iter().map(|&shrink| {
             let precisions = cells.style_precisions(shrink);
             let mixed = (0..cells.characters).map(|s| mixed(cells, &precisions, s)).collect();
-            (precisions, mixed)
+            Styles { precisions, mixed }
         });
         Self { cells, kernels, even, observed, styles: styles.collect() }
     }
@@ -243,7 +251,7 @@ fn clips_of(
     into: &mut [f64],
 ) -> Option<()> {
     let (cells, size, d) = (shared.cells, shared.kernels.size, shared.cells.axes);
-    let (styles, mixed) = &shared.styles[q];
+    let Styles { precisions, mixed } = &shared.styles[q];
     let width = columns.len();
     for m in 0..cells.motions {
         let at = m * COSINES;
@@ -259,7 +267,7 @@ fn clips_of(
             }
         }
         DenseCholesky::new(COSINES, &block)?.solve(&mut error, width);
-        let own = styles[m][s * cells.characters + s];
+        let own = precisions[m][s * cells.characters + s];
         for i in 0..COSINES {
             for c in 0..width {
                 let place = (at + i) * d + columns.start + c;
