@@ -7,9 +7,11 @@
 //! 3. [`track`]: contours from key frames to every frame.
 //! 4. [`snap`]: contours onto the drawn ink.
 //! 5. [`tween`]: the drawings between drawings on key frames, hidden lines.
-//! 6. [`render`]: pictures of what was found. [`export`]: the same for other programs.
-//! 7. [`project`]: the document that holds all of it.
-//! 8. [`pipeline`]: the stages joined.
+//! 6. [`style`]: a motion re-made in another character's manner.
+//! 7. [`reshape`]: a drawing that follows a skeleton, and which part is in front.
+//! 8. [`render`]: pictures of what was found. [`export`]: the same for other programs.
+//! 9. [`project`]: the document that holds all of it.
+//! 10. [`pipeline`]: the stages joined.
 //!
 //! [`geometry`] and [`numeric`] serve them all; [`curve`] holds quadratic B-splines, and [`fit`] makes them from points.
 //!
@@ -27,7 +29,9 @@ pub mod numeric;
 pub mod pipeline;
 pub mod project;
 pub mod render;
+pub mod reshape;
 pub mod scene;
 pub mod snap;
+pub mod style;
 pub mod track;
 pub mod tween;

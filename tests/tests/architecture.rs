@@ -1,16 +1,16 @@
 //! Holds the direction of dependencies in the core:
 //!
 //! `numeric ← geometry ← curve ← fit` and
-//! `numeric ← geometry ← scene ← {image, track, snap, tween, render, export, project} ← pipeline`,
-//! where track, snap, tween and render may use image, tween curves and their fitting too, and track, snap and tween never
-//! import each other.
+//! `numeric ← geometry ← scene ← {image, track, snap, tween, style, reshape, render, export, project} ← pipeline`,
+//! where track, snap, tween and render may use image, tween curves and their fitting too, and track, snap, tween and
+//! style never import each other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module of the core with the modules that it may use.
-const ALLOWED: [(&str, &[&str]); 13] = [
+const ALLOWED: [(&str, &[&str]); 15] = [
     ("numeric", &[]),
     ("geometry", &["numeric"]),
     ("curve", &["numeric", "geometry"]),
@@ -20,14 +20,16 @@ const ALLOWED: [(&str, &[&str]); 13] = [
     ("track", &["numeric", "geometry", "scene", "image"]),
     ("snap", &["numeric", "geometry", "scene", "image"]),
     ("tween", &["numeric", "geometry", "curve", "fit", "scene", "image"]),
+    ("style", &["numeric", "geometry", "scene"]),
+    ("reshape", &["numeric", "geometry", "curve", "scene"]),
     ("render", &["numeric", "geometry", "scene", "image"]),
     ("export", &["numeric", "geometry", "scene"]),
     ("project", &["numeric", "geometry", "scene"]),
     (
         "pipeline",
         &[
-            "numeric", "geometry", "curve", "fit", "scene", "image", "track", "snap", "tween", "render", "export",
-            "project",
+            "numeric", "geometry", "curve", "fit", "scene", "image", "track", "snap", "tween", "style", "reshape",
+            "render", "export", "project",
         ],
     ),
 ];

@@ -3,7 +3,7 @@
 //! - [`arguments`]: options made from the core's list of parameters
 //! - [`progress`]: a bar on a terminal, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
-//! - [`track`], [`snap`], [`render`], [`export`], [`check`], [`fit`], [`tween`]: the subcommands
+//! - [`track`], [`snap`], [`render`], [`export`], [`check`], [`fit`], [`tween`], [`style`]: the subcommands
 //!
 //! Exit status: 0 done, 1 failed, 2 wrong use.
 
@@ -16,6 +16,7 @@ mod progress;
 mod project;
 mod render;
 mod snap;
+mod style;
 mod track;
 mod tween;
 
@@ -27,7 +28,7 @@ use std::process::ExitCode;
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 /// Each subcommand with what it does.
-fn subcommands() -> [(Command, Run); 7] {
+fn subcommands() -> [(Command, Run); 8] {
     [
         (track::command(), track::run),
         (snap::command(), snap::run),
@@ -36,6 +37,7 @@ fn subcommands() -> [(Command, Run); 7] {
         (check::command(), check::run),
         (fit::command(), fit::run),
         (tween::command(), tween::run),
+        (style::command(), style::run),
     ]
 }
 

@@ -4,6 +4,7 @@
 //! - [`banded`]: Cholesky factorisation of symmetric band matrices
 //! - [`cholesky`]: sparse Cholesky factorisation with the symbolic half kept
 //! - [`damped_system`]: damped normal equations, long rows as a correction of low rank
+//! - [`dense`]: small dense positive definite systems
 //! - [`gradient_check`]: an analytic Jacobian against differences
 //! - [`normal_equations`]: JᵀJ and Jᵀr of a sparse Jacobian of fixed pattern
 //! - [`roots`]: real roots of polynomials up to the quartic
@@ -16,6 +17,7 @@ pub mod assignment;
 pub mod banded;
 pub mod cholesky;
 pub mod damped_system;
+pub mod dense;
 pub mod gradient_check;
 pub mod normal_equations;
 pub mod roots;

@@ -7,10 +7,12 @@
 //! - [`validate`]: what a document must hold beyond being well-formed
 //! - [`drawings`]: drawings on key frames, pairs, pegs and in-betweens
 //! - [`curves`]: files of curves to fit
+//! - [`clips`]: files of skeleton clips
 //! - [`output`]: files that appear whole or not at all
 //!
 //! Fields that this version does not know are kept where they stood. A document of a newer major version is refused.
 
+pub mod clips;
 pub mod curves;
 pub mod drawings;
 pub mod load;

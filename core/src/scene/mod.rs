@@ -1,6 +1,6 @@
 //! The types that stages hand to each other.
 //!
-//! - [`raster`]: a rectangle of pixels
+//! - [`clip`]: a character's motion as key points over time
 //! - [`correspondence`]: contours drawn afresh, matched to the parts
 //! - [`footage`]: which frames there are and where their pictures come from
 //! - [`palette`]: colours that tell parts apart
@@ -8,7 +8,10 @@
 //! - [`part`]: a tracked contour with its keys, corrections and results
 //! - [`pattern`]: file names of a numbered sequence
 //! - [`progress`]: how long work reports and is cancelled
+//! - [`raster`]: a rectangle of pixels
+//! - [`skeleton`]: the key points of a posture and how they hang together
 
+pub mod clip;
 pub mod correspondence;
 pub mod footage;
 pub mod palette;
@@ -17,7 +20,9 @@ pub mod part;
 pub mod pattern;
 pub mod progress;
 pub mod raster;
+pub mod skeleton;
 
+pub use clip::Clip;
 pub use footage::{Footage, FrameError, FrameNumber, FrameSource};
 pub use part::{Part, Span};
 pub use pattern::{FramePattern, PatternError};

@@ -1,0 +1,70 @@
+//! Skeleton clips: a character's motion as key points over time.
+
+use super::skeleton::{self, Posture};
+use crate::geometry::Point;
+
+/// One motion of one character.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clip {
+    /// Who moves.
+    pub character: String,
+    /// What is done; clips of one motion by several characters show the same content.
+    pub motion: String,
+    /// Key points frame by frame, x right and y down, in any one unit for all clips of the character.
+    pub postures: Vec<Posture>,
+    /// How sure each key point is: a standard deviation in the unit of the points, frame by frame. Empty where not known.
+    pub deviation: Vec<[f64; skeleton::COUNT]>,
+}
+
+impl Clip {
+    /// A clip of known postures.
+    pub fn new(character: impl Into<String>, motion: impl Into<String>, postures: Vec<Posture>) -> Self {
+        Self { character: character.into(), motion: motion.into(), postures, deviation: Vec::new() }
+    }
+
+    /// The same motion told in `frames` frames from its first to its last, straight between neighbouring postures.
+    pub fn resampled(&self, frames: usize) -> Vec<Posture> {
+        resample(&self.postures, frames)
+    }
+}
+
+/// A list of postures in `frames` frames, first and last kept; as it is where it has that many.
+pub fn resample(postures: &[Posture], frames: usize) -> Vec<Posture> {
+    let Some(last) = postures.len().checked_sub(1) else { return Vec::new() };
+    if postures.len() == frames {
+        return postures.to_vec();
+    }
+    let step = last as f64 / frames.saturating_sub(1).max(1) as f64;
+    (0..frames).map(|frame| between(postures, frame as f64 * step)).collect()
+}
+
+/// The posture at a time between frames; the first or last beyond them.
+pub fn between(postures: &[Posture], time: f64) -> Posture {
+    let last = postures.len() - 1;
+    let time = time.clamp(0.0, last as f64);
+    let before = (time.floor() as usize).min(last);
+    let after = (before + 1).min(last);
+    let part = time - before as f64;
+    std::array::from_fn(|k| {
+        let (a, b): (Point, Point) = (postures[before][k], postures[after][k]);
+        if part == 0.0 { a } else { a.lerp(b, part) }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f64) -> Posture {
+        [Point::new(x, 0.0); skeleton::COUNT]
+    }
+
+    #[test]
+    fn resampling_keeps_ends_and_goes_straight_between() {
+        let clip = Clip::new("a", "walk", vec![at(0.0), at(2.0), at(4.0)]);
+        assert_eq!(clip.resampled(5), vec![at(0.0), at(1.0), at(2.0), at(3.0), at(4.0)]);
+        assert_eq!(clip.resampled(3), clip.postures);
+        assert_eq!(clip.resampled(1), vec![at(0.0)]);
+        assert_eq!(resample(&[at(3.0)], 2), vec![at(3.0), at(3.0)]);
+    }
+}
