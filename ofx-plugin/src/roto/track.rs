@@ -47,7 +47,7 @@ pub fn track(effect: &Effect, time: f64) -> Result<(), Failure> {
     }
     let known = shared("preset").0;
     let preset = known.get(parameters.int(c"preset", time)?.max(0) as usize).and_then(|(id, _)| Preset::from_id(id));
-    let options = TrackOptions { preset: preset.unwrap_or_default() };
+    let options = TrackOptions { preset: preset.unwrap_or_default(), ..TrackOptions::default() };
     let tracking = run(effect, source, offset, &scene, options)?;
     let mut document = Document::clone(&document);
     merge(&mut document.scene, tracking, &range);
