@@ -19,8 +19,6 @@ pub enum Mechanism {
     Hiding,
     /// Parts that hang together stay together, and lead each other.
     Joints,
-    /// Slender parts are tried in other bends than the keys show.
-    Bends,
     /// Parts are soft where the keys bend them.
     Stiffness,
     /// Samples outside the part cost little where the ground has changed.
@@ -33,14 +31,13 @@ pub enum Mechanism {
 
 impl Mechanism {
     /// Every mechanism with its id on the command line of the benchmark.
-    pub const ALL: [(Self, &str); 11] = [
+    pub const ALL: [(Self, &str); 10] = [
         (Self::Flow, "flow"),
         (Self::Search, "search"),
         (Self::Sweep, "sweep"),
         (Self::JointChoice, "joint-choice"),
         (Self::Hiding, "hiding"),
         (Self::Joints, "joints"),
-        (Self::Bends, "bends"),
         (Self::Stiffness, "stiffness"),
         (Self::FigureAndGround, "figure-and-ground"),
         (Self::Blending, "blending"),

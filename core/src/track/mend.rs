@@ -1,8 +1,8 @@
 //! More hypotheses, once all parts have chosen together.
 //!
 //! What the joint choice found on one drawing is worth trying on its neighbours, as in [`super::pool`]. And where a part
-//! is in doubt, but the part that it hangs on is not, its joint is known: the part is tried in all directions about it,
-//! in the shapes of both keys and, if it is slender, in other bends. That finds limbs that swung too far or bent too much for the chains, in places that the search over the whole picture
+//! is in doubt, but the part that it hangs on is not, its joint is known: the part is tried in all directions about it.
+//! That finds limbs that swung too far or bent too much for the chains, in places that the search over the whole picture
 //! finds too poor.
 
 use super::TrackError;
@@ -58,7 +58,7 @@ fn led(stage: &Stage, pools: &Pools, last: usize, leads: &[Lead]) -> Result<Pool
 fn about(stage: &Stage, d: usize, model: usize, lead: &Lead, place: Point) -> Vec<Hypothesis> {
     let (own, scenery) = (&stage.models[model], stage.scenery(model, d));
     let mut starts: Vec<Pose> = Vec::new();
-    for shape in [&own.texture.mesh.rest, &own.bent].into_iter().chain(&own.bends) {
+    for shape in [&own.texture.mesh.rest, &own.bent] {
         let pivot = lead.bindings[model].at(shape);
         for degrees in (0..360).step_by(TURN_STEP) {
             let turn = Point::from_angle((degrees as f64).to_radians());

@@ -33,8 +33,6 @@ pub struct Model {
     pub there: Vec<Point>,
     /// The lattice in the shape of the other key, where the part would be if it only bent.
     pub bent: Vec<Point>,
-    /// A slender part's lattice in bends that neither key shows.
-    pub bends: Vec<Vec<Point>>,
 }
 
 /// A drawing that poses are looked for on.

@@ -6,7 +6,6 @@ use super::features::{Features, working_scale};
 use super::job::{Correction, Job};
 use super::lattice::align::{Aligner, settle};
 use super::lattice::anchors::Anchors;
-use super::lattice::bend::bends;
 use super::lattice::mesh::Mesh;
 use super::lattice::shape;
 use super::lattice::texture::{Cover, Texture};
@@ -181,7 +180,6 @@ fn model(job: &Job, key: usize, features: &Features, (scale, width): (f64, f64),
     let bent = settle(&mesh, &mesh.rest, &anchors);
     let back = motion.inverse();
     let there = bent.iter().map(|&p| back.apply(p)).collect();
-    let bends = if mechanisms.has(Mechanism::Bends) { bends(&mesh) } else { Vec::new() };
     if mechanisms.has(Mechanism::Stiffness) {
         shape::learn_stiffness(&mut mesh, &bent);
     }
@@ -189,5 +187,5 @@ fn model(job: &Job, key: usize, features: &Features, (scale, width): (f64, f64),
     if !mechanisms.has(Mechanism::FigureAndGround) {
         texture.forget_figure();
     }
-    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent, bends }
+    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent }
 }

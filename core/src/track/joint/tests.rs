@@ -31,7 +31,7 @@ fn model(shape: &[Point], there: (f64, Point)) -> Model {
     let cover = Cover::none(540.0);
     let texture = Texture::new(mesh, &paper, &cover, 540.0);
     let there = turned(&rest, there.0, there.1);
-    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent: rest, bends: Vec::new() }
+    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent: rest }
 }
 
 fn hypothesis(model: &Model, degrees: f64, to: Point, look: f32) -> Hypothesis {

@@ -4,13 +4,11 @@
 //! - [`shape`]: how much a lattice is bent
 //! - [`anchors`]: places that the artist fixed
 //! - [`equations`]: linear equations of the nodes under those constraints
-//! - [`bend`]: other bends of slender parts
 //! - [`texture`]: colours of the key on the lattice, and how well a pose explains a picture
 //! - [`align`]: the pose that explains a picture best, by Gauss–Newton
 
 pub mod align;
 pub mod anchors;
-pub mod bend;
 pub mod equations;
 pub mod mesh;
 pub mod shape;
