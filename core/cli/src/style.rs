@@ -1,14 +1,16 @@
 //! `rototoon style`: skeleton clips, and a motion re-made in another character's manner.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, line};
 use crate::{arguments, progress};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::project::clips::{Clips, load_key_poses};
+use rototoon::project::library::Library;
 use rototoon::project::output::check_writable;
 use rototoon::scene::parameters::Stage;
 use rototoon::style::{KeyPose, Options, Pace, Preset, Request, translate};
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
 /// The subcommand.
 pub fn command() -> Command {
@@ -17,12 +19,14 @@ pub fn command() -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommand(translate_command())
+        .subcommand(library_command())
 }
 
 /// Runs it.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     match given.subcommand() {
         Some(("translate", given)) => run_translate(given),
+        Some(("library", given)) => run_library(given),
         _ => Err(Failure::Use("expected a subcommand of style".into())),
     }
 }
@@ -53,7 +57,7 @@ fn translate_command() -> Command {
         .arg(
             Arg::new("clips")
                 .value_name("CLIPS")
-                .help("The clips to learn from")
+                .help("The clips to learn from: a file of clips, or the folder of a library")
                 .required(true)
                 .value_parser(value_parser!(PathBuf)),
         )
@@ -97,7 +101,7 @@ fn run_translate(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "clips"), arguments::path(given, "output"));
     let text = |id: &str| arguments::choice(given, id);
     let other = |error: &dyn std::fmt::Display| Failure::Other(error.to_string());
-    let clips = Clips::load(from).map_err(|e| other(&e))?;
+    let clips = load(from)?;
     let keys = match given.get_one::<PathBuf>("key_pose") {
         Some(path) => load_key_poses(path).map_err(|e| other(&e))?,
         None => Vec::new(),
@@ -117,4 +121,69 @@ fn run_translate(given: &ArgMatches) -> Result<(), Failure> {
         translate(&clips.clips, &request, &options).map_err(|e| Failure::Other(format!("{}: {e}", from.display())))
     })?;
     Ok(Clips { clips: vec![clip], fps: clips.fps }.save(to)?)
+}
+
+/// Clips of a file, or of a library as far as it can be used.
+fn load(from: &Path) -> Result<Clips, Failure> {
+    if !from.is_dir() {
+        return Clips::load(from).map_err(|e| Failure::Other(e.to_string()));
+    }
+    let library = Library::open(from);
+    let (clips, troubles) = library.read(library.entries().iter());
+    library.troubles().iter().chain(&troubles).for_each(|trouble| line("warning", &trouble.to_string()));
+    let fps = library.entries().first().map_or(25.0, |entry| entry.fps);
+    Ok(Clips { clips, fps })
+}
+
+fn library_command() -> Command {
+    let folder = || {
+        Arg::new("folder")
+            .value_name("FOLDER")
+            .help("The library's folder")
+            .required(true)
+            .value_parser(value_parser!(PathBuf))
+    };
+    let word =
+        |id: &'static str, help: &'static str| Arg::new(id).long(id).value_name("WORD").help(help).default_value("");
+    let add = Command::new("add")
+        .about("Adds the clips of a file; those of the same character and motion are replaced")
+        .arg(folder())
+        .arg(
+            Arg::new("clips").value_name("CLIPS").help("The clips").required(true).value_parser(value_parser!(PathBuf)),
+        )
+        .arg(word("source", "Where the clips come from"));
+    let list = Command::new("list")
+        .about("Lists clips: character, motion, frames, frames a second, file, source")
+        .arg(folder())
+        .arg(word("character", "Only characters whose names hold this"))
+        .arg(word("motion", "Only motions whose names hold this"));
+    Command::new("library")
+        .about("A folder of clips with an index")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommands([add, list])
+}
+
+fn run_library(given: &ArgMatches) -> Result<(), Failure> {
+    let Some((what, given)) = given.subcommand() else { return Err(Failure::Use("expected add or list".into())) };
+    let mut library = Library::open(arguments::path(given, "folder"));
+    library.troubles().iter().for_each(|trouble| line("warning", &trouble.to_string()));
+    if what == "add" {
+        let from = arguments::path(given, "clips");
+        let read = Clips::load(from).map_err(|e| Failure::Other(e.to_string()))?;
+        for clip in &read.clips {
+            library.add(clip, read.fps, arguments::choice(given, "source"))?;
+        }
+        return Ok(());
+    }
+    let mut out = std::io::stdout().lock();
+    let found = library.search(arguments::choice(given, "character"), arguments::choice(given, "motion"));
+    for e in found {
+        // A reader that has gone away is no failure.
+        let fields = format!("{}\t{}\t{}\t{}\t{}\t{}", e.character, e.motion, e.frames, e.fps, e.file, e.source);
+        if writeln!(out, "{fields}").is_err() {
+            break;
+        }
+    }
+    Ok(())
 }

@@ -78,3 +78,23 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
     assert!(said("{\"rototoon_clips\": 9}", &["--style", "old"]).contains("found version 9, expected 1 or less"));
     assert_eq!(translate(folder.path(), &[]).status.code(), Some(2));
 }
+
+#[test]
+fn a_library_is_filled_listed_and_learned_from() {
+    let folder = tempfile::tempdir().unwrap();
+    let (clips, shelf) = (folder.path().join("clips.json"), folder.path().join("shelf"));
+    std::fs::write(&clips, library().to_string()).unwrap();
+    let (from, to) = (clips.to_str().unwrap(), shelf.to_str().unwrap());
+    assert!(rototoon(&["style", "library", "add", to, from, "--source", "shot 3"]).status.success());
+    std::fs::write(shelf.join("shy-bow.clip.json"), "{").unwrap();
+    let listed = rototoon(&["style", "library", "list", to, "--character", "ol"]);
+    let lines = String::from_utf8(listed.stdout).unwrap();
+    assert_eq!(lines.lines().count(), 3);
+    assert!(lines.contains("old\tbow\t8\t12\told-bow.clip.json\tshot 3"), "{lines}");
+    let out = folder.path().join("out.json");
+    let request = ["style", "translate", to, "--style", "old", "--motion", "run", "--content", "plain"];
+    let made = rototoon(&[&request[..], &["-o", out.to_str().unwrap()]].concat());
+    assert!(made.status.success());
+    assert!(String::from_utf8_lossy(&made.stderr).contains("warning: "));
+    assert!(out.exists());
+}

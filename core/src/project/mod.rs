@@ -3,6 +3,7 @@
 //! - [`schema`]: names, order and limits of the fields
 //! - [`problem`]: what is wrong with a document, and where
 //! - [`shape`]: reading JSON that may hold anything
+//! - [`library`]: a folder of skeleton clips with an index
 //! - [`load`], [`save`]: documents from and to files
 //! - [`validate`]: what a document must hold beyond being well-formed
 //! - [`drawings`]: drawings on key frames, pairs, pegs and in-betweens
@@ -15,6 +16,7 @@
 pub mod clips;
 pub mod curves;
 pub mod drawings;
+pub mod library;
 pub mod load;
 pub mod output;
 pub mod problem;
