@@ -374,12 +374,13 @@ fn remodel(v: &mut Mat<f64>, directions: Option<usize>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     /// Postures of a smooth family, without negative entries.
     fn postures(n: usize, d: usize) -> Mat<f64> {
         Mat::from_fn(n, d, |i, j| {
             let (t, s) = (i as f64 / n as f64, j as f64);
-            2.5 + (6.28 * t + 0.4 * s).sin() + 0.6 * (12.56 * t * (1.0 + s / d as f64)).cos()
+            2.5 + (TAU * t + 0.4 * s).sin() + 0.6 * (2.0 * TAU * t * (1.0 + s / d as f64)).cos()
         })
     }
 
