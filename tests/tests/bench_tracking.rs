@@ -90,8 +90,8 @@ fn what_is_left_out_is_left_out_and_said() {
     let folder = tempfile::tempdir().unwrap();
     SMALL.write(&folder.path().join("set")).unwrap();
     let whole = outcome(folder.path(), "rototoon", &["--no-edits"]);
-    let lessened = outcome(folder.path(), "rototoon", &["--no-edits", "--without", "refinement"]);
-    assert_eq!(lessened.preset, "rototoon without refinement");
+    let lessened = outcome(folder.path(), "rototoon", &["--no-edits", "--without", "blending"]);
+    assert_eq!(lessened.preset, "rototoon without blending");
     assert_ne!(lessened.frames, whole.frames, "it makes a difference");
     let set = folder.path().join("set");
     let arguments = ["run", set.to_str().unwrap(), "--set", "limbs", "--out", "none", "--no-edits", "--preset"];
