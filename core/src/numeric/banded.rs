@@ -7,7 +7,7 @@
 //! full. [`BLOCK`] rows are finished before the rows below them are touched, which then are read and written once instead
 //! of [`BLOCK`] times.
 
-use super::vector::vectorised;
+use super::vector::{dot, vectorised};
 
 /// Rows that are finished together.
 const BLOCK: usize = 4;
@@ -177,20 +177,6 @@ impl BandCholesky {
             b[i] = (b[i] - dot(&row[1..], &b[i + 1..i + row.len()])) / row[0];
         }
     }
-}
-
-/// Inner product in four interleaved sums: a fixed order, and the compiler can keep them in one register.
-#[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in a4.zip(b4) {
-        for k in 0..4 {
-            sums[k] += x[k] * y[k];
-        }
-    }
-    (sums[0] + sums[2]) + (sums[1] + sums[3]) + rest
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 //! A = LLᵀ by the row-oriented Cholesky algorithm (Golub & Van Loan, *Matrix Computations*, §4.2): the inner loops are dot
 //! products of rows. Always on the calling thread and in one order, so results do not depend on the number of threads.
 
+use super::vector::dot;
+
 /// The lower factor L of a symmetric positive definite matrix.
 #[derive(Clone, Debug)]
 pub struct DenseCholesky {
@@ -62,19 +64,6 @@ impl DenseCholesky {
         self.solve(&mut inverse, n);
         inverse
     }
-}
-
-/// a · b, in an order that lets four sums run side by side.
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in a4.zip(b4) {
-        for k in 0..4 {
-            sums[k] += x[k] * y[k];
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 fn subtract(from: &mut [f64], factor: f64, what: &[f64]) {

@@ -26,7 +26,8 @@ use super::basis::{Axes, COSINES, MODEL_FRAMES, cosines};
 use super::grid::{Grid, Row, WIDTH, mean};
 use super::kernels::{Kernels, Weights};
 use super::key_pose::{Errors, condition, deviation};
-use crate::numeric::dense::{DenseCholesky, dot};
+use crate::numeric::dense::DenseCholesky;
+use crate::numeric::vector::dot;
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 /// c.
