@@ -54,9 +54,10 @@ pub(super) fn extend(stage: &Stage, plain: &[Drawing], pools: &Pools) -> Result<
             Ok(pool)
         })
         .collect::<Result<_, TrackError>>()?;
-    let sources: Vec<usize> = (1..last).filter(|&d| stage.corrected(d)).collect();
-    let more: Vec<Vec<(usize, Hypothesis)>> =
-        sources.into_par_iter().map(|d| carried_on(stage, &extended, d)).collect::<Result<_, TrackError>>()?;
+    let sources = (1..last).filter(|&d| stage.corrected(d));
+    let ways: Vec<(usize, isize)> = sources.flat_map(|d| [(d, -1), (d, 1)]).collect();
+    let carried = |&(source, step): &(usize, isize)| carried_on(stage, &extended, source, step);
+    let more: Vec<Vec<(usize, Hypothesis)>> = ways.par_iter().map(carried).collect::<Result<_, TrackError>>()?;
     for (d, new) in more.into_iter().flatten() {
         if is_new(&extended[d], &new) {
             extended[d].push(new);
@@ -68,48 +69,51 @@ pub(super) fn extend(stage: &Stage, plain: &[Drawing], pools: &Pools) -> Result<
 /// The hypotheses of a corrected drawing, made to obey.
 fn constrained(stage: &Stage, d: usize, pool: &[Hypothesis]) -> Result<Vec<Hypothesis>, TrackError> {
     stage.kit.progress.report("Tracking", 0.0)?;
+    let by_model: Vec<Vec<Hypothesis>> = [0, 1].par_iter().map(|&model| obeying(stage, d, model, pool)).collect();
     let mut found: Vec<Hypothesis> = Vec::new();
-    for model in 0..2 {
-        let scenery = stage.scenery(model, d);
-        let settler = stage.models[model].settler(&scenery);
-        let own: Vec<&Hypothesis> = pool.iter().filter(|h| h.model == model).collect();
-        let from = |h: &&Hypothesis| {
-            let turned = TURNS.iter().map(|degrees| scenery.anchors.turned(&h.pose.nodes, degrees.to_radians()));
-            let settled = std::iter::once(h.pose.nodes.clone())
-                .chain(turned)
-                .map(|start| stage.models[model].measured(&scenery, settler.settle(&start)));
-            std::iter::once(stage.models[model].drawn(&scenery, &h.pose.nodes, &h.differences))
-                .chain(settled)
-                .collect::<Vec<Pose>>()
-        };
-        let mut starts: Vec<Pose> = own.par_iter().flat_map_iter(from).collect();
-        starts.sort_by(|a, b| a.energy.total_cmp(&b.energy));
-        let mut kept: Vec<Hypothesis> = Vec::new();
-        for start in starts {
-            let start = hypothesis(stage, d, model, start, None);
-            if kept.iter().all(|h| h.distance(&start) > 4.0) {
-                kept.push(start);
-            }
-            if kept.len() == KEPT {
-                break;
-            }
-        }
-        let aligned = |start: &Hypothesis| {
-            let pose = stage.models[model].realigned(&scenery, &start.pose.nodes);
-            let free = (stage.center_reach[d] > 0.0).then(|| freed(stage, d, model, &pose.nodes)).flatten();
-            if let Some(free) = free.filter(|free| free.pose.energy < pose.energy) {
-                return free;
-            }
-            hypothesis(stage, d, model, pose, None)
-        };
-        let aligned: Vec<Hypothesis> = kept.par_iter().map(aligned).collect();
-        for new in aligned {
-            if is_new(&found, &new) {
-                found.push(new);
-            }
+    for new in by_model.into_iter().flatten() {
+        if is_new(&found, &new) {
+            found.push(new);
         }
     }
     Ok(found)
+}
+
+/// Those of one model, the best few starts aligned.
+fn obeying(stage: &Stage, d: usize, model: usize, pool: &[Hypothesis]) -> Vec<Hypothesis> {
+    let scenery = stage.scenery(model, d);
+    let settler = stage.models[model].settler(&scenery);
+    let own: Vec<&Hypothesis> = pool.iter().filter(|h| h.model == model).collect();
+    let from = |h: &&Hypothesis| {
+        let turned = TURNS.iter().map(|degrees| scenery.anchors.turned(&h.pose.nodes, degrees.to_radians()));
+        let settled = std::iter::once(h.pose.nodes.clone())
+            .chain(turned)
+            .map(|start| stage.models[model].measured(&scenery, settler.settle(&start)));
+        std::iter::once(stage.models[model].drawn(&scenery, &h.pose.nodes, &h.differences))
+            .chain(settled)
+            .collect::<Vec<Pose>>()
+    };
+    let mut starts: Vec<Pose> = own.par_iter().flat_map_iter(from).collect();
+    starts.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+    let mut kept: Vec<Hypothesis> = Vec::new();
+    for start in starts {
+        let start = hypothesis(stage, d, model, start, None);
+        if kept.iter().all(|h| h.distance(&start) > 4.0) {
+            kept.push(start);
+        }
+        if kept.len() == KEPT {
+            break;
+        }
+    }
+    let aligned = |start: &Hypothesis| {
+        let pose = stage.models[model].realigned(&scenery, &start.pose.nodes);
+        let free = (stage.center_reach[d] > 0.0).then(|| freed(stage, d, model, &pose.nodes)).flatten();
+        if let Some(free) = free.filter(|free| free.pose.energy < pose.energy) {
+            return free;
+        }
+        hypothesis(stage, d, model, pose, None)
+    };
+    kept.par_iter().map(aligned).collect()
 }
 
 /// A pose aligned to what is seen, with pins alone. None where that takes the part further from its centre than
@@ -119,31 +123,34 @@ pub(super) fn freed(stage: &Stage, d: usize, model: usize, nodes: &[Point]) -> O
     Some(hypothesis(stage, d, model, pose, None)).filter(|free| stage.near_center(d, &free.points))
 }
 
-/// What the best hypotheses of a corrected drawing become on the drawings around it.
-fn carried_on(stage: &Stage, pools: &Pools, source: usize) -> Result<Vec<(usize, Hypothesis)>, TrackError> {
+/// What the best hypotheses of a corrected drawing become on the drawings to one side of it.
+fn carried_on(
+    stage: &Stage,
+    pools: &Pools,
+    source: usize,
+    step: isize,
+) -> Result<Vec<(usize, Hypothesis)>, TrackError> {
     let mut order: Vec<&Hypothesis> = pools[source].iter().collect();
     order.sort_by(|a, b| a.pose.energy.total_cmp(&b.pose.energy));
     let last = pools.len() - 1;
     let mut found: Vec<(usize, Hypothesis)> = Vec::new();
     for start in order.into_iter().take(CARRIED) {
-        for step in [-1isize, 1] {
-            let (mut from, mut nodes) = (source, start.pose.nodes.clone());
-            let mut moved: Option<Vec<Point>> = None;
-            loop {
-                let to = from.wrapping_add_signed(step);
-                if to == 0 || to >= last || stage.corrected(to) {
-                    break;
-                }
-                let pose = stage.carry(start.model, &nodes, moved.as_deref(), from, to)?;
-                let new = hypothesis(stage, to, start.model, pose, None);
-                let known = |d: usize, h: &Hypothesis| d == to && h.model == new.model && h.distance(&new) <= 1.0;
-                if !is_new(&pools[to], &new) || found.iter().any(|(d, h)| known(*d, h)) {
-                    break;
-                }
-                moved = Some(new.pose.nodes.iter().zip(&nodes).map(|(a, b)| *a - *b).collect());
-                (from, nodes) = (to, new.pose.nodes.clone());
-                found.push((to, new));
+        let (mut from, mut nodes) = (source, start.pose.nodes.clone());
+        let mut moved: Option<Vec<Point>> = None;
+        loop {
+            let to = from.wrapping_add_signed(step);
+            if to == 0 || to >= last || stage.corrected(to) {
+                break;
             }
+            let pose = stage.carry(start.model, &nodes, moved.as_deref(), from, to)?;
+            let new = hypothesis(stage, to, start.model, pose, None);
+            let known = |d: usize, h: &Hypothesis| d == to && h.model == new.model && h.distance(&new) <= 1.0;
+            if !is_new(&pools[to], &new) || found.iter().any(|(d, h)| known(*d, h)) {
+                break;
+            }
+            moved = Some(new.pose.nodes.iter().zip(&nodes).map(|(a, b)| *a - *b).collect());
+            (from, nodes) = (to, new.pose.nodes.clone());
+            found.push((to, new));
         }
     }
     Ok(found)

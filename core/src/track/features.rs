@@ -169,7 +169,9 @@ fn quantised(rows: &[&[Colour]; 3], columns: [usize; 3]) -> [i16; 12] {
             1 => scharr(value),
             _ => scharr(|along, across| value(across, along)),
         };
-        (read * UNIT).round().clamp(-UNIT, UNIT) as i16
+        // Rounded half away from zero; `round` itself would be a call for each value.
+        let scaled = read * UNIT;
+        (scaled + 0.5f32.copysign(scaled)) as i16
     })
 }
 

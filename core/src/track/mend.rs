@@ -7,8 +7,9 @@
 
 use super::TrackError;
 use super::joint::tie::Lead;
-use super::pool::{Hypothesis, Pools, hypothesis, is_new, swept};
+use super::pool::{Carried, Hypothesis, Pools, hypothesis, is_new, swept};
 use super::propagate::Pose;
+use super::rototoon::Pooled;
 use super::stage::Stage;
 use crate::geometry::Point;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
@@ -20,11 +21,13 @@ const KEPT: usize = 3;
 /// Mean distance (working pixels) of two starts that are one.
 const SAME_PLACE: f64 = 6.0;
 
-/// The pools of a stage with what is added by its chosen path and by the parts it hangs on.
-pub(super) fn mend(stage: &Stage, pools: &Pools, path: &[usize], leads: &[Lead]) -> Result<Pools, TrackError> {
+/// The pools of a source with what is added by its chosen path and by the parts it hangs on.
+pub(super) fn mend(stage: &Stage, source: &Pooled, path: &[usize], leads: &[Lead]) -> Result<Pools, TrackError> {
+    let pools = &source.pools;
     let last = pools.len() - 1;
-    let mut extended = pools.clone();
-    for hypotheses in [swept(stage, pools, path, true)?, led(stage, pools, last, leads)?] {
+    let mut extended = Pools::clone(pools);
+    let mut carried = Carried::clone(&source.carried);
+    for hypotheses in [swept(stage, pools, path, true, &mut carried)?, led(stage, pools, last, leads)?] {
         for (pool, more) in extended.iter_mut().zip(hypotheses) {
             for new in more {
                 if is_new(pool, &new) {

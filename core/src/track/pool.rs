@@ -13,6 +13,7 @@ use super::select::{Candidate, Smoothness, best_path};
 use super::stage::Stage;
 use crate::geometry::Point;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use std::collections::BTreeMap;
 
 /// Mean distance of the chains' control points (working pixels) from which on both models are searched for.
 const DISAGREEMENT: f64 = 4.0;
@@ -62,13 +63,18 @@ impl Hypothesis {
     }
 }
 
-/// The hypotheses of all drawings and the index of the chosen one on each.
-pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>), TrackError> {
+/// What came of carrying a hypothesis to a neighbouring drawing: by that drawing, the hypothesis' index, and whether time
+/// went forwards. Pools only grow, so that what was carried once is not carried again.
+pub(super) type Carried = BTreeMap<(usize, usize, bool), Hypothesis>;
+
+/// The hypotheses of all drawings, the index of the chosen one on each, and what was carried on the way.
+pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>, Carried), TrackError> {
     let mut pools = chains(stage)?;
     let found: Vec<Vec<Hypothesis>> = searched(stage, &pools)?;
     pools.iter_mut().zip(found).for_each(|(pool, more)| pool.extend(more));
     let path = choose(stage, &pools);
-    let more = swept(stage, &pools, &path, false)?;
+    let mut carried = Carried::new();
+    let more = swept(stage, &pools, &path, false, &mut carried)?;
     for (pool, more) in pools.iter_mut().zip(more) {
         for new in more {
             if is_new(pool, &new) {
@@ -77,20 +83,28 @@ pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>), TrackError> {
         }
     }
     let path = choose(stage, &pools);
-    Ok((pools, path))
+    Ok((pools, path, carried))
 }
 
 /// What comes of carrying the chosen hypotheses to their neighbours, both ways: to all of them, or to those where the
 /// chosen one is not confirmed by the other key. (What other parts say may speak against what both keys say.)
-pub(super) fn swept(stage: &Stage, pools: &Pools, path: &[usize], all: bool) -> Result<Pools, TrackError> {
+pub(super) fn swept(
+    stage: &Stage,
+    pools: &Pools,
+    path: &[usize],
+    all: bool,
+    carried: &mut Carried,
+) -> Result<Pools, TrackError> {
     if !stage.kit.mechanisms.has(Mechanism::Sweep) {
         return Ok(vec![Vec::new(); pools.len()]);
     }
     let wanted = |d: usize| !stage.corrected(d) && (all || !confirmed(&pools[d], path[d]));
     let wanted: Vec<bool> = (0..pools.len()).map(wanted).collect();
-    let sweep = |forwards: bool| sweep(stage, pools, path, (&wanted, forwards));
+    let sweep = |forwards: bool| sweep(stage, pools, path, carried, (&wanted, forwards));
     let (forwards, backwards) = rayon::join(|| sweep(true), || sweep(false));
-    Ok(forwards?.into_iter().zip(backwards?).map(|(a, b)| a.into_iter().chain(b).collect()).collect())
+    let (forwards, backwards) = (forwards?, backwards?);
+    carried.extend(forwards.1.into_iter().chain(backwards.1));
+    Ok(forwards.0.into_iter().zip(backwards.0).map(|(a, b)| a.into_iter().chain(b).collect()).collect())
 }
 
 /// A pose on a drawing as a hypothesis of its pool.
@@ -182,38 +196,50 @@ fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
         .collect()
 }
 
-/// Carries the chosen poses to the next drawing (or the one before) where that is wanted, and what comes of it further while it is better
-/// than what was chosen there.
+/// New hypotheses of the drawings, and all that was carried.
+type Swept = (Vec<Option<Hypothesis>>, Carried);
+
+/// Carries the chosen poses to the next drawing (or the one before) where that is wanted, and what comes of it further
+/// while it is better than what was chosen there. `known` is what was carried before.
 fn sweep(
     stage: &Stage,
     pools: &Pools,
     path: &[usize],
+    known: &Carried,
     (wanted, forwards): (&[bool], bool),
-) -> Result<Vec<Option<Hypothesis>>, TrackError> {
+) -> Result<Swept, TrackError> {
     let last = pools.len() - 1;
     let mut found: Vec<Option<Hypothesis>> = vec![None; pools.len()];
-    let mut carried: Option<Hypothesis> = None;
+    let mut all = Carried::new();
+    let mut better: Option<Hypothesis> = None;
     for step in 1..last {
         let (to, from) = if forwards { (step, step - 1) } else { (last - step, last - step + 1) };
         if from == 0 || from == last || !wanted[to] {
-            carried = None;
+            better = None;
             continue;
         }
         let origin = Some((path[from], forwards));
-        let (source, fresh) = match &carried {
-            Some(better) => (better, true),
-            None => (&pools[from][path[from]], false),
-        };
-        if !fresh && pools[to].iter().any(|h| h.origin == origin) {
+        if better.is_none() && pools[to].iter().any(|h| h.origin == origin) {
             continue;
         }
-        let pose = stage.carry(source.model, &source.pose.nodes, None, from, to)?;
-        let new = hypothesis(stage, to, source.model, pose, if fresh { None } else { origin });
-        let better = new.pose.energy < pools[to][path[to]].pose.energy;
+        let carry = |source: &Hypothesis, origin: Option<(usize, bool)>| {
+            let pose = stage.carry(source.model, &source.pose.nodes, None, from, to)?;
+            Ok::<_, TrackError>(hypothesis(stage, to, source.model, pose, origin))
+        };
+        let new = match &better {
+            Some(source) => carry(source, None)?,
+            None => {
+                let place = (to, path[from], forwards);
+                let new =
+                    known.get(&place).map_or_else(|| carry(&pools[from][path[from]], origin), |h| Ok(h.clone()))?;
+                all.insert(place, new.clone());
+                new
+            }
+        };
         found[to] = is_new(&pools[to], &new).then(|| new.clone());
-        carried = better.then_some(new);
+        better = (new.pose.energy < pools[to][path[to]].pose.energy).then_some(new);
     }
-    Ok(found)
+    Ok((found, all))
 }
 
 /// Whether the other key's model says the same as a hypothesis.

@@ -18,6 +18,8 @@ const LEAST_FLOW_WEIGHT: f64 = 0.3;
 
 /// Colour difference at which a sample no longer says that its place is right.
 const FITS: f32 = 0.01;
+/// Mean distance of the nodes (working pixels) of two poses that come to the same when they are aligned further.
+const SAME_POSE: f64 = 1.0;
 /// Weight of a place that is right, beside the lattice's stiffness.
 const HOLD: f64 = 0.3;
 
@@ -68,6 +70,9 @@ impl Model {
             poses.push(self.measured(scenery, start));
         }
         poses.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+        if poses.get(1).is_some_and(|second| mean_distance(&second.nodes, &poses[0].nodes) < SAME_POSE) {
+            poses.truncate(1);
+        }
         poses.truncate(2);
         let polished = poses.iter().map(|pose| {
             let nodes = self.aligner.align(&self.texture, target, &pose.nodes, &[1]);
@@ -106,7 +111,11 @@ impl Model {
 
     /// A pose aligned on all levels.
     pub fn realigned(&self, scenery: &Scenery, start: &[Point]) -> Pose {
-        let coarse = self.aligner.align(&self.texture, scenery.target(), start, &[0, 1, 2]);
+        let first = self.aligner.align(&self.texture, scenery.target(), start, &[0]);
+        let coarse = self.aligner.align(&self.texture, scenery.target(), &first, &[1, 2]);
+        if mean_distance(&first, start) < SAME_POSE {
+            return self.measured(scenery, coarse);
+        }
         let fine = self.aligner.align(&self.texture, scenery.target(), start, &[1, 2]);
         let (coarse, fine) = (self.measured(scenery, coarse), self.measured(scenery, fine));
         if coarse.energy < fine.energy { coarse } else { fine }
@@ -189,6 +198,11 @@ impl Scenery<'_> {
     pub fn target(&self) -> Target<'_> {
         Target { picture: self.features, cover: self.cover, anchors: self.anchors }
     }
+}
+
+/// Mean distance of the nodes of two poses.
+fn mean_distance(a: &[Point], b: &[Point]) -> f64 {
+    a.iter().zip(b).map(|(p, q)| p.distance(*q)).sum::<f64>() / a.len().max(1) as f64
 }
 
 /// Median along each axis.

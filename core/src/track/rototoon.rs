@@ -26,7 +26,7 @@ use super::joint::{self, Contender};
 use super::mechanisms::{Mechanism, Mechanisms};
 use super::mend::mend;
 use super::outward::{self, plan::Portion};
-use super::pool::{self, Pools};
+use super::pool::{self, Carried, Pools};
 use super::propagate::Model;
 use super::stage::{Kit, Stage};
 use super::store::Store;
@@ -70,6 +70,8 @@ pub(super) struct Pooled {
     pub drawings: Vec<Drawing>,
     pub models: Option<Arc<[Model; 2]>>,
     pub pools: Arc<Pools>,
+    /// What was carried from drawing to drawing when the pools were made.
+    pub carried: Arc<Carried>,
     /// The part's own choice, before others are heard.
     pub path: Vec<usize>,
     pub steps: usize,
@@ -353,17 +355,18 @@ fn plain_pools(kit: Kit, job: Job) -> Result<Pooled, TrackError> {
             drawings,
             models: None,
             pools: Arc::default(),
+            carried: Arc::default(),
             path: Vec::new(),
             steps: 0,
             center_reach: Vec::new(),
         });
     }
     let stage = Stage::set(kit, &job, None)?;
-    let (pools, path) = pool::fill(&stage)?;
+    let (pools, path, carried) = pool::fill(&stage)?;
     let (drawings, models) = (stage.drawings.clone(), Some(stage.models.clone()));
     let (pools, steps) = (Arc::new(pools), stage.steps_done.into_inner());
     let center_reach = vec![0.0; drawings.len()];
-    Ok(Pooled { job, drawings, models, pools, path, steps, center_reach })
+    Ok(Pooled { job, drawings, models, pools, carried: Arc::new(carried), path, steps, center_reach })
 }
 
 fn corrected_pools(kit: Kit, job: &Job, plain: &Pooled) -> Result<Pooled, TrackError> {
@@ -374,19 +377,21 @@ fn corrected_pools(kit: Kit, job: &Job, plain: &Pooled) -> Result<Pooled, TrackE
     let (drawings, models) = (stage.drawings.clone(), Some(stage.models.clone()));
     let (pools, steps) = (Arc::new(pools), stage.steps_done.into_inner());
     let center_reach = stage.center_reach;
-    Ok(Pooled { job: job.clone(), drawings, models, pools, path, steps, center_reach })
+    let (job, carried) = (job.clone(), Arc::default());
+    Ok(Pooled { job, drawings, models, pools, carried, path, steps, center_reach })
 }
 
 fn mended_pools(kit: Kit, source: &Pooled, path: &[usize], leads: &[Lead]) -> Result<Pooled, TrackError> {
     let (drawings, models) = (source.drawings.clone(), source.models.clone());
     let pools = if models.is_some() {
-        Arc::new(mend(&Stage::set(kit, &source.job, models.clone())?, &source.pools, path, leads)?)
+        Arc::new(mend(&Stage::set(kit, &source.job, models.clone())?, source, path, leads)?)
     } else {
         source.pools.clone()
     };
     let Pooled { job, steps, center_reach, .. } = source;
     let (job, path, center_reach) = (job.clone(), path.to_vec(), center_reach.clone());
-    Ok(Pooled { job, drawings, models, pools, path, steps: *steps, center_reach })
+    let carried = Arc::default();
+    Ok(Pooled { job, drawings, models, pools, carried, path, steps: *steps, center_reach })
 }
 
 /// Tasks that share frames between their keys, directly or by others, in the order of time.

@@ -24,12 +24,16 @@ use super::drawings::Drawing;
 use super::pool::Pools;
 use super::propagate::Model;
 use crate::scene::{FrameNumber, Span};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use shadow::{Memory, Shadows};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use tie::Tie;
 
 /// Rounds over all parts and pairs at the most.
 const ROUNDS: usize = 4;
+/// Moves found at once.
+const AT_ONCE: usize = 8;
 
 /// One part over one span, with its hypotheses.
 pub struct Contender<'a> {
@@ -84,26 +88,59 @@ pub fn choose(
         .map(|c| vec![c])
         .chain(pairs.into_iter().filter(|&(far, near)| same(far, near)).map(|(far, near)| vec![far, near]));
     let mut moves: Vec<Move> = moves.map(|who| Move { seen: scene.seen_by(&who), who, tried: None }).collect();
-    let mut clock = 0;
-    let mut changed = vec![0; contenders.len()];
+    let mut changed = Changes { count: 0, last: vec![0; contenders.len()] };
     for _ in 0..ROUNDS {
-        let before = clock;
-        for next in &mut moves {
-            // What a move sees has not changed since it was tried: it would find the same again.
-            if next.tried.is_some_and(|tried| next.seen.iter().all(|&c| changed[c] <= tried)) {
-                continue;
-            }
-            next.tried = Some(clock);
-            if scene.taken(&next.who, &mut paths) {
-                clock += 1;
-                next.who.iter().for_each(|&c| changed[c] = clock);
-            }
-        }
-        if clock == before {
+        let before = changed.count;
+        round(&scene, &mut moves, &mut paths, &mut changed);
+        if changed.count == before {
             break;
         }
     }
     paths
+}
+
+/// Tries all moves in their order. Most gain nothing, so that the next few are found at once; what sees a change that one
+/// of these few has just made is found anew.
+fn round(scene: &cost::Scene, moves: &mut [Move], paths: &mut [Vec<usize>], changed: &mut Changes) {
+    let mut next = 0;
+    while next < moves.len() {
+        let due = |&m: &usize| moves[m].tried.is_none_or(|tried| changed.seen(&moves[m], tried));
+        let few: Vec<usize> = (next..moves.len()).filter(due).take(AT_ONCE).collect();
+        let Some(last) = few.last() else { return };
+        let found = few.par_iter().map(|&m| (m, scene.proposal(&moves[m].who, paths)));
+        let mut found: BTreeMap<usize, _> = found.collect();
+        let (start, end) = (changed.count, last + 1);
+        let stale = (next..end).find(|&m| {
+            let stale = changed.seen(&moves[m], start);
+            if let Some(proposal) = found.remove(&m).filter(|_| !stale) {
+                moves[m].tried = Some(changed.count);
+                proposal.into_iter().for_each(|new| changed.make(new, paths));
+            }
+            stale
+        });
+        next = stale.unwrap_or(end);
+    }
+}
+
+/// When the contenders' paths changed, counted in changes.
+struct Changes {
+    count: usize,
+    last: Vec<usize>,
+}
+
+impl Changes {
+    /// Whether something that a move sees has changed since a moment. If not, it would find the same again.
+    fn seen(&self, by: &Move, since: usize) -> bool {
+        by.seen.iter().any(|&c| self.last[c] > since)
+    }
+
+    fn make(&mut self, new: Vec<(usize, Vec<usize>)>, paths: &mut [Vec<usize>]) {
+        self.count += 1;
+        for (c, path) in new {
+            paths[c] = path;
+            self.last[c] = self.count;
+        }
+    }
 }
 
 /// A move to try: new paths for one contender or for two.

@@ -14,13 +14,15 @@ const STATES: usize = 6;
 const LEAST_GAIN: f64 = 1e-9;
 
 impl Scene<'_> {
-    /// New paths for one contender, or for a far and a near one of the same drawings. Whether they changed.
-    pub fn taken(&self, who: &[usize], paths: &mut Paths) -> bool {
-        match *who {
+    /// New paths of one contender, or of a far and a near one of the same drawings, the others held; none where they
+    /// gain nothing.
+    pub fn proposal(&self, who: &[usize], paths: &Paths) -> Option<Vec<(usize, Vec<usize>)>> {
+        let new = match *who {
             [c] => self.single(c, paths),
             [far, near] => self.pair(far, near, paths),
-            _ => false,
-        }
+            _ => return None,
+        };
+        self.gains(&new, paths).then_some(new)
     }
 
     /// The contenders whose choices a move of some depends on: those that hide them, that they hide, that hide what they
@@ -40,8 +42,8 @@ impl Scene<'_> {
         seen
     }
 
-    /// The best path of one contender, the others held. Whether it changed.
-    fn single(&self, c: usize, paths: &mut Paths) -> bool {
+    /// The best path of one contender, the others held.
+    fn single(&self, c: usize, paths: &Paths) -> Vec<(usize, Vec<usize>)> {
         let pools = self.contenders[c].pools;
         let candidates: Vec<Vec<Candidate>> = (0..pools.len())
             .map(|d| {
@@ -49,12 +51,11 @@ impl Scene<'_> {
                 (0..pools[d].len()).map(of).collect()
             })
             .collect();
-        let path = best_path(&candidates, self.smoothness(c));
-        self.take(&[(c, path)], paths)
+        vec![(c, best_path(&candidates, self.smoothness(c)))]
     }
 
-    /// The best paths of a far and a near contender of the same drawings, the others held. Whether they changed.
-    fn pair(&self, far: usize, near: usize, paths: &mut Paths) -> bool {
+    /// The best paths of a far and a near contender of the same drawings, the others held.
+    fn pair(&self, far: usize, near: usize, paths: &Paths) -> Vec<(usize, Vec<usize>)> {
         let drawings = self.contenders[far].pools.len();
         let states = |c: usize| -> Vec<Vec<usize>> { (0..drawings).map(|d| self.states(c, d, paths)).collect() };
         let states = [states(far), states(near)];
@@ -72,7 +73,7 @@ impl Scene<'_> {
         };
         let best = best_pair(&problem);
         let path = |which: usize| best.iter().enumerate().map(|(d, pair)| states[which][d][pair[which]]).collect();
-        self.take(&[(far, path(0)), (near, path(1))], paths)
+        vec![(far, path(0)), (near, path(1))]
     }
 
     /// Costs of all pairs of states of a far and a near contender on a drawing, the near one's states innermost.
@@ -109,19 +110,14 @@ impl Scene<'_> {
         order
     }
 
-    /// Takes new paths if the energy falls.
-    fn take(&self, new: &[(usize, Vec<usize>)], paths: &mut Paths) -> bool {
+    /// Whether the energy falls with new paths.
+    fn gains(&self, new: &[(usize, Vec<usize>)], paths: &Paths) -> bool {
         if new.iter().all(|(c, path)| paths[*c] == *path) {
             return false;
         }
         let who: Vec<usize> = new.iter().map(|(c, _)| *c).collect();
-        let before = self.energy(&who, paths);
-        let swap = |(c, path): &(usize, Vec<usize>)| std::mem::replace(&mut paths[*c], path.clone());
-        let old: Vec<Vec<usize>> = new.iter().map(swap).collect();
-        if self.energy(&who, paths) < before - LEAST_GAIN {
-            return true;
-        }
-        new.iter().zip(old).for_each(|((c, _), path)| paths[*c] = path);
-        false
+        let mut changed = paths.to_vec();
+        new.iter().for_each(|(c, path)| changed[*c].clone_from(path));
+        self.energy(&who, &changed) < self.energy(&who, paths) - LEAST_GAIN
     }
 }
