@@ -171,6 +171,10 @@ pub enum Picture {
     Overlay(OverlayOptions),
     /// Coverage of the closed parts.
     Matte,
+    /// The same, and in an OpenEXR file the whole coverage of each part as a layer of its own.
+    Layers,
+    /// A colour for each part, nearer ones over farther ones; in an OpenEXR file with Cryptomatte layers.
+    Ids,
 }
 
 /// What to render.
@@ -227,6 +231,8 @@ fn picture(
     let parts = plan.parts.as_deref();
     let bytes = match &job.picture {
         Picture::Matte => render::encode::matte(&render::matte(&document.scene, frame, parts), plan.format),
+        Picture::Layers => render::matte_layers(&document.scene, frame, parts),
+        Picture::Ids => render::id_picture(&document.scene, frame, parts, plan.format),
         Picture::Overlay(options) => {
             let below = sequence.picture(frame)?;
             render::encode::colours(&render::overlay(&document.scene, frame, &below, parts, options), plan.format)
@@ -239,6 +245,9 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
     let footage = &document.scene.footage;
     let format = Format::of(Path::new(&job.output))
         .ok_or_else(|| PipelineError::Request(format!("{}: expected a name that ends in .png or .exr", job.output)))?;
+    if job.picture == Picture::Layers && format != Format::Exr {
+        return Err(PipelineError::Request(format!("{}: layers expect a name that ends in .exr", job.output)));
+    }
     let range = job.frames.clone().unwrap_or(footage.first..=footage.last);
     if range.is_empty() || !(footage.first..=footage.last).contains(range.start()) || *range.end() > footage.last {
         let (first, last) = (range.start(), range.end());
