@@ -8,10 +8,11 @@ mod tween;
 
 pub use tween::{pegs_of, spacing_of, tween};
 
-use crate::export::{SvgOptions, svg};
+use crate::export::{self, SvgOptions, svg};
 use crate::fit::{self, FitError};
 use crate::geometry::Point;
 use crate::image::Sequence;
+use crate::import::{self, ImportError};
 use crate::project::curves::{CurveGuides, Curves};
 use crate::project::save::DECIMALS;
 use crate::project::{Document, Problems, WriteError, output, validate, write_whole};
@@ -290,6 +291,40 @@ fn indices(scene: &Scene, names: &[String]) -> Result<Vec<usize>, PipelineError>
 /// The document as an animated SVG.
 pub fn export_svg(document: &Document, options: &SvgOptions) -> String {
     svg(&document.scene, options)
+}
+
+/// The document as a RotoPaint node for Nuke, points of snapped paths `spacing` pixels apart.
+pub fn export_nuke(document: &Document, spacing: f64) -> String {
+    export::nuke(&document.scene, spacing)
+}
+
+/// The document as Silhouette shapes, points of snapped paths `spacing` pixels apart.
+pub fn export_silhouette(document: &Document, spacing: f64) -> String {
+    export::silhouette(&document.scene, spacing)
+}
+
+/// A kind of file with shapes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShapeFormat {
+    /// SVG; shapes that are not animated get their key on this frame.
+    Svg {
+        /// A frame of the footage.
+        still: FrameNumber,
+    },
+    /// Silhouette shapes.
+    Silhouette,
+}
+
+/// Puts the shapes of a file's text into the document as keys of parts; returns what has been left out. The document is
+/// as it was where that fails.
+pub fn import(document: &mut Document, text: &str, format: ShapeFormat) -> Result<Vec<String>, ImportError> {
+    let footage = &document.scene.footage;
+    let found = match format {
+        ShapeFormat::Svg { still } => import::svg::svg(text, footage, still)?,
+        ShapeFormat::Silhouette => import::silhouette::silhouette(text, footage)?,
+    };
+    import::into_scene(&mut document.scene, found.shapes);
+    Ok(found.warnings)
 }
 
 /// Everything that is wrong with a document that lies in `folder` and with its frames: each is read.

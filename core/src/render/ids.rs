@@ -41,8 +41,11 @@ pub fn id_picture(
         return encode::premultiplied(&picture);
     }
     let (width, height) = (picture.width(), picture.height());
-    let attributes = cryptomatte::attributes(scene, parts)
-        .map_err(|error| EncodeError { width, height, reason: error.to_string() })?;
+    let attributes = cryptomatte::attributes(scene, parts).map_err(|error| EncodeError {
+        width,
+        height,
+        reason: error.to_string(),
+    })?;
     let mut channels = cryptomatte::channels(scene, &visible);
     for (index, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
         let light = |pixel: &[f32; 4]| match (index, pixel[3]) {
@@ -117,7 +120,8 @@ mod tests {
     /// A part's matte by the rules of the specification alone.
     fn keyed((channels, attributes): &File, name: &str) -> Vec<f32> {
         let value = |field: &str| {
-            let mut found = attributes.iter().filter(|(key, _)| key.starts_with("cryptomatte/") && key.ends_with(field));
+            let mut found =
+                attributes.iter().filter(|(key, _)| key.starts_with("cryptomatte/") && key.ends_with(field));
             let value = found.next().unwrap().1.clone();
             assert!(found.next().is_none());
             value

@@ -108,8 +108,7 @@ mod tests {
     #[test]
     fn layers_have_names_of_their_own() {
         let mut taken = BTreeSet::new();
-        let names: Vec<_> =
-            ["a.b", "a_b", "", " ", "\u{1}", "été"].map(|name| layer_name(name, &mut taken)).into();
+        let names: Vec<_> = ["a.b", "a_b", "", " ", "\u{1}", "été"].map(|name| layer_name(name, &mut taken)).into();
         assert_eq!(names, ["a_b", "a_b 2", "part", "part 2", "_", "été"]);
         assert!(layer_name(&"é".repeat(300), &mut taken).len() <= LONGEST);
     }
