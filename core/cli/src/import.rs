@@ -4,6 +4,7 @@ use crate::failure::{Failure, line};
 use crate::{arguments, project};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::pipeline::{self, ShapeFormat};
+use rototoon::project::Document;
 use rototoon::scene::FrameNumber;
 use std::path::PathBuf;
 
@@ -37,7 +38,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     if !["svg", "fxs"].contains(&extension.as_str()) {
         return Err(Failure::Use(format!("{}: expected a name that ends in .svg or .fxs", shapes.display())));
     }
-    let mut document = project::load(from)?;
+    // What it lacks is no matter: it is about to change.
+    let mut document = Document::load(from)?;
     let footage = &document.scene.footage;
     let still = given.get_one::<FrameNumber>("frame").copied().unwrap_or(footage.first);
     if !(footage.first..=footage.last).contains(&still) {
