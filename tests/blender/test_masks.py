@@ -70,7 +70,8 @@ def test_snapped_lines_open_parts_and_lifetimes(addon, fake, tmp_path):
         "parts": [
             {"name": "bow", "closed": True, "depth": 1, "keys": {"1": corners, "2": corners},
              "tracks": {"1": corners, "2": corners}, "curves": {"1": bow, "2": bow}},
-            {"name": "line", "closed": False, "depth": 2, "keys": {"1": [[5.0, 6.0], [40.0, 9.5]], "9": [[7.0, 8.0], [42.0, 11.5]]}},
+            {"name": "line", "closed": False, "depth": 2,
+             "keys": {"1": [[5.0, 6.0], [40.0, 9.5]], "9": [[7.0, 8.0], [42.0, 11.5]]}},
         ],
     }  # fmt: skip
     (tmp_path / "in.json").write_text(json.dumps(source))
