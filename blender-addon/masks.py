@@ -1,7 +1,7 @@
 """Contours as a Blender mask: a layer for each part, a shape key for each frame.
 
-Mask coordinates go from 0 to 1 along the longer side of the picture, y up, the shorter side in the middle. Python cannot
-make shape keys of masks; the operator `mask.shape_key_insert` can, from an editor in mask mode, for layers that have a
+Mask coordinates go from 0 to 1 along the longer side of the picture, y up, the shorter side in the middle. Python
+cannot make shape keys of masks; the operator `mask.shape_key_insert` can, from an editor in mask mode, for layers that have a
 selected point. It keys what the points are, so that nothing may evaluate the mask between setting and keying: points
 are set in whole arrays, which tags nothing.
 """
