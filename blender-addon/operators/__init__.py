@@ -2,6 +2,7 @@
 
 from . import (
     clear_generated,
+    contours_to_mask,
     export_document,
     fit_strokes,
     footage_from_camera,
@@ -40,6 +41,7 @@ _MODULES = (
     in_between,
     import_document,
     export_document,
+    contours_to_mask,
 )
 
 CLASSES = tuple(cls for module in _MODULES for cls in module.CLASSES)

@@ -191,6 +191,7 @@ class ROTOTOON_PT_document(_Panel, bpy.types.Panel):
         row = self.layout.row(align=True)
         row.operator("rototoon.import_document", text="Import", icon="IMPORT")
         row.operator("rototoon.export_document", text="Export", icon="EXPORT")
+        self.layout.operator("rototoon.contours_to_mask", icon="MOD_MASK")
 
 
 CLASSES = (

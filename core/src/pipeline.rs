@@ -8,10 +8,11 @@ mod tween;
 
 pub use tween::{pegs_of, spacing_of, tween};
 
-use crate::export::{SvgOptions, svg};
+use crate::export::{self, SvgOptions, svg};
 use crate::fit::{self, FitError};
 use crate::geometry::Point;
 use crate::image::Sequence;
+use crate::import::{self, ImportError};
 use crate::project::curves::{CurveGuides, Curves};
 use crate::project::save::DECIMALS;
 use crate::project::{Document, Problems, WriteError, output, validate, write_whole};
@@ -171,6 +172,10 @@ pub enum Picture {
     Overlay(OverlayOptions),
     /// Coverage of the closed parts.
     Matte,
+    /// The same, and in an OpenEXR file the whole coverage of each part as a layer of its own.
+    Layers,
+    /// A colour for each part, nearer ones over farther ones; in an OpenEXR file with Cryptomatte layers.
+    Ids,
 }
 
 /// What to render.
@@ -227,6 +232,8 @@ fn picture(
     let parts = plan.parts.as_deref();
     let bytes = match &job.picture {
         Picture::Matte => render::encode::matte(&render::matte(&document.scene, frame, parts), plan.format),
+        Picture::Layers => render::matte_layers(&document.scene, frame, parts),
+        Picture::Ids => render::id_picture(&document.scene, frame, parts, plan.format),
         Picture::Overlay(options) => {
             let below = sequence.picture(frame)?;
             render::encode::colours(&render::overlay(&document.scene, frame, &below, parts, options), plan.format)
@@ -239,6 +246,9 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
     let footage = &document.scene.footage;
     let format = Format::of(Path::new(&job.output))
         .ok_or_else(|| PipelineError::Request(format!("{}: expected a name that ends in .png or .exr", job.output)))?;
+    if job.picture == Picture::Layers && format != Format::Exr {
+        return Err(PipelineError::Request(format!("{}: layers expect a name that ends in .exr", job.output)));
+    }
     let range = job.frames.clone().unwrap_or(footage.first..=footage.last);
     if range.is_empty() || !(footage.first..=footage.last).contains(range.start()) || *range.end() > footage.last {
         let (first, last) = (range.start(), range.end());
@@ -281,6 +291,40 @@ fn indices(scene: &Scene, names: &[String]) -> Result<Vec<usize>, PipelineError>
 /// The document as an animated SVG.
 pub fn export_svg(document: &Document, options: &SvgOptions) -> String {
     svg(&document.scene, options)
+}
+
+/// The document as a RotoPaint node for Nuke, points of snapped paths `spacing` pixels apart.
+pub fn export_nuke(document: &Document, spacing: f64) -> String {
+    export::nuke(&document.scene, spacing)
+}
+
+/// The document as Silhouette shapes, points of snapped paths `spacing` pixels apart.
+pub fn export_silhouette(document: &Document, spacing: f64) -> String {
+    export::silhouette(&document.scene, spacing)
+}
+
+/// A kind of file with shapes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShapeFormat {
+    /// SVG; shapes that are not animated get their key on this frame.
+    Svg {
+        /// A frame of the footage.
+        still: FrameNumber,
+    },
+    /// Silhouette shapes.
+    Silhouette,
+}
+
+/// Puts the shapes of a file's text into the document as keys of parts; returns what has been left out. The document is
+/// as it was where that fails.
+pub fn import(document: &mut Document, text: &str, format: ShapeFormat) -> Result<Vec<String>, ImportError> {
+    let footage = &document.scene.footage;
+    let found = match format {
+        ShapeFormat::Svg { still } => import::svg::svg(text, footage, still)?,
+        ShapeFormat::Silhouette => import::silhouette::silhouette(text, footage)?,
+    };
+    import::into_scene(&mut document.scene, found.shapes);
+    Ok(found.warnings)
 }
 
 /// Everything that is wrong with a document that lies in `folder` and with its frames: each is read.

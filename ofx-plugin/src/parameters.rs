@@ -1,8 +1,6 @@
-//! What parameters are made of, and how a host is told.
-//!
-//! Choices and ranges that the command line and the add-on have too are core's ([`rototoon::scene::parameters`]).
+//! Core's lists of parameters ([`rototoon::scene::effects`]), told to a host.
 
-use crate::ofx::{Failure, Parameters};
+use crate::ofx::{Failure, Parameters, Properties};
 use openfx::sys::generic::core::{kOfxPropLabel, kOfxPropLongLabel, kOfxPropShortLabel};
 use openfx::sys::image_effect_v1::param::{
     kOfxParamPropAnimates, kOfxParamPropChoiceOption, kOfxParamPropDefault, kOfxParamPropDigits,
@@ -12,127 +10,96 @@ use openfx::sys::image_effect_v1::param::{
     kOfxParamTypeChoice, kOfxParamTypeDouble, kOfxParamTypeGroup, kOfxParamTypeInteger, kOfxParamTypePushButton,
     kOfxParamTypeRGBA, kOfxParamTypeString,
 };
-use rototoon::scene::parameters::{self, Kind as CoreKind};
-use std::ffi::CStr;
+use rototoon::scene::effects::{EffectKind, EffectParameter};
+use rototoon::scene::parameters::{self, Kind};
+use std::ffi::{CStr, CString};
 
-/// Which values a parameter takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// The path of a file.
-    File,
-    /// A line of text.
-    Text,
-    /// Text that the user does not see.
-    Hidden,
-    /// A button.
-    Button,
-    /// On or off.
-    Flag(bool),
-    /// A whole number: default, least, greatest, and the ends of the slider.
-    Integer(i32, [i32; 2], [i32; 2]),
-    /// A number: default, least, greatest, and the ends of the slider.
-    Number(f64, [f64; 2], [f64; 2]),
-    /// One of several, by index: labels.
-    Choice(&'static [&'static str]),
-    /// One of core's choices, by the id of core's parameter.
-    Shared(&'static str),
-    /// A colour with opacity.
-    Colour([f64; 4]),
-    /// A group, open or not.
-    Group(bool),
-}
+const ENDS: [&CStr; 4] = [kOfxParamPropMin, kOfxParamPropMax, kOfxParamPropDisplayMin, kOfxParamPropDisplayMax];
 
-/// A parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameter {
-    /// Its id, fixed for ever.
-    pub id: &'static CStr,
-    /// A few words, for people.
-    pub label: &'static str,
-    /// A sentence, for people.
-    pub help: &'static str,
-    /// Which values it takes.
-    pub kind: Kind,
-    /// The group that shows it.
-    pub group: Option<&'static CStr>,
-}
-
-impl Parameter {
-    /// Describes it.
-    pub fn define(&self, parameters: &Parameters) -> Result<(), Failure> {
-        let (kind, animates) = match self.kind {
-            Kind::File | Kind::Text | Kind::Hidden => (kOfxParamTypeString, Some(false)),
-            Kind::Button => (kOfxParamTypePushButton, None),
-            Kind::Flag(_) => (kOfxParamTypeBoolean, None),
-            Kind::Integer(..) => (kOfxParamTypeInteger, None),
-            Kind::Number(..) => (kOfxParamTypeDouble, None),
-            Kind::Choice(_) | Kind::Shared(_) => (kOfxParamTypeChoice, Some(false)),
-            Kind::Colour(_) => (kOfxParamTypeRGBA, None),
-            Kind::Group(_) => (kOfxParamTypeGroup, None),
-        };
-        let properties = parameters.define(kind, self.id)?;
+/// Describes every parameter of a list.
+pub fn define(list: &[EffectParameter], parameters: &Parameters) -> Result<(), Failure> {
+    for parameter in list {
+        let properties = parameters.define(type_of(&parameter.kind), &terminated(parameter.id)?)?;
         for name in [kOfxPropLabel, kOfxPropShortLabel, kOfxPropLongLabel] {
-            properties.set_text(name, 0, self.label)?;
+            properties.set_text(name, 0, parameter.label)?;
         }
-        properties.set_text(kOfxParamPropHint, 0, self.help)?;
-        if let Some(group) = self.group {
-            properties.set_name(kOfxParamPropParent, 0, group)?;
+        properties.set_text(kOfxParamPropHint, 0, parameter.help)?;
+        if let Some(group) = parameter.group {
+            properties.set_text(kOfxParamPropParent, 0, group)?;
         }
-        if let Some(animates) = animates {
-            properties.set_int(kOfxParamPropAnimates, 0, animates.into())?;
-        }
-        match self.kind {
-            Kind::File => {
-                properties.set_name(kOfxParamPropStringMode, 0, kOfxParamStringIsFilePath)?;
-                // A file may be chosen that is yet to be saved.
-                properties.set_int(kOfxParamPropStringFilePathExists, 0, 0)?;
-            }
-            Kind::Text => properties.set_name(kOfxParamPropStringMode, 0, kOfxParamStringIsSingleLine)?,
-            Kind::Hidden => {
-                properties.set_name(kOfxParamPropStringMode, 0, kOfxParamStringIsSingleLine)?;
-                properties.set_int(kOfxParamPropSecret, 0, 1)?;
-            }
-            Kind::Button | Kind::Group(_) => {}
-            Kind::Flag(default) => properties.set_int(kOfxParamPropDefault, 0, default.into())?,
-            Kind::Integer(default, range, slider) => {
-                properties.set_int(kOfxParamPropDefault, 0, default)?;
-                let ends = [kOfxParamPropMin, kOfxParamPropMax, kOfxParamPropDisplayMin, kOfxParamPropDisplayMax];
-                for (name, value) in ends.into_iter().zip(range.into_iter().chain(slider)) {
-                    properties.set_int(name, 0, value)?;
-                }
-            }
-            Kind::Number(default, range, slider) => {
-                properties.set_double(kOfxParamPropDefault, 0, default)?;
-                let ends = [kOfxParamPropMin, kOfxParamPropMax, kOfxParamPropDisplayMin, kOfxParamPropDisplayMax];
-                for (name, value) in ends.into_iter().zip(range.into_iter().chain(slider)) {
-                    properties.set_double(name, 0, value)?;
-                }
-                properties.set_double(kOfxParamPropIncrement, 0, 0.1)?;
-                properties.set_int(kOfxParamPropDigits, 0, 2)?;
-            }
-            Kind::Choice(labels) => {
-                for (index, label) in labels.iter().enumerate() {
-                    properties.set_text(kOfxParamPropChoiceOption, index as i32, label)?;
-                }
-                properties.set_int(kOfxParamPropDefault, 0, 0)?;
-            }
-            Kind::Shared(id) => {
-                let (choices, default) = shared(id);
-                for (index, (_, label)) in choices.iter().enumerate() {
-                    properties.set_text(kOfxParamPropChoiceOption, index as i32, label)?;
-                }
-                properties.set_int(kOfxParamPropDefault, 0, default)?;
-            }
-            Kind::Colour(default) => properties.set_doubles(kOfxParamPropDefault, &default)?,
-        }
-        Ok(())
+        values(&parameter.kind, &properties)?;
     }
+    Ok(())
+}
+
+fn terminated(id: &str) -> Result<CString, Failure> {
+    CString::new(id).map_err(|_| Failure::Told(format!("the id {id:?} holds a zero")))
+}
+
+fn type_of(kind: &EffectKind) -> &'static CStr {
+    match kind {
+        EffectKind::File | EffectKind::Text | EffectKind::Hidden => kOfxParamTypeString,
+        EffectKind::Button => kOfxParamTypePushButton,
+        EffectKind::Flag(_) => kOfxParamTypeBoolean,
+        EffectKind::Integer(..) => kOfxParamTypeInteger,
+        EffectKind::Number(..) => kOfxParamTypeDouble,
+        EffectKind::Choice(_) | EffectKind::Shared(_) => kOfxParamTypeChoice,
+        EffectKind::Colour(_) => kOfxParamTypeRGBA,
+        EffectKind::Group(_) => kOfxParamTypeGroup,
+    }
+}
+
+/// Default, range and choices.
+fn values(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
+    match *kind {
+        EffectKind::File | EffectKind::Text | EffectKind::Hidden => text(kind, properties),
+        EffectKind::Button | EffectKind::Group(_) => Ok(()),
+        EffectKind::Flag(default) => properties.set_int(kOfxParamPropDefault, 0, default.into()),
+        EffectKind::Integer(default, range, slider) => {
+            properties.set_int(kOfxParamPropDefault, 0, default)?;
+            let ends = ENDS.into_iter().zip(range.into_iter().chain(slider));
+            ends.into_iter().try_for_each(|(name, value)| properties.set_int(name, 0, value))
+        }
+        EffectKind::Number(default, range, slider) => {
+            properties.set_double(kOfxParamPropDefault, 0, default)?;
+            for (name, value) in ENDS.into_iter().zip(range.into_iter().chain(slider)) {
+                properties.set_double(name, 0, value)?;
+            }
+            properties.set_double(kOfxParamPropIncrement, 0, 0.1)?;
+            properties.set_int(kOfxParamPropDigits, 0, 2)
+        }
+        EffectKind::Choice(labels) => choice(labels.iter().copied(), 0, properties),
+        EffectKind::Shared(id) => {
+            let (choices, default) = shared(id);
+            choice(choices.iter().map(|(_, label)| *label), default, properties)
+        }
+        EffectKind::Colour(default) => properties.set_doubles(kOfxParamPropDefault, &default),
+    }
+}
+
+fn text(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
+    properties.set_int(kOfxParamPropAnimates, 0, 0)?;
+    if *kind == EffectKind::File {
+        properties.set_name(kOfxParamPropStringMode, 0, kOfxParamStringIsFilePath)?;
+        // A file may be chosen that is yet to be saved.
+        return properties.set_int(kOfxParamPropStringFilePathExists, 0, 0);
+    }
+    properties.set_name(kOfxParamPropStringMode, 0, kOfxParamStringIsSingleLine)?;
+    if *kind == EffectKind::Hidden { properties.set_int(kOfxParamPropSecret, 0, 1) } else { Ok(()) }
+}
+
+fn choice<'a>(labels: impl Iterator<Item = &'a str>, default: i32, properties: &Properties) -> Result<(), Failure> {
+    properties.set_int(kOfxParamPropAnimates, 0, 0)?;
+    for (index, label) in labels.enumerate() {
+        properties.set_text(kOfxParamPropChoiceOption, index as i32, label)?;
+    }
+    properties.set_int(kOfxParamPropDefault, 0, default)
 }
 
 /// Ids and labels of one of core's choices, and the index of the default.
 pub fn shared(id: &str) -> (Vec<(&'static str, &'static str)>, i32) {
     match parameters::find(id).map(|parameter| parameter.kind) {
-        Some(CoreKind::Choice { default, choices }) => {
+        Some(Kind::Choice { default, choices }) => {
             let known = choices.iter().map(|choice| (choice.id, choice.label)).collect();
             let index = choices.iter().position(|choice| choice.id == default).unwrap_or(0);
             (known, index as i32)

@@ -1,7 +1,7 @@
 //! Holds the direction of dependencies in the core:
 //!
 //! `numeric ← geometry ← curve ← fit` and
-//! `numeric ← geometry ← scene ← {image, track, snap, tween, style, reshape, render, export, project} ← pipeline`,
+//! `numeric ← geometry ← scene ← {image, track, snap, tween, style, reshape, render, export, import, project} ← pipeline`,
 //! where track, snap, tween and render may use image, tween curves and their fitting too, and track, snap, tween and
 //! style never import each other.
 
@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module of the core with the modules that it may use.
-const ALLOWED: [(&str, &[&str]); 15] = [
+const ALLOWED: [(&str, &[&str]); 16] = [
     ("numeric", &[]),
     ("geometry", &["numeric"]),
     ("curve", &["numeric", "geometry"]),
@@ -24,12 +24,13 @@ const ALLOWED: [(&str, &[&str]); 15] = [
     ("reshape", &["numeric", "geometry", "curve", "scene"]),
     ("render", &["numeric", "geometry", "scene", "image"]),
     ("export", &["numeric", "geometry", "scene"]),
+    ("import", &["numeric", "geometry", "scene"]),
     ("project", &["numeric", "geometry", "scene"]),
     (
         "pipeline",
         &[
             "numeric", "geometry", "curve", "fit", "scene", "image", "track", "snap", "tween", "style", "reshape",
-            "render", "export", "project",
+            "render", "export", "import", "project",
         ],
     ),
 ];

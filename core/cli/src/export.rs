@@ -11,9 +11,9 @@ use rototoon::scene::parameters::Stage;
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("export")
-        .about("Writes the result as an animated SVG, or as a document")
+        .about("Writes the result as an animated SVG, as shapes for Nuke or Silhouette, or as a document")
         .arg(arguments::project())
-        .arg(arguments::output("FILE", "FILE.svg or FILE.json"))
+        .arg(arguments::output("FILE", "FILE.svg, FILE.nk (Nuke RotoPaint), FILE.fxs (Silhouette) or FILE.json"))
         .args(arguments::of_stage(Stage::Export))
 }
 
@@ -21,8 +21,8 @@ pub fn command() -> Command {
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let extension = to.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
-    if !["svg", "json"].contains(&extension.as_str()) {
-        return Err(Failure::Use(format!("{}: expected a name that ends in .svg or .json", to.display())));
+    if !["svg", "nk", "fxs", "json"].contains(&extension.as_str()) {
+        return Err(Failure::Use(format!("{}: expected a name that ends in .svg, .nk, .fxs or .json", to.display())));
     }
     let document = project::load(from)?;
     if extension == "json" {
@@ -30,6 +30,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     let id = arguments::choice(given, "motion");
     let motion = Motion::from_id(id).ok_or_else(|| Failure::Use(format!("no motion {id:?}")))?;
-    let options = SvgOptions { motion, spacing: arguments::number(given, "spacing") };
-    Ok(write_whole(to, pipeline::export_svg(&document, &options).as_bytes())?)
+    let spacing = arguments::number(given, "spacing");
+    let text = match extension.as_str() {
+        "nk" => pipeline::export_nuke(&document, spacing),
+        "fxs" => pipeline::export_silhouette(&document, spacing),
+        _ => pipeline::export_svg(&document, &SvgOptions { motion, spacing }),
+    };
+    Ok(write_whole(to, text.as_bytes())?)
 }

@@ -3,7 +3,7 @@
 //! - [`arguments`]: options made from the core's list of parameters
 //! - [`progress`]: a bar on a terminal, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
-//! - [`track`], [`snap`], [`render`], [`export`], [`check`], [`fit`], [`tween`], [`style`]: the subcommands
+//! - [`track`], [`snap`], [`render`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`]: the subcommands
 //!
 //! Exit status: 0 done, 1 failed, 2 wrong use.
 
@@ -12,6 +12,7 @@ mod check;
 mod export;
 mod failure;
 mod fit;
+mod import;
 mod progress;
 mod project;
 mod render;
@@ -28,12 +29,13 @@ use std::process::ExitCode;
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 /// Each subcommand with what it does.
-fn subcommands() -> [(Command, Run); 8] {
+fn subcommands() -> [(Command, Run); 9] {
     [
         (track::command(), track::run),
         (snap::command(), snap::run),
         (render::command(), render::run),
         (export::command(), export::run),
+        (import::command(), import::run),
         (check::command(), check::run),
         (fit::command(), fit::run),
         (tween::command(), tween::run),

@@ -13,7 +13,7 @@ use std::ops::RangeInclusive;
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("render")
-        .about("Draws contours over the footage, or the parts' matte")
+        .about("Draws contours over the footage, the parts' matte, or which part is where")
         .arg(arguments::project())
         .arg(arguments::output("PATTERN", "Files such as out.%04d.exr or out.%04d.png; a plain name for one frame"))
         .args(arguments::of_stage(Stage::Render))
@@ -42,7 +42,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let output = output.to_str().ok_or_else(|| Failure::Use(format!("{}: expected UTF-8 text", output.display())))?;
     let job = RenderJob {
         picture: match arguments::choice(given, "what") {
+            "matte" if arguments::flag(given, "layers") => Picture::Layers,
             "matte" => Picture::Matte,
+            "ids" => Picture::Ids,
             _ => Picture::Overlay(OverlayOptions {
                 line_width: arguments::number(given, "line_width"),
                 points: arguments::flag(given, "points"),

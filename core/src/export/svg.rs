@@ -1,13 +1,14 @@
 //! SVG with one animated path a part.
 //!
 //! Each part is a `path` with a `title` and a SMIL animation of its `d` over the footage, looped; browsers play it as it is.
-//! Each path of a part has the same number of points on every frame, as SMIL needs to interpolate: a snapped path is
-//! resampled by arc length, each segment to the count that its longest path asks for. Where a part has no contour it is
-//! hidden. Drawn from far to near by depth.
+//! Each path of a part has the same number of points on every frame, as SMIL needs to interpolate ([`super::outlines`]).
+//! Where a part has no contour it is hidden. Drawn from far to near by depth.
 
-use crate::geometry::{Point, polyline};
+use super::outlines::Outlines;
+use super::xml::escaped;
+use crate::geometry::Point;
 use crate::scene::palette;
-use crate::scene::{FrameNumber, Part, Scene};
+use crate::scene::{FrameNumber, Scene};
 use std::fmt::Write;
 
 /// How a path goes from one frame to the next.
@@ -45,8 +46,6 @@ impl Default for SvgOptions {
     }
 }
 
-/// Most points that one segment is given.
-const MOST_POINTS: f64 = 2000.0;
 /// Width of lines at 540 lines, in pixels.
 const LINE_WIDTH: f64 = 2.0;
 /// Opacity of fills: what lies behind a part stays visible.
@@ -72,8 +71,9 @@ pub fn svg(scene: &Scene, options: &SvgOptions) -> String {
 fn path(out: &mut String, scene: &Scene, index: usize, options: &SvgOptions) {
     let part = &scene.parts[index];
     let frames: Vec<FrameNumber> = (scene.footage.first..=scene.footage.last).collect();
-    let counts = counts(part, options.spacing.max(0.25));
-    let shapes: Vec<Option<String>> = frames.iter().map(|&frame| data(part, frame, &counts)).collect();
+    let outlines = Outlines::new(part, options.spacing);
+    let shape = |&frame: &FrameNumber| Some(data(&outlines.at(frame)?, part.closed));
+    let shapes: Vec<Option<String>> = frames.iter().map(shape).collect();
     let Some(start) = shapes.iter().flatten().next().cloned() else { return };
     let colour = palette::hex(palette::distinct(index));
     let fill = if part.closed { colour.as_str() } else { "none" };
@@ -125,38 +125,8 @@ fn animate(out: &mut String, attribute: &str, seconds: f64, motion: Motion, valu
     );
 }
 
-/// Number of points of each segment, its end left out; nothing where the part has no snapped paths.
-fn counts(part: &Part, spacing: f64) -> Vec<usize> {
-    let mut counts = Vec::new();
-    for &frame in part.curves.keys() {
-        let Some(paths) = part.complete_curves(frame) else { continue };
-        counts.resize(paths.len(), 1);
-        for (count, path) in counts.iter_mut().zip(paths) {
-            let wanted = (polyline::length(path, false) / spacing).ceil().clamp(1.0, MOST_POINTS);
-            *count = (*count).max(wanted as usize);
-        }
-    }
-    counts
-}
-
-/// The path on a frame, with as many points as on every other frame of the part.
-fn data(part: &Part, frame: FrameNumber, counts: &[usize]) -> Option<String> {
-    let points = part.points_at(frame)?;
-    let mut line = Vec::new();
-    if counts.is_empty() {
-        line.clone_from(points);
-    } else {
-        let n = points.len();
-        let curves = part.complete_curves(frame);
-        for (i, &count) in counts.iter().enumerate().take(n) {
-            let straight = [points[i], points[(i + 1) % n]];
-            let segment = curves.and_then(|paths| paths.get(i)).map_or(&straight[..], Vec::as_slice);
-            line.extend(&polyline::resample(segment, false, count + 1)[..count]);
-        }
-        if !part.closed {
-            line.extend(points.last());
-        }
-    }
+/// The path of a contour.
+fn data(line: &[Point], closed: bool) -> String {
     let mut text = String::new();
     for (i, &p) in line.iter().enumerate() {
         text += match i {
@@ -166,10 +136,10 @@ fn data(part: &Part, frame: FrameNumber, counts: &[usize]) -> Option<String> {
         };
         write_point(&mut text, p);
     }
-    if part.closed && !line.is_empty() {
+    if closed {
         text += "Z";
     }
-    (!text.is_empty()).then_some(text)
+    text
 }
 
 fn write_point(out: &mut String, p: Point) {
@@ -182,27 +152,10 @@ fn decimal(value: f64, digits: i32) -> f64 {
     (value * scale).round() / scale + 0.0
 }
 
-/// Text as XML holds it; characters that XML cannot hold are left out.
-fn escaped(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        match c {
-            '&' => out += "&amp;",
-            '<' => out += "&lt;",
-            '>' => out += "&gt;",
-            '"' => out += "&quot;",
-            '\t' | '\n' | '\r' => out.push(c),
-            c if c < ' ' || c == '\u{fffe}' || c == '\u{ffff}' => {}
-            c => out.push(c),
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Footage;
+    use crate::scene::{Footage, Part};
     use std::collections::BTreeMap;
 
     fn scene() -> Scene {

@@ -57,6 +57,22 @@ pub fn colours(picture: &Raster<Colour>, format: Format) -> Result<Vec<u8>, Enco
     bytes(image, format, picture.width(), picture.height())
 }
 
+/// A premultiplied picture with alpha, its colours as the screen shows them, as the bytes of a PNG file.
+pub fn premultiplied(picture: &Raster<[f32; 4]>) -> Result<Vec<u8>, EncodeError> {
+    let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
+    // PNG holds colours that are not premultiplied.
+    let straight = |&[r, g, b, a]: &[f32; 4]| {
+        let whole = if a > 0.0 { a } else { 1.0 };
+        [byte(r / whole), byte(g / whole), byte(b / whole), byte(a)]
+    };
+    let image = ImageBuffer::from_raw(
+        picture.width() as u32,
+        picture.height() as u32,
+        picture.data().iter().flat_map(straight).collect(),
+    );
+    bytes(image.map(DynamicImage::ImageRgba8), Format::Png, picture.width(), picture.height())
+}
+
 /// A matte as the bytes of a file.
 pub fn matte(picture: &Raster<f32>, format: Format) -> Result<Vec<u8>, EncodeError> {
     let (width, height) = (picture.width() as u32, picture.height() as u32);

@@ -2,6 +2,7 @@
 //!
 //! - [`clip`]: a character's motion as key points over time
 //! - [`correspondence`]: contours drawn afresh, matched to the parts
+//! - [`effects`]: the parameters of the effects for compositing hosts
 //! - [`footage`]: which frames there are and where their pictures come from
 //! - [`palette`]: colours that tell parts apart
 //! - [`parameters`]: what a user may set, described once
@@ -13,6 +14,7 @@
 
 pub mod clip;
 pub mod correspondence;
+pub mod effects;
 pub mod footage;
 pub mod palette;
 pub mod parameters;

@@ -87,7 +87,7 @@ const fn choice(id: &'static str, label: &'static str) -> Choice {
 }
 
 /// Every parameter, by stage.
-pub const ALL: [Parameter; 12] = [
+pub const ALL: [Parameter; 13] = [
     Parameter {
         id: "threads",
         label: "Threads",
@@ -148,12 +148,23 @@ pub const ALL: [Parameter; 12] = [
     Parameter {
         id: "what",
         label: "What",
-        help: "The picture that is made: contours over the footage, or the coverage of the closed parts.",
+        help: "The picture that is made: contours over the footage, the coverage of the closed parts, or which part is where.",
         stage: Stage::Render,
         kind: Kind::Choice {
             default: "overlay",
-            choices: &[choice("overlay", "Contours over the footage"), choice("matte", "Matte of the closed parts")],
+            choices: &[
+                choice("overlay", "Contours over the footage"),
+                choice("matte", "Matte of the closed parts"),
+                choice("ids", "A colour for each part; in OpenEXR also Cryptomatte layers"),
+            ],
         },
+    },
+    Parameter {
+        id: "layers",
+        label: "Layers",
+        help: "Whether a matte in OpenEXR also holds the whole matte of each part as a layer of its name.",
+        stage: Stage::Render,
+        kind: Kind::Flag { default: false },
     },
     Parameter {
         id: "line_width",

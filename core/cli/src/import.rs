@@ -1,0 +1,57 @@
+//! `rototoon import`: shapes of other programs as keys.
+
+use crate::failure::{Failure, line};
+use crate::{arguments, project};
+use clap::{Arg, ArgMatches, Command, value_parser};
+use rototoon::pipeline::{self, ShapeFormat};
+use rototoon::project::Document;
+use rototoon::scene::FrameNumber;
+use std::path::PathBuf;
+
+/// The subcommand.
+pub fn command() -> Command {
+    Command::new("import")
+        .about("Puts shapes of Silhouette or SVG into a document, as keys of parts")
+        .arg(arguments::project())
+        .arg(
+            Arg::new("shapes")
+                .value_name("SHAPES")
+                .help("FILE.fxs (Silhouette) or FILE.svg; a part of a shape's name becomes the shape")
+                .required(true)
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(arguments::output("OUT", "The document to write"))
+        .arg(
+            Arg::new("frame")
+                .long("frame")
+                .value_name("N")
+                .help("The frame of shapes that are not animated; else the first of the footage")
+                .allow_negative_numbers(true)
+                .value_parser(value_parser!(FrameNumber)),
+        )
+}
+
+/// Runs it.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let [from, shapes, to] = ["project", "shapes", "output"].map(|id| arguments::path(given, id));
+    let extension = shapes.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
+    if !["svg", "fxs"].contains(&extension.as_str()) {
+        return Err(Failure::Use(format!("{}: expected a name that ends in .svg or .fxs", shapes.display())));
+    }
+    // What it lacks is no matter: it is about to change.
+    let mut document = Document::load(from)?;
+    let footage = &document.scene.footage;
+    let still = given.get_one::<FrameNumber>("frame").copied().unwrap_or(footage.first);
+    if !(footage.first..=footage.last).contains(&still) {
+        let own = format!("{} to {}", footage.first, footage.last);
+        return Err(Failure::Use(format!("--frame {still}: expected a frame of the footage, {own}")));
+    }
+    let format = if extension == "svg" { ShapeFormat::Svg { still } } else { ShapeFormat::Silhouette };
+    let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", shapes.display()));
+    let text = std::fs::read_to_string(shapes).map_err(|error| failed(&format!("cannot read the shapes: {error}")))?;
+    let warnings = pipeline::import(&mut document, &text, format).map_err(|error| failed(&error))?;
+    for warning in warnings {
+        line("warning", &format!("{}: {warning}", shapes.display()));
+    }
+    project::save(document, from, to)
+}

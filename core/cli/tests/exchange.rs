@@ -1,0 +1,307 @@
+//! Shapes to other programs and back, and pictures of ids, as users call for them.
+
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const WIDTH: f64 = 64.0;
+const HEIGHT: f64 = 48.0;
+
+type Keys = BTreeMap<i32, Vec<[f64; 2]>>;
+
+/// A triangle that moves unevenly on frames 2 to 6, as tracked.
+fn triangle() -> Keys {
+    let at = |frame: i32| {
+        let (x, y) = (f64::from(frame * frame) * 0.7, f64::from(frame) * 1.3);
+        vec![[4.25 + x, 3.5 + y], [20.0 + x, 5.0 + y], [11.5 + x, 17.75 + y]]
+    };
+    // It rests on two frames.
+    (2..=6).map(|frame| (frame, at(if frame == 5 { 4 } else { frame }))).collect()
+}
+
+/// An open line with keys on the first and the last frame alone.
+fn line() -> Keys {
+    [(0, vec![[1.0, 40.0], [30.5, 44.0]]), (8, vec![[3.0, 41.0], [33.5, 40.0]])].into()
+}
+
+fn object(keys: &Keys) -> Value {
+    Value::Object(keys.iter().map(|(frame, points)| (frame.to_string(), json!(points))).collect())
+}
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn document(&self, name: &str, parts: Value) -> PathBuf {
+        let footage =
+            json!({"pattern": "f_%d.png", "first": 0, "last": 8, "fps": 12.5, "width": WIDTH, "height": HEIGHT});
+        let path = self.path(name);
+        fs::write(&path, json!({"rototoon": 1, "footage": footage, "parts": parts, "note": "kept"}).to_string())
+            .unwrap();
+        path
+    }
+
+    /// Two parts: the line nearer than the triangle.
+    fn captured(&self) -> PathBuf {
+        let keys: Keys = triangle().into_iter().filter(|(frame, _)| [2, 6].contains(frame)).collect();
+        self.document(
+            "captured.json",
+            json!([
+                {"name": "near <line>", "closed": false, "depth": 2, "keys": object(&line())},
+                {"name": "triangle", "closed": true, "depth": 1, "keys": object(&keys), "tracks": object(&triangle())},
+            ]),
+        )
+    }
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// Runs a command that must end with this status; what it said.
+fn run(arguments: &[&str], status: i32) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_rototoon")).args(arguments).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {said}");
+    said
+}
+
+/// Name, closed and keys of a document's parts, the farthest first.
+fn parts(path: &Path) -> Vec<(String, bool, Keys)> {
+    let document: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    assert_eq!(document["note"], "kept");
+    let mut parts = document["parts"].as_array().unwrap().clone();
+    parts.sort_by(|a, b| a["depth"].as_f64().unwrap().total_cmp(&b["depth"].as_f64().unwrap()));
+    let keys = |part: &Value| {
+        let keys = part["keys"].as_object().unwrap().iter();
+        keys.map(|(frame, points)| (frame.parse().unwrap(), serde_json::from_value(points.clone()).unwrap())).collect()
+    };
+    parts.iter().map(|part| (part["name"].as_str().unwrap().into(), part["closed"] == true, keys(part))).collect()
+}
+
+fn same(found: &Keys, expected: &Keys, tolerance: f64) {
+    assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
+    for (frame, points) in expected {
+        assert_eq!(found[frame].len(), points.len(), "{frame}");
+        for (a, b) in found[frame].iter().zip(points) {
+            let off = (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+            assert!(off <= tolerance, "{frame}: {a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn silhouette_shapes_come_back_as_they_went() {
+    let folder = Folder::new();
+    let (shapes, empty, out) = (folder.path("a.fxs"), folder.document("empty.json", json!([])), folder.path("o.json"));
+    run(&["export", text(&folder.captured()), "-o", text(&shapes)], 0);
+    assert_eq!(run(&["import", text(&empty), text(&shapes), "-o", text(&out)], 0), "");
+    let found = parts(&out);
+    assert_eq!(
+        found.iter().map(|part| (part.0.as_str(), part.1)).collect::<Vec<_>>(),
+        [("triangle", true), ("near <line>", false)]
+    );
+    same(&found[0].2, &triangle(), 1e-4);
+    same(&found[1].2, &line(), 1e-4);
+    assert_eq!(run(&["check", text(&out)], 1).matches("no file").count(), 9);
+}
+
+#[test]
+fn svg_shapes_come_back_as_they_went() {
+    let folder = Folder::new();
+    let (shapes, empty, out) = (folder.path("a.svg"), folder.document("empty.json", json!([])), folder.path("o.json"));
+    let captured = folder.captured();
+    // Half of the last decimal that the SVG has.
+    let tolerance = 0.005 + 1e-9;
+    run(&["export", text(&captured), "-o", text(&shapes)], 0);
+    run(&["import", text(&empty), text(&shapes), "-o", text(&out)], 0);
+    let found = parts(&out);
+    assert_eq!((found[0].0.as_str(), found[1].0.as_str()), ("triangle", "near <line>"));
+    assert_eq!((found[0].1, found[1].1), (true, false));
+    same(&found[0].2, &triangle(), tolerance);
+    same(&found[1].2, &line(), tolerance);
+    run(&["export", text(&captured), "-o", text(&shapes), "--motion", "linear"], 0);
+    run(&["import", text(&empty), text(&shapes), "-o", text(&out)], 0);
+    same(&parts(&out)[0].2, &triangle(), tolerance);
+}
+
+#[test]
+fn a_part_of_the_name_takes_the_keys_and_stays_where_it_is() {
+    let folder = Folder::new();
+    let (shapes, captured) = (folder.path("a.svg"), folder.captured());
+    let still = "<path id=\"triangle\" d=\"M1 2h8v9z\"/><path id=\"new\" d=\"M1 2h8\"/>";
+    fs::write(&shapes, format!("<svg viewBox=\"0 0 32 24\">{still}\n<text>x</text></svg>")).unwrap();
+    let said = run(&["import", text(&captured), text(&shapes), "-o", text(&captured), "--frame", "3"], 0);
+    assert!(said.starts_with("warning: ") && said.contains("a.svg: line 2, column 1: <text> has no outline"), "{said}");
+    let found = parts(&captured);
+    assert_eq!(found.iter().map(|part| part.0.as_str()).collect::<Vec<_>>(), ["triangle", "near <line>", "new"]);
+    same(&found[0].2, &[(3, vec![[2.0, 4.0], [18.0, 4.0], [18.0, 22.0]])].into(), 1e-12);
+    let document: Value = serde_json::from_str(&fs::read_to_string(&captured).unwrap()).unwrap();
+    assert_eq!(document["parts"][1]["tracks"], json!({}));
+}
+
+#[test]
+fn what_cannot_be_imported_is_named_and_nothing_is_written() {
+    let folder = Folder::new();
+    let (captured, out) = (folder.captured(), folder.path("o.json"));
+    let file = |name: &str, content: &str| {
+        let path = folder.path(name);
+        fs::write(&path, content).unwrap();
+        path
+    };
+    let bad = file("bad.svg", "<svg>\n <path d=\"M0 0Lx\"/></svg>");
+    let key = "<Key frame=\"9\"><Path><Point>(0,0)</Point></Path></Key>";
+    let late = file(
+        "late.fxs",
+        &format!("<Silhouette>\n<Object type=\"Shape\"><Property id=\"path\">{key}</Property></Object></Silhouette>"),
+    );
+    for (path, status, message) in [
+        (bad, 1, "bad.svg: line 2, column 2: <path>: d: found \"M0 0Lx\"…, expected path data"),
+        (
+            late,
+            1,
+            "late.fxs: line 2, column 42: <Key>: found a key on frame 9, expected a frame of the footage, 0 to 8",
+        ),
+        (file("cut.fxs", "<Silhouette><Object"), 1, "cut.fxs: it is no XML: "),
+        (file("none.svg", "<svg/>"), 1, "none.svg: found no shape, expected a path"),
+        (file("a.nk", "RotoPaint {}"), 2, "a.nk: expected a name that ends in .svg or .fxs"),
+        (folder.path("gone.svg"), 1, "gone.svg: cannot read the shapes: "),
+    ] {
+        let said = run(&["import", text(&captured), text(&path), "-o", text(&out)], status);
+        assert!(said.starts_with("error: ") && said.contains(message) && said.lines().count() == 1, "{said}");
+    }
+    let good = file("good.svg", "<svg><path d=\"M0 0h9\"/></svg>");
+    assert!(run(&["import", text(&captured), text(&good), "-o", text(&out), "--frame", "9"], 2).contains("0 to 8"));
+    assert!(!out.exists());
+}
+
+/// A word, or what stands in braces.
+#[derive(Debug)]
+enum Item {
+    Word(String),
+    List(Vec<Item>),
+}
+
+/// What stands in a Nuke script up to a closing brace or the end.
+fn items(rest: &mut std::iter::Peekable<std::str::Chars>) -> Vec<Item> {
+    let mut found = Vec::new();
+    while let Some(c) = rest.next() {
+        match c {
+            '{' => found.push(Item::List(items(rest))),
+            '}' => return found,
+            '"' => found.push(Item::Word(rest.by_ref().take_while(|c| *c != '"').collect())),
+            c if c.is_whitespace() => {}
+            c => {
+                let mut word = String::from(c);
+                while let Some(c) = rest.next_if(|c| !c.is_whitespace() && *c != '{' && *c != '}') {
+                    word.push(c);
+                }
+                found.push(Item::Word(word));
+            }
+        }
+    }
+    found
+}
+
+impl Item {
+    fn list(&self) -> &[Item] {
+        let Self::List(list) = self else { panic!("{self:?} is no list") };
+        list
+    }
+
+    fn word(&self) -> &str {
+        let Self::Word(word) = self else { panic!("{self:?} is no word") };
+        word
+    }
+
+    fn number(&self) -> f64 {
+        let word = self.word();
+        word.strip_prefix('x')
+            .map_or_else(|| word.parse().unwrap(), |bits| f32::from_bits(u32::from_str_radix(bits, 16).unwrap()).into())
+    }
+
+    /// The value on a frame: a number, or a curve that must have a key there.
+    fn on(&self, frame: i32) -> f64 {
+        let Self::List(keys) = self else { return self.number() };
+        let mut keys = keys.iter().map(Item::list);
+        keys.find(|key| key[0].number() == f64::from(frame)).unwrap()[1].number()
+    }
+}
+
+/// The lists with this first word, at any depth.
+fn named<'a>(items: &'a [Item], name: &str, found: &mut Vec<&'a [Item]>) {
+    for item in items {
+        if let Item::List(list) = item {
+            if matches!(list.first(), Some(Item::Word(word)) if word == name) {
+                found.push(list);
+            }
+            named(list, name, found);
+        }
+    }
+}
+
+#[test]
+fn the_nuke_node_has_every_key() {
+    let folder = Folder::new();
+    let script = folder.path("a.nk");
+    run(&["export", text(&folder.captured()), "-o", text(&script)], 0);
+    let script = fs::read_to_string(script).unwrap();
+    let items = items(&mut script.chars().peekable());
+    let mut groups = Vec::new();
+    named(&items, "curvegroup", &mut groups);
+    let expected = [("near <line>", 8224.0, line()), ("triangle", 8192.0, triangle())];
+    assert_eq!(groups.len(), 2);
+    for (group, (name, flags, keys)) in groups.into_iter().zip(expected) {
+        assert_eq!(group[1].word(), name);
+        let (mut points, mut flag) = (Vec::new(), Vec::new());
+        named(group, "p", &mut points);
+        named(group, "f", &mut flag);
+        assert_eq!(flag[0][1].number(), flags);
+        let points: Vec<_> = points[0][1..].iter().map(Item::list).collect();
+        for (frame, contour) in keys {
+            assert_eq!(points.len(), 3 * contour.len());
+            for (triple, p) in points.chunks(3).zip(contour) {
+                let [before, own, after] = triple else { unreachable!() };
+                assert!(before.iter().chain(*after).all(|handle| handle.number() == 0.0));
+                let (x, y) = (own[0].on(frame), HEIGHT - own[1].on(frame));
+                assert!((x - p[0]).abs() < 1e-5 && (y - p[1]).abs() < 1e-5, "{name} {frame}: {x} {y} {p:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn pictures_of_ids_and_layers_are_written() {
+    let folder = Folder::new();
+    let captured = folder.captured();
+    let file = |name: &str| folder.path(name);
+    for name in ["a.exr", "b.exr", "a.png"] {
+        run(&["render", text(&captured), "-o", text(&file(name)), "--frames", "3", "--what", "ids"], 0);
+    }
+    let ids = fs::read(file("a.exr")).unwrap();
+    assert_eq!(ids, fs::read(file("b.exr")).unwrap());
+    let holds = |bytes: &[u8], text: &str| bytes.windows(text.len()).any(|window| window == text.as_bytes());
+    for text in ["CryptoObject02.A", "MurmurHash3_32", "uint32_to_float32", "{\"triangle\":\""] {
+        assert!(holds(&ids, text), "{text}");
+    }
+    assert_eq!(image::open(file("a.png")).unwrap().to_rgba8().dimensions(), (64, 48));
+    let matte = |name: &str, layers: &str, status: i32| {
+        let (output, path) = (file(name), text(&captured).to_owned());
+        run(&["render", &path, "-o", text(&output), "--frames", "3", "--what", "matte", "--layers", layers], status)
+    };
+    matte("layers.exr", "on", 0);
+    matte("plain.exr", "off", 0);
+    assert!(holds(&fs::read(file("layers.exr")).unwrap(), "triangle.A"));
+    let [layers, plain] = ["layers.exr", "plain.exr"].map(|name| image::open(file(name)).unwrap().to_rgba32f());
+    assert_eq!(layers, plain);
+    assert!(matte("layers.png", "on", 2).contains("layers expect a name that ends in .exr"));
+}
