@@ -67,7 +67,9 @@ impl Document {
         let part = |name: &str| {
             let found = fields.get(name);
             let known = found.and_then(Value::as_str).filter(|n| self.scene.parts.iter().any(|part| part.name == *n));
-            known.map(str::to_owned).ok_or_else(|| wrong(&format!("{place}.{name}"), &described(found), "the name of a part"))
+            known
+                .map(str::to_owned)
+                .ok_or_else(|| wrong(&format!("{place}.{name}"), &described(found), "the name of a part"))
         };
         let footage = &self.scene.footage;
         Ok(DepthMark {
@@ -92,7 +94,10 @@ fn limb(value: &Value, place: &str) -> Result<Limb, FieldError> {
         None => carried_by_default(&start, &end),
         given => {
             let list = array(given, &format!("{place}.carries"))?;
-            list.iter().enumerate().map(|(k, v)| carried(v, &format!("{place}.carries[{k}]"))).collect::<Result<_, _>>()?
+            list.iter()
+                .enumerate()
+                .map(|(k, v)| carried(v, &format!("{place}.carries[{k}]")))
+                .collect::<Result<_, _>>()?
         }
     };
     let rigidity = given(fields, &place, "rigidity", number)?.unwrap_or(1.0);
@@ -118,10 +123,8 @@ fn end(fields: &Map<String, Value>, place: &str, name: &str) -> Result<LimbEnd, 
     let [first, second] = list.as_slice() else {
         return Err(wrong(&format!("{place}.points"), &format!("a list of {}", list.len()), "two calibration points"));
     };
-    let points = [
-        calibration(first, &format!("{place}.points[0]"))?,
-        calibration(second, &format!("{place}.points[1]"))?,
-    ];
+    let points =
+        [calibration(first, &format!("{place}.points[0]"))?, calibration(second, &format!("{place}.points[1]"))?];
     let share = given(fields, &place, "share", number)?.unwrap_or(0.5);
     if (-1.0..=2.0).contains(&share) {
         Ok(LimbEnd { points, share })
@@ -261,13 +264,24 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named_with_its_place() {
         let said = |fields: &str| document(fields).limbs().unwrap_err().to_string();
-        assert!(said(r#""limbs": [{"from": "knee"}]"#).starts_with("limbs[0].from: found \"knee\", expected a key point"));
+        assert!(
+            said(r#""limbs": [{"from": "knee"}]"#).starts_with("limbs[0].from: found \"knee\", expected a key point")
+        );
         assert!(said(r#""limbs": [{"from": "neck", "to": "neck"}]"#).contains("found \"neck\" again"));
         let one = r#""limbs": [{"from": "neck", "to": "head", "start": {"points": [{"part": "arm"}]}}]"#;
-        assert!(said(one).starts_with("limbs[0] (neck to head).start.points: found a list of 1, expected two"), "{}", said(one));
+        assert!(
+            said(one).starts_with("limbs[0] (neck to head).start.points: found a list of 1, expected two"),
+            "{}",
+            said(one)
+        );
         assert!(said(&limb_text(r#", "rigidity": 0"#)).contains(".rigidity: found 0, expected"));
-        assert!(said(&limb_text(r#", "bends": {"x": [1, 2]}"#)).contains("found the key \"x\", expected a frame number"));
-        assert_eq!(said(r#""limb_swaps": [[5, 2]]"#), "limb_swaps[0]: found 5 and 2, expected two frames, the first and the last");
+        assert!(
+            said(&limb_text(r#", "bends": {"x": [1, 2]}"#)).contains("found the key \"x\", expected a frame number")
+        );
+        assert_eq!(
+            said(r#""limb_swaps": [[5, 2]]"#),
+            "limb_swaps[0]: found 5 and 2, expected two frames, the first and the last"
+        );
         assert_eq!(
             said(r#""depth_marks": [{"front": "arm", "behind": "leg"}]"#),
             "depth_marks[0].behind: found \"leg\", expected the name of a part"

@@ -106,6 +106,11 @@ impl<'a> Bindings<'a> {
         })
     }
 
+    /// Where calibration point `point` of end `end` (0 the start) of a limb is bound.
+    pub fn bound(&self, limb: usize, end: usize, point: usize) -> &Bound {
+        &self.ends[limb][end][point]
+    }
+
     /// What the contours tell on a frame; sides as they are drawn.
     pub fn drawn(&self, frame: FrameNumber) -> Seen {
         let mut sums = [(Point::ZERO, 0.0); COUNT];
@@ -168,8 +173,7 @@ fn filled(seen: &[Seen]) -> Vec<Posture> {
     for k in 1..COUNT {
         let way = |k: usize| -> Option<Vec<Point>> {
             // From the parent that stands there, told or filled in.
-            let ways: Vec<_> =
-                seen.iter().map(|frame| Some(frame[k]? - frame[PARENTS[k]].or(frame[0])?)).collect();
+            let ways: Vec<_> = seen.iter().map(|frame| Some(frame[k]? - frame[PARENTS[k]].or(frame[0])?)).collect();
             in_between(&ways)
         };
         let found = way(k).or_else(|| way(MIRROR[k]));
@@ -253,10 +257,8 @@ mod tests {
             part("arm", v(2.0, 0.0), v(6.0, 0.0), &[0, 1, 3, 4]),
             part("leg", v(1.0, 10.0), v(1.0, 20.0), &EVERY),
         ];
-        let set = LimbSet {
-            limbs: vec![limb(0, 2, "torso"), limb(8, 9, "arm"), limb(14, 15, "leg")],
-            ..LimbSet::default()
-        };
+        let set =
+            LimbSet { limbs: vec![limb(0, 2, "torso"), limb(8, 9, "arm"), limb(14, 15, "leg")], ..LimbSet::default() };
         (set, parts)
     }
 
@@ -304,7 +306,10 @@ mod tests {
         let (mut set, mut parts) = figure();
         assert_eq!(capture(&LimbSet::default(), &parts, 0..=4).unwrap_err(), CaptureError::NoLimbs);
         let error = capture(&set, &parts, 7..=9).unwrap_err().to_string();
-        assert_eq!(error, "frames 7 to 9: found no frame on which limbs tell both pelvis and neck, expected at least one");
+        assert_eq!(
+            error,
+            "frames 7 to 9: found no frame on which limbs tell both pelvis and neck, expected at least one"
+        );
         set.limbs[1].end.points[1].part = "wing".into();
         let error = capture(&set, &parts, 0..=4).unwrap_err().to_string();
         assert_eq!(

@@ -122,7 +122,9 @@ pub enum BindingError {
         frame: FrameNumber,
     },
     /// A point is drawn too far away from the contour.
-    #[error("drawn, frame {frame}: found a point {distance:.1} px from the contour of {part:?}, expected at most {reach:.1}")]
+    #[error(
+        "drawn, frame {frame}: found a point {distance:.1} px from the contour of {part:?}, expected at most {reach:.1}"
+    )]
     Off {
         /// The part.
         part: String,
@@ -197,12 +199,13 @@ impl Bound {
         let place = self.place(frame, if part.closed { Some(points.len() as f64) } else { None });
         let n = points.len();
         let before = place.floor() as usize;
-        let (a, b) = if part.closed { (before % n, (before + 1) % n) } else { (before.min(n - 1), (before + 1).min(n - 1)) };
+        let (a, b) =
+            if part.closed { (before % n, (before + 1) % n) } else { (before.min(n - 1), (before + 1).min(n - 1)) };
         Some(points[a].lerp(points[b], place - place.floor()))
     }
 
     /// The place on a frame; round a closed contour of `around` places by the shorter way.
-    fn place(&self, frame: FrameNumber, around: Option<f64>) -> f64 {
+    pub fn place(&self, frame: FrameNumber, around: Option<f64>) -> f64 {
         let after = self.places.partition_point(|(key, _)| *key < frame);
         let (before, after) = match (after.checked_sub(1).map(|k| self.places[k]), self.places.get(after)) {
             (Some(before), Some(after)) => (before, *after),
@@ -231,7 +234,9 @@ mod tests {
     use super::*;
 
     fn square() -> Part {
-        let at = |shift: f64| [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(|(x, y)| Point::new(x + shift, y)).to_vec();
+        let at = |shift: f64| {
+            [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(|(x, y)| Point::new(x + shift, y)).to_vec()
+        };
         Part {
             name: "box".into(),
             closed: true,
