@@ -1,7 +1,10 @@
 """The operators `bpy.ops.rototoon.*`, one a file."""
 
 from . import (
+    apply_motion,
     clear_generated,
+    define_limbs,
+    depth_mark,
     export_document,
     fit_strokes,
     footage_from_camera,
@@ -14,6 +17,7 @@ from . import (
     match_strokes,
     new_key,
     release_pins,
+    save_clip,
     setup,
     show_confidence,
     snap,
@@ -38,6 +42,10 @@ _MODULES = (
     hidden_lines,
     match_strokes,
     in_between,
+    define_limbs,
+    save_clip,
+    apply_motion,
+    depth_mark,
     import_document,
     export_document,
 )

@@ -10,7 +10,7 @@ use crate::geometry::{Point, polygon, polyline};
 use crate::project::Document;
 use crate::project::drawings::{DrawnBetween, DrawnStroke};
 use crate::reshape::capture::{Bindings, capture};
-use crate::reshape::depth::{Mark, infer};
+use crate::reshape::depth::{DepthError, Mark, infer};
 use crate::reshape::limb::{Bend, bend_at};
 use crate::reshape::puppet::{Carrier, LimbPose, Options, Puppet};
 use crate::scene::limbs::{Binding, LimbSet};
@@ -326,7 +326,17 @@ fn depths(
     };
     let marks: Vec<Mark> = set.marks.iter().map(mark).collect();
     let own: Vec<f64> = parts.iter().map(|part| part.depth).collect();
-    let of = |frame| infer(&own, &marks, frame).map_err(|e| wrong(format!("depth_marks: {e}")));
+    let named =
+        |k: &usize| format!("depth_marks[{k}] ({:?} in front of {:?})", set.marks[*k].front, set.marks[*k].behind);
+    let of = |frame| {
+        infer(&own, &marks, frame).map_err(|error| match error {
+            DepthError::Contradiction { frame, marks } => {
+                let list: Vec<String> = marks.iter().map(named).collect();
+                wrong(format!("frame {frame}: found marks that contradict each other: {}", list.join(", ")))
+            }
+            other => wrong(format!("depth_marks: {other}")),
+        })
+    };
     let by_frame = frames.map(of).collect::<Result<Vec<_>, _>>()?;
     let rounded = |d: f64| (d * DEPTH_SCALE).round() / DEPTH_SCALE;
     Ok((0..parts.len()).map(|k| by_frame.iter().map(|all| rounded(all[k])).collect()).collect())
@@ -418,3 +428,6 @@ fn set_tracks(part: &mut Part, tracks: BTreeMap<FrameNumber, Vec<Point>>) {
     part.confidence.clear();
     part.wants_key.clear();
 }
+
+#[cfg(test)]
+mod tests;
