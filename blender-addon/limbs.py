@@ -1,7 +1,7 @@
 """Limbs of a character, told by short lines that the artist draws across its contours.
 
-Each line on the limb layer marks one key point: its ends lie near the two sides of a limb, the key point lies between them. Limbs are
-then all pairs of neighbouring key points that have lines. A key point may be drawn on several frames: its ends slide along the
+Each line on the limb layer marks one key point: its ends lie near the two sides of a limb, the key point lies between them. Limbs
+lead from each key point that has a line to the nearest one above it that has one. A key point may be drawn on several frames: its ends slide along the
 contour between these. Lines carry the number of their key point in a stroke attribute, so they may be moved and copied.
 
 The limbs are kept with the object's document, as its fields `limbs`.
@@ -74,13 +74,21 @@ def define(ob, reading: document.Reading) -> list[dict[str, Any]]:
         raise Problem(f'No line on the layer "{LAYER}" has a key point yet: choose one in Define Limbs')
     ends = {point: _end(point, drawn, reading.document) for point, drawn in lines.items()}
     made = []
-    for child, parent in enumerate(PARENTS[1:], 1):
-        if child in ends and parent in ends:
+    for child in range(1, len(PARENTS)):
+        parent = _ancestor(child, ends)
+        if child in ends and parent is not None:
             made.append(_limb(KEY_POINTS[parent], KEY_POINTS[child], ends[parent], ends[child]))
-    if not made:
-        raise Problem("No two neighbouring key points have lines yet: draw the next one")
     keep(ob, made)
     return made
+
+
+def _ancestor(child: int, ends) -> int | None:
+    """The nearest key point above one that has a line."""
+    while child:
+        child = PARENTS[child]
+        if child in ends:
+            return child
+    return None
 
 
 def count_lines(ob) -> int:

@@ -27,6 +27,9 @@ const DEPTH_SCALE: f64 = 1e6;
 /// Share of a clip's frames whose lowest foot is no lower than its ground.
 const GROUND: f64 = 0.75;
 
+/// Share of the shin's turn that a shoe takes which no limb carries: feet keep nearly the angle that they are drawn with.
+const FOOT_TURN: f64 = 0.3;
+
 /// What is to be made of a drawing.
 #[derive(Clone, Debug)]
 pub struct ReshapeJob<'a> {
@@ -259,7 +262,8 @@ fn bodies(
         }
         let nearest = carriers.is_empty().then(|| nearest_limb(rest, &outline));
         if let Some(limb) = nearest {
-            carriers.push(Carrier { limb, turn: 1.0, rigidity: set.limbs[limb].rigidity });
+            let turn = if LEGS.iter().any(|leg| leg[2] == set.limbs[limb].to) { FOOT_TURN } else { 1.0 };
+            carriers.push(Carrier { limb, turn, rigidity: set.limbs[limb].rigidity });
         }
         let curves = part.complete_curves(frame);
         let (count, mut points) = (points.len(), points.clone());
