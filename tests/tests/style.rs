@@ -175,5 +175,10 @@ fn write_sheet(as_captured: &Document, in_manner: &Document) -> anyhow::Result<(
     }
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/style");
     std::fs::create_dir_all(&folder)?;
+    // The doll as a project of its own, to try the same in Blender.
+    std::fs::write(folder.join("doll.json"), doll::document()?.to_json())?;
+    std::fs::write(folder.join("doll_0.png"), doll::paint(ground.clone(), &doll::document()?, 0).encode_png()?)?;
+    sample::write(&folder.join("sample"))?;
+    std::fs::write(folder.join("sample/tracked.json"), TRACKED.to_json())?;
     Ok(sheet::arrange(&cells)?.save(folder.join("sheet.png"))?)
 }

@@ -191,7 +191,7 @@ pub fn library_find(folder: &str, json: &str) -> Result<String, Failure> {
     }
     let wanted: Wanted = options(json)?;
     let library = Library::open(Path::new(folder));
-    let entries: Vec<&Entry> = library.search(&wanted.character, &wanted.motion).into_iter().collect();
+    let entries: Vec<&Entry> = library.search(&wanted.character, &wanted.motion).collect();
     let mut troubles: Vec<String> = library.troubles().iter().map(ToString::to_string).collect();
     let clips = if wanted.read {
         let (clips, more) = library.read(entries.iter().copied());

@@ -143,7 +143,7 @@ fn fitted(set: &LimbSet, parts: &[Part], rest: FrameNumber, clip: &Clip) -> Resu
     let drawn = capture(set, parts, rest..=rest).map_err(wrong)?;
     let posture = drawn.postures[0];
     let (own, theirs) = (Proportions::of(&[posture]), Proportions::of(&clip.postures));
-    if !(theirs.torso() > 0.0) {
+    if theirs.torso() <= 0.0 {
         return Err(wrong("clip: found a torso of length 0, expected a positive length"));
     }
     let told = |leg: &[usize; 3]| leg.iter().all(|&k| drawn.guessed[k] == 0);

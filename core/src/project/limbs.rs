@@ -58,7 +58,13 @@ impl Document {
     pub fn set_limbs(&mut self, set: &LimbSet) {
         self.set_other_field("limbs", lines(set.limbs.iter().map(written)));
         self.set_other_field("limb_swaps", lines(set.swaps.iter().map(|(first, last)| json!([first, last]))));
-        let mark = |m: &DepthMark| json!({"front": m.front, "behind": m.behind, "first": m.first, "last": m.last});
+        let mark = |m: &DepthMark| {
+            let mut fields = Map::from_iter([("front".into(), json!(m.front)), ("behind".into(), json!(m.behind))]);
+            let ends = [("first", m.first, FrameNumber::MIN), ("last", m.last, FrameNumber::MAX)];
+            let given = ends.into_iter().filter(|(_, frame, open)| frame != open);
+            fields.extend(given.map(|(name, frame, _)| (name.to_owned(), json!(frame))));
+            Value::Object(fields)
+        };
         self.set_other_field("depth_marks", lines(set.marks.iter().map(mark)));
     }
 
@@ -71,12 +77,11 @@ impl Document {
                 .map(str::to_owned)
                 .ok_or_else(|| wrong(&format!("{place}.{name}"), &described(found), "the name of a part"))
         };
-        let footage = &self.scene.footage;
         Ok(DepthMark {
             front: part("front")?,
             behind: part("behind")?,
-            first: given(fields, place, "first", frame)?.unwrap_or(footage.first),
-            last: given(fields, place, "last", frame)?.unwrap_or(footage.last),
+            first: given(fields, place, "first", frame)?.unwrap_or(FrameNumber::MIN),
+            last: given(fields, place, "last", frame)?.unwrap_or(FrameNumber::MAX),
         })
     }
 }
@@ -246,7 +251,7 @@ mod tests {
         assert_eq!((set.limbs[0].from, set.limbs[0].to, set.limbs[0].rigidity), (9, 10, 2.0));
         assert_eq!(set.limbs[0].carries[1], Carried { part: "hand".into(), turn: 0.5 });
         assert_eq!(set.swaps, [(3, 9)]);
-        assert_eq!((set.marks[0].first, set.marks[0].last), (2, 9));
+        assert_eq!((set.marks[0].first, set.marks[0].last), (2, FrameNumber::MAX));
         let mut other = document(r#""note": 1"#);
         assert_eq!(other.limbs().unwrap(), LimbSet::default());
         other.set_limbs(&set);

@@ -232,6 +232,7 @@ impl Triangles {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use std::slice::from_ref;
 
     fn ring(count: usize, radius: f64, wave: f64) -> Vec<Point> {
         let at = |k: usize| {
@@ -267,11 +268,11 @@ mod tests {
     #[test]
     fn holes_stay_open() {
         let (outline, hole) = (ring(60, 50.0, 0.0), ring(30, 20.0, 0.0));
-        let mesh = triangulate(&[outline.clone()], &[hole.clone()], 6.0).unwrap();
+        let mesh = triangulate(from_ref(&outline), from_ref(&hole), 6.0).unwrap();
         let wanted = polygon::signed_area(&outline).abs() - polygon::signed_area(&hole).abs();
         assert!((area(&mesh) / wanted - 1.0).abs() < 1e-2);
         assert!(least_angle(&mesh) > 20.0);
-        assert_eq!(triangulate(&[hole.clone()], &[outline], 6.0), Err(TriangulateError::Nothing));
+        assert_eq!(triangulate(from_ref(&hole), &[outline], 6.0), Err(TriangulateError::Nothing));
     }
 
     #[test]
