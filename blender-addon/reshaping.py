@@ -70,15 +70,27 @@ def finish(ob, drawing: Drawing, made) -> int:
         part.keys = {drawing.frame: part.keys[drawing.frame]} if drawing.frame in part.keys else {}
         part.layer = part.keys[drawing.frame].layer if part.keys else part.layer
     parts = [part for part in by_number.values() if part.keys]
-    depths = {part["name"]: part.get("depth", 0.0) for part in made.document["parts"]}
-    for part in parts:
-        part.depth = depths.get(part.name, part.depth)
     for index, name in enumerate(names):
         block = writing.lay_out(index, parts, tracks, reading.found, reading.mapper, {})
+        block.order = _order(block, index, parts, tracks, made.document)
         layer = ob.data.layers[name]
         writing.write(layer, block, list(gp.drawings(layer)))
     ob.data.update_tag()
     return len(frames)
+
+
+def _order(block: writing.Block, layer: int, parts, tracks, project: dict[str, Any]) -> np.ndarray:
+    """On each frame the block's columns from behind to the front."""
+    columns = sorted((p for p in parts if p.number in tracks and p.layer == layer), key=lambda p: p.depth)
+    first = project["footage"]["first"]
+    entries = {part["name"]: part for part in project["parts"]}
+    depths = np.empty((len(block.frames), len(columns)))
+    for column, part in enumerate(columns):
+        entry = entries[part.name]
+        depths[:, column] = entry.get("depth", 0.0)
+        for frame, depth in document.by_frame(entry.get("depths")).items():
+            depths[frame - first, column] = depth
+    return np.argsort(depths, axis=1, kind="stable")
 
 
 def _drawn(reading: document.Reading, layer: int) -> np.ndarray:

@@ -4,6 +4,7 @@ import bpy
 
 from .. import jobs, preferences, reshaping
 from ..errors import Problem
+from ..style import read_library, reshape, translate_clip
 from .base import Long, contours_poll
 from .save_clip import library_folder
 
@@ -15,13 +16,11 @@ PRESETS = (
 )
 
 
-def _shared(read):
-    """A worker's function: the clips of the library, which must not be empty."""
-    from ..style import read_library
-
-    found = read_library(read)
+def _clips(folder: str):
+    """The clips of a library, which must not be empty."""
+    found = read_library(folder)
     if not found.entries:
-        raise Problem(f"The library {read} holds no clips: save one first")
+        raise Problem(f"The library {folder} holds no clips: save one first")
     return found.clips
 
 
@@ -33,8 +32,6 @@ class _Reshaping(Long):
 
     def _start(self, context, clips):
         """The worker that reshapes the active drawing by what `clips(progress)` gives."""
-        from ..style import reshape
-
         self._ob = context.object
         self._drawing = drawing = reshaping.begin(self._ob, context.scene.frame_current)
         threads, sub_keys, before = preferences.threads(), self.sub_keys, self._before
@@ -76,7 +73,7 @@ class ROTOTOON_OT_reshape_drawing(_Reshaping, bpy.types.Operator):
     def begin(self, context):
         folder = library_folder(context.object, self.folder)
         wanted = {"character": self.character, "motion": self.motion}
-        return self._start(context, lambda _progress, _threads: (_shared(folder), wanted))
+        return self._start(context, lambda _progress, _threads: (_clips(folder), wanted))
 
 
 class ROTOTOON_OT_apply_motion(_Reshaping, bpy.types.Operator):
@@ -109,15 +106,13 @@ class ROTOTOON_OT_apply_motion(_Reshaping, bpy.types.Operator):
         return context.window_manager.invoke_props_dialog(self)
 
     def begin(self, context):
-        from ..style import translate_clip
-
         folder = library_folder(context.object, self.folder)
         wanted = {"style": self.style, "motion": self.motion, "content": self.content}
         how = {"preset": self.preset, "strength": self.strength}
 
         def clips(progress, threads):
             half = lambda done, step: progress(0.5 * done, step)  # noqa: E731 - the first half of the bar
-            return translate_clip(_shared(folder), progress=half, threads=threads, **wanted, **how), {}
+            return translate_clip(_clips(folder), progress=half, threads=threads, **wanted, **how), {}
 
         return self._start(context, clips)
 

@@ -4,6 +4,7 @@ import bpy
 
 from .. import document, limbs
 from ..errors import Problem
+from ..style import add_to_library, capture_clip
 from .base import Guarded, contours_poll
 
 
@@ -40,8 +41,6 @@ class ROTOTOON_OT_save_clip(Guarded, bpy.types.Operator):
         return context.window_manager.invoke_props_dialog(self)
 
     def run(self, context) -> str:
-        from ..style import add_to_library, capture_clip
-
         ob = context.object
         folder = library_folder(ob, self.folder)
         if not limbs.defined(ob):

@@ -125,12 +125,17 @@ def test_capture_clip_style_reshape(addon, tmp_path):
         limb_line(addon, ob, 1, name, doll)
     ob.rototoon.clips_folder = shelf
     before = dict(shots.pixels(addon, ob, 1))
+    names = [part.name for part in ob.rototoon.parts]
+    bpy.ops.rototoon.depth_mark(front=names[0], behind=names[1])
+    bpy.ops.rototoon.depth_mark(front=names[1], behind=names[2])
     assert bpy.ops.rototoon.reshape_drawing(character="plain", motion="walk") == {"FINISHED"}
     frames = sorted(frame.frame_number for frame in shots.layer_of(ob).frames)
     assert frames == list(range(1, shots.COUNT + 2))
     kinds = {frame.frame_number: frame.keyframe_type for frame in shots.layer_of(ob).frames}
     assert kinds[1] != "GENERATED" and kinds[2] == "GENERATED"
     assert all(np.array_equal(points, before[number]) for number, points in shots.pixels(addon, ob, 1))
+    orders = {tuple(number for number, _ in shots.pixels(addon, ob, frame)) for frame in frames[1:]}
+    assert orders == {(3, 2, 1)}, "the marks turn the drawing's order round"
     wrist = lambda frame: dict(shots.pixels(addon, ob, frame))[3][[3, 4]].mean(0)  # noqa: E731
     swung = [wrist(frame) for frame in range(2, shots.COUNT + 2)]
     assert np.ptp([point[0] for point in swung]) > 15
