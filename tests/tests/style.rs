@@ -69,6 +69,8 @@ fn reshaped(clip: &Clip, marks: bool) -> Document {
     let job = ReshapeJob { clip, fps: 24.0, rest: None, over: None, options };
     let made = pipeline::reshape(&mut document, &job, &Silent).unwrap();
     assert_eq!(made.given, []);
+    let rigid = |name: &String| ["mitten", "boot", "head"].iter().any(|word| name.contains(word));
+    assert!(made.rigid.iter().all(rigid), "arms, legs and the body bend: {:?}", made.rigid);
     document
 }
 

@@ -172,11 +172,13 @@ fn mesh(
     options: &Options,
 ) -> Result<Option<Drive>, PuppetError> {
     let edge = (polygon::signed_area(outline).abs().sqrt() / EDGES).max(1e-9);
-    let shape = triangulate(&[outline.to_vec()], &[], edge)?;
-    let (vertices, handles) = handles(&shape, edge, rest, carriers, options);
-    if vertices.len() < 2 {
-        return Ok(None);
-    }
+    let whole = triangulate(&[outline.to_vec()], &[], edge)?;
+    // What hangs on the rest by one vertex could turn freely about it: the rest alone is posed, and holds what it holds.
+    let posed = whole.pieces().into_iter().find_map(|piece| {
+        let (vertices, handles) = handles(&piece, edge, rest, carriers, options);
+        (vertices.len() > 1).then_some((piece, vertices, handles))
+    });
+    let Some((shape, vertices, handles)) = posed else { return Ok(None) };
     let weight = |corners: &[usize; 3]| {
         let middle = corners.map(|v| shape.vertices[v]).iter().sum::<Point>() / 3.0;
         let nearest = carriers.iter().min_by(|a, b| {
@@ -289,6 +291,38 @@ mod tests {
         curved.iter_mut().for_each(|limb| limb.bend = Bend { along: 0.5, across: 0.3 });
         for limbs in [bent(1.6), curved] {
             assert!(strayed(5, &limbs) < 0.5 * strayed(0, &limbs), "{} {}", strayed(5, &limbs), strayed(0, &limbs));
+        }
+    }
+
+    #[test]
+    fn a_drawn_sleeve_bends_at_the_elbow() {
+        let points = [
+            (286.65087781207876, 237.52800161289488),
+            (275.4858133122582, 260.41842547509924),
+            (267.2832869578837, 282.48407364878403),
+            (262.00127940390485, 303.742315298805),
+            (259.5972008032425, 324.2365926872229),
+            (249.5526814625554, 325.9994401606485),
+            (239.60279919675747, 323.7634073127771),
+            (241.26372059609517, 300.43268470119494),
+            (246.13671304211624, 276.41592635121594),
+            (254.17918668774192, 251.7565745249007),
+            (265.34912218792124, 226.47199838710512),
+            (280.14600120967117, 224.01184164094093),
+        ];
+        let outline = points.map(Point::from).to_vec();
+        let across = |a: usize, b: usize| outline[a].midpoint(outline[b]);
+        let [shoulder, elbow, wrist] = [across(0, 10), across(2, 8), across(4, 6)];
+        let straight = |a: Point, b: Point| LimbPose { ends: (a, b), bend: Bend::STRAIGHT };
+        let rest = [straight(shoulder, elbow), straight(elbow, wrist)];
+        for turn in [-2.0, -1.0, 1.0, 2.0] {
+            let hand = elbow + Point::from_angle(turn).rotate(wrist - elbow);
+            let limbs = [straight(shoulder, elbow), straight(elbow, hand)];
+            let mut puppet =
+                Puppet::new(&outline, &[wrist, shoulder], &rest, &[carrier(0), carrier(1)], &Options::default())
+                    .unwrap();
+            let found = puppet.pose(&limbs).unwrap();
+            assert!(found[0].distance(hand) < 2.0 && found[1].distance(shoulder) < 2.0, "{turn}: {found:?} {hand}");
         }
     }
 

@@ -13,6 +13,7 @@
 
 use crate::geometry::{Point, polygon, polyline};
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
+use std::collections::BTreeMap;
 
 /// Smallest angle of refined triangles, in degrees; refinement is certain to end below 20.7, and does nearly always at this.
 pub const LEAST_ANGLE: f64 = 25.0;
@@ -23,7 +24,7 @@ const LARGEST: f64 = 1.6;
 /// Triangles smaller than this share of the wanted edge's square are not refined further: the sharp ends of outlines.
 const SMALLEST: f64 = 0.04;
 /// Triangles with less than this share of the area of an equilateral one on their longest edge are slivers.
-const SLIVER: f64 = 1e-3;
+const SLIVER: f64 = 1e-5;
 /// Most vertices that refinement may add: for each point of the outlines, and for each triangle of the wanted size in their box.
 const MOST: [f64; 2] = [10.0, 4.0];
 
@@ -79,7 +80,9 @@ pub fn triangulate(outlines: &[Vec<Point>], holes: &[Vec<Point>], edge: f64) -> 
         constrain(&mut mesh, ring);
     }
     let largest = LARGEST * 3f64.sqrt() / 4.0 * edge * edge;
+    // What lies outside is not refined: flat angles between an outline and its hull would cut it into crumbs.
     let parameters = RefinementParameters::<f64>::new()
+        .exclude_outer_faces(true)
         .with_angle_limit(AngleLimit::from_deg(LEAST_ANGLE))
         .with_max_allowed_area(largest)
         .with_min_required_area(SMALLEST * edge * edge)
@@ -199,6 +202,46 @@ impl Held {
 }
 
 impl Triangles {
+    /// The pieces that hang together by edges, the largest by area first.
+    pub fn pieces(&self) -> Vec<Self> {
+        let mut owner: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+        let mut piece: Vec<usize> = (0..self.triangles.len()).collect();
+        for (t, [a, b, c]) in self.triangles.iter().enumerate() {
+            for (v, w) in [(a, b), (b, c), (c, a)] {
+                if let Some(&other) = owner.get(&(*v.min(w), *v.max(w))) {
+                    let (x, y) = (root(&mut piece, t), root(&mut piece, other));
+                    piece[x.max(y)] = x.min(y);
+                }
+                owner.insert((*v.min(w), *v.max(w)), t);
+            }
+        }
+        let mut found: BTreeMap<usize, Vec<[usize; 3]>> = BTreeMap::new();
+        for (t, corners) in self.triangles.iter().enumerate() {
+            found.entry(root(&mut piece, t)).or_default().push(*corners);
+        }
+        let mut pieces: Vec<Self> = found.into_values().map(|triangles| self.part(&triangles)).collect();
+        pieces.sort_by(|a, b| b.area().total_cmp(&a.area()));
+        pieces
+    }
+
+    /// Some of the triangles with their vertices.
+    fn part(&self, triangles: &[[usize; 3]]) -> Self {
+        let mut number: BTreeMap<usize, usize> = BTreeMap::new();
+        let mut vertices = Vec::new();
+        let mut renumbered = |v: usize| {
+            *number.entry(v).or_insert_with(|| {
+                vertices.push(self.vertices[v]);
+                vertices.len() - 1
+            })
+        };
+        let triangles = triangles.iter().map(|corners| corners.map(&mut renumbered)).collect();
+        Self { vertices, triangles }
+    }
+
+    fn area(&self) -> f64 {
+        self.triangles.iter().map(|t| polygon::signed_area(&t.map(|v| self.vertices[v])).abs()).sum()
+    }
+
     /// Binds a point to the triangle that it lies in, or to the nearest one.
     pub fn hold(&self, p: Point) -> Held {
         let weights = |corners: &[usize; 3]| {
@@ -226,6 +269,15 @@ impl Triangles {
         }
         Held { corners: best.1, weights: weights(&best.1) }
     }
+}
+
+/// The first of the pieces that are one with a piece.
+fn root(piece: &mut [usize], mut t: usize) -> usize {
+    while piece[t] != t {
+        piece[t] = piece[piece[t]];
+        t = piece[t];
+    }
+    t
 }
 
 #[cfg(test)]
@@ -282,6 +334,7 @@ mod tests {
         let eight = vec![v(0.0, 0.0), v(40.0, 40.0), v(40.0, 0.0), v(0.0, 40.0)];
         let mesh = triangulate(&[eight], &[], 5.0).unwrap();
         assert!((area(&mesh) - 800.0).abs() < 1.0, "{}", area(&mesh));
+        assert_eq!(mesh.pieces().len(), 2, "its halves touch in a point");
         let mut twice = vec![v(0.0, 0.0), v(30.0, 0.0), v(30.0, 30.0), v(0.0, 30.0)];
         twice.extend([v(0.0, 0.0), v(20.0, 0.0), v(20.0, 20.0), v(0.0, 20.0)]);
         let mesh = triangulate(&[twice], &[], 5.0).unwrap();
