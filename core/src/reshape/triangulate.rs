@@ -8,8 +8,8 @@
 //! and where a line crosses itself or another one the crossing becomes a vertex. What is enclosed follows the winding number:
 //! not 0 in the outlines and 0 in the holes. So an outline that folds over itself has no hole there, as in rendering.
 //!
-//! Limits: triangles are not refined where an outline lies over itself an even number of times. Detail finer than a tenth of the wanted edge is smoothed away. Triangles that remain slivers (at crossings under a tiny
-//! angle) are left out.
+//! Limits: triangles are not refined where an outline lies over itself an even number of times. Detail finer than a tenth of
+//! the wanted edge is smoothed away. Triangles that remain slivers (at crossings under a tiny angle) are left out.
 
 use crate::geometry::{Point, polygon, polyline};
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
