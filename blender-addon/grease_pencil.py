@@ -44,6 +44,9 @@ INTERVAL = "rototoon_interval"
 """From which parameter of that stroke to which a part reaches; both 0 for a whole stroke. Whole numbers are its points, or
 the joints of its pieces where it is a curve."""
 
+KEY_POINT = "rototoon_key_point"
+"""Which key point of the skeleton a line across a limb tells, from 1; 0 for none."""
+
 TRACK = "rototoon_track"
 """Which stroke of the whole film a stroke is: the same number on the keys of a layer and on the in-betweens; 0 for none."""
 TWEENED = "rototoon_tweened"
@@ -55,6 +58,7 @@ BEFORE = "rototoon_before"
 """The same of the key before: a pair is a stroke whose `NEXT` is the `BEFORE` of one on the next key."""
 
 TYPES = {
+    KEY_POINT: ("INT", "CURVE"),
     TRACK: ("INT", "CURVE"),
     TWEENED: ("BOOLEAN", "CURVE"),
     NEXT: ("INT", "CURVE"),

@@ -102,6 +102,9 @@ class RototoonSettings(bpy.types.PropertyGroup):
     parts: bpy.props.CollectionProperty(type=RototoonPart)
     active_part: bpy.props.IntProperty(name="Active Part", default=0)
     next_number: bpy.props.IntProperty(default=1)
+    clips_folder: bpy.props.StringProperty(
+        name="Library", description="Folder of the library of skeleton clips", subtype="DIR_PATH", default=""
+    )
     extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")
 
 

@@ -48,6 +48,8 @@ class Block:
     """(F, points) or (F, points, k) by attribute."""
     curve: dict[str, np.ndarray] = field(default_factory=dict)
     """(F, P) or (F, P, k) by attribute."""
+    order: np.ndarray | None = None
+    """(F, P): on each frame the columns from behind to the front, where that is not their own order."""
 
 
 def styles(part: Part, found: Contours) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], list[int]]:
@@ -174,6 +176,8 @@ def write(layer, block: Block, before: Iterable[int]) -> int:
 def rows_of(block: Block, row: int) -> gp.Rows:
     """The strokes of one frame."""
     present = block.present[row]
+    if block.order is not None:
+        return _ordered(block, row)
     rows = gp.Rows(block.sizes[present])
     if present.all():
         rows.values = {name: values[row] for name, values in block.point.items()}
@@ -182,6 +186,15 @@ def rows_of(block: Block, row: int) -> gp.Rows:
     points = np.repeat(present, block.sizes)
     rows.values = {name: values[row][points] for name, values in block.point.items()}
     rows.values |= {name: values[row][present] for name, values in block.curve.items()}
+    return rows
+
+
+def _ordered(block: Block, row: int) -> gp.Rows:
+    strokes = block.order[row][block.present[row][block.order[row]]]
+    points = np.concatenate([np.arange(block.columns[i].start, block.columns[i].stop) for i in strokes])
+    rows = gp.Rows(block.sizes[strokes])
+    rows.values = {name: values[row][points] for name, values in block.point.items()}
+    rows.values |= {name: values[row][strokes] for name, values in block.curve.items()}
     return rows
 
 

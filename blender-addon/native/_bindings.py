@@ -2,7 +2,7 @@
 
 import ctypes
 
-HEADER_HASH = 0x67dd844d17339a0e
+HEADER_HASH = 0xcb828d494b08e5fe
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -361,6 +361,58 @@ def declare(library: ctypes.CDLL) -> None:
     library.rototoon_pieces_free.argtypes = [
         ctypes.c_void_p,
     ]
+    library.rototoon_capture_clip.restype = ctypes.c_int32
+    library.rototoon_capture_clip.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_translate_clip.restype = ctypes.c_int32
+    library.rototoon_translate_clip.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_reshape.restype = ctypes.c_int32
+    library.rototoon_reshape.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_library_add.restype = ctypes.c_int32
+    library.rototoon_library_add.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_library_find.restype = ctypes.c_int32
+    library.rototoon_library_find.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
     library.rototoon_match_strokes.restype = ctypes.c_int32
     library.rototoon_match_strokes.argtypes = [
         ctypes.c_void_p,
@@ -655,6 +707,58 @@ def declare(library: ctypes.CDLL) -> None:
     ]
     library.rototoon_pieces_free.restype = None
     library.rototoon_pieces_free.argtypes = [
+        ctypes.c_void_p,
+    ]
+    library.rototoon_capture_clip.restype = ctypes.c_int32
+    library.rototoon_capture_clip.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_translate_clip.restype = ctypes.c_int32
+    library.rototoon_translate_clip.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_reshape.restype = ctypes.c_int32
+    library.rototoon_reshape.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_library_add.restype = ctypes.c_int32
+    library.rototoon_library_add.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_library_find.restype = ctypes.c_int32
+    library.rototoon_library_find.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
         ctypes.c_void_p,
     ]
     library.rototoon_match_strokes.restype = ctypes.c_int32

@@ -1,8 +1,11 @@
 """The operators `bpy.ops.rototoon.*`, one a file."""
 
 from . import (
+    apply_motion,
     clear_generated,
     contours_to_mask,
+    define_limbs,
+    depth_mark,
     export_document,
     fit_strokes,
     footage_from_camera,
@@ -15,6 +18,7 @@ from . import (
     match_strokes,
     new_key,
     release_pins,
+    save_clip,
     setup,
     show_confidence,
     snap,
@@ -39,6 +43,10 @@ _MODULES = (
     hidden_lines,
     match_strokes,
     in_between,
+    define_limbs,
+    save_clip,
+    apply_motion,
+    depth_mark,
     import_document,
     export_document,
     contours_to_mask,

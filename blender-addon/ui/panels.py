@@ -1,9 +1,9 @@
-"""The panels, in the order of the work: footage, parts, track, snap, strokes, tween, document."""
+"""The panels, in the order of the work: footage, parts, track, snap, strokes, tween, style, document."""
 
 import bpy
 
 from .. import grease_pencil as gp
-from .. import ends, live
+from .. import ends, limbs, live
 
 
 class _Panel:
@@ -183,6 +183,28 @@ class ROTOTOON_PT_tween(_Panel, bpy.types.Panel):
         layout.operator("rototoon.clear_in_betweens", icon="TRASH")
 
 
+class ROTOTOON_PT_style(_Panel, bpy.types.Panel):
+    bl_idname = "ROTOTOON_PT_style"
+    bl_label = "Style"
+
+    @classmethod
+    def poll(cls, context):
+        return _settings(context) is not None
+
+    def draw(self, context):
+        layout, settings = self.layout, _settings(context)
+        layout.use_property_decorate = False
+        layout.operator_menu_enum("rototoon.define_limbs", "point", text="Define Limbs", icon="BONE_DATA")
+        count = len(limbs.defined(context.object))
+        layout.label(text=f"{count} limbs" if count else f'Draw a line across a limb on the layer "{limbs.LAYER}"')
+        layout.operator("rototoon.depth_mark", icon="OVERLAY")
+        layout.prop(settings, "clips_folder")
+        column = layout.column(align=True)
+        column.operator("rototoon.save_clip", icon="FILE_TICK")
+        column.operator("rototoon.apply_motion", icon="ARMATURE_DATA")
+        column.operator("rototoon.reshape_drawing", icon="MOD_ARMATURE")
+
+
 class ROTOTOON_PT_document(_Panel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_document"
     bl_label = "Document"
@@ -201,5 +223,6 @@ CLASSES = (
     ROTOTOON_PT_snap,
     ROTOTOON_PT_strokes,
     ROTOTOON_PT_tween,
+    ROTOTOON_PT_style,
     ROTOTOON_PT_document,
 )

@@ -3,9 +3,13 @@
 //! This is the only file that knows all stages. A stage's result enters the document as a whole or, after an error or
 //! when cancelled, not at all.
 
+mod reshape;
 pub mod spans;
+mod style;
 mod tween;
 
+pub use reshape::{ReshapeJob, Reshaped, reshape};
+pub use style::{CapturedClip, ClipJob, clip, translate};
 pub use tween::{pegs_of, spacing_of, tween};
 
 use crate::export::{self, SvgOptions, svg};
@@ -65,6 +69,9 @@ pub enum PipelineError {
     /// Drawings could not be tweened.
     #[error("{0}")]
     Tween(String),
+    /// Clips or limbs do not fit what was asked for.
+    #[error("{0}")]
+    Style(String),
     /// What was asked for does not fit the document.
     #[error("{0}")]
     Request(String),

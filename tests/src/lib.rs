@@ -1,6 +1,7 @@
 //! What the test suites and the development commands share.
 //!
 //! - [`sample`]: the sample cartoon with exact truth
+//! - [`doll`]: a second drawn character
 //! - [`puppet`]: drawn footage of any size for measuring speed and memory
 //! - [`truth`]: truth documents
 //! - [`measure`]: how near tracked contours come to the truth
@@ -15,6 +16,7 @@
 pub mod artist;
 pub mod benchmark;
 pub mod chart;
+pub mod doll;
 pub mod drawing;
 pub mod golden;
 pub mod hash_order;

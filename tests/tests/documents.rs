@@ -284,7 +284,9 @@ fn part() -> impl Strategy<Value = Part> {
                 let confidence = tracks.iter().map(|(&f, points)| (f, vec![0.25; points.len()])).collect();
                 let curves = tracks.iter().map(|(&f, points)| (f, vec![points.clone(); 2])).collect();
                 let wants_key = keys.keys().take(2).map(|&frame| frame - 1).collect();
-                Part { name: String::new(), closed, depth, keys, pins, centers, tracks, confidence, curves, wants_key }
+                let depths = keys.keys().take(1).map(|&frame| (frame, 0.5 - depth)).collect();
+                let name = String::new();
+                Part { name, closed, depth, keys, pins, centers, tracks, confidence, curves, wants_key, depths }
             },
         )
     })

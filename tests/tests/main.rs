@@ -2,8 +2,10 @@
 //!
 //! - `documents`: reading and writing project documents, good and bad
 //! - `architecture`: which module may use which
+//! - `style`: from the sample cartoon's contours to another character's drawing in another manner
 //! - `bench_tracking`: the benchmark of tracking on a small scene
 
 mod architecture;
 mod bench_tracking;
 mod documents;
+mod style;

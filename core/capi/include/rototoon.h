@@ -445,6 +445,70 @@ RototoonStatus rototoon_pieces_read(const struct RototoonPieces *pieces,
 // Frees cut strokes; null is allowed.
 void rototoon_pieces_free(struct RototoonPieces *pieces);
 
+// Makes a skeleton clip of a document's tracked contours, by its limbs.
+//
+// `document` is a project document as JSON, `options` JSON: `character`, `motion`, and `first` and `last` frame, which may be
+// left out. `made` is JSON: `{"clips": a file of clips, "first": the frame of the first posture, "guessed": {key point:
+// number of frames on which no contour tells it}}`.
+RototoonStatus rototoon_capture_clip(const uint8_t *document,
+                                     size_t document_length,
+                                     const uint8_t *options,
+                                     size_t options_length,
+                                     struct RototoonText **made,
+                                     struct RototoonText **error);
+
+// Re-makes a motion in another character's manner.
+//
+// `clips` is a file of clips as JSON, `options` JSON: `style`, `motion`, `content`; and `preset`, `timing` ("content" or
+// "style"), `strength` (0 to 3), `limb_lengths`, `contacts`, `keys` (drawn poses as their files hold them) and `threads`, which
+// may be left out. `made` is a file of clips with the one that was made.
+RototoonStatus rototoon_translate_clip(const uint8_t *clips,
+                                       size_t clips_length,
+                                       const uint8_t *options,
+                                       size_t options_length,
+                                       RototoonProgress progress,
+                                       void *user,
+                                       struct RototoonText **made,
+                                       struct RototoonText **error);
+
+// Makes a drawing follow a clip: its contours and strokes on every frame.
+//
+// `document` is a project document with limbs as JSON, `clips` a file of clips as JSON. `options` is JSON: `character` and
+// `motion` choose the clip where there are several; `rest`, the frame of the drawing; `sub_keys`, points of each limb between its
+// key points; `threads`; all may be left out. `made` is JSON: `{"document": the document with tracks, depths and strokes on every
+// frame, "given": [{"part", "from", "to"}] parts that no limb carries with the one they follow, "rigid": names of parts that
+// do not bend}`.
+RototoonStatus rototoon_reshape(const uint8_t *document,
+                                size_t document_length,
+                                const uint8_t *clips,
+                                size_t clips_length,
+                                const uint8_t *options,
+                                size_t options_length,
+                                RototoonProgress progress,
+                                void *user,
+                                struct RototoonText **made,
+                                struct RototoonText **error);
+
+// Adds clips to the library of a folder, in place of those of the same character and motion. `clips` is a file of clips as JSON,
+// `source` says where they come from and may be empty.
+RototoonStatus rototoon_library_add(const uint8_t *folder,
+                                    size_t folder_length,
+                                    const uint8_t *clips,
+                                    size_t clips_length,
+                                    const uint8_t *source,
+                                    size_t source_length,
+                                    struct RototoonText **error);
+
+// The clips of a library. `wanted` is JSON: words that `character` and `motion` must hold, and whether to `read` the clips; all
+// may be left out. `found` is JSON: `{"entries": [{"file", "character", "motion", "frames", "fps", "source"}], "troubles": [what
+// cannot be used], "clips": a file of clips or null}`.
+RototoonStatus rototoon_library_find(const uint8_t *folder,
+                                     size_t folder_length,
+                                     const uint8_t *wanted,
+                                     size_t wanted_length,
+                                     struct RototoonText **found,
+                                     struct RototoonText **error);
+
 // Finds which stroke of a drawing is which of the next one, for all neighbours of several drawings.
 //
 // The strokes of all drawings are given as to `rototoon_fit_strokes`, one drawing after the other: drawing `d` has the
@@ -770,6 +834,70 @@ RototoonStatus rototoon_pieces_read(const struct RototoonPieces *pieces,
 
 // Frees cut strokes; null is allowed.
 void rototoon_pieces_free(struct RototoonPieces *pieces);
+
+// Makes a skeleton clip of a document's tracked contours, by its limbs.
+//
+// `document` is a project document as JSON, `options` JSON: `character`, `motion`, and `first` and `last` frame, which may be
+// left out. `made` is JSON: `{"clips": a file of clips, "first": the frame of the first posture, "guessed": {key point:
+// number of frames on which no contour tells it}}`.
+RototoonStatus rototoon_capture_clip(const uint8_t *document,
+                                     size_t document_length,
+                                     const uint8_t *options,
+                                     size_t options_length,
+                                     struct RototoonText **made,
+                                     struct RototoonText **error);
+
+// Re-makes a motion in another character's manner.
+//
+// `clips` is a file of clips as JSON, `options` JSON: `style`, `motion`, `content`; and `preset`, `timing` ("content" or
+// "style"), `strength` (0 to 3), `limb_lengths`, `contacts`, `keys` (drawn poses as their files hold them) and `threads`, which
+// may be left out. `made` is a file of clips with the one that was made.
+RototoonStatus rototoon_translate_clip(const uint8_t *clips,
+                                       size_t clips_length,
+                                       const uint8_t *options,
+                                       size_t options_length,
+                                       RototoonProgress progress,
+                                       void *user,
+                                       struct RototoonText **made,
+                                       struct RototoonText **error);
+
+// Makes a drawing follow a clip: its contours and strokes on every frame.
+//
+// `document` is a project document with limbs as JSON, `clips` a file of clips as JSON. `options` is JSON: `character` and
+// `motion` choose the clip where there are several; `rest`, the frame of the drawing; `sub_keys`, points of each limb between its
+// key points; `threads`; all may be left out. `made` is JSON: `{"document": the document with tracks, depths and strokes on every
+// frame, "given": [{"part", "from", "to"}] parts that no limb carries with the one they follow, "rigid": names of parts that
+// do not bend}`.
+RototoonStatus rototoon_reshape(const uint8_t *document,
+                                size_t document_length,
+                                const uint8_t *clips,
+                                size_t clips_length,
+                                const uint8_t *options,
+                                size_t options_length,
+                                RototoonProgress progress,
+                                void *user,
+                                struct RototoonText **made,
+                                struct RototoonText **error);
+
+// Adds clips to the library of a folder, in place of those of the same character and motion. `clips` is a file of clips as JSON,
+// `source` says where they come from and may be empty.
+RototoonStatus rototoon_library_add(const uint8_t *folder,
+                                    size_t folder_length,
+                                    const uint8_t *clips,
+                                    size_t clips_length,
+                                    const uint8_t *source,
+                                    size_t source_length,
+                                    struct RototoonText **error);
+
+// The clips of a library. `wanted` is JSON: words that `character` and `motion` must hold, and whether to `read` the clips; all
+// may be left out. `found` is JSON: `{"entries": [{"file", "character", "motion", "frames", "fps", "source"}], "troubles": [what
+// cannot be used], "clips": a file of clips or null}`.
+RototoonStatus rototoon_library_find(const uint8_t *folder,
+                                     size_t folder_length,
+                                     const uint8_t *wanted,
+                                     size_t wanted_length,
+                                     struct RototoonText **found,
+                                     struct RototoonText **error);
 
 // Finds which stroke of a drawing is which of the next one, for all neighbours of several drawings.
 //

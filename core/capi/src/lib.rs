@@ -2,8 +2,8 @@
 //!
 //! The header `include/rototoon.h` is generated from this crate and the Python bindings from the header
 //! (`cargo xtask generate`). Layers, from the outside: the exported functions ([`session_abi`], [`strokes_abi`],
-//! [`tween_abi`], [`functions`], [`handles`]) read their arguments through [`entry`]; below them all is safe Rust ([`session`], [`edit`], [`options`],
-//! [`matching`], [`strokes`], [`sheet`], [`work`]).
+//! [`tween_abi`], [`style_abi`], [`functions`], [`handles`]) read their arguments through [`entry`]; below them all is safe Rust ([`session`], [`edit`], [`options`],
+//! [`matching`], [`strokes`], [`sheet`], [`style`], [`work`]).
 //!
 //! # Contract
 //!
@@ -46,6 +46,8 @@ pub mod sheet;
 pub mod status;
 pub mod strokes;
 pub mod strokes_abi;
+pub mod style;
+pub mod style_abi;
 pub mod tween_abi;
 pub mod work;
 

@@ -62,7 +62,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
 }
 
 /// Frames as `A-B` or `A`; either may be negative.
-fn range(text: &str) -> Result<RangeInclusive<FrameNumber>, String> {
+pub fn range(text: &str) -> Result<RangeInclusive<FrameNumber>, String> {
     let wrong = || "expected frames such as 3-9, or one such as 3".to_owned();
     // The first character is a sign or a digit, so a dash after it separates.
     let at = text.char_indices().skip(1).find(|(_, c)| *c == '-').map(|(at, _)| at);

@@ -34,11 +34,14 @@
 //! - `track`: the same number for the same stroke on all frames.
 
 use super::Document;
+use super::fields::{array, count, described, flag, frame, given, number, object, point, wrong};
 use super::save::DECIMALS;
-use super::schema::{Field, MAX_COORDINATE, MAX_FRAME_NUMBER, TOP};
+use super::schema::{Field, TOP};
 use crate::geometry::Point;
 use crate::scene::FrameNumber;
 use serde_json::{Map, Value, json};
+
+pub use super::fields::FieldError as DrawingsError;
 
 /// A movement function or chart as it is written.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -145,18 +148,6 @@ pub struct DrawnBetween {
     pub strokes: Vec<(usize, f64, DrawnStroke)>,
 }
 
-/// A field that is not as it must be.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{place}: found {found}, expected {expected}")]
-pub struct DrawingsError {
-    /// JSON path.
-    pub place: String,
-    /// What was found.
-    pub found: String,
-    /// What was expected.
-    pub expected: String,
-}
-
 impl Document {
     /// The drawings, pairs and pegs of the document; none where it has none.
     ///
@@ -164,15 +155,7 @@ impl Document {
     ///
     /// The first field that is not as it must be.
     pub fn drawings(&self) -> Result<Drawings, DrawingsError> {
-        let list = |name: &'static str| -> Result<Vec<Value>, DrawingsError> {
-            match self.other_field(name) {
-                Some(json) => {
-                    let value = serde_json::from_str(json).map_err(|e| wrong(name, &e.to_string(), "JSON"))?;
-                    array(Some(&value), name).cloned()
-                }
-                None => Ok(Vec::new()),
-            }
-        };
+        let list = |name: &'static str| self.other_list(name);
         let pegs = pegs(&list("pegs")?)?;
         let drawings = list("drawings")?;
         let drawings = drawings.iter().enumerate().map(|(k, d)| drawing(d, &format!("drawings[{k}]"), &pegs));
@@ -189,7 +172,7 @@ impl Document {
     }
 
     /// Puts the list `json` into a field that the document's scene does not hold, in place of what was there.
-    fn set_other_field(&mut self, name: &'static str, json: String) {
+    pub(super) fn set_other_field(&mut self, name: &'static str, json: String) {
         if self.layout.top.is_empty() {
             self.layout.top.extend(TOP.map(Field::Known));
         }
@@ -200,11 +183,22 @@ impl Document {
         }
     }
 
-    fn other_field(&self, name: &str) -> Option<&str> {
+    pub(super) fn other_field(&self, name: &str) -> Option<&str> {
         self.layout.top.iter().find_map(|field| match field {
             Field::Unknown { name: own, json } if own == name => Some(json.as_str()),
             _ => None,
         })
+    }
+
+    /// The list in such a field; empty where there is none.
+    pub(super) fn other_list(&self, name: &'static str) -> Result<Vec<Value>, DrawingsError> {
+        match self.other_field(name) {
+            Some(json) => {
+                let value = serde_json::from_str(json).map_err(|e| wrong(name, &e.to_string(), "JSON"))?;
+                array(Some(&value), name).cloned()
+            }
+            None => Ok(Vec::new()),
+        }
     }
 
     /// Puts drawings into the document.
@@ -245,7 +239,7 @@ pub fn read_pegs(values: &[Value]) -> Result<Vec<DrawnPeg>, DrawingsError> {
 }
 
 /// A list with one element a line.
-fn lines(values: impl Iterator<Item = Value>) -> String {
+pub(super) fn lines(values: impl Iterator<Item = Value>) -> String {
     let lines: Vec<String> = values.map(|value| format!("\n    {value}")).collect();
     if lines.is_empty() { "[]".into() } else { format!("[{}\n  ]", lines.join(",")) }
 }
@@ -264,65 +258,6 @@ fn stroke_fields(stroke: &DrawnStroke, written: impl Fn(f64) -> f64) -> Map<Stri
         }
     }
     fields
-}
-
-fn wrong(place: &str, found: &str, expected: &str) -> DrawingsError {
-    DrawingsError { place: place.into(), found: found.into(), expected: expected.into() }
-}
-
-/// A value in a few words.
-fn described(value: Option<&Value>) -> String {
-    match value {
-        None => "nothing".into(),
-        Some(Value::Object(_)) => "an object".into(),
-        Some(Value::Array(list)) if list.len() > 3 => format!("a list of {}", list.len()),
-        Some(other) => other.to_string().chars().take(40).collect(),
-    }
-}
-
-fn object<'a>(value: &'a Value, place: &str) -> Result<&'a Map<String, Value>, DrawingsError> {
-    value.as_object().ok_or_else(|| wrong(place, &described(Some(value)), "an object"))
-}
-
-fn array<'a>(value: Option<&'a Value>, place: &str) -> Result<&'a Vec<Value>, DrawingsError> {
-    value.and_then(Value::as_array).ok_or_else(|| wrong(place, &described(value), "a list"))
-}
-
-fn flag(value: Option<&Value>, place: &str) -> Result<bool, DrawingsError> {
-    value.and_then(Value::as_bool).ok_or_else(|| wrong(place, &described(value), "true or false"))
-}
-
-fn number(value: Option<&Value>, place: &str) -> Result<f64, DrawingsError> {
-    value.and_then(Value::as_f64).ok_or_else(|| wrong(place, &described(value), "a number"))
-}
-
-fn count<T: TryFrom<u64>>(value: Option<&Value>, place: &str) -> Result<T, DrawingsError> {
-    let number = value.and_then(Value::as_u64).and_then(|n| T::try_from(n).ok());
-    number.ok_or_else(|| wrong(place, &described(value), "a whole number from 0 on"))
-}
-
-fn frame(value: Option<&Value>, place: &str) -> Result<FrameNumber, DrawingsError> {
-    let number = value.and_then(Value::as_i64).filter(|n| n.abs() <= MAX_FRAME_NUMBER);
-    let number = number.and_then(|n| FrameNumber::try_from(n).ok());
-    number.ok_or_else(|| wrong(place, &described(value), "a frame number"))
-}
-
-fn point(value: Option<&Value>, place: &str) -> Result<Point, DrawingsError> {
-    let pair = value.and_then(Value::as_array).filter(|pair| pair.len() == 2);
-    let point = pair.and_then(|pair| Some(Point::new(pair[0].as_f64()?, pair[1].as_f64()?)));
-    let fits = |p: &Point| p.abs().max_element() <= MAX_COORDINATE;
-    let expected = "a point [x, y] of numbers between -1e6 and 1e6";
-    point.filter(fits).ok_or_else(|| wrong(place, &described(value), expected))
-}
-
-/// An optional field.
-fn given<T>(
-    fields: &Map<String, Value>,
-    place: &str,
-    name: &str,
-    read: impl Fn(Option<&Value>, &str) -> Result<T, DrawingsError>,
-) -> Result<Option<T>, DrawingsError> {
-    fields.get(name).map(|value| read(Some(value), &format!("{place}.{name}"))).transpose()
 }
 
 fn drawing(value: &Value, place: &str, pegs: &[DrawnPeg]) -> Result<Drawing, DrawingsError> {

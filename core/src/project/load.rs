@@ -308,7 +308,8 @@ impl<'de> Shape<'de> for PartShape {
     fn object<A: MapAccess<'de>>(self, context: &mut Context, mut entries: A) -> Result<Option<Self::Value>, A::Error> {
         let (mut name, mut closed, mut depth) = (None, None, None);
         let (mut keys, mut pins, mut centers) = (None, None, None);
-        let (mut tracks, mut confidence, mut curves, mut wants_key) = (None, None, None, None);
+        let (mut tracks, mut confidence, mut curves) = (None, None, None);
+        let (mut wants_key, mut depths) = (None, None);
         let mut fields = Vec::new();
         let points = Entries::<FrameNumber, _>::new(List(Pair));
         while let Some(key) = entries.next_key::<String>()? {
@@ -331,6 +332,7 @@ impl<'de> Shape<'de> for PartShape {
                 "confidence" => field(context, source, "confidence", Entries::new(List(Number)), &mut confidence)?,
                 "curves" => field(context, source, "curves", Entries::new(List(List(Pair))), &mut curves)?,
                 "wants_key" => field(context, source, "wants_key", List(Frame), &mut wants_key)?,
+                "depths" => field(context, source, "depths", Entries::<FrameNumber, _>::new(Number), &mut depths)?,
                 _ => unknown(source, key)?,
             });
         }
@@ -346,6 +348,7 @@ impl<'de> Shape<'de> for PartShape {
             confidence: confidence.unwrap_or_default(),
             curves: curves.unwrap_or_default(),
             wants_key: wants_key.unwrap_or_default(),
+            depths: depths.unwrap_or_default(),
         };
         Ok(Some((part, fields)))
     }

@@ -7,6 +7,7 @@
 //! - [`load`], [`save`]: documents from and to files
 //! - [`validate`]: what a document must hold beyond being well-formed
 //! - [`drawings`]: drawings on key frames, pairs, pegs and in-betweens
+//! - [`limbs`]: limbs on contours, swapped sides, which part is in front
 //! - [`curves`]: files of curves to fit
 //! - [`clips`]: files of skeleton clips
 //! - [`output`]: files that appear whole or not at all
@@ -16,7 +17,9 @@
 pub mod clips;
 pub mod curves;
 pub mod drawings;
+mod fields;
 pub mod library;
+pub mod limbs;
 pub mod load;
 pub mod output;
 pub mod problem;
@@ -25,6 +28,7 @@ pub mod schema;
 mod shape;
 pub mod validate;
 
+pub use fields::FieldError;
 pub use load::LoadError;
 pub use output::{WriteError, write_whole};
 pub use problem::{Problem, Problems, Severity};

@@ -103,6 +103,7 @@ fn is_default(part: &Part, name: &str) -> bool {
         "confidence" => part.confidence.is_empty(),
         "curves" => part.curves.is_empty(),
         "wants_key" => part.wants_key.is_empty(),
+        "depths" => part.depths.is_empty(),
         _ => false,
     }
 }
@@ -132,6 +133,7 @@ fn part_field(out: &mut String, part: &Part, field: &Field) {
         Field::Known("wants_key") => {
             list(out, &part.wants_key, "", "", |out, frame| number(out, f64::from(*frame)));
         }
+        Field::Known("depths") => frames(out, &part.depths, |out, _, depth| number(out, *depth)),
         Field::Known(_) => frames(out, &part.curves, |out, _, paths| {
             list(out, paths, "", "", |out, path| list(out, path, "", "", |out, p| pair(out, rounded_point(*p))))
         }),

@@ -29,8 +29,10 @@ pub(super) const FOOTAGE: [&str; 6] = ["pattern", "first", "last", "fps", "width
 ///
 /// `wants_key` (written by tracking, left out where empty): the frames on which a part with one key was lost, the last
 /// one before its track or the first one after it, at most two in rising order. A key there helps most.
-pub(super) const PART: [&str; 10] =
-    ["name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves", "wants_key"];
+///
+/// `depths` (written by reshaping, left out where empty): by frame the depth there, where it is another than `depth`.
+pub(super) const PART: [&str; 11] =
+    ["name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves", "wants_key", "depths"];
 
 /// One field of an object as it stood in the document.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -47,7 +47,7 @@ pub fn overlay(
     let Some(mut layer) = Pixmap::new(picture.width() as u32, picture.height() as u32) else { return picture.clone() };
     let mut order: Vec<usize> =
         (0..scene.parts.len()).filter(|i| parts.is_none_or(|parts| parts.contains(i))).collect();
-    order.sort_by(|&a, &b| scene.parts[a].depth.total_cmp(&scene.parts[b].depth));
+    order.sort_by(|&a, &b| scene.parts[a].depth_at(frame).total_cmp(&scene.parts[b].depth_at(frame)));
     let width = (options.line_width * (picture.height() as f64 / REFERENCE_LINES).max(0.5)) as f32;
     for index in order {
         let part = &scene.parts[index];

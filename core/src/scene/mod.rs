@@ -4,11 +4,13 @@
 //! - [`correspondence`]: contours drawn afresh, matched to the parts
 //! - [`effects`]: the parameters of the effects for compositing hosts
 //! - [`footage`]: which frames there are and where their pictures come from
+//! - [`limbs`]: which places of contours tell where key points are
 //! - [`palette`]: colours that tell parts apart
 //! - [`parameters`]: what a user may set, described once
 //! - [`part`]: a tracked contour with its keys, corrections and results
 //! - [`pattern`]: file names of a numbered sequence
 //! - [`progress`]: how long work reports and is cancelled
+//! - [`proportions`]: limb lengths of a character, postures in another's
 //! - [`raster`]: a rectangle of pixels
 //! - [`skeleton`]: the key points of a posture and how they hang together
 
@@ -16,11 +18,13 @@ pub mod clip;
 pub mod correspondence;
 pub mod effects;
 pub mod footage;
+pub mod limbs;
 pub mod palette;
 pub mod parameters;
 pub mod part;
 pub mod pattern;
 pub mod progress;
+pub mod proportions;
 pub mod raster;
 pub mod skeleton;
 

@@ -28,6 +28,8 @@ pub struct Part {
     pub curves: BTreeMap<FrameNumber, Vec<Vec<Point>>>,
     /// Of a tracked part with one key: the frames before and after its track on which it was lost, and wants a key.
     pub wants_key: Vec<FrameNumber>,
+    /// Depths on single frames where they are other than `depth`.
+    pub depths: BTreeMap<FrameNumber, f64>,
 }
 
 /// The frames between two neighbouring keys of a part, keys included.
@@ -91,6 +93,11 @@ impl Part {
         let paths = self.curves.get(&frame)?;
         (!paths.is_empty() && paths.len() == self.segment_count() && paths.iter().all(|path| !path.is_empty()))
             .then_some(paths)
+    }
+
+    /// Depth on a frame.
+    pub fn depth_at(&self, frame: FrameNumber) -> f64 {
+        self.depths.get(&frame).copied().unwrap_or(self.depth)
     }
 
     /// Number of control points; 0 without a key.

@@ -21,14 +21,16 @@
 //! Limits: cost grows with the cube of motions × cosines; a posture is one point of a Gaussian, so manners that choose
 //! between two ways of doing a thing get the mean of both.
 
-use super::Prediction;
 use super::basis::{Axes, COSINES, MODEL_FRAMES, cosines};
 use super::grid::{Grid, Row, WIDTH, mean};
 use super::kernels::{Kernels, Weights};
 use super::key_pose::{Errors, condition, deviation};
+use super::{Prediction, STEP};
 use crate::numeric::dense::DenseCholesky;
 use crate::numeric::vector::dot;
+use crate::scene::{Cancelled, Progress};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// c.
 const MEAN_VARIANCE: f64 = 30.0;
@@ -393,7 +395,12 @@ fn averaged(cells: &Cells, found: &[Vec<Vec<f64>>], target: (usize, usize)) -> (
 }
 
 /// Makes the wanted clip.
-pub(super) fn predict(grid: &Grid, keys: &[(usize, Row)], strength: f64) -> Prediction {
+pub(super) fn predict(
+    grid: &Grid,
+    keys: &[(usize, Row)],
+    strength: f64,
+    progress: &dyn Progress,
+) -> Result<Prediction, Cancelled> {
     let means: Vec<Vec<Row>> = (0..grid.motions.len())
         .map(|m| {
             mean((0..grid.characters.len()).filter_map(|s| grid.rows(s, m, MODEL_FRAMES)))
@@ -411,17 +418,25 @@ pub(super) fn predict(grid: &Grid, keys: &[(usize, Row)], strength: f64) -> Pred
     let kernels = Kernels::new(&means);
     let mut cells = Cells::new(grid, &axes);
     fill(&mut cells, &kernels, axes.even, target);
+    progress.report(STEP, 0.1)?;
     let bases: Vec<Weights> =
         NOISE.iter().flat_map(|&noise| POSTURE.iter().map(move |&posture| Weights { posture, noise })).collect();
     let shared = Shared::new(&cells, &kernels, axes.even, &SHRINK);
-    let found: Vec<Vec<LeftOut>> = bases.par_iter().map(|&base| left_out(&shared, base, &OBSERVED)).collect();
+    let done = AtomicUsize::new(0);
+    let found = bases.par_iter().map(|&base| {
+        let found = left_out(&shared, base, &OBSERVED);
+        let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
+        progress.report(STEP, 0.1 + 0.8 * finished as f64 / bases.len() as f64)?;
+        Ok(found)
+    });
+    let found: Vec<Vec<LeftOut>> = found.collect::<Result<_, Cancelled>>()?;
     let found: Vec<Vec<Vec<f64>>> = found.into_iter().flatten().flatten().collect();
     let (mut coefficients, errors) = averaged(&cells, &found, target);
     let mean = cells.mean_of(grid.motion, grid.style);
     for (c, mean) in coefficients.iter_mut().zip(&mean) {
         *c = strength * (*c - mean);
     }
-    assemble(grid, &axes, coefficients, &errors, keys)
+    Ok(assemble(grid, &axes, coefficients, &errors, keys))
 }
 
 /// The clip of what is added to the mean motion, with key poses met.

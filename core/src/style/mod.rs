@@ -24,10 +24,13 @@ mod kernels;
 mod key_pose;
 pub mod liang2012;
 
-use crate::scene::Clip;
 use crate::scene::clip::resample;
 use crate::scene::skeleton::{COUNT, Posture, torso};
+use crate::scene::{Cancelled, Clip, Progress};
 use grid::{Grid, Row};
+
+/// What progress is told.
+const STEP: &str = "Translating";
 
 /// The method that translates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -187,6 +190,9 @@ pub enum StyleError {
         /// Length of its torso.
         found: f64,
     },
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// A key pose lies beyond the clip.
     #[error("key pose: found frame {found}, expected 0 to {}", frames - 1)]
     KeyFrame {
@@ -207,15 +213,26 @@ pub(crate) struct Prediction {
 ///
 /// The result has the style's size and, key by key point and frame, a standard deviation of each coordinate, learned from how
 /// well the clips that are known are predicted from the others.
-pub fn translate(clips: &[Clip], request: &Request, options: &Options) -> Result<Clip, StyleError> {
+///
+/// # Errors
+///
+/// What is wrong with the clips or the request, or [`StyleError::Cancelled`].
+pub fn translate(
+    clips: &[Clip],
+    request: &Request,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Clip, StyleError> {
+    progress.report(STEP, 0.0)?;
     let grid = Grid::new(clips, request)?;
     let keys = keys(&grid, request);
     let mut made = match options.preset {
-        Preset::Rototoon => gaussian::predict(&grid, &keys, options.strength),
+        Preset::Rototoon => gaussian::predict(&grid, &keys, options.strength, progress)?,
         Preset::Bilinear => bilinear::predict(&grid, &keys, bilinear::Model::Asymmetric),
         Preset::BilinearSymmetric => bilinear::predict(&grid, &keys, bilinear::Model::Symmetric),
         Preset::Liang2012 => liang2012::predict(&grid, &keys),
     };
+    progress.report(STEP, 0.9)?;
     meet(&mut made, &keys);
     let mut postures: Vec<Posture> = made.rows.iter().map(grid::posture).collect();
     if options.keep_lengths {
@@ -235,6 +252,7 @@ pub fn translate(clips: &[Clip], request: &Request, options: &Options) -> Result
     if options.pace == Pace::Style {
         align::change_pace(&mut clip, align::pace(clips, request));
     }
+    progress.report(STEP, 1.0)?;
     Ok(clip)
 }
 

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::geometry::Point;
+use crate::scene::Silent;
 use crate::scene::skeleton::{LEGS, limb_lengths};
 
 /// A figure with a stoop and a way to hold its arms, at a moment of a motion.
@@ -60,7 +61,7 @@ fn every_preset_is_nearer_to_the_truth_than_a_copy_and_says_how_sure_it_is() {
     let (clips, truth) = (library(), clip(1, 1, 24));
     let copied = apart(&clip(0, 1, 24).postures, &truth.postures);
     for (id, _, preset) in Preset::ALL {
-        let made = translate(&clips, &request(&[]), &Options { preset, ..Options::default() }).unwrap();
+        let made = translate(&clips, &request(&[]), &Options { preset, ..Options::default() }, &Silent).unwrap();
         assert_eq!((made.character.as_str(), made.motion.as_str()), ("old", "run"));
         let error = apart(&made.postures, &truth.postures);
         assert!(error < 0.75 * copied, "{id}: {error} beside {copied}");
@@ -78,7 +79,7 @@ fn the_true_clip_is_never_looked_at() {
     let clips = library();
     let without: Vec<Clip> =
         clips.iter().filter(|c| (c.character.as_str(), c.motion.as_str()) != ("old", "run")).cloned().collect();
-    let make = |clips: &[Clip]| translate(clips, &request(&[]), &Options::default()).unwrap();
+    let make = |clips: &[Clip]| translate(clips, &request(&[]), &Options::default(), &Silent).unwrap();
     assert_eq!(make(&clips), make(&without));
 }
 
@@ -89,7 +90,7 @@ fn a_pair_of_characters_is_enough() {
     let copied = apart(&clip(0, 1, 24).postures, &truth.postures);
     // The symmetric model has a style vector as long as there are other characters: one number says nothing.
     for (id, _, preset) in Preset::ALL.into_iter().filter(|p| p.2 != Preset::BilinearSymmetric) {
-        let made = translate(&pair, &request(&[]), &Options { preset, ..Options::default() }).unwrap();
+        let made = translate(&pair, &request(&[]), &Options { preset, ..Options::default() }, &Silent).unwrap();
         let error = apart(&made.postures, &truth.postures);
         assert!(error < copied, "{id}: {error} beside {copied}");
     }
@@ -102,7 +103,7 @@ fn drawn_poses_are_met_and_make_the_rest_better() {
     for (id, _, preset) in Preset::ALL {
         let options = Options { preset, ..Options::default() };
         let error = |keys: &[KeyPose]| {
-            let made = translate(&clips, &request(keys), &options).unwrap();
+            let made = translate(&clips, &request(keys), &options, &Silent).unwrap();
             for key in keys {
                 let at = |p: &Posture| p.map(|q| q - p[0]);
                 let (a, b) = (at(&made.postures[key.frame]), at(&key.posture));
@@ -121,7 +122,7 @@ fn of_a_character_without_clips_a_drawn_pose_is_enough() {
     let clips: Vec<Clip> = library().into_iter().filter(|c| c.character != "old").collect();
     let truth = clip(1, 1, 24);
     let key = KeyPose { frame: 0, posture: truth.postures[0] };
-    let made = translate(&clips, &request(&[key]), &Options::default()).unwrap();
+    let made = translate(&clips, &request(&[key]), &Options::default(), &Silent).unwrap();
     assert!(apart(&made.postures, &truth.postures) < apart(&clip(0, 1, 24).postures, &truth.postures));
 }
 
@@ -137,7 +138,7 @@ fn holes_unequal_lengths_and_units_do_no_harm() {
             c.postures.iter_mut().for_each(|p| *p = p.map(|q| q * 80.0 + Point::new(300.0, 200.0)));
         }
     }
-    let made = translate(&clips, &request(&[]), &Options::default()).unwrap();
+    let made = translate(&clips, &request(&[]), &Options::default(), &Silent).unwrap();
     let truth: Vec<Posture> = clip(1, 1, 24).postures.iter().map(|p| p.map(|q| q * 80.0)).collect();
     let copied: Vec<Posture> = clip(0, 1, 24).postures.iter().map(|p| p.map(|q| q * 80.0)).collect();
     assert!(apart(&made.postures, &truth) < 0.7 * apart(&copied, &truth));
@@ -147,7 +148,7 @@ fn holes_unequal_lengths_and_units_do_no_harm() {
 fn one_frame_and_one_motion_are_no_reason_to_fail() {
     let still: Vec<Clip> = (0..3).flat_map(|p| (0..2).map(move |m| clip(p, m, 1))).collect();
     for (_, _, preset) in Preset::ALL {
-        let made = translate(&still, &request(&[]), &Options { preset, ..Options::default() }).unwrap();
+        let made = translate(&still, &request(&[]), &Options { preset, ..Options::default() }, &Silent).unwrap();
         assert_eq!(made.postures.len(), 1);
         assert!(made.postures[0].iter().all(|p| p.is_finite()));
     }
@@ -155,7 +156,7 @@ fn one_frame_and_one_motion_are_no_reason_to_fail() {
 
 #[test]
 fn limbs_keep_the_lengths_of_the_style() {
-    let made = translate(&library(), &request(&[]), &Options { strength: 1.5, ..Options::default() }).unwrap();
+    let made = translate(&library(), &request(&[]), &Options { strength: 1.5, ..Options::default() }, &Silent).unwrap();
     let own = limb_lengths(&clip(1, 0, 24).postures[0]);
     for posture in &made.postures {
         for limb in [0, 1, 11, 12, 14, 15] {
@@ -173,7 +174,7 @@ fn the_styles_pace_may_be_taken() {
         }
     }
     let options = Options { pace: Pace::Style, ..Options::default() };
-    let made = translate(&clips, &request(&[]), &options).unwrap();
+    let made = translate(&clips, &request(&[]), &options, &Silent).unwrap();
     assert_eq!((made.postures.len(), made.deviation.len()), (36, 36));
 }
 
@@ -182,7 +183,7 @@ fn the_result_does_not_depend_on_threads() {
     let clips = library();
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| translate(&clips, &request(&[]), &Options::default()).unwrap())
+        pool.install(|| translate(&clips, &request(&[]), &Options::default(), &Silent).unwrap())
     };
     assert_eq!(with(1), with(3));
 }
@@ -191,7 +192,9 @@ fn the_result_does_not_depend_on_threads() {
 fn what_is_wrong_with_a_request_is_named() {
     let clips = library();
     let error = |style: &str, motion: &str, content: &str, keys: &[KeyPose]| {
-        translate(&clips, &Request { style, motion, content, keys }, &Options::default()).unwrap_err().to_string()
+        translate(&clips, &Request { style, motion, content, keys }, &Options::default(), &Silent)
+            .unwrap_err()
+            .to_string()
     };
     assert_eq!(
         error("nobody", "run", "plain", &[]),
@@ -207,7 +210,7 @@ fn what_is_wrong_with_a_request_is_named() {
 
 #[test]
 fn broken_clips_are_named() {
-    let error = |clips: &[Clip]| translate(clips, &request(&[]), &Options::default()).unwrap_err().to_string();
+    let error = |clips: &[Clip]| translate(clips, &request(&[]), &Options::default(), &Silent).unwrap_err().to_string();
     let mut nan = library();
     nan[2].postures[5][3].x = f64::NAN;
     assert_eq!(error(&nan), "clip (\"plain\", \"stroll\"), frame 5: found no posture of finite numbers");
@@ -218,4 +221,18 @@ fn broken_clips_are_named() {
     assert!(error(&alone).contains("found no other clip of \"old\" than of \"run\" and no key pose"));
     let other: Vec<Clip> = library().into_iter().filter(|c| c.character != "plain" || c.motion != "run").collect();
     assert!(error(&other).contains("found no clip of \"run\" by \"plain\""));
+}
+
+#[test]
+fn translation_stops_when_it_is_told_to() {
+    struct Until(f64);
+    impl Progress for Until {
+        fn report(&self, _: &str, done: f64) -> Result<(), Cancelled> {
+            if done < self.0 { Ok(()) } else { Err(Cancelled) }
+        }
+    }
+    for moment in [0.0, 0.5, 1.0] {
+        let made = translate(&library(), &request(&[]), &Options::default(), &Until(moment));
+        assert_eq!(made, Err(StyleError::Cancelled(Cancelled)));
+    }
 }

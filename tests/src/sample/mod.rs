@@ -6,6 +6,7 @@
 //!
 //! - [`pose`]: the twelve drawings as an animator would note them
 //! - [`rig`]: from a pose to the outlines of the sixteen parts
+//! - [`limbs`]: its limbs on their contours
 //! - [`outline`]: control points, corners, ink; the curve through them
 //! - [`character`]: colours, face and other details
 //! - [`ink`]: painting an outline
@@ -17,6 +18,7 @@
 pub mod background;
 pub mod character;
 pub mod ink;
+pub mod limbs;
 pub mod outline;
 pub mod pose;
 pub mod rig;
@@ -115,6 +117,7 @@ pub fn project(drawings: &[Drawn]) -> Value {
             "pattern": "frames/frame_%03d.png", "first": 0, "last": FRAMES - 1, "fps": 24, "width": WIDTH, "height": HEIGHT,
         },
         "parts": parts,
+        "limbs": limbs::limbs(),
     })
 }
 

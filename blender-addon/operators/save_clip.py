@@ -1,0 +1,58 @@
+"""A skeleton clip of the contours into the library."""
+
+import bpy
+
+from .. import document, limbs
+from ..errors import Problem
+from ..style import add_to_library, capture_clip
+from .base import Guarded, contours_poll
+
+
+def library_folder(ob, chosen: str) -> str:
+    """The library's folder: the one chosen, or that of the panel."""
+    folder = chosen or ob.rototoon.clips_folder
+    if not folder:
+        raise Problem("No library chosen: choose its folder in the panel Style")
+    if folder.startswith("//") and not bpy.data.filepath:
+        raise Problem(f"The library {folder} is relative to a file that is not saved: choose it again")
+    return bpy.path.abspath(folder)
+
+
+class ROTOTOON_OT_save_clip(Guarded, bpy.types.Operator):
+    bl_idname = "rototoon.save_clip"
+    bl_label = "Save Clip"
+    bl_description = "Keep the motion of the tracked contours as a skeleton clip in the library, by the limbs"
+    bl_options = {"REGISTER"}
+
+    character: bpy.props.StringProperty(name="Character", description="Who moves; empty takes the object's name")
+    motion: bpy.props.StringProperty(name="Motion", description="What is done", default="walk")
+    first: bpy.props.IntProperty(name="First", description="First frame of the scene", default=0)
+    last: bpy.props.IntProperty(name="Last", description="Last frame of the scene", default=0)
+    folder: bpy.props.StringProperty(name="Library", description="Another folder than the panel's", subtype="DIR_PATH")
+
+    @classmethod
+    def poll(cls, context):
+        return contours_poll(cls, context)
+
+    def invoke(self, context, _event):
+        settings = context.object.rototoon
+        self.first, self.last = settings.first + settings.frame_offset, settings.last + settings.frame_offset
+        self.character = self.character or context.object.name
+        return context.window_manager.invoke_props_dialog(self)
+
+    def run(self, context) -> str:
+        ob = context.object
+        folder = library_folder(ob, self.folder)
+        if not limbs.defined(ob):
+            raise Problem(f'"{ob.name}" has no limbs: draw lines across them on the layer "{limbs.LAYER}", then Define Limbs')
+        project = document.read(ob, results=True).document
+        character, offset = self.character or ob.name, ob.rototoon.frame_offset
+        frames = (self.first - offset, self.last - offset) if self.last > self.first else (None, None)
+        made = capture_clip(project, character, self.motion, *frames)
+        add_to_library(folder, made.clips, bpy.path.basename(bpy.data.filepath))
+        count = len(made.clips["clips"][0]["points"])
+        guessed = f"; filled in: {', '.join(made.guessed)}" if made.guessed else ""
+        return f'"{self.motion}" by "{character}", {count} frames{guessed}'
+
+
+CLASSES = (ROTOTOON_OT_save_clip,)

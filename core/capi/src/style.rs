@@ -1,0 +1,206 @@
+//! Skeleton clips, their library, and drawings that follow them, as JSON in, JSON out.
+
+use crate::status::Failure;
+use crate::work::{GoOn, run};
+use rototoon::pipeline::{self, ClipJob, PipelineError, ReshapeJob};
+use rototoon::project::Document;
+use rototoon::project::clips::{Clips, parse_key_poses};
+use rototoon::project::library::{Entry, Library};
+use rototoon::reshape::puppet;
+use rototoon::scene::{Clip, FrameNumber};
+use rototoon::style::{KeyPose, Options, Pace, Preset, Request};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// Longest limb, in sub-key points.
+const MOST_SUB_KEYS: usize = 100;
+
+fn options<T: DeserializeOwned>(json: &str) -> Result<T, Failure> {
+    serde_json::from_str(json).map_err(|error| Failure::Error(format!("options: {error}")))
+}
+
+fn failed(error: PipelineError) -> Failure {
+    match error {
+        PipelineError::Cancelled(cancelled) => cancelled.into(),
+        other => Failure::error(other),
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CaptureOptions {
+    character: String,
+    motion: String,
+    first: Option<FrameNumber>,
+    last: Option<FrameNumber>,
+}
+
+/// A clip of a document's contours.
+pub fn capture(document: &str, json: &str) -> Result<String, Failure> {
+    let given: CaptureOptions = options(json)?;
+    let document = Document::parse(document, "document").map_err(Failure::error)?;
+    let footage = &document.scene.footage;
+    let frames = given.first.unwrap_or(footage.first)..=given.last.unwrap_or(footage.last);
+    let job = ClipJob { character: given.character, motion: given.motion, frames: Some(frames) };
+    let made = pipeline::clip(&document, &job).map_err(failed)?;
+    let guessed: serde_json::Map<String, Value> =
+        made.guessed.iter().map(|(name, count)| ((*name).to_owned(), json!(count))).collect();
+    let guessed = Value::Object(guessed);
+    Ok(format!(r#"{{"clips": {}, "first": {}, "guessed": {guessed}}}"#, made.clips.text().trim_end(), made.first))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TranslateOptions {
+    style: String,
+    motion: String,
+    content: String,
+    #[serde(default)]
+    preset: Option<String>,
+    #[serde(default)]
+    timing: Option<String>,
+    #[serde(default)]
+    strength: Option<f64>,
+    #[serde(default)]
+    limb_lengths: Option<bool>,
+    #[serde(default)]
+    contacts: Option<bool>,
+    #[serde(default)]
+    keys: Option<Value>,
+    #[serde(default)]
+    threads: usize,
+}
+
+impl TranslateOptions {
+    fn read(&self) -> Result<Options, Failure> {
+        let wrong = |field: &str, found: &str, expected: &str| {
+            Failure::Error(format!("options.{field}: found {found}, expected {expected}"))
+        };
+        let own = Options::default();
+        let preset = match self.preset.as_deref() {
+            None => own.preset,
+            Some(id) => Preset::from_id(id).ok_or_else(|| {
+                let known: Vec<&str> = Preset::ALL.iter().map(|(id, _, _)| *id).collect();
+                wrong("preset", &format!("{id:?}"), &format!("one of {}", known.join(", ")))
+            })?,
+        };
+        let pace = match self.timing.as_deref() {
+            None | Some("content") => Pace::Content,
+            Some("style") => Pace::Style,
+            Some(other) => return Err(wrong("timing", &format!("{other:?}"), "content or style")),
+        };
+        let strength = self.strength.unwrap_or(own.strength);
+        if !(0.0..=3.0).contains(&strength) {
+            return Err(wrong("strength", &strength.to_string(), "a number from 0 to 3"));
+        }
+        let keep_lengths = self.limb_lengths.unwrap_or(own.keep_lengths);
+        Ok(Options { preset, pace, strength, keep_lengths, keep_contacts: self.contacts.unwrap_or(own.keep_contacts) })
+    }
+}
+
+/// A motion in another character's manner.
+pub fn translate(clips: &str, json: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
+    let given: TranslateOptions = options(json)?;
+    let how = given.read()?;
+    let clips = Clips::parse(clips, "clips").map_err(Failure::error)?;
+    let keys: Vec<KeyPose> = match &given.keys {
+        None | Some(Value::Null) => Vec::new(),
+        Some(value) => parse_key_poses(&value.to_string(), "options.keys")
+            .map_err(Failure::error)?
+            .into_iter()
+            .map(|key| KeyPose { frame: key.frame, posture: key.posture })
+            .collect(),
+    };
+    let request = Request { style: &given.style, motion: &given.motion, content: &given.content, keys: &keys };
+    run(given.threads, go_on, |progress| {
+        Ok(pipeline::translate(&clips, &request, &how, progress).map_err(failed)?.text())
+    })
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ReshapeOptions {
+    #[serde(default)]
+    character: Option<String>,
+    #[serde(default)]
+    motion: Option<String>,
+    #[serde(default)]
+    rest: Option<FrameNumber>,
+    #[serde(default)]
+    sub_keys: Option<usize>,
+    #[serde(default)]
+    threads: usize,
+}
+
+/// A drawing on every frame of a clip.
+pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
+    let given: ReshapeOptions = options(json)?;
+    let mut document = Document::parse(document, "document").map_err(Failure::error)?;
+    let clips = Clips::parse(clips, "clips").map_err(Failure::error)?;
+    let clip = chosen(&clips, &given)?;
+    let sub_keys = given.sub_keys.unwrap_or(puppet::Options::default().sub_keys);
+    if sub_keys > MOST_SUB_KEYS {
+        return Err(Failure::Error(format!("options.sub_keys: found {sub_keys}, expected 0 to {MOST_SUB_KEYS}")));
+    }
+    let how = puppet::Options { sub_keys };
+    let job = ReshapeJob { clip, fps: clips.fps, rest: given.rest, over: None, options: how };
+    run(given.threads, go_on, |progress| {
+        let made = pipeline::reshape(&mut document, &job, progress).map_err(failed)?;
+        let nearest: Vec<Value> =
+            made.given.iter().map(|(part, (from, to))| json!({"part": part, "from": from, "to": to})).collect();
+        let (given, rigid) = (Value::Array(nearest), json!(made.rigid));
+        Ok(format!(r#"{{"document": {}, "given": {given}, "rigid": {rigid}}}"#, document.to_json().trim_end()))
+    })
+}
+
+fn chosen<'a>(clips: &'a Clips, given: &ReshapeOptions) -> Result<&'a Clip, Failure> {
+    let fits = |wanted: &Option<String>, value: &str| wanted.as_deref().is_none_or(|wanted| wanted == value);
+    let found: Vec<&Clip> = clips
+        .clips
+        .iter()
+        .filter(|clip| fits(&given.character, &clip.character) && fits(&given.motion, &clip.motion))
+        .collect();
+    match found.as_slice() {
+        [only] => Ok(only),
+        other => Err(Failure::Error(format!(
+            "options: found {} clips of that character and motion among {}, expected one",
+            other.len(),
+            clips.clips.len()
+        ))),
+    }
+}
+
+/// Adds clips to the library of a folder.
+pub fn library_add(folder: &str, clips: &str, source: &str) -> Result<(), Failure> {
+    let clips = Clips::parse(clips, "clips").map_err(Failure::error)?;
+    let mut library = Library::open(Path::new(folder));
+    clips.clips.iter().try_for_each(|clip| library.add(clip, clips.fps, source)).map_err(Failure::error)
+}
+
+/// The clips of a folder whose character and motion hold given words, read where asked for.
+pub fn library_find(folder: &str, json: &str) -> Result<String, Failure> {
+    #[derive(Deserialize)]
+    #[serde(deny_unknown_fields, default)]
+    #[derive(Default)]
+    struct Wanted {
+        character: String,
+        motion: String,
+        read: bool,
+    }
+    let wanted: Wanted = options(json)?;
+    let library = Library::open(Path::new(folder));
+    let entries: Vec<&Entry> = library.search(&wanted.character, &wanted.motion).collect();
+    let mut troubles: Vec<String> = library.troubles().iter().map(ToString::to_string).collect();
+    let clips = if wanted.read {
+        let (clips, more) = library.read(entries.iter().copied());
+        troubles.extend(more.iter().map(ToString::to_string));
+        let fps = entries.first().map_or(25.0, |entry| entry.fps);
+        Clips { clips, fps }.text()
+    } else {
+        "null".to_owned()
+    };
+    let (entries, troubles) = (json!(entries), json!(troubles));
+    Ok(format!(r#"{{"entries": {entries}, "troubles": {troubles}, "clips": {}}}"#, clips.trim_end()))
+}

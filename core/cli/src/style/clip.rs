@@ -1,0 +1,47 @@
+//! `rototoon style clip`: a skeleton clip of a document's tracked contours.
+
+use super::{name, named};
+use crate::arguments;
+use crate::failure::{Failure, line};
+use crate::{project, render};
+use clap::{Arg, ArgMatches, Command};
+use rototoon::pipeline::{self, ClipJob};
+use rototoon::project::output::check_writable;
+use rototoon::scene::FrameNumber;
+use std::ops::RangeInclusive;
+
+/// The subcommand.
+pub fn command() -> Command {
+    Command::new("clip")
+        .about("Makes a skeleton clip of tracked contours, by the document's limbs")
+        .arg(arguments::project())
+        .arg(name("character", "Who moves"))
+        .arg(name("motion", "What is done, such as walk"))
+        .arg(
+            Arg::new("frames")
+                .long("frames")
+                .value_name("A-B")
+                .help("First and last frame; else the whole footage")
+                .allow_hyphen_values(true)
+                .value_parser(render::range),
+        )
+        .arg(arguments::output("CLIPS", "The file of clips to write"))
+}
+
+/// Runs it.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
+    let document = project::load(from)?;
+    check_writable(to)?;
+    let job = ClipJob {
+        character: arguments::choice(given, "character").to_owned(),
+        motion: arguments::choice(given, "motion").to_owned(),
+        frames: given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned(),
+    };
+    let made = pipeline::clip(&document, &job).map_err(|error| named(error, from))?;
+    let frames = made.clips.clips.first().map_or(0, |clip| clip.postures.len());
+    for (point, count) in &made.guessed {
+        line("warning", &format!("{}: {point}: filled in on {count} of {frames} frames", from.display()));
+    }
+    Ok(made.clips.save(to)?)
+}

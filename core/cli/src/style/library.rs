@@ -1,0 +1,64 @@
+//! `rototoon style library`: a folder of clips with an index.
+
+use crate::arguments;
+use crate::failure::{Failure, line};
+use clap::{Arg, ArgMatches, Command, value_parser};
+use rototoon::project::clips::Clips;
+use rototoon::project::library::Library;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// The subcommand.
+pub fn command() -> Command {
+    let folder = || {
+        Arg::new("folder")
+            .value_name("FOLDER")
+            .help("The library's folder")
+            .required(true)
+            .value_parser(value_parser!(PathBuf))
+    };
+    let word =
+        |id: &'static str, help: &'static str| Arg::new(id).long(id).value_name("WORD").help(help).default_value("");
+    let add = Command::new("add")
+        .about("Adds the clips of a file; those of the same character and motion are replaced")
+        .arg(folder())
+        .arg(
+            Arg::new("clips").value_name("CLIPS").help("The clips").required(true).value_parser(value_parser!(PathBuf)),
+        )
+        .arg(word("source", "Where the clips come from"));
+    let list = Command::new("list")
+        .about("Lists clips: character, motion, frames, frames a second, file, source")
+        .arg(folder())
+        .arg(word("character", "Only characters whose names hold this"))
+        .arg(word("motion", "Only motions whose names hold this"));
+    Command::new("library")
+        .about("A folder of clips with an index")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommands([add, list])
+}
+
+/// Runs it.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let Some((what, given)) = given.subcommand() else { return Err(Failure::Use("expected add or list".into())) };
+    let mut library = Library::open(arguments::path(given, "folder"));
+    library.troubles().iter().for_each(|trouble| line("warning", &trouble.to_string()));
+    if what == "add" {
+        let from = arguments::path(given, "clips");
+        let read = Clips::load(from).map_err(|e| Failure::Other(e.to_string()))?;
+        for clip in &read.clips {
+            library.add(clip, read.fps, arguments::choice(given, "source"))?;
+        }
+        return Ok(());
+    }
+    let mut out = std::io::stdout().lock();
+    let found = library.search(arguments::choice(given, "character"), arguments::choice(given, "motion"));
+    for e in found {
+        // A reader that has gone away is no failure.
+        let fields = format!("{}\t{}\t{}\t{}\t{}\t{}", e.character, e.motion, e.frames, e.fps, e.file, e.source);
+        if writeln!(out, "{fields}").is_err() {
+            break;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,103 @@
+//! `rototoon style reshape`: a drawing that follows a skeleton clip.
+
+use super::{load, named};
+use crate::failure::{Failure, line};
+use crate::{arguments, progress, project};
+use clap::{Arg, ArgMatches, Command, value_parser};
+use rototoon::pipeline::{self, ReshapeJob};
+use rototoon::project::Document;
+use rototoon::project::clips::Clips;
+use rototoon::project::output::check_writable;
+use rototoon::reshape::puppet::Options;
+use rototoon::scene::parameters::Stage;
+use rototoon::scene::{Clip, FrameNumber};
+use std::path::{Path, PathBuf};
+
+/// Most sub-key points of a limb.
+const MOST_SUB_KEYS: i64 = 100;
+
+/// The subcommand.
+pub fn command() -> Command {
+    let word = |id: &'static str, help: &'static str| Arg::new(id).long(id).value_name("NAME").help(help);
+    Command::new("reshape")
+        .about("Makes a drawing follow a skeleton clip: its contours and strokes on every frame")
+        .arg(arguments::project())
+        .arg(
+            Arg::new("clips")
+                .value_name("CLIPS")
+                .help("The motion: a file of clips, or the folder of a library")
+                .required(true)
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(word("character", "Of several clips, the one by this character"))
+        .arg(word("motion", "Of several clips, the one of this motion"))
+        .arg(
+            Arg::new("rest")
+                .long("rest")
+                .value_name("FRAME")
+                .help("The frame of the drawing; else the first on which every part has a contour")
+                .allow_negative_numbers(true)
+                .value_parser(value_parser!(i32)),
+        )
+        .arg(
+            Arg::new("over")
+                .long("over")
+                .value_name("PROJECT")
+                .help("The document whose footage the result lies over; else the drawing's own")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            Arg::new("sub_keys")
+                .long("sub-keys")
+                .value_name("N")
+                .help("Points of each limb between its key points that hold its shape; 0 for none")
+                .default_value("5")
+                .value_parser(value_parser!(i64).range(0..=MOST_SUB_KEYS)),
+        )
+        .arg(arguments::output("OUT", "The document to write, with tracks, depths and strokes on every frame"))
+        .args(arguments::of_stage(Stage::Run))
+}
+
+/// Runs it.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
+    let mut document = project::load(from)?;
+    let clips = load(arguments::path(given, "clips"))?;
+    let clip = chosen(&clips, arguments::path(given, "clips"), given)?;
+    check_writable(to)?;
+    let over = match given.get_one::<PathBuf>("over") {
+        Some(path) => {
+            let mut other = Document::load(path)?;
+            pipeline::relocate(&mut other, project::folder(path), project::folder(from));
+            Some(other.scene.footage)
+        }
+        None => None,
+    };
+    let sub_keys = given.get_one::<i64>("sub_keys").and_then(|n| usize::try_from(*n).ok());
+    let options = sub_keys.map_or_else(Options::default, |sub_keys| Options { sub_keys });
+    let rest = given.get_one::<FrameNumber>("rest").copied();
+    let job = ReshapeJob { clip, fps: clips.fps, rest, over, options };
+    let (document, made) = progress::run(arguments::threads(given), |bar| {
+        let made = pipeline::reshape(&mut document, &job, bar).map_err(|error| named(error, from))?;
+        Ok((document, made))
+    })?;
+    for (part, (start, end)) in &made.given {
+        line("warning", &format!("{}: part {part:?}: no limb carries it; it follows {start} to {end}", from.display()));
+    }
+    project::save(document, from, to)
+}
+
+/// The one clip that is meant.
+fn chosen<'a>(clips: &'a Clips, from: &Path, given: &ArgMatches) -> Result<&'a Clip, Failure> {
+    let fits = |id: &str, value: &str| given.get_one::<String>(id).is_none_or(|wanted| wanted == value);
+    let mut found = clips.clips.iter().filter(|c| fits("character", &c.character) && fits("motion", &c.motion));
+    match (found.next(), found.next()) {
+        (Some(only), None) => Ok(only),
+        (first, _) => {
+            let names: Vec<_> = clips.clips.iter().map(|c| format!("({:?}, {:?})", c.character, c.motion)).collect();
+            let count = if first.is_none() { "no clip" } else { "several clips" };
+            let (from, names) = (from.display(), names.join(", "));
+            Err(Failure::Other(format!("{from}: found {count} of that character and motion, expected one of {names}")))
+        }
+    }
+}

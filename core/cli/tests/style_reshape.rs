@@ -1,0 +1,114 @@
+//! `rototoon style clip` and `rototoon style reshape` as a user calls them.
+
+use serde_json::{Value, json};
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn rototoon(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_rototoon")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn said(done: &Output) -> String {
+    String::from_utf8_lossy(&done.stderr).into_owned()
+}
+
+/// Eight points, from the top right down and from the bottom left up, moved to the right by a frame's number.
+fn ring(x: f64, top: f64, bottom: f64, half: f64, frame: usize) -> Value {
+    let at = |k: usize| {
+        let y =
+            if k < 4 { top + (bottom - top) * k as f64 / 3.0 } else { bottom - (bottom - top) * (k - 4) as f64 / 3.0 };
+        [x + if k < 4 { half } else { -half } + frame as f64, y]
+    };
+    json!((0..8).map(at).collect::<Vec<_>>())
+}
+
+fn figure(frames: usize) -> Value {
+    let part = |name: &str, depth: usize, x: f64, top: f64, bottom: f64, half: f64| {
+        let keys: serde_json::Map<String, Value> =
+            (0..frames).map(|f| (f.to_string(), ring(x, top, bottom, half, f))).collect();
+        json!({"name": name, "closed": true, "depth": depth, "keys": keys})
+    };
+    let limb = |from: &str, to: &str, part: &str, places: [f64; 4]| {
+        let point = |at: f64| json!({"part": part, "at": at});
+        let [a, b, c, d] = places.map(point);
+        json!({"from": from, "to": to, "start": {"points": [a, b]}, "end": {"points": [c, d]}})
+    };
+    json!({
+        "rototoon": 1,
+        "footage": {"pattern": "f_%d.png", "first": 0, "last": frames - 1, "fps": 12, "width": 120, "height": 120},
+        "parts": [part("body", 1, 50.0, 20.0, 62.0, 12.0), part("arm", 2, 66.0, 22.0, 58.0, 5.0)],
+        "limbs": [
+            limb("pelvis", "neck", "body", [3.0, 4.0, 0.0, 7.0]),
+            limb("r_shoulder", "r_wrist", "arm", [0.0, 7.0, 3.0, 4.0]),
+        ],
+    })
+}
+
+fn write(folder: &Path, name: &str, value: &Value) {
+    std::fs::write(folder.join(name), value.to_string()).unwrap();
+}
+
+fn read(folder: &Path, name: &str) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(folder.join(name)).unwrap()).unwrap()
+}
+
+#[test]
+fn contours_become_a_clip_and_a_drawing_follows_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(folder, "shot.json", &figure(5));
+    write(folder, "doll.json", &figure(1));
+    let clip = ["style", "clip", "shot.json", "--character", "anna", "--motion", "glide", "-o", "clips.json"];
+    let done = rototoon(folder, &clip);
+    assert!(done.status.success(), "{}", said(&done));
+    assert!(said(&done).contains("warning: shot.json: r_elbow: filled in on 5 of 5 frames"), "{}", said(&done));
+    let clips = read(folder, "clips.json");
+    assert_eq!((&clips["fps"], &clips["clips"][0]["motion"]), (&json!(12.0), &json!("glide")));
+    assert_eq!(clips["clips"][0]["points"][3][0], json!([53.0, 62.0]));
+    let done = rototoon(folder, &["style", "reshape", "doll.json", "clips.json", "-o", "moved.json"]);
+    assert!(done.status.success(), "{}", said(&done));
+    let moved = read(folder, "moved.json");
+    assert_eq!(moved["footage"]["last"], json!(4));
+    for part in moved["parts"].as_array().unwrap() {
+        let x = |frame: &str| part["tracks"][frame][0][0].as_f64().unwrap();
+        assert!((x("4") - x("0") - 4.0).abs() < 1e-3, "{part}");
+    }
+    // What was made can be drawn and exported like what was tracked.
+    let render = ["render", "moved.json", "-o", "m_%02d.png", "--what", "matte"];
+    assert!(rototoon(folder, &render).status.success() && folder.join("m_04.png").exists());
+    assert!(rototoon(folder, &["export", "moved.json", "-o", "moved.svg"]).status.success());
+}
+
+#[test]
+fn what_is_wrong_is_said_with_its_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut shot = figure(3);
+    shot["limbs"][1]["end"]["points"][1]["at"] = json!(12);
+    write(folder, "shot.json", &shot);
+    let clip = |file: &str, more: &[&str]| {
+        let fixed = ["style", "clip", file, "--character", "a", "--motion", "b", "-o", "clips.json"];
+        rototoon(folder, &[&fixed[..], more].concat())
+    };
+    let done = clip("shot.json", &[]);
+    assert_eq!(done.status.code(), Some(1));
+    assert_eq!(
+        said(&done),
+        "error: shot.json: limbs[1] (r_shoulder to r_wrist).end.points[1].at: found 12, expected 0 to 8 on \"arm\"\n"
+    );
+    assert_eq!(clip("shot.json", &["--frames", "0-9"]).status.code(), Some(2));
+    assert!(!folder.join("clips.json").exists());
+    write(folder, "shot.json", &figure(3));
+    assert!(clip("shot.json", &[]).status.success());
+    let reshape = |more: &[&str]| {
+        rototoon(folder, &[&["style", "reshape", "shot.json", "clips.json", "-o", "out.json"], more].concat())
+    };
+    let done = reshape(&["--motion", "run"]);
+    assert!(
+        said(&done).contains("clips.json: found no clip of that character and motion, expected one of (\"a\", \"b\")")
+    );
+    let done = reshape(&["--rest", "7"]);
+    assert!(said(&done).contains("shot.json: frame 7: found no contour of \"body\""), "{}", said(&done));
+    assert_eq!(reshape(&["--sub-keys", "-1"]).status.code(), Some(2));
+    assert!(!folder.join("out.json").exists());
+}

@@ -1,0 +1,227 @@
+//! Reshaping of a small figure: a body, an arm, a leg, a shoe, a line on the body.
+
+use super::*;
+use crate::pipeline::{ClipJob, clip};
+use crate::scene::skeleton::COUNT;
+use crate::scene::{Cancelled, Silent};
+
+fn ring(x: f64, top: f64, bottom: f64, half: f64) -> String {
+    let at = |k: usize| {
+        let (right, step) = (k < 4, (k % 4) as f64 / 3.0);
+        let y = if right { top + step * (bottom - top) } else { bottom - step * (bottom - top) };
+        format!("[{}, {}]", if right { x + half } else { x - half }, y)
+    };
+    format!("[{}]", (0..8).map(at).collect::<Vec<_>>().join(", "))
+}
+
+fn limb(from: &str, to: &str, part: &str, places: [f64; 4], more: &str) -> String {
+    let point = |at: f64| format!(r#"{{"part": "{part}", "at": {at}}}"#);
+    let [a, b, c, d] = places.map(point);
+    format!(
+        r#"{{"from": "{from}", "to": "{to}", "start": {{"points": [{a}, {b}]}}, "end": {{"points": [{c}, {d}]}}{more}}}"#
+    )
+}
+
+/// Rings have their points from the top right down and from the bottom left up: 0 and 7 are the top, 3 and 4 the bottom.
+fn figure(fields: &str) -> Document {
+    let part = |name: &str, depth: f64, ring: String| {
+        format!(r#"{{"name": "{name}", "closed": true, "depth": {depth}, "keys": {{"0": {ring}}}}}"#)
+    };
+    let parts = [
+        part("leg", 0.0, ring(50.0, 60.0, 100.0, 6.0)),
+        part("shoe", 0.0, ring(54.0, 101.0, 107.0, 9.0)),
+        part("body", 1.0, ring(50.0, 20.0, 62.0, 12.0)),
+        part("arm", 2.0, ring(66.0, 22.0, 58.0, 5.0)),
+        r#"{"name": "seam", "closed": false, "depth": 1, "keys": {"0": [[50, 30], [50, 50]]}}"#.to_owned(),
+    ];
+    let whole = [0.0, 7.0, 3.0, 4.0];
+    let limbs = [
+        limb("pelvis", "neck", "body", [3.0, 4.0, 0.0, 7.0], ""),
+        limb("r_shoulder", "r_elbow", "arm", [0.0, 7.0, 1.5, 5.5], ""),
+        limb("r_elbow", "r_wrist", "arm", [1.5, 5.5, 3.0, 4.0], ""),
+        limb("r_hip", "r_ankle", "leg", whole, r#", "carries": ["leg", {"part": "shoe", "turn": 0}]"#),
+    ];
+    let text = format!(
+        r#"{{"rototoon": 1, "footage": {{"pattern": "f_%d.png", "first": 0, "last": 9, "fps": 24, "width": 120, "height": 120}},
+        "parts": [{}], "limbs": [{}]{fields}}}"#,
+        parts.join(", "),
+        limbs.join(", ")
+    );
+    Document::parse(&text, "figure").unwrap()
+}
+
+/// The figure's own posture, its arm raised by 30° a frame, its way 5 px a frame.
+fn waving(document: &Document, frames: usize) -> Clip {
+    let job = ClipJob { character: "a".into(), motion: "wave".into(), frames: Some(0..=0) };
+    let rest = clip(document, &job).unwrap().clips.clips[0].postures[0];
+    let at = |frame: usize| -> Posture {
+        let turn = Point::from_angle(-(30.0 * frame as f64).to_radians());
+        let mut posture = rest;
+        for k in [9, 10] {
+            posture[k] = rest[8] + turn.rotate(rest[k] - rest[8]);
+        }
+        posture.map(|p| 2.0 * (p + Point::new(5.0 * frame as f64, 0.0)))
+    };
+    Clip::new("b", "wave", (0..frames).map(at).collect())
+}
+
+fn job(clip: &Clip) -> ReshapeJob<'_> {
+    ReshapeJob { clip, fps: 12.0, rest: None, over: None, options: Options::default() }
+}
+
+#[test]
+fn a_drawing_follows_a_clip_of_another_size() {
+    let mut document = figure("");
+    let motion = waving(&document, 4);
+    let before = document.scene.parts.clone();
+    let made = reshape(&mut document, &job(&motion), &Silent).unwrap();
+    assert_eq!((made.rigid, made.given), (vec!["shoe".to_owned()], Vec::new()));
+    assert_eq!((document.scene.footage.last, document.scene.footage.fps), (3, 12.0));
+    assert!(document.problems().errors().next().is_none());
+    for (part, rest) in document.scene.parts.iter().zip(&before) {
+        assert_eq!(part.keys.keys().copied().collect::<Vec<_>>(), [0, 3]);
+        assert_eq!(part.tracks.len(), 4);
+        assert!(
+            part.tracks[&0].iter().zip(&rest.keys[&0]).all(|(a, b)| a.distance(*b) < 1e-6),
+            "at rest: {}",
+            part.name
+        );
+    }
+    let moved = |part: usize, frame: i32, k: usize| {
+        let part = &document.scene.parts[part];
+        part.tracks[&frame][k] - part.keys[&0][k]
+    };
+    // Leg, shoe, body and its line go 5 px a frame; the arm turns about the shoulder.
+    for part in [0, 1, 2, 4] {
+        assert!(moved(part, 3, 1).distance(Point::new(15.0, 0.0)) < 1e-6, "{part}: {}", moved(part, 3, 1));
+    }
+    let wrist = document.scene.parts[3].tracks[&3][3].midpoint(document.scene.parts[3].tracks[&3][4]);
+    assert!(wrist.distance(Point::new(66.0 + 15.0 + 36.0, 22.0)) < 1.0, "{wrist}");
+    // Captured again, it performs the clip.
+    let again = ClipJob { character: "a".into(), motion: "wave".into(), frames: None };
+    let again = clip(&document, &again).unwrap().clips.clips.remove(0);
+    for (made, wanted) in again.postures.iter().zip(&motion.postures) {
+        for k in [0, 2, 8, 9, 10, 14, 16] {
+            let wanted = (wanted[k] - wanted[0]) / 2.0;
+            assert!((made[k] - made[0]).distance(wanted) < 1.5, "{k}: {} {wanted}", made[k] - made[0]);
+        }
+    }
+    assert_eq!(motion.postures[0].len(), COUNT);
+}
+
+#[test]
+fn marks_order_parts_by_frame() {
+    let mark =
+        |front: &str, behind: &str, frames: &str| format!(r#"{{"front": "{front}", "behind": "{behind}"{frames}}}"#);
+    let marks =
+        [mark("arm", "body", r#", "last": 1"#), mark("body", "arm", r#", "first": 2"#), mark("leg", "body", "")];
+    let mut document = figure(&format!(r#", "depth_marks": [{}]"#, marks.join(", ")));
+    let motion = waving(&document, 4);
+    reshape(&mut document, &job(&motion), &Silent).unwrap();
+    let text = document.to_json();
+    let read = Document::parse(&text, "again").unwrap();
+    let depth = |part: usize, frame: i32| read.scene.parts[part].depth_at(frame);
+    for frame in 0..4 {
+        assert_eq!(depth(3, frame) > depth(2, frame), frame < 2);
+        assert!(depth(0, frame) > depth(2, frame));
+    }
+    let contrary = format!(r#", "depth_marks": [{}, {}]"#, mark("arm", "body", ""), mark("body", "arm", ""));
+    let error = reshape(&mut figure(&contrary), &job(&motion), &Silent).unwrap_err().to_string();
+    assert!(error.starts_with("frame 0: found marks that contradict each other: depth_marks["), "{error}");
+    assert!(error.contains(r#"depth_marks[0] ("arm" in front of "body")"#), "{error}");
+}
+
+#[test]
+fn strokes_of_the_drawing_go_with_the_part_that_they_lie_on() {
+    let stroke = r#"{"points": [[66, 54], [66, 56]], "closed": false, "material": 3}"#;
+    let mut document = figure(&format!(r#", "drawings": [{{"frame": 0, "strokes": [{stroke}]}}]"#));
+    let motion = waving(&document, 4);
+    reshape(&mut document, &job(&motion), &Silent).unwrap();
+    let text = document.to_json();
+    let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let drawn = value["in_betweens"].as_array().unwrap();
+    assert_eq!(drawn.len(), 4);
+    let stroke = &drawn[3]["strokes"][0];
+    assert_eq!((&stroke["track"], &stroke["material"]), (&0.into(), &3.into()));
+    let x = stroke["points"][0][0].as_f64().unwrap();
+    assert!((x - (66.0 + 15.0 + 32.0)).abs() < 2.0, "{x}");
+}
+
+#[test]
+fn feet_that_stand_stay_and_a_jump_leaves_the_ground() {
+    let mut document = figure("");
+    let mut motion = waving(&document, 8);
+    // A foot that nearly stands while the body moves on, then leaves the ground.
+    let (shift, up) = (Point::new(10.0, 0.0), Point::new(0.0, -40.0));
+    for (frame, posture) in motion.postures.iter_mut().enumerate() {
+        let standing = 2.0 * Point::new(50.0, 100.0) + shift * (0.01 * frame as f64);
+        let jumping = if frame > 5 { up } else { Point::ZERO };
+        posture.iter_mut().for_each(|p| *p = *p - shift * (0.9 * frame as f64) + jumping);
+        for leg in [13, 16] {
+            posture[leg] = standing + jumping;
+        }
+    }
+    reshape(&mut document, &job(&motion), &Silent).unwrap();
+    let ankle = |frame: i32| {
+        let track = &document.scene.parts[0].tracks[&frame];
+        track[3].midpoint(track[4])
+    };
+    for frame in 1..5 {
+        assert!(ankle(frame).distance(ankle(1)) < 0.7, "{frame}: {} {}", ankle(frame), ankle(1));
+    }
+    assert!((ankle(0).y - 100.0).abs() < 1.5 && ankle(7).y < 90.0, "{} {}", ankle(0), ankle(7));
+}
+
+#[test]
+fn parts_without_a_limb_are_told() {
+    let mut document = figure("");
+    let mut hat = document.scene.parts[2].clone();
+    hat.name = "hat".into();
+    hat.keys.values_mut().flatten().for_each(|p| p.y -= 45.0);
+    document.scene.parts.push(hat);
+    let motion = waving(&document, 2);
+    let made = reshape(&mut document, &job(&motion), &Silent).unwrap();
+    assert_eq!(made.given, [("hat".to_owned(), ("pelvis", "neck"))]);
+    let hat = &document.scene.parts[5];
+    assert!((hat.tracks[&1][0] - hat.tracks[&0][0]).distance(Point::new(5.0, 0.0)) < 1e-6);
+}
+
+#[test]
+fn what_is_wrong_is_named_and_changes_nothing() {
+    let document = figure("");
+    let motion = waving(&document, 3);
+    let said = |document: &Document, job: &ReshapeJob| {
+        let mut given = document.clone();
+        let error = reshape(&mut given, job, &Silent).unwrap_err().to_string();
+        assert_eq!(given, *document);
+        error
+    };
+    let mut none = document.clone();
+    none.set_limbs(&LimbSet::default());
+    assert_eq!(said(&none, &job(&motion)), "limbs: found none, expected at least the torso (pelvis, chest, neck)");
+    assert_eq!(
+        said(&document, &ReshapeJob { rest: Some(4), ..job(&motion) }),
+        "frame 4: found no contour of \"leg\", expected one of every part"
+    );
+    let mut flat = document.clone();
+    flat.scene.parts[3].keys.get_mut(&0).unwrap().fill(Point::ONE);
+    assert!(said(&flat, &job(&motion)).starts_with("limbs[1] (r_shoulder to r_elbow), frame 0: found a length of 0"));
+    let mut thin = document.clone();
+    thin.scene.parts[1].keys.get_mut(&0).unwrap().iter_mut().for_each(|p| p.y = 101.0);
+    assert_eq!(
+        said(&thin, &job(&motion)),
+        "part \"shoe\": outline 0: found no area that it encloses (its points are on a line or a spot), expected some"
+    );
+    let mut broken = motion.clone();
+    broken.postures[1][5].x = f64::NAN;
+    assert_eq!(said(&document, &job(&broken)), "clip (\"b\", \"wave\"), frame 1: found no posture of finite numbers");
+    struct Never;
+    impl Progress for Never {
+        fn report(&self, _: &str, done: f64) -> Result<(), Cancelled> {
+            if done < 0.5 { Ok(()) } else { Err(Cancelled) }
+        }
+    }
+    let mut cancelled = document.clone();
+    assert!(matches!(reshape(&mut cancelled, &job(&motion), &Never), Err(PipelineError::Cancelled(_))));
+    assert_eq!(cancelled, document);
+}

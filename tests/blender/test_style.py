@@ -1,0 +1,199 @@
+"""Limbs drawn in Blender, clips in a library, and a drawing that follows them, with the native library in the extension."""
+
+import json
+import math
+
+import bpy
+import numpy as np
+import pytest
+import shots
+
+SIZE = shots.SIZE
+
+
+@pytest.fixture(autouse=True)
+def needs_library(library):
+    """All tests here."""
+
+
+def ring(x, top, bottom, half):
+    """Eight points: from the top right down, from the bottom left up."""
+    down = np.linspace(top, bottom, 4)
+    return np.array([[x + half, y] for y in down] + [[x - half, y] for y in down[::-1]])
+
+
+def turned(points, centre, angle):
+    c, s = math.cos(angle), math.sin(angle)
+    return (np.asarray(points) - centre) @ np.array([[c, s], [-s, c]]) + centre
+
+
+def figure(swing=0.0, lean=0.0):
+    """Contours of a leg, a body and an arm in a picture of 160 × 90 pixels."""
+    return [
+        turned(ring(60, 48, 80, 5), (60, 50), -swing),
+        turned(ring(60, 16, 52, 10), (60, 50), lean),
+        turned(turned(ring(72, 18, 46, 4), (72, 20), swing), (60, 50), lean),
+    ]
+
+
+LINES = {
+    "pelvis": (1, 3.0, 4.0),
+    "neck": (1, 0.0, 7.0),
+    "r_shoulder": (2, 0.0, 7.0),
+    "r_elbow": (2, 1.5, 5.5),
+    "r_wrist": (2, 3.0, 4.0),
+    "r_hip": (0, 0.0, 7.0),
+    "r_ankle": (0, 3.0, 4.0),
+    "r_knee": (0, 1.5, 5.5),
+}
+"""Key points with their part and the two places of its contour that the line joins."""
+
+
+def at(contour, place):
+    low = int(place)
+    return contour[low] + (place - low) * (contour[(low + 1) % len(contour)] - contour[low])
+
+
+def limb_line(addon, ob, frame, name, contours):
+    """Draws a key point's line on the limb layer and says what it tells."""
+    gp, limbs, placement = addon("grease_pencil"), addon("limbs"), addon("placement")
+    layer = ob.data.layers.get(limbs.LAYER) or ob.data.layers.new(limbs.LAYER)
+    if frame not in gp.drawings(layer):
+        layer.frames.new(frame)
+    handle = gp.drawings(layer)[frame][0]
+    part, first, second = LINES[name]
+    line = np.array([at(contours[part], first), at(contours[part], second)])
+    total = int(gp.offsets(handle)[-1])
+    handle.add_strokes([2])
+    every = gp.positions(handle, total + 2)
+    every[total:] = placement.Mapper(ob, [frame], {}, [limbs.LAYER]).at(0, frame).to_layer(line)
+    gp.put(handle, "position", every.astype(np.float32))
+    assert bpy.ops.rototoon.define_limbs(point=name) == {"FINISHED"}
+
+
+def performer(addon, folder, swing=0.6, lean=0.0):
+    """A figure keyed on every other picture; its contours swing and lean."""
+    ob = shots.set_up(folder)
+    for frame in range(1, shots.COUNT + 1):
+        moment = math.sin(2 * math.pi * (frame - 1) / (shots.COUNT - 1))
+        shots.draw(addon, ob, frame, figure(swing * moment, lean + 0.1 * moment))
+        bpy.context.scene.frame_set(frame)
+        bpy.ops.rototoon.match_contours()
+    bpy.context.scene.frame_set(1)
+    for name in LINES:
+        limb_line(addon, ob, 1, name, figure(0.0, lean))
+    return ob
+
+
+def test_lines_across_limbs_make_limbs(addon, tmp_path):
+    ob = performer(addon, tmp_path)
+    made = addon("limbs").defined(ob)
+    assert [(limb["from"], limb["to"]) for limb in made] == [
+        ("pelvis", "neck"),
+        ("neck", "r_shoulder"),
+        ("r_shoulder", "r_elbow"),
+        ("r_elbow", "r_wrist"),
+        ("pelvis", "r_hip"),
+        ("r_hip", "r_knee"),
+        ("r_knee", "r_ankle"),
+    ]
+    names = {part.name for part in ob.rototoon.parts}
+    assert {point["part"] for limb in made for end in ("start", "end") for point in limb[end]["points"]} <= names
+    path = tmp_path / "out.json"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    assert json.loads(path.read_text())["limbs"] == made
+
+
+def test_capture_clip_style_reshape(addon, tmp_path):
+    shelf = str(tmp_path / "clips")
+    for character, motion, swing, lean in (
+        ("plain", "walk", 0.6, 0.0),
+        ("plain", "wave", 1.0, 0.0),
+        ("old", "wave", 0.8, 0.4),
+    ):
+        folder = tmp_path / f"{character} {motion}"
+        folder.mkdir()
+        ob = performer(addon, folder, swing, lean)
+        assert bpy.ops.rototoon.save_clip(character=character, motion=motion, folder=shelf) == {"FINISHED"}
+    # A second drawing: one frame, a little larger.
+    folder = tmp_path / "doll"
+    folder.mkdir()
+    ob = shots.set_up(folder)
+    doll = [(contour - (60, 80)) * 1.05 + (80, 82) for contour in figure()]
+    shots.draw(addon, ob, 1, doll)
+    for name in LINES:
+        limb_line(addon, ob, 1, name, doll)
+    ob.rototoon.clips_folder = shelf
+    before = dict(shots.pixels(addon, ob, 1))
+    names = [part.name for part in ob.rototoon.parts]
+    bpy.ops.rototoon.depth_mark(front=names[0], behind=names[1])
+    bpy.ops.rototoon.depth_mark(front=names[1], behind=names[2])
+    assert bpy.ops.rototoon.reshape_drawing(character="plain", motion="walk") == {"FINISHED"}
+    frames = sorted(frame.frame_number for frame in shots.layer_of(ob).frames)
+    assert frames == list(range(1, shots.COUNT + 2))
+    kinds = {frame.frame_number: frame.keyframe_type for frame in shots.layer_of(ob).frames}
+    assert kinds[1] != "GENERATED" and kinds[2] == "GENERATED"
+    assert all(np.array_equal(points, before[number]) for number, points in shots.pixels(addon, ob, 1))
+    orders = {tuple(number for number, _ in shots.pixels(addon, ob, frame)) for frame in frames[1:]}
+    assert orders == {(3, 2, 1)}, "the marks turn the drawing's order round"
+    wrist = lambda frame: dict(shots.pixels(addon, ob, frame))[3][[3, 4]].mean(0)  # noqa: E731
+    swung = [wrist(frame) for frame in range(2, shots.COUNT + 2)]
+    assert np.ptp([point[0] for point in swung]) > 15
+
+    lean = lambda frame: math.atan2(*(_axis(addon, ob, frame) * (1, -1)))  # noqa: E731
+    upright = np.mean([lean(frame) for frame in range(2, shots.COUNT + 2)])
+    apply = {"motion": "walk", "content": "plain", "style": "old", "strength": 2.0}
+    assert bpy.ops.rototoon.apply_motion(**apply) == {"FINISHED"}
+    bent = np.mean([lean(frame) for frame in range(2, shots.COUNT + 2)])
+    assert bent > upright + 0.1, (upright, bent)
+    bpy.ops.rototoon.clear_generated()
+    assert [frame.frame_number for frame in shots.layer_of(ob).frames] == [1]
+
+
+def _axis(addon, ob, frame):
+    """From the foot of the body to its top."""
+    body = dict(shots.pixels(addon, ob, frame))[2]
+    return body[[0, 7]].mean(0) - body[[3, 4]].mean(0)
+
+
+def test_stopped_and_wrong_use_change_nothing(addon, tmp_path):
+    ob = performer(addon, tmp_path)
+    shelf = str(tmp_path / "clips")
+    with pytest.raises(RuntimeError, match="No library chosen"):
+        bpy.ops.rototoon.save_clip(character="plain", motion="walk")
+    assert bpy.ops.rototoon.save_clip(character="plain", motion="walk", folder=shelf) == {"FINISHED"}
+    with pytest.raises(RuntimeError, match="has a key after the drawing"):
+        bpy.ops.rototoon.reshape_drawing(character="plain", motion="walk", folder=shelf)
+    folder = tmp_path / "doll"
+    folder.mkdir()
+    ob = shots.set_up(folder)
+    shots.draw(addon, ob, 1, figure())
+    with pytest.raises(RuntimeError, match="has no limbs"):
+        bpy.ops.rototoon.reshape_drawing(character="plain", motion="walk", folder=shelf)
+    for name in LINES:
+        limb_line(addon, ob, 1, name, figure())
+    before = shots.snapshot(ob)
+    with pytest.raises(RuntimeError, match="holds no clips"):
+        bpy.ops.rototoon.apply_motion(motion="walk", content="plain", style="old", folder=str(tmp_path / "none"))
+    with pytest.raises(RuntimeError, match='found "nobody"'):
+        bpy.ops.rototoon.apply_motion(motion="walk", content="plain", style="nobody", folder=shelf)
+    jobs = addon("jobs")
+    start = jobs.Worker.start
+    try:
+        jobs.Worker.start = lambda self: (self.cancel(), start(self))
+        assert bpy.ops.rototoon.reshape_drawing(character="plain", motion="walk", folder=shelf) == {"CANCELLED"}
+    finally:
+        jobs.Worker.start = start
+    assert shots.snapshot(ob) == before
+
+
+def test_marks_are_kept_with_the_document(addon, tmp_path):
+    ob = shots.set_up(tmp_path)
+    shots.draw(addon, ob, 1, figure())
+    limb_line(addon, ob, 1, "pelvis", figure())
+    names = [part.name for part in ob.rototoon.parts]
+    assert bpy.ops.rototoon.depth_mark(front=names[2], behind=names[1]) == {"FINISHED"}
+    assert bpy.ops.rototoon.depth_mark(front=names[1], behind=names[2]) == {"FINISHED"}
+    assert addon("limbs").marks(ob) == [{"front": names[1], "behind": names[2]}]
+    with pytest.raises(RuntimeError, match="No part 'hat'"):
+        bpy.ops.rototoon.depth_mark(front="hat", behind=names[1])

@@ -1,0 +1,132 @@
+"""Clips, their library, translation and reshaping through the Python API."""
+
+import copy
+import json
+import math
+
+import pytest
+from rototoon import style
+from rototoon.native.errors import Cancelled
+from rototoon.session import RototoonError
+
+FRAMES = 8
+
+
+def ring(x, top, bottom, half):
+    """Eight points: from the top right down, from the bottom left up."""
+    down = [top + step * (bottom - top) / 3 for step in range(4)]
+    return [[x + half, y] for y in down] + [[x - half, y] for y in reversed(down)]
+
+
+def limb(start, end, part, places):
+    points = [{"part": part, "at": place} for place in places]
+    return {"from": start, "to": end, "start": {"points": points[:2]}, "end": {"points": points[2:]}}
+
+
+def turned(points, centre, angle):
+    c, s = math.cos(angle), math.sin(angle)
+    return [[centre[0] + c * (x - centre[0]) - s * (y - centre[1]), centre[1] + s * (x - centre[0]) + c * (y - centre[1])] for x, y in points]
+
+
+def figure(frames=1, lean=0.0, swing=0.0):
+    """A body, an arm and a leg; the arm swings, the body leans about the hip."""
+
+    def part(name, depth, points, centre, amount):
+        keys = {str(f): turned(points, centre, lean + amount * math.sin(2 * math.pi * f / FRAMES)) for f in range(frames)}
+        return {"name": name, "closed": True, "depth": depth, "keys": keys}
+
+    hip = (50, 62)
+    parts = [
+        part("leg", 0, ring(50, 60, 100, 6), hip, -swing),
+        part("body", 1, ring(50, 20, 62, 12), hip, 0.0),
+        part("arm", 2, ring(64, 22, 58, 5), (64, 24), swing),
+    ]
+    parts[0]["keys"] = figure(frames, 0.0, swing)["parts"][0]["keys"] if lean else parts[0]["keys"]
+    limbs = [
+        limb("pelvis", "neck", "body", [3, 4, 0, 7]),
+        limb("r_shoulder", "r_elbow", "arm", [0, 7, 1.5, 5.5]),
+        limb("r_elbow", "r_wrist", "arm", [1.5, 5.5, 3, 4]),
+        limb("r_hip", "r_ankle", "leg", [0, 7, 3, 4]),
+    ]
+    footage = {"pattern": "f_%d.png", "first": 0, "last": max(frames, 2) - 1, "fps": 12, "width": 120, "height": 120}
+    return {"rototoon": 1, "footage": footage, "parts": parts, "limbs": limbs}
+
+
+@pytest.fixture
+def shelf(tmp_path):
+    """A library: plain walks and waves, old waves and leans."""
+    folder = str(tmp_path / "clips")
+    for character, motion, swing, lean in (
+        ("plain", "walk", 0.4, 0.0),
+        ("plain", "wave", 0.8, 0.0),
+        ("old", "wave", 0.6, 0.4),
+    ):
+        made = style.capture_clip(figure(FRAMES, lean, swing), character, motion)
+        style.add_to_library(folder, made.clips, "test")
+    return folder
+
+
+def test_contours_become_clips():
+    made = style.capture_clip(figure(FRAMES, swing=0.5), "anna", "walk", first=2, last=5)
+    clip = made.clips["clips"][0]
+    assert (made.first, len(clip["points"]), clip["character"]) == (2, 4, "anna")
+    assert made.clips["keypoints"] == list(style.KEY_POINTS)
+    assert clip["points"][0][0] == pytest.approx([50, 62], abs=1e-6)
+    assert "l_elbow" in made.guessed and "r_elbow" not in made.guessed
+
+
+def test_a_library_is_searched(shelf):
+    found = style.read_library(shelf, motion="wave", read=False)
+    assert [entry["character"] for entry in found.entries] == ["plain", "old"]
+    assert found.clips is None and found.troubles == []
+    assert len(style.read_library(shelf).clips["clips"]) == 3
+
+
+def test_a_manner_is_given_and_a_drawing_follows(shelf):
+    clips = style.read_library(shelf).clips
+    seen = []
+    walk = style.translate_clip(
+        clips, style="old", motion="walk", content="plain", progress=lambda done, step: seen.append((done, step)) or True
+    )
+    clip = walk["clips"][0]
+    assert (clip["character"], clip["motion"], len(clip["points"])) == ("old", "walk", FRAMES)
+    assert seen[0][0] == 0 and seen[-1][0] == 1
+    neck, pelvis = clip["points"][0][2], clip["points"][0][0]
+    assert neck[0] - pelvis[0] > 5, "the old man leans"
+    made = style.reshape(figure(), walk)
+    assert made.given == [] and made.document["footage"]["last"] == FRAMES - 1
+    body = made.document["parts"][1]
+    assert sorted(map(int, body["tracks"])) == list(range(FRAMES))
+    assert all(len(points) == 8 for points in body["tracks"].values())
+    again = style.capture_clip(made.document, "doll", "walk").clips["clips"][0]["points"]
+    for drawn, wanted in zip(again, clip["points"]):
+        angle = lambda p: math.atan2(p[2][0] - p[0][0], p[0][1] - p[2][1])  # noqa: E731
+        assert angle(drawn) == pytest.approx(angle(wanted), abs=0.05)
+
+
+def test_work_can_be_stopped(shelf):
+    clips = style.read_library(shelf).clips
+    with pytest.raises(Cancelled):
+        style.translate_clip(clips, style="old", motion="walk", content="plain", progress=lambda _done, _step: False)
+    with pytest.raises(Cancelled):
+        style.reshape(figure(), clips, progress=lambda _done, _step: False, character="old")
+
+
+def test_what_is_wrong_is_named(shelf):
+    clips = style.read_library(shelf).clips
+    with pytest.raises(RototoonError, match="found 3 clips of that character and motion among 3, expected one"):
+        style.reshape(figure(), clips)
+    with pytest.raises(RototoonError, match="limbs: found none"):
+        style.capture_clip({**figure(), "limbs": []}, "anna", "walk")
+    off = copy.deepcopy(figure())
+    off["limbs"][1]["end"]["points"][0] = {"part": "arm", "drawn": {"0": [300, 300]}}
+    with pytest.raises(RototoonError, match=r"limbs\[1\] \(r_shoulder to r_elbow\).end.points\[0\].drawn, frame 0: found a point"):
+        style.capture_clip(off, "anna", "walk")
+    with pytest.raises(RototoonError, match="preset: found \"best\", expected one of rototoon"):
+        style.translate_clip(clips, style="old", motion="walk", content="plain", preset="best")
+    with pytest.raises(RototoonError, match="unknown field"):
+        style.reshape(figure(), clips, colour="red")
+    broken = json.loads(json.dumps(clips))
+    broken["clips"][0]["points"][1].pop()
+    with pytest.raises(RototoonError, match="frame 1: found 16 key points, expected 17"):
+        style.translate_clip(broken, style="old", motion="walk", content="plain")
