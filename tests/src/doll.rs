@@ -163,6 +163,6 @@ mod tests {
         assert_eq!(document.problems().error_count(), 0);
         assert_eq!(document.limbs().unwrap().limbs.len(), 12);
         let known = |name: &&str| PARTS.iter().any(|(part, _)| part == name);
-        assert!(TRUE_ORDER.iter().all(|name| known(name)));
+        assert!(TRUE_ORDER.iter().all(known));
     }
 }

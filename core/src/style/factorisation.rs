@@ -19,14 +19,19 @@
 //! Steps are repeated until the relative error changes by less than a tolerance over ten rounds, or to a limit. Starts are
 //! pseudo-random with a fixed seed.
 //!
-//! **Speed.** UᵀX is a matrix product of n·d·k; everything else is smaller. Products go through faer's kernels, on the calling
-//! thread; the objective is found from the products at hand, ‖X − UV‖² = ‖X‖² − 2⟨V, UᵀX⟩ + ⟨V, UᵀUV⟩, at no extra pass.
+//! **Speed.** XVᵀ and UᵀX are matrix products of n·d·k; everything else is smaller. Postures are taken in pieces of [`ROWS`]
+//! rows, which stay in a processor's cache, side by side on all threads; sums over the pieces are made in their order, so
+//! that the result is the same on any number of threads. Products go through faer's kernels; the objective is found from the products at hand, ‖X − UV‖² = ‖X‖² − 2⟨V, UᵀX⟩ + ⟨V, UᵀUV⟩, at no extra pass.
 
+use crate::numeric::vector::dot;
 use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatRef, Par, Side};
+use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
 /// Rounds between looks at the error.
 const LOOK: usize = 10;
+/// Rows of a piece.
+const ROWS: usize = 512;
 /// What keeps divisions from zero.
 const TINY: f64 = 1e-12;
 /// Ridge of the class regression, as a share of the mean squared code.
@@ -258,27 +263,24 @@ impl Work {
         (w, y): (&Mat<f64>, &Mat<f64>),
         options: &Options,
     ) {
+        let beta = if y.ncols() > 0 { options.class_weight } else { 0.0 };
         matmul(&mut self.vv, Accum::Replace, v, v.transpose(), 1.0, Par::Seq);
-        matmul(&mut self.target, Accum::Replace, x, v.transpose(), 1.0, Par::Seq);
-        let beta = options.class_weight;
-        if beta > 0.0 && y.ncols() > 0 {
+        if beta > 0.0 {
             matmul(&mut self.vv, Accum::Add, w, w.transpose(), beta, Par::Seq);
-            matmul(&mut self.target, Accum::Add, y, w.transpose(), beta, Par::Seq);
+            matmul(&mut self.target, Accum::Replace, y, w.transpose(), beta, Par::Seq);
         }
+        let target_so_far = if beta > 0.0 { Accum::Add } else { Accum::Replace };
         let mu = 1.0 / self.largest().max(TINY);
-        let mut negative = false;
         let few = 2 * u.ncols() <= x.ncols() && options.reading == Reading::Consistent;
-        for _ in 0..if few { CODE_STEPS } else { 1 } {
-            matmul(&mut self.step, Accum::Replace, &*u, &self.vv, -1.0, Par::Seq);
-            for j in 0..u.ncols() {
-                let steps = self.step.col_as_slice(j).iter().zip(self.target.col_as_slice(j));
-                for (value, (step, target)) in u.col_as_slice_mut(j).iter_mut().zip(steps) {
-                    *value += mu * (step + target);
-                    negative |= *value < 0.0;
-                    *value = value.max(0.0);
-                }
-            }
-        }
+        let steps = if few { CODE_STEPS } else { 1 };
+        let vv = &self.vv;
+        let pieces = pieces_mut(u.as_mut()).into_par_iter().zip(pieces_mut(self.step.as_mut()));
+        let pieces = pieces.zip(pieces_mut(self.target.as_mut())).zip(pieces_of(x));
+        let move_piece = |(((mut u, mut step), mut target), x): (((MatMut<f64>, _), MatMut<f64>), _)| {
+            matmul(&mut target, target_so_far, x, v.transpose(), 1.0, Par::Seq);
+            (0..steps).fold(false, |negative, _| negative | code_step(&mut u, &mut step, &target, vv, mu))
+        };
+        let negative = pieces.map(move_piece).reduce(|| false, |a, b| a | b);
         if negative && options.reading == Reading::Literal {
             u.fill(0.0);
         }
@@ -304,8 +306,15 @@ impl Work {
     /// Step 4; gives ‖X − UV‖² of the V before it.
     fn step_basis(&mut self, x: MatRef<'_, f64>, u: &Mat<f64>, v: &mut Mat<f64>, alpha: f64, norm: f64) -> f64 {
         let mut first = 0.0;
-        matmul(&mut self.uu, Accum::Replace, u.transpose(), u, 1.0, Par::Seq);
-        matmul(&mut self.ux, Accum::Replace, u.transpose(), x, 1.0, Par::Seq);
+        let products = |(u, x): (MatRef<f64>, MatRef<f64>)| (u.transpose() * u, u.transpose() * x);
+        let pieces = pieces_of(u.as_ref()).into_par_iter().zip(pieces_of(x));
+        let sums: Vec<(Mat<f64>, Mat<f64>)> = pieces.map(products).collect();
+        self.uu.fill(0.0);
+        self.ux.fill(0.0);
+        for (uu, ux) in sums {
+            self.uu += uu;
+            self.ux += ux;
+        }
         for step in 0..BASIS_STEPS {
             matmul(&mut self.uuv, Accum::Replace, &self.uu, &*v, 1.0, Par::Seq);
             let mut residual = norm;
@@ -324,6 +333,40 @@ impl Work {
     }
 }
 
+/// One step of the codes of some postures, negative ones made zero; whether there were any.
+fn code_step(u: &mut MatMut<f64>, step: &mut MatMut<f64>, target: &MatMut<f64>, vv: &Mat<f64>, mu: f64) -> bool {
+    let mut negative = false;
+    matmul(step.as_mut(), Accum::Replace, u.as_ref(), vv, -1.0, Par::Seq);
+    for j in 0..u.ncols() {
+        let (step, target) = (step.as_ref().col(j), target.as_ref().col(j));
+        let along = step.iter().zip(target.iter());
+        for (value, (step, target)) in u.as_mut().col_mut(j).iter_mut().zip(along) {
+            *value += mu * (step + target);
+            negative |= *value < 0.0;
+            *value = value.max(0.0);
+        }
+    }
+    negative
+}
+
+/// The rows of a matrix in pieces of [`ROWS`].
+fn pieces_of(matrix: MatRef<'_, f64>) -> Vec<MatRef<'_, f64>> {
+    let starts = (0..matrix.nrows()).step_by(ROWS);
+    starts.map(|first| matrix.subrows(first, ROWS.min(matrix.nrows() - first))).collect()
+}
+
+/// See [`pieces_of`].
+fn pieces_mut(mut rest: MatMut<'_, f64>) -> Vec<MatMut<'_, f64>> {
+    let mut pieces = Vec::new();
+    while rest.nrows() > 0 {
+        let rows = ROWS.min(rest.nrows());
+        let (piece, below) = rest.split_at_row_mut(rows);
+        pieces.push(piece);
+        rest = below;
+    }
+    pieces
+}
+
 /// Step 3.
 fn normalise(u: &mut Mat<f64>, v: &mut Mat<f64>, reading: Reading) {
     if reading == Reading::Literal {
@@ -336,9 +379,10 @@ fn normalise(u: &mut Mat<f64>, v: &mut Mat<f64>, reading: Reading) {
     let n = u.nrows().max(1) as f64;
     for j in 0..u.ncols() {
         let column = u.col_as_slice_mut(j);
-        let size = (column.iter().map(|v| v * v).sum::<f64>() / n).sqrt();
+        let size = (dot(column, column) / n).sqrt();
         if size > TINY {
-            column.iter_mut().for_each(|v| *v /= size);
+            let inverse = 1.0 / size;
+            column.iter_mut().for_each(|v| *v *= inverse);
             (0..v.ncols()).for_each(|c| v[(j, c)] *= size);
         }
     }

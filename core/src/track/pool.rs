@@ -16,7 +16,7 @@ use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallel
 use std::collections::BTreeMap;
 
 /// Mean distance of the chains' control points (working pixels) from which on both models are searched for.
-const DISAGREEMENT: f64 = 4.0;
+const DISAGREEMENT: f64 = 6.0;
 /// Mean distance (working pixels) below which a carried pose adds nothing to the pool.
 const KNOWN_PLACE: f64 = 1.0;
 /// Mean distance (working pixels) up to which a chosen pose is confirmed by one of the other key's model: neither has

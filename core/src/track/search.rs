@@ -22,9 +22,9 @@ const TURN_STEP: usize = 15;
 const MARGIN: usize = 12;
 /// Places taken of each turn, and of all turns together.
 const PLACES_OF_A_TURN: usize = 2;
-const PLACES: usize = 6;
+const PLACES: usize = 4;
 /// Parts of this size (working pixels) and smaller are searched on the middle level.
-const SMALL: f64 = 70.0;
+const SMALL: f64 = 50.0;
 /// Parts larger than this share of the lines fill the picture: nothing to search.
 const LARGEST: f64 = 0.45;
 /// Two places are one if they are nearer than this share of the part's size, and turned by less than this (radians).
