@@ -1,6 +1,7 @@
 //! Development commands of Rototoon.
 
 mod bench_fit;
+mod bench_style;
 mod bench_tracking;
 mod bench_tween;
 mod bless;
@@ -51,6 +52,8 @@ enum Command {
     },
     /// Measure curve fitting beside its peers on six outlines.
     BenchFit(bench_fit::Arguments),
+    /// Measure factorisation beside scikit-learn and reshaping beside libigl.
+    BenchStyle(bench_style::Arguments),
     /// Measure every preset on sets with known truth, with tables and pictures in target/bench-tracking.
     BenchTracking(bench_tracking::Arguments),
     /// Measure matching and in-betweens on sets with known truth, with sheets in target/bench-tween.
@@ -68,6 +71,7 @@ fn main() -> anyhow::Result<()> {
         Command::Bundle => bundle::bundle(&bundle::Packager::from_wheel()?).map(|_| ()),
         Command::Generate { check } => generate::generate(check),
         Command::BenchFit(arguments) => bench_fit::bench_fit(&arguments),
+        Command::BenchStyle(arguments) => bench_style::bench_style(&arguments),
         Command::BenchTracking(arguments) => bench_tracking::bench_tracking(&arguments),
         Command::BenchTween(arguments) => bench_tween::bench_tween(&arguments),
         Command::Bless => bless::bless(),

@@ -1,0 +1,105 @@
+//! Measures for `tests/bench_style.py`: the factorisation of postures, and as-rigid-as-possible manipulation.
+//!
+//! Reads one job from standard input and writes its result to standard output, both JSON; times are in seconds, of every
+//! repetition.
+
+use anyhow::{Context, Result, bail};
+use faer::Mat;
+use rototoon::geometry::Point;
+use rototoon::reshape::arap::{Mesh, Solver, deform};
+use rototoon::style::factorisation::{Options, factor};
+use serde::{Deserialize, Serialize};
+use std::time::Instant;
+
+#[derive(Deserialize)]
+struct Job {
+    repetitions: usize,
+    #[serde(flatten)]
+    what: What,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum What {
+    Factor(Postures),
+    Reshape(Reshaping),
+}
+
+#[derive(Deserialize)]
+struct Postures {
+    /// A posture a row.
+    rows: Vec<Vec<f64>>,
+    rank: usize,
+    rounds: usize,
+}
+
+#[derive(Deserialize)]
+struct Reshaping {
+    vertices: Vec<[f64; 2]>,
+    triangles: Vec<[usize; 3]>,
+    handles: Vec<usize>,
+    /// Where the handles go.
+    places: Vec<[f64; 2]>,
+}
+
+#[derive(Serialize)]
+struct Factored {
+    error: f64,
+    seconds: Vec<f64>,
+}
+
+#[derive(Serialize)]
+struct Reshaped {
+    prepare: Vec<f64>,
+    frame: Vec<f64>,
+    /// Largest distance between the kept solver's vertices and those of the function that keeps nothing.
+    apart: f64,
+    vertices: Vec<[f64; 2]>,
+}
+
+fn main() -> Result<()> {
+    let job: Job = serde_json::from_reader(std::io::stdin().lock()).context("standard input is no job")?;
+    if job.repetitions == 0 {
+        bail!("repetitions: found 0, expected at least 1");
+    }
+    let result = match job.what {
+        What::Factor(postures) => serde_json::to_string(&factored(&postures, job.repetitions)?)?,
+        What::Reshape(reshaping) => serde_json::to_string(&reshaped(&reshaping, job.repetitions)?)?,
+    };
+    println!("{result}");
+    Ok(())
+}
+
+fn factored(job: &Postures, repetitions: usize) -> Result<Factored> {
+    let columns = job.rows.first().map_or(0, Vec::len);
+    if job.rows.iter().any(|row| row.len() != columns) {
+        bail!("rows: expected rows of {columns} numbers");
+    }
+    let x = Mat::from_fn(job.rows.len(), columns, |i, j| job.rows[i][j]);
+    let options = Options { rank: job.rank, rounds: job.rounds, tolerance: 0.0, ..Options::default() };
+    let (mut error, mut seconds) = (f64::NAN, Vec::new());
+    for _ in 0..repetitions {
+        let start = Instant::now();
+        error = factor(x.as_ref(), &[], &options)?.error;
+        seconds.push(start.elapsed().as_secs_f64());
+    }
+    Ok(Factored { error, seconds })
+}
+
+fn reshaped(job: &Reshaping, repetitions: usize) -> Result<Reshaped> {
+    let points = |all: &[[f64; 2]]| all.iter().map(|&[x, y]| Point::new(x, y)).collect::<Vec<Point>>();
+    let places = points(&job.places);
+    let mesh = Mesh::new(points(&job.vertices), job.triangles.clone())?;
+    let (mut prepare, mut frame, mut vertices) = (Vec::new(), Vec::new(), Vec::new());
+    for _ in 0..repetitions {
+        let start = Instant::now();
+        let mut solver = Solver::new(mesh.clone(), &job.handles)?;
+        prepare.push(start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        vertices = solver.solve(&places)?;
+        frame.push(start.elapsed().as_secs_f64());
+    }
+    let once = deform(&mesh, &job.handles, &places)?;
+    let apart = vertices.iter().zip(&once).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+    Ok(Reshaped { prepare, frame, apart, vertices: vertices.iter().map(|p| [p.x, p.y]).collect() })
+}
