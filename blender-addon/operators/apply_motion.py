@@ -30,6 +30,18 @@ class _Reshaping(Long):
     _before = 0.0
     """Share of the work before reshaping."""
 
+    sub_keys: bpy.props.IntProperty(
+        name="Sub-key Points", description="Points of each limb that hold its shape", default=5, min=0, max=100
+    )
+    folder: bpy.props.StringProperty(name="Library", description="Another folder than the panel's", subtype="DIR_PATH")
+
+    @classmethod
+    def poll(cls, context):
+        return contours_poll(cls, context)
+
+    def invoke(self, context, _event):
+        return context.window_manager.invoke_props_dialog(self)
+
     def _start(self, context, clips):
         """The worker that reshapes the active drawing by what `clips(progress)` gives."""
         self._ob = context.object
@@ -58,17 +70,6 @@ class ROTOTOON_OT_reshape_drawing(_Reshaping, bpy.types.Operator):
 
     character: bpy.props.StringProperty(name="Character", description="Whose clip")
     motion: bpy.props.StringProperty(name="Motion", description="Which motion", default="walk")
-    sub_keys: bpy.props.IntProperty(
-        name="Sub-key Points", description="Points of each limb that hold its shape", default=5, min=0, max=100
-    )
-    folder: bpy.props.StringProperty(name="Library", description="Another folder than the panel's", subtype="DIR_PATH")
-
-    @classmethod
-    def poll(cls, context):
-        return contours_poll(cls, context)
-
-    def invoke(self, context, _event):
-        return context.window_manager.invoke_props_dialog(self)
 
     def begin(self, context):
         folder = library_folder(context.object, self.folder)
@@ -93,17 +94,6 @@ class ROTOTOON_OT_apply_motion(_Reshaping, bpy.types.Operator):
     strength: bpy.props.FloatProperty(
         name="Strength", description="How thick the manner is laid on; 1 is the most probable", default=1.1, min=0, max=3
     )
-    sub_keys: bpy.props.IntProperty(
-        name="Sub-key Points", description="Points of each limb that hold its shape", default=5, min=0, max=100
-    )
-    folder: bpy.props.StringProperty(name="Library", description="Another folder than the panel's", subtype="DIR_PATH")
-
-    @classmethod
-    def poll(cls, context):
-        return contours_poll(cls, context)
-
-    def invoke(self, context, _event):
-        return context.window_manager.invoke_props_dialog(self)
 
     def begin(self, context):
         folder = library_folder(context.object, self.folder)

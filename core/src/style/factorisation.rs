@@ -21,7 +21,8 @@
 //!
 //! **Speed.** XVᵀ and UᵀX are matrix products of n·d·k; everything else is smaller. Postures are taken in pieces of [`ROWS`]
 //! rows, which stay in a processor's cache, side by side on all threads; sums over the pieces are made in their order, so
-//! that the result is the same on any number of threads. Products go through faer's kernels; the objective is found from the products at hand, ‖X − UV‖² = ‖X‖² − 2⟨V, UᵀX⟩ + ⟨V, UᵀUV⟩, at no extra pass.
+//! that the result is the same on any number of threads. Products go through faer's kernels; the objective is found
+//! from the products at hand, ‖X − UV‖² = ‖X‖² − 2⟨V, UᵀX⟩ + ⟨V, UᵀUV⟩, at no extra pass.
 
 use crate::numeric::vector::dot;
 use faer::linalg::matmul::matmul;

@@ -7,8 +7,8 @@
 
 use super::TrackError;
 use super::joint::tie::Lead;
-use super::pool::{Carried, Hypothesis, Pools, hypothesis, is_new, swept};
-use super::propagate::Pose;
+use super::pool::{Hypothesis, Pools, hypothesis, is_new, swept};
+use super::propagate::{Pose, mean_distance};
 use super::rototoon::Pooled;
 use super::stage::Stage;
 use crate::geometry::Point;
@@ -26,8 +26,8 @@ pub(super) fn mend(stage: &Stage, source: &Pooled, path: &[usize], leads: &[Lead
     let pools = &source.pools;
     let last = pools.len() - 1;
     let mut extended = Pools::clone(pools);
-    let mut carried = Carried::clone(&source.carried);
-    for hypotheses in [swept(stage, pools, path, true, &mut carried)?, led(stage, pools, last, leads)?] {
+    let (swept, _) = swept(stage, pools, path, true, &source.carried)?;
+    for hypotheses in [swept, led(stage, pools, last, leads)?] {
         for (pool, more) in extended.iter_mut().zip(hypotheses) {
             for new in more {
                 if is_new(pool, &new) {
@@ -72,11 +72,7 @@ fn about(stage: &Stage, d: usize, model: usize, lead: &Lead, place: Point) -> Ve
     starts.sort_by(|a, b| a.energy.total_cmp(&b.energy));
     let mut kept: Vec<Pose> = Vec::new();
     for start in starts {
-        let apart = |k: &Pose| {
-            let sum: f64 = k.nodes.iter().zip(&start.nodes).map(|(a, b)| a.distance(*b)).sum();
-            sum / start.nodes.len().max(1) as f64
-        };
-        if kept.iter().all(|k| apart(k) > SAME_PLACE) {
+        if kept.iter().all(|k| mean_distance(&k.nodes, &start.nodes) > SAME_PLACE) {
             kept.push(start);
         }
         if kept.len() == KEPT {

@@ -7,7 +7,7 @@
 
 use super::TrackError;
 use super::mechanisms::Mechanism;
-use super::propagate::{Pose, chain};
+use super::propagate::{Pose, chain, mean_distance};
 use super::search::Templates;
 use super::select::{Candidate, Smoothness, best_path};
 use super::stage::Stage;
@@ -58,8 +58,7 @@ impl Hypothesis {
 
     /// Mean distance of the control points.
     pub fn distance(&self, other: &Self) -> f64 {
-        let sum: f64 = self.points.iter().zip(&other.points).map(|(a, b)| a.distance(*b)).sum();
-        sum / self.points.len().max(1) as f64
+        mean_distance(&self.points, &other.points)
     }
 }
 
@@ -73,8 +72,7 @@ pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>, Carried), TrackE
     let found: Vec<Vec<Hypothesis>> = searched(stage, &pools)?;
     pools.iter_mut().zip(found).for_each(|(pool, more)| pool.extend(more));
     let path = choose(stage, &pools);
-    let mut carried = Carried::new();
-    let more = swept(stage, &pools, &path, false, &mut carried)?;
+    let (more, carried) = swept(stage, &pools, &path, false, &Carried::new())?;
     for (pool, more) in pools.iter_mut().zip(more) {
         for new in more {
             if is_new(pool, &new) {
@@ -87,24 +85,25 @@ pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>, Carried), TrackE
 }
 
 /// What comes of carrying the chosen hypotheses to their neighbours, both ways: to all of them, or to those where the
-/// chosen one is not confirmed by the other key. (What other parts say may speak against what both keys say.)
+/// chosen one is not confirmed by the other key. (What other parts say may speak against what both keys say.) `known` is what
+/// was carried before; what is carried now comes back beside the new hypotheses.
 pub(super) fn swept(
     stage: &Stage,
     pools: &Pools,
     path: &[usize],
     all: bool,
-    carried: &mut Carried,
-) -> Result<Pools, TrackError> {
+    known: &Carried,
+) -> Result<(Pools, Carried), TrackError> {
     if !stage.kit.mechanisms.has(Mechanism::Sweep) {
-        return Ok(vec![Vec::new(); pools.len()]);
+        return Ok((vec![Vec::new(); pools.len()], Carried::new()));
     }
     let wanted = |d: usize| !stage.corrected(d) && (all || !confirmed(&pools[d], path[d]));
     let wanted: Vec<bool> = (0..pools.len()).map(wanted).collect();
-    let sweep = |forwards: bool| sweep(stage, pools, path, carried, (&wanted, forwards));
+    let sweep = |forwards: bool| sweep(stage, pools, path, known, (&wanted, forwards));
     let (forwards, backwards) = rayon::join(|| sweep(true), || sweep(false));
-    let (forwards, backwards) = (forwards?, backwards?);
-    carried.extend(forwards.1.into_iter().chain(backwards.1));
-    Ok(forwards.0.into_iter().zip(backwards.0).map(|(a, b)| a.into_iter().chain(b).collect()).collect())
+    let ((forwards, mut carried), (backwards, more)) = (forwards?, backwards?);
+    carried.extend(more);
+    Ok((forwards.into_iter().zip(backwards).map(|(a, b)| a.into_iter().chain(b).collect()).collect(), carried))
 }
 
 /// A pose on a drawing as a hypothesis of its pool.

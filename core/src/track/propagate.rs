@@ -200,8 +200,8 @@ impl Scenery<'_> {
     }
 }
 
-/// Mean distance of the nodes of two poses.
-fn mean_distance(a: &[Point], b: &[Point]) -> f64 {
+/// Mean distance of the points of two poses.
+pub(super) fn mean_distance(a: &[Point], b: &[Point]) -> f64 {
     a.iter().zip(b).map(|(p, q)| p.distance(*q)).sum::<f64>() / a.len().max(1) as f64
 }
 
