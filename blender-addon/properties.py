@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import live
+from . import clip_browser, live
 
 PRESETS = (
     ("rototoon", "Rototoon", "Textured lattices that follow each part from both keys: the best that Rototoon knows"),
@@ -24,6 +24,10 @@ def _is_image_empty(_self, ob) -> bool:
 
 def _is_camera(_self, ob) -> bool:
     return ob.type == "CAMERA"
+
+
+def _clips_folder_changed(self, _context) -> None:
+    clip_browser.refresh_for(self.id_data)
 
 
 class RototoonPart(bpy.types.PropertyGroup):
@@ -103,19 +107,26 @@ class RototoonSettings(bpy.types.PropertyGroup):
     active_part: bpy.props.IntProperty(name="Active Part", default=0)
     next_number: bpy.props.IntProperty(default=1)
     clips_folder: bpy.props.StringProperty(
-        name="Library", description="Folder of the library of skeleton clips", subtype="DIR_PATH", default=""
+        name="Library",
+        description="Folder of the library of skeleton clips; empty takes that of the preferences",
+        subtype="DIR_PATH",
+        default="",
+        options={"ANIMATABLE", "PATH_SUPPORTS_BLEND_RELATIVE"},
+        update=_clips_folder_changed,
     )
     extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")
 
 
-CLASSES = (RototoonPart, RototoonSettings)
+CLASSES = (RototoonPart, RototoonSettings, *clip_browser.CLASSES)
 
 
 def attach() -> None:
     """Gives every object its settings; after registering the classes."""
     bpy.types.Object.rototoon = bpy.props.PointerProperty(type=RototoonSettings)
+    clip_browser.attach()
 
 
 def detach() -> None:
     """Takes them away again; before unregistering the classes."""
+    clip_browser.detach()
     del bpy.types.Object.rototoon
