@@ -49,6 +49,19 @@ class RototoonPart(bpy.types.PropertyGroup):
     )
 
 
+class RototoonBone(bpy.types.PropertyGroup):
+    """Where on an armature a key point lies; `name` is the key point's."""
+
+    bone: bpy.props.StringProperty(name="Bone", description="The bone that tells the key point")
+    along: bpy.props.FloatProperty(
+        name="Along",
+        description="How far along the bone the key point lies: 0 at its head, 1 at its tail",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+    )
+
+
 class RototoonSettings(bpy.types.PropertyGroup):
     """Footage, parts and choices of one Grease Pencil object."""
 
@@ -114,10 +127,11 @@ class RototoonSettings(bpy.types.PropertyGroup):
         options={"ANIMATABLE", "PATH_SUPPORTS_BLEND_RELATIVE"},
         update=_clips_folder_changed,
     )
+    bones: bpy.props.CollectionProperty(type=RototoonBone)
     extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")
 
 
-CLASSES = (RototoonPart, RototoonSettings, *clip_browser.CLASSES)
+CLASSES = (RototoonPart, RototoonBone, RototoonSettings, *clip_browser.CLASSES)
 
 
 def attach() -> None:

@@ -2,6 +2,7 @@
 
 from . import (
     apply_motion,
+    bones,
     clear_generated,
     contours_to_mask,
     define_limbs,
@@ -49,6 +50,7 @@ _MODULES = (
     save_clip,
     apply_motion,
     depth_mark,
+    bones,
     import_document,
     export_document,
     contours_to_mask,
