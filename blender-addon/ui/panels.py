@@ -3,7 +3,7 @@
 import bpy
 
 from .. import grease_pencil as gp
-from .. import clip_browser, ends, limbs, live
+from .. import clip_browser, ends, limbs, live, spacing_curve
 from .clips import draw_browser
 
 
@@ -174,9 +174,13 @@ class ROTOTOON_PT_tween(_Panel, bpy.types.Panel):
             ("EASE_IN_OUT", "In and Out"),
             ("BOUNCE", "Bounce"),
             ("CHART", "Chart"),
+            ("CURVE", "Curve"),
         ):
             button = grid.operator("rototoon.in_between", text=name)
             button.frames, button.spacing = "CURRENT", spacing
+        node = spacing_curve.node()
+        if node is not None:
+            layout.template_curve_mapping(node, "mapping")
         column = layout.column(align=True)
         button = column.operator("rototoon.in_between", text="All Keys", icon="NEXT_KEYFRAME")
         button.frames = "ALL"

@@ -67,6 +67,10 @@ class Layout:
         for item in getattr(data, name):
             row.draw_item(None, bpy.context, self, data, item, 0, active_data, active_name)
 
+    def template_curve_mapping(self, data, name, **options):
+        assert name in data.bl_rna.properties
+        self.said.append(("curve", name))
+
     def template_icon(self, icon_value, scale=1.0):
         self.said.append(("icon", scale))
 
