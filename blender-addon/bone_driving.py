@@ -12,9 +12,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import bpy
 import numpy as np
-from mathutils import Matrix, Quaternion, Vector
+from mathutils import Euler, Matrix, Quaternion, Vector
 
 from . import armatures, bone_names
 from .errors import Problem
@@ -182,28 +181,4 @@ def _written(turned: Quaternion, mode: str, before: list):
     if mode == "AXIS_ANGLE":
         axis, angle = turned.to_axis_angle()
         return (angle, *axis)
-    from mathutils import Euler
-
     return tuple(turned.to_euler(mode, Euler(before[-1], mode)) if before else turned.to_euler(mode))
-
-
-def write(ob, name: str, frames: np.ndarray, curves: dict[tuple[str, int], np.ndarray]) -> str:
-    """Puts curves into a new action and gives it to the object; returns the name of the action that it had."""
-    action = bpy.data.actions.new(name)
-    slot = action.slots.new(id_type="OBJECT", name=ob.name)
-    strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
-    bag = strip.channelbag(slot, ensure=True)
-    for (path, index), values in curves.items():
-        curve = bag.fcurves.new(path, index=index)
-        curve.keyframe_points.add(len(frames))
-        curve.keyframe_points.foreach_set("co", np.stack([frames, values], 1).astype(np.float32).ravel())
-        curve.keyframe_points.foreach_set("interpolation", np.ones(len(frames), np.int32))
-        curve.update()
-    data = ob.animation_data or ob.animation_data_create()
-    before = data.action
-    if before is not None:
-        # Nothing else may hold it, and then it would not be saved.
-        before.use_fake_user = True
-    data.action = action
-    data.action_slot = slot
-    return before.name if before is not None else ""

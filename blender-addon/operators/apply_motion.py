@@ -15,7 +15,7 @@ PRESETS = (
 )
 
 
-class _Reshaping(Long):
+class Reshaping(Long):
     """Reads the drawing, works in a thread, writes generated frames after it."""
 
     _before = 0.0
@@ -33,18 +33,20 @@ class _Reshaping(Long):
     def invoke(self, context, _event):
         return context.window_manager.invoke_props_dialog(self)
 
-    def _start(self, context, clips):
-        """The worker that reshapes the active drawing by what `clips(progress)` gives."""
+    def work(self, context, clips, more=None):
+        """The worker that reshapes the active drawing by what `clips(progress, threads)` gives: clips, and options; `more(drawing)`
+        gives further options."""
         self._ob = context.object
         self._drawing = drawing = reshaping.begin(self._ob, context.scene.frame_current)
         threads, sub_keys, before = preferences.threads(), self.sub_keys, self._before
+        further = more(drawing) if more is not None else {}
 
-        def work(progress):
+        def run(progress):
             chosen, options = clips(progress, threads)
             rest = lambda done, step: progress(before + (1 - before) * done, step)  # noqa: E731 - the rest of the bar
-            return reshape(drawing.project, chosen, rest, sub_keys=sub_keys, threads=threads, **options)
+            return reshape(drawing.project, chosen, rest, sub_keys=sub_keys, threads=threads, **options, **further)
 
-        return jobs.Worker(work)
+        return jobs.Worker(run)
 
     def finish(self, context, work) -> str:
         """Called in the end."""
@@ -53,7 +55,7 @@ class _Reshaping(Long):
         return f"{frames} frames after frame {self._drawing.frame}" + (f"; by the nearest limb: {given}" if given else "")
 
 
-class ROTOTOON_OT_reshape_drawing(_Reshaping, bpy.types.Operator):
+class ROTOTOON_OT_reshape_drawing(Reshaping, bpy.types.Operator):
     bl_idname = "rototoon.reshape_drawing"
     bl_label = "Reshape Drawing"
     bl_description = "Make the drawing at the playhead follow a clip of the library, on generated frames after it"
@@ -76,10 +78,10 @@ class ROTOTOON_OT_reshape_drawing(_Reshaping, bpy.types.Operator):
     def begin(self, context):
         folder = folder_of(context.object, self.folder)
         wanted = {"character": self.character, "motion": self.motion}
-        return self._start(context, lambda _progress, _threads: (clips_of(folder), wanted))
+        return self.work(context, lambda _progress, _threads: (clips_of(folder), wanted))
 
 
-class ROTOTOON_OT_apply_motion(_Reshaping, bpy.types.Operator):
+class ROTOTOON_OT_apply_motion(Reshaping, bpy.types.Operator):
     bl_idname = "rototoon.apply_motion"
     bl_label = "Apply Motion in Style of…"
     _before = 0.5
@@ -122,7 +124,7 @@ class ROTOTOON_OT_apply_motion(_Reshaping, bpy.types.Operator):
             half = lambda done, step: progress(0.5 * done, step)  # noqa: E731 - the first half of the bar
             return translate_clip(clips_of(folder), progress=half, threads=threads, **wanted, **how), {}
 
-        return self._start(context, clips)
+        return self.work(context, clips)
 
 
 CLASSES = (ROTOTOON_OT_reshape_drawing, ROTOTOON_OT_apply_motion)

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 
-from .. import armatures, bone_driving, clip_browser, jobs, preferences
+from .. import actions, armatures, bone_driving, clip_browser, jobs, preferences
 from ..clip_library import clips_of, folder_of
 from ..errors import Problem
 from ..style import KEY_POINTS, add_to_library, translate_clip
@@ -152,7 +152,7 @@ class ROTOTOON_OT_drive_bones(Long, bpy.types.Operator):
         frames = self.start + np.arange(len(postures)) * scene.render.fps / scene.render.fps_base / fps
         curves = bone_driving.channels(ob, found, self.move)
         manner = f" as {self.style}" if self.style else ""
-        before = bone_driving.write(ob, f"{ob.name} {self.motion}{manner}", frames, curves)
+        before = actions.give(ob, "OBJECT", f"{ob.name} {self.motion}{manner}", frames, curves)
         said = f"{len(found[0])} bones on frames {frames[0]:g} to {frames[-1]:g}"
         held = [name for name in found[0] if any(not c.mute for c in ob.pose.bones[name].constraints)]
         said += f"; their constraints hold {', '.join(held)}" if held else ""

@@ -209,9 +209,11 @@ class ROTOTOON_PT_style(_Panel, bpy.types.Panel):
         chosen = clip_browser.chosen()
         column = layout.column(align=True)
         reshape = column.operator("rototoon.reshape_drawing", icon="MOD_ARMATURE")
+        picture = column.operator("rototoon.reshape_picture", icon="MESH_GRID")
         apply = column.operator("rototoon.apply_motion", icon="ARMATURE_DATA")
         if chosen is not None:
             reshape.character, reshape.motion = chosen.character, chosen.motion
+            picture.character, picture.motion = chosen.character, chosen.motion
             apply.content, apply.motion = chosen.character, chosen.motion
 
 
