@@ -281,3 +281,19 @@ def test_seen_through_the_camera(addon, tmp_path):
     bpy.ops.rototoon.drive_bones(content="boy", motion="walk", folder=str(tmp_path), start=1)
     bpy.ops.rototoon.save_clip_from_armature(character="rig", motion="walk", folder=str(tmp_path), first=1, last=8)
     assert apart(angles(addon, saved(addon, tmp_path, "rig"))[:, 2:], angles(addon, postures)[:, 2:]) < 2e-3
+
+
+def test_undo_takes_the_keys_back(addon, tmp_path):
+    put(addon, tmp_path, walk(addon))
+    ob = armature()
+    ob.pose.bones["head"].keyframe_insert("rotation_quaternion", frame=3)
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.rototoon.guess_bones("EXEC_DEFAULT", True)
+    bpy.ops.rototoon.drive_bones("EXEC_DEFAULT", True, content="boy", motion="walk", folder=str(tmp_path))
+    ob = bpy.data.objects["Rig"]
+    assert ob.animation_data.action.name == "Rig walk"
+    bpy.ops.ed.undo()
+    ob = bpy.data.objects["Rig"]
+    assert ob.animation_data.action.name == "RigAction" and len(bpy.data.actions) == 1 and len(ob.rototoon.bones) == 17
+    bpy.ops.ed.undo()
+    assert len(bpy.data.objects["Rig"].rototoon.bones) == 0

@@ -194,3 +194,15 @@ def test_pieces_of_odd_contours(addon):
     assert pieces.widened(wide[::-1], 2.0).min() < wide.min(), "outward whichever way it is drawn"
     with pytest.raises(addon("errors").Problem, match="single spot"):
         pieces.triangulated("dot", np.ones((4, 2)))
+
+
+def test_undo_takes_the_mesh_back(addon, tmp_path):
+    doll(addon, tmp_path)
+    plane()
+    bpy.context.view_layer.update()
+    bpy.ops.ed.undo_push(message="before")
+    settings = {"character": "plain", "motion": "walk", "picture": "Plane"}
+    assert bpy.ops.rototoon.reshape_picture("EXEC_DEFAULT", True, **settings) == {"FINISHED"}
+    assert any(mesh.shape_keys for mesh in bpy.data.meshes) and bpy.data.objects["Plane"].hide_render
+    bpy.ops.ed.undo()
+    assert not any(mesh.shape_keys for mesh in bpy.data.meshes) and not bpy.data.objects["Plane"].hide_render
