@@ -113,7 +113,8 @@ def forget() -> None:
 def is_listed(ob) -> bool:
     """Whether the list is that of an object's library."""
     try:
-        return shelf() is not None and shelf().folder == clip_library.folder_of(ob)
+        folder = clip_library.folder_of(ob)
+        return shelf() is not None and shelf().folder == folder
     except Problem:
         return True
 

@@ -19,6 +19,8 @@ from .overlay import Marks
 
 ICON, LARGE = 32, 160
 """Sides of pictures in pixels."""
+STRIDE = 0.4
+"""Half of a figure's width in its heights, at a stride."""
 _icons = None
 _keys: dict[str, int] = {}
 _playing = ""
@@ -118,9 +120,10 @@ def _box(ob, layer, mapping, scene) -> np.ndarray:
         return np.array([[0.15, 0.15], [0.85, 0.85]]) * size
     points = mapping.to_pixels(gp.positions(handle, count))
     low, high = points.min(0), points.max(0)
-    aside = high[0] - low[0]
-    shift = aside if high[0] + aside <= size[0] or low[0] < aside else -aside
-    return np.array([low, high]) + [shift, 0.0]
+    aside = STRIDE * (high[1] - low[1])
+    middle = high[0] + aside if high[0] + 2 * aside <= size[0] or low[0] < 2 * aside else low[0] - aside
+    # Wider than any figure: its height is the drawing's.
+    return np.array([[middle - 9 * aside, low[1]], [middle + 9 * aside, high[1]]])
 
 
 def _draw() -> None:
@@ -154,7 +157,8 @@ def _draw() -> None:
 @persistent
 def _moved(*_args) -> None:
     """The figure in the sidebar goes on with the scene's frames."""
-    if clip_browser.chosen() is not None:
+    # A render runs through the frames in a thread of its own, where windows are not to be touched.
+    if not bpy.app.is_job_running("RENDER") and clip_browser.chosen() is not None:
         clip_browser.redraw()
 
 

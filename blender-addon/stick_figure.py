@@ -37,7 +37,9 @@ def lines(posture: np.ndarray, ring: int = 16) -> list[tuple[int, np.ndarray]]:
 
 
 def fitted(postures: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Postures (F, 17, 2) of a clip in a box ((left, top), (right, bottom)): all of one size, standing on its bottom."""
+    """Postures (F, 17, 2) of a clip in a box ((left, top), (right, bottom)): all of one size, on one spot, standing on its bottom."""
+    # A figure that walked along would be too small to see.
+    postures = postures - postures[:, :1] * [1.0, 0.0]
     low, high = postures.min((0, 1)), postures.max((0, 1))
     size = np.maximum(high - low, 1e-9)
     scale = float(((box[1] - box[0]) / size).min())

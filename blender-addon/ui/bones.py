@@ -3,7 +3,11 @@
 import bpy
 
 from .. import clip_browser
+from ..operators.define_limbs import POINTS
 from .clips import draw_browser
+
+NAMES = {name: label for name, label, _ in POINTS}
+"""Labels of the key points."""
 
 
 class ROTOTOON_PT_bones(bpy.types.Panel):
@@ -30,12 +34,12 @@ class ROTOTOON_PT_bones(bpy.types.Panel):
         layout.operator("rototoon.guess_bones", icon="BONE_DATA")
         column = layout.column(align=True)
         for item in settings.bones:
-            row = column.row(align=True)
-            row.alert = item.bone not in context.object.data.bones
-            row.prop_search(item, "bone", context.object.data, "bones", text=item.name.replace("_", " "))
-            side = row.row()
-            side.ui_units_x = 3
-            side.prop(item, "along", text="")
+            split = column.split(factor=0.36, align=True)
+            split.alert = item.bone not in context.object.data.bones
+            split.label(text=NAMES[item.name])
+            split = split.split(factor=0.7, align=True)
+            split.prop_search(item, "bone", context.object.data, "bones", text="")
+            split.prop(item, "along", text="")
 
 
 CLASSES = (ROTOTOON_PT_bones,)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 
 from .. import clip_browser, clip_preview
+from .. import grease_pencil as gp
 
 
 class ROTOTOON_UL_clips(bpy.types.UIList):
@@ -53,7 +54,8 @@ def draw_browser(layout, context) -> None:
         moment = clip_preview.posture_of(chosen, context.scene) + 1
         row = layout.row()
         row.label(text=f"{moment} of {len(chosen.postures)}, {chosen.fps:g} fps")
-        row.prop(listed, "in_view", text="", icon="OVERLAY")
+        if gp.is_drawing(context.object):
+            row.prop(listed, "in_view", text="", icon="OVERLAY")
         if chosen.source:
             layout.label(text=chosen.source, icon="FILE_BLEND")
     elif 0 <= listed.active < len(listed.clips):
