@@ -15,21 +15,23 @@ def register():
     """Called by Blender."""
     import bpy
 
-    from . import handlers, overlay, properties
+    from . import clip_preview, handlers, overlay, properties
 
     for cls in _classes():
         bpy.utils.register_class(cls)
     properties.attach()
     handlers.register()
     overlay.register()
+    clip_preview.register()
 
 
 def unregister():
     """Called by Blender."""
     import bpy
 
-    from . import handlers, overlay, properties
+    from . import clip_preview, handlers, overlay, properties
 
+    clip_preview.unregister()
     overlay.unregister()
     handlers.unregister()
     properties.detach()

@@ -16,10 +16,17 @@ SPACINGS = (
     ("COSINE", "Cosine", "From rest into rest, a little softer"),
     ("BOUNCE", "Bounce", "Falls like a ball, and bounces before it rests"),
     ("CHART", "Chart", "By your own list of percentages, one for each drawing between"),
+    ("CURVE", "Curve", "By a curve that you draw in the panel Tween"),
 )
 LEAVING = (
     ("GROW", "Grow and Shrink", "They grow out of their middle and shrink into it"),
     ("FADE", "Fade", "They fade in and out"),
+    ("LEAVE", "Leave the Picture", "They come in from outside the picture and leave it, away from its middle"),
+)
+PEGS = (
+    ("FOUND", "Found", "Strokes that move as one are found, and the joints at which they hang together"),
+    ("GROUPS", "Layer Groups", "The layers of a group move as one, groups within groups hang on these"),
+    ("LAYERS", "Layers", "Each layer moves as one, and hangs on its group"),
 )
 
 
@@ -37,6 +44,9 @@ class Choices:
     leaving: str = "GROW"
     rest: bool = True
     step: int = 1
+    curve: tuple[tuple[float, float], ...] = ()
+    """Times and shares, for the spacing CURVE."""
+    pegs: str = "FOUND"
 
     def kept(self) -> dict[str, Any]:
         """As it is kept in the file."""
@@ -46,7 +56,10 @@ class Choices:
     def of(cls, kept: dict[str, Any]) -> Choices:
         """From a file; what this version does not know is left out."""
         names = {field.name for field in fields(cls)}
-        return cls(**{name: value for name, value in kept.items() if name in names})
+        known = {name: value for name, value in kept.items() if name in names}
+        if "curve" in known:
+            known["curve"] = tuple((float(time), float(share)) for time, share in known["curve"])
+        return cls(**known)
 
     def frames(self, first: int, last: int) -> list[int]:
         """The frames between two keys that get a drawing."""
@@ -56,6 +69,8 @@ class Choices:
         """The spacing from one key to the next as the library takes it."""
         if self.spacing == "BOUNCE":
             return {"bounce": self.bounces}
+        if self.spacing == "CURVE":
+            return {"curve": [list(place) for place in self.curve]}
         if self.spacing != "CHART":
             return self.spacing.lower()
         shares = percentages(self.chart)
@@ -67,7 +82,7 @@ class Choices:
         return {"curve": [[time, share] for time, share in zip(times, shares)]}
 
     def shared(self) -> dict[str, Any]:
-        """The options of the library that hold for all spans."""
+        """The options of the library that hold for all spans. To leave the picture, it must be known: see `Sheet.leaving`."""
         return {
             "arcs": self.arcs,
             "rigid": self.rigid,
@@ -75,6 +90,23 @@ class Choices:
             "leaving": self.leaving.lower(),
             "rest": self.rest,
         }
+
+
+def places(text: str) -> tuple[tuple[float, float], ...]:
+    """Times and shares of a list such as "0 0, 0.3 0.8, 1 1"."""
+    found = []
+    for pair in (words.split() for words in text.split(",") if words.strip()):
+        try:
+            time, share = map(float, pair)
+        except ValueError:
+            said = " ".join(pair)
+            raise Problem(f'The curve has "{said}", expected a time and a share such as 0.3 0.8') from None
+        if not (0 <= time <= 1 and -10 <= share <= 10):
+            raise Problem(f"The curve has {time:g} {share:g}, expected a time from 0 to 1 and a share from -10 to 10")
+        if found and found[-1][0] >= time:
+            raise Problem(f"The curve has {time:g} after {found[-1][0]:g}, expected times that rise")
+        found.append((time, share))
+    return tuple(found)
 
 
 def percentages(text: str) -> list[float]:

@@ -7,7 +7,7 @@ import os
 import bpy
 from bpy.app.handlers import persistent
 
-from . import footage, live, sessions
+from . import clip_browser, footage, live, sessions
 
 _FIELDS = ("pattern", "movie")
 
@@ -45,10 +45,16 @@ def _rebase(old: str, new: str) -> None:
                 setattr(ob.rototoon, name, based)
 
 
+@persistent
+def _list_clips(*_args) -> None:
+    clip_browser.refresh_for(bpy.context.object)
+
+
 _HOOKS = (
     ("load_pre", live.closing),
     ("load_post", _loaded),
     ("load_post", live.opened),
+    ("load_post", _list_clips),
     ("depsgraph_update_post", live.changed),
     ("undo_post", live.undone),
     ("redo_post", live.undone),

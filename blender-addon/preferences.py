@@ -28,6 +28,12 @@ class RototoonPreferences(bpy.types.AddonPreferences):
         soft_max=1_000_000,
         default=4096,
     )
+    clips_folder: bpy.props.StringProperty(
+        name="Clip Library",
+        description="Folder of the library of skeleton clips where an object names none",
+        subtype="DIR_PATH",
+        default="",
+    )
 
     def draw(self, _context) -> None:
         """Called by Blender."""
@@ -36,6 +42,7 @@ class RototoonPreferences(bpy.types.AddonPreferences):
         column.prop(self, "threads")
         column.prop(self, "cache_folder")
         column.prop(self, "cache_limit")
+        column.prop(self, "clips_folder")
 
 
 def preferences() -> RototoonPreferences:

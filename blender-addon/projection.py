@@ -40,6 +40,16 @@ def world_scale(ob: bpy.types.Object, layer) -> float:
     return float(np.linalg.norm(cameras.layer_to_world(ob, layer)[:3, :3], axis=0).max())
 
 
+def frame_of(ob: bpy.types.Object) -> tuple[cameras.View, tuple[int, int]] | None:
+    """The view and its picture's size: the object's footage, else the scene's camera; nothing without either."""
+    settings, scene = ob.rototoon, bpy.context.scene
+    if settings.width and settings.height:
+        return placement.view_of(ob), (settings.width, settings.height)
+    if scene.camera is None:
+        return None
+    return _view(ob), (scene.render.resolution_x, scene.render.resolution_y)
+
+
 def _view(ob: bpy.types.Object) -> cameras.View:
     scene = bpy.context.scene
     if ob.rototoon.width and ob.rototoon.height:

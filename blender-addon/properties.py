@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import live
+from . import clip_browser, live
 
 PRESETS = (
     ("rototoon", "Rototoon", "Textured lattices that follow each part from both keys: the best that Rototoon knows"),
@@ -26,6 +26,10 @@ def _is_camera(_self, ob) -> bool:
     return ob.type == "CAMERA"
 
 
+def _clips_folder_changed(self, _context) -> None:
+    clip_browser.refresh_for(self.id_data)
+
+
 class RototoonPart(bpy.types.PropertyGroup):
     """A contour that is followed; its strokes carry its number."""
 
@@ -42,6 +46,19 @@ class RototoonPart(bpy.types.PropertyGroup):
     extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")
     ends: bpy.props.StringProperty(
         description="Where the track of a part with one key ends before the footage does: [[picture, reason], ...]"
+    )
+
+
+class RototoonBone(bpy.types.PropertyGroup):
+    """Where on an armature a key point lies; `name` is the key point's."""
+
+    bone: bpy.props.StringProperty(name="Bone", description="The bone that tells the key point")
+    along: bpy.props.FloatProperty(
+        name="Along",
+        description="How far along the bone the key point lies: 0 at its head, 1 at its tail",
+        default=0.0,
+        min=0.0,
+        max=1.0,
     )
 
 
@@ -103,19 +120,27 @@ class RototoonSettings(bpy.types.PropertyGroup):
     active_part: bpy.props.IntProperty(name="Active Part", default=0)
     next_number: bpy.props.IntProperty(default=1)
     clips_folder: bpy.props.StringProperty(
-        name="Library", description="Folder of the library of skeleton clips", subtype="DIR_PATH", default=""
+        name="Library",
+        description="Folder of the library of skeleton clips; empty takes that of the preferences",
+        subtype="DIR_PATH",
+        default="",
+        options={"ANIMATABLE", "PATH_SUPPORTS_BLEND_RELATIVE"},
+        update=_clips_folder_changed,
     )
+    bones: bpy.props.CollectionProperty(type=RototoonBone)
     extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")
 
 
-CLASSES = (RototoonPart, RototoonSettings)
+CLASSES = (RototoonPart, RototoonBone, RototoonSettings, *clip_browser.CLASSES)
 
 
 def attach() -> None:
     """Gives every object its settings; after registering the classes."""
     bpy.types.Object.rototoon = bpy.props.PointerProperty(type=RototoonSettings)
+    clip_browser.attach()
 
 
 def detach() -> None:
     """Takes them away again; before unregistering the classes."""
+    clip_browser.detach()
     del bpy.types.Object.rototoon

@@ -36,6 +36,8 @@ class Plane:
     scale: float
     to_sheet: list[np.ndarray]
     """By layer 4×4, to the space of the sheet."""
+    corner: np.ndarray = field(default_factory=lambda: np.zeros(2))
+    """What lies at the origin."""
 
     @classmethod
     def of(cls, points: np.ndarray, to_sheet: list[np.ndarray]) -> Plane:
@@ -55,13 +57,13 @@ class Plane:
         """Pixels (N, 2) of layer points and their distances from the plane (N,)."""
         to = self.to_sheet[layer]
         local = (points.astype(np.float64) @ to[:3, :3].T + to[:3, 3]) @ self.axes.T
-        return local[:, :2] * self.scale, local[:, 2]
+        return local[:, :2] * self.scale - self.corner, local[:, 2]
 
     def back(self, pixels: np.ndarray, away: np.ndarray, layer: int) -> np.ndarray:
         """Layer points (..., N, 3) of pixels (..., N, 2) and distances (..., N) or 0."""
         inverse = np.linalg.inv(self.to_sheet[layer])
         axes = self.axes @ inverse[:3, :3].T
-        points = pixels.astype(np.float32) @ (axes[:2] / self.scale).astype(np.float32)
+        points = (pixels + self.corner if self.corner.any() else pixels).astype(np.float32) @ (axes[:2] / self.scale).astype(np.float32)
         if np.any(away):
             points += np.asarray(away, np.float32)[..., None] * axes[2].astype(np.float32)
         if inverse[:3, 3].any():
@@ -70,7 +72,9 @@ class Plane:
 
     def text(self) -> bytes:
         """All that it is."""
-        return b"".join(np.round(each, 6).tobytes() for each in (self.axes, np.array(self.scale), *self.to_sheet))
+        corner = [self.corner] if self.corner.any() else []
+        every = (self.axes, np.array(self.scale), *self.to_sheet, *corner)
+        return b"".join(np.round(each, 6).tobytes() for each in every)
 
 
 @dataclass
@@ -88,6 +92,10 @@ class Sheet:
     """By key and layer, where they are needed."""
     digests: dict[int, str] = field(default_factory=dict)
     """Of all that a span depends on."""
+    pegs: dict[str, list[tuple[str, ...]]] = field(default_factory=dict)
+    """By choice and layer the names of the layer's pegs, the outermost first."""
+    size: tuple[float, float] | None = None
+    """Width and height of the picture, where strokes leave it. Its corner is the sheet's origin."""
 
     def around(self, span: int) -> range:
         """The keys on which a span depends."""
@@ -97,6 +105,15 @@ class Sheet:
     def spacing(self, span: int):
         """The spacing of a span as the library takes it."""
         return self.choices[span].written(self.frames[span], self.frames[span + 1])
+
+    def pegs_of(self, span: int) -> list[tuple[str, ...]]:
+        """By layer the names of its pegs; nothing where they are found."""
+        return self.pegs.get(self.choices[span].pegs, [])
+
+    def leaving(self, span: int):
+        """What strokes do that only one key has, as the library takes it."""
+        found = self.choices[span].leaving
+        return {"leave": list(self.size)} if found == "LEAVE" else found.lower()
 
     def by_hand(self, span: int) -> list[list[tuple[int, int]]]:
         """By layer the pairs made by hand."""
@@ -117,6 +134,9 @@ class Sheet:
             told = [VERSION, self.layers, [self.frames[key] for key in around], choices.shared()]
             told += [self.spacing(key) for key in around[:-1]] + [self.by_hand(key) for key in around[:-1]]
             told.append(choices.frames(self.frames[span], self.frames[span + 1]))
+            # What earlier versions knew nothing of is told where it matters, so that what they drew stays as it is.
+            told += [self.pegs_of(span)] if self.pegs_of(span) else []
+            told += [self.size] if choices.leaving == "LEAVE" else []
             summed.update(json.dumps(told).encode())
             self.digests[span] = summed.hexdigest()
 

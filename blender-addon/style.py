@@ -66,6 +66,8 @@ class Reshaped:
     """Parts that no limb carries, with the limb (from, to) that each was given: the nearest."""
     rigid: list[str]
     """Parts that move without bending."""
+    points: dict[str, list[list[list[float]]]]
+    """By part and frame where the points of the option `points` are."""
 
 
 def capture_clip(
@@ -98,7 +100,7 @@ def reshape(
     """Makes a drawing follow a clip.
 
     Options: `character` and `motion` choose the clip where there are several; `rest`, the frame of the drawing; `sub_keys`, points of
-    each limb between its key points that hold its shape; `threads`.
+    each limb between its key points that hold its shape; `points`, by closed part further points that follow it; `threads`.
     """
     with handles.progress_callback(progress) as callback:
         arguments = (*as_json(document), *as_json(clips), *as_json(options), callback, None)

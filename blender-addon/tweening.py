@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import between, sheets, tween, tween_numbers
+from . import between, layer_pegs, layer_space, sheets, tween, tween_numbers
 from . import grease_pencil as gp
 from . import keys as ks
 from . import tween_records as records
@@ -56,10 +56,10 @@ def plan(ob, layers: Iterable, choose: Choose) -> Plan:
         record = result.records.setdefault(name, records.Layer())
         found = result.frames[name] = ks.frames_of(layer, record)
         spans[name] = choose(name, found, record)
-        # What has a place of its own is drawn on a sheet of its own.
-        alone = name if layer.parent is not None else None
+        # What is carried by something of its own is drawn on a sheet of its own, in the space that is carried.
+        carrier = layer_space.carrier(ob, layer)
         wanted = tuple(sorted((span, choices) for span, choices in spans[name].items()) if spans[name] else ())
-        key = (tuple(found.keys), tuple(sorted(found.blank)), tuple(map(repr, wanted)), alone)
+        key = (tuple(found.keys), tuple(sorted(found.blank)), tuple(map(repr, wanted)), carrier)
         groups.setdefault(key, []).append(name)
     for names in groups.values():
         _plan_group(ob, names, spans[names[0]], result)
@@ -76,12 +76,13 @@ def _plan_group(ob, names: list[str], wanted: dict[tuple[int, int], Choices], re
             continue
         usual = next(iter(mine.values()))
         choices = [mine.get(k) or _kept(record, run[k], run[k + 1]) or usual for k in range(len(run) - 1)]
-        matrices = [np.array(ob.data.layers[name].matrix_local, np.float64) for name in names]
+        matrices = [layer_space.in_carrier(ob.data.layers[name]) for name in names]
         to_sheet = [np.linalg.inv(matrices[0]) @ matrix for matrix in matrices]
         handle = gp.drawings(ob.data.layers[names[0]])[run[0]][0]
         points = gp.positions(handle, int(gp.offsets(handle)[-1]))
         plane = sheets.Plane.of(points[np.isfinite(points).all(1)], to_sheet)
         sheet = sheets.Sheet(names, run, plane, mine, choices)
+        layer_space.prepare(ob, sheet, points)
         sheet.read(ob)
         for k in [k for k in mine if _is_current(sheet, k, result)]:
             del sheet.wanted[k]
@@ -119,9 +120,11 @@ def _is_current(sheet: sheets.Sheet, k: int, result: Plan) -> bool:
 
 
 def _add_calls(ob, sheet: sheets.Sheet, result: Plan) -> None:
-    by_choices: dict[str, list[int]] = {}
+    by_choices: dict[tuple[str, int], list[int]] = {}
     for k in sorted(sheet.wanted):
-        by_choices.setdefault(repr(sheet.wanted[k].shared()), []).append(k)
+        # Pegs of layers rest on the span's own first key, so these spans are drawn one by one.
+        alone = k if any(sheet.pegs_of(k)) else -1
+        by_choices.setdefault((repr(sheet.wanted[k].shared()), alone), []).append(k)
     if by_choices:
         needed = {key for k in sheet.wanted for key in sheet.around(k)}
         sheet.contents = {key: each for key, each in sheet.contents.items() if key in needed}
@@ -140,7 +143,10 @@ def draw(plan: Plan, progress: tween.Progress, threads: int = 0) -> None:
         spans = [(k, sheet.wanted[k].frames(sheet.frames[k], sheet.frames[k + 1])) for k in call.spans]
         needed = {key for k in call.spans for key in sheet.around(k)[:-1]}
         spacing = [sheet.spacing(k) if k in needed else "smooth" for k in range(len(sheet.frames) - 1)]
-        options = sheet.wanted[call.spans[0]].shared()
+        first = call.spans[0]
+        options = {**sheet.wanted[first].shared(), "leaving": sheet.leaving(first)}
+        if any(sheet.pegs_of(first)):
+            options |= layer_pegs.options(sheet, call.laid, first, None, threads)
         call.drawn, call.matches = tween.draw_in_betweens(
             call.laid.drawings, spans, told, spacing=spacing, threads=threads, **options
         )

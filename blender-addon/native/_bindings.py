@@ -2,7 +2,7 @@
 
 import ctypes
 
-HEADER_HASH = 0xcb828d494b08e5fe
+HEADER_HASH = 0x9edf2714b8dbace6
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0

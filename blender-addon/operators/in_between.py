@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import charts, jobs, preferences, tweening
+from .. import charts, jobs, preferences, spacing_curve, tweening
 from .. import grease_pencil as gp
 from .. import keys as ks
 from .. import strokes as st
@@ -83,6 +83,11 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
         "go beyond",
         default="10, 30, 70, 90",
     )
+    curve: bpy.props.StringProperty(
+        name="Curve",
+        description="Times and shares of a spacing curve, such as 0 0, 0.3 0.8, 1 1; empty takes the one drawn in the panel",
+        default="",
+    )
     bounces: bpy.props.IntProperty(name="Bounces", description="How often it bounces", default=3, min=0, max=10)
     arcs: bpy.props.FloatProperty(
         name="Arcs",
@@ -103,6 +108,7 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
     leaving: bpy.props.EnumProperty(
         name="New and Lost", description="What strokes do that only one of two keys has", items=charts.LEAVING
     )
+    pegs: bpy.props.EnumProperty(name="Moves as One", description="What moves as one", items=charts.PEGS)
     rest: bpy.props.BoolProperty(
         name="Rest at the Ends",
         description="A smooth movement begins and ends at rest; otherwise it moves on with constant speed",
@@ -124,10 +130,13 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
             layout.prop(self, "chart")
         elif self.spacing == "BOUNCE":
             layout.prop(self, "bounces")
+        elif self.spacing == "CURVE":
+            layout.prop(self, "curve")
         elif self.spacing == "SMOOTH":
             layout.prop(self, "rest")
         layout.prop(self, "arcs", slider=True)
         layout.prop(self, "step")
+        layout.prop(self, "pegs")
         layout.separator()
         layout.prop(self, "rigid")
         layout.prop(self, "contacts")
@@ -139,6 +148,9 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
     def begin(self, context):
         if self.spacing == "CHART":
             charts.percentages(self.chart)
+        curve = ()
+        if self.spacing == "CURVE":
+            curve = charts.places(self.curve) or spacing_curve.sampled()
         self._choices = Choices(
             self.spacing,
             self.chart if self.spacing == "CHART" else "",
@@ -149,6 +161,8 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
             self.leaving,
             self.rest,
             self.step,
+            curve,
+            self.pegs,
         )
         scene = context.scene
         self._range = scene.frame_start, scene.frame_end

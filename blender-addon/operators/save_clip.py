@@ -2,20 +2,11 @@
 
 import bpy
 
-from .. import document, limbs
+from .. import clip_browser, document, limbs
+from ..clip_library import folder_of
 from ..errors import Problem
 from ..style import add_to_library, capture_clip
 from .base import Guarded, contours_poll
-
-
-def library_folder(ob, chosen: str) -> str:
-    """The library's folder: the one chosen, or that of the panel."""
-    folder = chosen or ob.rototoon.clips_folder
-    if not folder:
-        raise Problem("No library chosen: choose its folder in the panel Style")
-    if folder.startswith("//") and not bpy.data.filepath:
-        raise Problem(f"The library {folder} is relative to a file that is not saved: choose it again")
-    return bpy.path.abspath(folder)
 
 
 class ROTOTOON_OT_save_clip(Guarded, bpy.types.Operator):
@@ -42,7 +33,7 @@ class ROTOTOON_OT_save_clip(Guarded, bpy.types.Operator):
 
     def run(self, context) -> str:
         ob = context.object
-        folder = library_folder(ob, self.folder)
+        folder = folder_of(ob, self.folder)
         if not limbs.defined(ob):
             raise Problem(f'"{ob.name}" has no limbs: draw lines across them on the layer "{limbs.LAYER}", then Define Limbs')
         project = document.read(ob, results=True).document
@@ -50,6 +41,7 @@ class ROTOTOON_OT_save_clip(Guarded, bpy.types.Operator):
         frames = (self.first - offset, self.last - offset) if self.last > self.first else (None, None)
         made = capture_clip(project, character, self.motion, *frames)
         add_to_library(folder, made.clips, bpy.path.basename(bpy.data.filepath))
+        clip_browser.refresh(folder)
         count = len(made.clips["clips"][0]["points"])
         guessed = f"; filled in: {', '.join(made.guessed)}" if made.guessed else ""
         return f'"{self.motion}" by "{character}", {count} frames{guessed}'

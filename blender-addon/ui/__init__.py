@@ -1,5 +1,5 @@
 """The tab "Rototoon" of the 3D view's sidebar, and the menu entries."""
 
-from . import lists, panels
+from . import bones, clips, lists, panels
 
-CLASSES = lists.CLASSES + panels.CLASSES
+CLASSES = lists.CLASSES + clips.CLASSES + panels.CLASSES + bones.CLASSES

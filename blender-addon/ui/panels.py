@@ -3,7 +3,8 @@
 import bpy
 
 from .. import grease_pencil as gp
-from .. import ends, limbs, live
+from .. import clip_browser, ends, limbs, live, spacing_curve
+from .clips import draw_browser
 
 
 class _Panel:
@@ -173,9 +174,13 @@ class ROTOTOON_PT_tween(_Panel, bpy.types.Panel):
             ("EASE_IN_OUT", "In and Out"),
             ("BOUNCE", "Bounce"),
             ("CHART", "Chart"),
+            ("CURVE", "Curve"),
         ):
             button = grid.operator("rototoon.in_between", text=name)
             button.frames, button.spacing = "CURRENT", spacing
+        node = spacing_curve.node()
+        if node is not None:
+            layout.template_curve_mapping(node, "mapping")
         column = layout.column(align=True)
         button = column.operator("rototoon.in_between", text="All Keys", icon="NEXT_KEYFRAME")
         button.frames = "ALL"
@@ -199,10 +204,17 @@ class ROTOTOON_PT_style(_Panel, bpy.types.Panel):
         layout.label(text=f"{count} limbs" if count else f'Draw a line across a limb on the layer "{limbs.LAYER}"')
         layout.operator("rototoon.depth_mark", icon="OVERLAY")
         layout.prop(settings, "clips_folder")
+        layout.operator("rototoon.save_clip", icon="FILE_TICK")
+        draw_browser(layout, context)
+        chosen = clip_browser.chosen()
         column = layout.column(align=True)
-        column.operator("rototoon.save_clip", icon="FILE_TICK")
-        column.operator("rototoon.apply_motion", icon="ARMATURE_DATA")
-        column.operator("rototoon.reshape_drawing", icon="MOD_ARMATURE")
+        reshape = column.operator("rototoon.reshape_drawing", icon="MOD_ARMATURE")
+        picture = column.operator("rototoon.reshape_picture", icon="MESH_GRID")
+        apply = column.operator("rototoon.apply_motion", icon="ARMATURE_DATA")
+        if chosen is not None:
+            reshape.character, reshape.motion = chosen.character, chosen.motion
+            picture.character, picture.motion = chosen.character, chosen.motion
+            apply.content, apply.motion = chosen.character, chosen.motion
 
 
 class ROTOTOON_PT_document(_Panel, bpy.types.Panel):

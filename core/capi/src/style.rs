@@ -2,6 +2,7 @@
 
 use crate::status::Failure;
 use crate::work::{GoOn, run};
+use rototoon::geometry::Point;
 use rototoon::pipeline::{self, ClipJob, PipelineError, ReshapeJob};
 use rototoon::project::Document;
 use rototoon::project::clips::{Clips, parse_key_poses};
@@ -12,6 +13,7 @@ use rototoon::style::{KeyPose, Options, Pace, Preset, Request};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Longest limb, in sub-key points.
@@ -131,6 +133,8 @@ struct ReshapeOptions {
     #[serde(default)]
     sub_keys: Option<usize>,
     #[serde(default)]
+    points: BTreeMap<String, Vec<[f64; 2]>>,
+    #[serde(default)]
     threads: usize,
 }
 
@@ -145,14 +149,34 @@ pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Resu
         return Err(Failure::Error(format!("options.sub_keys: found {sub_keys}, expected 0 to {MOST_SUB_KEYS}")));
     }
     let how = puppet::Options { sub_keys };
-    let job = ReshapeJob { clip, fps: clips.fps, rest: given.rest, over: None, options: how };
+    let job = ReshapeJob { clip, fps: clips.fps, rest: given.rest, over: None, options: how, points: given.points() };
     run(given.threads, go_on, |progress| {
         let made = pipeline::reshape(&mut document, &job, progress).map_err(failed)?;
         let nearest: Vec<Value> =
             made.given.iter().map(|(part, (from, to))| json!({"part": part, "from": from, "to": to})).collect();
         let (given, rigid) = (Value::Array(nearest), json!(made.rigid));
-        Ok(format!(r#"{{"document": {}, "given": {given}, "rigid": {rigid}}}"#, document.to_json().trim_end()))
+        let pair = |p: &Point| [p.x, p.y];
+        let frames = |frames: &Vec<Vec<Point>>| {
+            json!(frames.iter().map(|f| f.iter().map(pair).collect()).collect::<Vec<Vec<_>>>())
+        };
+        let points: serde_json::Map<String, Value> =
+            made.points.iter().map(|(part, f)| (part.clone(), frames(f))).collect();
+        let points = Value::Object(points);
+        let document = document.to_json();
+        Ok(format!(
+            r#"{{"document": {}, "given": {given}, "rigid": {rigid}, "points": {points}}}"#,
+            document.trim_end()
+        ))
     })
+}
+
+impl ReshapeOptions {
+    fn points(&self) -> BTreeMap<String, Vec<Point>> {
+        self.points
+            .iter()
+            .map(|(part, points)| (part.clone(), points.iter().map(|p| Point::new(p[0], p[1])).collect()))
+            .collect()
+    }
 }
 
 fn chosen<'a>(clips: &'a Clips, given: &ReshapeOptions) -> Result<&'a Clip, Failure> {

@@ -67,9 +67,9 @@ pub unsafe extern "C" fn rototoon_translate_clip(
 ///
 /// `document` is a project document with limbs as JSON, `clips` a file of clips as JSON. `options` is JSON: `character` and
 /// `motion` choose the clip where there are several; `rest`, the frame of the drawing; `sub_keys`, points of each limb between its
-/// key points; `threads`; all may be left out. `made` is JSON: `{"document": the document with tracks, depths and strokes on every
-/// frame, "given": [{"part", "from", "to"}] parts that no limb carries with the one they follow, "rigid": names of parts that
-/// do not bend}`.
+/// key points; `points`, by closed part further points [x, y] that follow it; `threads`; all may be left out. `made` is JSON:
+/// `{"document": the document with tracks, depths and strokes on every frame, "given": [{"part", "from", "to"}] parts that no limb
+/// carries with the one they follow, "rigid": names of parts that do not bend, "points": {part: by frame the places of its points}}`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_reshape(
     document: *const u8,

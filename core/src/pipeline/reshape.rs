@@ -43,6 +43,8 @@ pub struct ReshapeJob<'a> {
     pub over: Option<Footage>,
     /// How parts are reshaped.
     pub options: Options,
+    /// By name of a closed part, points that shall follow it beside its own: those of a picture's mesh.
+    pub points: BTreeMap<String, Vec<Point>>,
 }
 
 /// What was made.
@@ -52,6 +54,8 @@ pub struct Reshaped {
     pub given: Vec<(String, (&'static str, &'static str))>,
     /// Parts that move without bending.
     pub rigid: Vec<String>,
+    /// By part and frame where the points of [`ReshapeJob::points`] are.
+    pub points: BTreeMap<String, Vec<Vec<Point>>>,
 }
 
 /// Reshapes a document's drawing: tracks, snapped paths and depths of its parts, and its strokes, on every frame of the clip. Runs
@@ -65,7 +69,8 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let bindings = Bindings::new(&set, parts).map_err(wrong)?;
     let postures = fitted(&set, parts, rest, job.clip)?;
     let limbs = limb_poses(&set, &bindings, rest, footage.first, &postures)?;
-    let bodies = bodies(parts, &strokes, &set, &limbs.rest, rest)?;
+    let mut bodies = bodies(parts, &strokes, &set, &limbs.rest, rest)?;
+    add_points(&mut bodies, &job.points)?;
     let depths = depths(&set, parts, footage.first..=footage.last)?;
     progress.report(STEP, 0.05)?;
     let done = AtomicUsize::new(0);
@@ -83,11 +88,31 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
         let limb = &set.limbs[body.nearest?];
         Some((parts[body.part].name.clone(), (NAMES[limb.from], NAMES[limb.to])))
     });
-    let report = Reshaped { given: given.collect(), rigid };
+    let points = bodies.iter().zip(&moved).filter(|(body, _)| body.more > 0);
+    let points = points.map(|(body, moved)| {
+        let tail = |points: &Vec<Point>| points[points.len() - body.more..].to_vec();
+        (body.name.clone(), moved.frames.iter().map(tail).collect())
+    });
+    let report = Reshaped { given: given.collect(), rigid, points: points.collect() };
     let placed = rebound(&set, &bindings, parts, rest);
     store(document, footage, &bodies, &moved, &strokes, &depths);
     document.set_limbs(&placed);
     Ok(report)
+}
+
+/// Gives the bodies the points that are asked for.
+fn add_points(bodies: &mut [Body], asked: &BTreeMap<String, Vec<Point>>) -> Result<(), PipelineError> {
+    for (name, points) in asked {
+        let body = bodies.iter_mut().find(|body| body.name == *name);
+        let body =
+            body.ok_or_else(|| wrong(format!("points: found part {name:?}, expected the name of a closed part")))?;
+        if let Some(k) = points.iter().position(|p| !p.is_finite()) {
+            return Err(wrong(format!("points, part {name:?}, point {k}: found no finite number")));
+        }
+        body.points.extend(points);
+        body.more = points.len();
+    }
+    Ok(())
 }
 
 /// What progress is told.
@@ -219,7 +244,7 @@ struct Body {
     nearest: Option<usize>,
     rest: Vec<LimbPose>,
     name: String,
-    /// Control points, then the points of its snapped paths, then those of its strokes.
+    /// Control points, then the points of its snapped paths, those of its strokes, and those asked for.
     points: Vec<Point>,
     /// Number of control points.
     count: usize,
@@ -227,6 +252,8 @@ struct Body {
     paths: Vec<usize>,
     /// Strokes by number (those of the drawing first, then the open parts), with their numbers of points.
     strokes: Vec<(usize, usize)>,
+    /// Number of points asked for.
+    more: usize,
 }
 
 /// Where the points of a body are on each frame.
@@ -274,6 +301,7 @@ fn bodies(
             rest: rest.to_vec(),
             paths: curves.into_iter().flatten().map(Vec::len).collect(),
             strokes: Vec::new(),
+            more: 0,
             outline,
             carriers,
             nearest,

@@ -66,7 +66,7 @@ fn waving(document: &Document, frames: usize) -> Clip {
 }
 
 fn job(clip: &Clip) -> ReshapeJob<'_> {
-    ReshapeJob { clip, fps: 12.0, rest: None, over: None, options: Options::default() }
+    ReshapeJob { clip, fps: 12.0, rest: None, over: None, options: Options::default(), points: BTreeMap::new() }
 }
 
 #[test]
@@ -224,4 +224,26 @@ fn what_is_wrong_is_named_and_changes_nothing() {
     let mut cancelled = document.clone();
     assert!(matches!(reshape(&mut cancelled, &job(&motion), &Never), Err(PipelineError::Cancelled(_))));
     assert_eq!(cancelled, document);
+}
+
+#[test]
+fn points_follow_their_part() {
+    let mut document = figure("");
+    let motion = waving(&document, 3);
+    let ring = document.scene.parts[3].points_at(0).unwrap().clone();
+    let asked = BTreeMap::from([("arm".to_owned(), ring), ("shoe".to_owned(), vec![Point::new(54.0, 104.0)])]);
+    let made = reshape(&mut document, &ReshapeJob { points: asked, ..job(&motion) }, &Silent).unwrap();
+    for (frame, points) in made.points["arm"].iter().enumerate() {
+        let own = document.scene.parts[3].points_at(frame as FrameNumber).unwrap();
+        assert!(points.iter().zip(own).all(|(a, b)| a.distance(*b) < 1e-9), "frame {frame}");
+    }
+    assert_eq!(made.points["shoe"].iter().map(Vec::len).collect::<Vec<_>>(), [1, 1, 1]);
+    for (name, point, said) in [
+        ("seam", Point::ZERO, "found part \"seam\", expected the name of a closed part"),
+        ("arm", Point::new(f64::NAN, 0.0), "part \"arm\", point 0: found no finite number"),
+    ] {
+        let points = BTreeMap::from([(name.to_owned(), vec![point])]);
+        let error = reshape(&mut figure(""), &ReshapeJob { points, ..job(&motion) }, &Silent).unwrap_err();
+        assert!(error.to_string().contains(said), "{error}");
+    }
 }

@@ -1,0 +1,45 @@
+"""The panel of an armature: its key points, its motion as clips, and clips for its bones."""
+
+import bpy
+
+from .. import clip_browser
+from ..operators.define_limbs import POINTS
+from .clips import draw_browser
+
+NAMES = {name: label for name, label, _ in POINTS}
+"""Labels of the key points."""
+
+
+class ROTOTOON_PT_bones(bpy.types.Panel):
+    bl_idname = "ROTOTOON_PT_bones"
+    bl_label = "Bones"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Rototoon"
+
+    @classmethod
+    def poll(cls, context):
+        return context.object is not None and context.object.type == "ARMATURE"
+
+    def draw(self, context):
+        layout, settings = self.layout, context.object.rototoon
+        layout.use_property_decorate = False
+        layout.prop(settings, "clips_folder")
+        layout.operator("rototoon.save_clip_from_armature", icon="FILE_TICK")
+        draw_browser(layout, context)
+        drive = layout.operator("rototoon.drive_bones", icon="ARMATURE_DATA")
+        chosen = clip_browser.chosen()
+        if chosen is not None:
+            drive.content, drive.motion = chosen.character, chosen.motion
+        layout.operator("rototoon.guess_bones", icon="BONE_DATA")
+        column = layout.column(align=True)
+        for item in settings.bones:
+            split = column.split(factor=0.36, align=True)
+            split.alert = item.bone not in context.object.data.bones
+            split.label(text=NAMES[item.name])
+            split = split.split(factor=0.7, align=True)
+            split.prop_search(item, "bone", context.object.data, "bones", text="")
+            split.prop(item, "along", text="")
+
+
+CLASSES = (ROTOTOON_PT_bones,)
