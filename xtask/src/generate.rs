@@ -59,15 +59,8 @@ fn header(root: &Path) -> Result<String> {
         },
         ..Default::default()
     };
-    let mut builder = cbindgen::Builder::new().with_config(config);
-    let folder = root.join(SOURCES);
-    let entries = std::fs::read_dir(&folder).with_context(|| format!("reading {SOURCES}"))?;
-    let mut files = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>>>()?;
-    files.retain(|file| file.extension().is_some_and(|extension| extension == "rs"));
-    files.sort();
-    for file in files {
-        builder = builder.with_src(file);
-    }
+    // The crate's root alone: its modules are read from there, and would be declared twice if they were given as well.
+    let builder = cbindgen::Builder::new().with_config(config).with_src(root.join(SOURCES).join("lib.rs"));
     let mut text = Vec::new();
     builder.generate().context("reading the ABI crate")?.write(&mut text);
     Ok(String::from_utf8(text)?)
