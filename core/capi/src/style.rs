@@ -96,7 +96,8 @@ impl TranslateOptions {
             return Err(wrong("strength", &strength.to_string(), "a number from 0 to 3"));
         }
         let keep_lengths = self.limb_lengths.unwrap_or(own.keep_lengths);
-        Ok(Options { preset, pace, strength, keep_lengths, keep_contacts: self.contacts.unwrap_or(own.keep_contacts) })
+        let keep_contacts = self.contacts.unwrap_or(own.keep_contacts);
+        Ok(Options { preset, pace, strength, keep_lengths, keep_contacts, ..own })
     }
 }
 
