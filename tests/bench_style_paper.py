@@ -11,8 +11,9 @@ hand, with NumPy, SciPy and scikit-learn:
 - **Class separability**: the character of a posture told from its features by its five nearest neighbours, ten-fold
   cross-validation. Features: the 34 numbers themselves, principal components, the codes of our factorisation and of scikit-learn's.
   Folds of postures, as in the paper, have nearly the same posture (the next frame) on both sides; folds of whole motions do not.
-- **Intrinsic dimension**: residual variance 1 - R² of ISOMAP embeddings (scikit-learn, 8 neighbours, at most 1000 postures)
-  over dimension 1 to 40, of the postures and of the codes; beside it that of principal components.
+- **Intrinsic dimension**: residual variance 1 - R² of ISOMAP embeddings (scikit-learn, from 8 neighbours, at most 1000 postures)
+  over dimension 1 to 40, of the postures and of the codes; beside it that of principal components. Neighbours are added until all
+  postures hang together.
 - **Precision against rank**: error of translation by preset and rank, and relative error of reconstruction by rank.
 - **Limbs**: width, roughness and place of bent limbs with 0 to 8 sub-key points a bone; 0 is plain manipulation by key points.
 - **Overlap order**: share of crossing pairs in the right order against the share that is marked.
@@ -23,19 +24,21 @@ import argparse
 import json
 import pathlib
 import subprocess
+import warnings
 
 import numpy as np
+from scipy.sparse.csgraph import connected_components
 from sklearn.decomposition import NMF
 from sklearn.manifold import Isomap
 from sklearn.model_selection import GroupKFold, StratifiedKFold, cross_val_score
-from sklearn.neighbors import KNeighborsClassifier
+from sklearn.neighbors import KNeighborsClassifier, kneighbors_graph
 
 ROUNDS = 200
 FOLDS = 10
 RANKS = (1, 2, 4, 6, 8, 10, 15, 20, 25, 30, 34)
 FEATURE_RANKS = (10, 24)
 DIMENSIONS = 40
-NEIGHBOURS = 8
+NEIGHBOURS = (8, 12, 16, 24, 32)
 MOST_POSTURES = 1000
 NAMES = ["pelvis", "chest", "neck", "head", "head_top", "l_shoulder", "l_elbow", "l_wrist", "r_shoulder", "r_elbow", "r_wrist",
          "l_hip", "l_knee", "l_ankle", "r_hip", "r_knee", "r_ankle"]
@@ -95,7 +98,6 @@ class Postures:
 
     def peer(self, rank):
         """Codes of scikit-learn's factorisation, and its relative error."""
-        import warnings
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             model = NMF(rank, init="random", solver="mu", max_iter=ROUNDS, tol=0, random_state=0)
@@ -113,9 +115,16 @@ def plot(out, name, title, x, panels, note=""):
     (out / f"{name}.plot.json").write_text(json.dumps(chart), encoding="utf-8")
 
 
-def spread(features):
-    """Features of equal spread, so that no one of them decides who is near."""
-    return (features - features.mean(0)) / np.maximum(features.std(0), 1e-12)
+def weighed(codes, rows):
+    """Codes, each component in the size of what it contributes: the scale of a code by itself means nothing."""
+    basis = np.linalg.lstsq(codes, rows, rcond=None)[0]
+    return codes * np.linalg.norm(basis, axis=1)
+
+
+def together(rows):
+    """The least number of neighbours with which all rows hang together."""
+    pieces = lambda count: connected_components(kneighbors_graph(rows, count), directed=False)[0]
+    return next((count for count in NEIGHBOURS if pieces(count) == 1), NEIGHBOURS[-1])
 
 
 def separability(data, program):
@@ -125,8 +134,8 @@ def separability(data, program):
     features = {"raw, 34": data.rows}
     for rank in FEATURE_RANKS:
         features[f"principal components, {rank}"] = data.components(rank)[0]
-        features[f"non-negative factorisation, {rank}"] = spread(data.factored(program, rank)[0])
-        features[f"scikit-learn's, {rank}"] = spread(data.peer(rank)[0])
+        features[f"non-negative factorisation, {rank}"] = weighed(data.factored(program, rank)[0], data.positive)
+        features[f"scikit-learn's, {rank}"] = weighed(data.peer(rank)[0], data.positive)
     neighbours = KNeighborsClassifier(5)
     motions = len(set(data.motions))
     for name, rows in features.items():
@@ -151,9 +160,9 @@ def dimension(data, program, out):
     chosen = np.unique(np.linspace(0, len(data.rows) - 1, min(MOST_POSTURES, len(data.rows))).astype(int))
     codes = data.factored(program, 24)[0]
     series, table = {}, {}
-    for name, rows in (("postures", data.rows), ("codes of rank 24", spread(codes))):
+    for name, rows in (("postures", data.rows), ("codes of rank 24", weighed(codes, data.positive))):
         rows = rows[chosen]
-        model = Isomap(n_neighbors=NEIGHBOURS, n_components=DIMENSIONS)
+        model = Isomap(n_neighbors=together(rows), n_components=DIMENSIONS)
         embedding = model.fit_transform(rows)
         table[f"ISOMAP, {name}"] = residuals(model.dist_matrix_, embedding, DIMENSIONS)
         centred = rows - rows.mean(0)
@@ -194,7 +203,7 @@ def translation(path, program, out):
     ranks = sorted({row["rank"] for row in found if row["rank"]})
     error = {(row["preset"], row["rank"]): row["error"] for row in found}
     copied = error["copy", None]
-    print("\nTranslation: mean error in torso lengths by preset and rank, every clip but the content's left out in turn\n")
+    print("\nTranslation: mean error in torso lengths by preset and rank, sixteen clips left out in turn\n")
     print("| preset | " + " | ".join(map(str, ranks)) + " |\n| --- |" + " ---: |" * len(ranks))
     series = {}
     for preset in dict.fromkeys(row["preset"] for row in found):
