@@ -48,7 +48,7 @@ pub(super) fn read(text: &str) -> Option<Clips> {
         let labelled = !clip.character.is_empty() && !clip.motion.is_empty();
         labelled && !clip.points.is_empty() && seen.insert((&clip.character, &clip.motion))
     });
-    if !(1..=VERSION).contains(&file.rototoon_clips) || !(file.fps > 0.0) || !named || !whole {
+    if !(1..=VERSION).contains(&file.rototoon_clips) || file.fps <= 0.0 || !named || !whole {
         return None;
     }
     let clips = file.clips.into_iter().map(|clip| Clip::new(clip.character, clip.motion, clip.points)).collect();
