@@ -2,7 +2,7 @@
 
 import ctypes
 
-HEADER_HASH = 0xcb828d494b08e5fe
+HEADER_HASH = 0x96123e35d3a749d6
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -370,6 +370,15 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_void_p,
         ctypes.c_void_p,
     ]
+    library.rototoon_import_motion.restype = ctypes.c_int32
+    library.rototoon_import_motion.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
     library.rototoon_translate_clip.restype = ctypes.c_int32
     library.rototoon_translate_clip.argtypes = [
         ctypes.c_void_p,
@@ -711,6 +720,15 @@ def declare(library: ctypes.CDLL) -> None:
     ]
     library.rototoon_capture_clip.restype = ctypes.c_int32
     library.rototoon_capture_clip.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_import_motion.restype = ctypes.c_int32
+    library.rototoon_import_motion.argtypes = [
         ctypes.c_void_p,
         ctypes.c_size_t,
         ctypes.c_void_p,
