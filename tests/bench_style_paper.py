@@ -160,16 +160,16 @@ def dimension(data, program, out):
     chosen = np.unique(np.linspace(0, len(data.rows) - 1, min(MOST_POSTURES, len(data.rows))).astype(int))
     codes = data.factored(program, 24)[0]
     series, table = {}, {}
-    for name, rows in (("postures", data.rows), ("codes of rank 24", weighed(codes, data.positive))):
+    for name, rows in (("postures", data.rows), ("codes, 24", weighed(codes, data.positive))):
         rows = rows[chosen]
         model = Isomap(n_neighbors=together(rows), n_components=DIMENSIONS)
         embedding = model.fit_transform(rows)
         table[f"ISOMAP, {name}"] = residuals(model.dist_matrix_, embedding, DIMENSIONS)
         centred = rows - rows.mean(0)
         u, s, _ = np.linalg.svd(centred, full_matrices=False)
-        table[f"principal components, {name}"] = residuals(model.dist_matrix_, u * s, DIMENSIONS)
+        table[f"PCA, {name}"] = residuals(model.dist_matrix_, u * s, DIMENSIONS)
     for name, values in table.items():
-        series[name] = ([(d + 1, value) for d, value in enumerate(values)], name.startswith("principal"))
+        series[name] = ([(d + 1, value) for d, value in enumerate(values)], name.startswith("PCA"))
     shown = (1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30, 40)
     print(f"\nIntrinsic dimension: residual variance 1 - R² of the distances along the manifold ({len(chosen)} postures)\n")
     print("| dimension | " + " | ".join(map(str, shown)) + " |\n| --- |" + " ---: |" * len(shown))
@@ -237,10 +237,10 @@ def limbs(program, out):
     amounts = sorted({row["amount"] for row in found if row["pose"] == "curve"})
     panels = []
     for field, label in (("width", "error of width"), ("roughness", "roughness"), ("off", "off the truth, px")):
-        series = {f"{count} sub-key points": ([(a, value[count, "curve", a][field]) for a in amounts], count == 0) for count in counts}
+        series = {f"{count}": ([(a, value[count, "curve", a][field]) for a in amounts], count == 0) for count in counts}
         top = max(b for points, _ in series.values() for _, b in points)
         panels.append((label, 0, 1.05 * top, series))
-    plot(out, "limbs", "Curved limbs with and without sub-key points", ("control points across, in bones", 0, max(amounts), False), panels)
+    plot(out, "limbs", "Curved limbs by sub-key points a bone (0: plain manipulation by key points)", ("control points across, in bones", 0, max(amounts), False), panels)
 
 
 def order(program, out):

@@ -273,3 +273,28 @@ pub fn library_find(folder: &str, json: &str) -> Result<String, Failure> {
     let (entries, troubles) = (json!(entries), json!(troubles));
     Ok(format!(r#"{{"entries": {entries}, "troubles": {troubles}, "clips": {}}}"#, clips.trim_end()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(json: &str) -> String {
+        match import("HIERARCHY", json) {
+            Err(Failure::Error(message)) => message,
+            other => panic!("found {:?}", other.is_ok()),
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_motion_or_its_options_is_told() {
+        let with = |more: &str| said(&format!(r#"{{"character": "a", "motion": "walk"{more}}}"#));
+        assert!(with("").starts_with("line 1: found the end of the file"));
+        assert!(with(r#", "view": 30, "up": "z", "way": true, "first": 0, "last": 4"#).starts_with("line 1:"));
+        assert!(with(r#", "view": "above""#).contains("options.view: found \"above\", expected auto, front, side"));
+        assert!(with(r#", "up": "x""#).contains("options.up: found x, expected auto, y or z"));
+        assert!(with(r#", "first": 3"#).contains("found one of first and last"));
+        assert!(with(r#", "joints": {"tail": "x"}"#).contains("found no such key point"));
+        assert!(with(r#", "more": 1"#).starts_with("options: unknown field"));
+        assert!(said(r#"{"character": "", "motion": "walk"}"#).contains("found an empty name"));
+    }
+}
