@@ -2,7 +2,7 @@
 
 import ctypes
 
-HEADER_HASH = 0x68cfe251996ffa62
+HEADER_HASH = 0xc7c589f4752011bc
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -305,6 +305,15 @@ def declare(library: ctypes.CDLL) -> None:
     ]
     library.rototoon_capture_clip.restype = ctypes.c_int32
     library.rototoon_capture_clip.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_import_motion.restype = ctypes.c_int32
+    library.rototoon_import_motion.argtypes = [
         ctypes.c_void_p,
         ctypes.c_size_t,
         ctypes.c_void_p,

@@ -9,7 +9,7 @@
 //! 5. [`tween`]: the drawings between drawings on key frames, hidden lines.
 //! 6. [`style`]: a motion re-made in another character's manner.
 //! 7. [`reshape`]: a drawing that follows a skeleton, and which part is in front.
-//! 8. [`render`]: pictures of what was found. [`export`]: the same for other programs, and [`import`] their shapes.
+//! 8. [`render`]: pictures of what was found. [`export`]: the same for other programs, and [`import`] their shapes and motions.
 //! 9. [`project`]: the document that holds all of it.
 //! 10. [`pipeline`]: the stages joined.
 //!

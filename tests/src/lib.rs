@@ -11,6 +11,7 @@
 //! - [`memory`]: peak memory of a process
 //! - [`golden`]: pictures that somebody accepted
 //! - [`sheet`]: contact sheets
+//! - [`stylebench`]: limbs, overlap order and translation measured
 //! - [`chart`], [`drawing`], [`lettering`]: plots as SVG and PNG
 
 pub mod artist;
@@ -26,5 +27,6 @@ pub mod memory;
 pub mod puppet;
 pub mod sample;
 pub mod sheet;
+pub mod stylebench;
 pub mod truth;
 pub mod tweening;

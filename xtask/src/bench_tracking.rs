@@ -44,6 +44,22 @@ pub struct Arguments {
     memory: bool,
 }
 
+impl Arguments {
+    /// Some presets over some folders, with the simulated artist.
+    pub fn of(dirs: &[PathBuf], presets: &[&str]) -> Self {
+        let presets = presets.iter().map(|id| (*id).to_owned()).collect();
+        Self {
+            dirs: dirs.to_vec(),
+            presets,
+            no_edits: false,
+            threads: 0,
+            ablations: false,
+            growth: false,
+            memory: false,
+        }
+    }
+}
+
 /// Measures.
 pub fn bench_tracking(arguments: &Arguments) -> Result<()> {
     let known = presets();

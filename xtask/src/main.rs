@@ -52,7 +52,7 @@ enum Command {
     },
     /// Measure curve fitting beside its peers on six outlines.
     BenchFit(bench_fit::Arguments),
-    /// Measure factorisation beside scikit-learn and reshaping beside libigl.
+    /// Measure factorisation beside scikit-learn, reshaping beside libigl, and the style paper's experiments, with plots in target/style.
     BenchStyle(bench_style::Arguments),
     /// Measure every preset on sets with known truth, with tables and pictures in target/bench-tracking.
     BenchTracking(bench_tracking::Arguments),

@@ -401,6 +401,19 @@ RototoonStatus rototoon_capture_clip(const uint8_t *document,
                                      struct RototoonText **made,
                                      struct RototoonText **error);
 
+// Makes a skeleton clip of motion capture, seen from one side.
+//
+// `motion` is the text of a BVH file, `options` JSON: `character`, `motion`; and `view` ("auto", "front", "side", "three-quarter" or
+// degrees about the vertical, 0 front and 90 side), `up` ("auto", "y" or "z"), `joints` ({key point: joint, or list of joints}), `way`
+// (whether the pelvis goes its way), `first` and `last` frame from 0, and `fps`, which may be left out. `made` is JSON: `{"clips":
+// a file of clips, "yaw": degrees that it is seen from}`.
+RototoonStatus rototoon_import_motion(const uint8_t *motion,
+                                      size_t motion_length,
+                                      const uint8_t *options,
+                                      size_t options_length,
+                                      struct RototoonText **made,
+                                      struct RototoonText **error);
+
 // Re-makes a motion in another character's manner.
 //
 // `clips` is a file of clips as JSON, `options` JSON: `style`, `motion`, `content`; and `preset`, `timing` ("content" or

@@ -3,6 +3,7 @@
 use crate::status::Failure;
 use crate::work::{GoOn, run};
 use rototoon::geometry::Point;
+use rototoon::import::bvh::{self, JointMap, Up, View};
 use rototoon::pipeline::{self, ClipJob, PipelineError, ReshapeJob};
 use rototoon::project::Document;
 use rototoon::project::clips::{Clips, parse_key_poses};
@@ -55,6 +56,73 @@ pub fn capture(document: &str, json: &str) -> Result<String, Failure> {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
+struct ImportOptions {
+    character: String,
+    motion: String,
+    #[serde(default)]
+    view: Option<Value>,
+    #[serde(default)]
+    up: Option<String>,
+    #[serde(default)]
+    joints: Option<Value>,
+    #[serde(default)]
+    way: bool,
+    #[serde(default)]
+    first: Option<usize>,
+    #[serde(default)]
+    last: Option<usize>,
+    #[serde(default)]
+    fps: Option<f64>,
+}
+
+impl ImportOptions {
+    fn read(&self) -> Result<bvh::Options, Failure> {
+        let wrong = |field: &str, found: &dyn std::fmt::Display, expected: &str| {
+            Failure::Error(format!("options.{field}: found {found}, expected {expected}"))
+        };
+        let view = match &self.view {
+            None => View::Auto,
+            Some(value) => match (value.as_str(), value.as_f64()) {
+                (Some("auto"), _) => Some(View::Auto),
+                (Some("front"), _) => Some(View::Front),
+                (Some("side"), _) => Some(View::Side),
+                (Some("three-quarter"), _) => Some(View::ThreeQuarter),
+                (_, degrees) => degrees.map(View::Yaw),
+            }
+            .ok_or_else(|| wrong("view", value, "auto, front, side, three-quarter or degrees"))?,
+        };
+        let up = match self.up.as_deref() {
+            None | Some("auto") => Up::Auto,
+            Some("y") => Up::Y,
+            Some("z") => Up::Z,
+            Some(other) => return Err(wrong("up", &other, "auto, y or z")),
+        };
+        let joints = match &self.joints {
+            None | Some(Value::Null) => JointMap::default(),
+            Some(map) => JointMap::parse(&map.to_string()).map_err(Failure::error)?,
+        };
+        let frames = match (self.first, self.last) {
+            (None, None) => None,
+            (Some(first), Some(last)) => Some(first..=last),
+            _ => return Err(Failure::Error("options: found one of first and last, expected both or none".into())),
+        };
+        Ok(bvh::Options { view, up, joints, way: self.way, frames, fps: self.fps })
+    }
+}
+
+/// A clip of a motion in a BVH file's text.
+pub fn import(text: &str, json: &str) -> Result<String, Failure> {
+    let given: ImportOptions = options(json)?;
+    if given.character.is_empty() || given.motion.is_empty() {
+        return Err(Failure::Error("options: found an empty name, expected a character and a motion".into()));
+    }
+    let made = bvh::seen(text, &given.read()?).map_err(Failure::error)?;
+    let clips = Clips { clips: vec![Clip::new(given.character, given.motion, made.postures)], fps: made.fps };
+    Ok(format!(r#"{{"clips": {}, "yaw": {}}}"#, clips.text().trim_end(), made.yaw))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct TranslateOptions {
     style: String,
     motion: String,
@@ -98,7 +166,8 @@ impl TranslateOptions {
             return Err(wrong("strength", &strength.to_string(), "a number from 0 to 3"));
         }
         let keep_lengths = self.limb_lengths.unwrap_or(own.keep_lengths);
-        Ok(Options { preset, pace, strength, keep_lengths, keep_contacts: self.contacts.unwrap_or(own.keep_contacts) })
+        let keep_contacts = self.contacts.unwrap_or(own.keep_contacts);
+        Ok(Options { preset, pace, strength, keep_lengths, keep_contacts, ..own })
     }
 }
 
@@ -227,4 +296,29 @@ pub fn library_find(folder: &str, json: &str) -> Result<String, Failure> {
     };
     let (entries, troubles) = (json!(entries), json!(troubles));
     Ok(format!(r#"{{"entries": {entries}, "troubles": {troubles}, "clips": {}}}"#, clips.trim_end()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(json: &str) -> String {
+        match import("HIERARCHY", json) {
+            Err(Failure::Error(message)) => message,
+            other => panic!("found {:?}", other.is_ok()),
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_motion_or_its_options_is_told() {
+        let with = |more: &str| said(&format!(r#"{{"character": "a", "motion": "walk"{more}}}"#));
+        assert!(with("").starts_with("line 1: found the end of the file"));
+        assert!(with(r#", "view": 30, "up": "z", "way": true, "first": 0, "last": 4"#).starts_with("line 1:"));
+        assert!(with(r#", "view": "above""#).contains("options.view: found \"above\", expected auto, front, side"));
+        assert!(with(r#", "up": "x""#).contains("options.up: found x, expected auto, y or z"));
+        assert!(with(r#", "first": 3"#).contains("found one of first and last"));
+        assert!(with(r#", "joints": {"tail": "x"}"#).contains("found no such key point"));
+        assert!(with(r#", "more": 1"#).starts_with("options: unknown field"));
+        assert!(said(r#"{"character": "", "motion": "walk"}"#).contains("found an empty name"));
+    }
 }

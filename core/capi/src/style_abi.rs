@@ -34,6 +34,33 @@ pub unsafe extern "C" fn rototoon_capture_clip(
     }
 }
 
+/// Makes a skeleton clip of motion capture, seen from one side.
+///
+/// `motion` is the text of a BVH file, `options` JSON: `character`, `motion`; and `view` ("auto", "front", "side", "three-quarter" or
+/// degrees about the vertical, 0 front and 90 side), `up` ("auto", "y" or "z"), `joints` ({key point: joint, or list of joints}), `way`
+/// (whether the pelvis goes its way), `first` and `last` frame from 0, and `fps`, which may be left out. `made` is JSON: `{"clips":
+/// a file of clips, "yaw": degrees that it is seen from}`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_import_motion(
+    motion: *const u8,
+    motion_length: usize,
+    options: *const u8,
+    options_length: usize,
+    made: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(made, null_mut(), "made")?;
+            let motion = text(motion, motion_length, "motion")?;
+            let options = text(options, options_length, "options")?;
+            give(made, RototoonText::new(style::import(motion, options)?));
+            Ok(())
+        })
+    }
+}
+
 /// Re-makes a motion in another character's manner.
 ///
 /// `clips` is a file of clips as JSON, `options` JSON: `style`, `motion`, `content`; and `preset`, `timing` ("content" or

@@ -98,3 +98,72 @@ fn a_library_is_filled_listed_and_learned_from() {
     assert!(String::from_utf8_lossy(&made.stderr).contains("warning: "));
     assert!(out.exists());
 }
+
+/// A figure that stands and then lifts an arm, as BVH; its left hand has the name given.
+fn captured(hand: &str) -> String {
+    let limb = |names: [&str; 3], offsets: [[i32; 3]; 3]| -> String {
+        let open: String = names
+            .iter()
+            .zip(offsets)
+            .map(|(name, [x, y, z])| format!("JOINT {name}\n{{\nOFFSET {x} {y} {z}\nCHANNELS 1 Zrotation\n"))
+            .collect();
+        open + "End Site\n{\nOFFSET 0 0 1\n}\n" + &"}\n".repeat(3)
+    };
+    let up = [[0, 2, 0], [0, 2, 0], [0, 1, 0]];
+    let spine = limb(["Spine", "Neck", "Head"], up);
+    let leg = |side: &str, x: i32| {
+        let names = ["UpLeg", "Leg", "Foot"].map(|part| format!("{side}{part}"));
+        limb(names.each_ref().map(String::as_str), [[x, 0, 0], [0, -4, 0], [0, -4, 0]])
+    };
+    let left = limb(["LeftArm", "LeftForeArm", hand], [[1, 4, 0], [2, 0, 0], [2, 0, 0]]);
+    let right = limb(["RightArm", "RightForeArm", "RightHand"], [[-1, 4, 0], [-2, 0, 0], [-2, 0, 0]]);
+    let frame = |turn: i32| format!("0 8 0 0 0 0 {turn}{}\n", " 0".repeat(11));
+    format!(
+        "HIERARCHY\nROOT Hips\n{{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\n{spine}{left}{right}{}{}}}\nMOTION\n\
+         Frames: 3\nFrame Time: 0.04\n{}{}{}",
+        leg("Left", 1),
+        leg("Right", -1),
+        frame(0),
+        frame(45),
+        frame(90)
+    )
+}
+
+#[test]
+fn motion_capture_becomes_clips() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    std::fs::create_dir(folder.path().join("anna")).unwrap();
+    std::fs::write(folder.path().join("anna/lift.bvh"), captured("LeftHand")).unwrap();
+    std::fs::write(folder.path().join("anna/odd.bvh"), captured("paw")).unwrap();
+    std::fs::write(folder.path().join("anna/short.bvh"), captured("LeftHand").trim_end().trim_end_matches('0'))
+        .unwrap();
+    std::fs::write(folder.path().join("map.json"), r#"{"l_wrist": "paw"}"#).unwrap();
+    let import = |more: &[&str]| {
+        let out = path("clips.json");
+        let done = rototoon(&[&["style", "import", "-o", &out, "--view", "front"], more].concat());
+        (done.status.code(), String::from_utf8_lossy(&done.stderr).into_owned())
+    };
+    let (lift, odd, map) = (path("anna/lift.bvh"), path("anna/odd.bvh"), path("map.json"));
+    assert_eq!(import(&[&lift, &odd, "--joints", &map]).0, Some(1), "the map does not fit the first");
+    assert_eq!(import(&[&lift]), (Some(0), String::new()));
+    let clips: Value = serde_json::from_str(&std::fs::read_to_string(path("clips.json")).unwrap()).unwrap();
+    assert_eq!((&clips["clips"][0]["character"], &clips["clips"][0]["motion"]), (&json!("anna"), &json!("lift")));
+    assert_eq!((&clips["fps"], clips["clips"][0]["points"].as_array().unwrap().len()), (&json!(25.0), 3));
+    assert_eq!(clips["clips"][0]["points"][0][7], json!([1.25, -1.0]), "the wrist is out at the side");
+    assert_eq!(clips["clips"][0]["points"][2][7], json!([0.25, -2.0]), "and goes up");
+    assert_eq!(import(&[&odd, "--joints", &map, "--character", "bo", "--motion", "wave", "--fps", "50"]).0, Some(0));
+    let (status, said) = import(&[&odd]);
+    assert!(
+        status == Some(1) && said.contains("odd.bvh: found no joint for l_wrist") && said.contains("paw"),
+        "{said}"
+    );
+    let (status, said) = import(&[&path("anna/short.bvh")]);
+    assert!(
+        status == Some(1) && said.contains("short.bvh: line ") && said.contains("found 17 numbers, expected 18"),
+        "{said}"
+    );
+    assert!(import(&[&lift, &lift]).1.contains("found \"lift\" by \"anna\" again"));
+    assert_eq!(import(&[&lift, "--view", "above"]).0, Some(2));
+    assert_eq!(import(&[&path("none.bvh")]).0, Some(1));
+}

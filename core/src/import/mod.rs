@@ -1,11 +1,13 @@
-//! Shapes drawn in other programs, as keys of parts.
+//! What other programs made: shapes, as keys of parts, and motions, as skeleton clips.
 //!
+//! - [`bvh`]: motion capture
 //! - [`svg`]: paths and basic shapes, still or animated
 //! - `svg_animation`: the keys of animated paths
 //! - [`silhouette`]: Silhouette shapes
 //! - [`path`](mod@path): Bézier paths as contours with one number of points
 //! - [`problem`]: what is wrong with a file, and where
 
+pub mod bvh;
 pub mod path;
 pub mod problem;
 pub mod silhouette;

@@ -13,7 +13,7 @@ use crate::reshape::capture::{Bindings, capture};
 use crate::reshape::depth::{DepthError, Mark, infer};
 use crate::reshape::limb::{Bend, bend_at};
 use crate::reshape::puppet::{Carrier, LimbPose, Options, Puppet};
-use crate::scene::limbs::{Binding, LimbSet};
+use crate::scene::limbs::{Binding, Limb, LimbSet};
 use crate::scene::proportions::Proportions;
 use crate::scene::skeleton::{LEGS, MIRROR, NAMES, Posture};
 use crate::scene::{Clip, Footage, FrameNumber, Part, Progress};
@@ -285,12 +285,18 @@ fn bodies(
         let mut carriers = Vec::new();
         for (limb, l) in set.limbs.iter().enumerate() {
             let own = l.carries.iter().find(|carried| carried.part == part.name);
-            carriers.extend(own.map(|carried| Carrier { limb, turn: carried.turn, rigidity: l.rigidity }));
+            carriers.extend(own.map(|carried| Carrier {
+                limb,
+                turn: carried.turn,
+                rigidity: l.rigidity,
+                whole: skull(l),
+            }));
         }
         let nearest = carriers.is_empty().then(|| nearest_limb(rest, &outline));
         if let Some(limb) = nearest {
             let turn = if LEGS.iter().any(|leg| leg[2] == set.limbs[limb].to) { FOOT_TURN } else { 1.0 };
-            carriers.push(Carrier { limb, turn, rigidity: set.limbs[limb].rigidity });
+            let l = &set.limbs[limb];
+            carriers.push(Carrier { limb, turn, rigidity: l.rigidity, whole: skull(l) });
         }
         let curves = part.complete_curves(frame);
         let (count, mut points) = (points.len(), points.clone());
@@ -320,6 +326,11 @@ fn bodies(
         bodies[owner].strokes.push((number, line.len()));
     }
     Ok(bodies)
+}
+
+/// Whether a limb holds up the head, which keeps its shape.
+fn skull(limb: &Limb) -> bool {
+    ["head", "head_top"].contains(&NAMES[limb.to])
 }
 
 fn nearest_limb(rest: &[LimbPose], outline: &[Point]) -> usize {

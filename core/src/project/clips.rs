@@ -9,10 +9,11 @@
 //! the standard deviation of its place, in the same unit. Fields that are not known are left out of what is written anew.
 
 use super::output::{WriteError, write_whole};
+use super::plain_clips as plain;
 use crate::geometry::Point;
 use crate::scene::Clip;
 use crate::scene::skeleton::{COUNT, NAMES, Posture};
-use serde_json::{Map, Value, json};
+use serde_json::Value;
 use std::path::Path;
 
 /// Version of the form.
@@ -75,7 +76,18 @@ impl Clips {
     }
 
     /// Reads text; `origin` names it in errors.
+    ///
+    /// What is as it must be is read straight into numbers. Only where it is not, it is read once more, value by value, to say
+    /// what is wrong and where.
     pub fn parse(text: &str, origin: &str) -> Result<Self, ClipsError> {
+        match plain::read(text) {
+            Some(clips) => Ok(clips),
+            None => Self::parse_by_value(text, origin),
+        }
+    }
+
+    /// The same by way of a tree of values: slow, and every error has its place.
+    fn parse_by_value(text: &str, origin: &str) -> Result<Self, ClipsError> {
         let reader = Reader { origin };
         let document = reader.json(text)?;
         reader.version(&document)?;
@@ -105,9 +117,7 @@ impl Clips {
 
     /// The file's text.
     pub fn text(&self) -> String {
-        let clips: Vec<Value> = self.clips.iter().map(written).collect();
-        let document = json!({"rototoon_clips": VERSION, "fps": number(self.fps), "keypoints": NAMES, "clips": clips});
-        document.to_string() + "\n"
+        plain::written(self) + "\n"
     }
 
     /// Writes a file, whole or not at all.
@@ -257,27 +267,6 @@ fn kind(value: &Value) -> String {
     }
 }
 
-/// Places are written to a millionth: far below what can be seen, in torso lengths as in pixels.
-fn number(value: f64) -> f64 {
-    let rounded = (value * 1e6).round() / 1e6;
-    if rounded == 0.0 { 0.0 } else { rounded }
-}
-
-fn written(clip: &Clip) -> Value {
-    let points: Vec<Vec<[f64; 2]>> =
-        clip.postures.iter().map(|p| p.iter().map(|p| [number(p.x), number(p.y)]).collect()).collect();
-    let mut object = Map::new();
-    object.insert("character".into(), clip.character.clone().into());
-    object.insert("motion".into(), clip.motion.clone().into());
-    object.insert("points".into(), json!(points));
-    if !clip.deviation.is_empty() {
-        let deviation: Vec<Vec<f64>> =
-            clip.deviation.iter().map(|frame| frame.iter().map(|s| number(*s)).collect()).collect();
-        object.insert("deviation".into(), json!(deviation));
-    }
-    Value::Object(object)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -318,6 +307,39 @@ mod tests {
         assert!(error(r#"{"rototoon_clips": 2}"#).contains("found version 2, expected 1 or less"));
         assert!(error(r#"{"rototoon_clips": 1}"#).contains("clips: found nothing, expected a list of clips"));
         assert!(error(r#"{"rototoon_clips": 1, "keypoints": ["pelvis"]}"#).contains("found 1 names, expected 17"));
+    }
+
+    #[test]
+    fn both_ways_of_reading_agree() {
+        let good = file(&format!("[{}, {}]", posture(), posture().replace("1.5", "1e-3")));
+        let frame = format!("[{}]", posture());
+        for text in [
+            good.clone(),
+            good.replace("\"fps\": 12, ", ""),
+            good.replace("12", "23.976"),
+            good.replace("\"a\"", "\"\\u00e4\\n\""),
+            good.replacen('{', "{\"more\": [1, {\"x\": null}], ", 1),
+            good.replacen('{', "{\"clips\": 3, ", 1),
+            good.replacen('{', "{\"keypoints\": null, ", 1),
+            good.replace("12", "null"),
+            good.replace("12", "0"),
+            good.replace("walk", ""),
+            good.replace("[1.5, -2]", "[1.5, -2, 0]"),
+            good.replace("[1.5, -2]", "[1.5]"),
+            good.replace("1.5", "1e999"),
+            good.replace("1.5", "true"),
+            file(&frame.replacen("[1.5, -2],", "", 1)),
+            file(&frame.replacen("[[1.5", "[[1.5, -2], [1.5", 1)),
+            file("[]"),
+            good.clone() + "x",
+            good.replace("rototoon_clips\": 1", "rototoon_clips\": 1.0"),
+            good.replace("rototoon_clips\": 1", "rototoon_clips\": 0"),
+        ] {
+            if let Some(quick) = plain::read(&text) {
+                assert_eq!(Ok(quick), Clips::parse_by_value(&text, "f"), "{text}");
+            }
+        }
+        assert!(plain::read(&good).is_some() && plain::read(&good.replacen('{', "{\"more\": 0, ", 1)).is_some());
     }
 
     #[test]

@@ -6,11 +6,15 @@
 //! A file that is damaged, missing or of a later version takes nothing else with it: it is told as a [`Trouble`], and the rest
 //! is used. So is an index that cannot be read: the library is then what the clip files of the folder say. Clips that the
 //! index does not know are found the same way, so a file may simply be put into the folder.
+//!
+//! Clip files are read on the threads of the caller's pool; what is found and in which order does not depend on them.
 
 use super::clips::{Clips, ClipsError};
 use super::output::{WriteError, write_whole};
 use crate::scene::Clip;
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -151,8 +155,10 @@ impl Library {
     /// Reads the clips of some entries. Files that cannot be used are told and left out.
     pub fn read<'a>(&self, entries: impl Iterator<Item = &'a Entry>) -> (Vec<Clip>, Vec<Trouble>) {
         let (mut clips, mut troubles) = (Vec::new(), Vec::new());
-        for entry in entries {
-            match one_clip(&self.folder.join(&entry.file)) {
+        let files: Vec<PathBuf> = entries.map(|entry| self.folder.join(&entry.file)).collect();
+        let read: Vec<_> = files.par_iter().map(|file| one_clip(file)).collect();
+        for result in read {
+            match result {
                 Ok((clip, _)) => clips.push(clip),
                 Err(trouble) => troubles.push(trouble),
             }
@@ -200,14 +206,16 @@ impl Library {
     /// Clip files that no entry names, in the order of their names.
     fn find_files(&mut self) {
         let Ok(listed) = fs::read_dir(&self.folder) else { return };
+        let known: BTreeSet<&str> = self.entries.iter().map(|entry| entry.file.as_str()).collect();
         let mut names: Vec<String> = listed
             .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-            .filter(|name| name.ends_with(ENDING) && !self.entries.iter().any(|entry| entry.file == *name))
+            .filter(|name| name.ends_with(ENDING) && !known.contains(name.as_str()))
             .collect();
         names.sort();
-        for file in names {
-            let path = self.folder.join(&file);
-            let (clip, fps) = match one_clip(&path) {
+        let paths: Vec<PathBuf> = names.iter().map(|name| self.folder.join(name)).collect();
+        let read: Vec<_> = paths.par_iter().map(|path| one_clip(path)).collect();
+        for ((file, path), result) in names.into_iter().zip(paths).zip(read) {
+            let (clip, fps) = match result {
                 Ok(found) => found,
                 Err(trouble) => {
                     self.troubles.push(trouble);
@@ -302,6 +310,11 @@ mod tests {
         let (clips, troubles) = reopened.read(reopened.entries().iter());
         assert_eq!((clips.len(), troubles.len()), (2, 1));
         assert!(troubles[0].to_string().contains("ann-run.clip.json: not JSON"), "{}", troubles[0]);
+        let later = "{\"rototoon_clips\": 9, \"clips\": [], \"more\": {}}";
+        fs::write(folder.join(&library.entries()[1].file), later).unwrap();
+        let (clips, troubles) = reopened.read(reopened.entries().iter());
+        assert_eq!(clips.iter().map(|clip| clip.character.as_str()).collect::<Vec<_>>(), ["Ann", "Bo/b"]);
+        assert!(troubles[0].to_string().contains("found version 9, expected 1 or less"), "{}", troubles[0]);
         for (index, said) in
             [("[", "not an index of clips"), ("{\"rototoon_library\": 2, \"clips\": []}", "found version 2")]
         {

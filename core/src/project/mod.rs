@@ -9,7 +9,7 @@
 //! - [`drawings`]: drawings on key frames, pairs, pegs and in-betweens
 //! - [`limbs`]: limbs on contours, swapped sides, which part is in front
 //! - [`curves`]: files of curves to fit
-//! - [`clips`]: files of skeleton clips
+//! - [`clips`], `plain_clips`: files of skeleton clips, and the quick way to read and write them
 //! - [`output`]: files that appear whole or not at all
 //!
 //! Fields that this version does not know are kept where they stood. A document of a newer major version is refused.
@@ -22,6 +22,7 @@ pub mod library;
 pub mod limbs;
 pub mod load;
 pub mod output;
+mod plain_clips;
 pub mod problem;
 pub mod save;
 pub mod schema;

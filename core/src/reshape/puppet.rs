@@ -10,6 +10,11 @@
 //! the comparison that the paper draws: between key points limbs then leave their splines. (Width across a sharp elbow is kept no
 //! better with sub-key points than without: they hold both limbs straight, and the inside of the bend is pressed together.)
 //!
+//! A part that its limbs carry *whole* (a head: its key points lie closer together than it is wide, and a skull neither stretches
+//! nor bends) moves without bending or growing, whatever becomes of their lengths: it stays where the first of its limbs begins, and is turned
+//! as fits all their ends best, the farther ones counting more (the rotation of least squares about a fixed point). As a mesh it would
+//! follow every change of a neck's length in the picture, and be drawn out to a drop.
+//!
 //! A part that hangs on a limb's end with less than two handles (a hand, a shoe, a hat) is rigid: it moves with the nearest place of
 //! the spline and takes a share of its turn.
 
@@ -60,6 +65,8 @@ pub struct Carrier {
     pub turn: f64,
     /// Weight of the triangles around it.
     pub rigidity: f64,
+    /// Whether a part that only such limbs carry keeps its shape and size.
+    pub whole: bool,
 }
 
 /// Why a part cannot be reshaped.
@@ -89,6 +96,8 @@ struct Handle {
 enum Drive {
     /// Moves with a place of a limb's spline.
     Rigid { carrier: Carrier, parameter: f64, points: Vec<Point> },
+    /// Keeps its shape and size, and stays with the beginning of its first limb.
+    Whole { limbs: Vec<usize>, turn: f64, points: Vec<Point> },
     /// Bends with its limbs.
     Mesh { solver: Box<Solver>, handles: Vec<Handle>, held: Vec<Held> },
 }
@@ -111,6 +120,7 @@ impl Puppet {
     ) -> Result<Self, PuppetError> {
         let Some(first) = carriers.first() else { return Err(PuppetError::NoCarrier) };
         let drive = match mesh(outline, points, rest, carriers, options)? {
+            Some(_) if carriers.iter().all(|carrier| carrier.whole) => whole(points, rest, carriers),
             Some(drive) => drive,
             None => hanging(outline, points, rest, carriers).unwrap_or(Drive::Rigid {
                 carrier: *first,
@@ -123,7 +133,7 @@ impl Puppet {
 
     /// Whether it moves without bending.
     pub fn is_rigid(&self) -> bool {
-        matches!(self.drive, Drive::Rigid { .. })
+        !matches!(self.drive, Drive::Mesh { .. })
     }
 
     /// The points for the limbs of a frame.
@@ -133,6 +143,12 @@ impl Puppet {
                 let (rest, now) = (self.rest[carrier.limb].spline(), limbs[carrier.limb].spline());
                 let turn = Point::from_angle(carrier.turn * angle(&rest, &now, *parameter, *parameter));
                 let (from, to) = (rest.point(*parameter), now.point(*parameter));
+                Ok(points.iter().map(|p| to + turn.rotate(*p - from)).collect())
+            }
+            Drive::Whole { limbs: own, turn, points } => {
+                let (from, to) = (self.rest[own[0]].ends.0, limbs[own[0]].ends.0);
+                let ends = own.iter().map(|&k| (self.rest[k].ends.1 - from, limbs[k].ends.1 - to));
+                let turn = Point::from_angle(*turn * turn_between(ends));
                 Ok(points.iter().map(|p| to + turn.rotate(*p - from)).collect())
             }
             Drive::Mesh { solver, handles, held } => {
@@ -161,6 +177,24 @@ fn angle(from: &Quadratic, to: &Quadratic, at: f64, there: f64) -> f64 {
     };
     let (a, b) = (direction(from, at), direction(to, there));
     if a.length_squared() > 1e-18 && b.length_squared() > 1e-18 { a.angle_to(b) } else { 0.0 }
+}
+
+/// The turn about the origin that brings the first points of pairs nearest to the second, by least squares.
+fn turn_between(pairs: impl Iterator<Item = (Point, Point)>) -> f64 {
+    let (cosine, sine) = pairs.fold((0.0, 0.0), |(c, s), (a, b)| (c + a.dot(b), s + a.perp_dot(b)));
+    if cosine == 0.0 && sine == 0.0 { 0.0 } else { sine.atan2(cosine) }
+}
+
+/// A part that keeps its shape. It stays with the limb that begins where no other ends.
+fn whole(points: &[Point], rest: &[LimbPose], carriers: &[Carrier]) -> Drive {
+    let hangs = |a: &Carrier| {
+        let start = rest[a.limb].ends.0;
+        carriers.iter().any(|b| b.limb != a.limb && rest[b.limb].ends.1.distance(start) <= 1e-6)
+    };
+    let mut order = carriers.to_vec();
+    order.sort_by_key(hangs); // stable: of several the first that is given
+    let limbs = order.iter().map(|carrier| carrier.limb).collect();
+    Drive::Whole { limbs, turn: order[0].turn, points: points.to_vec() }
 }
 
 /// The mesh of a part, unless it has too few handles.
@@ -255,7 +289,7 @@ mod tests {
     }
 
     fn carrier(limb: usize) -> Carrier {
-        Carrier { limb, turn: 1.0, rigidity: 1.0 }
+        Carrier { limb, turn: 1.0, rigidity: 1.0, whole: false }
     }
 
     fn bent(elbow: f64) -> Vec<LimbPose> {
@@ -338,6 +372,27 @@ mod tests {
         };
         assert!(pose(1.0)[0].distance(v(56.0, 54.0)) < 1e-9, "{}", pose(1.0)[0]);
         assert!(pose(0.0)[0].distance(v(54.0, 44.0)) < 1e-9, "{}", pose(0.0)[0]);
+    }
+
+    #[test]
+    fn a_head_keeps_its_shape_on_a_neck_that_grows() {
+        let (_, rest) = arm(); // neck from 0 to 50, head from 50 to 100
+        let head = polyline::resample(&[v(20.0, -40.0), v(110.0, -40.0), v(110.0, 40.0), v(20.0, 40.0)], true, 40);
+        let points = [head.clone(), vec![v(0.0, 0.0)]].concat();
+        let posed = |whole: bool, limbs: &[LimbPose]| {
+            let carriers = [1, 0].map(|limb| Carrier { whole, ..carrier(limb) });
+            let mut puppet = Puppet::new(&head, &points, &rest, &carriers, &Options::default()).unwrap();
+            assert_eq!(puppet.is_rigid(), whole);
+            puppet.pose(limbs).unwrap()
+        };
+        let mut limbs = rest.clone();
+        (limbs[0].ends.1, limbs[1].ends) = (v(0.0, 80.0), (v(0.0, 80.0), v(0.0, 170.0)));
+        let found = posed(true, &limbs);
+        assert!(points.iter().zip(&found).all(|(a, b)| a.perp().distance(*b) < 1e-9), "turned about the neck");
+        let grown = polygon::signed_area(&posed(false, &limbs)[..40]) / polygon::signed_area(&head);
+        assert!((grown - 1.0).abs() > 0.1, "a mesh grows with its limbs: {grown}");
+        limbs.iter_mut().for_each(|limb| limb.ends = (v(3.0, 4.0), v(3.0, 4.0)));
+        assert_eq!(posed(true, &limbs)[40], v(3.0, 4.0));
     }
 
     #[test]

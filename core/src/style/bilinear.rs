@@ -38,10 +38,10 @@ pub enum Model {
 }
 
 /// Makes the wanted clip.
-pub(super) fn predict(grid: &Grid, keys: &[(usize, Row)], model: Model) -> Prediction {
+pub(super) fn predict(grid: &Grid, keys: &[(usize, Row)], model: Model, rank: Option<usize>) -> Prediction {
     let known: Vec<usize> =
         (0..grid.motions.len()).filter(|&m| m != grid.motion && grid.get(grid.style, m).is_some()).collect();
-    let fitted = Fitted::new(grid, model);
+    let fitted = Fitted::new(grid, model, rank.unwrap_or(CONTENT).max(1));
     let apart = |ridge: f64| held_apart(grid, &known, |rest, left_out| fitted.clip(grid, rest, left_out, ridge));
     let best = RIDGES
         .iter()
@@ -69,7 +69,7 @@ struct Fitted {
 }
 
 impl Fitted {
-    fn new(grid: &Grid, model: Model) -> Self {
+    fn new(grid: &Grid, model: Model, rank: usize) -> Self {
         let others: Vec<usize> = (0..grid.characters.len()).filter(|&s| s != grid.style).collect();
         let moments = grid.motions.len() * MODEL_FRAMES;
         let mut stacked = Mat::zeros(others.len() * WIDTH, moments);
@@ -81,7 +81,7 @@ impl Fitted {
                 }
             }
         }
-        let mut contents = leading((stacked.transpose() * &stacked).as_ref(), CONTENT.min(moments));
+        let mut contents = leading((stacked.transpose() * &stacked).as_ref(), rank.min(moments));
         let count = others.len();
         let style = |maps: &Mat<f64>, k: usize| maps.subrows(k * WIDTH, WIDTH).to_owned();
         let mean_of = |maps: &Mat<f64>| {
@@ -98,7 +98,7 @@ impl Fitted {
             let among = Mat::from_fn(count, count, |a, b| inner(&style(&maps, a), &style(&maps, b)));
             vectors = leading(among.as_ref(), STYLE.min(count)); // I × styles
             let mixed = mix(&vectors, &stacked);
-            contents = leading((mixed.transpose() * &mixed).as_ref(), CONTENT.min(moments));
+            contents = leading((mixed.transpose() * &mixed).as_ref(), rank.min(moments));
         }
         let w = mix(&vectors, &(&stacked * contents.transpose()));
         let maps: Vec<Mat<f64>> = (0..vectors.nrows()).map(|i| style(&w, i)).collect();

@@ -12,7 +12,7 @@
 use super::Prediction;
 use super::basis::MODEL_FRAMES;
 use super::bilinear::{held_apart, onto_frames, spread};
-use super::factorisation::{Options, factor};
+use super::factorisation::{Options as FactorOptions, factor};
 use super::grid::{Grid, Row, WIDTH, mean};
 use faer::Mat;
 
@@ -26,17 +26,18 @@ const CLASS_WEIGHT: f64 = 0.01;
 const TINY: f64 = 1e-12;
 
 /// Makes the wanted clip.
-pub(super) fn predict(grid: &Grid, keys: &[(usize, Row)]) -> Prediction {
+pub(super) fn predict(grid: &Grid, keys: &[(usize, Row)], rank: Option<usize>) -> Prediction {
+    let k = rank.unwrap_or(FactorOptions::default().rank).max(1);
     let known: Vec<usize> =
         (0..grid.motions.len()).filter(|&m| m != grid.motion && grid.get(grid.style, m).is_some()).collect();
-    let made = from_motions(grid, &known, grid.motion);
-    let apart = held_apart(grid, &known, |rest, left_out| from_motions(grid, rest, left_out));
+    let made = from_motions(grid, &known, grid.motion, k);
+    let apart = held_apart(grid, &known, |rest, left_out| from_motions(grid, rest, left_out, k));
     let rows = onto_frames(grid, &made);
     spread(grid, rows, &apart, keys)
 }
 
 /// The style's clip of a motion from some of its others.
-fn from_motions(grid: &Grid, known: &[usize], wanted: usize) -> Vec<Row> {
+fn from_motions(grid: &Grid, known: &[usize], wanted: usize, k: usize) -> Vec<Row> {
     let others: Vec<usize> = (0..grid.characters.len()).filter(|&s| s != grid.style).collect();
     let order: Vec<usize> = known.iter().copied().chain(std::iter::once(wanted)).collect();
     // A clip that another character lacks is taken from the mean of those who have it.
@@ -56,9 +57,8 @@ fn from_motions(grid: &Grid, known: &[usize], wanted: usize) -> Vec<Row> {
         clips[column / WIDTH][row / MODEL_FRAMES][row % MODEL_FRAMES][d] - shift[d]
     });
     let labels: Vec<usize> = (0..x.nrows()).map(|row| row / MODEL_FRAMES).collect();
-    let options = Options { class_weight: CLASS_WEIGHT, ..Options::default() };
+    let options = FactorOptions { rank: k, class_weight: CLASS_WEIGHT, ..FactorOptions::default() };
     let Ok(found) = factor(x.as_ref(), &labels, &options) else { return mean_motion(grid, wanted) };
-    let k = options.rank;
     let start = Mat::from_fn(k, WIDTH, |i, d| {
         (0..others.len()).map(|s| found.basis[(i, s * WIDTH + d)]).sum::<f64>() / others.len() as f64
     });

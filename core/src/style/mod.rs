@@ -105,6 +105,8 @@ pub struct Options {
     /// The most probable result is drawn towards the mean of all characters as far as the style is uncertain. A tenth
     /// more costs next to nothing in accuracy and is recognised more often.
     pub strength: f64,
+    /// Components of the bilinear models' contents and of the factorisation; none for their own. The default preset has none.
+    pub rank: Option<usize>,
     /// Whether limbs keep within the lengths that the style's own clips show.
     pub keep_lengths: bool,
     /// Whether feet that stand in the content's clip stay where they stand.
@@ -117,6 +119,7 @@ impl Default for Options {
             preset: Preset::default(),
             pace: Pace::default(),
             strength: 1.1,
+            rank: None,
             keep_lengths: true,
             keep_contacts: true,
         }
@@ -228,9 +231,9 @@ pub fn translate(
     let keys = keys(&grid, request);
     let mut made = match options.preset {
         Preset::Rototoon => gaussian::predict(&grid, &keys, options.strength, progress)?,
-        Preset::Bilinear => bilinear::predict(&grid, &keys, bilinear::Model::Asymmetric),
-        Preset::BilinearSymmetric => bilinear::predict(&grid, &keys, bilinear::Model::Symmetric),
-        Preset::Liang2012 => liang2012::predict(&grid, &keys),
+        Preset::Bilinear => bilinear::predict(&grid, &keys, bilinear::Model::Asymmetric, options.rank),
+        Preset::BilinearSymmetric => bilinear::predict(&grid, &keys, bilinear::Model::Symmetric, options.rank),
+        Preset::Liang2012 => liang2012::predict(&grid, &keys, options.rank),
     };
     progress.report(STEP, 0.9)?;
     meet(&mut made, &keys);

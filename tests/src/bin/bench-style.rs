@@ -1,4 +1,5 @@
-//! Measures for `tests/bench_style.py`: the factorisation of postures, and as-rigid-as-possible manipulation.
+//! Measures for `tests/bench_style.py` and `tests/bench_style_paper.py`: the factorisation of postures, as-rigid-as-possible
+//! manipulation, bent limbs, overlap order, translation.
 //!
 //! Reads one job from standard input and writes its result to standard output, both JSON; times are in seconds, of every
 //! repetition.
@@ -6,13 +7,17 @@
 use anyhow::{Context, Result, bail};
 use faer::Mat;
 use rototoon::geometry::Point;
+use rototoon::project::clips::Clips;
 use rototoon::reshape::arap::{Mesh, Solver, deform};
 use rototoon::style::factorisation::{Options, factor};
+use rototoon_tests::stylebench::{limbs, order, translation};
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 use std::time::Instant;
 
 #[derive(Deserialize)]
 struct Job {
+    #[serde(default = "once")]
     repetitions: usize,
     #[serde(flatten)]
     what: What,
@@ -23,6 +28,18 @@ struct Job {
 enum What {
     Factor(Postures),
     Reshape(Reshaping),
+    Limbs {},
+    Order {},
+    Translate {
+        /// A file of clips.
+        clips: PathBuf,
+        /// Whose motions are re-made; "normal" or the first character where none is given.
+        content: Option<String>,
+    },
+}
+
+fn once() -> usize {
+    1
 }
 
 #[derive(Deserialize)]
@@ -31,6 +48,9 @@ struct Postures {
     rows: Vec<Vec<f64>>,
     rank: usize,
     rounds: usize,
+    /// Whether the codes are wanted.
+    #[serde(default)]
+    codes: bool,
 }
 
 #[derive(Deserialize)]
@@ -46,6 +66,8 @@ struct Reshaping {
 struct Factored {
     error: f64,
     seconds: Vec<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    codes: Vec<Vec<f64>>,
 }
 
 #[derive(Serialize)]
@@ -65,6 +87,11 @@ fn main() -> Result<()> {
     let result = match job.what {
         What::Factor(postures) => serde_json::to_string(&factored(&postures, job.repetitions)?)?,
         What::Reshape(reshaping) => serde_json::to_string(&reshaped(&reshaping, job.repetitions)?)?,
+        What::Limbs {} => serde_json::to_string(&limbs::measure()?)?,
+        What::Order {} => serde_json::to_string(&order::measure()?)?,
+        What::Translate { clips, content } => {
+            serde_json::to_string(&translation::measure(&Clips::load(&clips)?, content.as_deref())?)?
+        }
     };
     println!("{result}");
     Ok(())
@@ -77,13 +104,17 @@ fn factored(job: &Postures, repetitions: usize) -> Result<Factored> {
     }
     let x = Mat::from_fn(job.rows.len(), columns, |i, j| job.rows[i][j]);
     let options = Options { rank: job.rank, rounds: job.rounds, tolerance: 0.0, ..Options::default() };
-    let (mut error, mut seconds) = (f64::NAN, Vec::new());
+    let (mut error, mut seconds, mut codes) = (f64::NAN, Vec::new(), Vec::new());
     for _ in 0..repetitions {
         let start = Instant::now();
-        error = factor(x.as_ref(), &[], &options)?.error;
+        let found = factor(x.as_ref(), &[], &options)?;
         seconds.push(start.elapsed().as_secs_f64());
+        error = found.error;
+        if job.codes {
+            codes = found.codes.row_iter().map(|row| row.iter().copied().collect()).collect();
+        }
     }
-    Ok(Factored { error, seconds })
+    Ok(Factored { error, seconds, codes })
 }
 
 fn reshaped(job: &Reshaping, repetitions: usize) -> Result<Reshaped> {

@@ -1,11 +1,13 @@
 //! `rototoon style`: skeleton clips, a motion re-made in another character's manner, and drawings that follow it.
 //!
 //! - [`clip`]: clips of tracked contours
+//! - [`import`]: clips of motion capture
 //! - [`library`]: a folder of clips
 //! - [`translate`]: another character's manner
 //! - [`reshape`]: a drawing that follows a clip
 
 mod clip;
+mod import;
 mod library;
 mod reshape;
 mod translate;
@@ -23,13 +25,14 @@ pub fn command() -> Command {
         .about("Skeleton clips: captured, re-made in another character's manner, followed by a drawing")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([clip::command(), library::command(), translate::command(), reshape::command()])
+        .subcommands([clip::command(), import::command(), library::command(), translate::command(), reshape::command()])
 }
 
 /// Runs it.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     match given.subcommand() {
         Some(("clip", given)) => clip::run(given),
+        Some(("import", given)) => import::run(given),
         Some(("library", given)) => library::run(given),
         Some(("translate", given)) => translate::run(given),
         Some(("reshape", given)) => reshape::run(given),

@@ -69,6 +69,13 @@ pub fn command() -> Command {
                     _ => Err("expected a number from 0 to 3"),
                 }),
         )
+        .arg(
+            Arg::new("rank")
+                .long("rank")
+                .value_name("N")
+                .help("Components of the bilinear and liang2012 presets; else their own")
+                .value_parser(value_parser!(u16).range(1..=1000)),
+        )
         .arg(on_or_off("limb-lengths", "Whether limbs keep within the lengths of the style's own clips"))
         .arg(on_or_off("contacts", "Whether feet that stand in the content's clip stay where they stand"))
         .arg(arguments::output("OUT", "The file to write: one clip, with the standard deviation of each key point"))
@@ -92,6 +99,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         preset: Preset::from_id(preset).ok_or_else(|| Failure::Use(format!("no preset {preset:?}")))?,
         pace: if text("timing") == "style" { Pace::Style } else { Pace::Content },
         strength: given.get_one::<f64>("strength").copied().unwrap_or(Options::default().strength),
+        rank: given.get_one::<u16>("rank").map(|rank| usize::from(*rank)),
         keep_lengths: text("limb-lengths") == "on",
         keep_contacts: text("contacts") == "on",
     };

@@ -1,0 +1,141 @@
+//! `rototoon style import`: skeleton clips of motion capture.
+
+use crate::arguments;
+use crate::failure::{Failure, line};
+use crate::render;
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use rototoon::import::bvh::{JointMap, Options, Up, View, seen};
+use rototoon::project::clips::Clips;
+use rototoon::project::output::check_writable;
+use rototoon::scene::{Clip, FrameNumber};
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+/// The subcommand.
+pub fn command() -> Command {
+    let option =
+        |id: &'static str, value: &'static str, help: &'static str| Arg::new(id).long(id).value_name(value).help(help);
+    Command::new("import")
+        .about("Makes skeleton clips of motion capture: BVH files, seen from one side")
+        .arg(
+            Arg::new("files")
+                .value_name("FILE.bvh")
+                .help("The motions")
+                .required(true)
+                .num_args(1..)
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(option("motion", "NAME", "What is done; else the file's name without its ending"))
+        .arg(option("character", "NAME", "Who moves; else the name of the file's folder"))
+        .arg(
+            option("view", "VIEW", "From where: front, side, three-quarter, auto (where most of the motion is seen), or degrees about the vertical, 0 front and 90 side")
+                .default_value("auto")
+                .allow_hyphen_values(true)
+                .value_parser(view),
+        )
+        .arg(
+            option("up", "AXIS", "The axis that points up; auto is the one along which the character is tall")
+                .default_value("auto")
+                .value_parser(PossibleValuesParser::new(["auto", "y", "z"])),
+        )
+        .arg(
+            option("joints", "MAP.json", "Joints of key points that their names do not tell: {\"l_wrist\": \"Hand.L\", …}")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            option("frames", "A-B", "First and last frame of the file, from 0; else all")
+                .allow_hyphen_values(true)
+                .value_parser(render::range),
+        )
+        .arg(option("fps", "NUMBER", "Frames a second of the clips; else those of the first file").value_parser(value_parser!(f64)))
+        .arg(
+            Arg::new("way")
+                .long("way")
+                .help("Let the pelvis go its way through the picture; else it stays at the origin")
+                .action(ArgAction::SetTrue),
+        )
+        .arg(arguments::output("CLIPS", "The file of clips to write"))
+}
+
+fn view(text: &str) -> Result<View, String> {
+    Ok(match text {
+        "auto" => View::Auto,
+        "front" => View::Front,
+        "side" => View::Side,
+        "three-quarter" => View::ThreeQuarter,
+        degrees => match degrees.parse::<f64>() {
+            Ok(degrees) if degrees.is_finite() => View::Yaw(degrees),
+            _ => return Err("expected front, side, three-quarter, auto or degrees".into()),
+        },
+    })
+}
+
+/// Runs it.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let to = arguments::path(given, "output");
+    check_writable(to)?;
+    let mut options = options(given)?;
+    let mut clips: Vec<Clip> = Vec::new();
+    let files: Vec<&PathBuf> = given.get_many("files").into_iter().flatten().collect();
+    for (k, file) in files.iter().enumerate() {
+        let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", file.display()));
+        let text = std::fs::read_to_string(file).map_err(|error| failed(&format!("cannot read: {error}")))?;
+        let made = seen(&text, &options).map_err(|error| failed(&error))?;
+        let (character, motion) = labels(given, file)?;
+        if let Some(twin) = clips.iter().position(|clip| clip.character == character && clip.motion == motion) {
+            let twin = files[twin].display();
+            return Err(failed(&format!(
+                "found {motion:?} by {character:?} again, expected each motion of a character once; the other is {twin}"
+            )));
+        }
+        if options.view == View::Auto {
+            line("view", &format!("{}: {:.0} degrees", file.display(), made.yaw));
+        }
+        if k == 0 {
+            options.fps = Some(made.fps);
+        }
+        clips.push(Clip::new(character, motion, made.postures));
+    }
+    Ok(Clips { clips, fps: options.fps.unwrap_or(1.0) }.save(to)?)
+}
+
+fn options(given: &ArgMatches) -> Result<Options, Failure> {
+    let joints = match given.get_one::<PathBuf>("joints") {
+        None => JointMap::default(),
+        Some(path) => {
+            let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", path.display()));
+            let text = std::fs::read_to_string(path).map_err(|error| failed(&format!("cannot read: {error}")))?;
+            JointMap::parse(&text).map_err(|error| failed(&error))?
+        }
+    };
+    let up = match arguments::choice(given, "up") {
+        "y" => Up::Y,
+        "z" => Up::Z,
+        _ => Up::Auto,
+    };
+    let frames = match given.get_one::<RangeInclusive<FrameNumber>>("frames") {
+        None => None,
+        Some(frames) => match (usize::try_from(*frames.start()), usize::try_from(*frames.end())) {
+            (Ok(first), Ok(last)) => Some(first..=last),
+            _ => return Err(Failure::Use("--frames: expected frames from 0".into())),
+        },
+    };
+    let view = given.get_one::<View>("view").copied().unwrap_or_default();
+    let fps = given.get_one::<f64>("fps").copied();
+    Ok(Options { view, up, joints, way: given.get_flag("way"), frames, fps })
+}
+
+/// Who moves and what is done.
+fn labels(given: &ArgMatches, file: &Path) -> Result<(String, String), Failure> {
+    let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+    let folder = whole.parent().and_then(Path::file_name);
+    let label = |id: &str, own: Option<&std::ffi::OsStr>| {
+        let own = || own.map(|name| name.to_string_lossy().into_owned());
+        match given.get_one::<String>(id).cloned().or_else(own) {
+            Some(name) if !name.is_empty() => Ok(name),
+            _ => Err(Failure::Use(format!("{}: found no {id}, expected --{id} NAME", file.display()))),
+        }
+    };
+    Ok((label("character", folder)?, label("motion", whole.file_stem())?))
+}

@@ -1,0 +1,107 @@
+//! Translation against the clips that were really performed, by preset and rank.
+//!
+//! Of the clips of every character but the content's, sixteen spread evenly: each is left out, made from the others, and compared
+//! with the true one: mean distance of the sixteen key points beside the pelvis, the pelvis held still, in torso lengths.
+
+use anyhow::{Context, Result, bail};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use rototoon::project::clips::Clips;
+use rototoon::scene::clip::resample;
+use rototoon::scene::proportions::typical_torso;
+use rototoon::scene::skeleton::{COUNT, Posture};
+use rototoon::scene::{Clip, Silent};
+use rototoon::style::{Options, Preset, Request, translate};
+use serde::Serialize;
+
+/// Ranks that are tried.
+const RANKS: [usize; 7] = [1, 2, 4, 6, 10, 16, 24];
+/// Most clips that are left out in turn: with all of them the factorisations take an hour.
+const MOST: usize = 16;
+
+/// The mean error of a way to translate.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Translated {
+    /// Id of the preset; "copy" for the content unchanged.
+    pub preset: &'static str,
+    /// The rank; none where there is none, or the preset's own.
+    pub rank: Option<usize>,
+    /// Mean distance in torso lengths.
+    pub error: f64,
+}
+
+/// All presets that have a rank with all ranks, and the others once.
+pub fn measure(clips: &Clips, content: Option<&str>) -> Result<Vec<Translated>> {
+    let clips = &clips.clips;
+    let first = clips.first().context("clips: found none, expected several characters and motions")?;
+    let content = content.unwrap_or_else(|| match clips.iter().any(|clip| clip.character == "normal") {
+        true => "normal",
+        false => &first.character,
+    });
+    let has = |clip: &Clip| clips.iter().any(|other| other.character == content && other.motion == clip.motion);
+    let truths: Vec<&Clip> = clips.iter().filter(|clip| clip.character != content && has(clip)).collect();
+    if truths.is_empty() {
+        bail!("clips: found no other character's clip of a motion by {content:?}, expected at least one");
+    }
+    let truths: Vec<&Clip> =
+        (0..truths.len().min(MOST)).map(|k| truths[k * truths.len() / truths.len().min(MOST)]).collect();
+    let mean = |errors: Vec<Result<f64>>| -> Result<f64> {
+        let count = errors.len() as f64;
+        Ok(errors.into_iter().collect::<Result<Vec<f64>>>()?.iter().sum::<f64>() / count)
+    };
+    let mut found = Vec::new();
+    let copied = truths.iter().map(|truth| {
+        let of_content = clips.iter().find(|clip| clip.character == content && clip.motion == truth.motion);
+        Ok(distance(&of_content.context("the content's clip")?.postures, &truth.postures))
+    });
+    found.push(Translated { preset: "copy", rank: None, error: mean(copied.collect())? });
+    let one = |truth: &Clip, options: &Options| -> Result<f64> {
+        let request = Request { style: &truth.character, motion: &truth.motion, content, keys: &[] };
+        let made = translate(clips, &request, options, &Silent)?;
+        Ok(distance(&made.postures, &truth.postures))
+    };
+    for (preset, _, which) in Preset::ALL {
+        let ranks: Vec<Option<usize>> = match which {
+            Preset::Rototoon => vec![None],
+            _ => RANKS.map(Some).to_vec(),
+        };
+        for rank in ranks {
+            let options = Options { preset: which, rank, keep_contacts: false, ..Options::default() };
+            let errors = truths.par_iter().map(|truth| one(truth, &options)).collect();
+            found.push(Translated { preset, rank, error: mean(errors)? });
+        }
+    }
+    Ok(found)
+}
+
+/// Mean distance of key points, pelvis on pelvis, in torso lengths of the truth.
+fn distance(made: &[Posture], truth: &[Posture]) -> f64 {
+    let size = typical_torso(truth).max(f64::MIN_POSITIVE);
+    let made = resample(made, truth.len());
+    let apart = |a: &Posture, b: &Posture| {
+        (1..COUNT).map(|k| (a[k] - a[0]).distance(b[k] - b[0])).sum::<f64>() / (COUNT - 1) as f64
+    };
+    made.iter().zip(truth).map(|(a, b)| apart(a, b)).sum::<f64>() / (truth.len() as f64 * size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon::geometry::Point;
+
+    #[test]
+    fn distances_are_told_in_torso_lengths_with_the_pelvis_held() {
+        let truth: Posture = std::array::from_fn(|k| Point::new(0.0, -2.0 * k as f64));
+        let moved = truth.map(|p| p + Point::new(5.0, 5.0));
+        assert_eq!(distance(&[moved], &[truth]), 0.0);
+        let mut hand = truth;
+        hand[7] += Point::new(0.0, 4.0);
+        assert_eq!(distance(&[hand], &[truth]), 1.0 / 16.0);
+    }
+
+    #[test]
+    fn what_cannot_be_compared_is_refused() {
+        let clip = Clip::new("a", "walk", vec![[Point::ZERO; COUNT]]);
+        assert!(measure(&Clips { clips: vec![], fps: 1.0 }, None).is_err());
+        assert!(measure(&Clips { clips: vec![clip], fps: 1.0 }, None).is_err());
+    }
+}
