@@ -80,6 +80,19 @@ def capture_clip(
     return Captured(**json.loads(answer))
 
 
+def import_motion(motion: str, character: str, name: str, **options: Any) -> tuple[dict[str, Any], float]:
+    """Makes a skeleton clip called `name` of motion capture, the text of a BVH file; a file of clips with it, and the degrees about
+    the vertical that it is seen from.
+
+    Options: `view` (``"auto"``, ``"front"``, ``"side"``, ``"three-quarter"`` or degrees, 0 front and 90 side), `up` (``"auto"``, ``"y"``
+    or ``"z"``), `joints` (by key point the joint or joints that tell it), `way` (whether the pelvis goes its way), `first` and `last`
+    frame from 0, `fps`.
+    """
+    given = {"character": character, "motion": name, **options}
+    made = json.loads(handles.take(handles.Text, "rototoon_import_motion", *text(motion), *as_json(given)))
+    return made["clips"], made["yaw"]
+
+
 def translate_clip(
     clips: Mapping[str, Any], *, style: str, motion: str, content: str, progress: Progress | None = None, **options: Any
 ) -> dict[str, Any]:

@@ -44,6 +44,7 @@ def draw_browser(layout, context) -> None:
     row.prop(listed, "character", text="", icon="USER")
     row.prop(listed, "motion", text="", icon="ACTION")
     row.operator("rototoon.refresh_clips", text="", icon="FILE_REFRESH")
+    row.operator("rototoon.import_motion", text="", icon="IMPORT")
     layout.template_list("ROTOTOON_UL_clips", "", listed, "clips", listed, "active", rows=4)
     found = clip_browser.shelf()
     for trouble in found.troubles if found is not None else ():
