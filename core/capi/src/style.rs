@@ -217,7 +217,7 @@ pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Resu
     if sub_keys > MOST_SUB_KEYS {
         return Err(Failure::Error(format!("options.sub_keys: found {sub_keys}, expected 0 to {MOST_SUB_KEYS}")));
     }
-    let how = puppet::Options { sub_keys };
+    let how = puppet::Options { sub_keys, ..puppet::Options::default() };
     let job = ReshapeJob { clip, fps: clips.fps, rest: given.rest, over: None, options: how, points: given.points() };
     run(given.threads, go_on, |progress| {
         let made = pipeline::reshape(&mut document, &job, progress).map_err(failed)?;

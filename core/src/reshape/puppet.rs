@@ -2,11 +2,11 @@
 //!
 //! A part is triangulated from its outline ([`super::triangulate`]). Mesh vertices near the key points of its limbs, and near
 //! samples of the limbs' splines (sub-key points, eq. 11), become handles. On a frame each handle's point on the spline at rest
-//! is moved with both key points and drawn to the new spline (eqs. 12 to 14, [`super::limb::follow`]); what lay between it and the
-//! vertex turns with the spline. The mesh follows as rigidly as possible ([`super::arap`]), and with it every point that it holds.
+//! goes to the same place along the new spline, its parameter; what lay between it and the vertex turns with the spline. The mesh follows as rigidly as possible ([`super::arap`]), and with it every point that it holds.
 //!
-//! The print moves sub-key points from frame to frame, which lets errors pile up, as it says itself. Here each frame starts from the
-//! drawing at rest. Without sub-key points ([`Options::sub_keys`] 0) this is plain as-rigid-as-possible manipulation by key points,
+//! The print moves sub-key points from frame to frame, which lets errors pile up, as it says itself: with both key points, and then
+//! to the nearest point of the new spline (eqs. 12 to 14, [`follow`]). Here each frame starts from the drawing at rest, and their
+//! places along the limb stay. Drawn to the nearest point ([`Options::printed`]) they slide together where a limb is curved much. Without sub-key points ([`Options::sub_keys`] 0) this is plain as-rigid-as-possible manipulation by key points,
 //! the comparison that the paper draws: between key points limbs then leave their splines. (Width across a sharp elbow is kept no
 //! better with sub-key points than without: they hold both limbs straight, and the inside of the bend is pressed together.)
 //!
@@ -32,11 +32,14 @@ const EDGES: f64 = 6.0;
 pub struct Options {
     /// Sub-key points of a limb; 0 for plain as-rigid-as-possible manipulation by key points.
     pub sub_keys: usize,
+    /// Whether sub-key points are drawn to the nearest point of their spline, as printed ([`follow`]), and not kept at their
+    /// place along it. On strongly curved limbs they then slide together.
+    pub printed: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { sub_keys: 5 }
+        Self { sub_keys: 5, printed: false }
     }
 }
 
@@ -106,6 +109,7 @@ enum Drive {
 pub struct Puppet {
     rest: Vec<LimbPose>,
     drive: Drive,
+    printed: bool,
 }
 
 impl Puppet {
@@ -128,7 +132,7 @@ impl Puppet {
                 points: points.to_vec(),
             }),
         };
-        Ok(Self { rest: rest.to_vec(), drive })
+        Ok(Self { rest: rest.to_vec(), drive, printed: options.printed })
     }
 
     /// Whether it moves without bending.
@@ -153,7 +157,7 @@ impl Puppet {
             }
             Drive::Mesh { solver, handles, held } => {
                 let places: Vec<Point> =
-                    handles.iter().map(|h| target(h, &self.rest[h.limb], &limbs[h.limb])).collect();
+                    handles.iter().map(|h| target(h, &self.rest[h.limb], &limbs[h.limb], self.printed)).collect();
                 let vertices = solver.solve(&places)?;
                 Ok(held.iter().map(|h| h.at(&vertices)).collect())
             }
@@ -162,10 +166,16 @@ impl Puppet {
 }
 
 /// Where a handle goes.
-fn target(handle: &Handle, rest: &LimbPose, now: &LimbPose) -> Point {
+fn target(handle: &Handle, rest: &LimbPose, now: &LimbPose, printed: bool) -> Point {
     let (before, after) = (rest.spline(), now.spline());
-    let on = follow(handle.on, rest.ends, now.ends, &after);
-    let turn = angle(&before, &after, before.nearest(handle.on).parameter, after.nearest(on).parameter);
+    let at = before.nearest(handle.on).parameter;
+    let (on, there) = if printed {
+        let on = follow(handle.on, rest.ends, now.ends, &after);
+        (on, after.nearest(on).parameter)
+    } else {
+        (after.point(at), at)
+    };
+    let turn = angle(&before, &after, at, there);
     on + Point::from_angle(turn).rotate(handle.offset)
 }
 
@@ -316,7 +326,7 @@ mod tests {
         let (outline, rest) = arm();
         let middle: Vec<Point> = (1..10).map(|k| v(10.0 * k as f64, 0.0)).collect();
         let strayed = |sub_keys: usize, limbs: &[LimbPose]| {
-            let options = Options { sub_keys };
+            let options = Options { sub_keys, ..Options::default() };
             let mut puppet = Puppet::new(&outline, &middle, &rest, &[carrier(0), carrier(1)], &options).unwrap();
             let away = |p: &Point| limbs.iter().map(|l| l.spline().nearest(*p).distance).fold(f64::INFINITY, f64::min);
             puppet.pose(limbs).unwrap().iter().map(away).sum::<f64>()

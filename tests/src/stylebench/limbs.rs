@@ -48,11 +48,12 @@ pub struct Bent {
 pub fn measure() -> Result<Vec<Bent>> {
     let mut found = Vec::new();
     for sub_keys in SUB_KEYS {
+        let options = Options { sub_keys, ..Options::default() };
         for across in ACROSS {
-            found.push(bent(sub_keys, "curve", across, &curved(across))?);
+            found.push(bent(options, "curve", across, &curved(across))?);
         }
         for degrees in ELBOWS {
-            found.push(bent(sub_keys, "elbow", degrees, &folded(degrees))?);
+            found.push(bent(options, "elbow", degrees, &folded(degrees))?);
         }
     }
     Ok(found)
@@ -87,13 +88,13 @@ fn sides(limbs: &[LimbPose; 2]) -> [Vec<Point>; 2] {
     [1.0, -1.0].map(|side| (0..PLACES).map(|k| place(k, side)).collect())
 }
 
-fn bent(sub_keys: usize, pose: &'static str, amount: f64, limbs: &[LimbPose; 2]) -> Result<Bent> {
+fn bent(options: Options, pose: &'static str, amount: f64, limbs: &[LimbPose; 2]) -> Result<Bent> {
     let rest = straight();
     let [left, right] = sides(&rest);
     let outline: Vec<Point> = left.iter().copied().chain(right.iter().rev().copied()).collect();
     let carriers = [0, 1].map(|limb| Carrier { limb, turn: 1.0, rigidity: 1.0, whole: false });
     let points: Vec<Point> = left.iter().chain(&right).copied().collect();
-    let mut puppet = Puppet::new(&outline, &points, &rest, &carriers, &Options { sub_keys })?;
+    let mut puppet = Puppet::new(&outline, &points, &rest, &carriers, &options)?;
     let found = puppet.pose(limbs)?;
     let (a, b) = found.split_at(PLACES);
     let squares = a.iter().zip(b).map(|(a, b)| (a.distance(*b) / WIDTH - 1.0).powi(2)).sum::<f64>();
@@ -102,7 +103,7 @@ fn bent(sub_keys: usize, pose: &'static str, amount: f64, limbs: &[LimbPose; 2])
     let curve = pose == "curve";
     let off = a.iter().zip(&truth[0]).chain(b.iter().zip(&truth[1])).map(|(a, b)| a.distance(*b)).sum::<f64>();
     Ok(Bent {
-        sub_keys,
+        sub_keys: options.sub_keys,
         pose,
         amount,
         width: (squares / PLACES as f64).sqrt(),
@@ -117,13 +118,17 @@ mod tests {
 
     #[test]
     fn a_limb_at_rest_is_the_true_one() {
-        let found = bent(5, "curve", 0.0, &straight()).unwrap();
+        let found = bent(Options::default(), "curve", 0.0, &straight()).unwrap();
         assert!(found.width < 1e-9 && found.off.unwrap() < 1e-8, "{found:?}");
     }
 
     #[test]
     fn sub_key_points_bring_a_curved_limb_nearer_to_the_truth() {
-        let off = |sub_keys| bent(sub_keys, "curve", 0.4, &curved(0.4)).unwrap().off.unwrap();
-        assert!(off(5) < 0.6 * off(0), "{} {}", off(5), off(0));
+        let off = |options| bent(options, "curve", 0.5, &curved(0.5)).unwrap().off.unwrap();
+        let own = off(Options::default());
+        let none = off(Options { sub_keys: 0, ..Options::default() });
+        assert!(own < 0.2 * none, "{own} {none}");
+        let printed = off(Options { printed: true, ..Options::default() });
+        assert!(own < 0.6 * printed, "those of the print slide together: {own} {printed}");
     }
 }

@@ -74,7 +74,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         None => None,
     };
     let sub_keys = given.get_one::<i64>("sub_keys").and_then(|n| usize::try_from(*n).ok());
-    let options = sub_keys.map_or_else(Options::default, |sub_keys| Options { sub_keys });
+    let options = sub_keys.map_or_else(Options::default, |sub_keys| Options { sub_keys, ..Options::default() });
     let rest = given.get_one::<FrameNumber>("rest").copied();
     let job = ReshapeJob { clip, fps: clips.fps, rest, over, options, points: Default::default() };
     let (document, made) = progress::run(arguments::threads(given), |bar| {
