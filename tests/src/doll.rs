@@ -3,6 +3,7 @@
 //! It has ten parts that go with the sample's limbs by name, and all its depths are 0: which part is in front follows from nine
 //! marks ([`MARKS`]) alone.
 
+use crate::sample::background;
 use crate::sample::ink::Canvas;
 use crate::sample::limbs::{limb, two_limbs};
 use crate::sample::outline::{Outline, strip};
@@ -12,7 +13,17 @@ use rototoon::geometry::Point;
 use rototoon::project::Document;
 use rototoon::scene::FrameNumber;
 use serde_json::{Map, Value, json};
+use std::path::Path;
 use tiny_skia::{Color, Pixmap};
+
+/// Writes the doll into a folder: `doll.json`, one drawing with limbs and marks, and its footage.
+pub fn write(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {folder:?}"))?;
+    let document = document()?;
+    let ground = background::paint(WIDTH, HEIGHT).context("no ground")?;
+    std::fs::write(folder.join("doll_0.png"), paint(ground, &document, 0).encode_png()?)?;
+    Ok(std::fs::write(folder.join("doll.json"), document.to_json())?)
+}
 
 /// Names of the parts in the order of the document, with their colours, 0xRRGGBB.
 pub const PARTS: [(&str, u32); 10] = [

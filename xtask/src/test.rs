@@ -5,6 +5,8 @@ use crate::generate::generate;
 use crate::python::{self, WHEELS, Wheel};
 use crate::shell::{capture, cargo, command, empty_folder, root, run, target, works};
 use anyhow::{Result, bail};
+use rototoon_tests::{doll, sample};
+use std::path::Path;
 use std::time::Instant;
 
 /// The package that is built apart: it compiles C++.
@@ -93,8 +95,10 @@ pub fn test(valgrind: bool) -> Result<()> {
         report.step("OpenFX host under valgrind", valgrind_tests);
     }
     report.step("Python tests", || python_tests(built.as_ref()));
+    let files = target().join("sample-files");
+    report.step("sample cartoon", || sample_files(&files).map(|()| None));
     for wheel in WHEELS {
-        report.step(&format!("Blender {}", wheel.blender), || blender_tests(wheel, built.as_ref()));
+        report.step(&format!("Blender {}", wheel.blender), || blender_tests(wheel, built.as_ref(), &files));
     }
     report.finish()
 }
@@ -155,8 +159,14 @@ fn python_tests(built: Option<&Bundle>) -> Result<Option<String>> {
     Ok(None)
 }
 
+/// The sample cartoon and the doll, which tests in Blender track and reshape.
+fn sample_files(folder: &Path) -> Result<()> {
+    sample::write(&folder.join("sample"))?;
+    doll::write(&folder.join("doll"))
+}
+
 /// pytest inside one Blender, with the zip installed in a configuration of its own.
-fn blender_tests(wheel: Wheel, built: Option<&Bundle>) -> Result<Option<String>> {
+fn blender_tests(wheel: Wheel, built: Option<&Bundle>, files: &Path) -> Result<Option<String>> {
     let Some(built) = built else { return Ok(Some("the bundle failed".into())) };
     let Some(python) = python::blender_venv(wheel)? else {
         return Ok(Some(format!("it needs Python {}, which was not found", wheel.python)));
@@ -168,6 +178,7 @@ fn blender_tests(wheel: Wheel, built: Option<&Bundle>) -> Result<Option<String>>
         .env("ROTOTOON_ZIP", &built.zip)
         .env("ROTOTOON_CLI", &built.cli)
         .env("ROTOTOON_ROOT", root())
+        .env("ROTOTOON_SAMPLE", files)
         .env("BLENDER_USER_RESOURCES", resources)
         // The library of the zip is what is tested.
         .env_remove("ROTOTOON_LIBRARY"))?;
