@@ -126,7 +126,7 @@ fn ofx_tests(built: Option<&Bundle>) -> Result<Option<String>> {
     Ok(None)
 }
 
-/// The same, watched by valgrind: what artists install, compiled as they get it, since tracking would else take an hour.
+/// The same, watched by valgrind, compiled as artists get it: under valgrind tracking would else take very long.
 fn valgrind_tests() -> Result<Option<String>> {
     if let Some(reason) = missing_package("valgrind", "valgrind").or_else(|| missing_package("c++", "g++")) {
         return Ok(Some(reason));
