@@ -4,10 +4,11 @@
 //! samples of the limbs' splines (sub-key points, eq. 11), become handles. On a frame each handle's point on the spline at rest
 //! goes to the same place along the new spline, its parameter; what lay between it and the vertex turns with the spline. The mesh follows as rigidly as possible ([`super::arap`]), and with it every point that it holds.
 //!
-//! The print moves sub-key points from frame to frame, which lets errors pile up, as it says itself: with both key points, and then
-//! to the nearest point of the new spline (eqs. 12 to 14, [`follow`]). Here each frame starts from the drawing at rest, and their
-//! places along the limb stay. Drawn to the nearest point ([`Options::printed`]) they slide together where a limb is curved much. Without sub-key points ([`Options::sub_keys`] 0) this is plain as-rigid-as-possible manipulation by key points,
-//! the comparison that the paper draws: between key points limbs then leave their splines. (Width across a sharp elbow is kept no
+//! The print moves sub-key points from frame to frame, which lets errors pile up, as it says itself: with both key points, and
+//! then to the nearest point of the new spline (eqs. 12 to 14, [`follow`]). Here each frame starts from the drawing at rest, and
+//! their places along the limb stay. Drawn to the nearest point ([`Options::printed`]) they slide together where a limb is curved
+//! much. Without sub-key points ([`Options::sub_keys`] 0) this is plain as-rigid-as-possible manipulation by key points, the
+//! comparison that the paper draws: between key points limbs then leave their splines. (Width across a sharp elbow is kept no
 //! better with sub-key points than without: they hold both limbs straight, and the inside of the bend is pressed together.)
 //!
 //! A part that its limbs carry *whole* (a head: its key points lie closer together than it is wide, and a skull neither stretches
