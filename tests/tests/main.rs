@@ -2,10 +2,12 @@
 //!
 //! - `documents`: reading and writing project documents, good and bad
 //! - `architecture`: which module may use which
+//! - `features`: nothing that packages share is compiled twice
 //! - `style`: from the sample cartoon's contours to another character's drawing in another manner
 //! - `bench_tracking`: the benchmark of tracking on a small scene
 
 mod architecture;
 mod bench_tracking;
 mod documents;
+mod features;
 mod style;

@@ -1,0 +1,3 @@
+//! Does nothing: only a package with a build script has build dependencies.
+
+fn main() {}

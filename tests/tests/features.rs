@@ -1,0 +1,43 @@
+//! Dependencies have the same features in whatever set of packages is built: else cargo compiles them again, and all
+//! that depends on them, in every run of `cargo xtask test`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::process::Command;
+
+/// The sets of features with which each dependency is compiled when cargo is given `selection`.
+fn features(selection: &[&str]) -> BTreeMap<String, BTreeSet<String>> {
+    let tree = Command::new(env!("CARGO"))
+        .args(["tree", "--quiet", "--locked", "--prefix", "none", "--no-dedupe", "--format", "{p}|{f}"])
+        .args(selection)
+        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+        .output()
+        .expect("cargo starts");
+    assert!(tree.status.success(), "{}", String::from_utf8_lossy(&tree.stderr));
+    let mut sets: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    let tree = String::from_utf8(tree.stdout).expect("names are UTF-8");
+    for line in tree.lines().filter(|line| !line.is_empty()) {
+        let (package, features) = line.split_once('|').expect("the format that was asked for");
+        sets.entry(package.to_owned()).or_default().insert(features.to_owned());
+    }
+    sets
+}
+
+/// What `selection` would compile that `all` has compiled with other features.
+fn compiled_again(all: &BTreeMap<String, BTreeSet<String>>, selection: &[&str]) -> Vec<String> {
+    let again = |(package, sets): (String, BTreeSet<String>)| {
+        let there = all.get(&package)?;
+        (!sets.is_subset(there)).then(|| format!("{package}: {sets:?}, in the workspace {there:?}"))
+    };
+    features(selection).into_iter().filter_map(again).collect()
+}
+
+#[test]
+fn no_dependency_is_compiled_again_for_the_commands_or_the_host() {
+    let all = features(&["--workspace", "--exclude", "rototoon-ofx-host", "--edges", "normal,build,dev"]);
+    assert!(all.len() > 100, "{} dependencies", all.len());
+    for selection in [["--package", "xtask"], ["--package", "rototoon-ofx-host"]] {
+        let edges = if selection[1] == "xtask" { "normal,build" } else { "normal,build,dev" };
+        let again = compiled_again(&all, &[&selection[..], &["--edges", edges]].concat());
+        assert!(again.is_empty(), "add to tests/features/Cargo.toml, for {selection:?}: {again:#?}");
+    }
+}
