@@ -22,7 +22,7 @@ mod join;
 mod motion;
 mod tracks;
 
-pub use check::BetweenError;
+pub use check::{BetweenError, SpacingError};
 pub use correspond::Places;
 pub use tracks::{Stand, Track};
 
