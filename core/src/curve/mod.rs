@@ -8,7 +8,7 @@
 //! - [`quadratic`]: a piece; evaluation, splitting, box, area
 //! - [`length`]: arc length and its inverse
 //! - [`nearest`]: the nearest point, a cubic
-//! - [`intersect`]: where two pieces meet, a quartic
+//! - [`intersect`]: where two pieces meet, a quartic; `straight`: straight ones
 //! - [`spline`]: the whole curve
 //! - [`convert`]: to and from Bézier curves
 //!
@@ -21,6 +21,7 @@ pub mod length;
 pub mod nearest;
 pub mod quadratic;
 pub mod spline;
+mod straight;
 
 pub use convert::{Cubic, NotUniform};
 pub use intersect::Meeting;

@@ -1,7 +1,7 @@
 //! In-betweens of drawings on key frames.
 //!
 //! 1. `tracks`: matched strokes are chained through all drawings, their places followed by proportional arc length
-//!    ([`correspond`]).
+//!    between corners ([`correspond`], `corners`).
 //! 2. [`super::peg::propose`]: strokes that move as one are groups, which hang on each other by hinges; `motion` carries
 //!    each group from key to key along arcs. Given pegs take their place.
 //! 3. `deform`: what of a stroke's change its group does not explain is a change of shape in the group's frame, as rigid as
@@ -16,6 +16,7 @@
 
 mod check;
 mod contacts;
+mod corners;
 mod correspond;
 mod deform;
 mod join;
@@ -209,8 +210,8 @@ impl Sequence {
         let moving: Vec<Moving> =
             tracks.iter().zip(&places).map(|(t, places)| Moving { places, closed: t.closed }).collect();
         let groups = propose::groups(&moving);
-        let durations: Vec<f64> =
-            keys.windows(2).map(|pair| f64::from(pair[1].frame) - f64::from(pair[0].frame)).collect();
+        let duration = |pair: &[Key]| f64::from(pair[1].frame) - f64::from(pair[0].frame);
+        let durations: Vec<f64> = keys.windows(2).map(duration).collect();
         let spacings: Vec<Spacing> = keys.iter().map(|key| key.spacing.clone()).collect();
         let corners: Vec<bool> = keys.iter().map(|key| key.corner).collect();
         let spans = durations.len();
@@ -227,10 +228,9 @@ impl Sequence {
         let mut sequence =
             Self { keys, tracks, motion, changes, local, contacts: vec![Vec::new(); spans], options: *options };
         if options.contacts {
-            sequence.contacts = (0..spans)
-                .into_par_iter()
-                .map(|k| if base.is_none_or(|base| base == k) { sequence.touching(k) } else { Vec::new() })
-                .collect();
+            let wanted = |k: &usize| base.is_none_or(|base| base == *k);
+            let touching = |k: usize| if wanted(&k) { sequence.touching(k) } else { Vec::new() };
+            sequence.contacts = (0..spans).into_par_iter().map(touching).collect();
         }
         Ok(sequence)
     }

@@ -27,7 +27,9 @@ mod start;
 use super::stroke::{BadPoint, Stroke, checked};
 use crate::scene::{Cancelled, Progress};
 use costs::{Figure, Rows, Ways};
+use movement::Movement;
 use outline::Way;
+use relaxation::Chosen;
 
 /// Rounds of matching and fitting of the movement around each stroke.
 const ROUNDS: usize = 3;
@@ -158,50 +160,67 @@ pub fn match_strokes(
     let fixed = fixed(first.len(), second.len(), by_hand)?;
     let (a, b) = (Figure::new(first), Figure::new(second));
     progress.report("matching strokes", 0.1)?;
-    let ways = Ways::new(&a, &b);
-    let whole = movement::of_whole(&a, &b, &ways, &fixed, options);
+    let (found, around) = chosen(&a, &b, &fixed, options, progress)?;
+    progress.report("matching strokes", 0.9)?;
+    let mut matching = laid_out(first, second, &found, &fixed);
+    pieces::find(first, second, &around, &fixed, &mut matching);
+    progress.report("matching strokes", 1.0)?;
+    Ok(matching)
+}
+
+/// Of each stroke its counterpart, if it has one, and how its surroundings move: found from each other in turn.
+fn chosen(
+    a: &Figure,
+    b: &Figure,
+    fixed: &[Fixed],
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<(Vec<Option<Chosen>>, Vec<Movement>), MatchingError> {
+    let ways = Ways::new(a, b);
+    let whole = movement::of_whole(a, b, &ways, fixed, options);
     let held = whole.movement;
-    let neighbours = relaxation::Neighbours::new(&a);
-    let mut around = vec![held; first.len()];
+    let neighbours = relaxation::Neighbours::new(a);
+    let mut around = vec![held; fixed.len()];
     let mut found = Vec::new();
     let mut known = whole.found.into_iter().flatten();
     for round in 0..ROUNDS {
         progress.report("matching strokes", 0.3 + 0.2 * round as f64)?;
         let next = known.next().unwrap_or_else(|| {
-            let rows = Rows::new((&a, &b), &ways, &around, &fixed, options);
-            relaxation::relaxed(&neighbours, &b, &rows, options).chosen
+            let rows = Rows::new((a, b), &ways, &around, fixed, options);
+            relaxation::relaxed(&neighbours, b, &rows, options).chosen
         });
         let last = std::mem::replace(&mut found, next);
         // The same pairs move their surroundings the same way again.
         if round > 0 && found == last {
             break;
         }
-        around = movement::around_each(&a, &b, &found, &held);
+        around = movement::around_each(a, b, &found, &held);
     }
-    progress.report("matching strokes", 0.9)?;
+    Ok((found, around))
+}
+
+/// The pairs, and the strokes that have none.
+fn laid_out(first: &[Stroke], second: &[Stroke], found: &[Option<Chosen>], fixed: &[Fixed]) -> Matching {
     let mut matching = Matching::default();
     let mut taken = vec![false; second.len()];
     for (from, choice) in found.iter().enumerate() {
-        match choice {
-            Some(choice) => {
-                taken[choice.to] = true;
-                let by_hand = fixed[from] == Fixed::To(choice.to);
-                matching.pairs.push(Pair {
-                    from,
-                    to: choice.to,
-                    reversed: choice.way.reversed,
-                    start: started(&first[from], &second[choice.to], &choice.way),
-                    confidence: if by_hand { 1.0 } else { choice.confidence },
-                    by_hand,
-                });
-            }
-            None => matching.vanished.push(from),
-        }
+        let Some(choice) = choice else {
+            matching.vanished.push(from);
+            continue;
+        };
+        taken[choice.to] = true;
+        let by_hand = fixed[from] == Fixed::To(choice.to);
+        matching.pairs.push(Pair {
+            from,
+            to: choice.to,
+            reversed: choice.way.reversed,
+            start: started(&first[from], &second[choice.to], &choice.way),
+            confidence: if by_hand { 1.0 } else { choice.confidence },
+            by_hand,
+        });
     }
     matching.appeared = (0..second.len()).filter(|&j| !taken[j]).collect();
-    pieces::find(first, second, &around, &fixed, &mut matching);
-    progress.report("matching strokes", 1.0)?;
-    Ok(matching)
+    matching
 }
 
 /// Where a stroke's first point lies on its counterpart.
