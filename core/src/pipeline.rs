@@ -94,8 +94,8 @@ pub fn frames(document: &Document, folder: &Path) -> Result<Sequence, PipelineEr
     Ok(Sequence::new(&document.scene.footage, folder)?)
 }
 
-/// Fits splines to the curves of a file, each by itself; the text of the file with guides in place of points. Runs on the
-/// caller's rayon pool; the result does not depend on it.
+/// Fits splines to the curves of a file, each by itself; the text of the file with guides in place of points. Runs on
+/// the caller's rayon pool; the result does not depend on it.
 pub fn fit_curves(curves: &Curves, options: &fit::Options, progress: &dyn Progress) -> Result<String, PipelineError> {
     let (all, done) = (curves.curves.len(), AtomicUsize::new(0));
     let fitted = curves.curves.par_iter().enumerate().map(|(curve, line)| {

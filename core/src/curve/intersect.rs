@@ -8,13 +8,14 @@
 //! (a × (X − p0))² + 4 D (b × (X − p0)) = 0,
 //!
 //! and with X the other piece's point, quadratic in u, this is a quartic in u. Its roots are the crossings; v follows
-//! from the first equation, and both are polished by Newton's method on B₁(u) = B₂(v). The more bent of the two pieces is
-//! made implicit, since D divides.
+//! from the first equation, and both are polished by Newton's method on B₁(u) = B₂(v). The more bent of the two pieces
+//! is made implicit, since D divides.
 //!
 //! **Degenerate cases.**
 //! - Straight pieces (D = 0 in proportion to the size): see [`super::straight`].
 //! - The same parabola: the quartic vanishes. The shared stretch, between ends of the two, is reported as an overlap.
-//! - Tangents: a double root, reported once. What is apart by less than the rounding of the coefficients counts as touching.
+//! - Tangents: a double root, reported once. What is apart by less than the rounding of the coefficients counts as
+//!   touching.
 //!
 //! Limits: two crossings closer together than about 1e-6 of the pieces' size may be reported as one.
 
@@ -209,8 +210,8 @@ fn same_parabola(one: &Quadratic, two: &Quadratic, size: f64) -> Option<Meeting>
 }
 
 impl Spline {
-    /// Where this spline meets another: pairs of the pieces' indices with how they meet. A meeting at a joint is reported for
-    /// the pieces on both of its sides.
+    /// Where this spline meets another: pairs of the pieces' indices with how they meet. A meeting at a joint is
+    /// reported for the pieces on both of its sides.
     pub fn intersect(&self, other: &Self) -> Vec<((usize, usize), Meeting)> {
         let theirs: Vec<_> = other.pieces().map(|piece| (piece, piece.bounds())).collect();
         let mut found = Vec::new();

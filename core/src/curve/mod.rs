@@ -12,8 +12,8 @@
 //! - [`spline`]: the whole curve
 //! - [`convert`]: to and from Bézier curves
 //!
-//! Coordinates are pixels, x right, y down, but nothing here depends on it. Inputs are finite points; [`Spline`] makes sure
-//! of it.
+//! Coordinates are pixels, x right, y down, but nothing here depends on it. Inputs are finite points; [`Spline`] makes
+//! sure of it.
 
 pub mod convert;
 pub mod intersect;

@@ -1,7 +1,7 @@
 //! Where pieces meet of which one or both are straight: what the quartic of [`super::intersect`] cannot tell.
 //!
-//! - A straight and a bent piece: the line's own equation replaces the quartic, giving a quadratic; the parameter on the line
-//!   is found along it. A straight piece may fold back on itself and then meet twice at one place.
+//! - A straight and a bent piece: the line's own equation replaces the quartic, giving a quadratic; the parameter on
+//!   the line is found along it. A straight piece may fold back on itself and then meet twice at one place.
 //! - Two straight pieces: points where the lines cross, a stretch where they lie on each other, fold by fold.
 //! - Pieces that are points: met where the other passes through.
 

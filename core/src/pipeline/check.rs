@@ -32,8 +32,8 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
     Ok(problems)
 }
 
-/// Everything that is wrong with a document's drawings, pairs and pegs: fields that are not as they must be, and, where all
-/// are, what tweening could not work with.
+/// Everything that is wrong with a document's drawings, pairs and pegs: fields that are not as they must be, and, where
+/// all are, what tweening could not work with.
 pub fn drawing_problems(document: &Document) -> Problems {
     let mut problems = Problems::default();
     let (read, wrong) = document.drawings_and_problems();

@@ -14,8 +14,8 @@ use crate::tween::peg::{Peg, PegKey, PegTree, Timing};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::{Value, json};
 
-/// Matches the strokes of a document's drawings and puts the drawings between them into it. Runs on the caller's rayon pool;
-/// the result does not depend on it.
+/// Matches the strokes of a document's drawings and puts the drawings between them into it. Runs on the caller's rayon
+/// pool; the result does not depend on it.
 pub fn tween(document: &mut Document, options: &Options, progress: &dyn Progress) -> Result<(), PipelineError> {
     let wrong = |error: &dyn std::fmt::Display| PipelineError::Tween(error.to_string());
     let read = document.drawings().map_err(|e| wrong(&e))?;

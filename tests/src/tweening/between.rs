@@ -82,8 +82,8 @@ pub struct PlaceErrors {
     pub worse: usize,
 }
 
-/// Where the contours of the first of two frames are looked for on the second, which has twice as many points on the same
-/// lines.
+/// Where the contours of the first of two frames are looked for on the second, which has twice as many points on the
+/// same lines.
 pub fn measure_places(set: &Set, (first, second): (i32, i32)) -> Result<PlaceErrors> {
     let (parts, mut keys) = drawings(set, &[first, second]);
     for stroke in &mut keys[1].strokes {
@@ -140,8 +140,8 @@ pub fn sequence(set: &Set, frames: &[i32], options: &Options) -> Result<(Vec<usi
     Ok((parts, Sequence::new(keys, &matchings, &GivenPegs::default(), options)?))
 }
 
-/// The errors of the strokes that move one way between some keys, each with the chart that suits it best: what remains is
-/// the way and the shape.
+/// The errors of the strokes that move one way between some keys, each with the chart that suits it best: what remains
+/// is the way and the shape.
 pub fn measure_one_way(set: &Set, frames: &[i32], options: &Options) -> Result<Errors> {
     let (parts, ours) = sequence(set, frames, options)?;
     let mut errors = Errors::default();
@@ -169,8 +169,8 @@ pub fn measure_one_way(set: &Set, frames: &[i32], options: &Options) -> Result<E
     Ok(errors)
 }
 
-/// Whether a contour goes from one key to the other, and on no frame between turns back or beyond them by more than a tenth
-/// of the way; and moves at all.
+/// Whether a contour goes from one key to the other, and on no frame between turns back or beyond them by more than a
+/// tenth of the way; and moves at all.
 fn is_one_way(part: &Contours, (from, to): (i32, i32)) -> bool {
     let (a, b) = (&part.points[&from], &part.points[&to]);
     let square: f64 = a.iter().zip(b).map(|(p, q)| p.distance_squared(*q)).sum();

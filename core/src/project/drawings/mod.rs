@@ -10,15 +10,15 @@
 //!     {"frame": 0, "shift": [x, y], "turn": 30, "scale": 1.2, "timing": "ease_in_out"}, "…"]}]
 //! ```
 //!
-//! - `drawings`: frames rising; strokes from behind to the front. `colour` (sRGB, 0 to 1), `material`, `layer` and `peg` may
-//!   be left out, and so may `corner`, a corner in time: velocities do not join there. `spacing` says how the movement to the
-//!   next drawing runs: `"smooth"` (also where it is left out), a movement function, or a spacing chart, the list of shares of
-//!   the way, one for each frame between.
-//! - A movement function is one of `"constant"` (a hold), `"linear"`, `"ease_in"`, `"ease_out"`, `"ease_in_out"`, `"cosine"`,
-//!   `"bounce"`, or `{"curve": [[time, share], …]}`, or `{"bounce": count}`.
+//! - `drawings`: frames rising; strokes from behind to the front. `colour` (sRGB, 0 to 1), `material`, `layer` and
+//!   `peg` may be left out, and so may `corner`, a corner in time: velocities do not join there. `spacing` says how the
+//!   movement to the next drawing runs: `"smooth"` (also where it is left out), a movement function, or a spacing
+//!   chart, the list of shares of the way, one for each frame between.
+//! - A movement function is one of `"constant"` (a hold), `"linear"`, `"ease_in"`, `"ease_out"`, `"ease_in_out"`,
+//!   `"cosine"`, `"bounce"`, or `{"curve": [[time, share], …]}`, or `{"bounce": count}`.
 //! - `pairs`: stroke `from` of the drawing on `frame` is stroke `to` of the next one, or none; by index from 0.
-//! - `pegs`: `turn` in degrees from x towards y, whole turns count; what is left out of a key is at rest, a `parent` that is
-//!   left out is none.
+//! - `pegs`: `turn` in degrees from x towards y, whole turns count; what is left out of a key is at rest, a `parent`
+//!   that is left out is none.
 //!
 //! Tweening writes, in place of those of an earlier run:
 //!
@@ -163,8 +163,8 @@ impl Document {
         problems.into_iter().next().map_or(Ok(read), Err)
     }
 
-    /// The drawings, pairs and pegs of the document, and every field of theirs that is not as it must be. What is wrong is
-    /// at its default among the rest, in its place.
+    /// The drawings, pairs and pegs of the document, and every field of theirs that is not as it must be. What is wrong
+    /// is at its default among the rest, in its place.
     pub fn drawings_and_problems(&self) -> (Drawings, Vec<DrawingsError>) {
         read::Reader::default().document(self)
     }

@@ -1,7 +1,7 @@
 //! Reads drawings, pairs and pegs of JSON values.
 //!
-//! What is wrong is noted, and reading goes on with the default in its place: indices stay what they are, and all that is
-//! wrong is found at once. What depends on a field that could not be read is not complained of again.
+//! What is wrong is noted, and reading goes on with the default in its place: indices stay what they are, and all that
+//! is wrong is found at once. What depends on a field that could not be read is not complained of again.
 
 use super::super::Document;
 use super::super::fields::{array, count, described, flag, frame, given, number, object, point, wrong};

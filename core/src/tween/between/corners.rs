@@ -1,18 +1,20 @@
-//! Corners to corners: where the shares of the length alone would take a corner of a stroke beside that of its counterpart.
+//! Corners to corners: where the shares of the length alone would take a corner of a stroke beside that of its
+//! counterpart.
 //!
-//! A stroke turns at a vertex by the angle between the chords to the places a little before and after it; of vertices that
-//! turn most among their neighbours and by more than [`LEAST_TURN`] each is a corner. Corners of both strokes are paired in
-//! order, by dynamic programming over all pairs that turn the same way and lie at nearly equal shares, for the greatest sum of
+//! A stroke turns at a vertex by the angle between the chords to the places a little before and after it; of vertices
+//! that turn most among their neighbours and by more than [`LEAST_TURN`] each is a corner. Corners of both strokes are
+//! paired in order, by dynamic programming over all pairs that turn the same way and lie at nearly equal shares, for
+//! the greatest sum of
 //!
 //! ```text
 //! min(|α|, |β|) − ½ |α − β| − STRETCH · |offset − offset of the pair before|
 //! ```
 //!
-//! with the turns α and β, and the offset, by how much the share of the one is larger than that of the other; before the first
-//! pair it is 0. Between paired corners (and the ends of open strokes) lengths are in proportion.
+//! with the turns α and β, and the offset, by how much the share of the one is larger than that of the other; before
+//! the first pair it is 0. Between paired corners (and the ends of open strokes) lengths are in proportion.
 //!
-//! The result is taken only if the best similarity then carries one stroke onto the other more exactly than it does by plain
-//! shares: on drawings whose corners are no counterparts nothing changes.
+//! The result is taken only if the best similarity then carries one stroke onto the other more exactly than it does by
+//! plain shares: on drawings whose corners are no counterparts nothing changes.
 
 use super::super::line::{Line, vertex_shares};
 use super::super::matching::Pair;
@@ -41,8 +43,8 @@ pub(super) struct Shares {
     closed: bool,
     reversed: bool,
     start: f64,
-    /// Rising pairs of shares, walked from the first point of the stroke and from its counterpart, between which lengths are
-    /// in proportion.
+    /// Rising pairs of shares, walked from the first point of the stroke and from its counterpart, between which
+    /// lengths are in proportion.
     knots: Vec<(f64, f64)>,
 }
 

@@ -1,8 +1,8 @@
 //! Which place of a stroke is which place of its counterpart: by proportional arc length (Yang et al. 1986, appendix F)
 //! between [`super::corners`] that are counterparts.
 //!
-//! An artist who drew a stroke with as many points as the other has meant them: where points of equal number lie at about
-//! equal shares of the lengths, those points themselves are taken.
+//! An artist who drew a stroke with as many points as the other has meant them: where points of equal number lie at
+//! about equal shares of the lengths, those points themselves are taken.
 
 use super::super::line::{Line, vertex_shares};
 use super::super::matching::Pair;

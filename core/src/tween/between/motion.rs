@@ -1,11 +1,12 @@
 //! How groups of strokes move from key to key.
 //!
-//! Each group ([`super::super::peg::propose`]) is carried from key to key by least-squares similarities; their product from
-//! the first key on is its pose: turn, logarithm of the scale, and where its pivot is. A group that hangs on another one is
-//! described in the frame of that one, so that a limb turns about its joint while the body moves. Between keys turn and
-//! logarithm change evenly along the path, and a root's pivot moves along an arc: a body that turns by φ on its way from A to
-//! B goes round the fixed point of that movement, at full strength, or, since a drawing seldom shows its pivot, less far
-//! ([`super::Options::arcs`]). Given pegs move as they are given, and take the place of groups.
+//! Each group ([`super::super::peg::propose`]) is carried from key to key by least-squares similarities; their product
+//! from the first key on is its pose: turn, logarithm of the scale, and where its pivot is. A group that hangs on
+//! another one is described in the frame of that one, so that a limb turns about its joint while the body moves.
+//! Between keys turn and logarithm change evenly along the path, and a root's pivot moves along an arc: a body that
+//! turns by φ on its way from A to B goes round the fixed point of that movement, at full strength, or, since a drawing
+//! seldom shows its pivot, less far ([`super::Options::arcs`]). Given pegs move as they are given, and take the place
+//! of groups.
 
 use super::super::peg::PegTree;
 use super::super::peg::propose::{Group, Moving};

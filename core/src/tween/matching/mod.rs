@@ -1,21 +1,22 @@
 //! Which stroke of one drawing is which of another.
 //!
-//! Nothing is assumed of the order, direction, starting point or number of points. Strokes look alike (arms, eyes, lines of
-//! a shade), and the drawing has moved; therefore the pairs are found together:
+//! Nothing is assumed of the order, direction, starting point or number of points. Strokes look alike (arms, eyes,
+//! lines of a shade), and the drawing has moved; therefore the pairs are found together:
 //!
 //! 1. `outline`: how well two shapes can be laid upon each other, and how.
 //! 2. `movement`: movements of the whole drawing are proposed and tried on its largest strokes.
 //! 3. `costs`: for each stroke the likely counterparts under the movement expected around it, and what each would cost.
-//! 4. `relaxation`: strokes that lie close together stay so. Graduated assignment (Gold & Rangarajan 1996): all choices are
-//!    kept, weighted, and each supports the choices of its neighbours that fit to it, while the weights sharpen.
+//! 4. `relaxation`: strokes that lie close together stay so. Graduated assignment (Gold & Rangarajan 1996): all choices
+//!    are kept, weighted, and each supports the choices of its neighbours that fit to it, while the weights sharpen.
 //! 5. An exact assignment ([`crate::numeric::sparse_assignment`]) on the costs that result, in which a stroke may stay
-//!    without counterpart at a price; from its pairs the movement around each stroke is fitted anew, and 3 to 5 repeated.
+//!    without counterpart at a price; from its pairs the movement around each stroke is fitted anew, and 3 to 5
+//!    repeated.
 //! 6. `pieces`: what is left over may be a piece of a stroke that was drawn in one go on the other drawing.
 //!
 //! Pairs made by hand are kept as they are, and count as neighbours for the others.
 //!
-//! Limits: two equal limbs that have changed places are told apart by what hangs on them, their layers and colours only. A
-//! disc does not show its turn: it is taken to have turned as what is around it.
+//! Limits: two equal limbs that have changed places are told apart by what hangs on them, their layers and colours
+//! only. A disc does not show its turn: it is taken to have turned as what is around it.
 
 mod costs;
 mod movement;
@@ -37,8 +38,8 @@ const ROUNDS: usize = 3;
 /// How to match.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Cost from which on a stroke stays without counterpart. It has no unit: unequal shapes, a place wrong by 0.7 of the
-    /// drawing's radius, a size wrong by 2.7, and neighbours that went elsewhere cost about 1 each.
+    /// Cost from which on a stroke stays without counterpart. It has no unit: unequal shapes, a place wrong by 0.7 of
+    /// the drawing's radius, a size wrong by 2.7, and neighbours that went elsewhere cost about 1 each.
     pub max_cost: f64,
     /// Farthest turn of the whole drawing, in radians.
     pub max_turn: f64,
@@ -70,8 +71,8 @@ pub struct Pair {
     pub to: usize,
     /// Whether the counterpart is walked backwards.
     pub reversed: bool,
-    /// Of closed strokes the share of the counterpart's length, walked forwards from its first point, at which the first
-    /// point of the other lies; 0 for open ones.
+    /// Of closed strokes the share of the counterpart's length, walked forwards from its first point, at which the
+    /// first point of the other lies; 0 for open ones.
     pub start: f64,
     /// How sure the pair is, 0 to 1; 1 for those made by hand.
     pub confidence: f64,
@@ -89,8 +90,8 @@ pub struct InPieces {
 }
 
 /// The strokes of two drawings side by side. Every stroke of the first stands in exactly one of `pairs`, `vanished` and
-/// `split` or is a piece in `joined`; every stroke of the second in one of `pairs`, `appeared` and `joined`, or is a piece
-/// in `split`.
+/// `split` or is a piece in `joined`; every stroke of the second in one of `pairs`, `appeared` and `joined`, or is a
+/// piece in `split`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Matching {
     /// One to one, by the index in the first drawing.

@@ -6,15 +6,15 @@
 //! p ↦ α(t) A(t) (p − O) + O + S(t)
 //! ```
 //!
-//! with the pivot O, shift S, turn A and scale α, and the pegs above it then move the result on. Under a parent that does not
-//! turn, the point relative to its centre is α₀ (α A P + S), equation (11). The paper leaves the turn of a parent out; here a
-//! peg turns all that hangs on it.
+//! with the pivot O, shift S, turn A and scale α, and the pegs above it then move the result on. Under a parent that
+//! does not turn, the point relative to its centre is α₀ (α A P + S), equation (11). The paper leaves the turn of a
+//! parent out; here a peg turns all that hangs on it.
 //!
 //! Between keys a [`Timing`] says how far a movement has come.
 //!
-//! - *Theorem 1* says that with scaling and shifts of constant speed a point moves along a straight line at constant speed.
-//!   As printed it holds where nothing hangs on a peg that scales; scalings that are multiplied bend the speed. (Equation
-//!   (12) is printed with x₂ − x₁ in place of x₂.)
+//! - *Theorem 1* says that with scaling and shifts of constant speed a point moves along a straight line at constant
+//!   speed. As printed it holds where nothing hangs on a peg that scales; scalings that are multiplied bend the speed.
+//!   (Equation (12) is printed with x₂ − x₁ in place of x₂.)
 //! - *Theorem 2*: moving the guiding points of a B-spline moves its curve, as for every affine map.
 //!
 //! [`propose`] finds pegs from strokes that moved.
@@ -145,8 +145,8 @@ impl PegTree {
     ///
     /// # Errors
     ///
-    /// What makes them none: parents that are not there or form a loop; pivots, shifts and turns that are no finite numbers
-    /// within ±1e9; scales below [`LEAST_SCALE`]; keys that do not rise; see [`PegError`].
+    /// What makes them none: parents that are not there or form a loop; pivots, shifts and turns that are no finite
+    /// numbers within ±1e9; scales below [`LEAST_SCALE`]; keys that do not rise; see [`PegError`].
     pub fn new(pegs: Vec<Peg>) -> Result<Self, PegError> {
         if let Some((_, error)) = problems(&pegs).into_iter().next() {
             return Err(error);
