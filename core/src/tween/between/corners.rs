@@ -7,14 +7,15 @@
 //! the greatest sum of
 //!
 //! ```text
-//! min(|α|, |β|) − ½ |α − β| − STRETCH · |offset − offset of the pair before|
+//! min(|α|, |β|) − |α − β| − STRETCH · |offset − offset of the pair before|
 //! ```
 //!
 //! with the turns α and β, and the offset, by how much the share of the one is larger than that of the other; before
 //! the first pair it is 0. Between paired corners (and the ends of open strokes) lengths are in proportion.
 //!
-//! The result is taken only if the best similarity then carries one stroke onto the other more exactly than it does by
-//! plain shares: on drawings whose corners are no counterparts nothing changes.
+//! The result is taken unless the best similarity carries one stroke onto the other much less exactly than it does by
+//! plain shares: that tells corners that are no counterparts. On truth contours of six cartoons this leaves two thirds
+//! of the distance that plain shares leave; to ask for a better similarity than theirs leaves nine tenths.
 
 use super::super::line::{Line, vertex_shares};
 use super::super::matching::Pair;
@@ -24,16 +25,16 @@ use crate::geometry::similarity::Similarity;
 
 /// Length of the chords as a share of the stroke's, and least distance of two corners.
 const REACH: f64 = 0.025;
-/// Least turn of a corner in radians: about 34°.
-const LEAST_TURN: f64 = 0.6;
+/// Least turn of a corner in radians: about 26°.
+const LEAST_TURN: f64 = 0.45;
 /// Radians that a difference of the offsets of neighbouring pairs by the whole length costs.
 const STRETCH: f64 = 8.0;
 /// Greatest offset.
 const FARTHEST: f64 = 0.2;
 /// Places at which both ways are compared.
 const SAMPLES: usize = 128;
-/// The share of the distance by plain shares that may be left.
-const BETTER: f64 = 0.995;
+/// Times the distance by plain shares that may be left: what is drawn out along its corners is no similar figure.
+const FITTING: f64 = 1.3;
 
 /// A corner: the share of the length walked to it, and the turn in radians.
 type Corner = (f64, f64);
@@ -76,7 +77,7 @@ impl Shares {
         let from: Vec<Point> = places.clone().map(|s| a.at(s)).collect();
         let off = |way: &Self| apart(&from, &places.clone().map(|s| b.at(way.at(s))).collect::<Vec<_>>());
         let plain = Self { knots: vec![(0.0, 0.0), (1.0, 1.0)], ..aligned };
-        if off(&aligned) < BETTER * off(&plain) { aligned } else { plain }
+        if off(&aligned) <= FITTING * off(&plain) { aligned } else { plain }
     }
 
     /// The share of the counterpart's length, from its own first point on, of a share of the stroke's.
@@ -146,7 +147,7 @@ fn paired(mine: &[Corner], theirs: &[Corner], closed: bool) -> Vec<(f64, f64)> {
     let mut steps: Vec<Step> = Vec::new();
     for &(s, alpha) in mine {
         for &(t, beta) in around.iter().filter(|(t, _)| (t - s).abs() <= FARTHEST) {
-            let likeness = alpha.abs().min(beta.abs()) - 0.5 * (alpha - beta).abs();
+            let likeness = alpha.abs().min(beta.abs()) - (alpha - beta).abs();
             if likeness <= 0.0 {
                 continue;
             }
@@ -273,7 +274,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn places_keep_their_order_and_fit_no_worse(
+        fn places_keep_their_order_and_fit_nearly_as_well(
             a in prop::collection::vec((-50.0f64..50.0, -50.0f64..50.0), 2..9),
             b in prop::collection::vec((-50.0f64..50.0, -50.0f64..50.0), 2..9),
             closed: bool, reversed: bool, start in 0.0f64..1.0,
@@ -296,7 +297,7 @@ mod tests {
             let places = || (0..SAMPLES).map(|k| k as f64 / SAMPLES as f64);
             let from: Vec<Point> = places().map(|s| one.at(s)).collect();
             let off = |way: &Shares| apart(&from, &places().map(|s| two.at(way.at(s))).collect::<Vec<_>>());
-            prop_assert!(off(&shares) <= off(&plain) * (1.0 + 1e-12));
+            prop_assert!(off(&shares) <= FITTING * off(&plain) * (1.0 + 1e-12));
         }
     }
 }
