@@ -6,7 +6,6 @@ does, and what is to be shown. Decisions go into the strokes at once (see `pairs
 
 from __future__ import annotations
 
-import colorsys
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +13,7 @@ import numpy as np
 from . import camera as cameras
 from . import grease_pencil as gp
 from . import keys as ks
-from . import pairs, sheets, tween, tweening
+from . import pairs, sheets, stroke_lines, tween, tweening
 from . import strokes as st
 from . import tween_records as records
 from .charts import Choices
@@ -23,6 +22,22 @@ REACH = 14.0
 """Pixels of the screen within which a click finds a stroke."""
 ALONE = (0.6, 0.6, 0.6)
 PICKED = (1.0, 1.0, 1.0)
+COLOURS = (
+    (0.90, 0.90, 0.00),
+    (0.72, 0.30, 1.00),
+    (1.00, 0.25, 0.20),
+    (0.00, 0.80, 1.00),
+    (0.10, 0.95, 0.10),
+    (1.00, 0.20, 0.85),
+    (1.00, 0.60, 0.20),
+    (0.38, 0.53, 1.00),
+    (0.40, 1.00, 0.75),
+    (0.85, 0.40, 0.60),
+    (0.55, 0.75, 0.15),
+    (0.85, 0.65, 1.00),
+)
+"""Far from each other, from white and from greys to the eye (the least distance in OKLab made as large as can be), each far
+from the four before it."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +81,7 @@ class _Layer:
     handles: tuple
     call: tweening.Call
     world: tuple[list[np.ndarray], list[np.ndarray]]
-    """By side the points of each stroke."""
+    """By side the line of each stroke."""
 
 
 class Pairing:
@@ -90,10 +105,7 @@ class Pairing:
         drawings = gp.drawings(layer)
         contents = [st.read(drawings[frame][0]) for frame in span]
         matrix = cameras.layer_to_world(self._ob, layer)
-        world = tuple(
-            np.split(c.point["position"] @ matrix[:3, :3].T + matrix[:3, 3], c.starts[1:-1]) if len(c.sizes) else []
-            for c in contents
-        )
+        world = tuple([line @ matrix[:3, :3].T + matrix[:3, 3] for line in stroke_lines.lines(c)] for c in contents)
         points = contents[0].point["position"]
         plane = sheets.Plane.of(points[np.isfinite(points).all(1)], [np.eye(4)])
         sheet = sheets.Sheet([layer.name], list(span), plane, {0: Choices("LINEAR")}, [Choices("LINEAR")])
@@ -223,22 +235,24 @@ class Pairing:
         return min(best.values(), key=lambda each: each[0])[1]
 
     def marks(self) -> list[Mark]:
-        """What is to be shown: every stroke once, pairs in the same colour with the same number."""
-        marks, number = [], 0
+        """What is to be shown: every stroke once, pairs in the same colour with the same number.
+
+        The number is that of the earlier key's stroke, so that it stays what it is whatever is decided of others.
+        """
+        marks: list[Mark] = []
         seen: set[Item] = set()
         whole: dict[Item, int] = {}
+        before = np.cumsum([0] + [len(layer.world[0]) for layer in self._layers])
         for row in self.pairs:
             items = [Item(row.layer, side, i) for side, i in enumerate((row.earlier, row.later)) if i >= 0]
             if row.kind in (tween.VANISHED, tween.APPEARED):
                 label, colour = "–", ALONE
             else:
                 # Pieces of one stroke share its number.
-                known = next((whole[each] for each in items if each in whole), None)
-                if known is None:
-                    number += 1
-                    known = number
-                whole.update(dict.fromkeys(items, known))
-                label, colour = str(known), colour_of(known)
+                own = int(before[row.layer]) + row.earlier + 1
+                number = next((whole[each] for each in items if each in whole), own)
+                whole.update(dict.fromkeys(items, number))
+                label, colour = str(number), colour_of(number)
             for item in items:
                 if item in seen:
                     continue
@@ -247,6 +261,11 @@ class Pairing:
                 shown = PICKED if item == self.picked else colour
                 marks.append(Mark(points, shown, item.side, label, row.by_hand))
         return marks
+
+    def keys(self) -> str:
+        """The keys that are matched, in words."""
+        spans = sorted({layer.frames for layer in self._layers})
+        return "Frames " + ", ".join(f"{first} to {last}" for first, last in spans)
 
     def summary(self) -> str:
         """What was found, in words."""
@@ -279,8 +298,8 @@ class _Change:
 
 
 def colour_of(number: int) -> tuple[float, float, float]:
-    """Colours that differ most between neighbouring numbers: the golden angle round the circle."""
-    return colorsys.hsv_to_rgb(number * 0.618034 % 1.0, 0.85 if number % 2 else 0.6, 1.0)
+    """The colour of a pair; those of neighbouring numbers differ much."""
+    return COLOURS[(number - 1) % len(COLOURS)]
 
 
 def on_screen(points: np.ndarray, matrix: np.ndarray, size: tuple[float, float]) -> np.ndarray:

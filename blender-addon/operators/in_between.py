@@ -44,7 +44,8 @@ class Tweening(Long):
 
     def finish(self, context, work) -> str:
         done = tweening.finish(self._ob, self._plan)
-        said = f"{done.drawings} in-betweens in {done.spans} spans" if done.spans else "Nothing had changed"
+        spans = "1 span" if done.spans == 1 else f"{done.spans} spans"
+        said = f"{done.drawings} in-betweens in {spans}" if done.spans else "Nothing had changed"
         if done.spans and self._plan.current:
             said += f", {self._plan.current} spans were as they should be"
         if done.keys:
@@ -97,7 +98,11 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
         max=1.0,
     )
     step: bpy.props.IntProperty(
-        name="On", description="Frames that a drawing stays: 1 is on ones, 2 on twos", default=1, min=1, soft_max=4
+        name="Frames Each",
+        description="Frames that a drawing stays: 1 is on ones, 2 on twos",
+        default=1,
+        min=1,
+        soft_max=4,
     )
     rigid: bpy.props.BoolProperty(
         name="Keep Shapes", description="Shapes bend and turn instead of shrinking through their middle", default=True
@@ -131,7 +136,7 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
         elif self.spacing == "BOUNCE":
             layout.prop(self, "bounces")
         elif self.spacing == "CURVE":
-            layout.prop(self, "curve")
+            layout.prop(self, "curve", placeholder="As drawn in the panel Tween")
         elif self.spacing == "SMOOTH":
             layout.prop(self, "rest")
         layout.prop(self, "arcs", slider=True)

@@ -19,7 +19,8 @@ class ROTOTOON_OT_match_strokes(bpy.types.Operator):
         "Find which stroke is which on the two keys around the current frame, and show it: click two strokes to pair them, "
         "Alt-click one to free it. What you decide is kept with the strokes, and in-betweens go by it"
     )
-    bl_options = {"REGISTER", "UNDO"}
+    # Not REGISTER: to do it anew with other settings would take back what was decided by hand.
+    bl_options = {"UNDO"}
 
     layers: bpy.props.EnumProperty(
         name="Layers",
@@ -29,6 +30,7 @@ class ROTOTOON_OT_match_strokes(bpy.types.Operator):
     )
 
     _overlay = None
+    _undone = None
     _timer = None
     _work = None
     _again = False
@@ -69,21 +71,25 @@ class ROTOTOON_OT_match_strokes(bpy.types.Operator):
             return {"CANCELLED"}
         self._overlay = pair_overlay.PairOverlay(self._pairing)
         self._start()
+        self._undone = Undone()
         self._timer = context.window_manager.event_timer_add(0.05, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
         """Called by Blender."""
+        if self._undone.happened:
+            self._close(context)
+            self.report({"WARNING"}, "Match Strokes ends, since something was undone meanwhile")
+            return {"CANCELLED"}
         if event.type == "TIMER":
             return self._tick(context)
         if event.type in {"ESC", "RIGHTMOUSE", "RET", "NUMPAD_ENTER"} and event.value == "PRESS":
             return self._leave(context)
         if event.type == "LEFTMOUSE":
             view = _view_at(context, event)
-            if view is None:
-                return {"PASS_THROUGH"}
-            if event.value == "PRESS":
+            # Buttons and menus would change the drawings underneath.
+            if view is not None and event.value == "PRESS":
                 self._clicked(context, event, *view)
             return {"RUNNING_MODAL"}
         if event.type == "Z" and event.ctrl and event.value == "PRESS":
@@ -99,7 +105,7 @@ class ROTOTOON_OT_match_strokes(bpy.types.Operator):
         changed = self._pairing.free(item) if event.alt else self._pairing.click(item)
         if changed:
             self._start()
-        pair_overlay.redraw()
+        self._overlay.refresh()
 
     def _start(self) -> None:
         """Finds the pairs anew, after those that are being found."""
@@ -112,7 +118,7 @@ class ROTOTOON_OT_match_strokes(bpy.types.Operator):
 
     def _tick(self, context):
         if self._work is None:
-            context.workspace.status_text_set(f"{self._pairing.summary()}.   {HELP}")
+            context.workspace.status_text_set(f"{self._pairing.keys()}: {self._pairing.summary()}.   {HELP}")
             return {"RUNNING_MODAL"}
         if not self._work.advance():
             context.workspace.status_text_set(f"Matching {self._work.fraction:4.0%}   {HELP}")
@@ -126,7 +132,7 @@ class ROTOTOON_OT_match_strokes(bpy.types.Operator):
             return self._leave(context)
         else:
             self._pairing.take(work.result)
-            pair_overlay.redraw()
+            self._overlay.refresh()
         return {"RUNNING_MODAL"}
 
     def _leave(self, context):
@@ -146,9 +152,11 @@ class ROTOTOON_OT_match_strokes(bpy.types.Operator):
         if self._work is not None:
             self._work.cancel()
             self._work.join()
-            if self._work.result is not None and not self._again:
+            if self._work.result is not None and not self._again and not self._undone.happened:
                 self._pairing.take(self._work.result)
             self._work = None
+        if self._undone is not None:
+            self._undone.stop()
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None
@@ -158,6 +166,27 @@ class ROTOTOON_OT_match_strokes(bpy.types.Operator):
             pair_overlay.redraw()
         if context.workspace is not None:
             context.workspace.status_text_set(None)
+
+
+class Undone:
+    """Notes whether anything is undone, in another window say: the drawings that were looked at are gone then."""
+
+    def __init__(self):
+        self.happened = False
+        for hooks in self._hooks():
+            hooks.append(self._note)
+
+    def stop(self) -> None:
+        """Stops listening."""
+        for hooks in self._hooks():
+            if self._note in hooks:
+                hooks.remove(self._note)
+
+    def _hooks(self):
+        return bpy.app.handlers.undo_pre, bpy.app.handlers.redo_pre
+
+    def _note(self, *_args) -> None:
+        self.happened = True
 
 
 def _view_at(context, event):

@@ -151,6 +151,14 @@ class ROTOTOON_PT_strokes(_Panel, bpy.types.Panel):
         column.operator("rototoon.hidden_lines", icon="MOD_MASK")
 
 
+SPACINGS = (
+    (("LINEAR", "Linear"), ("EASE_IN", "Ease In"), ("EASE_OUT", "Ease Out")),
+    (("EASE_IN_OUT", "In and Out"), ("BOUNCE", "Bounce")),
+    (("CHART", "Chart"), ("CURVE", "Curve")),
+)
+"""Rows of buttons that draw in-betweens with a spacing at once."""
+
+
 class ROTOTOON_PT_tween(_Panel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_tween"
     bl_label = "Tween"
@@ -161,23 +169,20 @@ class ROTOTOON_PT_tween(_Panel, bpy.types.Panel):
 
     def draw(self, context):
         layout = self.layout
-        layout.operator("rototoon.match_strokes", icon="UV_SYNC_SELECT")
+        row = layout.row(align=True)
+        row.operator("rototoon.match_strokes", icon="UV_SYNC_SELECT").layers = "ALL"
+        side = row.row(align=True)
+        side.ui_units_x = 4
+        side.operator("rototoon.match_strokes", text="Active").layers = "ACTIVE"
         column = layout.column(align=True)
         row = column.row(align=True)
         row.scale_y = 1.5
         row.operator("rototoon.in_between", icon="IPO_EASE_IN_OUT").frames = "CURRENT"
-        grid = column.grid_flow(columns=3, align=True, even_columns=True)
-        for spacing, name in (
-            ("LINEAR", "Linear"),
-            ("EASE_IN", "Ease In"),
-            ("EASE_OUT", "Ease Out"),
-            ("EASE_IN_OUT", "In and Out"),
-            ("BOUNCE", "Bounce"),
-            ("CHART", "Chart"),
-            ("CURVE", "Curve"),
-        ):
-            button = grid.operator("rototoon.in_between", text=name)
-            button.frames, button.spacing = "CURRENT", spacing
+        for spacings in SPACINGS:
+            row = column.row(align=True)
+            for spacing, name in spacings:
+                button = row.operator("rototoon.in_between", text=name)
+                button.frames, button.spacing = "CURRENT", spacing
         node = spacing_curve.node()
         if node is not None:
             layout.template_curve_mapping(node, "mapping")

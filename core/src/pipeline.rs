@@ -1,13 +1,15 @@
 //! The stages joined: from a document and the folder of its footage to a fuller document, pictures or text.
 //!
-//! This is the only file that knows all stages. A stage's result enters the document as a whole or, after an error or
+//! This is the only folder that knows all stages. A stage's result enters the document as a whole or, after an error or
 //! when cancelled, not at all.
 
+mod check;
 mod reshape;
 pub mod spans;
 mod style;
 mod tween;
 
+pub use check::{check, drawing_problems};
 pub use reshape::{ReshapeJob, Reshaped, reshape};
 pub use style::{CapturedClip, ClipJob, clip, translate};
 pub use tween::{pegs_of, spacing_of, tween};
@@ -19,7 +21,7 @@ use crate::image::Sequence;
 use crate::import::{self, ImportError};
 use crate::project::curves::{CurveGuides, Curves};
 use crate::project::save::DECIMALS;
-use crate::project::{Document, Problems, WriteError, output, validate, write_whole};
+use crate::project::{Document, WriteError, output, validate, write_whole};
 use crate::render::{self, EncodeError, Format, OverlayOptions};
 use crate::scene::{Cancelled, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
 use crate::snap::{SnapError, SnapOptions, snap_scene};
@@ -92,8 +94,8 @@ pub fn frames(document: &Document, folder: &Path) -> Result<Sequence, PipelineEr
     Ok(Sequence::new(&document.scene.footage, folder)?)
 }
 
-/// Fits splines to the curves of a file, each by itself; the text of the file with guides in place of points. Runs on the
-/// caller's rayon pool; the result does not depend on it.
+/// Fits splines to the curves of a file, each by itself; the text of the file with guides in place of points. Runs on
+/// the caller's rayon pool; the result does not depend on it.
 pub fn fit_curves(curves: &Curves, options: &fit::Options, progress: &dyn Progress) -> Result<String, PipelineError> {
     let (all, done) = (curves.curves.len(), AtomicUsize::new(0));
     let fitted = curves.curves.par_iter().enumerate().map(|(curve, line)| {
@@ -332,24 +334,6 @@ pub fn import(document: &mut Document, text: &str, format: ShapeFormat) -> Resul
     };
     import::into_scene(&mut document.scene, found.shapes);
     Ok(found.warnings)
-}
-
-/// Everything that is wrong with a document that lies in `folder` and with its frames: each is read.
-pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Result<Problems, PipelineError> {
-    let mut problems = document.problems();
-    let sequence = Sequence::keeping(&document.scene.footage, folder, 0)?;
-    let numbers: Vec<FrameNumber> = (document.scene.footage.first..=document.scene.footage.last).collect();
-    let mut done = 0;
-    progress.report("Reading frames", 0.0)?;
-    for batch in numbers.chunks(rayon::current_num_threads().max(1)) {
-        let errors: Vec<Option<FrameError>> = batch.par_iter().map(|&frame| sequence.picture(frame).err()).collect();
-        for error in errors.into_iter().flatten() {
-            problems.error("footage", error.to_string());
-        }
-        done += batch.len();
-        progress.report("Reading frames", done as f64 / numbers.len() as f64)?;
-    }
-    Ok(problems)
 }
 
 /// Rewrites a relative footage pattern of a document that moves from folder `from` to folder `to`, so that it names the

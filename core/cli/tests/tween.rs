@@ -96,10 +96,13 @@ fn what_is_wrong_is_named_and_nothing_is_written() {
         assert!(!out.exists());
     };
     bad(&|f| f["drawings"] = json!([]), "drawings: found 0, expected at least two");
-    bad(&|f| f["drawings"][1]["frame"] = json!(2), "drawings[1].frame: found 2, expected more than 2");
-    bad(&|f| f["drawings"][0]["spacing"] = json!("fast"), "drawings[0].spacing: found \"fast\"");
+    bad(&|f| f["drawings"][1]["frame"] = json!(2), "drawings[1] (frame 2).frame: found 2, expected more than 2");
+    bad(&|f| f["drawings"][0]["spacing"] = json!("fast"), "drawings[0] (frame 2).spacing: found \"fast\"");
     bad(&|f| f["drawings"][0]["spacing"] = json!([0.5]), "has 1 shares, expected one for each of 3 frames");
-    bad(&|f| f["pairs"] = json!([{"frame": 2, "from": 9, "to": 0}]), "pair 0: found stroke 9 of the first drawing");
+    bad(
+        &|f| f["pairs"] = json!([{"frame": 2, "from": 9, "to": 0}]),
+        "pairs[0] (frame 2).from: found 9, expected the index of one of the 2 strokes",
+    );
     let pegs = |keys: Value| {
         json!([{"name": "a", "parent": "b", "pivot": [0, 0], "keys": keys}, {"name": "b", "parent": "a",
         "pivot": [0, 0], "keys": []}])
@@ -108,4 +111,47 @@ fn what_is_wrong_is_named_and_nothing_is_written() {
     bad(&|f| f["pegs"] = pegs(json!([{"frame": 2, "scale": 0}])), "peg \"a\", frame 2: scale is 0");
     let wrong_use = tween(Path::new("none.json"), Path::new("out.json"), &["--arcs", "2"]);
     assert_eq!(wrong_use.status.code(), Some(2));
+}
+
+#[test]
+fn check_finds_all_that_is_wrong_with_drawings_pairs_and_pegs() {
+    let check = |path: &Path| {
+        let output = Command::new(env!("CARGO_BIN_EXE_rototoon")).arg("check").arg(path).output().unwrap();
+        // The frames of the footage are not there, which is said too.
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let start = format!(": {}: ", path.display());
+        let lines: Vec<String> =
+            said.lines().filter(|l| !l.contains("footage: ")).map(|l| l.replacen(&start, " ", 1)).collect();
+        (output.status.code(), lines)
+    };
+    let (_folder, path) = project(two_drawings());
+    assert_eq!(check(&path).1, ["warning parts: there is no part, so there is nothing to track"]);
+    let mut fields = two_drawings();
+    fields["drawings"][0]["spacing"] = json!("fast");
+    fields["pegs"] = json!([{"name": "a", "parent": "a", "pivot": [0, 0], "keys": [{"frame": 2, "scale": 0}]}]);
+    let (_folder, path) = project(fields.clone());
+    assert_eq!(
+        check(&path).1[1..],
+        [
+            "error drawings[0] (frame 2).spacing: found \"fast\", expected a movement function: constant, linear, ease_in, \
+             ease_out, ease_in_out, cosine or bounce",
+            "error pegs[0] \"a\".keys[0] (frame 2).scale: found 0, expected a number from 1e-6 to 1e9",
+            "error pegs[0] \"a\".parent: the peg hangs on itself, by way of its parents",
+            "warning pegs[0] \"a\": no stroke hangs on the peg, so it has no effect",
+        ]
+    );
+    fields["pairs"] = json!([{"frame": 2, "from": 5, "to": 0}]);
+    fields["limbs"] = json!([7]);
+    let (_folder, path) = project(fields);
+    assert_eq!(
+        check(&path).1[1..],
+        [
+            "error limbs[0]: found 7, expected an object",
+            "error pairs[0] (frame 2).from: found 5, expected the index of one of the 2 strokes on frame 2",
+        ]
+    );
+    // JSON has no such number; the reader says where it stands.
+    fs::write(&path, fs::read_to_string(&path).unwrap().replacen("130.0", "NaN", 1)).unwrap();
+    let (code, lines) = check(&path);
+    assert!(code == Some(1) && lines.len() == 1 && lines[0].starts_with("error line 1, column "), "{lines:?}");
 }

@@ -1,16 +1,17 @@
 //! To and from Bézier curves.
 //!
-//! **Out.** A spline's pieces are quadratic Bézier curves as they are; of a quadratic p0, p1, p2 the cubic with inner control
-//! points a third of the way from p1 to the ends is the same curve (degree elevation).
+//! **Out.** A spline's pieces are quadratic Bézier curves as they are; of a quadratic p0, p1, p2 the cubic with inner
+//! control points a third of the way from p1 to the ends is the same curve (degree elevation).
 //!
-//! **Cubic to quadratics.** A cubic c0 … c3 and the quadratic with the same ends and middle point (3 c1 + 3 c2 − c0 − c3)/4
-//! differ by (c3 − 3 c2 + 3 c1 − c0) u(u − ½)(u − 1), whose factor in u is at most √3/36 (Sederberg, *Computer Aided
-//! Geometric Design*, §2). Of n equal parts the third difference falls as n⁻³, so n = ⌈∛(√3/36 · |third difference| /
-//! tolerance)⌉ parts keep the tolerance, pointwise in the parameter. The parts join in position and, because the middle
-//! control points of equal parts of one cubic lie on its tangents only up to third order, not exactly in direction.
+//! **Cubic to quadratics.** A cubic c0 … c3 and the quadratic with the same ends and middle point (3 c1 + 3 c2 − c0 −
+//! c3)/4 differ by (c3 − 3 c2 + 3 c1 − c0) u(u − ½)(u − 1), whose factor in u is at most √3/36 (Sederberg, *Computer
+//! Aided Geometric Design*, §2). Of n equal parts the third difference falls as n⁻³, so n = ⌈∛(√3/36 · |third
+//! difference| / tolerance)⌉ parts keep the tolerance, pointwise in the parameter. The parts join in position and,
+//! because the middle control points of equal parts of one cubic lie on its tangents only up to third order, not
+//! exactly in direction.
 //!
-//! **In.** A chain of quadratics is a uniform spline exactly where each joint is the midpoint of the middle control points
-//! around it ([`Spline::from_quadratics`]). Any other chain has to be fitted to a tolerance, see [`crate::fit`].
+//! **In.** A chain of quadratics is a uniform spline exactly where each joint is the midpoint of the middle control
+//! points around it ([`Spline::from_quadratics`]). Any other chain has to be fitted to a tolerance, see [`crate::fit`].
 
 use super::{Quadratic, Spline, SplineError};
 use crate::geometry::Point;
@@ -93,8 +94,8 @@ pub enum NotUniform {
 }
 
 impl Spline {
-    /// The spline whose pieces these are, if joints are off the midpoints by at most `tolerance` pixels. The result is then
-    /// within the tolerance of the pieces.
+    /// The spline whose pieces these are, if joints are off the midpoints by at most `tolerance` pixels. The result is
+    /// then within the tolerance of the pieces.
     pub fn from_quadratics(pieces: &[Quadratic], closed: bool, tolerance: f64) -> Result<Self, NotUniform> {
         let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return Err(SplineError::Empty.into()) };
         let middle = pieces.iter().map(|piece| piece.p1);

@@ -1,15 +1,15 @@
 //! Arc length of a parabola piece in closed form, and the parameter at a given length.
 //!
-//! With B′(u) = 2(b + a u) the speed is 2√(A u² + 2B u + C), A = a·a, B = a·b, C = b·b. Completing the square, v = u + B/A
-//! and k = |a × b|/A (as AC − B² = (a × b)²), it is 2√A √(v² + k²), whose integral is elementary:
+//! With B′(u) = 2(b + a u) the speed is 2√(A u² + 2B u + C), A = a·a, B = a·b, C = b·b. Completing the square, v = u +
+//! B/A and k = |a × b|/A (as AC − B² = (a × b)²), it is 2√A √(v² + k²), whose integral is elementary:
 //!
 //! L = √A [ v √(v² + k²) + k² asinh(v/k) ], from v = B/A to v = 1 + B/A.
 //!
 //! This is the formula that Yang et al. 1986 give in Appendix F, whose print lost signs and powers.
 //!
 //! **The straight limit.** As the piece tends to even travel along a line, A → 0 and v → ∞: two large numbers are
-//! subtracted. For |v| > [`FAR`] the speed is so smooth (its nearest singularity is more than `FAR` piece lengths away) that
-//! five Gauss–Legendre nodes are exact to rounding: their error falls as ρ⁻¹⁰, ρ ≈ 4 `FAR`. Folded straight pieces
+//! subtracted. For |v| > [`FAR`] the speed is so smooth (its nearest singularity is more than `FAR` piece lengths away)
+//! that five Gauss–Legendre nodes are exact to rounding: their error falls as ρ⁻¹⁰, ρ ≈ 4 `FAR`. Folded straight pieces
 //! (k = 0) are the other limit: k² asinh(v/k) → 0.
 //!
 //! The inverse is found by Newton's method on the length, whose derivative is the speed, kept within a bracket.

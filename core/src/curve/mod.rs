@@ -8,12 +8,12 @@
 //! - [`quadratic`]: a piece; evaluation, splitting, box, area
 //! - [`length`]: arc length and its inverse
 //! - [`nearest`]: the nearest point, a cubic
-//! - [`intersect`]: where two pieces meet, a quartic
+//! - [`intersect`]: where two pieces meet, a quartic; `straight`: straight ones
 //! - [`spline`]: the whole curve
 //! - [`convert`]: to and from Bézier curves
 //!
-//! Coordinates are pixels, x right, y down, but nothing here depends on it. Inputs are finite points; [`Spline`] makes sure
-//! of it.
+//! Coordinates are pixels, x right, y down, but nothing here depends on it. Inputs are finite points; [`Spline`] makes
+//! sure of it.
 
 pub mod convert;
 pub mod intersect;
@@ -21,6 +21,7 @@ pub mod length;
 pub mod nearest;
 pub mod quadratic;
 pub mod spline;
+mod straight;
 
 pub use convert::{Cubic, NotUniform};
 pub use intersect::Meeting;

@@ -1,12 +1,13 @@
 //! The point of a parabola piece that is nearest to a given one.
 //!
-//! At an inner nearest point the error is perpendicular to the tangent, (B(u) − p) · B′(u) = 0: with d = p0 − p a cubic,
+//! At an inner nearest point the error is perpendicular to the tangent, (B(u) − p) · B′(u) = 0: with d = p0 − p a
+//! cubic,
 //!
 //! d·b + (d·a + 2 b·b) u + 3 a·b u² + a·a u³ = 0.
 //!
-//! Its roots between 0 and 1 and both ends are all candidates (up to three inner ones: two nearest points and a farthest
-//! between them). Straight pieces, folded pieces and points are the cases a ∥ b and a = 0, which the root finder takes
-//! like any other: no case of its own.
+//! Its roots between 0 and 1 and both ends are all candidates (up to three inner ones: two nearest points and a
+//! farthest between them). Straight pieces, folded pieces and points are the cases a ∥ b and a = 0, which the root
+//! finder takes like any other: no case of its own.
 
 use super::{Quadratic, Spline};
 use crate::geometry::Point;

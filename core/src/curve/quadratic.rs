@@ -48,8 +48,8 @@ impl Quadratic {
         self.coefficients().0 * 2.0
     }
 
-    /// Unit direction of travel at `u`. Where the piece comes to rest (a corner), the direction from which it comes or in
-    /// which it goes; zero of a piece that is a point.
+    /// Unit direction of travel at `u`. Where the piece comes to rest (a corner), the direction from which it comes or
+    /// in which it goes; zero of a piece that is a point.
     pub fn direction(&self, u: f64) -> Point {
         let here = self.derivative(u).normalize_or_zero();
         if here != Point::ZERO {
@@ -59,7 +59,8 @@ impl Quadratic {
         towards.normalize_or_zero()
     }
 
-    /// Signed curvature in 1/px, positive where it turns from x towards y; infinite or not a number where the piece rests.
+    /// Signed curvature in 1/px, positive where it turns from x towards y; infinite or not a number where the piece
+    /// rests.
     pub fn curvature(&self, u: f64) -> f64 {
         let first = self.derivative(u);
         first.perp_dot(self.second_derivative()) / first.length().powi(3)

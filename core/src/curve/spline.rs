@@ -3,13 +3,14 @@
 //! **Closed.** Guiding points G_0 … G_{n−1}, indices modulo n. Piece i is the parabola P_i, G_i, P_{i+1} with
 //! P_i = (G_{i−1} + G_i)/2: n guides, n pieces.
 //!
-//! **Open.** The curve starts at its first and ends at its last guiding point: piece i is the parabola about G_{i+1}, and the
-//! first and last midpoint give way to the end itself. So n ≥ 3 guides make n − 2 pieces, three guides are one Bézier
-//! parabola, two a line, one a point. This is the uniform B-spline of order three with clamped ends (what other programs
-//! call a NURBS curve of order 3 with end points), and a doubled end guide makes the straight start that the paper draws.
+//! **Open.** The curve starts at its first and ends at its last guiding point: piece i is the parabola about G_{i+1},
+//! and the first and last midpoint give way to the end itself. So n ≥ 3 guides make n − 2 pieces, three guides are one
+//! Bézier parabola, two a line, one a point. This is the uniform B-spline of order three with clamped ends (what other
+//! programs call a NURBS curve of order 3 with end points), and a doubled end guide makes the straight start that the
+//! paper draws.
 //!
-//! **Corners.** A guiding point that is given twice lies on the curve, which arrives and leaves in straight halves of the
-//! polygon's legs and may turn at any angle (Pavlidis 1982). Three times and more change nothing about the shape.
+//! **Corners.** A guiding point that is given twice lies on the curve, which arrives and leaves in straight halves of
+//! the polygon's legs and may turn at any angle (Pavlidis 1982). Three times and more change nothing about the shape.
 //!
 //! The parameter t runs from 0 to the number of pieces; piece ⌊t⌋ at u = t − ⌊t⌋.
 
@@ -98,7 +99,8 @@ impl Spline {
         (0..self.piece_count()).map(|i| self.piece(i))
     }
 
-    /// The piece of a parameter and the place on it. Beyond the ends an open spline's are taken; a closed one goes round.
+    /// The piece of a parameter and the place on it. Beyond the ends an open spline's are taken; a closed one goes
+    /// round.
     pub fn locate(&self, t: f64) -> (usize, f64) {
         let count = self.piece_count();
         let t = if self.closed && !(0.0..=count as f64).contains(&t) { t.rem_euclid(count as f64) } else { t };
@@ -125,8 +127,8 @@ impl Spline {
         self.piece(i).second_derivative()
     }
 
-    /// Guides that bear on the point at `t`, and their weights, which sum to one. What else the guides carry (a radius, a
-    /// colour) is blended by the same weights.
+    /// Guides that bear on the point at `t`, and their weights, which sum to one. What else the guides carry (a radius,
+    /// a colour) is blended by the same weights.
     pub fn weights(&self, t: f64) -> [(usize, f64); 3] {
         let (i, u) = self.locate(t);
         let [before, about, after] = self.support(i);
@@ -164,8 +166,8 @@ impl Spline {
         })
     }
 
-    /// Exact signed area in px², positive where the curve runs clockwise on the screen (x right, y down); an open one is
-    /// closed by a straight line.
+    /// Exact signed area in px², positive where the curve runs clockwise on the screen (x right, y down); an open one
+    /// is closed by a straight line.
     pub fn area(&self) -> f64 {
         // About a point of the curve, so that a curve far from the origin keeps its digits.
         let origin = self.guides[0];
@@ -174,8 +176,8 @@ impl Spline {
         swept.sum::<f64>() + 0.5 * end.perp_dot(start)
     }
 
-    /// Index of the first guide of each corner: of those that are followed by a copy of themselves, and are not the ends of
-    /// an open curve.
+    /// Index of the first guide of each corner: of those that are followed by a copy of themselves, and are not the
+    /// ends of an open curve.
     pub fn corners(&self) -> Vec<usize> {
         let n = self.guides.len();
         let same = |i: usize| self.guides[i] == self.guides[(i + 1) % n];
@@ -186,8 +188,8 @@ impl Spline {
         (0..last).filter(|&i| same(i) && begins(i) && inner(i)).collect()
     }
 
-    /// The pieces before and after parameter `t`, those of length zero in the parameter left out. A part of a piece is not a
-    /// piece of a uniform spline, therefore these are Bézier pieces. A closed curve is cut at its start too.
+    /// The pieces before and after parameter `t`, those of length zero in the parameter left out. A part of a piece is
+    /// not a piece of a uniform spline, therefore these are Bézier pieces. A closed curve is cut at its start too.
     pub fn split(&self, t: f64) -> (Vec<Quadratic>, Vec<Quadratic>) {
         let (cut, u) = self.locate(t);
         let mut pieces = self.pieces();
@@ -202,8 +204,8 @@ impl Spline {
         (before, after)
     }
 
-    /// The same curve with each piece halved: twice the pieces (knot insertion; Chaikin 1974). The curve is the same, at
-    /// twice the parameter.
+    /// The same curve with each piece halved: twice the pieces (knot insertion; Chaikin 1974). The curve is the same,
+    /// at twice the parameter.
     pub fn refined(&self) -> Self {
         let (g, n) = (&self.guides, self.guides.len());
         let quarters = |i: usize| [g[i].lerp(g[(i + 1) % n], 0.25), g[i].lerp(g[(i + 1) % n], 0.75)];
@@ -227,7 +229,8 @@ impl Spline {
         Self { guides: self.guides.iter().rev().copied().collect(), closed: self.closed }
     }
 
-    /// The points at `per_piece` even parameter steps of each piece, for display. An open curve's ends are both among them.
+    /// The points at `per_piece` even parameter steps of each piece, for display. An open curve's ends are both among
+    /// them.
     pub fn flattened(&self, per_piece: usize) -> Vec<Point> {
         let step = 1.0 / per_piece.max(1) as f64;
         let mut points: Vec<_> =

@@ -1,8 +1,8 @@
 //! What points carry besides their place (pressure, radius, opacity), carried over to guiding points.
 //!
-//! The curve is known, and with it each point's parameter and the weights of the guides there: an attribute's values at the
-//! guides are the linear least squares of the same blend, one banded system a channel. A small weight on the difference of
-//! neighbours decides where no point speaks for a guide, and damps noise no more than that.
+//! The curve is known, and with it each point's parameter and the weights of the guides there: an attribute's values at
+//! the guides are the linear least squares of the same blend, one banded system a channel. A small weight on the
+//! difference of neighbours decides where no point speaks for a guide, and damps noise no more than that.
 
 use crate::curve::Spline;
 use crate::numeric::banded::BandMatrix;

@@ -1,12 +1,12 @@
 //! The error of a fit as a bound that holds on the whole continuous curve, both ways.
 //!
-//! **Points to curve.** The distance from each point to its foot on the curve: an upper bound of its distance to the curve
-//! whatever the foot, tight since the feet are looked up exactly on their piece and its neighbours.
+//! **Points to curve.** The distance from each point to its foot on the curve: an upper bound of its distance to the
+//! curve whatever the foot, tight since the feet are looked up exactly on their piece and its neighbours.
 //!
-//! **Curve to points' line.** The distance to a segment is a convex function, so on a part of parabola it is nowhere larger
-//! than at the part's three control points. The curve is cut at the feet; each part is held against the segments around its
-//! points, and halved as long as its bound is above what has been found elsewhere, at most [`HALVINGS`] times. The result
-//! is never below the true distance, and above it by no more than the bend of the last halves.
+//! **Curve to points' line.** The distance to a segment is a convex function, so on a part of parabola it is nowhere
+//! larger than at the part's three control points. The curve is cut at the feet; each part is held against the segments
+//! around its points, and halved as long as its bound is above what has been found elsewhere, at most [`HALVINGS`]
+//! times. The result is never below the true distance, and above it by no more than the bend of the last halves.
 
 use crate::curve::{Quadratic, Spline};
 use crate::geometry::Point;
@@ -24,8 +24,8 @@ pub(super) struct Line<'a> {
     pub parameters: &'a [f64],
 }
 
-/// Largest distance of a point to the curve, the parameters made exact on the way, and of the curve to the points' line;
-/// with the index of a point there.
+/// Largest distance of a point to the curve, the parameters made exact on the way, and of the curve to the points'
+/// line; with the index of a point there.
 pub(super) fn error(spline: &Spline, line: &Line, feet: &mut [f64]) -> (f64, usize) {
     let pieces: Vec<Quadratic> = spline.pieces().collect();
     let mut worst = (0.0, 0);

@@ -1,8 +1,8 @@
 //! Points made ready: no two equal ones in a row, and none far apart.
 //!
-//! Fitting looks at points; the tolerance is for the line through them. Long segments therefore get points in between, at
-//! most [`SPACING`] tolerances apart as long as that does not multiply the work ([`MOST`]); what is missed between them the
-//! final measurement finds.
+//! Fitting looks at points; the tolerance is for the line through them. Long segments therefore get points in between,
+//! at most [`SPACING`] tolerances apart as long as that does not multiply the work ([`MOST`]); what is missed between
+//! them the final measurement finds.
 
 use crate::geometry::Point;
 

@@ -1,12 +1,12 @@
 //! Corners by turning angle over arc length.
 //!
 //! The direction before and after a point is that of the straight line that best fits the points within a reach of arc
-//! length on its side. Over the reach the steps of a pixel staircase average out (directions from neighbouring points would
-//! be multiples of 45°). A corner turns by [`LEAST_TURN`] or more, turns more than its surroundings, and does so at once: of
-//! a round bend, a wider reach sees more of the turn in proportion, of a corner hardly more.
+//! length on its side. Over the reach the steps of a pixel staircase average out (directions from neighbouring points
+//! would be multiples of 45°). A corner turns by [`LEAST_TURN`] or more, turns more than its surroundings, and does so
+//! at once: of a round bend, a wider reach sees more of the turn in proportion, of a corner hardly more.
 //!
-//! The corner itself is where both lines meet, if that is near the point, since the point carries its rounding; otherwise
-//! the point (sharp tips, where nearly parallel lines meet anywhere).
+//! The corner itself is where both lines meet, if that is near the point, since the point carries its rounding;
+//! otherwise the point (sharp tips, where nearly parallel lines meet anywhere).
 
 use crate::geometry::Point;
 
@@ -16,7 +16,8 @@ const REACH: f64 = 8.0;
 const LEAST_POINTS: usize = 3;
 /// Least turn of a corner in radians: 40°.
 const LEAST_TURN: f64 = 0.7;
-/// A wider reach, in reaches, and the share of its turn that the reach must see. (Half the reach would be lost in noise.)
+/// A wider reach, in reaches, and the share of its turn that the reach must see. (Half the reach would be lost in
+/// noise.)
 const WIDER: f64 = 1.75;
 const SUDDEN: f64 = 0.76;
 /// The lines' meeting counts within this many tolerances of the point.

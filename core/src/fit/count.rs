@@ -1,12 +1,12 @@
 //! The fewest nodes with which a section keeps the limit.
 //!
-//! The profile foretells about how many. From there the number rises while fits fail (where few pieces fail, by doubling the
-//! nodes of those) and falls while they succeed, in steps that grow with the number, until the border between success and
-//! failure is one node wide. Each fit refines the profile.
+//! The profile foretells about how many. From there the number rises while fits fail (where few pieces fail, by
+//! doubling the nodes of those) and falls while they succeed, in steps that grow with the number, until the border
+//! between success and failure is one node wide. Each fit refines the profile.
 //!
-//! Then nodes are taken out of the best fit itself, which gets along with a fifth fewer than even starts do. Which of them
-//! can be missed is asked of a few least-squares steps near each, on some of the points (its *promise*); the most promising
-//! are tried in full, in long sections several far apart at once.
+//! Then nodes are taken out of the best fit itself, which gets along with a fifth fewer than even starts do. Which of
+//! them can be missed is asked of a few least-squares steps near each, on some of the points (its *promise*); the most
+//! promising are tried in full, in long sections several far apart at once.
 
 use super::feet::wrapped;
 use super::profile::Profile;
@@ -220,7 +220,8 @@ impl Given<'_> {
         }
     }
 
-    /// A fit's nodes and parameters with the nodes of failing pieces doubled; `None` where more than `most` pieces fail.
+    /// A fit's nodes and parameters with the nodes of failing pieces doubled; `None` where more than `most` pieces
+    /// fail.
     fn with_more(&self, trial: &Trial, most: usize) -> Option<Trial> {
         let (_, errors) = self.measure(trial);
         let movable = |i: usize| {

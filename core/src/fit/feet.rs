@@ -1,11 +1,11 @@
 //! Foot points: the parameter at which a point is nearest to the curve, followed from where it was.
 //!
-//! Newton's method on (B(t) − p) · B′(t) = 0 in the parameter of the whole section, which is smooth across joints: a step
-//! that leaves a piece goes on in the next. Any parameter gives an upper bound of the distance, so an imperfect foot costs
-//! tightness, never truth.
+//! Newton's method on (B(t) − p) · B′(t) = 0 in the parameter of the whole section, which is smooth across joints: a
+//! step that leaves a piece goes on in the next. Any parameter gives an upper bound of the distance, so an imperfect
+//! foot costs tightness, never truth.
 //!
-//! On a corner's straight half leg the curve rests at the corner like u², and Newton's method would crawl: there the foot is
-//! the square root of the share of the leg.
+//! On a corner's straight half leg the curve rests at the corner like u², and Newton's method would crawl: there the
+//! foot is the square root of the share of the leg.
 
 use super::section::Arc;
 use crate::geometry::Point;

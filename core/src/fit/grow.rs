@@ -5,7 +5,8 @@
 
 /// The last index up to `last` that a piece from `start` reaches; the next one always counts as reached.
 ///
-/// `step` is the first length tried, `gap(good)` the difference at which a reached and an unreached index are near enough.
+/// `step` is the first length tried, `gap(good)` the difference at which a reached and an unreached index are near
+/// enough.
 pub(super) fn grow(
     start: usize,
     last: usize,

@@ -1,8 +1,8 @@
 //! Long sections in chunks, so that the work grows with the number of points and no faster.
 //!
-//! A first fit of the whole section, with a few nodes more than foretold, gives a curve that is right nearly everywhere. It
-//! is cut at joints with small errors; the two nodes about each such joint stay as they are, so that the chunks join as
-//! smoothly as before, and each chunk looks for its fewest nodes by itself.
+//! A first fit of the whole section, with a few nodes more than foretold, gives a curve that is right nearly
+//! everywhere. It is cut at joints with small errors; the two nodes about each such joint stay as they are, so that the
+//! chunks join as smoothly as before, and each chunk looks for its fewest nodes by itself.
 
 use super::count::{Unfit, fewest};
 use super::profile::Profile;
@@ -40,7 +40,8 @@ pub(super) fn fit(given: &Given) -> Result<Trial, Vec<Unfit>> {
     in_chunks(given, &whole)
 }
 
-/// Joints at the start and the end of a chunk, by the index of the piece that begins there; none at the section's own ends.
+/// Joints at the start and the end of a chunk, by the index of the piece that begins there; none at the section's own
+/// ends.
 type Joints = (Option<usize>, Option<usize>);
 
 /// A stretch of the section between two joints of its first fit.
@@ -68,7 +69,8 @@ impl Chunk {
     }
 }
 
-/// Fits all chunks. A chunk that cannot be fitted is joined with its neighbour at the joint that is nearer to the fault.
+/// Fits all chunks. A chunk that cannot be fitted is joined with its neighbour at the joint that is nearer to the
+/// fault.
 fn in_chunks(given: &Given, whole: &Trial) -> Result<Trial, Vec<Unfit>> {
     let mut joints = joints(given, whole);
     let mut done: Vec<(Joints, Trial)> = Vec::new();

@@ -1,25 +1,26 @@
 //! From points to quadratic B-splines with few guiding points, within a tolerance that is a guarantee.
 //!
-//! [`fit`] takes a drawn or traced line and gives a uniform quadratic B-spline ([`crate::curve::Spline`]). No point of the
-//! line is farther than the tolerance from the curve, and no place of the continuous curve is farther than the tolerance
-//! from the line; the largest distance is given back ([`bound`] says how it is known).
+//! [`fit`] takes a drawn or traced line and gives a uniform quadratic B-spline ([`crate::curve::Spline`]). No point of
+//! the line is farther than the tolerance from the curve, and no place of the continuous curve is farther than the
+//! tolerance from the line; the largest distance is given back ([`bound`] says how it is known).
 //!
 //! # The default
 //!
-//! The guiding points of a uniform spline are all that can be chosen: there are no knots to place. Where pieces end along
-//! the line follows from the guides, hence parameters are unknowns as well. With the parameters eliminated, the distances are
-//! a nonlinear least-squares problem in the guides ([`solve`]) whose Gauss–Newton steps are banded and cheap; what remains
-//! is to find a good start and the least number of guides.
+//! The guiding points of a uniform spline are all that can be chosen: there are no knots to place. Where pieces end
+//! along the line follows from the guides, hence parameters are unknowns as well. With the parameters eliminated, the
+//! distances are a nonlinear least-squares problem in the guides ([`solve`]) whose Gauss–Newton steps are banded and
+//! cheap; what remains is to find a good start and the least number of guides.
 //!
 //! 1. [`clean`]: repeated points go, long segments are filled.
-//! 2. [`corners`]: turning angle over a stretch of arc length, which a pixel staircase does not fool. Corners cut the line
-//!    into sections that are fitted by themselves.
+//! 2. [`corners`]: turning angle over a stretch of arc length, which a pixel staircase does not fool. Corners cut the
+//!    line into sections that are fitted by themselves.
 //! 3. [`profile`]: how long a parabola may be along the line.
 //! 4. [`trial`]: a fit with a given number of nodes: linear solve, least squares, then the *largest* error.
 //! 5. [`count`]: the fewest nodes for which that succeeds. [`long`]: the same in chunks, in linear time.
 //! 6. [`whole`]: sections put together and measured; [`polygon`] where nothing smooth fits.
 //!
-//! [`attributes`] carries pressure and the like over to the guides, [`together`] gives several curves equal numbers of guides.
+//! [`attributes`] carries pressure and the like over to the guides, [`together`] gives several curves equal numbers of
+//! guides.
 //!
 //! # The preset `yang1986`
 //!
@@ -27,8 +28,9 @@
 //!
 //! # Limits
 //!
-//! The fewest guides *found*: the search is local and may miss the last one. Time grows linearly with the number of points;
-//! where noise is as large as the tolerance, straight lines between some of the points are what is left, with many guides.
+//! The fewest guides *found*: the search is local and may miss the last one. Time grows linearly with the number of
+//! points; where noise is as large as the tolerance, straight lines between some of the points are what is left, with
+//! many guides.
 
 mod attributes;
 mod bound;
@@ -147,7 +149,8 @@ impl Fitted {
         Self { spline: Spline::of_finite(guides, closed), max_error: 0.0, parameters: vec![0.0; points] }
     }
 
-    /// Values at the guides whose blend along the curve ([`Spline::blend`]) comes nearest to one value for each given point.
+    /// Values at the guides whose blend along the curve ([`Spline::blend`]) comes nearest to one value for each given
+    /// point.
     pub fn attribute(&self, values: &[f64]) -> Result<Vec<f64>, FitError> {
         if values.len() != self.parameters.len() {
             return Err(FitError::Values { found: values.len(), expected: self.parameters.len() });

@@ -1,8 +1,9 @@
 //! Where no smooth curve fits: straight lines with a corner at each end.
 //!
-//! A chord between two of the points stands for all points between them as long as none is farther from it than the limit
-//! (it is grown as far as that holds). The points between are then within the limit of the chord; and each place of the chord
-//! has a place of the points' line square to it, hence within the limit too: the guarantee holds both ways.
+//! A chord between two of the points stands for all points between them as long as none is farther from it than the
+//! limit (it is grown as far as that holds). The points between are then within the limit of the chord; and each place
+//! of the chord has a place of the points' line square to it, hence within the limit too: the guarantee holds both
+//! ways.
 
 use super::grow::grow;
 use crate::geometry::Point;

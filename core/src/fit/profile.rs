@@ -1,12 +1,12 @@
 //! Where pieces should end: first guess and improvement.
 //!
-//! **Guess.** Along the points, each parabola is grown as far as a least-squares one stays within the tolerance (the first
-//! step of Yang et al. 1986, with least squares instead of slopes read off noisy neighbours). Its length is what the curve
-//! allows there: short where curvature changes fast, long where it is even. The pieces of a uniform spline cannot change
-//! their length at once, so the cuts are smoothed.
+//! **Guess.** Along the points, each parabola is grown as far as a least-squares one stays within the tolerance (the
+//! first step of Yang et al. 1986, with least squares instead of slopes read off noisy neighbours). Its length is what
+//! the curve allows there: short where curvature changes fast, long where it is even. The pieces of a uniform spline
+//! cannot change their length at once, so the cuts are smoothed.
 //!
-//! **Improvement.** The error of a parabola grows with the third to fourth power of its length. A piece whose error is e has
-//! used (e / tolerance)^¼ of the length it may have; cuts at even sums of these shares even out the errors
+//! **Improvement.** The error of a parabola grows with the third to fourth power of its length. A piece whose error is
+//! e has used (e / tolerance)^¼ of the length it may have; cuts at even sums of these shares even out the errors
 //! (equidistribution; de Boor 1973).
 
 use super::grow::grow;

@@ -1,9 +1,9 @@
 //! The part of a curve that is fitted at once: between two corners, two ends, or the whole of a smooth closed curve.
 //!
-//! Its unknowns are *nodes*, guiding points of which a corner's counts once. A piece's control points are fixed combinations
-//! of three nodes, before, about and after: the middle one is the node about which the piece lies, the ends are
-//! α · outer + (1 − α) · about. The share α is a half, since pieces end at midpoints, and one at the free end of an open
-//! curve, where the midpoint gives way to the end itself.
+//! Its unknowns are *nodes*, guiding points of which a corner's counts once. A piece's control points are fixed
+//! combinations of three nodes, before, about and after: the middle one is the node about which the piece lies, the
+//! ends are α · outer + (1 − α) · about. The share α is a half, since pieces end at midpoints, and one at the free end
+//! of an open curve, where the midpoint gives way to the end itself.
 
 use crate::curve::Quadratic;
 use crate::geometry::Point;

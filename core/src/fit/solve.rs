@@ -1,18 +1,18 @@
 //! One Gauss–Newton step of a section's nodes towards its points.
 //!
-//! A point p with foot B(t) and unit normal n leaves the residual n · (B(t) − p): the distance, with the parameter eliminated
-//! (the tangent distance of Blake & Isard 1998; Wang, Pottmann & Liu 2006 show it to be Gauss–Newton on the true squared
-//! distance, where moving point and foot in turn converges only linearly). Moving the curve along itself changes no distance
-//! to first order, so a small weight on that direction keeps the equations regular; a weight of one is the plain
-//! point-to-point problem, with which a fit starts.
+//! A point p with foot B(t) and unit normal n leaves the residual n · (B(t) − p): the distance, with the parameter
+//! eliminated (the tangent distance of Blake & Isard 1998; Wang, Pottmann & Liu 2006 show it to be Gauss–Newton on the
+//! true squared distance, where moving point and foot in turn converges only linearly). Moving the curve along itself
+//! changes no distance to first order, so a small weight on that direction keeps the equations regular; a weight of one
+//! is the plain point-to-point problem, with which a fit starts.
 //!
-//! **Largest error instead of the mean.** What counts is that no point is farther off than the tolerance. A least-squares
-//! fit leaves the largest error two to three times the mean; therefore the later steps minimise
-//! Σ ε r² + (|r| − θ)₊² with θ a little below the tolerance: a piecewise quadratic penalty on the excess alone, to which
+//! **Largest error instead of the mean.** What counts is that no point is farther off than the tolerance. A
+//! least-squares fit leaves the largest error two to three times the mean; therefore the later steps minimise Σ ε r² +
+//! (|r| − θ)₊² with θ a little below the tolerance: a piecewise quadratic penalty on the excess alone, to which
 //! Gauss–Newton applies unchanged, and whose minimum has no excess if the section can be fitted at all.
 //!
-//! A point touches three neighbouring nodes: the normal equations are banded. For a closed section the nodes are numbered
-//! in turn from both sides of the start, which keeps the band narrow.
+//! A point touches three neighbouring nodes: the normal equations are banded. For a closed section the nodes are
+//! numbered in turn from both sides of the start, which keeps the band narrow.
 
 use super::feet;
 use super::section::{Arc, Ends, Slot};
@@ -127,8 +127,8 @@ impl<'a> Step<'a> {
         self.distances[j].0
     }
 
-    /// Whether point `j` is within the limit without another look: a place of the curve moves no farther than the nodes that
-    /// it is blended from, and so no farther than all nodes have travelled since the last look.
+    /// Whether point `j` is within the limit without another look: a place of the curve moves no farther than the nodes
+    /// that it is blended from, and so no farther than all nodes have travelled since the last look.
     pub fn is_sure(&self, j: usize, limit: f64) -> bool {
         let (distance, travelled) = self.distances[j];
         distance + (self.travelled - travelled) <= limit

@@ -1,8 +1,8 @@
 //! Several curves fitted with the same number of guiding points, so that in-betweens may move guide to guide.
 //!
-//! Each curve is fitted by itself; the largest number is the common one. The others are fitted again with exactly that many,
-//! shared out over their sections. Where a curve cannot take exactly that many (rarely: a corner's guide may be repeated at
-//! no cost), the common number rises by one and all is tried again.
+//! Each curve is fitted by itself; the largest number is the common one. The others are fitted again with exactly that
+//! many, shared out over their sections. Where a curve cannot take exactly that many (rarely: a corner's guide may be
+//! repeated at no cost), the common number rises by one and all is tried again.
 
 use super::corners::corners;
 use super::{FitError, Fitted, Options, checked, clean, finished, fit, whole};
@@ -16,8 +16,8 @@ pub type Polyline<'a> = (&'a [Point], bool);
 
 /// Fits the curves to equal numbers of guiding points, each within the tolerance.
 ///
-/// The preset is ignored. Fails as [`fit`] does, with the index of the curve, and where a curve takes no more guides (it is a
-/// point).
+/// The preset is ignored. Fails as [`fit`] does, with the index of the curve, and where a curve takes no more guides
+/// (it is a point).
 pub fn fit_together(curves: &[Polyline], options: &Options) -> Result<Vec<Fitted>, (usize, FitError)> {
     let plain = Options { preset: super::Preset::Rototoon, ..*options };
     let single = |(k, &(points, closed)): (usize, &Polyline)| fit(points, closed, &plain).map_err(|error| (k, error));

@@ -1,8 +1,8 @@
 //! A section fitted with a given number of nodes.
 //!
-//! Parameters come from the profile's cuts, nodes from one linear solve for these parameters; then a few Gauss–Newton steps
-//! on the squared distances, then steps on the excess over the tolerance. It ends as soon as every point is within the
-//! limit, or when steps no longer help.
+//! Parameters come from the profile's cuts, nodes from one linear solve for these parameters; then a few Gauss–Newton
+//! steps on the squared distances, then steps on the excess over the tolerance. It ends as soon as every point is
+//! within the limit, or when steps no longer help.
 
 use super::feet::wrapped;
 use super::profile::Profile;
@@ -33,8 +33,8 @@ const FULL_EVERY: usize = 4;
 /// A point is in danger if its error is above this share of the limit.
 const DANGER: f64 = 0.45;
 
-/// Between the feet of neighbours the curve may be off their segment by this multiple of the limit: it may still be near the
-/// next segment, which the final measure knows.
+/// Between the feet of neighbours the curve may be off their segment by this multiple of the limit: it may still be
+/// near the next segment, which the final measure knows.
 const STRAY: f64 = 1.25;
 
 /// How much work a trial may be.
@@ -144,8 +144,9 @@ impl Given<'_> {
         strided
     }
 
-    /// How promising a start is that differs from a good fit about piece `at`: the largest error near there, on some of the
-    /// points, after a few least-squares steps of the nodes near there. Only the parameters of the strided points count.
+    /// How promising a start is that differs from a good fit about piece `at`: the largest error near there, on some of
+    /// the points, after a few least-squares steps of the nodes near there. Only the parameters of the strided points
+    /// count.
     pub fn promise(&self, start: Trial, at: usize) -> f64 {
         let pieces = start.slots.len();
         let apart = |i: usize| {
@@ -161,9 +162,9 @@ impl Given<'_> {
         work.step.gather(&work.nodes, &mut work.track, Goal::Squares(SLIDE), true, chosen).largest
     }
 
-    /// The first point after which the curve does not keep near the points' line: it might turn off and come back between
-    /// the feet of two neighbours. Looks at the middle of each such stretch. Else the point with the largest error, if that
-    /// is above the limit.
+    /// The first point after which the curve does not keep near the points' line: it might turn off and come back
+    /// between the feet of two neighbours. Looks at the middle of each such stretch. Else the point with the largest
+    /// error, if that is above the limit.
     pub fn fault(&self, trial: &Trial) -> Option<usize> {
         if trial.errors.largest > self.limit {
             return Some(trial.errors.at);
@@ -286,8 +287,8 @@ impl<'a, 'b> Work<'a, 'b> {
         }
     }
 
-    /// Steps on the excess: all points now and then (but those that are sure to be within the limit), in between those that
-    /// are in danger of it.
+    /// Steps on the excess: all points now and then (but those that are sure to be within the limit), in between those
+    /// that are in danger of it.
     fn excess(&mut self, steps: usize) {
         let goal = Goal::Within(THRESHOLD * self.given.limit);
         let limit = self.given.limit;

@@ -1,9 +1,10 @@
 //! A whole curve: sections between corners and ends, fitted one by one and put together.
 //!
-//! A section that cannot be fitted gets a corner where it is worst and is tried again in two parts; after a few rounds, or
-//! at once where noise as large as the tolerance makes every point count, it becomes straight lines ([`super::polygon`]).
-//! So there always is a result, and it always keeps the tolerance. What is fitted is measured again as a whole
-//! ([`super::bound`]); a section where the curve strays between points that are far apart is fitted with a smaller limit.
+//! A section that cannot be fitted gets a corner where it is worst and is tried again in two parts; after a few rounds,
+//! or at once where noise as large as the tolerance makes every point count, it becomes straight lines
+//! ([`super::polygon`]). So there always is a result, and it always keeps the tolerance. What is fitted is measured
+//! again as a whole ([`super::bound`]); a section where the curve strays between points that are far apart is fitted
+//! with a smaller limit.
 
 use super::bound::{self, Line};
 use super::clean::Cleaned;
@@ -149,9 +150,9 @@ fn sections(data: &Cleaned, closed: bool, mut corners: Vec<Corner>, limit: f64, 
     done
 }
 
-/// Puts a corner where a fit fails. Next to a corner that is there already, that one was misplaced: it is first put on its
-/// point, then moved to the fault, or between both where they are next to each other (the tip of a sharp corner may be two
-/// pixels wide); only then the fault gets a corner of its own.
+/// Puts a corner where a fit fails. Next to a corner that is there already, that one was misplaced: it is first put on
+/// its point, then moved to the fault, or between both where they are next to each other (the tip of a sharp corner may
+/// be two pixels wide); only then the fault gets a corner of its own.
 fn repair(data: &Cleaned, closed: bool, corners: &mut Vec<Corner>, index: usize, round: usize, limit: f64) {
     let apart = |corner: &Corner| {
         let apart = (data.lengths[corner.index] - data.lengths[index]).abs();

@@ -1,22 +1,23 @@
 //! The two-step fitting of Yang et al. 1986, with the tolerance shared evenly, ε₁ = ε₂ = ε/2.
 //!
-//! **Step 1, parabolas** ([`arcs`]). From a knot on, a parabola with the knots' slopes is tried up to the third point and
-//! farther, as long as no point is farther from it than ε₁; the last good one stays. The slope at a point is the mean of
-//! those to its neighbours (eq. 8); at a corner, where the turn exceeds a threshold, each side has its own.
+//! **Step 1, parabolas** ([`arcs`]). From a knot on, a parabola with the knots' slopes is tried up to the third point
+//! and farther, as long as no point is farther from it than ε₁; the last good one stays. The slope at a point is the
+//! mean of those to its neighbours (eq. 8); at a corner, where the turn exceeds a threshold, each side has its own.
 //!
-//! **Step 2, guiding points** ([`guides`]). Where the tangents of neighbouring knots meet are the first guiding points, one a
-//! parabola. Wherever the spline misses the parabolas by more than ε₂, the parabola that is missed most gets one more: for
-//! n of them the intersections of the n + 1 tangents at even parameter steps (eq. D.1). Of a Bézier parabola these are its
-//! blossom at neighbouring parameters. Corners get double guiding points.
+//! **Step 2, guiding points** ([`guides`]). Where the tangents of neighbouring knots meet are the first guiding points,
+//! one a parabola. Wherever the spline misses the parabolas by more than ε₂, the parabola that is missed most gets one
+//! more: for n of them the intersections of the n + 1 tangents at even parameter steps (eq. D.1). Of a Bézier parabola
+//! these are its blossom at neighbouring parameters. Corners get double guiding points.
 //!
-//! **What differs from the print.** Slopes are infinite on vertical tangents; here they are directions, and the mean of two
-//! slopes is the bisector. Two directions of an S-shaped stretch meet behind a knot or nowhere: there no parabola stays
-//! between the knots with these tangents, and the stretch ends before. Where even the shortest stretch has none, its chord's
-//! middle is the guiding point, a straight line. The discrepancies printed in the paper's Table 2 cannot be reproduced;
-//! the procedure and its result can (see the test). The paper promises ε for the points only; so does step 1 here. The error
-//! that is given back is measured like that of all fits, and may exceed the tolerance between points or by the
-//! corners' straight legs. If it does, the shares of ε are halved and all is done again; where six halvings do not help (a
-//! staircase of pixels, whose every step is a corner to slopes of neighbours), the default method takes over.
+//! **What differs from the print.** Slopes are infinite on vertical tangents; here they are directions, and the mean of
+//! two slopes is the bisector. Two directions of an S-shaped stretch meet behind a knot or nowhere: there no parabola
+//! stays between the knots with these tangents, and the stretch ends before. Where even the shortest stretch has none,
+//! its chord's middle is the guiding point, a straight line. The discrepancies printed in the paper's Table 2 cannot be
+//! reproduced; the procedure and its result can (see the test). The paper promises ε for the points only; so does step
+//! 1 here. The error that is given back is measured like that of all fits, and may exceed the tolerance between points
+//! or by the corners' straight legs. If it does, the shares of ε are halved and all is done again; where six halvings
+//! do not help (a staircase of pixels, whose every step is a corner to slopes of neighbours), the default method takes
+//! over.
 
 use super::bound::{self, Line};
 use super::clean::Cleaned;
@@ -84,8 +85,9 @@ fn guides_of(arc: &Quadratic, n: usize) -> impl Iterator<Item = Point> + '_ {
     })
 }
 
-/// Step 2 for parabolas that follow each other, `corners[i]` telling of a corner at the start of parabola `i` (ignored at an
-/// open curve's start): the spline, the number of guiding points of each parabola, and the iterations that it took.
+/// Step 2 for parabolas that follow each other, `corners[i]` telling of a corner at the start of parabola `i` (ignored
+/// at an open curve's start): the spline, the number of guiding points of each parabola, and the iterations that it
+/// took.
 pub fn guides(arcs: &[Quadratic], corners: &[bool], closed: bool, tolerance: f64) -> (Spline, Vec<usize>, usize) {
     let n = arcs.len();
     let mut counts = vec![1; n];

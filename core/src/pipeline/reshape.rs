@@ -1,9 +1,9 @@
 //! A drawing made to follow a skeleton clip: its contours and strokes on every frame of the clip.
 //!
-//! The drawing is a document's contours on one frame, at rest, with limbs. The clip is brought to the drawing's proportions limb by
-//! limb, its way and its ground to the drawing's size and ground; feet that stand in it stay where they stand. Every closed part
-//! follows the limbs that carry it ([`crate::reshape::puppet`]), and takes along the strokes and open contours that lie on it.
-//! Marks "in front" and "behind" give the depths of each frame.
+//! The drawing is a document's contours on one frame, at rest, with limbs. The clip is brought to the drawing's
+//! proportions limb by limb, its way and its ground to the drawing's size and ground; feet that stand in it stay where
+//! they stand. Every closed part follows the limbs that carry it ([`crate::reshape::puppet`]), and takes along the
+//! strokes and open contours that lie on it. Marks "in front" and "behind" give the depths of each frame.
 
 use super::PipelineError;
 use crate::geometry::{Point, polygon, polyline};
@@ -27,7 +27,8 @@ const DEPTH_SCALE: f64 = 1e6;
 /// Share of a clip's frames whose lowest foot is no lower than its ground.
 const GROUND: f64 = 0.75;
 
-/// Share of the shin's turn that a shoe takes which no limb carries: feet keep nearly the angle that they are drawn with.
+/// Share of the shin's turn that a shoe takes which no limb carries: feet keep nearly the angle that they are drawn
+/// with.
 const FOOT_TURN: f64 = 0.3;
 
 /// What is to be made of a drawing.
@@ -58,8 +59,8 @@ pub struct Reshaped {
     pub points: BTreeMap<String, Vec<Vec<Point>>>,
 }
 
-/// Reshapes a document's drawing: tracks, snapped paths and depths of its parts, and its strokes, on every frame of the clip. Runs
-/// on the caller's rayon pool; the result does not depend on it.
+/// Reshapes a document's drawing: tracks, snapped paths and depths of its parts, and its strokes, on every frame of the
+/// clip. Runs on the caller's rayon pool; the result does not depend on it.
 pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progress) -> Result<Reshaped, PipelineError> {
     let set = document.limbs().map_err(wrong)?;
     let rest = rest_frame(&document.scene.parts, job.rest)?;
@@ -339,8 +340,8 @@ fn nearest_limb(rest: &[LimbPose], outline: &[Point]) -> usize {
     (0..rest.len()).min_by(|&a, &b| away(&rest[a]).total_cmp(&away(&rest[b]))).unwrap_or(0)
 }
 
-/// The body that a line lies on: the one with most of its points inside, of several the nearest to the viewer; else the one whose
-/// outline is nearest.
+/// The body that a line lies on: the one with most of its points inside, of several the nearest to the viewer; else the
+/// one whose outline is nearest.
 fn owner(bodies: &[Body], parts: &[Part], frame: FrameNumber, line: &[Point]) -> usize {
     let inside = |body: &Body| line.iter().filter(|p| polygon::contains(&body.outline, **p)).count();
     let depth = |body: &Body| parts[body.part].depth_at(frame);
@@ -402,7 +403,8 @@ fn rebound(set: &LimbSet, bindings: &Bindings, parts: &[Part], rest: FrameNumber
     set
 }
 
-/// Puts what was made into the document: the parts get keys on the first and the last frame, between which they are tracked.
+/// Puts what was made into the document: the parts get keys on the first and the last frame, between which they are
+/// tracked.
 fn store(
     document: &mut Document,
     footage: Footage,

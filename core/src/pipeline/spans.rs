@@ -1,8 +1,8 @@
 //! Some of the spans between drawings: matched, and drawn on the frames that are wanted.
 //!
-//! A host that keeps drawings and in-betweens side by side wants only those made anew that an edit touches. So each span is
-//! a function of a few drawings: the two at its ends, and, where its spacing is smooth, those before and after them, which
-//! give the velocities at its ends ([`keys_of`]). Each two neighbouring drawings are matched once.
+//! A host that keeps drawings and in-betweens side by side wants only those made anew that an edit touches. So each
+//! span is a function of a few drawings: the two at its ends, and, where its spacing is smooth, those before and after
+//! them, which give the velocities at its ends ([`keys_of`]). Each two neighbouring drawings are matched once.
 
 use super::PipelineError;
 use crate::scene::{Cancelled, FrameNumber, Progress, Silent};
@@ -102,8 +102,8 @@ impl Sheet {
         })
     }
 
-    /// Matches what is needed and draws the spans that are wanted. Returns them, and by span the matching where it was needed.
-    /// Runs on the caller's rayon pool; the result does not depend on it.
+    /// Matches what is needed and draws the spans that are wanted. Returns them, and by span the matching where it was
+    /// needed. Runs on the caller's rayon pool; the result does not depend on it.
     ///
     /// # Errors
     ///

@@ -3,7 +3,8 @@
 use super::PipelineError;
 use crate::project::Document;
 use crate::project::drawings::{
-    Drawing, Drawings, DrawnBetween, DrawnPeg, DrawnStroke, WrittenTiming, read_pegs, read_timing,
+    Drawing, Drawings, DrawnBetween, DrawnPeg, DrawnStroke, WrittenTiming, drawing_place, peg_key_place, peg_place,
+    read_pegs, read_timing,
 };
 use crate::scene::Progress;
 use crate::tween::Stroke;
@@ -13,8 +14,8 @@ use crate::tween::peg::{Peg, PegKey, PegTree, Timing};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::{Value, json};
 
-/// Matches the strokes of a document's drawings and puts the drawings between them into it. Runs on the caller's rayon pool;
-/// the result does not depend on it.
+/// Matches the strokes of a document's drawings and puts the drawings between them into it. Runs on the caller's rayon
+/// pool; the result does not depend on it.
 pub fn tween(document: &mut Document, options: &Options, progress: &dyn Progress) -> Result<(), PipelineError> {
     let wrong = |error: &dyn std::fmt::Display| PipelineError::Tween(error.to_string());
     let read = document.drawings().map_err(|e| wrong(&e))?;
@@ -54,7 +55,8 @@ fn key(drawing: &Drawing, k: usize) -> Result<Key, PipelineError> {
         material: s.material,
         layer: s.layer,
     };
-    let spacing = spacing(&drawing.spacing, &format!("drawings[{k}].spacing"))?;
+    let place = || format!("{}.spacing", drawing_place(k, drawing.frame));
+    let spacing = spacing(&drawing.spacing).map_err(|e| PipelineError::Tween(format!("{}: {e}", place())))?;
     let strokes = drawing.strokes.iter().map(stroke).collect();
     Ok(Key { frame: drawing.frame, strokes, spacing, corner: drawing.corner })
 }
@@ -62,7 +64,7 @@ fn key(drawing: &Drawing, k: usize) -> Result<Key, PipelineError> {
 /// The spacing that a JSON value means, as documents write it; `place` names it in errors.
 pub fn spacing_of(value: &Value, place: &str) -> Result<Spacing, PipelineError> {
     let written = read_timing(value, place).map_err(|error| PipelineError::Tween(error.to_string()))?;
-    spacing(&written, place)
+    spacing(&written).map_err(|error| PipelineError::Tween(format!("{place}: {error}")))
 }
 
 /// The pegs of a list of JSON values, as documents write them, with their names.
@@ -70,19 +72,19 @@ pub fn pegs_of(values: &[Value]) -> Result<PegTree, PipelineError> {
     tree(&read_pegs(values).map_err(|error| PipelineError::Tween(error.to_string()))?)
 }
 
-fn spacing(written: &WrittenTiming, place: &str) -> Result<Spacing, PipelineError> {
+/// The spacing; or what was found and what was expected.
+pub(super) fn spacing(written: &WrittenTiming) -> Result<Spacing, String> {
     Ok(match written {
         WrittenTiming::Smooth => Spacing::Smooth,
         WrittenTiming::Chart(shares) => Spacing::Chart(shares.clone()),
-        other => Spacing::Timing(timing(other, place)?),
+        other => Spacing::Timing(timing(other)?),
     })
 }
 
-fn timing(written: &WrittenTiming, place: &str) -> Result<Timing, PipelineError> {
+fn timing(written: &WrittenTiming) -> Result<Timing, String> {
     let wrong = |found: &str| {
-        PipelineError::Tween(format!(
-            "{place}: found {found}, expected a movement function (constant, linear, ease_in, …)"
-        ))
+        let known = "constant, linear, ease_in, ease_out, ease_in_out, cosine or bounce";
+        format!("found {found}, expected a movement function: {known}")
     };
     match written {
         WrittenTiming::Smooth => Ok(Timing::EaseInOut),
@@ -99,16 +101,20 @@ fn given(read: &Drawings) -> Result<GivenPegs, PipelineError> {
 }
 
 fn tree(pegs: &[DrawnPeg]) -> Result<PegTree, PipelineError> {
-    let peg = |(k, peg): (usize, &DrawnPeg)| {
-        let keys = peg.keys.iter().enumerate().map(|(j, key)| {
-            let timing = timing(&key.timing, &format!("pegs[{k}].keys[{j}].timing"))?;
-            Ok(PegKey { frame: key.frame, shift: key.shift, turn: key.turn.to_radians(), scale: key.scale, timing })
-        });
-        let keys = keys.collect::<Result<_, PipelineError>>()?;
-        Ok(Peg { name: peg.name.clone(), parent: peg.parent, pivot: peg.pivot, keys })
-    };
-    let pegs = pegs.iter().enumerate().map(peg).collect::<Result<Vec<_>, PipelineError>>()?;
+    let pegs = pegs.iter().enumerate().map(|(k, peg)| peg_of(peg, k)).collect::<Result<Vec<_>, _>>();
+    let pegs = pegs.map_err(|(place, message)| PipelineError::Tween(format!("{place}: {message}")))?;
     PegTree::new(pegs).map_err(|error| PipelineError::Tween(format!("pegs: {error}")))
+}
+
+/// The peg, number `k` of its document; or the place and what was found and expected there.
+pub(super) fn peg_of(drawn: &DrawnPeg, k: usize) -> Result<Peg, (String, String)> {
+    let keys = drawn.keys.iter().enumerate().map(|(j, key)| {
+        let place = || format!("{}.timing", peg_key_place(&peg_place(k, &drawn.name), j, key.frame));
+        let timing = timing(&key.timing).map_err(|message| (place(), message))?;
+        Ok(PegKey { frame: key.frame, shift: key.shift, turn: key.turn.to_radians(), scale: key.scale, timing })
+    });
+    let keys = keys.collect::<Result<_, (String, String)>>()?;
+    Ok(Peg { name: drawn.name.clone(), parent: drawn.parent, pivot: drawn.pivot, keys })
 }
 
 fn stroke_of(drawn: InBetween) -> (usize, f64, DrawnStroke) {

@@ -46,8 +46,8 @@ impl<'a> Grid<'a> {
         (y * self.columns + x) as usize
     }
 
-    /// Indices of the `count` places nearest to `p`, the nearest first, of equally near ones that of smaller index; those of
-    /// a smaller index are `skip`ped where asked for.
+    /// Indices of the `count` places nearest to `p`, the nearest first, of equally near ones that of smaller index;
+    /// those of a smaller index are `skip`ped where asked for.
     pub fn nearest(&self, p: Point, count: usize) -> Vec<usize> {
         let (x, y) = self.cell_of(p);
         let mut found: Vec<(f64, usize)> = Vec::new();
@@ -64,7 +64,8 @@ impl<'a> Grid<'a> {
         found.into_iter().map(|(_, i)| i).collect()
     }
 
-    /// Distance of `p` from the nearest cell that is not within `ring` cells of its own; 0 where p lies outside the grid.
+    /// Distance of `p` from the nearest cell that is not within `ring` cells of its own; 0 where p lies outside the
+    /// grid.
     fn beyond(&self, p: Point, (x, y): (i64, i64), ring: i64) -> f64 {
         let at = (p - self.origin) / self.cell;
         let sides = [

@@ -3,7 +3,8 @@
 use super::stroke::Stroke;
 use crate::geometry::{Point, polyline};
 
-/// Shares of the length at the points of a stroke, those of a closed one followed by 1. Of one without length, even ones.
+/// Shares of the length at the points of a stroke, those of a closed one followed by 1. Of one without length, even
+/// ones.
 pub(super) fn vertex_shares(stroke: &Stroke) -> Vec<f64> {
     let mut walked = vec![0.0];
     for (a, b) in polyline::segments(&stroke.points, stroke.closed) {

@@ -4,7 +4,9 @@
 
 use anyhow::{Context, Result};
 use rototoon::tween::between::Options;
-use rototoon_tests::tweening::between::{Errors, measure as measure_between, measure_one_way, rows_of_keys};
+use rototoon_tests::tweening::between::{
+    Errors, PlaceErrors, measure as measure_between, measure_one_way, measure_places, rows_of_keys,
+};
 use rototoon_tests::tweening::matching::{Chance, Score, measure};
 use rototoon_tests::tweening::{GAPS, Set, sheet};
 use std::path::{Path, PathBuf};
@@ -15,6 +17,7 @@ fn main() -> Result<()> {
     let sets = arguments.map(|folder| Set::load(&folder)).collect::<Result<Vec<_>>>()?;
     matching(&sets, false)?;
     matching(&sets, true)?;
+    places(&sets)?;
     between(&sets, "all strokes, one chart for all of them", measure_between)?;
     between(&sets, "strokes that move one way, a chart for each", measure_one_way)?;
     println!("charted: with the shares of the way that suit best; ratio to plain linear in brackets");
@@ -52,6 +55,30 @@ fn matching_row(name: &str, spans: usize, s: &Score) {
     let (right, index) = (percent(s.right, s.there), percent(s.by_index, s.there));
     let starts = percent(s.starts, s.closed);
     println!("{name:22}{spans:6}{:8}{right:9.1}{:8}{index:11.1}{starts:10.1}", s.there, s.wrong);
+}
+
+fn places(sets: &[Set]) -> Result<()> {
+    println!("points on the next key, 6 to 14 frames on, drawn with other points: mean distance from the truth in px");
+    println!("{:22}{:>8}{:>8}{:>8}{:>10}{:>8}", "", "length", "ours", "ratio", "better %", "worse %");
+    for set in sets {
+        let mut all = PlaceErrors::default();
+        let mut contours = 0;
+        for span in set.spans() {
+            let found = measure_places(set, span)?;
+            all.count += found.count;
+            all.plain += found.plain;
+            all.ours += found.ours;
+            all.better += found.better;
+            all.worse += found.worse;
+            contours += set.parts.len();
+        }
+        let percent = |n: usize| 100.0 * n as f64 / contours.max(1) as f64;
+        let (n, ratio) = (all.count.max(1) as f64, all.ours / all.plain.max(f64::MIN_POSITIVE));
+        let (plain, ours, better, worse) = (all.plain / n, all.ours / n, percent(all.better), percent(all.worse));
+        println!("{:22}{plain:8.2}{ours:8.2}{ratio:8.2}{better:10.1}{worse:8.1}", set.name);
+    }
+    println!();
+    Ok(())
 }
 
 /// Errors at some keys of a set.

@@ -2,10 +2,12 @@
 //!
 //! Every contour has the same points on all frames, and they are paired rightly for both. Keys are all frames at one
 //! distance, from every first frame.
+//!
+//! Beside that, where the points of a contour are looked for on the next key if that is drawn with other points.
 
 use super::{Contours, Set};
 use anyhow::{Context, Result};
-use rototoon::geometry::Point;
+use rototoon::geometry::{Point, polyline};
 use rototoon::tween::Stroke;
 use rototoon::tween::between::{GivenPegs, InBetween, Key, Options, Sequence, Spacing};
 use rototoon::tween::matching::{Matching, Pair};
@@ -65,6 +67,72 @@ fn off(drawn: &[Vec<Point>], truth: &[&Vec<Point>]) -> f64 {
     drawn.iter().zip(truth).map(stroke).sum()
 }
 
+/// Sums of distances in pixels from the true places.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlaceErrors {
+    /// Points.
+    pub count: usize,
+    /// By shares of the length alone.
+    pub plain: f64,
+    /// By shares of the length between corners.
+    pub ours: f64,
+    /// Contours of which ours are nearer to the truth, and farther from it, by more than a hundredth of a pixel.
+    pub better: usize,
+    /// See `better`.
+    pub worse: usize,
+}
+
+/// Where the contours of the first of two frames are looked for on the second, which has twice as many points on the
+/// same lines.
+pub fn measure_places(set: &Set, (first, second): (i32, i32)) -> Result<PlaceErrors> {
+    let (parts, mut keys) = drawings(set, &[first, second]);
+    for stroke in &mut keys[1].strokes {
+        stroke.points = halved(&stroke.points, stroke.closed);
+    }
+    let plain: Vec<Vec<Point>> = keys[0].strokes.iter().zip(&keys[1].strokes).map(|(a, b)| by_length(a, b)).collect();
+    let sequence = Sequence::new(keys, &paired(parts.len(), 1), &GivenPegs::default(), &Options::default())?;
+    let mut errors = PlaceErrors::default();
+    for (k, &part) in parts.iter().enumerate() {
+        let truth = &set.parts[part].points[&second];
+        let found = sequence.tracks().iter().find(|track| track.at(0).is_some_and(|stand| stand.stroke == k));
+        let Some(stand) = found.and_then(|track| track.at(1)) else { continue };
+        let off = |points: &[Point]| points.iter().zip(truth).map(|(p, q)| p.distance(*q)).sum::<f64>();
+        let (by_length, ours) = (off(&plain[k]), off(&stand.places.points));
+        errors.count += truth.len();
+        errors.plain += by_length;
+        errors.ours += ours;
+        errors.better += usize::from(ours < by_length - 0.01 * truth.len() as f64);
+        errors.worse += usize::from(ours > by_length + 0.01 * truth.len() as f64);
+    }
+    Ok(errors)
+}
+
+/// The same line with a point more on each segment, not in its middle.
+fn halved(points: &[Point], closed: bool) -> Vec<Point> {
+    let last = (!closed).then(|| points.last().copied()).flatten();
+    polyline::segments(points, closed).flat_map(|(a, b)| [a, a.lerp(b, 0.37)]).chain(last).collect()
+}
+
+/// For each point of a stroke the place of the other one at its share of the length.
+fn by_length(stroke: &Stroke, other: &Stroke) -> Vec<Point> {
+    let walked = |of: &Stroke| {
+        let mut walked = vec![0.0];
+        for (a, b) in polyline::segments(&of.points, of.closed) {
+            walked.push(walked[walked.len() - 1] + a.distance(b));
+        }
+        walked
+    };
+    let (from, to) = (walked(stroke), walked(other));
+    let scale = to[to.len() - 1] / from[from.len() - 1].max(f64::MIN_POSITIVE);
+    let at = |k: usize| {
+        let place = from[k] * scale;
+        let next = to.partition_point(|&w| w <= place).clamp(1, to.len() - 1);
+        let within = (place - to[next - 1]) / (to[next] - to[next - 1]).max(f64::MIN_POSITIVE);
+        other.points[next - 1].lerp(other.points[next % other.points.len()], within.clamp(0.0, 1.0))
+    };
+    (0..stroke.points.len()).map(at).collect()
+}
+
 /// The in-betweens of a set's keys.
 pub fn sequence(set: &Set, frames: &[i32], options: &Options) -> Result<(Vec<usize>, Sequence)> {
     let (parts, keys) = drawings(set, frames);
@@ -72,8 +140,8 @@ pub fn sequence(set: &Set, frames: &[i32], options: &Options) -> Result<(Vec<usi
     Ok((parts, Sequence::new(keys, &matchings, &GivenPegs::default(), options)?))
 }
 
-/// The errors of the strokes that move one way between some keys, each with the chart that suits it best: what remains is
-/// the way and the shape.
+/// The errors of the strokes that move one way between some keys, each with the chart that suits it best: what remains
+/// is the way and the shape.
 pub fn measure_one_way(set: &Set, frames: &[i32], options: &Options) -> Result<Errors> {
     let (parts, ours) = sequence(set, frames, options)?;
     let mut errors = Errors::default();
@@ -101,8 +169,8 @@ pub fn measure_one_way(set: &Set, frames: &[i32], options: &Options) -> Result<E
     Ok(errors)
 }
 
-/// Whether a contour goes from one key to the other, and on no frame between turns back or beyond them by more than a tenth
-/// of the way; and moves at all.
+/// Whether a contour goes from one key to the other, and on no frame between turns back or beyond them by more than a
+/// tenth of the way; and moves at all.
 fn is_one_way(part: &Contours, (from, to): (i32, i32)) -> bool {
     let (a, b) = (&part.points[&from], &part.points[&to]);
     let square: f64 = a.iter().zip(b).map(|(p, q)| p.distance_squared(*q)).sum();

@@ -109,8 +109,8 @@ pub fn measure(set: &Set, frames: (i32, i32), paints: &[Option<[f32; 3]>], chanc
     Ok(score)
 }
 
-/// The strokes of two frames in orders of their own, those of the second drawn in another way, a tenth of the parts missing
-/// on one side; and the number of parts on both.
+/// The strokes of two frames in orders of their own, those of the second drawn in another way, a tenth of the parts
+/// missing on one side; and the number of parts on both.
 fn drawings(set: &Set, (from, to): (i32, i32), chance: &mut Chance) -> (Vec<Known>, Vec<Known>, usize) {
     let there: Vec<usize> =
         (0..set.parts.len()).filter(|&i| [from, to].iter().all(|f| set.parts[i].points.contains_key(f))).collect();

@@ -22,7 +22,8 @@ fn limb(from: &str, to: &str, part: &str, places: [f64; 4], more: &str) -> Strin
     )
 }
 
-/// Rings have their points from the top right down and from the bottom left up: 0 and 7 are the top, 3 and 4 the bottom.
+/// Rings have their points from the top right down and from the bottom left up: 0 and 7 are the top, 3 and 4 the
+/// bottom.
 fn figure(fields: &str) -> Document {
     let part = |name: &str, depth: f64, ring: String| {
         format!(r#"{{"name": "{name}", "closed": true, "depth": {depth}, "keys": {{"0": {ring}}}}}"#)

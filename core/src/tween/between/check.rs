@@ -43,35 +43,13 @@ pub enum BetweenError {
         /// Strokes of the drawing.
         count: usize,
     },
-    /// A spacing chart has not one share for each frame.
-    #[error(
-        "frame {frame}: the spacing chart has {found} shares, expected one for each of {expected} frames to the next key"
-    )]
-    Chart {
-        /// Frame of the earlier key.
-        frame: FrameNumber,
-        /// Shares found.
-        found: usize,
-        /// Frames between the keys.
-        expected: usize,
-    },
-    /// A spacing chart holds what is no number.
-    #[error("frame {frame}: share {index} of the spacing chart is {found}, expected a number from -10 to 10")]
-    Share {
-        /// Frame of the earlier key.
-        frame: FrameNumber,
-        /// Index of the share.
-        index: usize,
-        /// What was found.
-        found: f64,
-    },
-    /// A movement function is none.
+    /// A spacing is none.
     #[error("frame {frame}: {source}")]
-    Timing {
+    Spacing {
         /// Frame of the earlier key.
         frame: FrameNumber,
         /// What is wrong.
-        source: TimingError,
+        source: SpacingError,
     },
     /// A stroke hangs on a peg that is not there.
     #[error("frame {frame}, stroke {stroke}: found peg {found}, expected less than {count}")]
@@ -91,6 +69,50 @@ pub enum BetweenError {
         /// What was found.
         found: f64,
     },
+}
+
+/// Why a spacing is none.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SpacingError {
+    /// A spacing chart has not one share for each frame.
+    #[error("the spacing chart has {found} shares, expected one for each of {expected} frames to the next key")]
+    Chart {
+        /// Shares found.
+        found: usize,
+        /// Frames between the keys.
+        expected: usize,
+    },
+    /// A spacing chart holds what is no number.
+    #[error("share {index} of the spacing chart is {found}, expected a number from -10 to 10")]
+    Share {
+        /// Index of the share.
+        index: usize,
+        /// What was found.
+        found: f64,
+    },
+    /// A movement function is none.
+    #[error(transparent)]
+    Timing(#[from] TimingError),
+}
+
+impl Spacing {
+    /// Whether it is one between keys on these frames.
+    pub fn check(&self, frame: FrameNumber, next: FrameNumber) -> Result<(), SpacingError> {
+        match self {
+            Self::Smooth => Ok(()),
+            Self::Timing(timing) => Ok(timing.check()?),
+            Self::Chart(shares) => {
+                let expected = (next.abs_diff(frame) as usize).saturating_sub(1);
+                if shares.len() != expected {
+                    return Err(SpacingError::Chart { found: shares.len(), expected });
+                }
+                match shares.iter().position(|s| !(-10.0..=10.0).contains(s)) {
+                    Some(index) => Err(SpacingError::Share { index, found: shares[index] }),
+                    None => Ok(()),
+                }
+            }
+        }
+    }
 }
 
 pub(super) fn check(
@@ -114,7 +136,7 @@ pub(super) fn check(
         if next <= frame {
             return Err(BetweenError::Order { frame: next, before: frame });
         }
-        check_spacing(&pair[0], next)?;
+        pair[0].spacing.check(frame, next).map_err(|source| BetweenError::Spacing { frame, source })?;
         for (named, count) in named(matching).into_iter().zip([pair[0].strokes.len(), pair[1].strokes.len()]) {
             if let Some(&found) = named.iter().find(|&&i| i >= count) {
                 return Err(BetweenError::Stroke { frame, found, count });
@@ -137,22 +159,4 @@ fn named(matching: &Matching) -> [Vec<usize>; 2] {
     let first = matching.pairs.iter().map(|p| p.from).chain(wholes(&matching.split)).chain(pieces(&matching.joined));
     let second = matching.pairs.iter().map(|p| p.to).chain(wholes(&matching.joined)).chain(pieces(&matching.split));
     [first.collect(), second.collect()]
-}
-
-fn check_spacing(key: &Key, next: FrameNumber) -> Result<(), BetweenError> {
-    let frame = key.frame;
-    match &key.spacing {
-        Spacing::Smooth => Ok(()),
-        Spacing::Timing(timing) => timing.check().map_err(|source| BetweenError::Timing { frame, source }),
-        Spacing::Chart(shares) => {
-            let expected = next.abs_diff(frame) as usize - 1;
-            if shares.len() != expected {
-                return Err(BetweenError::Chart { frame, found: shares.len(), expected });
-            }
-            match shares.iter().position(|s| !(-10.0..=10.0).contains(s)) {
-                Some(index) => Err(BetweenError::Share { frame, index, found: shares[index] }),
-                None => Ok(()),
-            }
-        }
-    }
 }

@@ -1,8 +1,9 @@
 //! Contacts between strokes, kept.
 //!
 //! Where a point of one stroke lies on another one on both keys, and on about the same place of it, it shall lie there
-//! between. After everything has moved, the gaps that opened are closed again: both strokes give way, the longer one less,
-//! most at the contact and ever less along half their length. Several contacts are closed in turn, a few times over.
+//! between. After everything has moved, the gaps that opened are closed again: both strokes give way, the longer one
+//! less, most at the contact and ever less along half their length. Several contacts are closed in turn, a few times
+//! over.
 
 use crate::geometry::{Point, polygon, polyline};
 use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};

@@ -1,11 +1,13 @@
-//! Which place of a stroke is which place of its counterpart: by proportional arc length (Yang et al. 1986, appendix F).
+//! Which place of a stroke is which place of its counterpart: by proportional arc length (Yang et al. 1986, appendix F)
+//! between [`super::corners`] that are counterparts.
 //!
-//! An artist who drew a stroke with as many points as the other has meant them: where points of equal number lie at about
-//! equal shares of the lengths, those points themselves are taken.
+//! An artist who drew a stroke with as many points as the other has meant them: where points of equal number lie at
+//! about equal shares of the lengths, those points themselves are taken.
 
 use super::super::line::{Line, vertex_shares};
 use super::super::matching::Pair;
 use super::super::stroke::Stroke;
+use super::corners::Shares;
 use crate::geometry::Point;
 
 /// Greatest difference of the shares of the length, in the mean, at which points of equal number are taken.
@@ -51,13 +53,8 @@ impl Places {
                 own: Some(own),
             };
         }
-        let along = |share: f64| match (other.closed, pair.reversed) {
-            (true, false) => (pair.start + share).rem_euclid(1.0),
-            (true, true) => (pair.start - share).rem_euclid(1.0),
-            (false, false) => share,
-            (false, true) => 1.0 - share,
-        };
-        let shares: Vec<f64> = self.shares.iter().map(|&s| along(s)).collect();
+        let aligned = Shares::new(stroke, other, pair);
+        let shares: Vec<f64> = self.shares.iter().map(|&s| aligned.at(s)).collect();
         let line = Line::new(other);
         Self { points: shares.iter().map(|&s| line.at(s)).collect(), shares, own: None }
     }

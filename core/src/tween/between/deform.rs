@@ -1,10 +1,10 @@
 //! From one shape to another as rigidly as possible along the line.
 //!
-//! Each edge between neighbouring points turns by an angle and changes in its own turned frame; at share s it has turned by
-//! s times the angle. The angle is that of the best rotation of the edges around it, and continues from edge to edge without
-//! jumps, so that what curls up by half a turn and more curls all the way (Sederberg et al. 1993 interpolate turning angles
-//! and lengths alike). The edges are added up again; of a closed line the gap that remains is spread over the edges by their
-//! lengths, which is least squares. Both ends are met exactly.
+//! Each edge between neighbouring points turns by an angle and changes in its own turned frame; at share s it has
+//! turned by s times the angle. The angle is that of the best rotation of the edges around it, and continues from edge
+//! to edge without jumps, so that what curls up by half a turn and more curls all the way (Sederberg et al. 1993
+//! interpolate turning angles and lengths alike). The edges are added up again; of a closed line the gap that remains
+//! is spread over the edges by their lengths, which is least squares. Both ends are met exactly.
 //!
 //! Limits: a closed line whose turning number changes, as a circle that becomes an eight, moves along straight lines.
 

@@ -1,9 +1,10 @@
 //! How movements between several keys in a row join: with one velocity, unless a corner in time or a hold is asked.
 //!
-//! Between two keys something moves along a path; how far along it, is a cubic of time. At a key the direction is the mean of
-//! the two paths' and the speed their weighted harmonic mean (Fritsch & Butland 1984), less the more the directions differ,
-//! and zero where the movement turns back: nothing overshoots a key. What of that velocity does not lie along a path is added
-//! to it as a cubic that vanishes at both keys. Before the first key and after the last one everything rests, if asked so.
+//! Between two keys something moves along a path; how far along it, is a cubic of time. At a key the direction is the
+//! mean of the two paths' and the speed their weighted harmonic mean (Fritsch & Butland 1984), less the more the
+//! directions differ, and zero where the movement turns back: nothing overshoots a key. What of that velocity does not
+//! lie along a path is added to it as a cubic that vanishes at both keys. Before the first key and after the last one
+//! everything rests, if asked so.
 
 use super::super::peg::Timing;
 use super::super::peg::{hermite, monotone_slope};

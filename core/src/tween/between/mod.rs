@@ -1,28 +1,29 @@
 //! In-betweens of drawings on key frames.
 //!
 //! 1. `tracks`: matched strokes are chained through all drawings, their places followed by proportional arc length
-//!    ([`correspond`]).
-//! 2. [`super::peg::propose`]: strokes that move as one are groups, which hang on each other by hinges; `motion` carries
-//!    each group from key to key along arcs. Given pegs take their place.
-//! 3. `deform`: what of a stroke's change its group does not explain is a change of shape in the group's frame, as rigid as
-//!    possible.
+//!    between corners ([`correspond`], `corners`).
+//! 2. [`super::peg::propose`]: strokes that move as one are groups, which hang on each other by hinges; `motion`
+//!    carries each group from key to key along arcs. Given pegs take their place.
+//! 3. `deform`: what of a stroke's change its group does not explain is a change of shape in the group's frame, as
+//!    rigid as possible.
 //! 4. `join`: movements and changes of shape run through several keys with one velocity.
 //! 5. `contacts`: strokes that touch on both keys touch between them.
 //!
 //! # Limits
 //!
-//! How far something has come on each frame cannot be known from two drawings: where it matters, a [`Spacing`] says it. A
-//! movement to and fro between two keys needs a key at its turning point.
+//! How far something has come on each frame cannot be known from two drawings: where it matters, a [`Spacing`] says it.
+//! A movement to and fro between two keys needs a key at its turning point.
 
 mod check;
 mod contacts;
+mod corners;
 mod correspond;
 mod deform;
 mod join;
 mod motion;
 mod tracks;
 
-pub use check::BetweenError;
+pub use check::{BetweenError, SpacingError};
 pub use correspond::Places;
 pub use tracks::{Stand, Track};
 
@@ -42,13 +43,14 @@ use std::collections::BTreeSet;
 /// How far the drawings between two keys have come.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Spacing {
-    /// As the keys before and after suggest: with one velocity through the keys, and into rest where a movement turns back.
+    /// As the keys before and after suggest: with one velocity through the keys, and into rest where a movement turns
+    /// back.
     #[default]
     Smooth,
     /// By a movement function.
     Timing(Timing),
-    /// By a spacing chart: the share of the way for each frame between the keys, in order; 0 is the earlier key's drawing, 1
-    /// the later one's, and what lies outside goes on beyond them.
+    /// By a spacing chart: the share of the way for each frame between the keys, in order; 0 is the earlier key's
+    /// drawing, 1 the later one's, and what lies outside goes on beyond them.
     Chart(Vec<f64>),
 }
 
@@ -123,8 +125,8 @@ impl Default for Options {
 pub struct GivenPegs {
     /// The pegs.
     pub tree: PegTree,
-    /// By key and stroke the index of its peg. A track hangs on the peg of the first of its strokes that has one; strokes
-    /// without hang on groups that are found.
+    /// By key and stroke the index of its peg. A track hangs on the peg of the first of its strokes that has one;
+    /// strokes without hang on groups that are found.
     pub of: Vec<Vec<Option<usize>>>,
 }
 
@@ -162,8 +164,8 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// Prepares the in-betweens of drawings, matched each with the next. Pegs that are given carry the strokes that hang on
-    /// them; all others' are found.
+    /// Prepares the in-betweens of drawings, matched each with the next. Pegs that are given carry the strokes that
+    /// hang on them; all others' are found.
     ///
     /// # Errors
     ///
@@ -177,8 +179,8 @@ impl Sequence {
         Self::built(keys, matchings, pegs, options, None)
     }
 
-    /// As [`Self::new`], for the frames of one span alone: that after key `base`, whose strokes' own points are followed. The
-    /// other keys give the velocities at its ends.
+    /// As [`Self::new`], for the frames of one span alone: that after key `base`, whose strokes' own points are
+    /// followed. The other keys give the velocities at its ends.
     ///
     /// # Errors
     ///
@@ -209,8 +211,8 @@ impl Sequence {
         let moving: Vec<Moving> =
             tracks.iter().zip(&places).map(|(t, places)| Moving { places, closed: t.closed }).collect();
         let groups = propose::groups(&moving);
-        let durations: Vec<f64> =
-            keys.windows(2).map(|pair| f64::from(pair[1].frame) - f64::from(pair[0].frame)).collect();
+        let duration = |pair: &[Key]| f64::from(pair[1].frame) - f64::from(pair[0].frame);
+        let durations: Vec<f64> = keys.windows(2).map(duration).collect();
         let spacings: Vec<Spacing> = keys.iter().map(|key| key.spacing.clone()).collect();
         let corners: Vec<bool> = keys.iter().map(|key| key.corner).collect();
         let spans = durations.len();
@@ -227,10 +229,9 @@ impl Sequence {
         let mut sequence =
             Self { keys, tracks, motion, changes, local, contacts: vec![Vec::new(); spans], options: *options };
         if options.contacts {
-            sequence.contacts = (0..spans)
-                .into_par_iter()
-                .map(|k| if base.is_none_or(|base| base == k) { sequence.touching(k) } else { Vec::new() })
-                .collect();
+            let wanted = |k: &usize| base.is_none_or(|base| base == *k);
+            let touching = |k: usize| if wanted(&k) { sequence.touching(k) } else { Vec::new() };
+            sequence.contacts = (0..spans).into_par_iter().map(touching).collect();
         }
         Ok(sequence)
     }
@@ -240,8 +241,8 @@ impl Sequence {
         &self.tracks
     }
 
-    /// The drawing on a frame, from behind to the front: on a key that drawing itself, before the first and after the last
-    /// key nothing.
+    /// The drawing on a frame, from behind to the front: on a key that drawing itself, before the first and after the
+    /// last key nothing.
     pub fn at(&self, frame: FrameNumber) -> Vec<InBetween> {
         let next = self.keys.partition_point(|key| key.frame <= frame);
         let Some(k) = next.checked_sub(1) else { return Vec::new() };
@@ -266,8 +267,8 @@ impl Sequence {
         strokes.iter().zip(tracks).map(drawn).collect()
     }
 
-    /// The tracks that are drawn between key `k` and the next one, from behind to the front: of a stroke in pieces the pieces
-    /// alone.
+    /// The tracks that are drawn between key `k` and the next one, from behind to the front: of a stroke in pieces the
+    /// pieces alone.
     pub fn present(&self, k: usize) -> Vec<usize> {
         let parts = |key: usize| -> BTreeSet<usize> {
             let part = |track: &Track| {

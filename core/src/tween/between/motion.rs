@@ -1,11 +1,12 @@
 //! How groups of strokes move from key to key.
 //!
-//! Each group ([`super::super::peg::propose`]) is carried from key to key by least-squares similarities; their product from
-//! the first key on is its pose: turn, logarithm of the scale, and where its pivot is. A group that hangs on another one is
-//! described in the frame of that one, so that a limb turns about its joint while the body moves. Between keys turn and
-//! logarithm change evenly along the path, and a root's pivot moves along an arc: a body that turns by φ on its way from A to
-//! B goes round the fixed point of that movement, at full strength, or, since a drawing seldom shows its pivot, less far
-//! ([`super::Options::arcs`]). Given pegs move as they are given, and take the place of groups.
+//! Each group ([`super::super::peg::propose`]) is carried from key to key by least-squares similarities; their product
+//! from the first key on is its pose: turn, logarithm of the scale, and where its pivot is. A group that hangs on
+//! another one is described in the frame of that one, so that a limb turns about its joint while the body moves.
+//! Between keys turn and logarithm change evenly along the path, and a root's pivot moves along an arc: a body that
+//! turns by φ on its way from A to B goes round the fixed point of that movement, at full strength, or, since a drawing
+//! seldom shows its pivot, less far ([`super::Options::arcs`]). Given pegs move as they are given, and take the place
+//! of groups.
 
 use super::super::peg::PegTree;
 use super::super::peg::propose::{Group, Moving};
@@ -189,6 +190,33 @@ fn order(groups: &[Group]) -> Vec<usize> {
 }
 
 fn poses(strokes: &[Moving], groups: &[Group], keys: usize, order: &[usize]) -> Vec<Mover> {
+    let worlds = worlds(strokes, groups, keys, order);
+    let mover = |(g, group): (usize, &Group)| {
+        let own: Vec<Point> = group
+            .members
+            .iter()
+            .filter_map(|&i| strokes[i].places.iter().flatten().next())
+            .flatten()
+            .copied()
+            .collect();
+        let middle = polygon::center(&own);
+        let square = own.iter().map(|p| p.distance_squared(middle)).sum::<f64>() / own.len().max(1) as f64;
+        let anchor = if group.parent.is_some() { group.pivot } else { middle };
+        let pose = |k: usize| {
+            let (world, turn) = worlds[g][k];
+            let (on, on_turn) = group.parent.map_or((Similarity::IDENTITY, 0.0), |parent| worlds[parent][k]);
+            let local = on.inverse().after(&world);
+            Pose { turn: turn - on_turn, growth: local.scale().max(1e-12).ln(), at: local.apply(anchor) }
+        };
+        let poses =
+            (0..keys.max(1)).map(|k| if k < keys { pose(k) } else { Pose { turn: 0.0, growth: 0.0, at: anchor } });
+        Mover { parent: group.parent, anchor, radius: square.sqrt().max(1.0), poses: poses.collect(), runs: Vec::new() }
+    };
+    groups.iter().enumerate().map(mover).collect()
+}
+
+/// By group and key where the group is against the first key, and how far it has turned.
+fn worlds(strokes: &[Moving], groups: &[Group], keys: usize, order: &[usize]) -> Vec<Vec<(Similarity, f64)>> {
     let places = |group: &Group, k: usize, both: usize| -> Vec<Point> {
         let there = |&&i: &&usize| strokes[i].places[k].is_some() && strokes[i].places[both].is_some();
         group.members.iter().filter(there).filter_map(|&i| strokes[i].places[k].clone()).flatten().collect()
@@ -213,28 +241,7 @@ fn poses(strokes: &[Moving], groups: &[Group], keys: usize, order: &[usize]) -> 
         }
         worlds[g] = by_key;
     }
-    let mover = |(g, group): (usize, &Group)| {
-        let own: Vec<Point> = group
-            .members
-            .iter()
-            .filter_map(|&i| strokes[i].places.iter().flatten().next())
-            .flatten()
-            .copied()
-            .collect();
-        let middle = polygon::center(&own);
-        let square = own.iter().map(|p| p.distance_squared(middle)).sum::<f64>() / own.len().max(1) as f64;
-        let anchor = if group.parent.is_some() { group.pivot } else { middle };
-        let pose = |k: usize| {
-            let (world, turn) = worlds[g][k];
-            let (on, on_turn) = group.parent.map_or((Similarity::IDENTITY, 0.0), |parent| worlds[parent][k]);
-            let local = on.inverse().after(&world);
-            Pose { turn: turn - on_turn, growth: local.scale().max(1e-12).ln(), at: local.apply(anchor) }
-        };
-        let poses =
-            (0..keys.max(1)).map(|k| if k < keys { pose(k) } else { Pose { turn: 0.0, growth: 0.0, at: anchor } });
-        Mover { parent: group.parent, anchor, radius: square.sqrt().max(1.0), poses: poses.collect(), runs: Vec::new() }
-    };
-    groups.iter().enumerate().map(mover).collect()
+    worlds
 }
 
 /// A similarity that neither vanishes nor explodes.

@@ -1,8 +1,8 @@
 //! Strokes followed through all drawings.
 //!
-//! Pairs of neighbouring drawings are chained. The places that are followed are the points of the stroke on the first drawing
-//! that has it. Of a stroke that the next drawing has in pieces each piece is a track of its own, which begins on the part of
-//! the whole that it comes from; pieces that are joined end on parts of the whole likewise.
+//! Pairs of neighbouring drawings are chained. The places that are followed are the points of the stroke on the first
+//! drawing that has it. Of a stroke that the next drawing has in pieces each piece is a track of its own, which begins
+//! on the part of the whole that it comes from; pieces that are joined end on parts of the whole likewise.
 
 use super::super::matching::{InPieces, Matching, Pair};
 use super::super::stroke::Stroke;
@@ -96,8 +96,8 @@ pub(super) fn chained(keys: &[Key], matchings: &[Matching]) -> Vec<Track> {
     tracks
 }
 
-/// The tracks that stand on drawing `base` or come after it, their places being the points of the strokes there, followed back
-/// to the drawings before as far as they go one to one or were pieces of one stroke.
+/// The tracks that stand on drawing `base` or come after it, their places being the points of the strokes there,
+/// followed back to the drawings before as far as they go one to one or were pieces of one stroke.
 pub(super) fn around(keys: &[Key], matchings: &[Matching], base: usize) -> Vec<Track> {
     let mut tracks = chained(&keys[base..], &matchings[base..]);
     tracks.iter_mut().for_each(|track| track.first += base);
@@ -127,7 +127,8 @@ pub(super) fn around(keys: &[Key], matchings: &[Matching], base: usize) -> Vec<T
     tracks
 }
 
-/// The places of a track on a piece, taken to the part of the whole that the piece covers, `covered`, in the piece's order.
+/// The places of a track on a piece, taken to the part of the whole that the piece covers, `covered`, in the piece's
+/// order.
 fn on_part(stand: &Stand, piece: &Stroke, covered: Places) -> Places {
     let ends = (covered.shares.first().copied().unwrap_or(0.0), covered.shares.last().copied().unwrap_or(1.0));
     let part = Stroke::new(covered.points, false);
@@ -143,8 +144,8 @@ fn inverse(pair: &Pair) -> Pair {
     Pair { from: pair.to, to: pair.from, start, ..*pair }
 }
 
-/// For each piece of a whole its index, the places of the whole that it covers, and those of the piece: the piece's points
-/// at proportional lengths, in the piece's own order.
+/// For each piece of a whole its index, the places of the whole that it covers, and those of the piece: the piece's
+/// points at proportional lengths, in the piece's own order.
 fn parts(whole: &Stroke, pieces: &InPieces, strokes: &[Stroke]) -> Vec<(usize, (Places, Places))> {
     let lengths: Vec<f64> = pieces.pieces.iter().map(|p| strokes[p.0].length()).collect();
     let total = lengths.iter().sum::<f64>().max(f64::MIN_POSITIVE);

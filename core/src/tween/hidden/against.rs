@@ -1,10 +1,10 @@
 //! One line against one shape in front of it: which of its stretches are inside, and which run along the border.
 //!
 //! 1. All meetings of the line with the outline cut it into stretches on each of which it stays on one side.
-//! 2. A stretch whose end keeps within the border's width of the outline for a while runs along it there; the place where it
-//!    departs is found by steps along the line and halving.
-//! 3. What is left is inside or outside by the winding number of three of its points. Should they disagree, a meeting was
-//!    missed (two crossings within rounding of each other, of which one shows): it is found by halving.
+//! 2. A stretch whose end keeps within the border's width of the outline for a while runs along it there; the place
+//!    where it departs is found by steps along the line and halving.
+//! 3. What is left is inside or outside by the winding number of three of its points. Should they disagree, a meeting
+//!    was missed (two crossings within rounding of each other, of which one shows): it is found by halving.
 
 use super::cover::Shape;
 use super::intervals::Interval;
@@ -105,7 +105,8 @@ fn stretch(path: &Path, shape: &Shape, widths: Widths, (from, to): Interval, fou
     }
 }
 
-/// How far from `start` towards `end` the line keeps to the border: `start` where it only crosses, `end` if all the way.
+/// How far from `start` towards `end` the line keeps to the border: `start` where it only crosses, `end` if all the
+/// way.
 fn departure(path: &Path, shape: &Shape, widths: Widths, start: f64, end: f64) -> f64 {
     let near = |t: f64| shape.is_near(path.point(t), widths.border);
     let mut step = widths.sliver.max(widths.border);

@@ -1,10 +1,10 @@
 //! A filled shape: what is inside of it, and what lies on its border.
 //!
-//! **Inside** is told by the winding number, the number of times that the outline goes round a point: crossings of a ray to
-//! the right, counted +1 where the outline falls and −1 where it rises. Each piece is parted where it turns in y; a part
-//! counts if one of its ends lies on or above the ray and the other one below it. Neighbours share the very same end, so
-//! that no rounding makes the outline leak: the number is right for every point that is not on the border itself, and one
-//! of the neighbouring values there.
+//! **Inside** is told by the winding number, the number of times that the outline goes round a point: crossings of a
+//! ray to the right, counted +1 where the outline falls and −1 where it rises. Each piece is parted where it turns in
+//! y; a part counts if one of its ends lies on or above the ray and the other one below it. Neighbours share the very
+//! same end, so that no rounding makes the outline leak: the number is right for every point that is not on the border
+//! itself, and one of the neighbouring values there.
 
 use super::path::Path;
 use super::tree::{Bounds, Tree, meet};

@@ -1,5 +1,5 @@
-//! The points of a part of a stroke as blends of the stroke's own points, so that whatever the points carry (a radius, a
-//! third coordinate) is cut by the same weights.
+//! The points of a part of a stroke as blends of the stroke's own points, so that whatever the points carry (a radius,
+//! a third coordinate) is cut by the same weights.
 
 use super::intervals::Interval;
 use super::path::{Path, PathError};

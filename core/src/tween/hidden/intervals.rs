@@ -40,8 +40,8 @@ pub(super) fn over_seam(mut intervals: Vec<Interval>, end: f64) -> Vec<Interval>
     intervals
 }
 
-/// Hidden intervals without slivers: of what is left, visible stretches shorter than `sliver` pixels are hidden, and then
-/// hidden ones shorter than that are shown. A path that is all hidden or all visible stays so.
+/// Hidden intervals without slivers: of what is left, visible stretches shorter than `sliver` pixels are hidden, and
+/// then hidden ones shorter than that are shown. A path that is all hidden or all visible stays so.
 pub(super) fn without_slivers(path: &Path, hidden: Vec<Interval>, sliver: f64) -> Vec<Interval> {
     let end = path.end();
     let short = |path: &Path, (from, to): Interval| path.length_between(from, to) < sliver;

@@ -1,35 +1,35 @@
 //! Hidden lines: of each line, what a filled shape in front of it covers (Yang et al. 1986, §4 and Appendix E).
 //!
-//! [`hidden_lines`] takes lines and covers, each with its [`Depth`], and gives for each line the parameters between which it
-//! is visible and hidden. Nothing is cut or moved here: a line stays the line that it is, with intervals of its own
-//! parameter ([`Path::part`] gives their shape, [`Form::cut`] their points), so that whatever is made of them still knows
-//! where it came from.
+//! [`hidden_lines`] takes lines and covers, each with its [`Depth`], and gives for each line the parameters between
+//! which it is visible and hidden. Nothing is cut or moved here: a line stays the line that it is, with intervals of
+//! its own parameter ([`Path::part`] gives their shape, [`Form::cut`] their points), so that whatever is made of them
+//! still knows where it came from.
 //!
 //! # What is hidden
 //!
-//! A point of a line is hidden if a cover with a larger depth holds it; what an outline that crosses itself holds says the
-//! [`FillRule`]. A line on the border of a cover is visible, as it is drawn half beside it. If both of its sides are covered
-//! (it runs between two shapes that adjoin) it is hidden.
+//! A point of a line is hidden if a cover with a larger depth holds it; what an outline that crosses itself holds says
+//! the [`FillRule`]. A line on the border of a cover is visible, as it is drawn half beside it. If both of its sides
+//! are covered (it runs between two shapes that adjoin) it is hidden.
 //!
 //! # How
 //!
 //! Meetings of the pieces are exact ([`crate::curve::intersect`]); between two of them the winding number decides
-//! ([`cover`], [`against`]). Trees of boxes ([`tree`]) find the pieces and shapes that are near each other, so that many
-//! strokes cost little more each than few.
+//! ([`cover`], [`against`]). Trees of boxes ([`tree`]) find the pieces and shapes that are near each other, so that
+//! many strokes cost little more each than few.
 //!
 //! # Between frames
 //!
 //! Frames are told apart from each other by nothing: there is no memory that could flicker. What is found is right for
-//! covers that differ by no more than [`Options::border`] from those given, hence an outline that is drawn twice, once as a
-//! line and once as a fill, and rounded, is not torn to pieces. Crossings move as continuously as the curves do: where a line
-//! grazes an outline its hidden stretch begins as a point and grows. Stretches shorter than [`Options::sliver`] take after
-//! their surroundings; nothing appears or goes that is longer than that, unless the drawings jump or a line lies down on a
-//! border at once.
+//! covers that differ by no more than [`Options::border`] from those given, hence an outline that is drawn twice, once
+//! as a line and once as a fill, and rounded, is not torn to pieces. Crossings move as continuously as the curves do:
+//! where a line grazes an outline its hidden stretch begins as a point and grows. Stretches shorter than
+//! [`Options::sliver`] take after their surroundings; nothing appears or goes that is longer than that, unless the
+//! drawings jump or a line lies down on a border at once.
 //!
 //! # Limits
 //!
-//! Lines have no width here: a broad line whose middle is visible is visible in its full width. Two crossings that are closer
-//! together than the crossing test can tell (1e-6 of a piece) count as none.
+//! Lines have no width here: a broad line whose middle is visible is visible in its full width. Two crossings that are
+//! closer together than the crossing test can tell (1e-6 of a piece) count as none.
 
 mod against;
 mod cover;
@@ -99,8 +99,8 @@ pub struct OptionsError {
 
 /// What is seen of a line, in its own parameter; both together are the whole line.
 ///
-/// Intervals rise and are apart from each other. That of a closed line which runs over its seam comes last, and its end is
-/// greater than [`Path::end`]. A closed line that is all visible or hidden has one interval, from 0 to its end.
+/// Intervals rise and are apart from each other. That of a closed line which runs over its seam comes last, and its end
+/// is greater than [`Path::end`]. A closed line that is all visible or hidden has one interval, from 0 to its end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visibility {
     /// What is seen.

@@ -38,7 +38,8 @@ impl Path {
         Ok(Self { pieces: spline.pieces().collect(), closed: spline.is_closed() })
     }
 
-    /// Straight pieces between points: at t = i + u the point (1 − u) pᵢ + u pᵢ₊₁. A closed one returns to its first point.
+    /// Straight pieces between points: at t = i + u the point (1 − u) pᵢ + u pᵢ₊₁. A closed one returns to its first
+    /// point.
     pub fn of_polyline(points: &[Point], closed: bool) -> Result<Self, PathError> {
         checked(points)?;
         let line = |a: Point, b: Point| Quadratic::new(a, 0.5 * (a + b), b);
@@ -99,8 +100,8 @@ impl Path {
         self.pieces[i].direction(u)
     }
 
-    /// The pieces between two parameters, those of no length in the parameter left out. Of a closed path `to` may lie up to
-    /// one round beyond the end.
+    /// The pieces between two parameters, those of no length in the parameter left out. Of a closed path `to` may lie
+    /// up to one round beyond the end.
     pub fn part(&self, from: f64, to: f64) -> Vec<Quadratic> {
         let mut found = Vec::new();
         self.for_each_part(from, to, |i, u, v| {

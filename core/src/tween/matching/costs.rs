@@ -201,32 +201,42 @@ impl Rows {
                 let found = grid.nearest(around[i].apply(outline.centre), NEAREST);
                 found.into_iter().map(|k| numbers[k]).collect()
             };
-            let expected = Expected::new(a, i, &around[i]);
-            let mut near: Vec<(f64, usize)> = near
-                .into_iter()
-                .filter(|&j| !taken[j])
-                .filter_map(|j| Some((ways.unlike(a, i, b, j)?.under(&expected), j)))
-                .filter(|(base, _)| *base < options.max_cost)
-                .collect();
-            near.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
-            // The cheapest so far, by their cost; what costs more at least than the last of them is none of them.
-            let mut found: Vec<Vec<Label>> = Vec::with_capacity(KEPT + 1);
-            for (base, j) in near {
-                if found.len() == KEPT && base > found[KEPT - 1][0].cost {
-                    break;
-                }
-                let row = labels((a, b), ways, (i, j), &around[i]);
-                let Some(first) = row.first().filter(|label| label.cost < options.max_cost) else { continue };
-                let place = found.partition_point(|x| x[0].cost.total_cmp(&first.cost).then(x[0].to.cmp(&j)).is_lt());
-                found.insert(place, row);
-                found.truncate(KEPT);
-            }
-            found.concat()
+            let free = near.into_iter().filter(|&j| !taken[j]);
+            cheapest((a, b), ways, (i, &around[i]), free, options.max_cost)
         };
         let labels: Vec<Vec<Label>> = (0..a.outlines.len()).into_par_iter().map(row).collect();
         let bound = fixed.iter().map(|fixed| matches!(fixed, Fixed::To(_))).collect();
         Self { labels, bound }
     }
+}
+
+/// The labels of the cheapest counterparts of stroke `i` among `near`.
+fn cheapest(
+    (a, b): (&Figure, &Figure),
+    ways: &Ways,
+    (i, around): (usize, &Movement),
+    near: impl Iterator<Item = usize>,
+    max_cost: f64,
+) -> Vec<Label> {
+    let expected = Expected::new(a, i, around);
+    let mut near: Vec<(f64, usize)> = near
+        .filter_map(|j| Some((ways.unlike(a, i, b, j)?.under(&expected), j)))
+        .filter(|(base, _)| *base < max_cost)
+        .collect();
+    near.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+    // The cheapest so far, by their cost; what costs more at least than the last of them is none of them.
+    let mut found: Vec<Vec<Label>> = Vec::with_capacity(KEPT + 1);
+    for (base, j) in near {
+        if found.len() == KEPT && base > found[KEPT - 1][0].cost {
+            break;
+        }
+        let row = labels((a, b), ways, (i, j), around);
+        let Some(first) = row.first().filter(|label| label.cost < max_cost) else { continue };
+        let place = found.partition_point(|x| x[0].cost.total_cmp(&first.cost).then(x[0].to.cmp(&j)).is_lt());
+        found.insert(place, row);
+        found.truncate(KEPT);
+    }
+    found.concat()
 }
 
 /// The ways to lay stroke `i` upon `j`, the cheapest first.

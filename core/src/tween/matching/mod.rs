@@ -1,21 +1,22 @@
 //! Which stroke of one drawing is which of another.
 //!
-//! Nothing is assumed of the order, direction, starting point or number of points. Strokes look alike (arms, eyes, lines of
-//! a shade), and the drawing has moved; therefore the pairs are found together:
+//! Nothing is assumed of the order, direction, starting point or number of points. Strokes look alike (arms, eyes,
+//! lines of a shade), and the drawing has moved; therefore the pairs are found together:
 //!
 //! 1. `outline`: how well two shapes can be laid upon each other, and how.
 //! 2. `movement`: movements of the whole drawing are proposed and tried on its largest strokes.
 //! 3. `costs`: for each stroke the likely counterparts under the movement expected around it, and what each would cost.
-//! 4. `relaxation`: strokes that lie close together stay so. Graduated assignment (Gold & Rangarajan 1996): all choices are
-//!    kept, weighted, and each supports the choices of its neighbours that fit to it, while the weights sharpen.
+//! 4. `relaxation`: strokes that lie close together stay so. Graduated assignment (Gold & Rangarajan 1996): all choices
+//!    are kept, weighted, and each supports the choices of its neighbours that fit to it, while the weights sharpen.
 //! 5. An exact assignment ([`crate::numeric::sparse_assignment`]) on the costs that result, in which a stroke may stay
-//!    without counterpart at a price; from its pairs the movement around each stroke is fitted anew, and 3 to 5 repeated.
+//!    without counterpart at a price; from its pairs the movement around each stroke is fitted anew, and 3 to 5
+//!    repeated.
 //! 6. `pieces`: what is left over may be a piece of a stroke that was drawn in one go on the other drawing.
 //!
 //! Pairs made by hand are kept as they are, and count as neighbours for the others.
 //!
-//! Limits: two equal limbs that have changed places are told apart by what hangs on them, their layers and colours only. A
-//! disc does not show its turn: it is taken to have turned as what is around it.
+//! Limits: two equal limbs that have changed places are told apart by what hangs on them, their layers and colours
+//! only. A disc does not show its turn: it is taken to have turned as what is around it.
 
 mod costs;
 mod movement;
@@ -27,7 +28,9 @@ mod start;
 use super::stroke::{BadPoint, Stroke, checked};
 use crate::scene::{Cancelled, Progress};
 use costs::{Figure, Rows, Ways};
+use movement::Movement;
 use outline::Way;
+use relaxation::Chosen;
 
 /// Rounds of matching and fitting of the movement around each stroke.
 const ROUNDS: usize = 3;
@@ -35,8 +38,8 @@ const ROUNDS: usize = 3;
 /// How to match.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Cost from which on a stroke stays without counterpart. It has no unit: unequal shapes, a place wrong by 0.7 of the
-    /// drawing's radius, a size wrong by 2.7, and neighbours that went elsewhere cost about 1 each.
+    /// Cost from which on a stroke stays without counterpart. It has no unit: unequal shapes, a place wrong by 0.7 of
+    /// the drawing's radius, a size wrong by 2.7, and neighbours that went elsewhere cost about 1 each.
     pub max_cost: f64,
     /// Farthest turn of the whole drawing, in radians.
     pub max_turn: f64,
@@ -68,8 +71,8 @@ pub struct Pair {
     pub to: usize,
     /// Whether the counterpart is walked backwards.
     pub reversed: bool,
-    /// Of closed strokes the share of the counterpart's length, walked forwards from its first point, at which the first
-    /// point of the other lies; 0 for open ones.
+    /// Of closed strokes the share of the counterpart's length, walked forwards from its first point, at which the
+    /// first point of the other lies; 0 for open ones.
     pub start: f64,
     /// How sure the pair is, 0 to 1; 1 for those made by hand.
     pub confidence: f64,
@@ -87,8 +90,8 @@ pub struct InPieces {
 }
 
 /// The strokes of two drawings side by side. Every stroke of the first stands in exactly one of `pairs`, `vanished` and
-/// `split` or is a piece in `joined`; every stroke of the second in one of `pairs`, `appeared` and `joined`, or is a piece
-/// in `split`.
+/// `split` or is a piece in `joined`; every stroke of the second in one of `pairs`, `appeared` and `joined`, or is a
+/// piece in `split`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Matching {
     /// One to one, by the index in the first drawing.
@@ -158,50 +161,67 @@ pub fn match_strokes(
     let fixed = fixed(first.len(), second.len(), by_hand)?;
     let (a, b) = (Figure::new(first), Figure::new(second));
     progress.report("matching strokes", 0.1)?;
-    let ways = Ways::new(&a, &b);
-    let whole = movement::of_whole(&a, &b, &ways, &fixed, options);
+    let (found, around) = chosen(&a, &b, &fixed, options, progress)?;
+    progress.report("matching strokes", 0.9)?;
+    let mut matching = laid_out(first, second, &found, &fixed);
+    pieces::find(first, second, &around, &fixed, &mut matching);
+    progress.report("matching strokes", 1.0)?;
+    Ok(matching)
+}
+
+/// Of each stroke its counterpart, if it has one, and how its surroundings move: found from each other in turn.
+fn chosen(
+    a: &Figure,
+    b: &Figure,
+    fixed: &[Fixed],
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<(Vec<Option<Chosen>>, Vec<Movement>), MatchingError> {
+    let ways = Ways::new(a, b);
+    let whole = movement::of_whole(a, b, &ways, fixed, options);
     let held = whole.movement;
-    let neighbours = relaxation::Neighbours::new(&a);
-    let mut around = vec![held; first.len()];
+    let neighbours = relaxation::Neighbours::new(a);
+    let mut around = vec![held; fixed.len()];
     let mut found = Vec::new();
     let mut known = whole.found.into_iter().flatten();
     for round in 0..ROUNDS {
         progress.report("matching strokes", 0.3 + 0.2 * round as f64)?;
         let next = known.next().unwrap_or_else(|| {
-            let rows = Rows::new((&a, &b), &ways, &around, &fixed, options);
-            relaxation::relaxed(&neighbours, &b, &rows, options).chosen
+            let rows = Rows::new((a, b), &ways, &around, fixed, options);
+            relaxation::relaxed(&neighbours, b, &rows, options).chosen
         });
         let last = std::mem::replace(&mut found, next);
         // The same pairs move their surroundings the same way again.
         if round > 0 && found == last {
             break;
         }
-        around = movement::around_each(&a, &b, &found, &held);
+        around = movement::around_each(a, b, &found, &held);
     }
-    progress.report("matching strokes", 0.9)?;
+    Ok((found, around))
+}
+
+/// The pairs, and the strokes that have none.
+fn laid_out(first: &[Stroke], second: &[Stroke], found: &[Option<Chosen>], fixed: &[Fixed]) -> Matching {
     let mut matching = Matching::default();
     let mut taken = vec![false; second.len()];
     for (from, choice) in found.iter().enumerate() {
-        match choice {
-            Some(choice) => {
-                taken[choice.to] = true;
-                let by_hand = fixed[from] == Fixed::To(choice.to);
-                matching.pairs.push(Pair {
-                    from,
-                    to: choice.to,
-                    reversed: choice.way.reversed,
-                    start: started(&first[from], &second[choice.to], &choice.way),
-                    confidence: if by_hand { 1.0 } else { choice.confidence },
-                    by_hand,
-                });
-            }
-            None => matching.vanished.push(from),
-        }
+        let Some(choice) = choice else {
+            matching.vanished.push(from);
+            continue;
+        };
+        taken[choice.to] = true;
+        let by_hand = fixed[from] == Fixed::To(choice.to);
+        matching.pairs.push(Pair {
+            from,
+            to: choice.to,
+            reversed: choice.way.reversed,
+            start: started(&first[from], &second[choice.to], &choice.way),
+            confidence: if by_hand { 1.0 } else { choice.confidence },
+            by_hand,
+        });
     }
     matching.appeared = (0..second.len()).filter(|&j| !taken[j]).collect();
-    pieces::find(first, second, &around, &fixed, &mut matching);
-    progress.report("matching strokes", 1.0)?;
-    Ok(matching)
+    matching
 }
 
 /// Where a stroke's first point lies on its counterpart.

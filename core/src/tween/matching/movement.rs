@@ -19,7 +19,8 @@ const MOST_PROPOSALS: usize = 120;
 const PROPOSING: f64 = 0.15;
 /// Movements that are tried by matching the strokes.
 const FINALISTS: usize = 6;
-/// Difference in turn (rad), growth (logarithm) and place (in units of the drawing's radius) below which two movements are one.
+/// Difference in turn (rad), growth (logarithm) and place (in units of the drawing's radius) below which two movements
+/// are one.
 const SAME: f64 = 1e-3;
 /// Preference, for each stroke and rad², for drawings that have turned little.
 const STILLNESS: f64 = 0.02;
@@ -48,8 +49,8 @@ impl Movement {
 /// The movement of the whole drawing, and what matching under it found.
 pub(super) struct Whole {
     pub movement: Movement,
-    /// The counterparts under that movement, and under those around each stroke which follow from them; `None` where the
-    /// movement was tried on some strokes only.
+    /// The counterparts under that movement, and under those around each stroke which follow from them; `None` where
+    /// the movement was tried on some strokes only.
     pub found: Option<[Vec<Option<Chosen>>; 2]>,
 }
 

@@ -1,9 +1,9 @@
 //! A stroke reduced to what shapes are compared by, and the ways to lay one upon another.
 //!
 //! Both curves are sampled evenly by arc length and centred; as complex numbers p and q of unit mean square, the best
-//! similarity is r = mean(conj(p) q), and 1 − |r|² of the variance remains. It does not see size, place, turn or number of
-//! points; all starting points of closed curves and both directions are tried. A closed curve turns the same way round on
-//! both drawings, hence its direction follows from the sign of the area where it has one.
+//! similarity is r = mean(conj(p) q), and 1 − |r|² of the variance remains. It does not see size, place, turn or number
+//! of points; all starting points of closed curves and both directions are tried. A closed curve turns the same way
+//! round on both drawings, hence its direction follows from the sign of the area where it has one.
 
 use super::super::stroke::Stroke;
 use crate::geometry::similarity::Similarity;
@@ -79,7 +79,8 @@ impl Outline {
         found
     }
 
-    /// The ways to lay this closed curve upon another one, by the start, all starts side by side for vector instructions.
+    /// The ways to lay this closed curve upon another one, by the start, all starts side by side for vector
+    /// instructions.
     fn around(&self, other: &Self, reversed: bool) -> Vec<Way> {
         let twice = |axis: fn(&Point) -> f64| -> Vec<f64> {
             other.shape.iter().chain(&other.shape).chain(&other.shape[..1]).map(axis).collect()
@@ -98,8 +99,8 @@ impl Outline {
         (0..SAMPLES).map(way).collect()
     }
 
-    /// The most likely ways to lay this curve upon `other`, when a turn is expected that is worth `stiffness` residual for
-    /// each rad².
+    /// The most likely ways to lay this curve upon `other`, when a turn is expected that is worth `stiffness` residual
+    /// for each rad².
     pub fn ways(&self, other: &Self, expected: f64, stiffness: f64) -> Vec<Way> {
         likely(&self.all_ways(other), expected, stiffness)
     }

@@ -1,8 +1,9 @@
 //! Strokes that were drawn in one go on one drawing and in pieces on the other.
 //!
 //! What has no counterpart may be a piece of a stroke that has one already: where an end of it lies by an end of the
-//! counterpart, and both put together are more like the stroke than the counterpart alone is, the two are pieces of it. So
-//! on until nothing is won; strokes without any counterpart are tried with two pieces that have none. Pieces are open.
+//! counterpart, and both put together are more like the stroke than the counterpart alone is, the two are pieces of it.
+//! So on until nothing is won; strokes without any counterpart are tried with two pieces that have none. Pieces are
+//! open.
 
 use super::super::grid::Grid;
 use super::super::stroke::Stroke;

@@ -1,10 +1,11 @@
 //! Choices that support each other: graduated assignment (Gold & Rangarajan 1996).
 //!
-//! Each stroke holds a weight for each of its labels and one for having no counterpart. What lies next to it in the first
-//! drawing should lie next to it in the second: a point where two strokes (nearly) touch is taken by both labels' maps, and
-//! the distance of the two images is the cost of choosing both. The weights follow from the costs under the neighbours'
-//! present weights, β sharpening from round to round; between rounds they are normalised so that no stroke of the second
-//! drawing is taken more than once (Sinkhorn). The last word has an exact assignment, repeated while it lowers the energy.
+//! Each stroke holds a weight for each of its labels and one for having no counterpart. What lies next to it in the
+//! first drawing should lie next to it in the second: a point where two strokes (nearly) touch is taken by both labels'
+//! maps, and the distance of the two images is the cost of choosing both. The weights follow from the costs under the
+//! neighbours' present weights, β sharpening from round to round; between rounds they are normalised so that no stroke
+//! of the second drawing is taken more than once (Sinkhorn). The last word has an exact assignment, repeated while it
+//! lowers the energy.
 
 use super::super::grid::Grid;
 use super::Options;
@@ -52,8 +53,8 @@ pub(super) struct Relaxed {
     pub energy: f64,
 }
 
-/// Where the labels take the places of the links: `own[l]` those of the stroke (all x, then all y), `other[l][k]` label `k` of
-/// the neighbour.
+/// Where the labels take the places of the links: `own[l]` those of the stroke (all x, then all y), `other[l][k]` label
+/// `k` of the neighbour.
 struct Images {
     own: Vec<(Vec<f64>, Vec<f64>)>,
     other: Vec<Vec<Point>>,
@@ -152,8 +153,9 @@ fn supported(rows: &Rows, links: Links, weights: &[Weights]) -> Vec<Vec<f64>> {
     (0..rows.labels.len()).into_par_iter().with_min_len(16).map(of_stroke).collect()
 }
 
-/// Adds what a neighbour's label of some weight, which takes the link's place to `there`, costs each label that takes it to
-/// `own`: the squared distance in units of that which tears, at most 1. All labels side by side, for vector instructions.
+/// Adds what a neighbour's label of some weight, which takes the link's place to `there`, costs each label that takes
+/// it to `own`: the squared distance in units of that which tears, at most 1. All labels side by side, for vector
+/// instructions.
 fn add_torn(torn: &mut [f64], own: &(Vec<f64>, Vec<f64>), there: Point, weight: f64, scale: f64) {
     for ((torn, x), y) in torn.iter_mut().zip(&own.0).zip(&own.1) {
         let (dx, dy) = (x - there.x, y - there.y);

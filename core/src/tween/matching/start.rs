@@ -1,5 +1,5 @@
-//! Where a closed stroke's first point lies on its counterpart, to a finer step than that of the samples by which they were
-//! found: the start at which the best similarity explains most.
+//! Where a closed stroke's first point lies on its counterpart, to a finer step than that of the samples by which they
+//! were found: the start at which the best similarity explains most.
 
 use super::super::line::Line;
 use super::super::stroke::Stroke;

@@ -6,15 +6,15 @@
 //! p ↦ α(t) A(t) (p − O) + O + S(t)
 //! ```
 //!
-//! with the pivot O, shift S, turn A and scale α, and the pegs above it then move the result on. Under a parent that does not
-//! turn, the point relative to its centre is α₀ (α A P + S), equation (11). The paper leaves the turn of a parent out; here a
-//! peg turns all that hangs on it.
+//! with the pivot O, shift S, turn A and scale α, and the pegs above it then move the result on. Under a parent that
+//! does not turn, the point relative to its centre is α₀ (α A P + S), equation (11). The paper leaves the turn of a
+//! parent out; here a peg turns all that hangs on it.
 //!
 //! Between keys a [`Timing`] says how far a movement has come.
 //!
-//! - *Theorem 1* says that with scaling and shifts of constant speed a point moves along a straight line at constant speed.
-//!   As printed it holds where nothing hangs on a peg that scales; scalings that are multiplied bend the speed. (Equation
-//!   (12) is printed with x₂ − x₁ in place of x₂.)
+//! - *Theorem 1* says that with scaling and shifts of constant speed a point moves along a straight line at constant
+//!   speed. As printed it holds where nothing hangs on a peg that scales; scalings that are multiplied bend the speed.
+//!   (Equation (12) is printed with x₂ − x₁ in place of x₂.)
 //! - *Theorem 2*: moving the guiding points of a B-spline moves its curve, as for every affine map.
 //!
 //! [`propose`] finds pegs from strokes that moved.
@@ -145,27 +145,13 @@ impl PegTree {
     ///
     /// # Errors
     ///
-    /// What makes them none: parents that are not there or form a loop; pivots, shifts and turns that are no finite numbers
-    /// within ±1e9; scales below [`LEAST_SCALE`]; keys that do not rise; see [`PegError`].
+    /// What makes them none: parents that are not there or form a loop; pivots, shifts and turns that are no finite
+    /// numbers within ±1e9; scales below [`LEAST_SCALE`]; keys that do not rise; see [`PegError`].
     pub fn new(pegs: Vec<Peg>) -> Result<Self, PegError> {
-        pegs.iter().try_for_each(|peg| check(peg, pegs.len()))?;
-        let mut order = Vec::with_capacity(pegs.len());
-        let mut placed = vec![false; pegs.len()];
-        for start in 0..pegs.len() {
-            let mut chain = Vec::new();
-            let mut next = Some(start);
-            while let Some(i) = next.filter(|&i| !placed[i]) {
-                if chain.len() == pegs.len() {
-                    return Err(PegError::Loop { name: pegs[i].name.clone() });
-                }
-                chain.push(i);
-                next = pegs[i].parent;
-            }
-            for i in chain.into_iter().rev() {
-                placed[i] = true;
-                order.push(i);
-            }
+        if let Some((_, error)) = problems(&pegs).into_iter().next() {
+            return Err(error);
         }
+        let order = ordered(&pegs).0;
         Ok(Self { pegs, order })
     }
 
@@ -204,35 +190,68 @@ impl Peg {
     }
 }
 
-fn check(peg: &Peg, count: usize) -> Result<(), PegError> {
+/// All that makes these pegs none or no tree, with the index of the peg; of a loop its first peg.
+pub fn problems(pegs: &[Peg]) -> Vec<(usize, PegError)> {
+    let mut found = Vec::new();
+    for (k, peg) in pegs.iter().enumerate() {
+        check(peg, pegs.len(), &mut |error| found.push((k, error)));
+    }
+    let loops = ordered(pegs).1;
+    found.extend(loops.into_iter().map(|k| (k, PegError::Loop { name: pegs[k].name.clone() })));
+    found
+}
+
+/// Indices, every parent before its children; and the first peg of each loop.
+fn ordered(pegs: &[Peg]) -> (Vec<usize>, Vec<usize>) {
+    let mut order = Vec::with_capacity(pegs.len());
+    let mut loops = Vec::new();
+    // By which start a peg was met.
+    let mut met = vec![usize::MAX; pegs.len()];
+    for start in 0..pegs.len() {
+        let mut chain = Vec::new();
+        let mut next = Some(start);
+        while let Some(i) = next.filter(|&i| i < pegs.len() && met[i] == usize::MAX) {
+            met[i] = start;
+            chain.push(i);
+            next = pegs[i].parent;
+        }
+        if let Some(again) = next.filter(|&i| i < pegs.len() && met[i] == start) {
+            let entered = chain.iter().position(|&i| i == again).unwrap_or_default();
+            loops.extend(chain[entered..].iter().min());
+        }
+        order.extend(chain.into_iter().rev());
+    }
+    (order, loops)
+}
+
+/// Calls `wrong` for all that is wrong with a peg by itself, one of `count`.
+fn check(peg: &Peg, count: usize, wrong: &mut impl FnMut(PegError)) {
     let name = || peg.name.clone();
     if let Some(parent) = peg.parent.filter(|&parent| parent >= count) {
-        return Err(PegError::Parent { name: name(), parent, count });
+        wrong(PegError::Parent { name: name(), parent, count });
     }
     let within = |value: f64| (-FARTHEST..=FARTHEST).contains(&value);
     if !(within(peg.pivot.x) && within(peg.pivot.y)) {
-        return Err(PegError::Pivot { name: name(), x: peg.pivot.x, y: peg.pivot.y });
+        wrong(PegError::Pivot { name: name(), x: peg.pivot.x, y: peg.pivot.y });
     }
+    let near = "a number between -1e9 and 1e9";
     for (k, key) in peg.keys.iter().enumerate() {
-        let wrong =
-            |field, found, expected| Err(PegError::Key { name: name(), frame: key.frame, field, found, expected });
         if let Some(before) = k.checked_sub(1).map(|k| peg.keys[k].frame).filter(|&before| before >= key.frame) {
-            return Err(PegError::Order { name: name(), frame: key.frame, before });
+            wrong(PegError::Order { name: name(), frame: key.frame, before });
         }
-        for found in [key.shift.x, key.shift.y] {
-            if !within(found) {
-                return wrong("shift", found, "a number between -1e9 and 1e9");
+        let shift = [key.shift.x, key.shift.y].into_iter().find(|&value| !within(value));
+        let turn = Some(key.turn).filter(|&value| !within(value));
+        let scale = Some(key.scale).filter(|value| !(LEAST_SCALE..=FARTHEST).contains(value));
+        let fields = [("shift", shift, near), ("turn", turn, near), ("scale", scale, "a number from 1e-6 to 1e9")];
+        for (field, found, expected) in fields {
+            if let Some(found) = found {
+                wrong(PegError::Key { name: name(), frame: key.frame, field, found, expected });
             }
         }
-        if !within(key.turn) {
-            return wrong("turn", key.turn, "a number between -1e9 and 1e9");
+        if let Err(source) = key.timing.check() {
+            wrong(PegError::Timing { name: name(), frame: key.frame, source });
         }
-        if !(LEAST_SCALE..=FARTHEST).contains(&key.scale) {
-            return wrong("scale", key.scale, "a number from 1e-6 to 1e9");
-        }
-        key.timing.check().map_err(|source| PegError::Timing { name: name(), frame: key.frame, source })?;
     }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
 //! Pegs found from strokes that moved: rigid groups, and the hinges between them.
 //!
 //! For each stroke and each pair of neighbouring keys the sums from which a least-squares similarity follows are kept
-//! ([`crate::geometry::similarity`]); those of two groups added are the sums of both together, so that the residual of a
-//! joint movement costs nothing to know. From single strokes on, the two groups are joined whose joint movement explains
-//! both best, until a join would leave more than a small share of their size unexplained. The largest group is the root; the
-//! others hang on the one that they stay nearest to. Where a group turns against its parent, its hinge is the fixed point of
-//! that relative turn, if it lies near the strokes of both; otherwise the place where they meet.
+//! ([`crate::geometry::similarity`]); those of two groups added are the sums of both together, so that the residual of
+//! a joint movement costs nothing to know. From single strokes on, the two groups are joined whose joint movement
+//! explains both best, until a join would leave more than a small share of their size unexplained. The largest group is
+//! the root; the others hang on the one that they stay nearest to. Where a group turns against its parent, its hinge is
+//! the fixed point of that relative turn, if it lies near the strokes of both; otherwise the place where they meet.
 //!
-//! Limits: strokes that happen to move alike are one group, however far apart they lie, where there are few; among more than
-//! [`ALL_PAIRS`] only those near to each other are joined.
+//! Limits: strokes that happen to move alike are one group, however far apart they lie, where there are few; among more
+//! than [`ALL_PAIRS`] only those near to each other are joined.
 
 use super::{Peg, PegKey, PegTree, Timing};
 use crate::geometry::similarity::Similarity;

@@ -16,8 +16,8 @@ pub enum Timing {
     EaseInOut,
     /// From rest into rest, half a cosine wave (Parke 1972, for faces).
     Cosine,
-    /// Through given places (time, share), both from 0 to 1 in time; a share may leave 0..1. Between them a smooth curve
-    /// that overshoots none (Fritsch & Carlson 1980). The ends (0, 0) and (1, 1) need not be given.
+    /// Through given places (time, share), both from 0 to 1 in time; a share may leave 0..1. Between them a smooth
+    /// curve that overshoots none (Fritsch & Carlson 1980). The ends (0, 0) and (1, 1) need not be given.
     Custom(Vec<(f64, f64)>),
     /// Falls like a ball, and bounces so many times, each a quarter as high as the one before.
     Bounce(u32),
@@ -105,8 +105,8 @@ impl Timing {
     }
 }
 
-/// Slope at a place between two secants, steps `before` and `after` long, so that the curve overshoots neither (Fritsch &
-/// Butland 1984): the weighted harmonic mean, 0 where they point apart.
+/// Slope at a place between two secants, steps `before` and `after` long, so that the curve overshoots neither (Fritsch
+/// & Butland 1984): the weighted harmonic mean, 0 where they point apart.
 pub(in crate::tween) fn monotone_slope(first: f64, second: f64, before: f64, after: f64) -> f64 {
     if first * second <= 0.0 {
         return 0.0;
@@ -142,7 +142,8 @@ fn through(places: &[(f64, f64)], u: f64) -> f64 {
     hermite(all[k - 1].1, all[k].1, (h * slope(k - 1), h * slope(k)), (u - all[k - 1].0) / h)
 }
 
-/// A fall of duration 1, then bounces of durations 1, ½, ¼, …, all in 0..1: a bounce of half the time is a quarter as high.
+/// A fall of duration 1, then bounces of durations 1, ½, ¼, …, all in 0..1: a bounce of half the time is a quarter as
+/// high.
 fn bounced(count: u32, u: f64) -> f64 {
     let count = count.min(30);
     let total: f64 = 1.0 + (0..count).map(|k| 0.5f64.powi(k as i32)).sum::<f64>();

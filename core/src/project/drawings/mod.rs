@@ -10,15 +10,15 @@
 //!     {"frame": 0, "shift": [x, y], "turn": 30, "scale": 1.2, "timing": "ease_in_out"}, "…"]}]
 //! ```
 //!
-//! - `drawings`: frames rising; strokes from behind to the front. `colour` (sRGB, 0 to 1), `material`, `layer` and `peg` may
-//!   be left out, and so may `corner`, a corner in time: velocities do not join there. `spacing` says how the movement to the
-//!   next drawing runs: `"smooth"` (also where it is left out), a movement function, or a spacing chart, the list of shares of
-//!   the way, one for each frame between.
-//! - A movement function is one of `"constant"` (a hold), `"linear"`, `"ease_in"`, `"ease_out"`, `"ease_in_out"`, `"cosine"`,
-//!   `"bounce"`, or `{"curve": [[time, share], …]}`, or `{"bounce": count}`.
+//! - `drawings`: frames rising; strokes from behind to the front. `colour` (sRGB, 0 to 1), `material`, `layer` and
+//!   `peg` may be left out, and so may `corner`, a corner in time: velocities do not join there. `spacing` says how the
+//!   movement to the next drawing runs: `"smooth"` (also where it is left out), a movement function, or a spacing
+//!   chart, the list of shares of the way, one for each frame between.
+//! - A movement function is one of `"constant"` (a hold), `"linear"`, `"ease_in"`, `"ease_out"`, `"ease_in_out"`,
+//!   `"cosine"`, `"bounce"`, or `{"curve": [[time, share], …]}`, or `{"bounce": count}`.
 //! - `pairs`: stroke `from` of the drawing on `frame` is stroke `to` of the next one, or none; by index from 0.
-//! - `pegs`: `turn` in degrees from x towards y, whole turns count; what is left out of a key is at rest, a `parent` that is
-//!   left out is none.
+//! - `pegs`: `turn` in degrees from x towards y, whole turns count; what is left out of a key is at rest, a `parent`
+//!   that is left out is none.
 //!
 //! Tweening writes, in place of those of an earlier run:
 //!
@@ -33,8 +33,12 @@
 //! - `start`: of closed strokes the share of the counterpart's length at which the first point of the other lies.
 //! - `track`: the same number for the same stroke on all frames.
 
+mod read;
+
+pub use read::{read_pegs, read_timing};
+
 use super::Document;
-use super::fields::{array, count, described, flag, frame, given, number, object, point, wrong};
+use super::fields::{array, wrong};
 use super::save::DECIMALS;
 use super::schema::{Field, TOP};
 use crate::geometry::Point;
@@ -116,7 +120,7 @@ pub struct DrawnPegKey {
 }
 
 /// A peg.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct DrawnPeg {
     /// Unique name.
     pub name: String,
@@ -155,20 +159,14 @@ impl Document {
     ///
     /// The first field that is not as it must be.
     pub fn drawings(&self) -> Result<Drawings, DrawingsError> {
-        let list = |name: &'static str| self.other_list(name);
-        let pegs = pegs(&list("pegs")?)?;
-        let drawings = list("drawings")?;
-        let drawings = drawings.iter().enumerate().map(|(k, d)| drawing(d, &format!("drawings[{k}]"), &pegs));
-        let drawings = drawings.collect::<Result<Vec<_>, _>>()?;
-        for (k, two) in drawings.windows(2).enumerate() {
-            if two[1].frame <= two[0].frame {
-                let (place, expected) = (format!("drawings[{}].frame", k + 1), format!("more than {}", two[0].frame));
-                return Err(wrong(&place, &two[1].frame.to_string(), &expected));
-            }
-        }
-        let pairs = list("pairs")?;
-        let pairs = pairs.iter().enumerate().map(|(k, p)| pair(p, &format!("pairs[{k}]"), &drawings));
-        Ok(Drawings { pairs: pairs.collect::<Result<_, _>>()?, drawings, pegs })
+        let (read, problems) = self.drawings_and_problems();
+        problems.into_iter().next().map_or(Ok(read), Err)
+    }
+
+    /// The drawings, pairs and pegs of the document, and every field of theirs that is not as it must be. What is wrong
+    /// is at its default among the rest, in its place.
+    pub fn drawings_and_problems(&self) -> (Drawings, Vec<DrawingsError>) {
+        read::Reader::default().document(self)
     }
 
     /// Puts the list `json` into a field that the document's scene does not hold, in place of what was there.
@@ -228,14 +226,24 @@ impl Document {
     }
 }
 
-/// A movement function or chart of a JSON value; `place` names it in errors.
-pub fn read_timing(value: &Value, place: &str) -> Result<WrittenTiming, DrawingsError> {
-    timing(Some(value), place)
+/// JSON path of a drawing, with its frame.
+pub fn drawing_place(index: usize, frame: FrameNumber) -> String {
+    format!("drawings[{index}] (frame {frame})")
 }
 
-/// Pegs of JSON values.
-pub fn read_pegs(values: &[Value]) -> Result<Vec<DrawnPeg>, DrawingsError> {
-    pegs(values)
+/// JSON path of a pair made by hand, with the frame of its earlier drawing.
+pub fn pair_place(index: usize, frame: FrameNumber) -> String {
+    format!("pairs[{index}] (frame {frame})")
+}
+
+/// JSON path of a peg, with its name.
+pub fn peg_place(index: usize, name: &str) -> String {
+    format!("pegs[{index}] {name:?}")
+}
+
+/// JSON path of a key of the peg at `peg`, with its frame.
+pub fn peg_key_place(peg: &str, key: usize, frame: FrameNumber) -> String {
+    format!("{peg}.keys[{key}] (frame {frame})")
 }
 
 /// A list with one element a line.
@@ -258,115 +266,6 @@ fn stroke_fields(stroke: &DrawnStroke, written: impl Fn(f64) -> f64) -> Map<Stri
         }
     }
     fields
-}
-
-fn drawing(value: &Value, place: &str, pegs: &[DrawnPeg]) -> Result<Drawing, DrawingsError> {
-    let fields = object(value, place)?;
-    let list = array(fields.get("strokes"), &format!("{place}.strokes"))?;
-    let strokes = list.iter().enumerate().map(|(i, s)| stroke(s, &format!("{place}.strokes[{i}]"), pegs));
-    Ok(Drawing {
-        frame: frame(fields.get("frame"), &format!("{place}.frame"))?,
-        strokes: strokes.collect::<Result<_, _>>()?,
-        spacing: given(fields, place, "spacing", timing)?.unwrap_or_default(),
-        corner: given(fields, place, "corner", flag)?.unwrap_or(false),
-    })
-}
-
-fn stroke(value: &Value, place: &str, pegs: &[DrawnPeg]) -> Result<DrawnStroke, DrawingsError> {
-    let fields = object(value, place)?;
-    let list = array(fields.get("points"), &format!("{place}.points"))?;
-    let points = list.iter().enumerate().map(|(i, p)| point(Some(p), &format!("{place}.points[{i}]")));
-    let colour = |value: Option<&Value>, place: &str| {
-        let channels = value.and_then(Value::as_array).filter(|list| list.len() == 3);
-        let channel = |c: usize| channels?[c].as_f64().filter(|v| (0.0..=1.0).contains(v)).map(|v| v as f32);
-        let all = || Some([channel(0)?, channel(1)?, channel(2)?]);
-        all().ok_or_else(|| wrong(place, &described(value), "three numbers from 0 to 1"))
-    };
-    let peg = |value: Option<&Value>, place: &str| {
-        let found = value.and_then(Value::as_str).and_then(|name| pegs.iter().position(|peg| peg.name == name));
-        found.ok_or_else(|| wrong(place, &described(value), "the name of a peg"))
-    };
-    Ok(DrawnStroke {
-        points: points.collect::<Result<_, _>>()?,
-        closed: flag(fields.get("closed"), &format!("{place}.closed"))?,
-        colour: given(fields, place, "colour", colour)?,
-        material: given(fields, place, "material", count)?,
-        layer: given(fields, place, "layer", count)?,
-        peg: given(fields, place, "peg", peg)?,
-    })
-}
-
-fn pair(value: &Value, place: &str, drawings: &[Drawing]) -> Result<DrawnPair, DrawingsError> {
-    let fields = object(value, place)?;
-    let at = format!("{place}.frame");
-    let on = frame(fields.get("frame"), &at)?;
-    let drawing = drawings.iter().position(|d| d.frame == on).filter(|&k| k + 1 < drawings.len());
-    let drawing = drawing.ok_or_else(|| wrong(&at, &on.to_string(), "the frame of a drawing that has a next one"))?;
-    let to = match fields.get("to") {
-        Some(Value::Null) => None,
-        value => Some(count(value, &format!("{place}.to"))?),
-    };
-    Ok(DrawnPair { drawing, from: count(fields.get("from"), &format!("{place}.from"))?, to })
-}
-
-fn pegs(list: &[Value]) -> Result<Vec<DrawnPeg>, DrawingsError> {
-    let mut names: Vec<&str> = Vec::new();
-    for (k, value) in list.iter().enumerate() {
-        let place = format!("pegs[{k}].name");
-        let name = object(value, &format!("pegs[{k}]"))?.get("name");
-        match name.and_then(Value::as_str).filter(|text| !text.is_empty() && !names.contains(text)) {
-            Some(text) => names.push(text),
-            None => return Err(wrong(&place, &described(name), "a unique name")),
-        }
-    }
-    list.iter().enumerate().map(|(k, value)| peg(value, &format!("pegs[{k}]"), &names)).collect()
-}
-
-fn peg(value: &Value, place: &str, names: &[&str]) -> Result<DrawnPeg, DrawingsError> {
-    let fields = object(value, place)?;
-    let parent = |value: Option<&Value>, place: &str| {
-        let found = value.and_then(Value::as_str).and_then(|text| names.iter().position(|name| *name == text));
-        found.ok_or_else(|| wrong(place, &described(value), "the name of a peg"))
-    };
-    let key = |(k, value): (usize, &Value)| {
-        let place = format!("{place}.keys[{k}]");
-        let fields = object(value, &place)?;
-        Ok(DrawnPegKey {
-            frame: frame(fields.get("frame"), &format!("{place}.frame"))?,
-            shift: given(fields, &place, "shift", point)?.unwrap_or_default(),
-            turn: given(fields, &place, "turn", number)?.unwrap_or(0.0),
-            scale: given(fields, &place, "scale", number)?.unwrap_or(1.0),
-            timing: given(fields, &place, "timing", timing)?.unwrap_or_default(),
-        })
-    };
-    let keys = array(fields.get("keys"), &format!("{place}.keys"))?;
-    Ok(DrawnPeg {
-        name: fields.get("name").and_then(Value::as_str).unwrap_or_default().to_owned(),
-        parent: given(fields, place, "parent", parent)?,
-        pivot: point(fields.get("pivot"), &format!("{place}.pivot"))?,
-        keys: keys.iter().enumerate().map(key).collect::<Result<_, _>>()?,
-    })
-}
-
-fn timing(value: Option<&Value>, place: &str) -> Result<WrittenTiming, DrawingsError> {
-    match value {
-        Some(Value::String(name)) if name == "smooth" => Ok(WrittenTiming::Smooth),
-        Some(Value::String(name)) => Ok(WrittenTiming::Named(name.clone())),
-        Some(Value::Array(list)) => {
-            let share = |(k, v): (usize, &Value)| number(Some(v), &format!("{place}[{k}]"));
-            list.iter().enumerate().map(share).collect::<Result<_, _>>().map(WrittenTiming::Chart)
-        }
-        Some(Value::Object(fields)) if fields.contains_key("bounce") => {
-            count(fields.get("bounce"), &format!("{place}.bounce")).map(WrittenTiming::Bounce)
-        }
-        Some(Value::Object(fields)) => {
-            let place = format!("{place}.curve");
-            let list = array(fields.get("curve"), &place)?;
-            let pair = |(k, v): (usize, &Value)| point(Some(v), &format!("{place}[{k}]")).map(|p| (p.x, p.y));
-            list.iter().enumerate().map(pair).collect::<Result<_, _>>().map(WrittenTiming::Curve)
-        }
-        other => Err(wrong(place, &described(other), "a movement function or a spacing chart")),
-    }
 }
 
 #[cfg(test)]
@@ -411,24 +310,24 @@ mod tests {
         let said = |fields: &str| document(fields).drawings().unwrap_err().to_string();
         assert_eq!(said(r#""drawings": 7"#), "drawings: found 7, expected a list");
         let stroke = |text: &str| said(&format!(r#""drawings": [{{"frame": 0, "strokes": [{text}]}}]"#));
-        assert_eq!(stroke("{}"), "drawings[0].strokes[0].points: found nothing, expected a list");
+        assert_eq!(stroke("{}"), "drawings[0] (frame 0).strokes[0].points: found nothing, expected a list");
         assert_eq!(
             stroke(r#"{"points": [[1, "x"]], "closed": true}"#),
-            r#"drawings[0].strokes[0].points[0]: found [1,"x"], expected a point [x, y] of numbers between -1e6 and 1e6"#
+            r#"drawings[0] (frame 0).strokes[0].points[0]: found [1,"x"], expected a point [x, y] of numbers between -1e6 and 1e6"#
         );
         assert!(
             stroke(r#"{"points": [], "closed": true, "peg": "none"}"#)
                 .ends_with(r#"found "none", expected the name of a peg"#)
         );
         let twice = r#""drawings": [{"frame": 4, "strokes": []}, {"frame": 4, "strokes": []}]"#;
-        assert_eq!(said(twice), "drawings[1].frame: found 4, expected more than 4");
+        assert_eq!(said(twice), "drawings[1] (frame 4).frame: found 4, expected more than 4, that of drawings[0]");
         assert_eq!(
             said(r#""pairs": [{"frame": 4, "from": 0, "to": 1}]"#),
             "pairs[0].frame: found 4, expected the frame of a drawing that has a next one"
         );
         assert!(
             said(r#""pegs": [{"name": "a"}, {"name": "a"}]"#)
-                .starts_with("pegs[1].name: found \"a\", expected a unique")
+                .starts_with("pegs[1] \"a\".name: found \"a\", expected a unique name: it is that of pegs[0]")
         );
     }
 

@@ -1,0 +1,335 @@
+//! What is wrong with a document, stage by stage: its scene, its limbs, its drawings, pairs and pegs, its frames.
+
+use super::PipelineError;
+use super::tween::{peg_of, spacing};
+use crate::image::Sequence;
+use crate::project::drawings::{Drawings, DrawnPeg, WrittenTiming, drawing_place, peg_key_place, peg_place};
+use crate::project::{Document, Problems};
+use crate::scene::{Footage, FrameError, FrameNumber, FrameSource, Progress};
+use crate::tween::peg::{self, PegError};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use std::path::Path;
+
+/// Everything that is wrong with a document that lies in `folder` and with its frames: each is read.
+pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Result<Problems, PipelineError> {
+    let mut problems = document.problems();
+    if let Err(error) = document.limbs() {
+        problems.error(error.place, format!("found {}, expected {}", error.found, error.expected));
+    }
+    problems.append(drawing_problems(document));
+    let sequence = Sequence::keeping(&document.scene.footage, folder, 0)?;
+    let numbers: Vec<FrameNumber> = (document.scene.footage.first..=document.scene.footage.last).collect();
+    let mut done = 0;
+    progress.report("Reading frames", 0.0)?;
+    for batch in numbers.chunks(rayon::current_num_threads().max(1)) {
+        let errors: Vec<Option<FrameError>> = batch.par_iter().map(|&frame| sequence.picture(frame).err()).collect();
+        for error in errors.into_iter().flatten() {
+            problems.error("footage", error.to_string());
+        }
+        done += batch.len();
+        progress.report("Reading frames", done as f64 / numbers.len() as f64)?;
+    }
+    Ok(problems)
+}
+
+/// Everything that is wrong with a document's drawings, pairs and pegs: fields that are not as they must be, and, where
+/// all are, what tweening could not work with.
+pub fn drawing_problems(document: &Document) -> Problems {
+    let mut problems = Problems::default();
+    let (read, wrong) = document.drawings_and_problems();
+    for error in &wrong {
+        problems.error(&*error.place, format!("found {}, expected {}", error.found, error.expected));
+    }
+    if wrong.is_empty() {
+        spacings(&read, &mut problems);
+        pegs(&read, &mut problems);
+        odd(&read, &document.scene.footage, &mut problems);
+    }
+    problems
+}
+
+fn spacings(read: &Drawings, problems: &mut Problems) {
+    for (k, drawing) in read.drawings.iter().enumerate() {
+        let place = format!("{}.spacing", drawing_place(k, drawing.frame));
+        match (spacing(&drawing.spacing), read.drawings.get(k + 1)) {
+            (Err(message), _) => problems.error(place, message),
+            (Ok(found), Some(next)) => {
+                if let Err(error) = found.check(drawing.frame, next.frame) {
+                    problems.error(place, error.to_string());
+                }
+            }
+            (Ok(_), None) if drawing.spacing != WrittenTiming::Smooth => {
+                problems.warning(place, "there is no next drawing, so the spacing has no effect");
+            }
+            (Ok(_), None) => {}
+        }
+    }
+}
+
+fn pegs(read: &Drawings, problems: &mut Problems) {
+    let mut whole = Vec::new();
+    for (k, drawn) in read.pegs.iter().enumerate() {
+        match peg_of(drawn, k) {
+            Ok(peg) => whole.push(peg),
+            Err((place, message)) => problems.error(place, message),
+        }
+    }
+    if whole.len() < read.pegs.len() {
+        return;
+    }
+    for (k, error) in peg::problems(&whole) {
+        let (place, message) = described(k, &read.pegs[k], &error);
+        problems.error(place, message);
+    }
+}
+
+/// Place and message of what is wrong with a peg.
+fn described(k: usize, peg: &DrawnPeg, error: &PegError) -> (String, String) {
+    let place = peg_place(k, &peg.name);
+    // Keys on one frame: the later of them is the one that is out of order.
+    let index = |frame: FrameNumber| peg.keys.iter().rposition(|key| key.frame == frame).unwrap_or_default();
+    let key = |frame: FrameNumber| peg_key_place(&place, index(frame), frame);
+    match error {
+        PegError::Parent { parent, count, .. } => {
+            (format!("{place}.parent"), format!("found {parent}, expected less than {count}"))
+        }
+        PegError::Loop { .. } => {
+            (format!("{place}.parent"), "the peg hangs on itself, by way of its parents".to_owned())
+        }
+        PegError::Pivot { x, y, .. } => {
+            (format!("{place}.pivot"), format!("found [{x}, {y}], expected numbers between -1e9 and 1e9"))
+        }
+        // Degrees in the document, radians in the peg.
+        PegError::Key { frame, field: "turn", .. } => (
+            format!("{}.turn", key(*frame)),
+            format!("found {:e}, expected a number between -5e10 and 5e10", peg.keys[index(*frame)].turn),
+        ),
+        PegError::Key { frame, field, found, expected, .. } => {
+            (format!("{}.{field}", key(*frame)), format!("found {found}, expected {expected}"))
+        }
+        PegError::Order { frame, before, .. } => (
+            format!("{}.frame", key(*frame)),
+            format!("found {frame}, expected more than {before}, that of the key before it"),
+        ),
+        PegError::Timing { frame, source, .. } => (format!("{}.timing", key(*frame)), source.to_string()),
+    }
+}
+
+/// What has no effect, or can hardly be meant.
+fn odd(read: &Drawings, footage: &Footage, problems: &mut Problems) {
+    if read.drawings.len() == 1 {
+        problems.warning("drawings", "there is one drawing, so there is nothing to draw between");
+    }
+    let mut used = vec![false; read.pegs.len()];
+    for (k, drawing) in read.drawings.iter().enumerate() {
+        let place = drawing_place(k, drawing.frame);
+        if !(footage.first..=footage.last).contains(&drawing.frame) {
+            let (first, last) = (footage.first, footage.last);
+            problems.warning(&*place, format!("the drawing lies outside the footage, frames {first} to {last}"));
+        }
+        for (i, stroke) in drawing.strokes.iter().enumerate() {
+            if stroke.points.is_empty() {
+                problems.warning(format!("{place}.strokes[{i}]"), "the stroke has no points, so nothing is drawn");
+            }
+            let mut on = stroke.peg;
+            while let Some(peg) = on.filter(|&peg| !used[peg]) {
+                used[peg] = true;
+                on = read.pegs[peg].parent;
+            }
+        }
+    }
+    for (k, peg) in read.pegs.iter().enumerate().filter(|(k, _)| !used[*k]) {
+        problems.warning(peg_place(k, &peg.name), "no stroke hangs on the peg, so it has no effect");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    fn document(fields: &Value) -> Document {
+        let mut whole = json!({"rototoon": 1, "parts": [],
+            "footage": {"pattern": "f_%d.png", "first": 0, "last": 9, "fps": 24, "width": 64, "height": 48}});
+        whole.as_object_mut().unwrap().extend(fields.as_object().unwrap().clone());
+        Document::parse(&whole.to_string(), "a.json").unwrap()
+    }
+
+    /// Errors and warnings, one line each.
+    fn said(fields: &Value) -> (Vec<String>, Vec<String>) {
+        let problems = drawing_problems(&document(fields));
+        (problems.errors().map(ToString::to_string).collect(), problems.warnings().map(ToString::to_string).collect())
+    }
+
+    fn good() -> Value {
+        json!({
+            "drawings": [
+                {"frame": 0, "spacing": [0.2, 0.5, 0.9], "strokes": [
+                    {"points": [[1, 2], [3, 4]], "closed": false, "peg": "arm"}, {"points": [[1, 2]], "closed": true}]},
+                {"frame": 4, "spacing": {"curve": [[0.3, 0.1], [0.8, 1.2]]}, "strokes": [
+                    {"points": [[1, 2], [3, 4]], "closed": false}]},
+                {"frame": 9, "strokes": [{"points": [[5, 5]], "closed": false}]},
+            ],
+            "pairs": [{"frame": 0, "from": 0, "to": 0}, {"frame": 0, "from": 1, "to": null}],
+            "pegs": [{"name": "arm", "parent": "body", "pivot": [1, 1], "keys": [
+                {"frame": 0, "turn": 90, "timing": "ease_in"}, {"frame": 4, "scale": 2, "timing": {"bounce": 2}}]},
+                {"name": "body", "pivot": [0, 0], "keys": []}],
+        })
+    }
+
+    #[track_caller]
+    fn error(change: impl Fn(&mut Value), expected: &[&str]) {
+        let mut fields = good();
+        change(&mut fields);
+        assert_eq!(said(&fields).0, expected);
+    }
+
+    #[test]
+    fn good_drawings_have_no_problems() {
+        assert_eq!(said(&good()), (vec![], vec![]));
+        assert_eq!(said(&json!({})), (vec![], vec![]));
+    }
+
+    #[test]
+    fn pairs_name_strokes_that_are_there_each_once() {
+        error(
+            |f| {
+                f["pairs"] = json!([{"frame": 0, "from": 2, "to": 1}, {"frame": 4, "from": 0, "to": 0},
+                {"frame": 4, "from": 0, "to": 0}, {"frame": 9, "from": 0, "to": 0}, {"frame": 0, "from": 0}]);
+            },
+            &[
+                "pairs[0] (frame 0).from: found 2, expected the index of one of the 2 strokes on frame 0",
+                "pairs[0] (frame 0).to: found 1, expected the index of one of the 1 strokes on frame 4",
+                "pairs[2] (frame 4).from: found stroke 0 on frame 4, expected one that pairs[1] does not hold already",
+                "pairs[2] (frame 4).to: found stroke 0 on frame 9, expected one that pairs[1] does not hold already",
+                "pairs[3].frame: found 9, expected the frame of a drawing that has a next one",
+                "pairs[4] (frame 0).to: found nothing, expected a whole number from 0 on",
+            ],
+        );
+    }
+
+    #[test]
+    fn frames_rise() {
+        error(
+            |f| {
+                f["drawings"][2]["frame"] = json!(4);
+                f["pegs"][0]["keys"][1]["frame"] = json!(0);
+            },
+            &["drawings[2] (frame 4).frame: found 4, expected more than 4, that of drawings[1]"],
+        );
+        error(
+            |f| f["pegs"][0]["keys"][1]["frame"] = json!(0),
+            &["pegs[0] \"arm\".keys[1] (frame 0).frame: found 0, expected more than 0, that of the key before it"],
+        );
+    }
+
+    #[test]
+    fn pegs_are_a_tree_of_movements() {
+        error(
+            |f| f["pegs"][1]["parent"] = json!("arm"),
+            &["pegs[0] \"arm\".parent: the peg hangs on itself, by way of its parents"],
+        );
+        error(
+            |f| f["pegs"][1]["parent"] = json!("body"),
+            &["pegs[1] \"body\".parent: the peg hangs on itself, by way of its parents"],
+        );
+        error(
+            |f| {
+                f["pegs"][0]["keys"][0]["scale"] = json!(0);
+                f["pegs"][0]["keys"][1]["scale"] = json!(-1);
+                f["pegs"][0]["keys"][1]["turn"] = json!(1e300);
+            },
+            &[
+                "pegs[0] \"arm\".keys[0] (frame 0).scale: found 0, expected a number from 1e-6 to 1e9",
+                "pegs[0] \"arm\".keys[1] (frame 4).turn: found 1e300, expected a number between -5e10 and 5e10",
+                "pegs[0] \"arm\".keys[1] (frame 4).scale: found -1, expected a number from 1e-6 to 1e9",
+            ],
+        );
+        error(
+            |f| {
+                f["pegs"] = json!([{"name": "arm", "pivot": [1e7, 0], "keys": []}, {"name": "arm", "pivot": [0, 0]}, 7])
+            },
+            &[
+                "pegs[1] \"arm\".name: found \"arm\", expected a unique name: it is that of pegs[0]",
+                "pegs[2]: found 7, expected an object",
+                "pegs[0] \"arm\".pivot: found [10000000.0,0], expected a point [x, y] of numbers between -1e6 and 1e6",
+                "pegs[1] \"arm\".keys: found nothing, expected a list",
+            ],
+        );
+        error(
+            |f| f["drawings"][1]["strokes"][0]["peg"] = json!("leg"),
+            &["drawings[1] (frame 4).strokes[0].peg: found \"leg\", expected the name of a peg"],
+        );
+    }
+
+    #[test]
+    fn movements_are_known_and_charts_are_whole() {
+        error(
+            |f| {
+                f["drawings"][0]["spacing"] = json!([0.5]);
+                f["drawings"][1]["spacing"] = json!("quickly");
+                f["pegs"][0]["keys"][0]["timing"] = json!("slowly");
+            },
+            &[
+                "drawings[0] (frame 0).spacing: the spacing chart has 1 shares, expected one for each of 3 frames to the \
+                 next key",
+                "drawings[1] (frame 4).spacing: found \"quickly\", expected a movement function: constant, linear, ease_in, \
+                 ease_out, ease_in_out, cosine or bounce",
+                "pegs[0] \"arm\".keys[0] (frame 0).timing: found \"slowly\", expected a movement function: constant, linear, \
+                 ease_in, ease_out, ease_in_out, cosine or bounce",
+            ],
+        );
+        error(
+            |f| f["drawings"][1]["spacing"] = json!({"curve": [[0.5, 0.1], [0.5, 0.2]]}),
+            &["drawings[1] (frame 4).spacing: place 1 of the curve is at time 0.5, not after the one before it"],
+        );
+        error(
+            |f| f["pegs"][0]["keys"][0]["timing"] = json!({"curve": [[2, 0.1]]}),
+            &[
+                "pegs[0] \"arm\".keys[0] (frame 0).timing: place 0 of the curve is (2, 0.1), expected a time from 0 to 1 and a \
+                 finite share",
+            ],
+        );
+    }
+
+    #[test]
+    fn all_that_is_wrong_is_found_at_once() {
+        error(
+            |f| {
+                f["drawings"][0]["frame"] = json!("x");
+                f["drawings"][1]["strokes"] = json!([{"points": [[1, null]], "closed": false}, {"points": []}]);
+                f["drawings"][2]["corner"] = json!(1);
+                f["pairs"] = json!([{"frame": 4, "from": 1, "to": 0}]);
+            },
+            &[
+                "drawings[0].frame: found \"x\", expected a frame number",
+                "drawings[1] (frame 4).strokes[0].points[0]: found [1,null], expected a point [x, y] of numbers between -1e6 \
+                 and 1e6",
+                "drawings[1] (frame 4).strokes[1].closed: found nothing, expected true or false",
+                "drawings[2] (frame 9).corner: found 1, expected true or false",
+            ],
+        );
+        error(|f| f["drawings"] = json!({}), &["drawings: found an object, expected a list"]);
+    }
+
+    #[test]
+    fn what_has_no_effect_is_a_warning() {
+        let mut fields = good();
+        fields["drawings"] = json!([{"frame": 12, "spacing": "linear", "strokes": [{"points": [], "closed": false}]}]);
+        fields["pairs"] = json!([]);
+        assert_eq!(
+            said(&fields),
+            (
+                vec![],
+                vec![
+                    "drawings[0] (frame 12).spacing: there is no next drawing, so the spacing has no effect".to_owned(),
+                    "drawings: there is one drawing, so there is nothing to draw between".to_owned(),
+                    "drawings[0] (frame 12): the drawing lies outside the footage, frames 0 to 9".to_owned(),
+                    "drawings[0] (frame 12).strokes[0]: the stroke has no points, so nothing is drawn".to_owned(),
+                    "pegs[0] \"arm\": no stroke hangs on the peg, so it has no effect".to_owned(),
+                    "pegs[1] \"body\": no stroke hangs on the peg, so it has no effect".to_owned(),
+                ]
+            )
+        );
+    }
+}
