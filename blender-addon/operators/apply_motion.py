@@ -6,13 +6,7 @@ from .. import clip_browser, jobs, preferences, reshaping
 from ..clip_library import clips_of, folder_of
 from ..style import reshape, translate_clip
 from .base import Long, contours_poll
-
-PRESETS = (
-    ("rototoon", "Rototoon", "Gaussian processes over style and posture"),
-    ("bilinear", "Bilinear", "Tenenbaum & Freeman 2000, a style matrix for each character"),
-    ("bilinear-symmetric", "Bilinear, Symmetric", "Tenenbaum & Freeman 2000, a style vector for each character"),
-    ("liang2012", "Liang et al. 2012", "Non-negative factorisation"),
-)
+from .shared import shared
 
 
 class Reshaping(Long):
@@ -24,7 +18,7 @@ class Reshaping(Long):
     sub_keys: bpy.props.IntProperty(
         name="Sub-key Points", description="Points of each limb that hold its shape", default=5, min=0, max=100
     )
-    folder: bpy.props.StringProperty(name="Library", description="Another folder than the panel's", subtype="DIR_PATH")
+    folder: shared("folder")
 
     @classmethod
     def poll(cls, context):
@@ -61,19 +55,8 @@ class ROTOTOON_OT_reshape_drawing(Reshaping, bpy.types.Operator):
     bl_description = "Make the drawing at the playhead follow a clip of the library, on generated frames after it"
     bl_options = {"REGISTER", "UNDO"}
 
-    character: bpy.props.StringProperty(
-        name="Character",
-        description="Whose clip",
-        search=lambda self, _context, text: clip_browser.offered(clip_browser.characters(), text),
-        search_options={"SORT", "SUGGESTION"},
-    )
-    motion: bpy.props.StringProperty(
-        name="Motion",
-        description="Which motion",
-        default="walk",
-        search=lambda self, _context, text: clip_browser.offered(clip_browser.motions(self.character), text),
-        search_options={"SORT", "SUGGESTION"},
-    )
+    character: shared("character", names=lambda _self: clip_browser.characters())
+    motion: shared("motion", names=lambda self: clip_browser.motions(self.character))
 
     def begin(self, context):
         folder = folder_of(context.object, self.folder)
@@ -91,29 +74,11 @@ class ROTOTOON_OT_apply_motion(Reshaping, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    motion: bpy.props.StringProperty(
-        name="Motion",
-        description="Which motion",
-        default="walk",
-        search=lambda _self, _context, text: clip_browser.offered(clip_browser.motions(), text),
-        search_options={"SORT", "SUGGESTION"},
-    )
-    content: bpy.props.StringProperty(
-        name="Content",
-        description="The character whose motion it was",
-        search=lambda self, _context, text: clip_browser.offered(clip_browser.characters(self.motion), text),
-        search_options={"SORT", "SUGGESTION"},
-    )
-    style: bpy.props.StringProperty(
-        name="Style",
-        description="The character in whose manner",
-        search=lambda _self, _context, text: clip_browser.offered(clip_browser.characters(), text),
-        search_options={"SORT", "SUGGESTION"},
-    )
-    preset: bpy.props.EnumProperty(name="Method", description="How it is re-made", items=PRESETS)
-    strength: bpy.props.FloatProperty(
-        name="Strength", description="How thick the manner is laid on; 1 is the most probable", default=1.1, min=0, max=3
-    )
+    motion: shared("motion")
+    content: shared("character", name="Content", description="The character whose motion it was")
+    style: shared("style", description="The character in whose manner")
+    preset: shared("preset")
+    strength: shared("strength")
 
     def begin(self, context):
         folder = folder_of(context.object, self.folder)

@@ -7,10 +7,8 @@ from .. import actions, armatures, bone_driving, clip_browser, jobs, preferences
 from ..clip_library import clips_of, folder_of
 from ..errors import Problem
 from ..style import KEY_POINTS, add_to_library, translate_clip
-from .apply_motion import PRESETS
 from .base import Guarded, Long
-
-_SEARCH = {"SORT", "SUGGESTION"}
+from .shared import shared
 
 
 def armature_poll(cls, context) -> bool:
@@ -47,14 +45,14 @@ class ROTOTOON_OT_save_clip_from_armature(Long, bpy.types.Operator):
     bl_description = "Keep the motion of the armature's bones, seen from a side, as a skeleton clip in the library"
     bl_options = {"REGISTER"}
 
-    character: bpy.props.StringProperty(name="Character", description="Who moves; empty takes the object's name")
-    motion: bpy.props.StringProperty(name="Motion", description="What is done", default="walk")
-    first: bpy.props.IntProperty(name="First", description="First frame of the scene", default=0)
-    last: bpy.props.IntProperty(
-        name="Last", description="Last frame; where it is not after the first, the action's frames are taken", default=0
+    character: shared("performer")
+    motion: shared("performed")
+    first: shared("first")
+    last: shared(
+        "last", description="Last frame; where it is not after the first, the action's frames are taken"
     )
     view: bpy.props.EnumProperty(name="Seen From", description="On which plane it is seen", items=armatures.VIEWS)
-    folder: bpy.props.StringProperty(name="Library", description="Another folder than the panel's", subtype="DIR_PATH")
+    folder: shared("folder")
 
     @classmethod
     def poll(cls, context):
@@ -92,33 +90,15 @@ class ROTOTOON_OT_drive_bones(Long, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    content: bpy.props.StringProperty(
-        name="Character",
-        description="Whose clip",
-        search=lambda self, _context, text: clip_browser.offered(clip_browser.characters(self.motion), text),
-        search_options=_SEARCH,
-    )
-    motion: bpy.props.StringProperty(
-        name="Motion",
-        description="Which motion",
-        default="walk",
-        search=lambda _self, _context, text: clip_browser.offered(clip_browser.motions(), text),
-        search_options=_SEARCH,
-    )
-    style: bpy.props.StringProperty(
-        name="Style",
-        description="The character in whose manner; empty takes the clip as it is",
-        search=lambda _self, _context, text: clip_browser.offered(clip_browser.characters(), text),
-        search_options=_SEARCH,
-    )
-    preset: bpy.props.EnumProperty(name="Method", description="How it is re-made", items=PRESETS)
-    strength: bpy.props.FloatProperty(
-        name="Strength", description="How thick the manner is laid on; 1 is the most probable", default=1.1, min=0, max=3
-    )
+    content: shared("character")
+    motion: shared("motion")
+    style: shared("style")
+    preset: shared("preset")
+    strength: shared("strength")
     view: bpy.props.EnumProperty(name="Plane", description="In which plane the limbs move", items=armatures.VIEWS)
     start: bpy.props.IntProperty(name="Start", description="Frame of the first posture", default=1)
     move: bpy.props.BoolProperty(name="Move", description="The pelvis goes where the clip's goes", default=True)
-    folder: bpy.props.StringProperty(name="Library", description="Another folder than the panel's", subtype="DIR_PATH")
+    folder: shared("folder")
 
     @classmethod
     def poll(cls, context):

@@ -10,6 +10,7 @@ from ..errors import Problem
 from ..native.errors import RototoonError
 from ..style import add_to_library, import_motion
 from .base import Guarded
+from .shared import shared
 
 VIEWS = (
     ("auto", "Where Most Is Seen", "From the side on which most of the motion is seen"),
@@ -39,7 +40,7 @@ class ROTOTOON_OT_import_motion(Guarded, bpy.types.Operator):
     way: bpy.props.BoolProperty(
         name="Go Its Way", description="The pelvis goes through the picture, so that feet can stand; else it stays", default=True
     )
-    folder: bpy.props.StringProperty(name="Library", description="Another folder than the panel's", subtype="DIR_PATH")
+    folder: shared("folder")
 
     def invoke(self, context, _event):
         context.window_manager.fileselect_add(self)

@@ -4,6 +4,7 @@ import bpy
 
 from .. import clip_browser, clip_library
 from .base import Guarded
+from .shared import shared
 
 
 class ROTOTOON_OT_refresh_clips(Guarded, bpy.types.Operator):
@@ -12,7 +13,7 @@ class ROTOTOON_OT_refresh_clips(Guarded, bpy.types.Operator):
     bl_description = "Read the library's folder again"
     bl_options = {"INTERNAL"}
 
-    folder: bpy.props.StringProperty(name="Library", description="Another folder than the panel's", subtype="DIR_PATH")
+    folder: shared("folder")
 
     def run(self, context) -> str:
         found = clip_browser.refresh(clip_library.folder_of(context.object, self.folder))

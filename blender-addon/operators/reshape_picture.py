@@ -2,11 +2,12 @@
 
 import bpy
 
-from .. import clip_browser, picture_mesh, picture_pieces, picture_source
+from .. import picture_mesh, picture_pieces, picture_source
 from ..clip_library import clips_of, folder_of
 from ..errors import Problem
 from ..style import translate_clip
-from .apply_motion import PRESETS, Reshaping
+from .apply_motion import Reshaping
+from .shared import shared
 
 
 class ROTOTOON_OT_reshape_picture(Reshaping, bpy.types.Operator):
@@ -21,29 +22,11 @@ class ROTOTOON_OT_reshape_picture(Reshaping, bpy.types.Operator):
     picture: bpy.props.StringProperty(
         name="Picture", description="An image empty, or a plane with an image texture; empty takes the footage"
     )
-    character: bpy.props.StringProperty(
-        name="Character",
-        description="Whose clip",
-        search=lambda self, _context, text: clip_browser.offered(clip_browser.characters(self.motion), text),
-        search_options={"SORT", "SUGGESTION"},
-    )
-    motion: bpy.props.StringProperty(
-        name="Motion",
-        description="Which motion",
-        default="walk",
-        search=lambda _self, _context, text: clip_browser.offered(clip_browser.motions(), text),
-        search_options={"SORT", "SUGGESTION"},
-    )
-    style: bpy.props.StringProperty(
-        name="Style",
-        description="The character in whose manner; empty takes the clip as it is",
-        search=lambda _self, _context, text: clip_browser.offered(clip_browser.characters(), text),
-        search_options={"SORT", "SUGGESTION"},
-    )
-    preset: bpy.props.EnumProperty(name="Method", description="How it is re-made", items=PRESETS)
-    strength: bpy.props.FloatProperty(
-        name="Strength", description="How thick the manner is laid on; 1 is the most probable", default=1.1, min=0, max=3
-    )
+    character: shared("character")
+    motion: shared("motion")
+    style: shared("style")
+    preset: shared("preset")
+    strength: shared("strength")
     border: bpy.props.FloatProperty(
         name="Border", description="How far beyond the contours the picture is cut, in its pixels", default=2.0, min=0, soft_max=20
     )

@@ -7,6 +7,7 @@ from ..clip_library import folder_of
 from ..errors import Problem
 from ..style import add_to_library, capture_clip
 from .base import Guarded, contours_poll
+from .shared import shared
 
 
 class ROTOTOON_OT_save_clip(Guarded, bpy.types.Operator):
@@ -15,11 +16,11 @@ class ROTOTOON_OT_save_clip(Guarded, bpy.types.Operator):
     bl_description = "Keep the motion of the tracked contours as a skeleton clip in the library, by the limbs"
     bl_options = {"REGISTER"}
 
-    character: bpy.props.StringProperty(name="Character", description="Who moves; empty takes the object's name")
-    motion: bpy.props.StringProperty(name="Motion", description="What is done", default="walk")
-    first: bpy.props.IntProperty(name="First", description="First frame of the scene", default=0)
-    last: bpy.props.IntProperty(name="Last", description="Last frame of the scene", default=0)
-    folder: bpy.props.StringProperty(name="Library", description="Another folder than the panel's", subtype="DIR_PATH")
+    character: shared("performer")
+    motion: shared("performed")
+    first: shared("first")
+    last: shared("last")
+    folder: shared("folder")
 
     @classmethod
     def poll(cls, context):

@@ -2,12 +2,16 @@
 
 import json
 import os
+import shutil
 import subprocess
+from pathlib import Path
 
 import bpy
 import numpy as np
 import pytest
 import shots
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def keyed(mask, name, frame):
@@ -127,11 +131,25 @@ def compositor():
     return scene.node_tree
 
 
+@pytest.fixture(scope="module")
+def cli():
+    """The command line: the one that a variable names, else the newest that is built, else newly built."""
+    if named := os.environ.get("ROTOTOON_CLI"):
+        return named
+    name = "rototoon.exe" if os.name == "nt" else "rototoon"
+    built = [path for path in (ROOT / "target" / profile / name for profile in ("release", "debug")) if path.is_file()]
+    if built:
+        return str(max(built, key=lambda path: path.stat().st_mtime))
+    cargo = shutil.which("cargo")
+    if cargo is None:
+        pytest.skip("no command line, and no cargo to build it with")
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    subprocess.run([cargo, "build", "--quiet", "-p", "rototoon-cli"], cwd=ROOT, env=environment, check=True)
+    return str(ROOT / "target/debug" / name)
+
+
 @pytest.mark.parametrize("part", ["near", "far"])
-def test_ids_are_keyed_by_blender(addon, tmp_path, part):
-    cli = os.environ.get("ROTOTOON_CLI")
-    if not cli:
-        pytest.skip("no command line: ROTOTOON_CLI is not set")
+def test_ids_are_keyed_by_blender(addon, cli, tmp_path, part):
     shots.draw_sequence(tmp_path / "frames")
     at = {name: {"1": (shots.diamond(0) + shift).tolist()} for name, shift in (("near", 0.3), ("far", (-11.2, 5.6)))}
     source = {
