@@ -22,11 +22,19 @@ use tiny_skia::Pixmap;
 /// Frames of the sample's walk; what follows is the jump.
 const WALK: usize = 12;
 
+/// Drawings of the jump in the air, keyed beside the project's own keys: both legs change places there within two drawings.
+const IN_THE_AIR: [FrameNumber; 2] = [14, 16];
+
 /// The sample cartoon tracked from its keys.
 static TRACKED: LazyLock<Document> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
     sample::write(folder.path()).unwrap();
     let mut document = Document::load(&folder.path().join("project.json")).unwrap();
+    let drawings = sample::draw().unwrap();
+    for (k, part) in document.scene.parts.iter_mut().enumerate() {
+        let key = |frame: FrameNumber| (frame, drawings[frame as usize / HOLD].outlines[k].points.clone());
+        part.keys.extend(IN_THE_AIR.map(key));
+    }
     pipeline::track(&mut document, folder.path(), &TrackOptions::default(), &Silent).unwrap();
     document
 });
@@ -119,7 +127,7 @@ fn a_tracked_character_s_clip_is_near_the_true_one() {
     let torso = rototoon::scene::proportions::typical_torso(&truth.postures);
     let (median, mean) = (errors[errors.len() / 2], errors.iter().sum::<f64>() / errors.len() as f64);
     println!("key points: median {median:.2} px, mean {mean:.2} px, torso {torso:.1} px");
-    assert!(median < 0.02 * torso && mean < 0.12 * torso, "median {median}, mean {mean}, torso {torso}");
+    assert!(median < 0.005 * torso && mean < 0.06 * torso, "median {median}, mean {mean}, torso {torso}");
 }
 
 #[test]

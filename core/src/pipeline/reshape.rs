@@ -1,9 +1,10 @@
 //! A drawing made to follow a skeleton clip: its contours and strokes on every frame of the clip.
 //!
 //! The drawing is a document's contours on one frame, at rest, with limbs. The clip is brought to the drawing's
-//! proportions limb by limb, its way and its ground to the drawing's size and ground; feet that stand in it stay where
-//! they stand. Every closed part follows the limbs that carry it ([`crate::reshape::puppet`]), and takes along the
-//! strokes and open contours that lie on it. Marks "in front" and "behind" give the depths of each frame.
+//! proportions limb by limb, its way and its ground to the drawing's size and ground; shoulders and hips stay on its
+//! body, feet that stand in the clip stay where they stand. Every closed part follows the limbs that carry it
+//! ([`crate::reshape::puppet`]), and takes along the strokes and open contours that lie on it. Marks "in front" and
+//! "behind" give the depths of each frame.
 
 use super::PipelineError;
 use crate::geometry::{Point, polygon, polyline};
@@ -188,7 +189,7 @@ fn fitted(set: &LimbSet, parts: &[Part], rest: FrameNumber, clip: &Clip) -> Resu
     };
     let place = |p: &Posture| {
         let pelvis = Point::new(posture[0].x + size * (p[0].x - first.x), ground + size * (p[0].y - level));
-        theirs.to(&own, p).map(|q| q - p[0] + pelvis)
+        theirs.to_drawing(&own, p).map(|q| q - p[0] + pelvis)
     };
     let mut postures: Vec<Posture> = clip.postures.iter().map(place).collect();
     keep_contacts(&mut postures, &clip.postures);

@@ -2,20 +2,20 @@
 //!
 //! A triangle with corners v₀, v₁, v₂ knows v₂ in the frame of the other two: v₂ = v₀ + x (v₁ − v₀) + y R₉₀ (v₁ − v₀).
 //!
-//! 1. **Similarity.** Place all vertices so that in each triangle each corner stands, as well as possible, where this says
-//!    it should, handles given: least squares in coordinates x and y together (their section 4.1). The result may shrink and
-//!    grow.
-//! 2. **Scale.** Each triangle as it was is turned to fit its placed corners best, without scaling, and the vertices are placed
-//!    anew so that edges match those of the turned triangles (section 4.2). x and y are separate here.
+//! 1. **Similarity.** Place all vertices so that in each triangle each corner stands, as well as possible, where this
+//!    says it should, handles given: least squares in coordinates x and y together (their section 4.1). The result may
+//!    shrink and grow.
+//! 2. **Scale.** Each triangle as it was is turned to fit its placed corners best, without scaling, and the vertices
+//!    are placed anew so that edges match those of the turned triangles (section 4.2). x and y are separate here.
 //!
 //! Both matrices depend on the mesh and on which vertices are handles, not on where these are: they are factored once
-//! ([`Solver::new`]); a frame costs two substitutions ([`Solver::solve`]). Written with complex numbers z = x + iy, step 1 has
-//! a Hermitian matrix of half the size; here it is solved as the real symmetric one, by sparse Cholesky.
+//! ([`Solver::new`]); a frame costs two substitutions ([`Solver::solve`]). Written with complex numbers z = x + iy,
+//! step 1 has a Hermitian matrix of half the size; here it is solved as the real symmetric one, by sparse Cholesky.
 //!
 //! Each triangle may be given a weight (per-limb rigidity): both steps minimise weighted sums.
 //!
-//! Limits: step 1 needs two handles that do not coincide, otherwise scale and turn are free; with one handle (or several on
-//! one spot) the mesh is shifted. Triangles without area have no frame and are refused by [`Mesh::new`].
+//! Limits: step 1 needs two handles that do not coincide, otherwise scale and turn are free; with one handle (or
+//! several on one spot) the mesh is shifted. Triangles without area have no frame and are refused by [`Mesh::new`].
 
 use crate::geometry::Point;
 use crate::numeric::cholesky::SparseCholesky;

@@ -1,11 +1,11 @@
-//! Which part is in front, from a few marks "in front" and "behind" (after Sýkora et al. 2010, "Adding Depth to Cartoons Using
-//! Sparse Depth (In)equalities").
+//! Which part is in front, from a few marks "in front" and "behind" (after Sýkora et al. 2010, "Adding Depth to
+//! Cartoons Using Sparse Depth (In)equalities").
 //!
-//! Marks say, for a range of frames, that one part lies in front of another. For a frame the marks that hold there make a
-//! directed graph. Marks that contradict each other are exactly those on a cycle; they are told, cycle by cycle. Without
-//! one, depths minimise Σ (d_p − d⁰_p)², d⁰ the depths that the drawing has, subject to d_front ≥ d_behind + 1: a small convex
-//! quadratic problem, solved by Hildreth's method (cyclic dual coordinate ascent), which needs no matrix. Parts without marks
-//! keep their depth; the others move as little as the marks allow.
+//! Marks say, for a range of frames, that one part lies in front of another. For a frame the marks that hold there make
+//! a directed graph. Marks that contradict each other are exactly those on a cycle; they are told, cycle by cycle.
+//! Without one, depths minimise Σ (d_p − d⁰_p)², d⁰ the depths that the drawing has, subject to d_front ≥ d_behind + 1:
+//! a small convex quadratic problem, solved by Hildreth's method (cyclic dual coordinate ascent), which needs no
+//! matrix. Parts without marks keep their depth; the others move as little as the marks allow.
 
 /// A mark: one part in front of another, from a frame to a frame, both included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,16 +1,19 @@
-//! Limbs as quadratic Bézier splines in coordinates of their own, and sub-key points that follow them (Liang et al. 2012,
-//! section 5).
+//! Limbs as quadratic Bézier splines in coordinates of their own, and sub-key points that follow them (Liang et al.
+//! 2012, section 5).
 //!
-//! A limb leads from key point p_j to p_{j+1} along B(λ) = (1−λ)² p_j + 2λ(1−λ) p_con + λ² p_{j+1} (eq. 9). Its control point
-//! is kept relative to the limb, p_con = p_j + ω_x (p_{j+1} − p_j) + ω_y R (p_{j+1} − p_j) with R the turn by +90° (eq. 10), so
-//! a bend drawn in one pose goes with the limb into any other. Coordinates have x right and y down: R turns x towards y.
+//! A limb leads from key point p_j to p_{j+1} along B(λ) = (1−λ)² p_j + 2λ(1−λ) p_con + λ² p_{j+1} (eq. 9). Its control
+//! point is kept relative to the limb, p_con = p_j + ω_x (p_{j+1} − p_j) + ω_y R (p_{j+1} − p_j) with R the turn by
+//! +90° (eq. 10), so a bend drawn in one pose goes with the limb into any other. Coordinates have x right and y down: R
+//! turns x towards y.
 //!
-//! **Sub-key points** q_ij are mesh vertices near samples of the spline (eq. 11). From frame to frame each moves with both key
-//! points of its limb, the nearer counting more (eq. 12), and is then drawn to the nearest point of the spline (eqs. 13, 14).
+//! **Sub-key points** q_ij are mesh vertices near samples of the spline (eq. 11). From frame to frame each moves with
+//! both key points of its limb, the nearer counting more (eq. 12), and is then drawn to the nearest point of the spline
+//! (eqs. 13, 14).
 //!
-//! What the print leaves open: eq. 12 weights the move of p_j by ‖p_j − q‖, so that the *farther* end counts more, against the
-//! sentence beside it; here weights are inverse distances. The cubic of eq. 14 has up to three roots and its formula loses
-//! digits where the spline is nearly straight; [`Quadratic::nearest`] solves it in brackets, and compares the ends.
+//! What the print leaves open: eq. 12 weights the move of p_j by ‖p_j − q‖, so that the *farther* end counts more,
+//! against the sentence beside it; here weights are inverse distances. The cubic of eq. 14 has up to three roots and
+//! its formula loses digits where the spline is nearly straight; [`Quadratic::nearest`] solves it in brackets, and
+//! compares the ends.
 
 use crate::curve::quadratic::Quadratic;
 use crate::geometry::Point;

@@ -1,23 +1,27 @@
 //! A drawn part that follows the limbs it goes with (Liang et al. 2012, section 5).
 //!
-//! A part is triangulated from its outline ([`super::triangulate`]). Mesh vertices near the key points of its limbs, and near
-//! samples of the limbs' splines (sub-key points, eq. 11), become handles. On a frame each handle's point on the spline at rest
-//! goes to the same place along the new spline, its parameter; what lay between it and the vertex turns with the spline. The mesh follows as rigidly as possible ([`super::arap`]), and with it every point that it holds.
+//! A part is triangulated from its outline ([`super::triangulate`]). Mesh vertices near the key points of its limbs,
+//! and near samples of the limbs' splines (sub-key points, eq. 11), become handles. On a frame each handle's point on
+//! the spline at rest goes to the same place along the new spline, its parameter; what lay between it and the vertex
+//! turns with the spline. The mesh follows as rigidly as possible ([`super::arap`]), and with it every point that it
+//! holds.
 //!
-//! The print moves sub-key points from frame to frame, which lets errors pile up, as it says itself: with both key points, and
-//! then to the nearest point of the new spline (eqs. 12 to 14, [`follow`]). Here each frame starts from the drawing at rest, and
-//! their places along the limb stay. Drawn to the nearest point ([`Options::printed`]) they slide together where a limb is curved
-//! much. Without sub-key points ([`Options::sub_keys`] 0) this is plain as-rigid-as-possible manipulation by key points, the
-//! comparison that the paper draws: between key points limbs then leave their splines. (Width across a sharp elbow is kept no
-//! better with sub-key points than without: they hold both limbs straight, and the inside of the bend is pressed together.)
+//! The print moves sub-key points from frame to frame, which lets errors pile up, as it says itself: with both key
+//! points, and then to the nearest point of the new spline (eqs. 12 to 14, [`follow`]). Here each frame starts from the
+//! drawing at rest, and their places along the limb stay. Drawn to the nearest point ([`Options::printed`]) they slide
+//! together where a limb is curved much. Without sub-key points ([`Options::sub_keys`] 0) this is plain
+//! as-rigid-as-possible manipulation by key points, the comparison that the paper draws: between key points limbs then
+//! leave their splines. (Width across a sharp elbow is kept no better with sub-key points than without: they hold both
+//! limbs straight, and the inside of the bend is pressed together.)
 //!
-//! A part that its limbs carry *whole* (a head: its key points lie closer together than it is wide, and a skull neither stretches
-//! nor bends) moves without bending or growing, whatever becomes of their lengths: it stays where the first of its limbs begins, and is turned
-//! as fits all their ends best, the farther ones counting more (the rotation of least squares about a fixed point). As a mesh it would
-//! follow every change of a neck's length in the picture, and be drawn out to a drop.
+//! A part that its limbs carry *whole* (a head: its key points lie closer together than it is wide, and a skull neither
+//! stretches nor bends) moves without bending or growing, whatever becomes of their lengths: it stays where the first
+//! of its limbs begins, and is turned as fits all their ends best, the farther ones counting more (the rotation of
+//! least squares about a fixed point). As a mesh it would follow every change of a neck's length in the picture, and be
+//! drawn out to a drop.
 //!
-//! A part that hangs on a limb's end with less than two handles (a hand, a shoe, a hat) is rigid: it moves with the nearest place of
-//! the spline and takes a share of its turn.
+//! A part that hangs on a limb's end with less than two handles (a hand, a shoe, a hat) is rigid: it moves with the
+//! nearest place of the spline and takes a share of its turn.
 
 use super::arap::{ArapError, Mesh, Solver};
 use super::limb::{Bend, follow, sub_keys};
@@ -33,8 +37,8 @@ const EDGES: f64 = 6.0;
 pub struct Options {
     /// Sub-key points of a limb; 0 for plain as-rigid-as-possible manipulation by key points.
     pub sub_keys: usize,
-    /// Whether sub-key points are drawn to the nearest point of their spline, as printed ([`follow`]), and not kept at their
-    /// place along it. On strongly curved limbs they then slide together.
+    /// Whether sub-key points are drawn to the nearest point of their spline, as printed ([`follow`]), and not kept at
+    /// their place along it. On strongly curved limbs they then slide together.
     pub printed: bool,
 }
 
@@ -114,8 +118,8 @@ pub struct Puppet {
 }
 
 impl Puppet {
-    /// A part with its outline at rest, the points that shall follow it, the limbs at rest (all of the character), and those that
-    /// carry it.
+    /// A part with its outline at rest, the points that shall follow it, the limbs at rest (all of the character), and
+    /// those that carry it.
     pub fn new(
         outline: &[Point],
         points: &[Point],
