@@ -15,7 +15,8 @@ hand, with NumPy, SciPy and scikit-learn:
   over dimension 1 to 40, of the postures and of the codes; beside it that of principal components. Neighbours are added until all
   postures hang together.
 - **Precision against rank**: error of translation by preset and rank, and relative error of reconstruction by rank.
-- **Limbs**: width, roughness and place of bent limbs with 0 to 8 sub-key points a bone; 0 is plain manipulation by key points.
+- **Limbs**: width, roughness and place of bent limbs with 0 to 8 sub-key points a bone, five of them also as the paper prints it;
+  0 is plain manipulation by key points.
 - **Overlap order**: share of crossing pairs in the right order against the share that is marked.
 
 Tables go to standard output, the numbers of the plots to OUT/*.plot.json. User-edit ratios of tracking are `bench-tracking`'s business.
@@ -222,22 +223,24 @@ def translation(path, program, out):
 def limbs(program, out):
     """Prints and plots limbs with and without sub-key points."""
     found = own(program, limbs={})
-    counts = sorted({row["sub_keys"] for row in found})
-    value = {(row["sub_keys"], row["pose"], row["amount"]): row for row in found}
+    for row in found:
+        row["way"] = f"{row['sub_keys']}, as printed" if row["printed"] else f"{row['sub_keys']}"
+    named = {row["way"]: row["sub_keys"] for row in found}
+    value = {(row["way"], row["pose"], row["amount"]): row for row in found}
     for pose, unit in (("curve", "control points across, in bones"), ("elbow", "degrees")):
         amounts = sorted({row["amount"] for row in found if row["pose"] == pose})
         fields = ("width", "roughness", "off") if pose == "curve" else ("width",)
         print(f"\nLimbs, {pose} ({unit}): " + ", ".join({"width": "error of width in %", "roughness": "roughness beside the truth",
               "off": "distance from the truth in px"}[field] for field in fields) + "\n")
         print("| sub-key points | " + " | ".join(f"{amount:g}" for amount in amounts) + " |\n| ---: |" + " ---: |" * len(amounts))
-        for count in counts:
+        for count in named:
             rows = [value[count, pose, amount] for amount in amounts]
             cells = [", ".join(f"{100 * row[f]:.1f}" if f == "width" else f"{row[f]:.2f}" for f in fields) for row in rows]
             print(f"| {count} | " + " | ".join(cells) + " |")
     amounts = sorted({row["amount"] for row in found if row["pose"] == "curve"})
     panels = []
     for field, label in (("width", "error of width"), ("roughness", "roughness"), ("off", "off the truth, px")):
-        series = {f"{count}": ([(a, value[count, "curve", a][field]) for a in amounts], count == 0) for count in counts}
+        series = {name: ([(a, value[name, "curve", a][field]) for a in amounts], count == 0) for name, count in named.items()}
         top = max(b for points, _ in series.values() for _, b in points)
         panels.append((label, 0, 1.05 * top, series))
     plot(out, "limbs", "Curved limbs by sub-key points a bone (0: plain manipulation by key points)", ("control points across, in bones", 0, max(amounts), False), panels)

@@ -4,6 +4,8 @@
 //! splines' control points move across, half a bone's length at most), and a straight arm that bends at the elbow. The true limb is
 //! the strip of 20 px about the splines; about an elbow, within a width of it, nothing is true and only the width counts.
 //!
+//! Sub-key points keep their place along the limb; one number of them is also moved as the paper prints it.
+//!
 //! - **width**: root mean square of the relative error of the distance between the two sides, at 41 places along the limb
 //! - **roughness**: mean length of the second differences of both sides over that of the true sides; 1 is as smooth as the truth
 //! - **off**: mean distance of the sides from the true limb's, in px
@@ -22,6 +24,8 @@ const WIDTH: f64 = 20.0;
 const PLACES: usize = 41;
 /// Numbers of sub-key points a bone.
 const SUB_KEYS: [usize; 6] = [0, 1, 2, 3, 5, 8];
+/// The number of sub-key points that is also moved as printed.
+const PRINTED: usize = 5;
 /// How far control points go across, in bones.
 const ACROSS: [f64; 5] = [0.1, 0.2, 0.3, 0.4, 0.5];
 /// Elbows, in degrees.
@@ -32,6 +36,8 @@ const ELBOWS: [f64; 4] = [30.0, 60.0, 90.0, 120.0];
 pub struct Bent {
     /// Sub-key points a bone.
     pub sub_keys: usize,
+    /// Whether they are drawn to the nearest point of their spline, as printed.
+    pub printed: bool,
     /// "curve" or "elbow".
     pub pose: &'static str,
     /// How far: the control point across in bones, or the elbow in degrees.
@@ -47,8 +53,9 @@ pub struct Bent {
 /// All poses with all numbers of sub-key points.
 pub fn measure() -> Result<Vec<Bent>> {
     let mut found = Vec::new();
-    for sub_keys in SUB_KEYS {
-        let options = Options { sub_keys, ..Options::default() };
+    let ways = SUB_KEYS.map(|sub_keys| (sub_keys, false)).into_iter().chain([(PRINTED, true)]);
+    for (sub_keys, printed) in ways {
+        let options = Options { sub_keys, printed };
         for across in ACROSS {
             found.push(bent(options, "curve", across, &curved(across))?);
         }
@@ -104,6 +111,7 @@ fn bent(options: Options, pose: &'static str, amount: f64, limbs: &[LimbPose; 2]
     let off = a.iter().zip(&truth[0]).chain(b.iter().zip(&truth[1])).map(|(a, b)| a.distance(*b)).sum::<f64>();
     Ok(Bent {
         sub_keys: options.sub_keys,
+        printed: options.printed,
         pose,
         amount,
         width: (squares / PLACES as f64).sqrt(),
