@@ -10,9 +10,8 @@ use clap::Args;
 use rototoon_tests::benchmark::growth::{self, Measured, Sample};
 use rototoon_tests::benchmark::run::Outcome;
 use rototoon_tests::benchmark::table::{self, Failure};
-use rototoon_tests::benchmark::{mechanisms, presets, write_files};
+use rototoon_tests::benchmark::{mechanisms, own, presets, write_files};
 use rototoon_tests::puppet::Puppet;
-use rototoon_tests::sample;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -22,7 +21,7 @@ const REPEATS: usize = 5;
 /// What to measure.
 #[derive(Args)]
 pub struct Arguments {
-    /// Folders with project.json (key frames only) and truth.json; the sample cartoon where none is given.
+    /// Folders with project.json (key frames only) and truth.json; three drawn here where none is given.
     dirs: Vec<PathBuf>,
     /// Only this preset; may be given several times.
     #[arg(long = "preset", value_name = "ID")]
@@ -140,9 +139,7 @@ impl Bench {
     /// The sets with their names, which differ.
     fn folders(&self, dirs: &[PathBuf]) -> Result<Vec<(String, PathBuf)>> {
         if dirs.is_empty() {
-            let folder = self.out.join("sample");
-            sample::write(&folder)?;
-            return Ok(vec![("sample".into(), folder)]);
+            return own::write(&self.out);
         }
         let mut sets: Vec<(String, PathBuf)> = Vec::new();
         for dir in dirs {

@@ -4,6 +4,7 @@
 //! - [`table`]: what came out as Markdown and JSON
 //! - [`errors`]: how errors go over the frames, as a plot
 //! - [`overlay`]: tracked and true contours over the footage, as a contact sheet
+//! - [`own`]: sets that this package draws
 //! - [`growth`]: seconds and memory by frames, parts, points and pixels
 //!
 //! A **set** is a folder with `project.json` (key frames only) and `truth.json` ([`crate::truth`]). The command
@@ -13,6 +14,7 @@
 pub mod errors;
 pub mod growth;
 pub mod overlay;
+pub mod own;
 pub mod run;
 pub mod table;
 

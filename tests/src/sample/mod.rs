@@ -79,6 +79,11 @@ pub fn draw() -> Result<Vec<Drawn>> {
 /// Writes `frames/frame_000.png` to `frames/frame_023.png`, `project.json` (key frames only) and `truth.json` into
 /// `folder`, which is made if it isn't there.
 pub fn write(folder: &Path) -> Result<()> {
+    write_keyed(folder, key_frames)
+}
+
+/// The same with other frames keyed.
+pub fn write_keyed(folder: &Path, key_frames: KeyFrames) -> Result<()> {
     let drawings = draw()?;
     let frames = folder.join("frames");
     std::fs::create_dir_all(&frames).with_context(|| format!("cannot make the folder {frames:?}"))?;
@@ -86,7 +91,7 @@ pub fn write(folder: &Path) -> Result<()> {
         let png = drawing.picture.encode_png()?;
         (HOLD * i..HOLD * (i + 1)).try_for_each(|frame| write_file(&frames.join(format!("frame_{frame:03}.png")), &png))
     })?;
-    write_file(&folder.join("project.json"), serde_json::to_string(&project(&drawings))?.as_bytes())?;
+    write_file(&folder.join("project.json"), serde_json::to_string(&project(&drawings, key_frames))?.as_bytes())?;
     write_file(&folder.join("truth.json"), serde_json::to_string(&truth_document(&drawings))?.as_bytes())
 }
 
@@ -100,8 +105,16 @@ pub fn key_frames(part: &str) -> &'static [usize] {
     if swings.iter().any(|word| part.contains(word)) { &LIMB_KEYS } else { &BODY_KEYS }
 }
 
+/// Fewer frames than an artist would key: every part on the first, the crouching and the last one.
+pub fn far_key_frames(_part: &str) -> &'static [usize] {
+    &[0, 12, 23]
+}
+
+/// The frames that are keyed, by a part's name.
+pub type KeyFrames = fn(&str) -> &'static [usize];
+
 /// The project document with the artist's keys only.
-pub fn project(drawings: &[Drawn]) -> Value {
+pub fn project(drawings: &[Drawn], key_frames: KeyFrames) -> Value {
     let parts: Vec<Value> = PARTS
         .iter()
         .enumerate()
@@ -241,7 +254,7 @@ mod tests {
 
     #[test]
     fn keys_are_the_truth_at_their_frames() {
-        let (project, truth) = (project(&DRAWN), truth_document(&DRAWN));
+        let (project, truth) = (project(&DRAWN, key_frames), truth_document(&DRAWN));
         for (part, truth) in project["parts"].as_array().unwrap().iter().zip(truth["parts"].as_array().unwrap()) {
             let keys = part["keys"].as_object().unwrap();
             assert!(keys.contains_key("0") && keys.contains_key("23"));
