@@ -6,10 +6,12 @@
 //! ([`crate::reshape::puppet`]), and takes along the strokes and open contours that lie on it. Marks "in front" and
 //! "behind" give the depths of each frame.
 
+mod store;
+
 use super::PipelineError;
 use crate::geometry::{Point, polygon, polyline};
 use crate::project::Document;
-use crate::project::drawings::{DrawnBetween, DrawnStroke};
+use crate::project::drawings::DrawnStroke;
 use crate::reshape::capture::{Bindings, capture};
 use crate::reshape::depth::{DepthError, Mark, infer};
 use crate::reshape::limb::{Bend, bend_at};
@@ -97,7 +99,7 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     });
     let report = Reshaped { given: given.collect(), rigid, points: points.collect() };
     let placed = rebound(&set, &bindings, parts, rest);
-    store(document, footage, &bodies, &moved, &strokes, &depths);
+    store::store(document, footage, (&bodies, &moved), &strokes, &depths);
     document.set_limbs(&placed);
     Ok(report)
 }
@@ -274,6 +276,7 @@ impl Body {
     }
 }
 
+/// The closed parts, each with the strokes and open contours that lie on it.
 fn bodies(
     parts: &[Part],
     strokes: &[DrawnStroke],
@@ -281,42 +284,8 @@ fn bodies(
     rest: &[LimbPose],
     frame: FrameNumber,
 ) -> Result<Vec<Body>, PipelineError> {
-    let mut bodies = Vec::new();
-    for (index, part) in parts.iter().enumerate().filter(|(_, part)| part.closed) {
-        let (Some(points), Some(outline)) = (part.points_at(frame), part.outline(frame)) else { continue };
-        let mut carriers = Vec::new();
-        for (limb, l) in set.limbs.iter().enumerate() {
-            let own = l.carries.iter().find(|carried| carried.part == part.name);
-            carriers.extend(own.map(|carried| Carrier {
-                limb,
-                turn: carried.turn,
-                rigidity: l.rigidity,
-                whole: skull(l),
-            }));
-        }
-        let nearest = carriers.is_empty().then(|| nearest_limb(rest, &outline));
-        if let Some(limb) = nearest {
-            let turn = if LEGS.iter().any(|leg| leg[2] == set.limbs[limb].to) { FOOT_TURN } else { 1.0 };
-            let l = &set.limbs[limb];
-            carriers.push(Carrier { limb, turn, rigidity: l.rigidity, whole: skull(l) });
-        }
-        let curves = part.complete_curves(frame);
-        let (count, mut points) = (points.len(), points.clone());
-        points.extend(curves.into_iter().flatten().flatten());
-        bodies.push(Body {
-            part: index,
-            name: part.name.clone(),
-            rest: rest.to_vec(),
-            paths: curves.into_iter().flatten().map(Vec::len).collect(),
-            strokes: Vec::new(),
-            more: 0,
-            outline,
-            carriers,
-            nearest,
-            points,
-            count,
-        });
-    }
+    let closed = parts.iter().enumerate().filter(|(_, part)| part.closed);
+    let mut bodies: Vec<Body> = closed.filter_map(|(index, part)| body((index, part), set, rest, frame)).collect();
     if bodies.is_empty() {
         return Err(wrong(format!("parts: found no closed contour on frame {frame}, expected at least one")));
     }
@@ -328,6 +297,47 @@ fn bodies(
         bodies[owner].strokes.push((number, line.len()));
     }
     Ok(bodies)
+}
+
+/// A closed part on the frame where it is at rest; none where it has no points there.
+fn body((index, part): (usize, &Part), set: &LimbSet, rest: &[LimbPose], frame: FrameNumber) -> Option<Body> {
+    let (mut points, outline) = (part.points_at(frame)?.clone(), part.outline(frame)?);
+    let (carriers, nearest) = carriers(part, set, rest, &outline);
+    let curves = part.complete_curves(frame);
+    let count = points.len();
+    points.extend(curves.into_iter().flatten().flatten());
+    Some(Body {
+        part: index,
+        name: part.name.clone(),
+        rest: rest.to_vec(),
+        paths: curves.into_iter().flatten().map(Vec::len).collect(),
+        strokes: Vec::new(),
+        more: 0,
+        outline,
+        carriers,
+        nearest,
+        points,
+        count,
+    })
+}
+
+/// The limbs that carry a part; where none is told to, the nearest one, which is also given.
+fn carriers(part: &Part, set: &LimbSet, rest: &[LimbPose], outline: &[Point]) -> (Vec<Carrier>, Option<usize>) {
+    let carrier = |limb: usize, turn: f64| {
+        let whole = skull(&set.limbs[limb]);
+        Carrier { limb, turn, rigidity: set.limbs[limb].rigidity, whole }
+    };
+    let told = set.limbs.iter().enumerate().filter_map(|(limb, l)| {
+        let own = l.carries.iter().find(|carried| carried.part == part.name)?;
+        Some(carrier(limb, own.turn))
+    });
+    let told: Vec<Carrier> = told.collect();
+    if !told.is_empty() {
+        return (told, None);
+    }
+    let limb = nearest_limb(rest, outline);
+    let foot = LEGS.iter().any(|leg| leg[2] == set.limbs[limb].to);
+    (vec![carrier(limb, if foot { FOOT_TURN } else { 1.0 })], Some(limb))
 }
 
 /// Whether a limb holds up the head, which keeps its shape.
@@ -402,77 +412,6 @@ fn rebound(set: &LimbSet, bindings: &Bindings, parts: &[Part], rest: FrameNumber
         limb.bends.clear();
     }
     set
-}
-
-/// Puts what was made into the document: the parts get keys on the first and the last frame, between which they are
-/// tracked.
-fn store(
-    document: &mut Document,
-    footage: Footage,
-    bodies: &[Body],
-    moved: &[Moved],
-    strokes: &[DrawnStroke],
-    depths: &[Vec<f64>],
-) {
-    let frames: Vec<FrameNumber> = (footage.first..=footage.last).collect();
-    let mut lines: BTreeMap<usize, Vec<Vec<Point>>> = BTreeMap::new();
-    let open: Vec<usize> = (0..document.scene.parts.len()).filter(|&k| !document.scene.parts[k].closed).collect();
-    for (body, moved) in bodies.iter().zip(moved) {
-        let part = &mut document.scene.parts[body.part];
-        let mut tracks = BTreeMap::new();
-        part.curves.clear();
-        for (&frame, points) in frames.iter().zip(&moved.frames) {
-            let mut rest = points.as_slice();
-            let mut take = |count: usize| {
-                let (taken, left) = rest.split_at(count);
-                rest = left;
-                taken.to_vec()
-            };
-            tracks.insert(frame, take(body.count));
-            if !body.paths.is_empty() {
-                part.curves.insert(frame, body.paths.iter().map(|&length| take(length)).collect());
-            }
-            for &(number, length) in &body.strokes {
-                lines.entry(number).or_default().push(take(length));
-            }
-        }
-        set_tracks(part, tracks);
-    }
-    for (number, of_frames) in lines.iter().filter(|(number, _)| **number >= strokes.len()) {
-        let tracks = frames.iter().copied().zip(of_frames.iter().cloned()).collect();
-        let part = &mut document.scene.parts[open[number - strokes.len()]];
-        part.curves.clear();
-        set_tracks(part, tracks);
-    }
-    for (part, depths) in document.scene.parts.iter_mut().zip(depths) {
-        part.depth = depths.first().copied().unwrap_or(part.depth);
-        let other = frames.iter().zip(depths).filter(|(_, depth)| **depth != part.depth);
-        part.depths = other.map(|(frame, depth)| (*frame, *depth)).collect();
-    }
-    let drawn = |(k, frame): (usize, &FrameNumber)| DrawnBetween {
-        frame: *frame,
-        strokes: (0..strokes.len())
-            .filter_map(|number| {
-                let points = lines.get(&number)?.get(k)?.clone();
-                Some((number, 1.0, DrawnStroke { points, peg: None, ..strokes[number].clone() }))
-            })
-            .collect(),
-    };
-    if !strokes.is_empty() {
-        let drawn: Vec<DrawnBetween> = frames.iter().enumerate().map(drawn).collect();
-        document.set_in_betweens(Vec::new(), &drawn);
-    }
-    document.scene.footage = footage;
-}
-
-fn set_tracks(part: &mut Part, tracks: BTreeMap<FrameNumber, Vec<Point>>) {
-    let ends = [tracks.first_key_value(), tracks.last_key_value()];
-    part.keys = ends.into_iter().flatten().map(|(frame, points)| (*frame, points.clone())).collect();
-    part.tracks = tracks;
-    part.pins.clear();
-    part.centers.clear();
-    part.confidence.clear();
-    part.wants_key.clear();
 }
 
 #[cfg(test)]

@@ -130,35 +130,12 @@ impl Rototoon {
             let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
             let (paths, _) = self.chosen((scene, tasks, &stretch), &members, paths, &mut joints);
             let hiding = self.mechanisms.has(Mechanism::Hiding);
-            let finishes: Vec<Finish> =
-                (0..members.len()).map(|m| Finish::of(scene, tasks, &stretch, &members, &paths, (m, hiding))).collect();
-            let known = |source: &Arc<Pooled>, plan: &Finish| {
-                let known = self.finished.get(&source.key())?;
-                (Arc::ptr_eq(&known.source, source) && known.plan == *plan).then(|| known.track.clone())
-            };
-            let tracks: Vec<Option<SpanTrack>> = mended.iter().zip(&finishes).map(|(s, p)| known(s, p)).collect();
-            let results: Vec<Option<Result<Finished, TrackError>>> = stretch
-                .par_iter()
-                .zip(finishes)
-                .zip(&mended)
-                .zip(&tracks)
-                .map(|(((&t, plan), source), known)| {
-                    let kit = Kit { store: &self.store, frames, progress: &shared.of(t), mechanisms: self.mechanisms };
-                    known.is_none().then(|| finish(kit, source, plan, self.finished.get(&source.key())))
-                })
-                .collect();
-            for ((&t, known), result) in stretch.iter().zip(tracks).zip(results) {
-                let solved = known.is_none() || fresh[t];
-                let track = match result.transpose()? {
-                    Some(finished) => {
-                        let track = finished.track.clone();
-                        self.finished.insert(finished.source.key(), finished);
-                        Some(track)
-                    }
-                    None => known,
-                };
+            let plan = |m: usize| Finish::of(scene, tasks, &stretch, &members, &paths, (m, hiding));
+            let plans = (0..members.len()).map(plan).collect();
+            let tracks = self.finish_all(&stretch, &mended, plans, frames, &shared)?;
+            for (&t, (track, new)) in stretch.iter().zip(tracks) {
                 shared.of(t).report("Tracking", 1.0)?;
-                done[t] = track.map(|track| (track, solved));
+                done[t] = Some((track, new || fresh[t]));
             }
         }
         self.shadows.turn();
@@ -323,6 +300,41 @@ impl Rototoon {
             self.mended.insert(mended.source.key(), mended);
         }
         Ok(results)
+    }
+
+    /// The tracks of a stretch's members on their chosen paths, and whether they were solved now: what was solved before
+    /// from the same pools by the same plan is taken as it was.
+    fn finish_all(
+        &mut self,
+        stretch: &[usize],
+        mended: &[Arc<Pooled>],
+        plans: Vec<Finish>,
+        frames: &dyn FrameSource,
+        shared: &SharedProgress,
+    ) -> Result<Vec<(SpanTrack, bool)>, TrackError> {
+        let results: Vec<Result<(SpanTrack, Option<Finished>), TrackError>> = stretch
+            .par_iter()
+            .zip(plans)
+            .zip(mended)
+            .map(|((&t, plan), source)| {
+                let before = self.finished.get(&source.key());
+                if let Some(known) = before.filter(|known| Arc::ptr_eq(&known.source, source) && known.plan == plan) {
+                    return Ok((known.track.clone(), None));
+                }
+                let kit = Kit { store: &self.store, frames, progress: &shared.of(t), mechanisms: self.mechanisms };
+                let new = finish(kit, source, plan, before)?;
+                Ok((new.track.clone(), Some(new)))
+            })
+            .collect();
+        let mut tracks = Vec::with_capacity(results.len());
+        for result in results {
+            let (track, new) = result?;
+            tracks.push((track, new.is_some()));
+            if let Some(new) = new {
+                self.finished.insert(new.source.key(), new);
+            }
+        }
+        Ok(tracks)
     }
 
     /// The pools of a job without and with its corrections, and whether anything was made.

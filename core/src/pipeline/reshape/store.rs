@@ -1,0 +1,92 @@
+//! What was made of a drawing, put into its document.
+//!
+//! Parts get keys on the first and the last frame of the clip, between which they are tracked; strokes become drawings
+//! between drawings; depths stand beside the tracks where they change.
+
+use super::{Body, Moved};
+use crate::geometry::Point;
+use crate::project::Document;
+use crate::project::drawings::{DrawnBetween, DrawnStroke};
+use crate::scene::{Footage, FrameNumber, Part};
+use std::collections::BTreeMap;
+
+/// By number of stroke or open contour (contours after all strokes): its points on every frame.
+type Lines = BTreeMap<usize, Vec<Vec<Point>>>;
+
+/// Puts all that was made into the document. `bodies` and `moved` go together; `strokes` are the drawing's at rest;
+/// `depths` are by part and frame of `footage`, which becomes the document's.
+pub(super) fn store(
+    document: &mut Document,
+    footage: Footage,
+    (bodies, moved): (&[Body], &[Moved]),
+    strokes: &[DrawnStroke],
+    depths: &[Vec<f64>],
+) {
+    let frames: Vec<FrameNumber> = (footage.first..=footage.last).collect();
+    let parts = &mut document.scene.parts;
+    let open: Vec<usize> = (0..parts.len()).filter(|&k| !parts[k].closed).collect();
+    let mut lines = Lines::new();
+    for (body, moved) in bodies.iter().zip(moved) {
+        put_body(&mut parts[body.part], body, moved, &frames, &mut lines);
+    }
+    for (number, of_frames) in lines.range(strokes.len()..) {
+        let part = &mut parts[open[number - strokes.len()]];
+        part.curves.clear();
+        set_tracks(part, frames.iter().copied().zip(of_frames.iter().cloned()).collect());
+    }
+    for (part, depths) in parts.iter_mut().zip(depths) {
+        part.depth = depths.first().copied().unwrap_or(part.depth);
+        let other = frames.iter().zip(depths).filter(|(_, depth)| **depth != part.depth);
+        part.depths = other.map(|(frame, depth)| (*frame, *depth)).collect();
+    }
+    if !strokes.is_empty() {
+        document.set_in_betweens(Vec::new(), &drawn(strokes, &lines, &frames));
+    }
+    document.scene.footage = footage;
+}
+
+/// A part's tracks and curves; what lies on it is added to `lines`.
+fn put_body(part: &mut Part, body: &Body, moved: &Moved, frames: &[FrameNumber], lines: &mut Lines) {
+    let mut tracks = BTreeMap::new();
+    part.curves.clear();
+    for (&frame, points) in frames.iter().zip(&moved.frames) {
+        let mut rest = points.as_slice();
+        let mut take = |count: usize| {
+            let (taken, left) = rest.split_at(count);
+            rest = left;
+            taken.to_vec()
+        };
+        tracks.insert(frame, take(body.count));
+        if !body.paths.is_empty() {
+            part.curves.insert(frame, body.paths.iter().map(|&length| take(length)).collect());
+        }
+        for &(number, length) in &body.strokes {
+            lines.entry(number).or_default().push(take(length));
+        }
+    }
+    set_tracks(part, tracks);
+}
+
+/// The strokes on every frame.
+fn drawn(strokes: &[DrawnStroke], lines: &Lines, frames: &[FrameNumber]) -> Vec<DrawnBetween> {
+    let stroke = |k: usize, number: usize| {
+        let points = lines.get(&number)?.get(k)?.clone();
+        Some((number, 1.0, DrawnStroke { points, peg: None, ..strokes[number].clone() }))
+    };
+    let on = |(k, &frame): (usize, &FrameNumber)| DrawnBetween {
+        frame,
+        strokes: (0..strokes.len()).filter_map(|number| stroke(k, number)).collect(),
+    };
+    frames.iter().enumerate().map(on).collect()
+}
+
+/// Tracks with keys on both ends, and nothing left of corrections to other tracks.
+fn set_tracks(part: &mut Part, tracks: BTreeMap<FrameNumber, Vec<Point>>) {
+    let ends = [tracks.first_key_value(), tracks.last_key_value()];
+    part.keys = ends.into_iter().flatten().map(|(frame, points)| (*frame, points.clone())).collect();
+    part.tracks = tracks;
+    part.pins.clear();
+    part.centers.clear();
+    part.confidence.clear();
+    part.wants_key.clear();
+}
