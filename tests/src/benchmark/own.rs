@@ -1,6 +1,7 @@
 //! Sets of our own for whoever has no others with truth: all of them are drawn by this package.
 //!
-//! - `limbs`: a crowd of limbs that swing and cross over half a second, keyed on both ends ([`crate::puppet`])
+//! - `limbs`: a crowd of limbs that swing there and back and cross, keyed on the first, the middle and the last frame
+//!   ([`crate::puppet`])
 //! - `sample`: the sample cartoon with the keys that an artist would set ([`crate::sample`])
 //! - `far_keys`: the same with every part keyed on three frames only: between them limbs swing there and back unseen
 
@@ -9,7 +10,7 @@ use crate::sample;
 use anyhow::Result;
 use std::path::{Path, PathBuf};
 
-/// Nine limbs over 28 frames at the sample cartoon's size.
+/// Nine limbs at the sample cartoon's size.
 const LIMBS: Puppet = Puppet { width: 960, height: 540, frames: 29, step: 14, parts: 9, points: 12 };
 
 /// Writes the sets into folders of their names in `folder`; their names and folders.
