@@ -181,6 +181,8 @@ pub enum Picture {
     Overlay(OverlayOptions),
     /// Coverage of the closed parts.
     Matte,
+    /// What of the footage the closed parts cover.
+    Cutout,
     /// The same, and in an OpenEXR file the whole coverage of each part as a layer of its own.
     Layers,
     /// A colour for each part, nearer ones over farther ones; in an OpenEXR file with Cryptomatte layers.
@@ -241,6 +243,10 @@ fn picture(
     let parts = plan.parts.as_deref();
     let bytes = match &job.picture {
         Picture::Matte => render::encode::matte(&render::matte(&document.scene, frame, parts), plan.format),
+        Picture::Cutout => {
+            let pixels = sequence.layer(frame)?;
+            render::encode::layer(&render::cutout(&document.scene, frame, &pixels, parts), plan.format)
+        }
         Picture::Layers => render::matte_layers(&document.scene, frame, parts),
         Picture::Ids => render::id_picture(&document.scene, frame, parts, plan.format),
         Picture::Overlay(options) => {

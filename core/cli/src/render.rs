@@ -13,7 +13,7 @@ use std::ops::RangeInclusive;
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("render")
-        .about("Draws contours over the footage, the parts' matte, or which part is where")
+        .about("Draws contours over the footage, the parts' matte, the parts cut out, or which part is where")
         .arg(arguments::project())
         .arg(arguments::output("PATTERN", "Files such as out.%04d.exr or out.%04d.png; a plain name for one frame"))
         .args(arguments::of_stage(Stage::Render))
@@ -44,6 +44,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         picture: match arguments::choice(given, "what") {
             "matte" if arguments::flag(given, "layers") => Picture::Layers,
             "matte" => Picture::Matte,
+            "cutout" => Picture::Cutout,
             "ids" => Picture::Ids,
             _ => Picture::Overlay(OverlayOptions {
                 line_width: arguments::number(given, "line_width"),

@@ -232,6 +232,34 @@ fn odd_parts_are_tracked_or_left_alone_with_a_warning() {
 }
 
 #[test]
+fn cutouts_hold_the_footage_where_the_parts_are() {
+    let cartoon = Cartoon::new();
+    let project = cartoon.keyed();
+    // The drawing of frame 0 on a transparent ground, its upper half half as opaque.
+    let mut cel = image::open(cartoon.frame(0)).unwrap().to_rgba8();
+    for (_, y, pixel) in cel.enumerate_pixels_mut() {
+        pixel.0[3] = if y < 24 { 102 } else { 255 };
+    }
+    cel.save(cartoon.frame(0)).unwrap();
+    let (png, exr) = (cartoon.path("cut.png"), cartoon.path("cut.exr"));
+    for out in [&png, &exr] {
+        good(&["render", text(&project), "--what", "cutout", "--frames", "0", "-o", text(out)]);
+    }
+    let (png, exr) = (image::open(png).unwrap().to_rgba8(), image::open(exr).unwrap().to_rgba32f());
+    for (x, y, found) in png.enumerate_pixels() {
+        let inside = (8..28).contains(&x) && (12..36).contains(&y);
+        let wanted = if inside { cel.get_pixel(x, y).0 } else { [0; 4] };
+        assert_eq!(found.0, wanted, "{x} {y}");
+        let light = exr.get_pixel(x, y).0;
+        assert!((light[3] - f32::from(wanted[3]) / 255.0).abs() < 1e-6, "{x} {y}: {light:?}");
+        // Light of an sRGB-encoded value, IEC 61966-2-1, all of these being above its straight piece.
+        let red = light[3] * ((f32::from(wanted[0]) / 255.0 + 0.055) / 1.055).powf(2.4);
+        assert!((light[0] - red).abs() < 1e-5 || !inside, "{x} {y}: {light:?} {red}");
+        assert!(inside || light == [0.0; 4], "{x} {y}: {light:?}");
+    }
+}
+
+#[test]
 fn bad_documents_end_with_one_line_a_problem() {
     let cartoon = Cartoon::new();
     let out = cartoon.path("out.json");

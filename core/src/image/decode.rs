@@ -71,6 +71,21 @@ pub fn probe(path: &Path) -> Result<(usize, usize), DecodeError> {
 
 /// The picture in a file; of another size than `expected`, if one is given, it is an error and not decoded.
 pub fn decode(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<Colour>, DecodeError> {
+    decoded(path, expected, colours)
+}
+
+/// The picture in a file with its transparency: light, not cut, multiplied by alpha, and alpha. What is not a number is
+/// 0. Errors as with [`decode`].
+pub fn decode_layer(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<[f32; 4]>, DecodeError> {
+    decoded(path, expected, layer)
+}
+
+/// A file's pixels, made from what the decoder gives and whether that is multiplied by alpha.
+fn decoded<T: Copy>(
+    path: &Path,
+    expected: Option<(usize, usize)>,
+    pixels: impl FnOnce(DynamicImage, bool) -> Vec<T>,
+) -> Result<Raster<T>, DecodeError> {
     guarded(|| {
         let reader = open(path)?;
         let multiplied = reader.format() == Some(ImageFormat::OpenExr);
@@ -85,7 +100,7 @@ pub fn decode(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<Co
                 format!("{width}x{height} pixels take {} bytes, more than {MOST_BYTES}", decoder.total_bytes());
             return Err(DecodeError::Unreadable(reason));
         }
-        let pixels = colours(DynamicImage::from_decoder(decoder)?, multiplied);
+        let pixels = pixels(DynamicImage::from_decoder(decoder)?, multiplied);
         Raster::from_vec(width, height, pixels)
             .ok_or_else(|| DecodeError::Unreadable(format!("fewer pixels than {width}x{height}")))
     })
@@ -127,6 +142,20 @@ fn colours(picture: DynamicImage, multiplied: bool) -> Vec<Colour> {
         DynamicImage::ImageRgb32F(p) => p.pixels().map(|p| p.0.map(encoded)).collect(),
         other => other.to_rgba32f().pixels().map(|p| light_over(p.0, multiplied)).collect(),
     }
+}
+
+/// The pixels as light multiplied by alpha, and alpha.
+fn layer(picture: DynamicImage, multiplied: bool) -> Vec<[f32; 4]> {
+    let light = matches!(picture, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
+    let number = |v: f32| if v.is_nan() { 0.0 } else { v };
+    let pixel = |pixel: [f32; 4]| {
+        let [r, g, b, alpha] = pixel.map(number);
+        let alpha = alpha.clamp(0.0, 1.0);
+        let own = if multiplied { 1.0 } else { alpha };
+        let [r, g, b] = [r, g, b].map(|v| own * if light { v } else { to_light(v) });
+        [r, g, b, alpha]
+    };
+    picture.into_rgba32f().pixels().map(|p| pixel(p.0)).collect()
 }
 
 fn byte(v: u8) -> f32 {
@@ -245,6 +274,32 @@ mod tests {
         }
         let read = there_and_back("a.exr", ImageBuffer::from_pixel(5, 4, Rgba([f32::NAN, f32::INFINITY, -1.0, 1.0])));
         assert_eq!(read.get(1, 1), [0.0, 1.0, 0.0]);
+    }
+
+    #[test]
+    fn layers_keep_transparency_and_light_above_one() {
+        let layer = |name: &str, image: DynamicImage| {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join(name);
+            image.save(&path).unwrap();
+            decode_layer(&path, Some((3, 1))).unwrap().data().to_vec()
+        };
+        let near = |pixels: &[[f32; 4]], wanted: [[f32; 4]; 3]| {
+            let off = pixels.iter().flatten().zip(wanted.iter().flatten()).map(|(a, b)| (a - b).abs());
+            assert!(off.fold(0.0, f32::max) < 1e-6, "{pixels:?} {wanted:?}");
+        };
+        let inks = [Rgba([0u8, 255, 51, 255]), Rgba([255, 255, 255, 51]), Rgba([255, 0, 0, 0])];
+        let png = ImageBuffer::from_fn(3, 1, |x, _| inks[x as usize]);
+        near(
+            &layer("a.png", DynamicImage::ImageRgba8(png)),
+            [[0.0, 1.0, to_light(0.2), 1.0], [0.2, 0.2, 0.2, 0.2], [0.0; 4]],
+        );
+        let lights = [Rgba([4.0f32, 0.5, f32::NAN, 1.0]), Rgba([0.25, 0.0, 0.0, 0.5]), Rgba([0.0; 4])];
+        let exr = ImageBuffer::from_fn(3, 1, |x, _| lights[x as usize]);
+        near(
+            &layer("a.exr", DynamicImage::ImageRgba32F(exr)),
+            [[4.0, 0.5, 0.0, 1.0], [0.25, 0.0, 0.0, 0.5], [0.0; 4]],
+        );
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! the lock, so that several threads decode at once; two that want the same picture at the same moment may both decode
 //! it, which costs time but can never deadlock within a pool of threads.
 
-use super::decode::{DecodeError, decode};
+use super::decode::{DecodeError, decode, decode_layer};
 use crate::scene::{Colour, Footage, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Raster};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
@@ -75,7 +75,22 @@ impl Sequence {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn read(&self, frame: FrameNumber) -> Result<Raster<Colour>, FrameError> {
+    /// A frame with its transparency, as [`decode_layer`] gives it; it is not kept.
+    pub fn layer(&self, frame: FrameNumber) -> Result<Raster<[f32; 4]>, FrameError> {
+        self.inside(frame)?;
+        self.read(frame, decode_layer)
+    }
+
+    fn inside(&self, frame: FrameNumber) -> Result<(), FrameError> {
+        let (first, last) = (self.footage.first, self.footage.last);
+        if (first..=last).contains(&frame) { Ok(()) } else { Err(FrameError::Outside { frame, first, last }) }
+    }
+
+    fn read<T>(
+        &self,
+        frame: FrameNumber,
+        decode: impl FnOnce(&Path, Option<(usize, usize)>) -> Result<T, DecodeError>,
+    ) -> Result<T, FrameError> {
         let (width, height) = (self.footage.width, self.footage.height);
         let path = self.path(frame);
         decode(&path, Some((width, height))).map_err(|error| match error {
@@ -90,14 +105,11 @@ impl Sequence {
 
 impl FrameSource for Sequence {
     fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
-        let (first, last) = (self.footage.first, self.footage.last);
-        if !(first..=last).contains(&frame) {
-            return Err(FrameError::Outside { frame, first, last });
-        }
+        self.inside(frame)?;
         if let Some(picture) = self.locked().get(frame) {
             return Ok(picture);
         }
-        let picture = Arc::new(self.read(frame)?);
+        let picture = Arc::new(self.read(frame, decode)?);
         self.locked().put(frame, &picture);
         Ok(picture)
     }

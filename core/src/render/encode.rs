@@ -1,7 +1,7 @@
 //! Pictures as bytes of a PNG or OpenEXR file.
 //!
 //! PNG holds what the screen shows (8 bits a channel), mattes with 16 bits. OpenEXR holds 32-bit floats: colours in
-//! linear light, mattes as white premultiplied by its alpha, which compositors take as it is.
+//! linear light, mattes as white premultiplied by its alpha, which compositors take as it is, cutouts likewise.
 
 use crate::image::colour;
 use crate::scene::{Colour, Raster};
@@ -71,6 +71,27 @@ pub fn premultiplied(picture: &Raster<[f32; 4]>) -> Result<Vec<u8>, EncodeError>
         picture.data().iter().flat_map(straight).collect(),
     );
     bytes(image.map(DynamicImage::ImageRgba8), Format::Png, picture.width(), picture.height())
+}
+
+/// Light multiplied by alpha, and alpha, as the bytes of a file.
+pub fn layer(picture: &Raster<[f32; 4]>, format: Format) -> Result<Vec<u8>, EncodeError> {
+    let (width, height) = (picture.width(), picture.height());
+    match format {
+        Format::Png => {
+            let shown = |&[r, g, b, alpha]: &[f32; 4]| {
+                let whole = if alpha > 0.0 { alpha } else { 1.0 };
+                let [r, g, b] = [r, g, b].map(|v| alpha * colour::encode(v / whole));
+                [r, g, b, alpha]
+            };
+            let shown = Raster::from_fn(width, height, |x, y| shown(&picture.get(x, y)));
+            premultiplied(&shown)
+        }
+        Format::Exr => {
+            let values = picture.data().iter().flatten().copied().collect();
+            let image = ImageBuffer::from_raw(width as u32, height as u32, values).map(DynamicImage::ImageRgba32F);
+            bytes(image, format, width, height)
+        }
+    }
 }
 
 /// A matte as the bytes of a file.

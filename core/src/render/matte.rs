@@ -18,6 +18,17 @@ pub fn matte(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Rast
     coverage(&outlines, scene.footage.width, scene.footage.height)
 }
 
+/// A frame's pixels, multiplied by alpha, where closed parts are: what [`matte`] covers of them.
+pub fn cutout(
+    scene: &Scene,
+    frame: FrameNumber,
+    pixels: &Raster<[f32; 4]>,
+    parts: Option<&[usize]>,
+) -> Raster<[f32; 4]> {
+    let matte = matte(scene, frame, parts);
+    Raster::from_fn(pixels.width(), pixels.height(), |x, y| pixels.get(x, y).map(|v| v * matte.get(x, y)))
+}
+
 /// Coverage of the union of closed polygons.
 pub fn coverage(polygons: &[Vec<Point>], width: usize, height: usize) -> Raster<f32> {
     let mut result = Raster::new(width, height, 0.0f32);

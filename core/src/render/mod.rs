@@ -3,7 +3,7 @@
 //! - [`overlay`]: contours, control points, keys and confidence over the footage
 //! - [`coverage`]: exact area coverage of unions of polygons
 //! - [`mask`]: parts at a time, blurred by motion, grown and feathered
-//! - [`matte`]: coverage of the closed parts
+//! - [`matte`]: coverage of the closed parts, and what of the footage they cover
 //! - [`visible`]: how much of each pixel every part shows, nearer parts over farther ones
 //! - [`ids`]: the same as a colour for each part; mattes with a layer for each
 //! - [`cryptomatte`]: the same as ranked ids, for keyers
@@ -30,5 +30,5 @@ pub mod visible;
 
 pub use encode::{EncodeError, Format};
 pub use ids::{id_picture, matte_layers};
-pub use matte::matte;
+pub use matte::{cutout, matte};
 pub use overlay::{OverlayOptions, overlay};

@@ -148,13 +148,15 @@ pub const ALL: [Parameter; 13] = [
     Parameter {
         id: "what",
         label: "What",
-        help: "The picture that is made: contours over the footage, the coverage of the closed parts, or which part is where.",
+        help: "The picture that is made: contours over the footage, the coverage of the closed parts, \
+               what they cover of the footage, or which part is where.",
         stage: Stage::Render,
         kind: Kind::Choice {
             default: "overlay",
             choices: &[
                 choice("overlay", "Contours over the footage"),
                 choice("matte", "Matte of the closed parts"),
+                choice("cutout", "The footage where the closed parts are"),
                 choice("ids", "A colour for each part; in OpenEXR also Cryptomatte layers"),
             ],
         },

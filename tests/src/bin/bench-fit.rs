@@ -4,6 +4,7 @@
 //! guides, corners and error, and the milliseconds of the fastest of [`ROUNDS`] fits on one thread.
 
 use anyhow::{Context, Result};
+use clap::Parser;
 use rototoon::fit::{Options, fit};
 use rototoon::project::curves::Curves;
 use serde_json::json;
@@ -13,8 +14,15 @@ use std::time::Instant;
 /// Fits of each curve.
 const ROUNDS: usize = 40;
 
+#[derive(Parser)]
+#[command(about = "Times the default fit on curves from standard input")]
+struct Arguments {
+    /// Tolerance in pixels.
+    tolerance: f64,
+}
+
 fn main() -> Result<()> {
-    let tolerance = std::env::args().nth(1).context("expected a tolerance in pixels")?.parse()?;
+    let Arguments { tolerance } = Arguments::parse();
     let mut text = String::new();
     std::io::stdin().read_to_string(&mut text)?;
     let curves = Curves::from_json(&text, "standard input")?;

@@ -3,6 +3,7 @@
 //! `bench-tween OUT DIR…` prints tables and writes a sheet of in-betweens for each set to the folder OUT.
 
 use anyhow::{Context, Result};
+use clap::Parser;
 use rototoon::tween::between::Options;
 use rototoon_tests::tweening::between::{
     Errors, PlaceErrors, measure as measure_between, measure_one_way, measure_places, rows_of_keys,
@@ -11,10 +12,18 @@ use rototoon_tests::tweening::matching::{Chance, Score, measure};
 use rototoon_tests::tweening::{GAPS, Set, sheet};
 use std::path::{Path, PathBuf};
 
+#[derive(Parser)]
+#[command(about = "Matching and in-betweens on sets with known truth")]
+struct Arguments {
+    /// The folder to write to.
+    out: PathBuf,
+    /// Folders with project.json and truth.json.
+    folders: Vec<PathBuf>,
+}
+
 fn main() -> Result<()> {
-    let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
-    let out = arguments.next().context("expected a folder to write to")?;
-    let sets = arguments.map(|folder| Set::load(&folder)).collect::<Result<Vec<_>>>()?;
+    let Arguments { out, folders } = Arguments::parse();
+    let sets = folders.iter().map(|folder| Set::load(folder)).collect::<Result<Vec<_>>>()?;
     matching(&sets, false)?;
     matching(&sets, true)?;
     places(&sets)?;

@@ -3,12 +3,20 @@
 //! `sample FOLDER` leaves `FOLDER/sample` (footage, `project.json` with the artist's keys and limbs, `truth.json`) and `FOLDER/doll`
 //! (`doll.json`, one drawing with limbs and marks, and its footage).
 
-use anyhow::{Context, Result};
+use anyhow::Result;
+use clap::Parser;
 use rototoon_tests::{doll, sample};
 use std::path::PathBuf;
 
+#[derive(Parser)]
+#[command(about = "Writes the sample cartoon and the jointed doll")]
+struct Arguments {
+    /// The folder to write to.
+    folder: PathBuf,
+}
+
 fn main() -> Result<()> {
-    let folder = PathBuf::from(std::env::args_os().nth(1).context("usage: sample FOLDER")?);
+    let Arguments { folder } = Arguments::parse();
     sample::write(&folder.join("sample"))?;
     doll::write(&folder.join("doll"))
 }

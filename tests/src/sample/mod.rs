@@ -270,4 +270,13 @@ mod tests {
         let compared = drawn.map(|(name, drawing)| golden::compare(name, &DRAWN[drawing].picture));
         compared.into_iter().for_each(|result| result.unwrap());
     }
+
+    #[test]
+    fn every_part_is_keyed_on_the_frames_that_are_asked_for() {
+        let document = project(&DRAWN, far_key_frames);
+        for part in document["parts"].as_array().unwrap() {
+            let keys: Vec<_> = part["keys"].as_object().unwrap().keys().cloned().collect();
+            assert_eq!(keys, ["0", "12", "23"], "{}", part["name"]);
+        }
+    }
 }

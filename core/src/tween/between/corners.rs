@@ -76,7 +76,6 @@ impl Shares {
         let places = (0..SAMPLES).map(|k| k as f64 / SAMPLES as f64);
         let from: Vec<Point> = places.clone().map(|s| a.at(s)).collect();
         let off = |way: &Self| apart(&from, &places.clone().map(|s| b.at(way.at(s))).collect::<Vec<_>>());
-        let plain = Self { knots: vec![(0.0, 0.0), (1.0, 1.0)], ..aligned };
         if off(&aligned) <= FITTING * off(&plain) { aligned } else { plain }
     }
 
