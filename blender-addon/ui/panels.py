@@ -206,7 +206,10 @@ class ROTOTOON_PT_style(_Panel, bpy.types.Panel):
         layout.use_property_decorate = False
         layout.operator_menu_enum("rototoon.define_limbs", "point", text="Define Limbs", icon="BONE_DATA")
         count = len(limbs.defined(context.object))
-        layout.label(text=f"{count} limbs" if count else f'Draw a line across a limb on the layer "{limbs.LAYER}"')
+        lines = [f"{count} limbs"] if count else ["Draw a line across a limb", f'on the layer "{limbs.LAYER}"']
+        labels = layout.column(align=True)
+        for line in lines:
+            labels.label(text=line)
         layout.operator("rototoon.depth_mark", icon="OVERLAY")
         layout.prop(settings, "clips_folder")
         layout.operator("rototoon.save_clip", icon="FILE_TICK")

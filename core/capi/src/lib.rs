@@ -2,8 +2,9 @@
 //!
 //! The header `include/rototoon.h` is generated from this crate and the Python bindings from the header
 //! (`cargo xtask generate`). Layers, from the outside: the exported functions ([`session_abi`], [`strokes_abi`],
-//! [`tween_abi`], [`style_abi`], [`functions`], [`handles`]) read their arguments through [`entry`]; below them all is safe Rust ([`session`], [`edit`], [`options`],
-//! [`matching`], [`strokes`], [`sheet`], [`style`], [`work`]).
+//! [`tween_abi`], [`style_abi`], [`functions`], [`handles`]) read their arguments through [`entry`] and report through
+//! [`callback`]; below them all is safe Rust ([`session`], [`edit`], [`options`], [`matching`], [`strokes`], [`sheet`],
+//! [`style`], [`work`]).
 //!
 //! # Contract
 //!
@@ -34,6 +35,7 @@
 // Stated once, above.
 #![allow(clippy::missing_safety_doc)]
 
+pub mod callback;
 pub mod edit;
 pub mod entry;
 pub mod functions;

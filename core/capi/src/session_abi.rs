@@ -1,5 +1,6 @@
 //! The session's functions.
 
+use crate::callback::{RototoonProgress, with_progress};
 use crate::edit;
 use crate::entry::{clear, entry, free, give, handle, slice, text};
 use crate::handles::{RototoonCurves, RototoonText, RototoonTrack};
@@ -14,11 +15,6 @@ use std::sync::{Mutex, TryLockError};
 
 /// A document with its pictures and with what tracking remembers.
 pub struct RototoonSession(Mutex<Session>);
-
-/// Told the finished share of the work (0 to 1, never falling) and the name of the step (UTF-8, not terminated),
-/// about twenty times a second; returns 0 to go on, anything else to cancel. Null is allowed: nobody is told.
-pub type RototoonProgress =
-    Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64, step: *const u8, step_length: usize) -> i32>;
 
 impl RototoonSession {
     fn new(session: Session) -> Self {
@@ -47,22 +43,6 @@ impl RototoonSession {
     ) -> Result<(), Failure> {
         self.with(|session| change(session.scene_mut()).map_err(Failure::error))
     }
-}
-
-/// Calls `body` with the caller's callback as a Rust one.
-///
-/// # Safety `progress` is null or may be called with `user` during the call.
-pub(crate) unsafe fn with_progress<T>(
-    progress: RototoonProgress,
-    user: *mut c_void,
-    body: impl FnOnce(GoOn<'_>) -> T,
-) -> T {
-    let Some(progress) = progress else { return body(None) };
-    let mut go_on = |fraction: f64, step: &str| {
-        // SAFETY: this function's contract; the text is alive during the call.
-        unsafe { progress(user, fraction, step.as_ptr(), step.len()) == 0 }
-    };
-    body(Some(&mut go_on))
 }
 
 /// A session of a JSON document. A relative footage pattern is relative to `folder`. Pictures are read when needed.

@@ -1,8 +1,8 @@
 //! Skeleton clips, their library, and drawings that follow them.
 
+use crate::callback::{RototoonProgress, with_progress};
 use crate::entry::{clear, entry, give, text};
 use crate::handles::RototoonText;
-use crate::session_abi::{RototoonProgress, with_progress};
 use crate::status::RototoonStatus;
 use crate::style;
 use std::ffi::c_void;

@@ -1,5 +1,6 @@
 //! The ABI as a foreign caller meets it: pointers, statuses, texts.
 
+use crate::callback::RototoonProgress;
 use crate::edit;
 use crate::entry::{MAX_BYTES, entry};
 use crate::functions::{rototoon_abi_version, rototoon_header_hash, rototoon_version};
@@ -8,10 +9,10 @@ use crate::handles::{
     rototoon_track_free, rototoon_track_read,
 };
 use crate::session_abi::{
-    RototoonProgress, RototoonSession, rototoon_session_add_part, rototoon_session_curves_of,
-    rototoon_session_document, rototoon_session_free, rototoon_session_new, rototoon_session_parts,
-    rototoon_session_pin, rototoon_session_remove_part, rototoon_session_set_document, rototoon_session_set_key,
-    rototoon_session_track, rototoon_session_track_of,
+    RototoonSession, rototoon_session_add_part, rototoon_session_curves_of, rototoon_session_document,
+    rototoon_session_free, rototoon_session_new, rototoon_session_parts, rototoon_session_pin,
+    rototoon_session_remove_part, rototoon_session_set_document, rototoon_session_set_key, rototoon_session_track,
+    rototoon_session_track_of,
 };
 use crate::status::RototoonStatus::{self, BadArgument, Busy, Cancelled, Error, Ok as Fine, Panic};
 use std::ffi::c_void;

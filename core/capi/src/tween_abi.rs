@@ -1,8 +1,8 @@
 //! Drawings on key frames: matching, and drawing between them.
 
+use crate::callback::{RototoonProgress, with_progress};
 use crate::entry::{MAX_BYTES, clear, entry, free, give, handle, slice, text};
 use crate::handles::RototoonText;
-use crate::session_abi::{RototoonProgress, with_progress};
 use crate::sheet::{Drawings, RototoonInBetweens, RototoonMatches, in_betweens, matches};
 use crate::status::{Failure, RototoonStatus};
 use crate::strokes_abi::strokes;

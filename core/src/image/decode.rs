@@ -296,10 +296,7 @@ mod tests {
         );
         let lights = [Rgba([4.0f32, 0.5, f32::NAN, 1.0]), Rgba([0.25, 0.0, 0.0, 0.5]), Rgba([0.0; 4])];
         let exr = ImageBuffer::from_fn(3, 1, |x, _| lights[x as usize]);
-        near(
-            &layer("a.exr", DynamicImage::ImageRgba32F(exr)),
-            [[4.0, 0.5, 0.0, 1.0], [0.25, 0.0, 0.0, 0.5], [0.0; 4]],
-        );
+        near(&layer("a.exr", DynamicImage::ImageRgba32F(exr)), [[4.0, 0.5, 0.0, 1.0], [0.25, 0.0, 0.0, 0.5], [0.0; 4]]);
     }
 
     #[test]
