@@ -187,7 +187,11 @@ fn refiner(stage: &Stage) -> Option<Refiner> {
         picture: &stage.features[k * (stage.features.len() - 1)],
         cover: &stage.models[k].cover,
     };
-    Refiner::new([key(0), key(1)], stage.job.closed)
+    let mut refiner = Refiner::new([key(0), key(1)], stage.job.closed)?;
+    if !stage.kit.mechanisms.has(Mechanism::FigureAndGround) {
+        refiner.forget_figure();
+    }
+    Some(refiner)
 }
 
 /// Refined control points of a drawing, or the rough ones where the templates fit those no worse.

@@ -117,11 +117,20 @@ impl Mesh {
 
     /// The place as far inside a closed contour as `p` is outside; none where the part is too thin for that.
     pub fn across(&self, p: Point) -> Option<Point> {
-        let on_segment = |(a, b)| polyline::nearest_on_segment(p, a, b);
-        let nearest = (polyline::segments(&self.contour, self.closed).map(on_segment))
-            .min_by(|a, b| a.distance_squared(p).total_cmp(&b.distance_squared(p)))?;
-        let across = nearest * 2.0 - p;
+        let across = self.nearest(p)? * 2.0 - p;
         self.region(across).1.then_some(across)
+    }
+
+    /// The direction, of length 1, in which `p` lies from the contour; none for a line, and on the contour itself.
+    pub fn outward(&self, p: Point) -> Option<Point> {
+        if self.closed { (p - self.nearest(p)?).try_normalize() } else { None }
+    }
+
+    /// The nearest place on the contour.
+    fn nearest(&self, p: Point) -> Option<Point> {
+        let on_segment = |(a, b)| polyline::nearest_on_segment(p, a, b);
+        (polyline::segments(&self.contour, self.closed).map(on_segment))
+            .min_by(|a, b| a.distance_squared(p).total_cmp(&b.distance_squared(p)))
     }
 
     /// Area of the cells, an upper bound of the region's.

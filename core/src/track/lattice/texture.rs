@@ -24,7 +24,7 @@ const OTHER_GROUND: f32 = 0.015;
 /// Squared colour difference at which a colour is no longer much like another.
 const ALIKE: f32 = 0.02;
 /// Squared colour difference of a part from its ground, at the key, above which they are told apart.
-const CONTRAST: f32 = 0.02;
+pub const CONTRAST: f32 = 0.02;
 /// Weight of the shape energy beside the mean colour difference, and the shape energy beyond which it stops to count.
 const SHAPE: (f64, f64) = (0.02, 2.0);
 /// Level (index in [`LEVELS`]) whose samples measure a pose.
@@ -98,6 +98,9 @@ pub struct Texel {
     pub key: Sample,
     /// 1 inside the contour, less in the band.
     pub weight: f32,
+    /// Direction across the contour at the key, of length 1, for a sample outside a closed part: along the contour the
+    /// ground changes by itself, and says nothing of where the part is.
+    pub across: Option<[f32; 2]>,
     /// The part's colour across the contour, for a sample outside that measures a pose and differs from it.
     pub own: Option<[f32; 3]>,
     /// The cell it lies in.
@@ -142,9 +145,9 @@ impl Texture {
         Self { mesh, texels, width }
     }
 
-    /// Forgets what tells the part from its ground: every wrong colour is just wrong.
+    /// Forgets what tells the part from its ground: every wrong colour is just wrong, and pulls whichever way.
     pub fn forget_figure(&mut self) {
-        self.texels.iter_mut().flatten().for_each(|texel| texel.own = None);
+        self.texels.iter_mut().flatten().for_each(|texel| (texel.own, texel.across) = (None, None));
     }
 
     /// How badly a pose explains a picture: mean colour difference (at most [`WORST`]; [`UNSEEN`] outside the picture)
@@ -242,7 +245,8 @@ fn sample_level(mesh: &Mesh, key: &Features, cover: &Cover, width: f64, level: u
                 let products = PAIRS.map(|pair| pair.map_or(0.0, |(a, b)| weights[a] * weights[b]));
                 let sample = key.level(level).sample(p);
                 let own = if inside || level != MEASURED_LEVEL { None } else { own_colour(mesh, key, p, &sample) };
-                texels.push(Texel { binding, key: sample, weight, cell, weights, products, own });
+                let across = if inside { None } else { mesh.outward(p).map(|n| [n.x as f32, n.y as f32]) };
+                texels.push(Texel { binding, key: sample, weight, cell, weights, products, across, own });
             }
         }
     }
@@ -275,7 +279,8 @@ mod tests {
         let mut key = Sample::default();
         key[..3].copy_from_slice(&[0.9, 0.9, 0.9]);
         let (weights, products) = ([0.25; 4], [0.0625; PAIRS.len()]);
-        Texel { binding: mesh.bind(Point::new(30.0, 10.0)), key, weight: BAND_WEIGHT, own, cell: 0, weights, products }
+        let binding = mesh.bind(Point::new(30.0, 10.0));
+        Texel { binding, key, weight: BAND_WEIGHT, across: None, own, cell: 0, weights, products }
     }
 
     #[test]

@@ -84,6 +84,11 @@ impl Refiner {
         Some(Self { samples, keys: points, templates, links })
     }
 
+    /// Forgets what tells the part from its ground: every wrong colour is just wrong.
+    pub fn forget_figure(&mut self) {
+        self.templates.forget_figure();
+    }
+
     /// Refined control points, from rough ones.
     pub fn refine(&self, frame: &Frame, start: &[Point]) -> Vec<Point> {
         let mut points = start.to_vec();

@@ -1,17 +1,23 @@
 //! How badly a sample's templates fit at each displacement of a window.
 //!
-//! C_k = Σ w r / (r + σ²) / Σ w over the template's offsets, r the squared colour difference; an offset under a nearer
-//! part costs a constant; C = min over the keys that show enough of the sample's inside.
+//! C_k = Σ w c / Σ w over the template's offsets, c = r / (r + σ²), r the squared colour difference; C = min over the keys
+//! that show enough of the sample's inside. An offset under a nearer part costs a constant. Outside the part the ground may
+//! have changed since the key: any other colour costs a little at the most, but the part's own colour as much as it is
+//! like it (1 − c of the difference from that), since a contour that has slid inwards shows just that.
 
 use super::Frame;
 use super::template::{HALF, LEVEL, Template, offsets};
 use crate::geometry::Point;
 use crate::numeric::vector::vectorised;
+use crate::scene::Colour;
+use crate::track::lattice::texture::difference;
 
 /// σ² of the robust colour difference (three channels of 0 to 1).
 const TOLERANCE: f32 = 0.06;
 /// Cost of an offset that a nearer part hides.
 const HIDDEN: f32 = 0.35;
+/// Cost, at the most, of an offset outside the part whose ground has changed and is not like the part.
+const OTHER_GROUND: f32 = 0.15;
 /// Share of a sample's inside that a key must show.
 const SHOWN: f64 = 0.35;
 
@@ -96,25 +102,48 @@ fn seen(frame: &Frame, window: &Window, (place, tangent): (Point, Point), paddin
 #[inline(always)]
 fn add_costs(template: &Template, seen: &Seen, sums: &mut [[f32; LANES]], lanes: usize) {
     let cells = offsets(0).flat_map(|a| offsets(1).map(move |b| (a, b)));
-    for ((a, b), (key, weight)) in cells.zip(&template.cells) {
+    for ((a, b), cell) in cells.zip(&template.cells) {
         let corner = (a + HALF[0]) as usize * seen.stride + (b + HALF[1]) as usize;
-        for (u, row) in sums.chunks_exact_mut(lanes).enumerate() {
-            let from = corner + u * seen.stride;
-            for (group, sums) in row.iter_mut().enumerate() {
-                let from = from + group * LANES;
-                let read = |plane: &[f32]| -> [f32; LANES] { std::array::from_fn(|v| plane[from..from + LANES][v]) };
-                let [r, g, b] = seen.colours.each_ref().map(|plane| read(plane));
-                let hidden = read(&seen.hidden);
-                let cost: [f32; LANES] = std::array::from_fn(|v| {
-                    let (dr, dg, db) = (r[v] - key[0], g[v] - key[1], b[v] - key[2]);
-                    let square = dr * dr + dg * dg + db * db;
-                    let cost = square / (square + TOLERANCE);
-                    weight * (cost + hidden[v] * (HIDDEN - cost))
-                });
-                for (sum, cost) in sums.iter_mut().zip(cost) {
-                    *sum += cost;
-                }
+        match &cell.own {
+            None => add_cell(seen, corner, cell.weight, sums, lanes, |colour| wrong(colour, &cell.colour)),
+            Some(own) => add_cell(seen, corner, cell.weight, sums, lanes, |colour| {
+                wrong(colour, &cell.colour).min(OTHER_GROUND.max(1.0 - wrong(colour, own)))
+            }),
+        }
+    }
+}
+
+/// Adds the weighted cost of one offset at all displacements; `corner` is the place in the planes at the first of them.
+#[inline(always)]
+fn add_cell(
+    seen: &Seen,
+    corner: usize,
+    weight: f32,
+    sums: &mut [[f32; LANES]],
+    lanes: usize,
+    cost: impl Fn(Colour) -> f32,
+) {
+    for (u, row) in sums.chunks_exact_mut(lanes).enumerate() {
+        let from = corner + u * seen.stride;
+        for (group, sums) in row.iter_mut().enumerate() {
+            let from = from + group * LANES;
+            let read = |plane: &[f32]| -> [f32; LANES] { std::array::from_fn(|v| plane[from..from + LANES][v]) };
+            let [r, g, b] = seen.colours.each_ref().map(|plane| read(plane));
+            let hidden = read(&seen.hidden);
+            let cost: [f32; LANES] = std::array::from_fn(|v| {
+                let cost = cost([r[v], g[v], b[v]]);
+                weight * (cost + hidden[v] * (HIDDEN - cost))
+            });
+            for (sum, cost) in sums.iter_mut().zip(cost) {
+                *sum += cost;
             }
         }
     }
+}
+
+/// Robust difference of two colours, 0 to 1.
+#[inline(always)]
+fn wrong(a: Colour, b: &Colour) -> f32 {
+    let square = difference(&a, b);
+    square / (square + TOLERANCE)
 }

@@ -33,7 +33,9 @@ fn placed(degrees: f64, to: Point) -> Vec<Point> {
     boot().into_iter().map(|p| turn.rotate(p - Point::new(40.0, 50.0)) + to).collect()
 }
 
-fn drawn(contour: &[Point]) -> Features {
+const WALL: Colour = [0.8, 0.9, 0.95];
+
+fn drawn(contour: &[Point], ground: Colour) -> Features {
     let (low, high) = polygon::bounds(contour).unwrap();
     let colour = |p: Point| -> Colour {
         let near = p.x > low.x - 4.0 && p.y > low.y - 4.0 && p.x < high.x + 4.0 && p.y < high.y + 4.0;
@@ -42,7 +44,7 @@ fn drawn(contour: &[Point]) -> Features {
         } else if near && polygon::contains(contour, p) {
             [0.6, 0.35, 0.2]
         } else {
-            [0.8, 0.9, 0.95]
+            ground
         }
     };
     Features::new(&Raster::from_fn(LINES, LINES, |x, y| colour(Point::new(x as f64 + 0.5, y as f64 + 0.5))))
@@ -52,10 +54,10 @@ fn drawn(contour: &[Point]) -> Features {
 fn a_rough_contour_comes_back_to_the_ink() {
     let keys = [placed(0.0, Point::new(150.0, 200.0)), placed(40.0, Point::new(330.0, 260.0))];
     let middle = placed(20.0, Point::new(250.0, 240.0));
-    let (pictures, cover) = ([drawn(&keys[0]), drawn(&keys[1])], Cover::none(LINES as f64));
+    let (pictures, cover) = ([drawn(&keys[0], WALL), drawn(&keys[1], WALL)], Cover::none(LINES as f64));
     let key = |k: usize| Key { points: &keys[k], picture: &pictures[k], cover: &cover };
     let refiner = Refiner::new([key(0), key(1)], true).unwrap();
-    let picture = drawn(&middle);
+    let picture = drawn(&middle, WALL);
     let frame = |pins| Frame { picture: &picture, cover: &cover, share: 0.5, pins };
     let wobble = |j: usize| Point::new((1.7 * j as f64).sin(), (2.9 * j as f64).cos()) * 1.5;
     let rough: Vec<Point> =
@@ -71,6 +73,30 @@ fn a_rough_contour_comes_back_to_the_ink() {
     let pin = middle[5] + Point::new(9.0, -4.0);
     let pinned = refiner.refine(&frame(BTreeMap::from([(5, pin)])), &rough);
     assert!(pinned[5].distance(pin) < 0.05);
+}
+
+#[test]
+fn another_ground_costs_little_and_the_part_s_own_colour_outside_much() {
+    let at = |x: f64| placed(0.0, Point::new(x, 200.0));
+    let keys = [at(150.0), at(330.0)];
+    let (pictures, cover) = (keys.each_ref().map(|key| drawn(key, WALL)), Cover::none(LINES as f64));
+    let refiner = || {
+        let key = |k: usize| Key { points: &keys[k], picture: &pictures[k], cover: &cover };
+        Refiner::new([key(0), key(1)], true).unwrap()
+    };
+    let (mut plain, refiner) = (refiner(), refiner());
+    plain.forget_figure();
+    let picture = drawn(&at(240.0), [0.1, 0.5, 0.3]);
+    let frame = Frame { picture: &picture, cover: &cover, share: 0.5, pins: BTreeMap::new() };
+    let (right, inwards) = (at(240.0), {
+        let middle = at(240.0).iter().sum::<Point>() / 12.0;
+        at(240.0).iter().map(|&p| p + (middle - p) * 0.2).collect::<Vec<_>>()
+    });
+    let costs = |refiner: &Refiner| [&right, &inwards].map(|points| refiner.cost(&frame, points));
+    let ([right, inwards], [right_plain, inwards_plain]) = (costs(&refiner), costs(&plain));
+    assert!(right < 0.7 * right_plain, "{right} for {right_plain}");
+    let (told, told_plain) = (inwards - right, inwards_plain - right_plain);
+    assert!(told > 1.3 * told_plain, "{told} for {told_plain}");
 }
 
 #[test]
