@@ -21,7 +21,7 @@ pub enum Mechanism {
     Joints,
     /// Parts are soft where the keys bend them.
     Stiffness,
-    /// Samples outside the part cost little where the ground has changed.
+    /// Samples outside the part cost little where the ground has changed, and move it across its contour only.
     FigureAndGround,
     /// Both keys' poses are mixed where they agree.
     Blending,
