@@ -75,7 +75,7 @@ pub fn decode(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<Co
 }
 
 /// The picture in a file with its transparency: light, not cut, multiplied by alpha, and alpha. What is not a number is
-/// 0. Errors as with [`decode`].
+/// 0, what is infinite the largest number there is. Errors as with [`decode`].
 pub fn decode_layer(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<[f32; 4]>, DecodeError> {
     decoded(path, expected, layer)
 }
@@ -147,7 +147,7 @@ fn colours(picture: DynamicImage, multiplied: bool) -> Vec<Colour> {
 /// The pixels as light multiplied by alpha, and alpha.
 fn layer(picture: DynamicImage, multiplied: bool) -> Vec<[f32; 4]> {
     let light = matches!(picture, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
-    let number = |v: f32| if v.is_nan() { 0.0 } else { v };
+    let number = |v: f32| if v.is_nan() { 0.0 } else { v.clamp(f32::MIN, f32::MAX) };
     let pixel = |pixel: [f32; 4]| {
         let [r, g, b, alpha] = pixel.map(number);
         let alpha = alpha.clamp(0.0, 1.0);
