@@ -108,9 +108,12 @@ def draw_in_betweens(
     ``"ease_out"``, ``"ease_in_out"``, ``"cosine"``, ``"bounce"``, ``"constant"``, ``{"curve": [[time, share], ...]}`` or a
     list of shares, one a frame); `corners`, drawings at which velocities do not join; `arcs` (0 to 1), `rigid`, `contacts`,
     `rest`; `leaving` (``"grow"``, ``"fade"``, ``{"leave": [width, height]}``); `pegs` as documents hold them, with `hung`,
-    by stroke the name of its peg or `None`; and those of `match_strokes`. Without pegs these are found.
+    by stroke the name of its peg or `None`; `captured`, a list of ``{"closed": bool, "first": frame, "contours": [...]}``,
+    contours whose movement is known, the points on each frame from the first on: strokes that lie on them follow them; and
+    those of `match_strokes`. Without pegs these are found.
 
-    A span depends on the drawings at its ends and, where its spacing is smooth, on the ones beside them.
+    A span depends on the drawings at its ends, on what was captured between them and, where its spacing is smooth, on the
+    drawings beside them.
     """
     asked = [{"key": int(key), "frames": [int(frame) for frame in frames]} for key, frames in spans]
     if drawings.frames is None:

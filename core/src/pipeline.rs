@@ -12,7 +12,7 @@ mod tween;
 pub use check::{check, drawing_problems};
 pub use reshape::{ReshapeJob, Reshaped, reshape};
 pub use style::{CapturedClip, ClipJob, clip, translate};
-pub use tween::{pegs_of, spacing_of, tween};
+pub use tween::{captured, pegs_of, spacing_of, tween};
 
 use crate::export::{self, SvgOptions, svg};
 use crate::fit::{self, FitError};

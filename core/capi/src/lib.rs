@@ -35,7 +35,8 @@
 // Stated once, above.
 #![allow(clippy::missing_safety_doc)]
 
-pub mod callback;
+pub mod asked;
+mod callback;
 pub mod edit;
 pub mod entry;
 pub mod functions;

@@ -1,5 +1,6 @@
 //! Drawings on key frames as flat arrays, matched and drawn between: what comes in and what goes out.
 
+use crate::asked::Asked;
 use crate::status::Failure;
 use crate::strokes::Strokes;
 use crate::work::{GoOn, run};
@@ -7,10 +8,8 @@ use rototoon::pipeline::spans::{Drawn, DrawnSpan, Sheet, Wanted};
 use rototoon::pipeline::{PipelineError, pegs_of, spacing_of};
 use rototoon::scene::Progress;
 use rototoon::tween::Stroke;
-use rototoon::tween::between::{GivenPegs, Key, Leaving, Options};
-use rototoon::tween::matching::{HandPair, InPieces, Matching, Options as MatchingOptions};
-use serde::Deserialize;
-use serde_json::Value;
+use rototoon::tween::between::{GivenPegs, Key};
+use rototoon::tween::matching::{HandPair, InPieces, Matching};
 use std::ops::Range;
 
 /// Strokes of several drawings, one drawing after the other, and what is decided of them.
@@ -80,85 +79,6 @@ pub mod kind {
 const REVERSED: i32 = 1;
 const BY_HAND: i32 = 2;
 
-/// What is asked, as JSON.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct Asked {
-    max_cost: f64,
-    max_turn: f64,
-    max_scale: f64,
-    threads: usize,
-    arcs: f64,
-    rigid: bool,
-    contacts: bool,
-    rest: bool,
-    leaving: AskedLeaving,
-    spacing: Vec<Value>,
-    corners: Vec<usize>,
-    spans: Vec<AskedSpan>,
-    pegs: Vec<Value>,
-    hung: Vec<Option<String>>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum AskedLeaving {
-    Grow,
-    Fade,
-    Leave([f64; 2]),
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct AskedSpan {
-    key: usize,
-    frames: Vec<i32>,
-}
-
-impl Default for Asked {
-    fn default() -> Self {
-        let (matching, between) = (MatchingOptions::default(), Options::default());
-        Self {
-            max_cost: matching.max_cost,
-            max_turn: matching.max_turn,
-            max_scale: matching.max_scale,
-            threads: 0,
-            arcs: between.arcs,
-            rigid: between.rigid,
-            contacts: between.contacts,
-            rest: between.rest,
-            leaving: AskedLeaving::Grow,
-            spacing: Vec::new(),
-            corners: Vec::new(),
-            spans: Vec::new(),
-            pegs: Vec::new(),
-            hung: Vec::new(),
-        }
-    }
-}
-
-impl Asked {
-    fn parse(json: &str) -> Result<Self, Failure> {
-        match json {
-            "" => Ok(Self::default()),
-            _ => serde_json::from_str(json).map_err(|error| Failure::Error(format!("options: {error}"))),
-        }
-    }
-
-    fn matching(&self) -> MatchingOptions {
-        MatchingOptions { max_cost: self.max_cost, max_turn: self.max_turn, max_scale: self.max_scale }
-    }
-
-    fn between(&self) -> Options {
-        let leaving = match self.leaving {
-            AskedLeaving::Grow => Leaving::Grow,
-            AskedLeaving::Fade => Leaving::Fade,
-            AskedLeaving::Leave(size) => Leaving::Leave { size: size.into() },
-        };
-        Options { arcs: self.arcs, rigid: self.rigid, contacts: self.contacts, leaving, rest: self.rest }
-    }
-}
-
 impl Drawings<'_> {
     /// The strokes of each drawing as a range of all; an error where the arrays do not belong together.
     fn checked(&self) -> Result<Vec<Range<usize>>, Failure> {
@@ -214,6 +134,7 @@ impl Drawings<'_> {
             self.decide(&mut sheet, ranges, k, pair)?;
         }
         sheet.pegs = self.pegs(asked, ranges)?;
+        sheet.captured = asked.captured()?;
         Ok(sheet)
     }
 

@@ -21,6 +21,10 @@ pub fn command() -> Command {
         PossibleValue::new("rest").help("Everything rests before the first and after the last drawing"),
         PossibleValue::new("move").help("Everything moves on with constant speed"),
     ]);
+    let captured = PossibleValuesParser::new([
+        PossibleValue::new("follow").help("Strokes move as the tracked parts that they lie on"),
+        PossibleValue::new("ignore").help("Only what the drawings say counts"),
+    ]);
     Command::new("tween")
         .about("Matches the strokes of drawings on key frames and makes the drawings between them")
         .arg(arguments::project())
@@ -45,6 +49,13 @@ pub fn command() -> Command {
                 .value_parser(leaving),
         )
         .arg(Arg::new("ends").long("ends").help("How movements begin and end").default_value("rest").value_parser(ends))
+        .arg(
+            Arg::new("captured")
+                .long("captured")
+                .help("What tracked parts of the document mean to its drawings")
+                .default_value("follow")
+                .value_parser(captured),
+        )
         .args(arguments::of_stage(Stage::Run))
 }
 
@@ -61,8 +72,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     };
     let arcs = given.get_one::<f64>("arcs").copied().unwrap_or(Options::default().arcs);
     let options = Options { arcs, leaving, rest: arguments::choice(given, "ends") == "rest", ..Options::default() };
+    let follow = arguments::choice(given, "captured") == "follow";
     let document = progress::run(arguments::threads(given), |bar| {
-        pipeline::tween(&mut document, &options, bar).map_err(|error| match error {
+        pipeline::tween(&mut document, &options, follow, bar).map_err(|error| match error {
             pipeline::PipelineError::Tween(reason) => Failure::Other(format!("{}: {reason}", from.display())),
             other => other.into(),
         })?;

@@ -57,6 +57,31 @@ fn in_betweens_and_matches_are_written() {
 }
 
 #[test]
+fn strokes_follow_the_tracked_parts_that_they_lie_on() {
+    // A square that goes out and comes back; the drawings have it, and a line that is no part.
+    let at = |x: f64| json!([[x, 20.0], [x + 30.0, 20.0], [x + 30.0, 50.0], [x, 50.0]]);
+    let tracks = json!({"2": at(100.0), "3": at(125.0), "4": at(140.0), "5": at(125.0), "6": at(102.0)});
+    let keys = json!({"2": at(100.0), "6": at(102.0)});
+    let part = json!({"name": "box", "closed": true, "keys": keys, "tracks": tracks});
+    let drawings = json!([
+        {"frame": 2, "spacing": "linear", "strokes": [square(100.0, 20.0, 30.0), line(10.0)]},
+        {"frame": 6, "strokes": [square(102.0, 20.0, 30.0), line(30.0)]},
+    ]);
+    let (folder, path) = project(json!({"drawings": drawings, "parts": [part]}));
+    let corner = |more: &[&str]| {
+        let out = folder.path().join("out.json");
+        let output = tween(&path, &out, more);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let written: Value = serde_json::from_str(&fs::read_to_string(&out).unwrap()).unwrap();
+        let half = written["in_betweens"][1]["strokes"].clone();
+        assert_eq!(half[1]["points"][2], json!([50.0, 60.0]), "the line goes its own way");
+        half[0]["points"][0].clone()
+    };
+    assert_eq!(corner(&[]), json!([140.0, 20.0]));
+    assert_eq!(corner(&["--captured", "ignore"]), json!([101.0, 20.0]));
+}
+
+#[test]
 fn pairs_made_by_hand_and_pegs_are_respected() {
     let mut fields = two_drawings();
     fields["pairs"] = json!([{"frame": 2, "from": 1, "to": null}]);

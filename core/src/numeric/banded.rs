@@ -135,7 +135,7 @@ fn take<const N: usize>(target: &mut [f64], rows: [&[f64]; N]) {
         let mut sum = [0.0; LANES];
         for (factor, row) in factors.iter().zip(rows) {
             for (total, u) in sum.iter_mut().zip(row[g]) {
-                *total += factor * u;
+                *total = factor.mul_add(u, *total);
             }
         }
         for (value, total) in group.iter_mut().zip(sum) {
@@ -169,7 +169,7 @@ impl BandCholesky {
             b[i] /= row[0];
             let value = b[i];
             for (x, u) in b[i + 1..].iter_mut().zip(&row[1..]) {
-                *x -= u * value;
+                *x = (-u).mul_add(value, *x);
             }
         }
         for i in (0..size).rev() {

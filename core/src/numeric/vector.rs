@@ -1,8 +1,10 @@
 //! Lets a hot loop use the vector instructions of the machine it runs on.
 //!
 //! The program is compiled for every machine of its kind, so a loop is vectorised with the few instructions that all of
-//! them have. Here it is compiled once more for those that have more (AVX2), and the right one is chosen when it
-//! runs. Results do not change: no instruction rounds otherwise, and no sum is reordered.
+//! them have. Here it is compiled once more for those that have more (AVX2, FMA), and the right one is chosen when it
+//! runs. Results do not change: no instruction rounds otherwise, and no sum is reordered. Hot loops say `mul_add` where one
+//! rounding of a product and a sum is meant; it is one instruction here, and a call on machines without FMA, which makes the
+//! same of it slowly. Outside of [`vectorised`] it should not be used.
 
 /// Runs `work`, compiled for this machine. It gains only if `work` and what it calls are marked `#[inline(always)]`.
 #[inline(always)]

@@ -7,11 +7,12 @@
 use super::PipelineError;
 use crate::scene::{Cancelled, FrameNumber, Progress, Silent};
 use crate::tween::Stroke;
-use crate::tween::between::{GivenPegs, InBetween, Key, Options, Sequence, Spacing};
+use crate::tween::between::{Captured, GivenPegs, InBetween, Key, Options, Sequence, Spacing};
 use crate::tween::matching::{HandPair, Matching, Options as MatchingOptions, match_strokes};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Drawings and what is decided of them.
@@ -25,6 +26,8 @@ pub struct Sheet {
     pub alone: Vec<Vec<usize>>,
     /// Pegs that are given.
     pub pegs: GivenPegs,
+    /// Captured parts that strokes follow.
+    pub captured: Arc<[Captured]>,
 }
 
 /// A span to be drawn.
@@ -152,7 +155,8 @@ impl Sheet {
         let of = range.clone().filter_map(|k| self.pegs.of.get(k).cloned()).collect();
         let pegs = GivenPegs { tree: self.pegs.tree.clone(), of };
         let sequence = Sequence::of_span(self.keys[range].to_vec(), &own, &pegs, options, base)
-            .map_err(|error| PipelineError::Tween(error.to_string()))?;
+            .map_err(|error| PipelineError::Tween(error.to_string()))?
+            .following(self.captured.clone());
         let (from, to) = (&self.keys[wanted.key], &self.keys[wanted.key + 1]);
         if let Some(found) = wanted.frames.iter().find(|&&frame| frame <= from.frame || frame >= to.frame) {
             let text = format!("found frame {found}, expected one between {} and {}", from.frame, to.frame);

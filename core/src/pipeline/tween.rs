@@ -6,17 +6,23 @@ use crate::project::drawings::{
     Drawing, Drawings, DrawnBetween, DrawnPeg, DrawnStroke, WrittenTiming, drawing_place, peg_key_place, peg_place,
     read_pegs, read_timing,
 };
-use crate::scene::Progress;
+use crate::scene::{Part, Progress, Scene};
 use crate::tween::Stroke;
-use crate::tween::between::{GivenPegs, InBetween, Key, Options, Sequence, Spacing};
+use crate::tween::between::{Captured, GivenPegs, InBetween, Key, Options, Sequence, Spacing};
 use crate::tween::matching::{HandPair, InPieces, Matching, Options as MatchingOptions, match_strokes};
 use crate::tween::peg::{Peg, PegKey, PegTree, Timing};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::{Value, json};
+use std::sync::Arc;
 
-/// Matches the strokes of a document's drawings and puts the drawings between them into it. Runs on the caller's rayon
-/// pool; the result does not depend on it.
-pub fn tween(document: &mut Document, options: &Options, progress: &dyn Progress) -> Result<(), PipelineError> {
+/// Matches the strokes of a document's drawings and puts the drawings between them into it. Strokes follow the document's
+/// tracked parts that they lie on if `follow` says so. Runs on the caller's rayon pool; the result does not depend on it.
+pub fn tween(
+    document: &mut Document,
+    options: &Options,
+    follow: bool,
+    progress: &dyn Progress,
+) -> Result<(), PipelineError> {
     let wrong = |error: &dyn std::fmt::Display| PipelineError::Tween(error.to_string());
     let read = document.drawings().map_err(|e| wrong(&e))?;
     if read.drawings.len() < 2 {
@@ -37,7 +43,10 @@ pub fn tween(document: &mut Document, options: &Options, progress: &dyn Progress
     progress.report("drawing in-betweens", 0.8)?;
     let matches = keys.windows(2).zip(&matchings).map(|(pair, m)| written(pair[0].frame, pair[1].frame, m)).collect();
     let frames: Vec<i32> = keys.windows(2).flat_map(|pair| pair[0].frame + 1..pair[1].frame).collect();
-    let sequence = Sequence::new(keys, &matchings, &pegs, options).map_err(|e| wrong(&e))?;
+    let mut sequence = Sequence::new(keys, &matchings, &pegs, options).map_err(|e| wrong(&e))?;
+    if follow {
+        sequence = sequence.following(captured(&document.scene));
+    }
     let drawn: Vec<DrawnBetween> = frames
         .par_iter()
         .map(|&frame| DrawnBetween { frame, strokes: sequence.at(frame).into_iter().map(stroke_of).collect() })
@@ -45,6 +54,12 @@ pub fn tween(document: &mut Document, options: &Options, progress: &dyn Progress
     progress.report("drawing in-betweens", 1.0)?;
     document.set_in_betweens(matches, &drawn);
     Ok(())
+}
+
+/// The tracked parts of a scene, for drawings to follow.
+pub fn captured(scene: &Scene) -> Arc<[Captured]> {
+    let part = |part: &Part| Captured { closed: part.closed, contours: part.tracks.clone() };
+    scene.parts.iter().map(part).collect()
 }
 
 fn key(drawing: &Drawing, k: usize) -> Result<Key, PipelineError> {

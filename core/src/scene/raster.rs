@@ -23,6 +23,7 @@ impl<T: Copy> Raster<T> {
     }
 
     /// `value(x, y)` at each pixel.
+    #[inline(always)]
     pub fn from_fn(width: usize, height: usize, mut value: impl FnMut(usize, usize) -> T) -> Self {
         let mut data = Vec::with_capacity(width * height);
         for y in 0..height {
@@ -44,6 +45,7 @@ impl<T: Copy> Raster<T> {
     }
 
     /// The pixel in column `x` of row `y`. Panics outside.
+    #[inline(always)]
     pub fn get(&self, x: usize, y: usize) -> T {
         debug_assert!(x < self.width);
         self.data[y * self.width + x]
@@ -56,6 +58,7 @@ impl<T: Copy> Raster<T> {
     }
 
     /// The pixel nearest to (`x`, `y`) that lies in the picture. Panics where the picture is empty.
+    #[inline(always)]
     pub fn clamped(&self, x: isize, y: isize) -> T {
         let x = x.clamp(0, self.width as isize - 1) as usize;
         let y = y.clamp(0, self.height as isize - 1) as usize;
@@ -63,6 +66,7 @@ impl<T: Copy> Raster<T> {
     }
 
     /// Row `y`.
+    #[inline(always)]
     pub fn row(&self, y: usize) -> &[T] {
         &self.data[y * self.width..(y + 1) * self.width]
     }

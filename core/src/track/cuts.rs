@@ -7,9 +7,9 @@
 //!
 //! Limits: a whip pan or a flash looks like a cut; two shots before one plain background do not.
 
-use super::features::{Features, Level};
+use super::features::{Features, Level, Padded, difference};
 use crate::geometry::Point;
-use crate::scene::Colour;
+use crate::numeric::vector::vectorised;
 
 /// Level (index in `LEVELS`) that is compared.
 const LEVEL: usize = 0;
@@ -33,21 +33,20 @@ fn changed(from: &Level, to: &Level) -> f64 {
     let alike = |x: usize, y: usize| {
         let colour = seen[y * width + x];
         let around = |at: usize, most: usize| at.saturating_sub(REACH as usize)..(at + REACH as usize + 1).min(most);
-        around(y, height).any(|v| {
-            around(x, width).any(|u| {
-                let other = known[v * width + u];
-                (0..3).map(|k| (colour[k] - other[k]) * (colour[k] - other[k])).sum::<f32>() <= ALIKE
-            })
-        })
+        around(y, height).any(|v| around(x, width).any(|u| difference(colour, known[v * width + u]) <= ALIKE))
     };
     let missed = (0..height).map(|y| (0..width).filter(|&x| !alike(x, y)).count()).sum::<usize>();
     missed as f64 / (width * height).max(1) as f64
 }
 
-fn colours(level: &Level) -> Vec<Colour> {
+fn colours(level: &Level) -> Vec<Padded> {
     let (width, height) = level.dimensions();
     let center = |x: usize, y: usize| Point::new(x as f64 + 0.5, y as f64 + 0.5) * level.pixel();
-    (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| level.colour(center(x, y))).collect()
+    let all = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    vectorised(
+        #[inline(always)]
+        || all.map(|(x, y)| level.colour(center(x, y))).collect(),
+    )
 }
 
 #[cfg(test)]

@@ -19,14 +19,20 @@ pub const WORKING_LINES: f64 = 540.0;
 /// Working pixels in a pixel of each level, from coarse to fine.
 pub const LEVELS: [usize; 3] = [8, 4, 2];
 
-/// Three colours, their derivatives along x, and along y (per working pixel once read), each with a zero behind: groups
-/// of four fill the processor's vectors.
-pub type Sample = [f32; 12];
+/// Three values of a colour, and a zero behind them: four are worked on at once.
+pub type Padded = glam::Vec4;
 
-/// Where the groups of a [`Sample`] begin.
-pub const SLOPE_X: usize = 4;
-/// See [`SLOPE_X`].
-pub const SLOPE_Y: usize = 8;
+/// What is read at a place.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Colour.
+    pub colour: Padded,
+    /// Its derivatives along x and y, per working pixel.
+    pub slopes: [Padded; 2],
+}
+
+/// Colour and both slopes of a pixel, each with a zero behind.
+type Pixel = [i16; 12];
 
 const UNIT: f32 = 32767.0;
 
@@ -40,7 +46,7 @@ pub fn working_scale(height: usize) -> f64 {
 pub struct Level {
     /// Working pixels in a pixel, across and down: the last row and column reach over the picture's edge.
     size: f64,
-    raster: Raster<[i16; 12]>,
+    raster: Raster<Pixel>,
 }
 
 /// The pyramid of a picture.
@@ -75,33 +81,34 @@ impl Features {
 impl Level {
     fn new(colours: &Raster<Colour>, size: f64) -> Self {
         let (width, height) = (colours.width(), colours.height());
-        let mut data = Vec::with_capacity(width * height);
-        for y in 0..height {
-            let rows = [y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| colours.row(y));
-            vectorised(
-                #[inline(always)]
-                || data.extend((0..width).map(|x| quantised(&rows, [x.saturating_sub(1), x, (x + 1).min(width - 1)]))),
-            );
-        }
-        let raster = Raster::from_vec(width, height, data).unwrap_or_else(|| Raster::new(0, 0, [0; 12]));
+        let lines: Vec<Vec<f32>> = (0..height).map(|y| bordered(colours.row(y))).collect();
+        let mut raster = Raster::new(width, height, [0; 12]);
+        vectorised(
+            #[inline(always)]
+            || {
+                let mut planes = [(); 3].map(|()| vec![0i16; 3 * width]);
+                for y in 0..height {
+                    let near = [y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| &lines[y][..]);
+                    quantise(near, &mut planes);
+                    interleave(&planes, raster.row_mut(y));
+                }
+            },
+        );
         Self { size, raster }
     }
 
     /// Bilinear reading at `p` in working pixels; outside the picture the nearest edge is read.
     #[inline(always)]
     pub fn sample(&self, p: Point) -> Sample {
-        let ([a, b, c, d], [wa, wb, wc, wd]) = self.around(p);
-        let unit = 1.0 / UNIT;
-        let slope = unit / self.size as f32;
-        let mixed: Sample = std::array::from_fn(|k| {
-            wa * f32::from(a[k]) + wb * f32::from(b[k]) + wc * f32::from(c[k]) + wd * f32::from(d[k])
-        });
-        std::array::from_fn(|k| mixed[k] * if k < SLOPE_X { unit } else { slope })
+        let (corners, weights) = self.around(p);
+        let slope = weights.map(|w| w * (1.0 / (UNIT * self.size as f32)));
+        let slopes = [1, 2].map(|group| mixed(&corners, &slope, group));
+        Sample { colour: mixed(&corners, &weights.map(|w| w * (1.0 / UNIT)), 0), slopes }
     }
 
     /// The four pixels around `p` and their bilinear weights.
     #[inline(always)]
-    fn around(&self, p: Point) -> ([&[i16; 12]; 4], [f32; 4]) {
+    fn around(&self, p: Point) -> ([&Pixel; 4], [f32; 4]) {
         let (width, height) = (self.raster.width(), self.raster.height());
         // The size is a power of two: to multiply by its inverse is to divide.
         let inverse = 1.0 / self.size;
@@ -119,12 +126,9 @@ impl Level {
 
     /// Colour at `p` in working pixels, as [`Level::sample`] reads it.
     #[inline(always)]
-    pub fn colour(&self, p: Point) -> Colour {
-        let ([a, b, c, d], [wa, wb, wc, wd]) = self.around(p);
-        std::array::from_fn(|k| {
-            let mixed = wa * f32::from(a[k]) + wb * f32::from(b[k]) + wc * f32::from(c[k]) + wd * f32::from(d[k]);
-            mixed * (1.0 / UNIT)
-        })
+    pub fn colour(&self, p: Point) -> Padded {
+        let (corners, weights) = self.around(p);
+        mixed(&corners, &weights.map(|w| w * (1.0 / UNIT)), 0)
     }
 
     /// Working pixels in a pixel of this level.
@@ -142,9 +146,8 @@ impl Level {
         if self.dimensions() != other.dimensions() {
             return f32::INFINITY;
         }
-        let change = |(a, b): (&[i16; 12], &[i16; 12])| {
-            (0..3).map(|k| (i32::from(a[k]) - i32::from(b[k])).abs()).max().unwrap_or(0)
-        };
+        let change =
+            |(a, b): (&Pixel, &Pixel)| (0..3).map(|k| (i32::from(a[k]) - i32::from(b[k])).abs()).max().unwrap_or(0);
         let largest = self.raster.data().iter().zip(other.raster.data()).map(change).max();
         largest.unwrap_or(0) as f32 / UNIT
     }
@@ -155,31 +158,61 @@ impl Level {
     }
 }
 
-/// Colour and slopes of the middle one of nine pixels.
+/// A group of four values of the pixels around a place, in their bilinear mixture.
 #[inline(always)]
-fn quantised(rows: &[&[Colour]; 3], columns: [usize; 3]) -> [i16; 12] {
-    let near = rows.map(|row| columns.map(|x| row[x]));
-    std::array::from_fn(|k| {
-        if k % 4 == 3 {
-            return 0;
-        }
-        let value = |i: usize, j: usize| near[j][i][k % 4];
-        let read = match k / 4 {
-            0 => value(1, 1),
-            1 => scharr(value),
-            _ => scharr(|along, across| value(across, along)),
-        };
-        // Rounded half away from zero; `round` itself would be a call for each value.
-        let scaled = read * UNIT;
-        (scaled + 0.5f32.copysign(scaled)) as i16
-    })
+fn mixed(corners: &[&Pixel; 4], weights: &[f32; 4], group: usize) -> Padded {
+    let value = |corner: usize| Padded::from_array(corners[corner].as_chunks::<4>().0[group].map(f32::from));
+    let [a, b, c, d] = [0, 1, 2, 3].map(|corner| value(corner) * weights[corner]);
+    (a + b) + (c + d)
 }
 
-/// Scharr's derivative along the first index of a 3×3 neighbourhood.
+/// Sum of the four values.
 #[inline(always)]
-fn scharr(value: impl Fn(usize, usize) -> f32) -> f32 {
-    let side = |along: usize| 3.0 * value(along, 0) + 10.0 * value(along, 1) + 3.0 * value(along, 2);
-    (side(2) - side(0)) / 32.0
+pub fn total(values: Padded) -> f32 {
+    (values.x + values.y) + (values.z + values.w)
+}
+
+/// Squared difference of two colours.
+#[inline(always)]
+pub fn difference(a: Padded, b: Padded) -> f32 {
+    total((a - b) * (a - b))
+}
+
+/// The values of a row of pixels, its first and last pixel twice.
+fn bordered(row: &[Colour]) -> Vec<f32> {
+    let (first, last) = (row.first().copied().unwrap_or_default(), row.last().copied().unwrap_or_default());
+    [&[first], row, &[last]].concat().into_flattened()
+}
+
+/// Colours and slopes (Scharr's) of the middle one of three bordered rows, value by value.
+#[inline(always)]
+fn quantise([above, here, below]: [&[f32]; 3], [colours, along, down]: &mut [Vec<i16>; 3]) {
+    let count = colours.len();
+    let [above, here, below] = [above, here, below].map(|row| &row[..count + 6]);
+    let (along, down) = (&mut along[..count], &mut down[..count]);
+    for (i, colour) in colours.iter_mut().enumerate() {
+        let column = |i: usize| 3.0 * above[i] + 10.0 * here[i] + 3.0 * below[i];
+        let across = |row: &[f32]| 3.0 * row[i] + 10.0 * row[i + 3] + 3.0 * row[i + 6];
+        *colour = fraction(here[i + 3]);
+        along[i] = fraction((column(i + 6) - column(i)) / 32.0);
+        down[i] = fraction((across(below) - across(above)) / 32.0);
+    }
+}
+
+/// Rounded half away from zero; `round` itself would be a call for each value.
+#[inline(always)]
+fn fraction(value: f32) -> i16 {
+    let scaled = value * UNIT;
+    (scaled + 0.5f32.copysign(scaled)) as i16
+}
+
+/// The pixels of a row from their values.
+#[inline(always)]
+fn interleave(planes: &[Vec<i16>; 3], pixels: &mut [Pixel]) {
+    let [colours, along, down] = planes.each_ref().map(|plane| plane.as_chunks::<3>().0);
+    for (pixel, ((c, x), y)) in pixels.iter_mut().zip(colours.iter().zip(along).zip(down)) {
+        *pixel = [c[0], c[1], c[2], 0, x[0], x[1], x[2], 0, y[0], y[1], y[2], 0];
+    }
 }
 
 fn blur(picture: &Raster<Colour>, sigma: f64) -> Raster<Colour> {
@@ -207,9 +240,10 @@ mod tests {
             let p = Point::new(130.0, 250.0);
             let s = level.sample(p);
             let slope = 1.0 / 600.0;
+            let got = [s.colour, s.slopes[0], s.slopes[1]].map(|v| v.to_array()).concat();
             let want = [130.0 * slope, 250.0 * slope, 0.25, 0.0, slope, 0.0, 0.0, 0.0, 0.0, slope, 0.0, 0.0];
             for k in 0..12 {
-                assert!((s[k] - want[k]).abs() < 2e-4, "level {} value {k}: {} for {}", level.size, s[k], want[k]);
+                assert!((got[k] - want[k]).abs() < 2e-4, "level {} value {k}: {} for {}", level.size, got[k], want[k]);
             }
         }
     }
@@ -219,7 +253,7 @@ mod tests {
         for (width, height) in [(1, 1), (3, 700), (1000, 2)] {
             let features = Features::new(&Raster::new(width, height, [1.0, 0.5, 0.0]));
             let s = features.level(0).sample(Point::new(1e6, -1e6));
-            assert!((s[0] - 1.0).abs() < 1e-3 && s[SLOPE_X].abs() < 1e-3);
+            assert!((s.colour.x - 1.0).abs() < 1e-3 && s.slopes[0].x.abs() < 1e-3);
         }
     }
 }

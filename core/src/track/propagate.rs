@@ -1,8 +1,8 @@
 //! Motion from a neighbour: a pose carried from one drawing to the next.
 //!
 //! A pose starts on the next drawing from where it was, shifted by the flow below it (node by node, and as a whole by
-//! the median), and shifted by what it moved last. Each start is aligned coarsely, kept with its unaligned self, and the
-//! best two are polished. The colours are always those of the key, so nothing drifts from drawing to drawing.
+//! the median), and shifted by what it moved last. Each start that is not where another one is already is aligned coarsely,
+//! kept with its unaligned self, and the best two are polished. The colours are always those of the key, so nothing drifts from drawing to drawing.
 
 use super::TrackError;
 use super::features::Features;
@@ -20,6 +20,9 @@ const LEAST_FLOW_WEIGHT: f64 = 0.3;
 const FITS: f32 = 0.01;
 /// Mean distance of the nodes (working pixels) of two poses that come to the same when they are aligned further.
 const SAME_POSE: f64 = 1.0;
+/// Mean distance of the nodes (working pixels) of two starts that come to one pose: the step at which the coarsest level
+/// of an alignment ends.
+const SAME_START: f64 = 1.6;
 /// Weight of a place that is right, beside the lattice's stiffness.
 const HOLD: f64 = 0.3;
 
@@ -63,7 +66,7 @@ impl Model {
     pub fn best_of(&self, scenery: &Scenery, starts: Vec<Vec<Point>>) -> Pose {
         let (target, settler) = (scenery.target(), self.settler(scenery));
         let mut poses = Vec::new();
-        for start in starts {
+        for start in distinct(starts) {
             let start = settler.settle(&start);
             let aligned = self.aligner.align(&self.texture, target, &start, &[0]);
             poses.push(self.measured(scenery, aligned));
@@ -198,6 +201,17 @@ impl Scenery<'_> {
     pub fn target(&self) -> Target<'_> {
         Target { picture: self.features, cover: self.cover, anchors: self.anchors }
     }
+}
+
+/// The starts that no earlier one stands for.
+fn distinct(starts: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
+    let mut kept: Vec<Vec<Point>> = Vec::with_capacity(starts.len());
+    for start in starts {
+        if kept.iter().all(|k| mean_distance(k, &start) >= SAME_START) {
+            kept.push(start);
+        }
+    }
+    kept
 }
 
 /// Mean distance of the points of two poses.

@@ -8,7 +8,7 @@
 //! Limits: one scale, no bending while searching: long thin parts that bend are found by their larger half at best (the
 //! alignment then starts from the shape of either key or halfway between them, whichever fits best).
 
-use super::features::{Features, LEVELS, Level, WORKING_LINES};
+use super::features::{Features, LEVELS, Level, WORKING_LINES, total};
 use super::lattice::texture::Cover;
 use super::propagate::Model;
 use crate::geometry::{Point, polygon};
@@ -148,11 +148,16 @@ impl Sought {
     pub fn new(level: &Level) -> Self {
         let (columns, rows) = searched_size(level);
         let pixel = level.pixel();
-        let colours = Raster::from_fn(columns, rows, |x, y| {
-            level.colour(Point::new(x as f64 + 0.5 - MARGIN as f64, y as f64 + 0.5 - MARGIN as f64) * pixel)
-        });
+        let colours = vectorised(
+            #[inline(always)]
+            || {
+                Raster::from_fn(columns, rows, |x, y| {
+                    level.colour(Point::new(x as f64 + 0.5 - MARGIN as f64, y as f64 + 0.5 - MARGIN as f64) * pixel)
+                })
+            },
+        );
         let correlator = Correlator::new(columns, rows);
-        let mut spectra = vec![correlator.picture(&colours.map(|c| c.iter().map(|v| v * v).sum()))];
+        let mut spectra = vec![correlator.picture(&colours.map(|c| total(c * c)))];
         spectra.extend((0..3).map(|k| correlator.picture(&colours.map(|c| c[k]))));
         Self { spectra, columns, rows }
     }
@@ -201,9 +206,9 @@ fn posed(model: &Model, picture: &Features, center: Point, place: &Place) -> Vec
         let shape = model.texture.mesh.rest.iter().zip(&model.bent).map(|(a, b)| a.lerp(*b, share));
         shape.map(|q| turn.rotate(q - center) + place.center).collect()
     };
-    let energy = |nodes: &Vec<Point>| model.texture.energy(picture, nodes);
-    let shapes = [0.0, 0.5, 1.0].map(placed);
-    shapes.into_iter().min_by(|a, b| energy(a).total_cmp(&energy(b))).unwrap_or_default()
+    let measured = |nodes: Vec<Point>| (model.texture.energy(picture, &nodes), nodes);
+    let shapes = [0.0, 0.5, 1.0].map(placed).map(measured);
+    shapes.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, nodes)| nodes).unwrap_or_default()
 }
 
 /// What templates are cut from.
@@ -248,14 +253,19 @@ impl<'a> Cut<'a> {
         let corner = ((low - band) / pixel).floor() - Point::ONE;
         let extent = ((high + band) / pixel).ceil() + Point::ONE - corner;
         let back = Point::from_angle(-angle);
-        let pixels = Raster::from_fn(extent.x as usize, extent.y as usize, |x, y| {
+        let at = |x: usize, y: usize| {
             let place = (corner + Point::new(x as f64 + 0.5, y as f64 + 0.5)) * pixel;
             self.masked(back.rotate(place) + self.center)
-        });
+        };
+        let pixels = vectorised(
+            #[inline(always)]
+            || Raster::from_fn(extent.x as usize, extent.y as usize, at),
+        );
         let weight: f32 = pixels.data().iter().map(|p| p[3]).sum();
         (weight >= 3.0).then_some((angle, corner, pixels))
     }
 
+    #[inline(always)]
     fn masked(&self, p: Point) -> Masked {
         let at = (p - self.corner) / self.step;
         let within = at.x >= 0.0 && at.y >= 0.0;
@@ -263,7 +273,7 @@ impl<'a> Cut<'a> {
         if !within || x >= self.mask.width() || y >= self.mask.height() || self.mask.get(x, y) == 0.0 {
             return [0.0; 4];
         }
-        let [r, g, b] = self.source.colour(p);
+        let [r, g, b, _] = self.source.colour(p).to_array();
         [r, g, b, self.mask.get(x, y)]
     }
 }

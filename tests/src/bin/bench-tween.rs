@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use clap::Parser;
 use rototoon::tween::between::Options;
 use rototoon_tests::tweening::between::{
-    Errors, PlaceErrors, measure as measure_between, measure_one_way, measure_places, rows_of_keys,
+    Errors, PlaceErrors, measure as measure_between, measure_captured, measure_one_way, measure_places, rows_of_keys,
 };
 use rototoon_tests::tweening::matching::{Chance, Score, measure};
 use rototoon_tests::tweening::{GAPS, Set, sheet};
@@ -23,13 +23,17 @@ struct Arguments {
 
 fn main() -> Result<()> {
     let Arguments { out, folders } = Arguments::parse();
-    let sets = folders.iter().map(|folder| Set::load(folder)).collect::<Result<Vec<_>>>()?;
+    let mut sets = folders.iter().map(|folder| Set::load(folder)).collect::<Result<Vec<_>>>()?;
     matching(&sets, false)?;
     matching(&sets, true)?;
     places(&sets)?;
     between(&sets, "all strokes, one chart for all of them", measure_between)?;
     between(&sets, "strokes that move one way, a chart for each", measure_one_way)?;
     println!("charted: with the shares of the way that suit best; ratio to plain linear in brackets");
+    for (set, folder) in sets.iter_mut().zip(&folders) {
+        set.capture(folder)?;
+    }
+    between(&sets, "strokes that follow the tracked parts of the project", measure_captured)?;
     for set in &sets {
         sheets(set, &out)?;
     }
@@ -119,7 +123,7 @@ fn between_row(name: &str, keys: &str, e: &Errors) {
         return;
     }
     let n = e.count as f64;
-    let charted = |sum: f64| format!("{:.2} ({:.2})", sum / n, sum / e.linear);
+    let charted = |sum: f64| if sum > 0.0 { format!("{:.2} ({:.2})", sum / n, sum / e.linear) } else { String::new() };
     let (linear, ours) = (charted(e.linear_charted), charted(e.ours_charted));
     let ratio = e.ours / e.linear;
     println!("{name:22}{keys:>8}{:8.2}{:8.2}{ratio:8.2}{linear:>17}{ours:>17}", e.linear / n, e.ours / n);

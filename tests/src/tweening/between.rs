@@ -190,6 +190,28 @@ fn is_one_way(part: &Contours, (from, to): (i32, i32)) -> bool {
     })
 }
 
+/// The errors of all frames between some keys where strokes follow what was captured, if [`Set::capture`] was called;
+/// charts of those are not looked for.
+pub fn measure_captured(set: &Set, frames: &[i32], options: &Options) -> Result<Errors> {
+    let (parts, sequence) = sequence(set, frames, options)?;
+    let sequence = sequence.following(set.captured.clone());
+    let mut errors = Errors::default();
+    for pair in frames.windows(2) {
+        for frame in pair[0] + 1..pair[1] {
+            let u = f64::from(frame - pair[0]) / f64::from(pair[1] - pair[0]);
+            for (drawn, &part) in points(sequence.at(frame)).iter().zip(&parts) {
+                let of = &set.parts[part].points;
+                let Some(truth) = of.get(&frame) else { continue };
+                let linear: Vec<Point> = of[&pair[0]].iter().zip(&of[&pair[1]]).map(|(p, q)| p.lerp(*q, u)).collect();
+                errors.count += truth.len();
+                errors.linear += off(&[linear], &[truth]);
+                errors.ours += off(std::slice::from_ref(drawn), &[truth]);
+            }
+        }
+    }
+    Ok(errors)
+}
+
 /// The errors of all frames between some keys.
 pub fn measure(set: &Set, frames: &[i32], options: &Options) -> Result<Errors> {
     let (parts, ours) = sequence(set, frames, options)?;

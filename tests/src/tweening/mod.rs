@@ -11,8 +11,13 @@ pub mod sheet;
 use crate::truth::{TruePart, Truth};
 use anyhow::{Context, Result};
 use rototoon::geometry::{Point, polygon};
+use rototoon::pipeline;
+use rototoon::scene::Silent;
+use rototoon::track::TrackOptions;
+use rototoon::tween::between::Captured;
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Distances in frames of two keys that are looked at.
 pub const GAPS: std::ops::RangeInclusive<i32> = 6..=14;
@@ -33,6 +38,8 @@ pub struct Set {
     pub pattern: String,
     /// Frames on which the project has keys.
     pub keys: Vec<i32>,
+    /// Its parts as the tracker sees them, from the project's keys; empty before [`Set::capture`].
+    pub captured: Arc<[Captured]>,
 }
 
 /// One contour by frame, with as many points on each, the same point always at the same index.
@@ -73,7 +80,15 @@ impl Set {
         let mut keys: Vec<i32> = project.scene.parts.iter().flat_map(|part| part.keys.keys().copied()).collect();
         keys.sort_unstable();
         keys.dedup();
-        Ok(Self { name, parts, frames, pattern, keys })
+        Ok(Self { name, parts, frames, pattern, keys, captured: Arc::default() })
+    }
+
+    /// Tracks the parts of the project in the same folder.
+    pub fn capture(&mut self, folder: &Path) -> Result<()> {
+        let mut document = rototoon::project::Document::load(&folder.join("project.json"))?;
+        pipeline::track(&mut document, folder, &TrackOptions::default(), &Silent)?;
+        self.captured = pipeline::captured(&document.scene);
+        Ok(())
     }
 
     /// The paint of each part, as it is seen on most frames: of the places just inside its contour that no nearer part

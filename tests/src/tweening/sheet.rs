@@ -1,4 +1,5 @@
-//! In-betweens over the true frames, as a contact sheet: linear interpolation in red, ours in blue, the truth in black.
+//! In-betweens over the true frames, as a contact sheet: linear interpolation in red, ours in blue (following what was
+//! captured, where that was done), the truth in black.
 
 use super::Set;
 use super::between::sequence;
@@ -19,6 +20,7 @@ const MARGIN: f64 = 12.0;
 /// The sheet of a set's keys.
 pub fn draw(set: &Set, frames: &[i32], options: &Options) -> Result<RgbaImage> {
     let (parts, ours) = sequence(set, frames, options)?;
+    let ours = ours.following(set.captured.clone());
     let between: Vec<i32> = frames.windows(2).flat_map(|pair| pair[0] + 1..pair[1]).collect();
     let count = between.len().min(PICTURES);
     let all: Vec<Point> = parts.iter().flat_map(|&i| set.parts[i].points.values().flatten().copied()).collect();

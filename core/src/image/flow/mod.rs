@@ -63,6 +63,7 @@ fn doubled(flow: &Flow, width: usize, height: usize) -> Flow {
 }
 
 /// Bilinear reading at pixel-centre coordinates (a pixel's centre is an integer); clamped at the edges.
+#[inline(always)]
 pub(crate) fn read<const N: usize>(raster: &Raster<[f32; N]>, x: f32, y: f32) -> [f32; N] {
     let (x0, x1, fx) = neighbours(x, raster.width());
     let (y0, y1, fy) = neighbours(y, raster.height());
@@ -71,6 +72,7 @@ pub(crate) fn read<const N: usize>(raster: &Raster<[f32; N]>, x: f32, y: f32) ->
     std::array::from_fn(|k| (1.0 - fy) * ((1.0 - fx) * a[k] + fx * b[k]) + fy * ((1.0 - fx) * c[k] + fx * d[k]))
 }
 
+#[inline(always)]
 fn neighbours(at: f32, count: usize) -> (usize, usize, f32) {
     let at = at.clamp(0.0, (count - 1) as f32);
     let low = at as usize;

@@ -25,8 +25,11 @@ const SWEEPS: usize = 5;
 /// Over-relaxation.
 const RELAXATION: f32 = 1.6;
 
-/// A linearised picture term at a pixel: value + x du + y dv.
-type Linear = [f32; 3];
+/// Pixels that are worked on at once.
+const LANES: usize = 8;
+
+/// A value of each of some neighbouring pixels.
+type Lanes = [f32; LANES];
 
 /// Improves `flow` in place.
 pub(super) fn refine(first: &Level, second: &Level, flow: &mut Flow) {
@@ -42,7 +45,7 @@ pub(super) fn refine(first: &Level, second: &Level, flow: &mut Flow) {
 
 #[inline(always)]
 fn improve(first: &Level, second: &Level, flow: &mut Flow, (width, height): (usize, usize)) {
-    let terms = linearise(first, second, flow);
+    let terms = Terms::new(first, second, flow);
     let mut moved = Bordered::new(flow);
     for _ in 0..OUTER {
         let equations = equations(&terms, flow, &moved);
@@ -81,7 +84,7 @@ impl Bordered {
 }
 
 /// The equations of a pixel for its change of flow.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Equation {
     /// Weights of the links to the right, lower, left and upper neighbour; 0 where there is none.
     links: [f32; 4],
@@ -92,84 +95,139 @@ struct Equation {
     inverse: [f32; 2],
 }
 
-/// Brightness, x-gradient and y-gradient change at each pixel, linear in the update, in 8-bit units.
-#[inline(always)]
-fn linearise(first: &Level, second: &Level, flow: &Flow) -> Raster<[Linear; 3]> {
-    let (width, height) = (flow.width(), flow.height());
-    let warped = Raster::from_fn(width, height, |x, y| {
-        let [u, v] = flow.get(x, y);
-        let (px, py) = (x as f32 + u, y as f32 + v);
-        // A shift that leaves the picture has nothing to be compared with.
-        let seen = px >= 0.0 && py >= 0.0 && px <= (width - 1) as f32 && py <= (height - 1) as f32;
-        let g = super::read(&second.gradient, px, py);
-        [255.0 * second.luma_at(px, py), 255.0 * g[0], 255.0 * g[1], f32::from(u8::from(seen))]
-    });
-    Raster::from_fn(width, height, |x, y| {
-        let w = warped.get(x, y);
-        if w[3] == 0.0 {
-            return [[0.0; 3]; 3];
+/// Brightness, x-gradient and y-gradient change at each pixel in 8-bit units, each linear in the update: value + x du +
+/// y dv. Nine planes of one value a pixel, their rows filled up with zeros to whole [`Lanes`].
+struct Terms {
+    stride: usize,
+    planes: [Vec<f32>; 9],
+}
+
+impl Terms {
+    #[inline(always)]
+    fn new(first: &Level, second: &Level, flow: &Flow) -> Self {
+        let (width, height) = (flow.width(), flow.height());
+        let warped = Raster::from_fn(width, height, |x, y| {
+            let [u, v] = flow.get(x, y);
+            let (px, py) = (x as f32 + u, y as f32 + v);
+            // A shift that leaves the picture has nothing to be compared with.
+            let seen = px >= 0.0 && py >= 0.0 && px <= (width - 1) as f32 && py <= (height - 1) as f32;
+            let g = super::read(&second.gradient, px, py);
+            [255.0 * second.luma_at(px, py), 255.0 * g[0], 255.0 * g[1], f32::from(u8::from(seen))]
+        });
+        let stride = width.next_multiple_of(LANES);
+        let mut planes = [(); 9].map(|()| vec![0.0; stride * height]);
+        for y in 0..height {
+            for x in (0..width).filter(|&x| warped.get(x, y)[3] != 0.0) {
+                for (plane, value) in planes.iter_mut().zip(linearised(first, &warped, (x, y)).as_flattened()) {
+                    plane[y * stride + x] = *value;
+                }
+            }
         }
-        let (xi, yi) = (x as isize, y as isize);
-        let slope = |k: usize| {
-            let dx = 0.5 * (warped.clamped(xi + 1, yi)[k] - warped.clamped(xi - 1, yi)[k]);
-            let dy = 0.5 * (warped.clamped(xi, yi + 1)[k] - warped.clamped(xi, yi - 1)[k]);
-            (dx, dy)
+        Self { stride, planes }
+    }
+
+    /// The terms of some pixels of a row, from column `x` on.
+    #[inline(always)]
+    fn lanes(&self, x: usize, y: usize) -> [[Lanes; 3]; 3] {
+        let from = y * self.stride + x;
+        let read = |plane: usize| -> Lanes {
+            let values = &self.planes[plane][from..from + LANES];
+            std::array::from_fn(|v| values[v])
         };
-        let g = first.gradient.get(x, y);
-        let own = [255.0 * first.luma.get(x, y), 255.0 * g[0], 255.0 * g[1]];
-        std::array::from_fn(|k| {
-            // Brightness has its derivative at hand; averaged with the first picture's it is second-order exact.
-            let (dx, dy) = if k == 0 { (0.5 * (w[1] + own[1]), 0.5 * (w[2] + own[2])) } else { slope(k) };
-            [w[k] - own[k], dx, dy]
-        })
+        [0, 3, 6].map(|first| [read(first), read(first + 1), read(first + 2)])
+    }
+}
+
+/// The terms of one pixel.
+#[inline(always)]
+fn linearised(first: &Level, warped: &Raster<[f32; 4]>, (x, y): (usize, usize)) -> [[f32; 3]; 3] {
+    let (w, xi, yi) = (warped.get(x, y), x as isize, y as isize);
+    let slope = |k: usize| {
+        let dx = 0.5 * (warped.clamped(xi + 1, yi)[k] - warped.clamped(xi - 1, yi)[k]);
+        let dy = 0.5 * (warped.clamped(xi, yi + 1)[k] - warped.clamped(xi, yi - 1)[k]);
+        (dx, dy)
+    };
+    let g = first.gradient.get(x, y);
+    let own = [255.0 * first.luma.get(x, y), 255.0 * g[0], 255.0 * g[1]];
+    std::array::from_fn(|k| {
+        // Brightness has its derivative at hand; averaged with the first picture's it is second-order exact.
+        let (dx, dy) = if k == 0 { (0.5 * (w[1] + own[1]), 0.5 * (w[2] + own[2])) } else { slope(k) };
+        [w[k] - own[k], dx, dy]
     })
 }
 
 /// The equations of all pixels, their robust weights those of the flow so far.
 #[inline(always)]
-fn equations(terms: &Raster<[Linear; 3]>, flow: &Flow, moved: &Bordered) -> Raster<Equation> {
-    let links = link_weights(moved, flow.width(), flow.height());
-    Raster::from_fn(flow.width(), flow.height(), |x, y| {
-        let (from, to) = (flow.get(x, y), moved.row(y)[x + 1]);
-        let [xx, cross, yy, bx, by] = normal_equations(terms.get(x, y), [to[0] - from[0], to[1] - from[1]]);
-        let [right, below] = links.get(x, y);
-        let left = if x > 0 { links.get(x - 1, y)[0] } else { 0.0 };
-        let above = if y > 0 { links.get(x, y - 1)[1] } else { 0.0 };
-        let weight = right + below + left + above;
-        let inverse = [1.0 / (xx + weight), 1.0 / (yy + weight)];
-        Equation { links: [right, below, left, above], cross, right: [bx, by], inverse }
-    })
-}
-
-/// Robustly weighted normal equations of a pixel: xx, xy, yy, bx, by.
-#[inline(always)]
-fn normal_equations([brightness, gx, gy]: [Linear; 3], [du, dv]: [f32; 2]) -> [f32; 5] {
-    let rest = |l: Linear| l[0] + l[1] * du + l[2] * dv;
-    let robust = |square: f32| 1.0 / (square + EPSILON * EPSILON).sqrt();
-    // Divided by the slope, a change counts as a distance: strong edges do not outweigh weak ones (Zimmer 2011).
-    let flat = |l: Linear| 1.0 / (l[1] * l[1] + l[2] * l[2] + 0.01);
-    let (nb, nx, ny) = (flat(brightness), flat(gx), flat(gy));
-    let square = |v: f32| v * v;
-    let wb = BRIGHTNESS * nb * robust(nb * square(rest(brightness)));
-    let wg = GRADIENT * robust(nx * square(rest(gx)) + ny * square(rest(gy)));
-    let mut sum = [0.0f32; 5];
-    for (l, w) in [(brightness, wb), (gx, wg * nx), (gy, wg * ny)] {
-        for (total, add) in sum.iter_mut().zip([l[1] * l[1], l[1] * l[2], l[2] * l[2], l[0] * l[1], l[0] * l[2]]) {
-            *total += w * add;
+fn equations(terms: &Terms, flow: &Flow, moved: &Bordered) -> Raster<Equation> {
+    let (width, height) = (flow.width(), flow.height());
+    let links = link_weights(moved, width, height);
+    let mut equations = Raster::new(width, height, Equation::default());
+    for y in 0..height {
+        for x in (0..width).step_by(LANES) {
+            let count = LANES.min(width - x);
+            let (mut change, mut weight) = ([[0.0; LANES]; 2], [0.0; LANES]);
+            let mut around = [[0.0; 4]; LANES];
+            for v in 0..count {
+                let (from, to) = (flow.get(x + v, y), moved.row(y)[x + v + 1]);
+                (change[0][v], change[1][v]) = (to[0] - from[0], to[1] - from[1]);
+                let [right, below] = links.get(x + v, y);
+                let left = if x + v > 0 { links.get(x + v - 1, y)[0] } else { 0.0 };
+                let above = if y > 0 { links.get(x + v, y - 1)[1] } else { 0.0 };
+                around[v] = [right, below, left, above];
+                weight[v] = right + below + left + above;
+            }
+            let [xx, cross, yy, bx, by] = normal_equations(&terms.lanes(x, y), &change);
+            let inverse = [xx, yy].map(|own| -> Lanes { std::array::from_fn(|v| 1.0 / (own[v] + weight[v])) });
+            for (v, equation) in equations.row_mut(y)[x..x + count].iter_mut().enumerate() {
+                let inverse = inverse.map(|inverse| inverse[v]);
+                *equation = Equation { links: around[v], cross: cross[v], right: [bx[v], by[v]], inverse };
+            }
         }
     }
-    sum
+    equations
+}
+
+/// Robustly weighted normal equations of some pixels: xx, xy, yy, bx, by.
+#[inline(always)]
+fn normal_equations(terms: &[[Lanes; 3]; 3], [du, dv]: &[Lanes; 2]) -> [Lanes; 5] {
+    let mut sums = [[0.0; LANES]; 5];
+    let robust = |square: f32| 1.0 / (square + EPSILON * EPSILON).sqrt();
+    let square = |v: f32| v * v;
+    for v in 0..LANES {
+        let [brightness, gx, gy] = terms.each_ref().map(|term| term.each_ref().map(|part| part[v]));
+        let rest = |l: [f32; 3]| l[0] + l[1] * du[v] + l[2] * dv[v];
+        // Divided by the slope, a change counts as a distance: strong edges do not outweigh weak ones (Zimmer 2011).
+        let flat = |l: [f32; 3]| 1.0 / (l[1] * l[1] + l[2] * l[2] + 0.01);
+        let (nb, nx, ny) = (flat(brightness), flat(gx), flat(gy));
+        let wb = BRIGHTNESS * nb * robust(nb * square(rest(brightness)));
+        let wg = GRADIENT * robust(nx * square(rest(gx)) + ny * square(rest(gy)));
+        for (l, w) in [(brightness, wb), (gx, wg * nx), (gy, wg * ny)] {
+            for (sum, add) in sums.iter_mut().zip([l[1] * l[1], l[1] * l[2], l[2] * l[2], l[0] * l[1], l[0] * l[2]]) {
+                sum[v] += w * add;
+            }
+        }
+    }
+    sums
 }
 
 /// Weight of the smoothness link of each pixel to its right and to its lower neighbour.
 #[inline(always)]
 fn link_weights(moved: &Bordered, width: usize, height: usize) -> Raster<[f32; 2]> {
-    let at = |x: usize, y: usize| moved.row(y)[x + 1];
-    let diffusivity = Raster::from_fn(width, height, |x, y| {
-        let (here, right, below) = (at(x, y), at((x + 1).min(width - 1), y), at(x, (y + 1).min(height - 1)));
-        let square = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
-        SMOOTHNESS / (square(here, right) + square(here, below) + EPSILON * EPSILON).sqrt()
-    });
+    let mut diffusivity = Raster::new(width, height, 0.0f32);
+    for y in 0..height {
+        let (here, below) = (&moved.row(y)[1..], &moved.row((y + 1).min(height - 1))[1..]);
+        for x in (0..width).step_by(LANES) {
+            let count = LANES.min(width - x);
+            let mut squares = [0.0; LANES];
+            for (v, sum) in squares[..count].iter_mut().enumerate() {
+                let (x, right) = (x + v, (x + v + 1).min(width - 1));
+                let square = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
+                *sum = square(here[x], here[right]) + square(here[x], below[x]);
+            }
+            let weights = squares.map(|square: f32| SMOOTHNESS / (square + EPSILON * EPSILON).sqrt());
+            diffusivity.row_mut(y)[x..x + count].copy_from_slice(&weights[..count]);
+        }
+    }
     Raster::from_fn(width, height, |x, y| {
         let half = |x2: usize, y2: usize| 0.5 * (diffusivity.get(x, y) + diffusivity.get(x2, y2));
         [if x + 1 < width { half(x + 1, y) } else { 0.0 }, if y + 1 < height { half(x, y + 1) } else { 0.0 }]

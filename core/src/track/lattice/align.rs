@@ -20,7 +20,7 @@ use super::texture::{Cover, PAIRS, Texel, Texture};
 use crate::geometry::Point;
 use crate::numeric::banded::BandMatrix;
 use crate::numeric::vector::vectorised;
-use crate::track::features::{Features, LEVELS, SLOPE_X, SLOPE_Y, Sample};
+use crate::track::features::{Features, LEVELS, Padded, Sample, total};
 
 /// Weight of the shape energy.
 const STIFFNESS: f64 = 0.05;
@@ -219,7 +219,7 @@ impl CellSums {
     fn add_second(&mut self, texel: &Texel, second: [f32; 3]) {
         for (sums, value) in self.pairs.iter_mut().zip(second) {
             for (sum, product) in sums.iter_mut().zip(&texel.products) {
-                *sum += product * value;
+                *sum = product.mul_add(value, *sum);
             }
         }
     }
@@ -229,7 +229,7 @@ impl CellSums {
     fn add_first(&mut self, texel: &Texel, first: [f32; 2]) {
         for (sums, value) in self.nodes.iter_mut().zip(first) {
             for (sum, weight) in sums.iter_mut().zip(&texel.weights) {
-                *sum += weight * value;
+                *sum = weight.mul_add(value, *sum);
             }
         }
     }
@@ -280,11 +280,11 @@ fn add_look(
             }
             let seen = picture.sample(place);
             let (gx, gy) = slopes(&seen, texel, turn);
-            let rest: [f32; 4] = std::array::from_fn(|k| seen[k] - texel.key[k]);
-            let rho = 1.0 + product(&rest, &rest) * inverse;
+            let rest = seen.colour - texel.key.colour;
+            let rho = 1.0 + total(rest * rest) * inverse;
             let weight = share * texel.weight / (rho * rho);
-            let second = [product(&gx, &gx), product(&gx, &gy), product(&gy, &gy)];
-            let first = [product(&gx, &rest), product(&gy, &rest)];
+            let second = [gx * gx, gx * gy, gy * gy].map(total);
+            let first = [gx * rest, gy * rest].map(total);
             sums.add_first(texel, first.map(|v| weight * v));
             if matrix.is_some() {
                 sums.add_second(texel, second.map(|v| weight * v));
@@ -297,23 +297,13 @@ fn add_look(
 /// Slopes along x and y that a sample is moved by: the mean of the picture's and of the key's, `turn`ed with its cell (cosine
 /// and sine); outside the part what of them leads across the contour.
 #[inline(always)]
-fn slopes(seen: &Sample, texel: &Texel, [cos, sin]: [f32; 2]) -> ([f32; 4], [f32; 4]) {
-    let key = &texel.key;
-    let along = |first: usize, second: usize, sin: f32| -> [f32; 4] {
-        std::array::from_fn(|k| 0.5 * (seen[first + k] + cos * key[first + k] + sin * key[second + k]))
-    };
-    let (gx, gy) = (along(SLOPE_X, SLOPE_Y, -sin), along(SLOPE_Y, SLOPE_X, sin));
+fn slopes(seen: &Sample, texel: &Texel, [cos, sin]: [f32; 2]) -> (Padded, Padded) {
+    let ([sx, sy], [kx, ky]) = (seen.slopes, texel.key.slopes);
+    let (gx, gy) = (0.5 * (sx + cos * kx - sin * ky), 0.5 * (sy + cos * ky + sin * kx));
     let Some([x, y]) = texel.across else { return (gx, gy) };
     let (x, y) = (cos * x - sin * y, sin * x + cos * y);
-    let across: [f32; 4] = std::array::from_fn(|k| x * gx[k] + y * gy[k]);
-    (across.map(|slope| x * slope), across.map(|slope| y * slope))
-}
-
-/// Inner product of three values; the fourth is zero.
-#[inline(always)]
-fn product(a: &[f32; 4], b: &[f32; 4]) -> f32 {
-    let each: [f32; 4] = std::array::from_fn(|k| a[k] * b[k]);
-    (each[0] + each[1]) + (each[2] + each[3])
+    let across = x * gx + y * gy;
+    (x * across, y * across)
 }
 
 #[cfg(test)]
@@ -361,7 +351,9 @@ mod tests {
     #[test]
     fn outside_slopes_lead_across_the_contour_as_it_is_turned() {
         let texture = bar();
-        let seen: Sample = std::array::from_fn(|k| if k % 4 == 3 { 0.0 } else { (k as f32 * 1.3).sin() });
+        let group = |first: usize| [0, 1, 2].map(|k| ((first + k) as f32 * 1.3).sin());
+        let padded = |[a, b, c]: [f32; 3]| Padded::new(a, b, c, 0.0);
+        let seen = Sample { colour: padded(group(0)), slopes: [4, 8].map(|first| padded(group(first))) };
         let turn = Point::from_angle(0.6);
         for texel in &texture.texels[1] {
             let (gx, gy) = slopes(&seen, texel, [turn.x as f32, turn.y as f32]);

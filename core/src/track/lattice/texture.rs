@@ -5,7 +5,7 @@ use super::shape;
 use crate::geometry::Point;
 use crate::numeric::vector::vectorised;
 use crate::scene::Raster;
-use crate::track::features::{Features, LEVELS, Sample, WORKING_LINES};
+use crate::track::features::{Features, LEVELS, Padded, Sample, WORKING_LINES, difference};
 
 /// Weight of samples in the band around the contour. They hold the ink line's outer side; being background in part,
 /// they count for less than the inside.
@@ -102,7 +102,7 @@ pub struct Texel {
     /// ground changes by itself, and says nothing of where the part is.
     pub across: Option<[f32; 2]>,
     /// The part's colour across the contour, for a sample outside that measures a pose and differs from it.
-    pub own: Option<[f32; 3]>,
+    pub own: Option<Padded>,
     /// The cell it lies in.
     pub cell: usize,
     /// The weights of the cell's nodes, and their products in pairs, in the order of [`PAIRS`].
@@ -173,7 +173,7 @@ impl Texture {
         let (mut sum, mut weights) = (0.0, 0.0);
         for texel in self.measured() {
             let place = texel.binding.at(nodes);
-            let wrong = texel.cost(&level.colour(place));
+            let wrong = texel.cost(level.colour(place));
             sum += f64::from(texel.weight * if seen(place) { wrong } else { UNSEEN });
             weights += f64::from(texel.weight);
         }
@@ -200,9 +200,12 @@ impl Texture {
         let level = picture.level(MEASURED_LEVEL);
         let of = |t: &Texel| {
             let place = t.binding.at(nodes);
-            if seen(place) { t.cost(&level.colour(place)) } else { UNSEEN }
+            if seen(place) { t.cost(level.colour(place)) } else { UNSEEN }
         };
-        self.measured().iter().map(of).collect()
+        vectorised(
+            #[inline(always)]
+            || self.measured().iter().map(of).collect(),
+        )
     }
 }
 
@@ -213,17 +216,11 @@ impl Texel {
     /// before the sky: any other colour costs no more than [`OTHER_GROUND`], but the part's own colour costs as much as it
     /// is like it. A contour that has slid inwards along its part shows just that.
     #[inline(always)]
-    fn cost(&self, seen: &[f32]) -> f32 {
-        let wrong = difference(seen, &self.key).min(WORST);
-        let Some(own) = &self.own else { return wrong };
+    fn cost(&self, seen: Padded) -> f32 {
+        let wrong = difference(seen, self.key.colour).min(WORST);
+        let Some(own) = self.own else { return wrong };
         wrong.min(OTHER_GROUND.max(WORST * (-difference(seen, own) / ALIKE).exp()))
     }
-}
-
-/// Squared difference of two colours: the first three values of each.
-#[inline(always)]
-pub fn difference(a: &[f32], b: &[f32]) -> f32 {
-    (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum()
 }
 
 fn sample_level(mesh: &Mesh, key: &Features, cover: &Cover, width: f64, level: usize) -> Vec<Texel> {
@@ -256,9 +253,9 @@ fn sample_level(mesh: &Mesh, key: &Features, cover: &Cover, width: f64, level: u
 }
 
 /// The colour inside the part across the contour from `p`, where it differs from the sample there.
-fn own_colour(mesh: &Mesh, key: &Features, p: Point, sample: &Sample) -> Option<[f32; 3]> {
+fn own_colour(mesh: &Mesh, key: &Features, p: Point, sample: &Sample) -> Option<Padded> {
     let own = key.level(MEASURED_LEVEL).colour(mesh.across(p)?);
-    Some(own).filter(|own| difference(own, sample) > CONTRAST)
+    Some(own).filter(|own| difference(*own, sample.colour) > CONTRAST)
 }
 
 /// Every k-th sample, so that at most [`MOST_SAMPLES`] are left.
@@ -274,10 +271,10 @@ fn thin(texels: Vec<Texel>) -> Vec<Texel> {
 mod tests {
     use super::*;
 
-    fn texel(own: Option<[f32; 3]>) -> Texel {
+    fn texel(own: Option<Padded>) -> Texel {
         let mesh = Mesh::new(&[(0.0, 0.0), (40.0, 0.0), (40.0, 40.0)].map(|(x, y)| Point::new(x, y)), true);
         let mut key = Sample::default();
-        key[..3].copy_from_slice(&[0.9, 0.9, 0.9]);
+        key.colour = Padded::new(0.9, 0.9, 0.9, 0.0);
         let (weights, products) = ([0.25; 4], [0.0625; PAIRS.len()]);
         let binding = mesh.bind(Point::new(30.0, 10.0));
         Texel { binding, key, weight: BAND_WEIGHT, across: None, own, cell: 0, weights, products }
@@ -285,15 +282,16 @@ mod tests {
 
     #[test]
     fn another_ground_costs_little_but_the_part_s_own_colour_much() {
-        let (same, other, own) = ([0.9, 0.9, 0.9], [0.1, 0.3, 0.9], [0.8, 0.2, 0.1]);
+        let [same, other, own] =
+            [[0.9, 0.9, 0.9], [0.1, 0.3, 0.9], [0.8, 0.2, 0.1]].map(|[r, g, b]| Padded::new(r, g, b, 0.0));
         let outside = texel(Some(own));
-        assert_eq!(outside.cost(&same), 0.0);
-        assert_eq!(outside.cost(&other), OTHER_GROUND);
-        assert_eq!(outside.cost(&own), WORST);
+        assert_eq!(outside.cost(same), 0.0);
+        assert_eq!(outside.cost(other), OTHER_GROUND);
+        assert_eq!(outside.cost(own), WORST);
         // Inside, and where the part was like its ground, a wrong colour is just wrong.
-        assert_eq!(texel(None).cost(&other), WORST);
+        assert_eq!(texel(None).cost(other), WORST);
         // A ground that has changed a little costs what it has changed by.
-        assert!((outside.cost(&[0.9, 0.9, 0.8]) - 0.01).abs() < 1e-6);
+        assert!((outside.cost(Padded::new(0.9, 0.9, 0.8, 0.0)) - 0.01).abs() < 1e-6);
     }
 
     #[test]

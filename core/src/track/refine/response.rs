@@ -10,7 +10,6 @@ use super::template::{HALF, LEVEL, Template, offsets};
 use crate::geometry::Point;
 use crate::numeric::vector::vectorised;
 use crate::scene::Colour;
-use crate::track::lattice::texture::difference;
 
 /// σ² of the robust colour difference (three channels of 0 to 1).
 const TOLERANCE: f32 = 0.06;
@@ -40,11 +39,11 @@ pub struct Map {
 /// Displacements that are worked on at once; rows of a window are padded to a multiple of it.
 const LANES: usize = 8;
 
-/// What the window and the templates around it show: planes of one value a place, along the normal innermost.
+/// What the window and the templates around it show.
 struct Seen {
-    colours: [Vec<f32>; 3],
-    /// 1 where a nearer part hides the place, else 0.
-    hidden: Vec<f32>,
+    /// Planes of one value a place, along the normal innermost: red, green, blue, and 1 where a nearer part hides the
+    /// place, else 0.
+    planes: [Vec<f32>; 4],
     stride: usize,
 }
 
@@ -84,15 +83,16 @@ fn seen(frame: &Frame, window: &Window, (place, tangent): (Point, Point), paddin
     let stride = size[1] + padding;
     let level = frame.picture.level(LEVEL);
     let empty = || vec![0.0f32; size[0] * stride];
-    let mut seen = Seen { colours: [empty(), empty(), empty()], hidden: empty(), stride };
+    let mut seen = Seen { planes: [empty(), empty(), empty(), empty()], stride };
     for a in 0..size[0] {
         for b in 0..size[1] {
             let offset = [a as i32 - window.reach[0] - HALF[0], b as i32 - window.reach[1] - HALF[1]];
             let p = place + tangent.rotate(Point::new(f64::from(offset[0]), f64::from(offset[1])));
             let at = a * stride + b;
-            let colour = level.colour(p);
-            (0..3).for_each(|k| seen.colours[k][at] = colour[k]);
-            seen.hidden[at] = f32::from(u8::from(frame.cover.hides(p)));
+            // A colour's fourth value is zero.
+            let mut values = level.colour(p);
+            values.w += f32::from(u8::from(frame.cover.hides(p)));
+            (0..4).for_each(|k| seen.planes[k][at] = values[k]);
         }
     }
     seen
@@ -128,14 +128,13 @@ fn add_cell(
         for (group, sums) in row.iter_mut().enumerate() {
             let from = from + group * LANES;
             let read = |plane: &[f32]| -> [f32; LANES] { std::array::from_fn(|v| plane[from..from + LANES][v]) };
-            let [r, g, b] = seen.colours.each_ref().map(|plane| read(plane));
-            let hidden = read(&seen.hidden);
+            let [r, g, b, hidden] = seen.planes.each_ref().map(|plane| read(plane));
             let cost: [f32; LANES] = std::array::from_fn(|v| {
                 let cost = cost([r[v], g[v], b[v]]);
-                weight * (cost + hidden[v] * (HIDDEN - cost))
+                hidden[v].mul_add(HIDDEN - cost, cost)
             });
             for (sum, cost) in sums.iter_mut().zip(cost) {
-                *sum += cost;
+                *sum = weight.mul_add(cost, *sum);
             }
         }
     }
@@ -144,6 +143,7 @@ fn add_cell(
 /// Robust difference of two colours, 0 to 1.
 #[inline(always)]
 fn wrong(a: Colour, b: &Colour) -> f32 {
-    let square = difference(&a, b);
+    let [r, g, b]: Colour = std::array::from_fn(|k| a[k] - b[k]);
+    let square = r.mul_add(r, g.mul_add(g, b * b));
     square / (square + TOLERANCE)
 }

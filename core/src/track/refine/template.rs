@@ -4,7 +4,8 @@ use super::Key;
 use super::samples::Samples;
 use crate::geometry::{Point, polygon, polyline};
 use crate::scene::Colour;
-use crate::track::lattice::texture::{CONTRAST, difference};
+use crate::track::features::{Padded, difference};
+use crate::track::lattice::texture::CONTRAST;
 
 /// Half sizes along tangent and normal, in working pixels.
 pub const HALF: [i32; 2] = [4, 6];
@@ -68,6 +69,11 @@ impl Templates {
     }
 }
 
+/// The three values of a colour.
+fn bare(colour: Padded) -> Colour {
+    colour.truncate().to_array()
+}
+
 fn of_key(key: &Key, samples: &Samples, closed: bool) -> Vec<Template> {
     let (places, tangents) = samples.frames(key.points);
     let level = key.picture.level(LEVEL);
@@ -83,7 +89,8 @@ fn of_key(key: &Key, samples: &Samples, closed: bool) -> Vec<Template> {
                 let (inside, hidden) = (inside(p), key.cover.hides(p));
                 let colour = level.colour(p);
                 let own = if inside || !within(across) { None } else { Some(level.colour(across)) };
-                let own = own.filter(|own| difference(own, &colour) > CONTRAST);
+                let own = own.filter(|own| difference(*own, colour) > CONTRAST).map(bare);
+                let colour = bare(colour);
                 let weight = match (inside, hidden) {
                     (true, false) => 1.0,
                     (true, true) => 0.0,

@@ -9,11 +9,14 @@
 //! 4. `join`: movements and changes of shape run through several keys with one velocity.
 //! 5. `contacts`: strokes that touch on both keys touch between them.
 //!
+//! Where the movement between the keys was captured, strokes follow that instead: `captured`, [`Sequence::following`].
+//!
 //! # Limits
 //!
-//! How far something has come on each frame cannot be known from two drawings: where it matters, a [`Spacing`] says it.
-//! A movement to and fro between two keys needs a key at its turning point.
+//! How far something has come on each frame cannot be known from two drawings: where it matters, a [`Spacing`] says it,
+//! or footage does. Without that a movement to and fro between two keys needs a key at its turning point.
 
+mod captured;
 mod check;
 mod contacts;
 mod corners;
@@ -23,6 +26,7 @@ mod join;
 mod motion;
 mod tracks;
 
+pub use captured::Captured;
 pub use check::{BetweenError, SpacingError};
 pub use correspond::Places;
 pub use tracks::{Stand, Track};
@@ -34,11 +38,13 @@ use super::stroke::Stroke;
 use crate::geometry::similarity::Similarity;
 use crate::geometry::{Point, polygon};
 use crate::scene::FrameNumber;
+use captured::Following;
 use deform::Deform;
 use join::{Asked, Ends, Run};
 use motion::{Hung, Motion};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// How far the drawings between two keys have come.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -160,6 +166,9 @@ pub struct Sequence {
     local: Vec<Vec<Option<Vec<Point>>>>,
     /// By span.
     contacts: Vec<Vec<contacts::Contact>>,
+    captured: Arc<[Captured]>,
+    /// By track and span the captured part that it follows.
+    followed: Vec<Vec<Option<usize>>>,
     options: Options,
 }
 
@@ -226,14 +235,29 @@ impl Sequence {
             .zip(&tracks)
             .map(|(places, track)| changes(places, track.closed, &asked, options))
             .collect();
+        let followed = vec![vec![None; spans]; tracks.len()];
+        let (contacts, captured) = (vec![Vec::new(); spans], Arc::default());
         let mut sequence =
-            Self { keys, tracks, motion, changes, local, contacts: vec![Vec::new(); spans], options: *options };
+            Self { keys, tracks, motion, changes, local, contacts, captured, followed, options: *options };
         if options.contacts {
             let wanted = |k: &usize| base.is_none_or(|base| base == *k);
             let touching = |k: usize| if wanted(&k) { sequence.touching(k) } else { Vec::new() };
             sequence.contacts = (0..spans).into_par_iter().map(touching).collect();
         }
         Ok(sequence)
+    }
+
+    /// Lets strokes without a given peg follow the captured part that they lie on, where there is one.
+    pub fn following(mut self, captured: Arc<[Captured]>) -> Self {
+        let spans: Vec<[FrameNumber; 2]> = self.keys.windows(2).map(|pair| [pair[0].frame, pair[1].frame]).collect();
+        let of = |(t, track): (usize, &Track)| -> Vec<Option<usize>> {
+            let free = !self.motion.on_given_peg(t);
+            let part = |(k, &frames)| captured::followed(&captured, track, k, frames).filter(|_| free);
+            spans.iter().enumerate().map(part).collect()
+        };
+        self.followed = self.tracks.par_iter().enumerate().map(of).collect();
+        self.captured = captured;
+        self
     }
 
     /// The tracks: which stroke of which drawing is which, and where its points lie.
@@ -315,7 +339,8 @@ impl Sequence {
         let mut points = vec![Vec::new(); self.tracks.len()];
         let mut opacity = vec![1.0; self.tracks.len()];
         for &t in &present {
-            (points[t], opacity[t]) = self.moved(t, k, u, &self.motion.of_track(t, &maps));
+            let moved = || self.moved(t, k, u, &self.motion.of_track(t, &maps));
+            (points[t], opacity[t]) = self.followed_at(t, k, frame).map_or_else(moved, |points| (points, 1.0));
         }
         let closed: Vec<bool> = self.tracks.iter().map(|track| track.closed).collect();
         contacts::close(&self.contacts[k], &mut points, &closed, u);
@@ -325,6 +350,13 @@ impl Sequence {
             opacity: opacity[t],
         });
         drawn.collect()
+    }
+
+    /// The points of a track that follows a captured part.
+    fn followed_at(&self, t: usize, k: usize, frame: FrameNumber) -> Option<Vec<Point>> {
+        let part = self.captured.get(self.followed[t][k]?)?;
+        let points = [self.tracks[t].points(k)?, self.tracks[t].points(k + 1)?].map(Vec::as_slice);
+        Following { part, frames: [self.keys[k].frame, self.keys[k + 1].frame], points }.at(frame)
     }
 
     /// A track's points in a span, and its opacity.

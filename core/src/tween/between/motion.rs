@@ -114,6 +114,11 @@ impl Motion {
         (maps, self.tree.at(time))
     }
 
+    /// Whether a track hangs on a peg that was given.
+    pub fn on_given_peg(&self, track: usize) -> bool {
+        matches!(self.carriers[track], Carrier::Peg(_))
+    }
+
     /// The map of a track's carrier among those of [`Self::maps`].
     pub fn of_track(&self, track: usize, maps: &(Vec<Similarity>, Vec<Similarity>)) -> Similarity {
         match self.carriers[track] {

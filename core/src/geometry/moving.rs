@@ -1,0 +1,121 @@
+//! A plane deformed as a line in it is: every point of the line goes where it goes, and what lies around follows.
+//!
+//! Moving least squares (Schaefer, McPhail & Warren 2006, "Image Deformation Using Moving Least Squares", §2.2): for each
+//! place v the similarity is fitted that best takes the line's points p to their images q, those near v counting most,
+//! w = ℓ / |p − v|², and that map is applied to v. Where all of the line moves by one similarity so does the plane. ℓ is
+//! the length of line that a point stands for, so that it is no matter how densely a stretch is drawn.
+//!
+//! Limits: what lies nearer to another stretch of the line than to its own follows that.
+
+use super::Point;
+
+/// Squared distance in pixels below which a place is a point of the line.
+const SAME_PLACE: f64 = 1e-12;
+
+/// The deformation that takes one line to another of as many points.
+#[derive(Clone, Copy, Debug)]
+pub struct Moving<'a> {
+    from: &'a [Point],
+    to: &'a [Point],
+    closed: bool,
+}
+
+impl<'a> Moving<'a> {
+    /// From the points of a line to their images, paired by index.
+    pub fn new(from: &'a [Point], to: &'a [Point], closed: bool) -> Self {
+        assert_eq!(from.len(), to.len(), "a line is deformed to one of as many points");
+        Self { from, to, closed }
+    }
+
+    /// Where a place goes. Without a line it stays.
+    pub fn apply(&self, v: Point) -> Point {
+        let weight = |i: usize| self.length(i) / v.distance_squared(self.from[i]);
+        if let Some(i) = (0..self.from.len()).find(|&i| v.distance_squared(self.from[i]) < SAME_PLACE) {
+            return self.to[i];
+        }
+        let (mut sum, mut source, mut target) = (0.0, Point::ZERO, Point::ZERO);
+        for i in 0..self.from.len() {
+            let w = weight(i);
+            sum += w;
+            source += self.from[i] * w;
+            target += self.to[i] * w;
+        }
+        if sum <= 0.0 {
+            return v;
+        }
+        (source, target) = (source / sum, target / sum);
+        let (mut factor, mut norm) = (Point::ZERO, 0.0);
+        for i in 0..self.from.len() {
+            let (p, q, w) = (self.from[i] - source, self.to[i] - target, weight(i));
+            factor += Point::new(p.dot(q), p.perp_dot(q)) * w;
+            norm += p.length_squared() * w;
+        }
+        let factor = if norm > SAME_PLACE * sum { factor / norm } else { Point::X };
+        factor.rotate(v - source) + target
+    }
+
+    /// Half of the segments at a point, and a little, so that points on one place count too.
+    fn length(&self, i: usize) -> f64 {
+        let (n, at) = (self.from.len(), |i: usize| self.from[i]);
+        let before = if i > 0 || self.closed { at(i).distance(at((i + n - 1) % n)) } else { 0.0 };
+        let after = if i + 1 < n || self.closed { at(i).distance(at((i + 1) % n)) } else { 0.0 };
+        0.5 * (before + after) + 1e-9
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::similarity::Similarity;
+
+    fn outline() -> Vec<Point> {
+        (0..20)
+            .map(|k| Point::from_angle(f64::from(k) * 0.314).rotate(Point::new(40.0 + f64::from(k % 3), 5.0)))
+            .collect()
+    }
+
+    #[test]
+    fn a_line_that_moves_as_one_takes_the_plane_with_it() {
+        let from = outline();
+        let map =
+            Similarity { factor: Point::new(0.3, 1.2), source: Point::new(3.0, 4.0), target: Point::new(100.0, 9.0) };
+        let to: Vec<Point> = from.iter().map(|&p| map.apply(p)).collect();
+        let moving = Moving::new(&from, &to, true);
+        for v in [Point::ZERO, Point::new(41.0, 0.3), Point::new(300.0, -80.0)] {
+            assert!(moving.apply(v).distance(map.apply(v)) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn points_of_the_line_go_to_their_images() {
+        let from = outline();
+        let to: Vec<Point> =
+            from.iter().enumerate().map(|(k, p)| *p + Point::new((k as f64).sin() * 9.0, 4.0)).collect();
+        let moving = Moving::new(&from, &to, true);
+        for (p, q) in from.iter().zip(&to) {
+            assert_eq!(moving.apply(*p), *q);
+            let beside = moving.apply(*p + Point::new(1e-3, 0.0));
+            assert!(beside.distance(*q) < 0.05, "no jump beside a point: {beside} for {q}");
+        }
+    }
+
+    #[test]
+    fn a_limb_that_bends_turns_what_is_drawn_on_it() {
+        // A bar of which the right half turns by 90° about its middle.
+        let bar: Vec<Point> = (-20..=20).map(|k| Point::new(f64::from(k) * 5.0, 0.0)).collect();
+        let bent: Vec<Point> = bar.iter().map(|p| if p.x > 0.0 { p.perp() } else { *p }).collect();
+        let moving = Moving::new(&bar, &bent, false);
+        let (left, right) = (moving.apply(Point::new(-80.0, 6.0)), moving.apply(Point::new(80.0, 6.0)));
+        assert!(left.distance(Point::new(-80.0, 6.0)) < 1.0, "{left}");
+        assert!(right.distance(Point::new(-6.0, 80.0)) < 1.0, "{right}");
+    }
+
+    #[test]
+    fn nothing_and_a_single_point_are_no_trouble() {
+        let v = Point::new(1.0, 2.0);
+        assert_eq!(Moving::new(&[], &[], true).apply(v), v);
+        let (p, q) = (Point::new(5.0, 5.0), Point::new(8.0, 4.0));
+        assert!(Moving::new(&[p], &[q], true).apply(v).distance(v + q - p) < 1e-12);
+        assert!(Moving::new(&[p, p], &[q, q], false).apply(v).distance(v + q - p) < 1e-12);
+    }
+}
