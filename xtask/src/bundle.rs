@@ -60,8 +60,12 @@ fn build() -> Result<(PathBuf, PathBuf, PathBuf)> {
         let _ = capture(command("rustup").args(["target", "add", TRIPLE]));
     }
     let versioned = format!("{TRIPLE}.{}.{}", GLIBC.0, GLIBC.1);
+    // As one unit the core takes minutes on one processor, which is worth it for artists, and not for a test.
+    let in_parts = ["--config", "profile.release.package.rototoon.codegen-units=16"];
+    let in_parts = std::env::var_os("CI").map_or(&in_parts[..0], |_| &in_parts[..]);
     run(command(bin.join("cargo-zigbuild"))
         .args(["zigbuild", "--quiet", "--release", "--target", &versioned])
+        .args(in_parts)
         .args(["-p", "rototoon-capi", "-p", "rototoon-cli", "-p", "rototoon-ofx"])
         .env("PATH", path)
         // The zip is downloaded by artists: no line tables.

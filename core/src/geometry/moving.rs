@@ -5,12 +5,15 @@
 //! w = ℓ / |p − v|², and that map is applied to v. Where all of the line moves by one similarity so does the plane. ℓ is
 //! the length of line that a point stands for, so that it is no matter how densely a stretch is drawn.
 //!
-//! Limits: what lies nearer to another stretch of the line than to its own follows that.
+//! Limits: what lies nearer to another stretch of the line than to its own follows that, unless it is said to which it belongs
+//! ([`Moving::apply_by`]).
 
 use super::Point;
 
 /// Squared distance in pixels below which a place is a point of the line.
 const SAME_PLACE: f64 = 1e-12;
+/// Least and greatest scale of what lies beside the line: a stretch that has collapsed says nothing of its surroundings.
+const SCALES: (f64, f64) = (0.25, 4.0);
 
 /// The deformation that takes one line to another of as many points.
 #[derive(Clone, Copy, Debug)]
@@ -29,13 +32,20 @@ impl<'a> Moving<'a> {
 
     /// Where a place goes. Without a line it stays.
     pub fn apply(&self, v: Point) -> Point {
-        let weight = |i: usize| self.length(i) / v.distance_squared(self.from[i]);
-        if let Some(i) = (0..self.from.len()).find(|&i| v.distance_squared(self.from[i]) < SAME_PLACE) {
+        self.apply_by(v, |_| 1.0)
+    }
+
+    /// The same, where the line's points count by their numbers too: so may be said which stretch of a line a place belongs
+    /// to that lies near several.
+    pub fn apply_by(&self, v: Point, counts: impl Fn(usize) -> f64) -> Point {
+        let weight = |i: usize| counts(i) * self.length(i) / v.distance_squared(self.from[i]);
+        let same = |&i: &usize| counts(i) > 0.0 && v.distance_squared(self.from[i]) < SAME_PLACE;
+        if let Some(i) = (0..self.from.len()).find(same) {
             return self.to[i];
         }
+        let weights: Vec<f64> = (0..self.from.len()).map(|i| if counts(i) > 0.0 { weight(i) } else { 0.0 }).collect();
         let (mut sum, mut source, mut target) = (0.0, Point::ZERO, Point::ZERO);
-        for i in 0..self.from.len() {
-            let w = weight(i);
+        for (i, &w) in weights.iter().enumerate() {
             sum += w;
             source += self.from[i] * w;
             target += self.to[i] * w;
@@ -45,12 +55,14 @@ impl<'a> Moving<'a> {
         }
         (source, target) = (source / sum, target / sum);
         let (mut factor, mut norm) = (Point::ZERO, 0.0);
-        for i in 0..self.from.len() {
-            let (p, q, w) = (self.from[i] - source, self.to[i] - target, weight(i));
+        for (i, &w) in weights.iter().enumerate() {
+            let (p, q) = (self.from[i] - source, self.to[i] - target);
             factor += Point::new(p.dot(q), p.perp_dot(q)) * w;
             norm += p.length_squared() * w;
         }
         let factor = if norm > SAME_PLACE * sum { factor / norm } else { Point::X };
+        let scale = factor.length();
+        let factor = if scale > 1e-9 { factor * (scale.clamp(SCALES.0, SCALES.1) / scale) } else { Point::X };
         factor.rotate(v - source) + target
     }
 

@@ -15,6 +15,8 @@
 //!   axis to axis and between the static and the moving part (a stoop goes through all motions, a waving hand does not), so
 //!   each gets its own average, weighted by the leave-one-out error E as exp(−κ log E): a likelihood of Gaussian errors,
 //!   κ in proportion to the number of clips. Nothing is fixed by hand that the clips can tell.
+//! - **Stance.** What a clip is on average over time, most of what there is to foretell, comes from a process of its own:
+//!   `stance`.
 //! - **Uncertainty.** The covariance of the leave-one-out errors over time, axis by axis, is the covariance of what is
 //!   predicted; `key_pose` conditions on drawn postures with it.
 //!
@@ -25,7 +27,7 @@ use super::basis::{Axes, COSINES, MODEL_FRAMES, cosines};
 use super::grid::{Grid, Row, WIDTH, mean};
 use super::kernels::{Kernels, Weights};
 use super::key_pose::{Errors, condition, deviation};
-use super::{Prediction, STEP};
+use super::{Prediction, STEP, stance};
 use crate::numeric::dense::DenseCholesky;
 use crate::numeric::vector::dot;
 use crate::scene::{Cancelled, Progress};
@@ -48,11 +50,12 @@ const FILLING: usize = 3;
 
 /// The clips as numbers: `x[s]` holds motions × cosines rows of one number an axis.
 pub(super) struct Cells {
-    characters: usize,
-    motions: usize,
-    axes: usize,
-    known: Vec<bool>,
-    x: Vec<Vec<f64>>,
+    pub characters: usize,
+    pub motions: usize,
+    pub axes: usize,
+    /// By character and motion whether there is a clip; else what stands there was filled in.
+    pub known: Vec<bool>,
+    pub x: Vec<Vec<f64>>,
 }
 
 impl Cells {
@@ -89,13 +92,14 @@ impl Cells {
         cells
     }
 
-    fn block(&self, s: usize, m: usize) -> &[f64] {
+    /// A clip.
+    pub fn block(&self, s: usize, m: usize) -> &[f64] {
         let size = COSINES * self.axes;
         &self.x[s][m * size..(m + 1) * size]
     }
 
     /// Mean of the known clips of a motion without a character's; zero where there is none.
-    fn mean_of(&self, m: usize, without: usize) -> Vec<f64> {
+    pub fn mean_of(&self, m: usize, without: usize) -> Vec<f64> {
         let mut sum = vec![0.0; COSINES * self.axes];
         let mut count = 0.0;
         for s in (0..self.characters).filter(|&s| s != without && self.known[s * self.motions + m]) {
@@ -432,6 +436,9 @@ pub(super) fn predict(
     let found: Vec<Vec<LeftOut>> = found.collect::<Result<_, Cancelled>>()?;
     let found: Vec<Vec<Vec<f64>>> = found.into_iter().flatten().flatten().collect();
     let (mut coefficients, errors) = averaged(&cells, &found, target);
+    if let Some(stance) = stance::predict(&cells, &kernels, axes.even, target) {
+        coefficients[..stance.len()].copy_from_slice(&stance);
+    }
     let mean = cells.mean_of(grid.motion, grid.style);
     for (c, mean) in coefficients.iter_mut().zip(&mean) {
         *c = strength * (*c - mean);

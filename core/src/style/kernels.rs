@@ -94,6 +94,21 @@ impl Kernels {
         (0..self.size).for_each(|i| sum[i * self.size + i] += weights.noise);
         sum
     }
+
+    /// How alike motions are on average over time, for even axes or odd ones: the posture terms alone, unit diagonal.
+    pub fn stances(&self, even: bool) -> Vec<f64> {
+        let sign = if even { MIRRORED } else { -MIRRORED };
+        let motions = self.size / COSINES;
+        let at = |a: usize, b: usize| {
+            let k = a * COSINES * self.size + b * COSINES;
+            self.posture[k] + sign * self.mirrored[k]
+        };
+        let norm: Vec<f64> = (0..motions).map(|m| at(m, m).max(1e-12).sqrt()).collect();
+        (0..motions * motions)
+            .map(|k| (k / motions, k % motions))
+            .map(|(a, b)| at(a, b) / (norm[a] * norm[b]))
+            .collect()
+    }
 }
 
 fn mirror(row: &Row) -> Row {

@@ -23,6 +23,7 @@ mod grid;
 mod kernels;
 mod key_pose;
 pub mod liang2012;
+mod stance;
 
 use crate::scene::clip::resample;
 use crate::scene::skeleton::{COUNT, Posture, torso};
@@ -35,7 +36,8 @@ const STEP: &str = "Translating";
 /// The method that translates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preset {
-    /// Gaussian processes over style and posture, averaged by how well they predict what is known: the default.
+    /// Gaussian processes over style and posture, averaged by how well they predict what is known, with one of its own for
+    /// the stance: the default.
     #[default]
     Rototoon,
     /// The asymmetric bilinear model of Tenenbaum & Freeman 2000, with a ridge towards the mean style.

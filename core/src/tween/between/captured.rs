@@ -10,6 +10,11 @@
 //! these are the drawings themselves, whatever they add to what was captured; between them what the drawings say that the
 //! contours do not fades from one into the other.
 //!
+//! A closed eye has both lids on one line, and an arm may rest on its body: what lies near two stretches of a contour on one
+//! key belongs to that which it is near to on both. Each point is **bound** to the place of the contour that minimises the
+//! sum of its squared distances on the keys, and follows the contour around that place, the farther around the farther it
+//! lies off.
+//!
 //! # Which part a stroke follows
 //!
 //! Of the parts in which, or near which, it lies on both keys that which best takes its points from the one key to
@@ -25,6 +30,11 @@ use crate::geometry::{Point, polygon, polyline};
 use crate::scene::FrameNumber;
 use std::collections::BTreeMap;
 
+/// Parts of a segment of a contour: what lies on it has to be nearer to one of its points than to another stretch.
+const STEPS: usize = 4;
+/// How far around the place that it is bound to a point follows the contour: in its distances from it, and in segments at the
+/// least.
+const AROUND: f64 = 3.0;
 /// How far a stroke's points lie outside a part, in the mean and in √area of the part, at the most.
 const NEAR: f64 = 0.15;
 /// Share of its way that a part must explain.
@@ -49,11 +59,11 @@ impl Captured {
         first <= last && alike == i64::from(last) - i64::from(first) + 1
     }
 
-    /// Where points of one frame are on another; none where it is not known on either.
-    fn carried(&self, points: &[Point], from: FrameNumber, to: FrameNumber) -> Option<Vec<Point>> {
-        let (from, to) = (self.contours.get(&from)?, self.contours.get(&to)?);
-        let moving = (from.len() == to.len()).then(|| Moving::new(from, to, self.closed))?;
-        Some(points.iter().map(|&p| moving.apply(p)).collect())
+    /// A contour with its segments divided.
+    fn divided(&self, contour: &[Point]) -> Vec<Point> {
+        let last = contour.last().filter(|_| !self.closed || contour.len() == 1).copied();
+        let steps = |(a, b): (Point, Point)| (0..STEPS).map(move |k| a.lerp(b, k as f64 / STEPS as f64));
+        polyline::segments(contour, self.closed).flat_map(steps).chain(last).collect()
     }
 
     /// Whether points lie in it or near it on a frame.
@@ -73,43 +83,77 @@ impl Captured {
     }
 }
 
-/// A stroke between two keys that follows a part.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Following<'a> {
-    pub part: &'a Captured,
+/// How a stroke between two keys follows a part.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Following {
+    /// Number of the part.
+    part: usize,
     /// Frames of the keys.
-    pub frames: [FrameNumber; 2],
-    /// The stroke's points on them.
-    pub points: [&'a [Point]; 2],
+    frames: [FrameNumber; 2],
+    /// By point the number of the place on the divided contour, and how many places around it count.
+    bound: Vec<(usize, f64)>,
 }
 
-impl Following<'_> {
-    /// Its points on a frame.
-    pub fn at(&self, frame: FrameNumber) -> Option<Vec<Point>> {
+impl Following {
+    /// Binds points to a part on both keys; none where it is not captured all the way, or where they do not lie on it.
+    fn new(parts: &[Captured], part: usize, frames: [FrameNumber; 2], points: [&[Point]; 2]) -> Option<Self> {
+        let captured = &parts[part];
+        let on = captured.spans(frames[0], frames[1]);
+        if !on || !(0..2).all(|k| captured.holds(points[k], frames[k])) {
+            return None;
+        }
+        let contours = frames.map(|frame| captured.contours.get(&frame).map(|c| captured.divided(c)));
+        let [Some(a), Some(b)] = contours else { return None };
+        let spacing = 0.5 * (polyline::length(&a, captured.closed) + polyline::length(&b, captured.closed));
+        let spacing = (spacing / a.len().max(1) as f64).max(1e-9);
+        let bind = |(p, q): (&Point, &Point)| {
+            let off = |j: usize| [p.distance_squared(a[j]), q.distance_squared(b[j])];
+            let sum = |j: &usize| off(*j)[0] + off(*j)[1];
+            let nearest = (0..a.len()).min_by(|i, j| sum(i).total_cmp(&sum(j)))?;
+            let farther = off(nearest)[0].max(off(nearest)[1]).sqrt();
+            Some((nearest, (AROUND * STEPS as f64).max(AROUND * farther / spacing)))
+        };
+        let bound = points[0].iter().zip(points[1]).map(bind).collect::<Option<_>>()?;
+        Some(Self { part, frames, bound })
+    }
+
+    /// The stroke's points on a frame, from those on its keys.
+    pub fn at(&self, parts: &[Captured], points: [&[Point]; 2], frame: FrameNumber) -> Option<Vec<Point>> {
         let [a, b] = self.frames;
         let u = (f64::from(frame) - f64::from(a)) / (f64::from(b) - f64::from(a));
-        let forwards = self.part.carried(self.points[0], a, frame)?;
-        let backwards = self.part.carried(self.points[1], b, frame)?;
+        let part = parts.get(self.part)?;
+        let forwards = self.carried(part, points[0], a, frame)?;
+        let backwards = self.carried(part, points[1], b, frame)?;
         Some(forwards.iter().zip(&backwards).map(|(p, q)| p.lerp(*q, u)).collect())
     }
 
-    /// Mean distance of its points, carried from key to key, from where they are there; none where the part is not
-    /// captured all the way, or where the stroke does not lie on it.
-    fn missed(&self) -> Option<f64> {
-        let [a, b] = self.frames;
-        let on = self.part.spans(a, b) && self.part.holds(self.points[0], a) && self.part.holds(self.points[1], b);
-        let carried = on.then(|| self.part.carried(self.points[0], a, b)).flatten()?;
-        Some(mean_distance(&carried, self.points[1]))
+    /// Where the points of one frame are on another.
+    fn carried(&self, part: &Captured, points: &[Point], from: FrameNumber, to: FrameNumber) -> Option<Vec<Point>> {
+        let (from, to) = (part.divided(part.contours.get(&from)?), part.divided(part.contours.get(&to)?));
+        let count = from.len();
+        let moving = (count == to.len()).then(|| Moving::new(&from, &to, part.closed))?;
+        let carry = |(&p, &(at, reach)): (&Point, &(usize, f64))| {
+            moving.apply_by(p, |j| {
+                let along = at.abs_diff(j);
+                let along = if part.closed { along.min(count - along) } else { along };
+                let share = along as f64 / reach;
+                if share < 1.0 { (1.0 - share * share).powi(2) } else { 0.0 }
+            })
+        };
+        Some(points.iter().zip(&self.bound).map(carry).collect())
     }
 }
 
-/// The part that a track follows from a key to the next; their numbers and frames are given.
-pub(super) fn followed(parts: &[Captured], track: &Track, key: usize, frames: [FrameNumber; 2]) -> Option<usize> {
+/// How a track follows a part from a key to the next, whose frames are given.
+pub(super) fn followed(parts: &[Captured], track: &Track, key: usize, frames: [FrameNumber; 2]) -> Option<Following> {
     let (a, b) = (track.points(key)?, track.points(key + 1)?);
-    let missed = |part| Following { part, frames, points: [a, b] }.missed();
-    let all = parts.iter().enumerate().filter_map(|(k, part)| Some((missed(part)?, k)));
-    let (least, part) = all.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (least <= (EXPLAINED * mean_distance(a, b)).max(STILL)).then_some(part)
+    let missed = |part: usize| {
+        let following = Following::new(parts, part, frames, [a, b])?;
+        let carried = following.carried(&parts[part], a, frames[0], frames[1])?;
+        Some((mean_distance(&carried, b), following))
+    };
+    let (least, following) = (0..parts.len()).filter_map(missed).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    (least <= (EXPLAINED * mean_distance(a, b)).max(STILL)).then_some(following)
 }
 
 fn mean_distance(a: &[Point], b: &[Point]) -> f64 {

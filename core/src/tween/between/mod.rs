@@ -167,8 +167,8 @@ pub struct Sequence {
     /// By span.
     contacts: Vec<Vec<contacts::Contact>>,
     captured: Arc<[Captured]>,
-    /// By track and span the captured part that it follows.
-    followed: Vec<Vec<Option<usize>>>,
+    /// By track and span how it follows a captured part.
+    followed: Vec<Vec<Option<Following>>>,
     options: Options,
 }
 
@@ -250,7 +250,7 @@ impl Sequence {
     /// Lets strokes without a given peg follow the captured part that they lie on, where there is one.
     pub fn following(mut self, captured: Arc<[Captured]>) -> Self {
         let spans: Vec<[FrameNumber; 2]> = self.keys.windows(2).map(|pair| [pair[0].frame, pair[1].frame]).collect();
-        let of = |(t, track): (usize, &Track)| -> Vec<Option<usize>> {
+        let of = |(t, track): (usize, &Track)| -> Vec<Option<Following>> {
             let free = !self.motion.on_given_peg(t);
             let part = |(k, &frames)| captured::followed(&captured, track, k, frames).filter(|_| free);
             spans.iter().enumerate().map(part).collect()
@@ -354,9 +354,8 @@ impl Sequence {
 
     /// The points of a track that follows a captured part.
     fn followed_at(&self, t: usize, k: usize, frame: FrameNumber) -> Option<Vec<Point>> {
-        let part = self.captured.get(self.followed[t][k]?)?;
         let points = [self.tracks[t].points(k)?, self.tracks[t].points(k + 1)?].map(Vec::as_slice);
-        Following { part, frames: [self.keys[k].frame, self.keys[k + 1].frame], points }.at(frame)
+        self.followed[t][k].as_ref()?.at(&self.captured, points, frame)
     }
 
     /// A track's points in a span, and its opacity.
