@@ -47,6 +47,8 @@ class Choices:
     curve: tuple[tuple[float, float], ...] = ()
     """Times and shares, for the spacing CURVE."""
     pegs: str = "FOUND"
+    follow: bool = False
+    """Whether strokes go with the captured contours on which they lie. Not so in files of before, which say nothing of it."""
 
     def kept(self) -> dict[str, Any]:
         """As it is kept in the file."""

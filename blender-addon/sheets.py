@@ -11,6 +11,7 @@ import hashlib
 import json
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -55,7 +56,10 @@ class Plane:
 
     def flat(self, points: np.ndarray, layer: int) -> tuple[np.ndarray, np.ndarray]:
         """Pixels (N, 2) of layer points and their distances from the plane (N,)."""
-        to = self.to_sheet[layer]
+        return self.laid(points, self.to_sheet[layer])
+
+    def laid(self, points: np.ndarray, to: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The same of points in any space, `to` being 4×4 to the space of the sheet."""
         local = (points.astype(np.float64) @ to[:3, :3].T + to[:3, 3]) @ self.axes.T
         return local[:, :2] * self.scale - self.corner, local[:, 2]
 
@@ -78,6 +82,25 @@ class Plane:
 
 
 @dataclass
+class Contour:
+    """A captured contour on the sheet, for strokes to follow."""
+
+    closed: bool
+    first: int
+    """The frame of the first of its rows."""
+    points: np.ndarray
+    """(frames, N, 2): pixels, on each frame from the first on."""
+
+    def written(self) -> dict[str, Any]:
+        """As the library takes it."""
+        return {"closed": self.closed, "first": self.first, "contours": self.points.tolist()}
+
+    def text(self) -> bytes:
+        """All that it is."""
+        return repr((self.closed, self.first, self.points.shape)).encode() + self.points.tobytes()
+
+
+@dataclass
 class Sheet:
     """Keys that follow each other on one or more layers."""
 
@@ -96,6 +119,8 @@ class Sheet:
     """By choice and layer the names of the layer's pegs, the outermost first."""
     size: tuple[float, float] | None = None
     """Width and height of the picture, where strokes leave it. Its corner is the sheet's origin."""
+    captured: dict[int, list[Contour]] = field(default_factory=dict)
+    """By span the contours that its strokes may follow, on its frames."""
 
     def around(self, span: int) -> range:
         """The keys on which a span depends."""
@@ -138,6 +163,8 @@ class Sheet:
             told += [self.pegs_of(span)] if self.pegs_of(span) else []
             told += [self.size] if choices.leaving == "LEAVE" else []
             summed.update(json.dumps(told).encode())
+            for contour in self.captured.get(span, ()):
+                summed.update(contour.text())
             self.digests[span] = summed.hexdigest()
 
 

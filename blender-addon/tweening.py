@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import between, layer_pegs, layer_space, sheets, tween, tween_numbers
+from . import between, captured, layer_pegs, layer_space, sheets, tween, tween_numbers
 from . import grease_pencil as gp
 from . import keys as ks
 from . import tween_records as records
@@ -61,12 +61,16 @@ def plan(ob, layers: Iterable, choose: Choose) -> Plan:
         wanted = tuple(sorted((span, choices) for span, choices in spans[name].items()) if spans[name] else ())
         key = (tuple(found.keys), tuple(sorted(found.blank)), tuple(map(repr, wanted)), carrier)
         groups.setdefault(key, []).append(name)
+    follow = any(choices.follow for wanted in spans.values() for choices in wanted.values())
+    parts = captured.read(ob) if follow else []
     for names in groups.values():
-        _plan_group(ob, names, spans[names[0]], result)
+        _plan_group(ob, names, spans[names[0]], parts, result)
     return result
 
 
-def _plan_group(ob, names: list[str], wanted: dict[tuple[int, int], Choices], result: Plan) -> None:
+def _plan_group(
+    ob, names: list[str], wanted: dict[tuple[int, int], Choices], parts: list[captured.Part], result: Plan
+) -> None:
     found, record = result.frames[names[0]], result.records[names[0]]
     for run in _runs(found):
         number = {(run[k], run[k + 1]): k for k in range(len(run) - 1)}
@@ -83,6 +87,7 @@ def _plan_group(ob, names: list[str], wanted: dict[tuple[int, int], Choices], re
         plane = sheets.Plane.of(points[np.isfinite(points).all(1)], to_sheet)
         sheet = sheets.Sheet(names, run, plane, mine, choices)
         layer_space.prepare(ob, sheet, points)
+        captured.put_on(ob, sheet, parts)
         sheet.read(ob)
         for k in [k for k in mine if _is_current(sheet, k, result)]:
             del sheet.wanted[k]
@@ -145,6 +150,8 @@ def draw(plan: Plan, progress: tween.Progress, threads: int = 0) -> None:
         spacing = [sheet.spacing(k) if k in needed else "smooth" for k in range(len(sheet.frames) - 1)]
         first = call.spans[0]
         options = {**sheet.wanted[first].shared(), "leaving": sheet.leaving(first)}
+        # Each span's own frames: a contour of one span is none of another, which may not want it.
+        options["captured"] = [each.written() for k in call.spans for each in sheet.captured.get(k, ())]
         if any(sheet.pegs_of(first)):
             options |= layer_pegs.options(sheet, call.laid, first, None, threads)
         call.drawn, call.matches = tween.draw_in_betweens(

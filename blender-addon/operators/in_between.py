@@ -114,6 +114,11 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
         name="New and Lost", description="What strokes do that only one of two keys has", items=charts.LEAVING
     )
     pegs: bpy.props.EnumProperty(name="Moves as One", description="What moves as one", items=charts.PEGS)
+    follow: bpy.props.BoolProperty(
+        name="Follow Captured",
+        description="Strokes that lie on a captured contour move as it was tracked in the footage",
+        default=True,
+    )
     rest: bpy.props.BoolProperty(
         name="Rest at the Ends",
         description="A smooth movement begins and ends at rest; otherwise it moves on with constant speed",
@@ -142,6 +147,7 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
         layout.prop(self, "arcs", slider=True)
         layout.prop(self, "step")
         layout.prop(self, "pegs")
+        layout.prop(self, "follow")
         layout.separator()
         layout.prop(self, "rigid")
         layout.prop(self, "contacts")
@@ -168,6 +174,7 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
             self.step,
             curve,
             self.pegs,
+            self.follow,
         )
         scene = context.scene
         self._range = scene.frame_start, scene.frame_end

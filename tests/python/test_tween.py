@@ -88,12 +88,31 @@ def test_pegs_may_be_given():
     assert drawn.points.tolist()[5] == pytest.approx((-x, -y), abs=1e-6)
 
 
+def test_what_was_captured_is_followed():
+    sheets = [SHEETS[0], [line(4, 10), line(40, 20), line(90, 8)]]
+    swing = [0, 20, 35, 45, 50, 40, 25, 12, 4]
+    captured = [{"closed": False, "first": 1, "contours": [line(x, 10) for x in swing]}]
+    drawn, _ = tween.draw_in_betweens(drawings(sheets), [(0, range(2, 9))], spacing=["linear"], captured=captured)
+    points = drawn.points.tolist()
+    for k, x in enumerate(swing[1:-1]):
+        assert points[38 * k][0] == pytest.approx(x, abs=1e-6)
+        assert points[38 * k + 10][0] == pytest.approx(40, abs=1e-6), "what lies elsewhere stays"
+    plain, _ = tween.draw_in_betweens(drawings(sheets), [(0, [5])], spacing=["linear"])
+    assert plain.points.tolist()[0][0] == pytest.approx(2, abs=0.1)
+
+
 def test_progress_is_told_and_may_stop():
     told = []
     tween.draw_in_betweens(drawings(SHEETS), [(0, [5])], lambda share, step: told.append(share))
     assert told == sorted(told) and told[0] == 0 and told[-1] == 1
     with pytest.raises(Cancelled):
         tween.match_strokes(drawings(SHEETS), lambda share, step: False)
+
+
+def captured(*contours, first=1):
+    """Drawings between that follow some contours."""
+    following = [{"closed": False, "first": first, "contours": contours}]
+    return tween.draw_in_betweens(drawings(SHEETS), [(0, [5])], captured=following)
 
 
 @pytest.mark.parametrize(
@@ -108,6 +127,8 @@ def test_progress_is_told_and_may_stop():
         (lambda: tween.draw_in_betweens(drawings(SHEETS), [(0, [9])]), "found frame 9, expected one between 1 and 9"),
         (lambda: tween.draw_in_betweens(drawings(SHEETS), [(0, [2])], arcs=2.0), "arcs are 2"),
         (lambda: tween.draw_in_betweens(drawings(SHEETS), [], spacing=["fast"]), "spacing"),
+        (lambda: captured([[0, 0]], [[0, 1e300]]), r"captured\[0\].contours\[1\] \(frame 2\): found \(0, 1000"),
+        (lambda: captured([[0, 0]], [[0, 0]], first=2**31 - 1), r"captured\[0\].first: found 2147483647"),
     ],
 )
 def test_bad_input_is_named(call, message):
