@@ -142,7 +142,7 @@ mod tests {
         // Against the mean of the others that is what is left of it to all.
         let left = [0, 1, 2].map(|axis| own[0][axis] - (1..4).map(|s| own[s][axis]).sum::<f64>() / 3.0);
         for axis in 0..3 {
-            assert!((found[axis] - left[axis]).abs() < 0.2 * left[axis].abs(), "{found:?} for {left:?}");
+            assert!((found[axis] - left[axis]).abs() < 0.3 * left[axis].abs(), "{found:?} for {left:?}");
         }
     }
 

@@ -18,7 +18,8 @@
 //! # Which part a stroke follows
 //!
 //! Of the parts in which, or near which, it lies on both keys that which best takes its points from the one key to
-//! the other; none if that explains less than half of their way, or if the part is not captured on all frames between.
+//! the other; none if that misses them by more than half of their way, and by more than drawings may lie beside a part; nor a
+//! part that is not captured on all frames between.
 //!
 //! # Limits
 //!
@@ -35,12 +36,12 @@ const STEPS: usize = 4;
 /// How far around the place that it is bound to a point follows the contour: in its distances from it, and in segments at the
 /// least.
 const AROUND: f64 = 3.0;
-/// How far a stroke's points lie outside a part, in the mean and in √area of the part, at the most.
+/// How far a stroke's points lie outside a part, in the mean and in sizes of the part, at the most.
 const NEAR: f64 = 0.15;
-/// Share of its way that a part must explain.
+/// Share of its way that a part must explain of a stroke that does not come out as near as that.
 const EXPLAINED: f64 = 0.5;
-/// Mean distance in pixels within which a part explains a stroke that hardly moves.
-const STILL: f64 = 2.0;
+/// Size of an open contour, which has no area, in its lengths.
+const OPEN: f64 = 0.3;
 
 /// A captured contour.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -69,8 +70,6 @@ impl Captured {
     /// Whether points lie in it or near it on a frame.
     fn holds(&self, points: &[Point], frame: FrameNumber) -> bool {
         let Some(contour) = self.contours.get(&frame).filter(|contour| !contour.is_empty()) else { return false };
-        let length = polyline::length(contour, self.closed);
-        let area = if self.closed { polygon::signed_area(contour).abs() } else { 0.0 };
         let outside = |p: &Point| {
             if self.closed && polygon::contains(contour, *p) {
                 0.0
@@ -79,7 +78,14 @@ impl Captured {
             }
         };
         let off = points.iter().map(outside).sum::<f64>() / points.len().max(1) as f64;
-        off <= NEAR * area.max(length).sqrt()
+        off <= NEAR * self.size(contour)
+    }
+
+    /// How large a contour is, in pixels.
+    fn size(&self, contour: &[Point]) -> f64 {
+        let area = if self.closed { polygon::signed_area(contour).abs().sqrt() } else { 0.0 };
+        // A closed eye has no area either.
+        area.max(OPEN * polyline::length(contour, false))
     }
 }
 
@@ -153,7 +159,8 @@ pub(super) fn followed(parts: &[Captured], track: &Track, key: usize, frames: [F
         Some((mean_distance(&carried, b), following))
     };
     let (least, following) = (0..parts.len()).filter_map(missed).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (least <= (EXPLAINED * mean_distance(a, b)).max(STILL)).then_some(following)
+    let size = parts[following.part].contours.get(&frames[0]).map_or(0.0, |c| parts[following.part].size(c));
+    (least <= (EXPLAINED * mean_distance(a, b)).max(NEAR * size)).then_some(following)
 }
 
 fn mean_distance(a: &[Point], b: &[Point]) -> f64 {
