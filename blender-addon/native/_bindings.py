@@ -2,7 +2,7 @@
 
 import ctypes
 
-HEADER_HASH = 0xc7c589f4752011bc
+HEADER_HASH = 0xe701f55fe4bdfaa1
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0

@@ -516,8 +516,10 @@ void rototoon_matches_free(struct RototoonMatches *matches);
 // (`"smooth"`, `"linear"`, `"ease_in"`, ..., a curve, or a chart); `corners`, the drawings at which velocities do not join;
 // `arcs` (0 to 1), `rigid`, `contacts`, `rest`; `leaving`, what strokes do that only one of two drawings has: `"grow"`,
 // `"fade"` or `{"leave": [width, height]}`; `pegs` as documents write them, with `hung`, the name of the peg of each stroke,
-// or null; and the options of `rototoon_match_strokes`. Without pegs these are found. A span depends on the drawings at its
-// ends, and if its spacing is smooth also on those beside them, on nothing else.
+// or null; `captured`, contours whose movement is known: a list of `{"closed": bool, "first": frame, "contours": [...]}`, the
+// points on each frame from the first on, which strokes that lie on them follow; and the options of
+// `rototoon_match_strokes`. Without pegs these are found. A span depends on the drawings at its ends, on what was captured
+// between them, and if its spacing is smooth also on the drawings beside them, on nothing else.
 RototoonStatus rototoon_draw_in_betweens(const int32_t *offsets,
                                          size_t stroke_count,
                                          const double *points,

@@ -273,8 +273,7 @@ mod tests {
 
     fn texel(own: Option<Padded>) -> Texel {
         let mesh = Mesh::new(&[(0.0, 0.0), (40.0, 0.0), (40.0, 40.0)].map(|(x, y)| Point::new(x, y)), true);
-        let mut key = Sample::default();
-        key.colour = Padded::new(0.9, 0.9, 0.9, 0.0);
+        let key = Sample { colour: Padded::new(0.9, 0.9, 0.9, 0.0), ..Sample::default() };
         let (weights, products) = ([0.25; 4], [0.0625; PAIRS.len()]);
         let binding = mesh.bind(Point::new(30.0, 10.0));
         Texel { binding, key, weight: BAND_WEIGHT, across: None, own, cell: 0, weights, products }
