@@ -35,8 +35,8 @@
 // Stated once, above.
 #![allow(clippy::missing_safety_doc)]
 
-pub mod asked;
-mod callback;
+mod asked;
+pub mod callback;
 pub mod edit;
 pub mod entry;
 pub mod functions;

@@ -16,9 +16,9 @@
 //! - I ⊗ I: and the rest.
 //!
 //! The prediction is the conditional mean (Rasmussen & Williams 2006, eq. 2.25) given the clips that are known, the even and
-//! the odd axes apart. The terms have equal weights; which weights are best changes from library to library by more than
-//! they gain (chosen on one half of the characters they are as often worse as better on the other). Over 40 libraries of 5 to
-//! 7 characters and 5 to 9 motions, all parts of one, the whole error falls by 3.3 %, in 39 of them.
+//! the odd axes apart. The terms have equal weights: fitted on one half of the characters, weights are as often worse as
+//! better on the other. On 8 characters × 9 motions, each clip left out in turn, the error of the whole falls from 0.1223
+//! to 0.1188 torso lengths.
 //!
 //! Limits: two motions say too little of likeness, and are left to `gaussian`. Cost grows with the cube of the clips.
 

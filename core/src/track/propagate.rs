@@ -2,7 +2,8 @@
 //!
 //! A pose starts on the next drawing from where it was, shifted by the flow below it (node by node, and as a whole by
 //! the median), and shifted by what it moved last. Each start that is not where another one is already is aligned coarsely,
-//! kept with its unaligned self, and the best two are polished. The colours are always those of the key, so nothing drifts from drawing to drawing.
+//! kept with its unaligned self, and the best two are polished. The colours are always those of the key, so nothing drifts
+//! from drawing to drawing.
 
 use super::TrackError;
 use super::features::Features;
