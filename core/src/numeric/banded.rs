@@ -7,7 +7,7 @@
 //! full. [`BLOCK`] rows are finished before the rows below them are touched, which then are read and written once instead
 //! of [`BLOCK`] times.
 
-use super::vector::{dot, vectorised};
+use super::vector::vectorised;
 
 /// Rows that are finished together.
 const BLOCK: usize = 4;
@@ -76,7 +76,8 @@ impl BandMatrix {
             #[inline(always)]
             || self.finish_all(),
         )?;
-        Ok(BandCholesky { matrix: self })
+        let inverse = self.data.iter().step_by(self.stride).map(|pivot| 1.0 / pivot).collect();
+        Ok(BandCholesky { matrix: self, inverse })
     }
 
     #[inline(always)]
@@ -148,6 +149,8 @@ fn take<const N: usize>(target: &mut [f64], rows: [&[f64]; N]) {
 #[derive(Clone, Debug)]
 pub struct BandCholesky {
     matrix: BandMatrix,
+    /// Of the diagonal.
+    inverse: Vec<f64>,
 }
 
 impl BandCholesky {
@@ -163,19 +166,36 @@ impl BandCholesky {
     #[inline(always)]
     fn solve(&self, b: &mut [f64]) {
         let BandMatrix { size, half, stride, ref data } = self.matrix;
-        let row = |i: usize| &data[i * stride..][..(half + 1).min(size - i)];
+        // Rows are filled up with zeros: all of them are of one length, and reach a little beyond the last unknown.
+        let length = half.next_multiple_of(LANES);
+        let mut x = vec![0.0; size + length];
+        x[..size].copy_from_slice(b);
         for i in 0..size {
-            let row = row(i);
-            b[i] /= row[0];
-            let value = b[i];
-            for (x, u) in b[i + 1..].iter_mut().zip(&row[1..]) {
-                *x = (-u).mul_add(value, *x);
+            let (row, inverse) = (&data[i * stride + 1..][..length], self.inverse[i]);
+            x[i] *= inverse;
+            let value = [-x[i]; LANES];
+            for (x, u) in x[i + 1..][..length].as_chunks_mut().0.iter_mut().zip(row.as_chunks().0) {
+                add_product(x, &value, u);
             }
         }
+        x[size..].fill(0.0);
         for i in (0..size).rev() {
-            let row = row(i);
-            b[i] = (b[i] - dot(&row[1..], &b[i + 1..i + row.len()])) / row[0];
+            let (row, inverse) = (&data[i * stride + 1..][..length], self.inverse[i]);
+            let mut sum = [0.0; LANES];
+            for (x, u) in x[i + 1..][..length].as_chunks().0.iter().zip(row.as_chunks().0) {
+                add_product(&mut sum, x, u);
+            }
+            x[i] = (x[i] - ((sum[0] + sum[2]) + (sum[1] + sum[3]))) * inverse;
         }
+        b.copy_from_slice(&x[..size]);
+    }
+}
+
+/// Adds products of numbers in pairs.
+#[inline(always)]
+fn add_product(sums: &mut [f64; LANES], a: &[f64; LANES], b: &[f64; LANES]) {
+    for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+        *sum = a.mul_add(*b, *sum);
     }
 }
 

@@ -6,6 +6,7 @@
 //! - [`damped_system`]: damped normal equations, long rows as a correction of low rank
 //! - [`dense`]: small dense positive definite systems
 //! - [`gradient_check`]: an analytic Jacobian against differences
+//! - `lanes`: eight values that are worked on at once
 //! - [`normal_equations`]: JᵀJ and Jᵀr of a sparse Jacobian of fixed pattern
 //! - [`roots`]: real roots of polynomials up to the quartic
 //! - [`sparse_assignment`]: the same where few pairs are allowed
@@ -19,6 +20,7 @@ pub mod cholesky;
 pub mod damped_system;
 pub mod dense;
 pub mod gradient_check;
+pub(crate) mod lanes;
 pub mod normal_equations;
 pub mod roots;
 pub mod sparse_assignment;

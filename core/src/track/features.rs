@@ -10,6 +10,7 @@
 use crate::geometry::Point;
 use crate::image::gaussian::{self, Border};
 use crate::image::resize;
+use crate::numeric::lanes::{LANES, Lanes};
 use crate::numeric::vector::vectorised;
 use crate::scene::{Colour, Raster};
 
@@ -46,6 +47,7 @@ pub fn working_scale(height: usize) -> f64 {
 pub struct Level {
     /// Working pixels in a pixel, across and down: the last row and column reach over the picture's edge.
     size: f64,
+    /// The pixels, the last of each row and of each column twice: every place has four around it.
     raster: Raster<Pixel>,
 }
 
@@ -82,7 +84,7 @@ impl Level {
     fn new(colours: &Raster<Colour>, size: f64) -> Self {
         let (width, height) = (colours.width(), colours.height());
         let lines: Vec<Vec<f32>> = (0..height).map(|y| bordered(colours.row(y))).collect();
-        let mut raster = Raster::new(width, height, [0; 12]);
+        let mut raster = Raster::new(width + 1, height + 1, [0; 12]);
         vectorised(
             #[inline(always)]
             || {
@@ -92,6 +94,8 @@ impl Level {
                     quantise(near, &mut planes);
                     interleave(&planes, raster.row_mut(y));
                 }
+                let last = raster.row(height - 1).to_vec();
+                raster.row_mut(height).copy_from_slice(&last);
             },
         );
         Self { size, raster }
@@ -100,35 +104,60 @@ impl Level {
     /// Bilinear reading at `p` in working pixels; outside the picture the nearest edge is read.
     #[inline(always)]
     pub fn sample(&self, p: Point) -> Sample {
-        let (corners, weights) = self.around(p);
-        let slope = weights.map(|w| w * (1.0 / (UNIT * self.size as f32)));
-        let slopes = [1, 2].map(|group| mixed(&corners, &slope, group));
-        Sample { colour: mixed(&corners, &weights.map(|w| w * (1.0 / UNIT)), 0), slopes }
+        let ([above, below], weights) = self.around(p);
+        let pair = |row: &[i16], first: usize| row[first..].first_chunk().map_or(Lanes::splat(0.0), Lanes::of_integers);
+        let [colour, along] = (weights[0] * pair(above, 0)
+            + weights[1] * pair(above, 12)
+            + (weights[2] * pair(below, 0) + weights[3] * pair(below, 12)))
+        .fours();
+        let slope = 1.0 / (UNIT * self.size as f32);
+        let down = mixed(above, below, &weights, 8);
+        Sample { colour: colour * (1.0 / UNIT), slopes: [along * slope, down * slope] }
     }
 
-    /// The four pixels around `p` and their bilinear weights.
+    /// The values of the two pixels above and of the two below `p`, and the bilinear weights of the four.
     #[inline(always)]
-    fn around(&self, p: Point) -> ([&Pixel; 4], [f32; 4]) {
-        let (width, height) = (self.raster.width(), self.raster.height());
-        // The size is a power of two: to multiply by its inverse is to divide.
-        let inverse = 1.0 / self.size;
-        let x = (p.x * inverse - 0.5).clamp(0.0, (width - 1) as f64);
-        let y = (p.y * inverse - 0.5).clamp(0.0, (height - 1) as f64);
-        // Through 32 bits: the processor has one instruction for that.
-        let (x0, y0) = (x as i32 as usize, y as i32 as usize);
-        let (x1, y1) = ((x0 + 1).min(width - 1), (y0 + 1).min(height - 1));
-        let (fx, fy) = ((x - x0 as f64) as f32, (y - y0 as f64) as f32);
+    fn around(&self, p: Point) -> ([&[i16]; 2], [f32; 4]) {
+        let (width, height) = self.dimensions();
+        let inverse = 1.0 / self.size as f32;
+        let (x, fx) = split(p.x as f32 * inverse, width);
+        let (y, fy) = split(p.y as f32 * inverse, height);
+        let first = y * (width + 1) + x;
         let data = self.raster.data();
-        let at = |x: usize, y: usize| &data[y * width + x];
+        let rows = [&data[first..first + 2], &data[first + width + 1..first + width + 3]];
         let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
-        ([at(x0, y0), at(x1, y0), at(x0, y1), at(x1, y1)], weights)
+        ([rows[0].as_flattened(), rows[1].as_flattened()], weights)
     }
 
     /// Colour at `p` in working pixels, as [`Level::sample`] reads it.
     #[inline(always)]
     pub fn colour(&self, p: Point) -> Padded {
-        let (corners, weights) = self.around(p);
-        mixed(&corners, &weights.map(|w| w * (1.0 / UNIT)), 0)
+        let ([above, below], weights) = self.around(p);
+        mixed(above, below, &weights, 0) * (1.0 / UNIT)
+    }
+
+    /// Colours at places in a straight line, `step` apart from `first` on (working pixels), into a plane for each of red,
+    /// green and blue.
+    #[inline(always)]
+    pub fn colours_along(&self, first: Point, step: Point, [red, green, blue]: [&mut [f32]; 3]) {
+        let (width, height) = self.dimensions();
+        let inverse = 1.0 / self.size;
+        let (first, step) = ((first * inverse).as_vec2(), (step * inverse).as_vec2());
+        let data = self.raster.data();
+        let groups = red.chunks_mut(LANES).zip(green.chunks_mut(LANES)).zip(blue.chunks_mut(LANES));
+        for (group, ((red, green), blue)) in groups.enumerate() {
+            let count = Lanes::splat((group * LANES) as f32) + Lanes::count();
+            let (x, fx) = split_lanes(Lanes::splat(first.x) + step.x * count, width);
+            let (y, fy) = split_lanes(Lanes::splat(first.y) + step.y * count, height);
+            for v in 0..red.len() {
+                let first = y[v] * (width + 1) + x[v];
+                let (above, below) = (&data[first..first + 2], &data[first + width + 1..first + width + 3]);
+                let (ex, ey) = (1.0 - fx[v], 1.0 - fy[v]);
+                let weights = [ex * ey, fx[v] * ey, ex * fy[v], fx[v] * fy[v]];
+                let colour = mixed(above.as_flattened(), below.as_flattened(), &weights, 0) * (1.0 / UNIT);
+                (red[v], green[v], blue[v]) = (colour.x, colour.y, colour.z);
+            }
+        }
     }
 
     /// Working pixels in a pixel of this level.
@@ -138,7 +167,7 @@ impl Level {
 
     /// Width and height in pixels of this level.
     pub fn dimensions(&self) -> (usize, usize) {
-        (self.raster.width(), self.raster.height())
+        (self.raster.width() - 1, self.raster.height() - 1)
     }
 
     /// The largest difference of a colour value to another picture's level; infinite where their sizes differ.
@@ -154,16 +183,51 @@ impl Level {
 
     /// Luma of each pixel, 0 to 1 (Rec. 601 weights).
     pub fn luma(&self) -> Raster<f32> {
-        self.raster.map(|v| (0.299 * f32::from(v[0]) + 0.587 * f32::from(v[1]) + 0.114 * f32::from(v[2])) / UNIT)
+        let (width, height) = self.dimensions();
+        Raster::from_fn(width, height, |x, y| {
+            let [r, g, b, ..] = self.raster.get(x, y).map(f32::from);
+            (0.299 * r + 0.587 * g + 0.114 * b) / UNIT
+        })
     }
 }
 
-/// A group of four values of the pixels around a place, in their bilinear mixture.
+/// From here on neighbouring numbers are 1 apart: to add it rounds, and leaves a whole number in the lower bits. (To convert
+/// would also care for what is no number or too large.)
+const WHOLE: f32 = 8_388_608.0;
+/// Those bits.
+const WHOLE_BITS: u32 = 0x7f_ffff;
+
+/// The pixel (of `count`) at whose centre or after it a place lies, and how far after, in pixels: 0 to 1. The place is given
+/// from the picture's edge; one outside is moved to the nearest centre.
 #[inline(always)]
-fn mixed(corners: &[&Pixel; 4], weights: &[f32; 4], group: usize) -> Padded {
-    let value = |corner: usize| Padded::from_array(corners[corner].as_chunks::<4>().0[group].map(f32::from));
-    let [a, b, c, d] = [0, 1, 2, 3].map(|corner| value(corner) * weights[corner]);
-    (a + b) + (c + d)
+fn split(at: f32, count: usize) -> (usize, f32) {
+    let at = (at - 0.5).clamp(0.0, (count - 1) as f32);
+    let low = (at - 0.5).max(0.0) + WHOLE;
+    ((low.to_bits() & WHOLE_BITS) as usize, at - (low - WHOLE))
+}
+
+/// The same of several places.
+#[inline(always)]
+fn split_lanes(at: Lanes, count: usize) -> ([usize; LANES], [f32; LANES]) {
+    let (zero, whole) = (Lanes::splat(0.0), Lanes::splat(WHOLE));
+    let at = (at - Lanes::splat(0.5)).max(zero).min(Lanes::splat((count - 1) as f32));
+    let low = (at - Lanes::splat(0.5)).max(zero) + whole;
+    let mut pixels = [0; LANES];
+    for (pixel, low) in pixels.iter_mut().zip(low.to_array()) {
+        *pixel = (low.to_bits() & WHOLE_BITS) as usize;
+    }
+    (pixels, (at - (low - whole)).to_array())
+}
+
+/// Four values of the pixels around a place, from the `first` of each pixel on, in their bilinear mixture.
+#[inline(always)]
+fn mixed(above: &[i16], below: &[i16], weights: &[f32; 4], first: usize) -> Padded {
+    let value = |row: &[i16], first: usize| {
+        let [a, b, c, d] = *row[first..].first_chunk().unwrap_or(&[0; 4]);
+        Padded::new(f32::from(a), f32::from(b), f32::from(c), f32::from(d))
+    };
+    (value(above, first) * weights[0] + value(above, first + 12) * weights[1])
+        + (value(below, first) * weights[2] + value(below, first + 12) * weights[3])
 }
 
 /// Sum of the four values.
@@ -206,12 +270,15 @@ fn fraction(value: f32) -> i16 {
     (scaled + 0.5f32.copysign(scaled)) as i16
 }
 
-/// The pixels of a row from their values.
+/// The pixels of a row from their values, the last one twice.
 #[inline(always)]
 fn interleave(planes: &[Vec<i16>; 3], pixels: &mut [Pixel]) {
     let [colours, along, down] = planes.each_ref().map(|plane| plane.as_chunks::<3>().0);
     for (pixel, ((c, x), y)) in pixels.iter_mut().zip(colours.iter().zip(along).zip(down)) {
         *pixel = [c[0], c[1], c[2], 0, x[0], x[1], x[2], 0, y[0], y[1], y[2], 0];
+    }
+    if let [.., last, behind] = pixels {
+        *behind = *last;
     }
 }
 
@@ -244,6 +311,42 @@ mod tests {
             let want = [130.0 * slope, 250.0 * slope, 0.25, 0.0, slope, 0.0, 0.0, 0.0, 0.0, slope, 0.0, 0.0];
             for k in 0..12 {
                 assert!((got[k] - want[k]).abs() < 2e-4, "level {} value {k}: {} for {}", level.size, got[k], want[k]);
+            }
+        }
+    }
+
+    /// As the levels are read, written as it is said.
+    fn read_naively(level: &Level, p: Point) -> [f64; 12] {
+        let (width, height) = level.dimensions();
+        let at = |length: f64, count: usize| (length / level.size - 0.5).clamp(0.0, (count - 1) as f64);
+        let (x, y) = (at(p.x, width), at(p.y, height));
+        let pixel = |x: f64, y: f64, k: usize| {
+            f64::from(level.raster.get((x as usize).min(width - 1), (y as usize).min(height - 1))[k])
+        };
+        std::array::from_fn(|k| {
+            let row = |y: f64| pixel(x, y, k) * (1.0 - x.fract()) + pixel(x + 1.0, y, k) * x.fract();
+            let value = row(y) * (1.0 - y.fract()) + row(y + 1.0) * y.fract();
+            value / f64::from(UNIT) / if k < 4 { 1.0 } else { level.size }
+        })
+    }
+
+    #[test]
+    fn all_ways_of_reading_read_the_same() {
+        let picture = Raster::from_fn(331, 270, |x, y| [3, 5, 7].map(|k| ((x * k + y * 11) as f32 * 0.1).sin().abs()));
+        let features = Features::new(&picture);
+        let (first, step) = (Point::new(-31.0, 17.3), Point::new(7.9, 5.1));
+        for level in &features.levels {
+            let mut planes = [(); 3].map(|()| vec![0.0; 109]);
+            level.colours_along(first, step, planes.each_mut().map(|plane| &mut plane[..]));
+            for k in 0..109 {
+                let p = first + step * k as f64;
+                let (want, sample, colour) = (read_naively(level, p), level.sample(p), level.colour(p));
+                let got = [sample.colour, sample.slopes[0], sample.slopes[1]].map(|v| v.to_array()).concat();
+                let along = planes.each_ref().map(|plane| plane[k]);
+                let near = |got: f32, want: f64| (f64::from(got) - want).abs() < 2e-4;
+                assert!(got.iter().zip(want).all(|(g, w)| near(*g, w)), "{p}: {got:?} for {want:?}");
+                assert!(colour.to_array().iter().zip(want).all(|(g, w)| near(*g, w)), "{p}: {colour} for {want:?}");
+                assert!(along.iter().zip(want).all(|(g, w)| near(*g, w)), "{p}: {along:?} for {want:?}");
             }
         }
     }

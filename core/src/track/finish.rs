@@ -23,9 +23,6 @@ const AGREEMENT: f64 = 4.0;
 /// Nearer contours further away than this from a part (working pixels) do not matter to it.
 const REACH: f64 = 24.0;
 
-/// Fall of the templates' cost that makes a refined contour worth taking.
-const WORTH: f64 = 0.01;
-
 /// What a part's track is made from, apart from its pools and the pictures.
 #[derive(Clone, PartialEq)]
 pub(super) struct Finish {
@@ -198,8 +195,7 @@ fn refiner(stage: &Stage) -> Option<Refiner> {
 fn refined(stage: &Stage, refiner: &Refiner, d: usize, share: f64, rough: Vec<Point>) -> Vec<Point> {
     let pins = stage.correction(d).map(|c| c.pins.iter().map(|(&j, &p)| (j, p / stage.scale)).collect());
     let frame = Frame { picture: &stage.features[d], cover: &stage.covers[d], share, pins: pins.unwrap_or_default() };
-    let fine = refiner.refine(&frame, &rough);
-    if refiner.cost(&frame, &fine) < refiner.cost(&frame, &rough) - WORTH { fine } else { rough }
+    refiner.improved(&frame, rough)
 }
 
 /// The chosen control points of a drawing: those of the other model are blended in where they agree, by how near

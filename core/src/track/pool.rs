@@ -17,6 +17,8 @@ use std::collections::BTreeMap;
 
 /// Mean distance of the chains' control points (working pixels) from which on both models are searched for.
 const DISAGREEMENT: f64 = 6.0;
+/// Hypotheses of each model kept of those that a search has found.
+const FOUND: usize = 2;
 /// Mean distance (working pixels) below which a carried pose adds nothing to the pool.
 const KNOWN_PLACE: f64 = 1.0;
 /// Mean distance (working pixels) up to which a chosen pose is confirmed by one of the other key's model: neither has
@@ -186,9 +188,9 @@ fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
                 stage.kit.progress.report("Searching", 0.0)?;
                 let (model, scenery) = (&stage.models[key], stage.scenery(key, drawing));
                 let sought = stage.kit.store.sought(stage.kit.frames, stage.frame_of(drawing), templates.level())?;
-                for start in templates.find(&stage.features[drawing], &sought, model, contours[key]) {
-                    found.push(hypothesis(stage, drawing, key, model.polished(&scenery, &start), None));
-                }
+                let starts = templates.find(&stage.features[drawing], &sought, model, contours[key]);
+                let poses = model.best_polished(&scenery, &starts, FOUND);
+                found.extend(poses.into_iter().map(|pose| hypothesis(stage, drawing, key, pose, None)));
             }
             Ok(found)
         })

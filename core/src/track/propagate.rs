@@ -94,6 +94,24 @@ impl Model {
         self.measured(scenery, nodes)
     }
 
+    /// The best `count` of some rough poses, brought to their anchors and aligned on the two finer levels. Which are best
+    /// is seen after the first of these; two that come to the same are one.
+    pub fn best_polished(&self, scenery: &Scenery, starts: &[Vec<Point>], count: usize) -> Vec<Pose> {
+        let align = |start: &[Point], level: usize| {
+            self.measured(scenery, self.aligner.align(&self.texture, scenery.target(), start, &[level]))
+        };
+        let settler = self.settler(scenery);
+        let mut poses: Vec<Pose> = starts.iter().map(|start| align(&settler.settle(start), 1)).collect();
+        poses.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+        let mut best: Vec<Pose> = Vec::with_capacity(count);
+        for pose in poses {
+            if best.len() < count && best.iter().all(|b| mean_distance(&b.nodes, &pose.nodes) >= SAME_POSE) {
+                best.push(pose);
+            }
+        }
+        best.iter().map(|pose| align(&pose.nodes, 2)).collect()
+    }
+
     /// Brings poses to the anchors of a drawing.
     pub fn settler<'a>(&'a self, scenery: &Scenery<'a>) -> Settler<'a> {
         Settler::new(&self.texture.mesh, scenery.anchors)

@@ -11,10 +11,15 @@
 //! Limits: luma only; movements of more than about twice a patch at the coarsest level are not found.
 
 mod patches;
+mod plane;
 mod refine;
+mod terms;
 
+use crate::numeric::vector::vectorised;
 use crate::scene::Raster;
+use glam::Vec2;
 use patches::{Level, search};
+use std::ops::{Add, Mul};
 
 /// Shift of each pixel, in pixels, from the first picture to the second: x, y.
 pub type Flow = Raster<[f32; 2]>;
@@ -25,6 +30,14 @@ const SMALLEST: usize = 16;
 /// Flow from `first` to `second`, both luma of 0 to 1 and of one size.
 pub fn dense_flow(first: &Raster<f32>, second: &Raster<f32>) -> Flow {
     assert_eq!((first.width(), first.height()), (second.width(), second.height()), "pictures of one size");
+    vectorised(
+        #[inline(always)]
+        || coarse_to_fine(first, second),
+    )
+}
+
+#[inline(always)]
+fn coarse_to_fine(first: &Raster<f32>, second: &Raster<f32>) -> Flow {
     let mut levels = vec![(Level::new(first.clone()), Level::new(second.clone()))];
     while let Some((a, b)) = levels.last() {
         if a.luma.width().min(a.luma.height()) < 2 * SMALLEST {
@@ -45,6 +58,7 @@ pub fn dense_flow(first: &Raster<f32>, second: &Raster<f32>) -> Flow {
 }
 
 /// Mean of 2×2 pixels; an odd last row or column is averaged with itself.
+#[inline(always)]
 fn halved(picture: &Raster<f32>) -> Raster<f32> {
     let (width, height) = (picture.width().div_ceil(2), picture.height().div_ceil(2));
     Raster::from_fn(width, height, |x, y| {
@@ -55,21 +69,23 @@ fn halved(picture: &Raster<f32>) -> Raster<f32> {
 }
 
 /// The flow of a level at the next finer one: read bilinearly, twice as long.
+#[inline(always)]
 fn doubled(flow: &Flow, width: usize, height: usize) -> Flow {
-    Raster::from_fn(width, height, |x, y| {
-        let at = read(flow, x as f32 / 2.0 - 0.25, y as f32 / 2.0 - 0.25);
-        [2.0 * at[0], 2.0 * at[1]]
-    })
+    let flow = flow.map(Vec2::from);
+    Raster::from_fn(width, height, |x, y| (2.0 * read(&flow, x as f32 / 2.0 - 0.25, y as f32 / 2.0 - 0.25)).to_array())
 }
 
 /// Bilinear reading at pixel-centre coordinates (a pixel's centre is an integer); clamped at the edges.
 #[inline(always)]
-pub(crate) fn read<const N: usize>(raster: &Raster<[f32; N]>, x: f32, y: f32) -> [f32; N] {
+fn read<T: Copy + Add<Output = T>>(raster: &Raster<T>, x: f32, y: f32) -> T
+where
+    f32: Mul<T, Output = T>,
+{
     let (x0, x1, fx) = neighbours(x, raster.width());
     let (y0, y1, fy) = neighbours(y, raster.height());
     let (a, b) = (raster.get(x0, y0), raster.get(x1, y0));
     let (c, d) = (raster.get(x0, y1), raster.get(x1, y1));
-    std::array::from_fn(|k| (1.0 - fy) * ((1.0 - fx) * a[k] + fx * b[k]) + fy * ((1.0 - fx) * c[k] + fx * d[k]))
+    (1.0 - fy) * ((1.0 - fx) * a + fx * b) + fy * ((1.0 - fx) * c + fx * d)
 }
 
 #[inline(always)]

@@ -1,11 +1,14 @@
 //! Patches that search their place in the second picture, and the dense field blended from them.
 
-use super::{Flow, read};
-use crate::numeric::vector::vectorised;
+use super::Flow;
+use super::plane::Plane;
+use crate::numeric::lanes::{LANES, Lanes};
 use crate::scene::Raster;
 
 /// Side of a patch in pixels.
-const PATCH: usize = 8;
+const PATCH: usize = LANES;
+/// Pixels by which a picture is continued, enough for a patch that lies beside it and its next neighbours.
+const BEYOND: usize = PATCH + 1;
 /// Distance between neighbouring patches in pixels.
 const STRIDE: usize = 4;
 /// Steps of gradient descent of a patch at the most.
@@ -13,52 +16,63 @@ const STEPS: usize = 16;
 /// A patch that strays further than this from its start has lost its way, in pixels.
 const FURTHEST: f32 = 8.0;
 
+/// The rows of a patch.
+type Rows = [Lanes; PATCH];
+
 /// A picture of one level with its derivatives along x and y.
 pub(super) struct Level {
     pub luma: Raster<f32>,
-    pub gradient: Raster<[f32; 2]>,
-    packed: Raster<[f32; 1]>,
+    pub plane: Plane,
+    pub slopes: [Plane; 2],
+    /// Luma, continued beyond the edges by [`BEYOND`] pixels.
+    wide: Raster<f32>,
 }
 
 impl Level {
+    #[inline(always)]
     pub fn new(luma: Raster<f32>) -> Self {
-        let at = |x: usize, y: usize, dx: isize, dy: isize| luma.clamped(x as isize + dx, y as isize + dy);
-        let gradient = Raster::from_fn(luma.width(), luma.height(), |x, y| {
-            [0.5 * (at(x, y, 1, 0) - at(x, y, -1, 0)), 0.5 * (at(x, y, 0, 1) - at(x, y, 0, -1))]
+        let (width, height) = (luma.width(), luma.height());
+        let mut plane = Plane::zeros(width, height);
+        (0..height).for_each(|y| plane.row_mut(y).copy_from_slice(luma.row(y)));
+        plane.continue_border();
+        let mut slopes = [Plane::zeros(width, height), Plane::zeros(width, height)];
+        for y in 0..height {
+            for x in (0..width).step_by(LANES) {
+                let (xi, yi) = (x as isize, y as isize);
+                slopes[0].set_lanes(x, y, 0.5 * (plane.lanes(xi + 1, yi) - plane.lanes(xi - 1, yi)));
+                slopes[1].set_lanes(x, y, 0.5 * (plane.lanes(xi, yi + 1) - plane.lanes(xi, yi - 1)));
+            }
+        }
+        let inner = |at: usize, count: usize| at.saturating_sub(BEYOND).min(count - 1);
+        let wide = Raster::from_fn(width + 2 * BEYOND, height + 2 * BEYOND, |x, y| {
+            luma.get(inner(x, width), inner(y, height))
         });
-        let packed = luma.map(|v| [v]);
-        Self { luma, gradient, packed }
+        Self { luma, plane, slopes, wide }
     }
 
     /// Bilinear luma of a patch whose first pixel is at pixel-centre coordinates.
     #[inline(always)]
-    fn patch_at(&self, x: f32, y: f32) -> [f32; PATCH * PATCH] {
-        let last = |count: usize| count as f32 - 1.0 - PATCH as f32;
-        if !(x >= 0.0 && y >= 0.0 && x <= last(self.luma.width()) && y <= last(self.luma.height())) {
-            return std::array::from_fn(|k| self.luma_at(x + (k % PATCH) as f32, y + (k / PATCH) as f32));
-        }
-        // Inside the picture all pixels of the patch have the same four weights.
+    fn patch_at(&self, x: f32, y: f32) -> Rows {
+        // Further out nothing changes any more.
+        let within = |at: f32, count: usize| (at + BEYOND as f32).clamp(0.0, (count + BEYOND) as f32);
+        let (x, y) = (within(x, self.luma.width()), within(y, self.luma.height()));
         let (x0, y0) = (x as i32 as usize, y as i32 as usize);
         let (fx, fy) = (x - x0 as f32, y - y0 as f32);
-        let along = |j: usize| -> [f32; PATCH] {
-            let row = &self.luma.row(y0 + j)[x0..=x0 + PATCH];
-            std::array::from_fn(|i| (1.0 - fx) * row[i] + fx * row[i + 1])
-        };
-        let mut patch = [0.0; PATCH * PATCH];
-        let mut above = along(0);
-        for (j, out) in patch.chunks_exact_mut(PATCH).enumerate() {
-            let below = along(j + 1);
-            for i in 0..PATCH {
-                out[i] = (1.0 - fy) * above[i] + fy * below[i];
-            }
+        let mut patch = [Lanes::splat(0.0); PATCH];
+        let mut above = self.between(x0, y0, fx);
+        for (j, out) in patch.iter_mut().enumerate() {
+            let below = self.between(x0, y0 + j + 1, fx);
+            *out = (1.0 - fy) * above + fy * below;
             above = below;
         }
         patch
     }
 
-    /// Bilinear luma at pixel-centre coordinates.
-    pub fn luma_at(&self, x: f32, y: f32) -> f32 {
-        read(&self.packed, x, y)[0]
+    /// Pixels of a row from `x` on, each mixed with the next one.
+    #[inline(always)]
+    fn between(&self, x: usize, y: usize, share: f32) -> Lanes {
+        let row = &self.wide.row(y)[x..=x + PATCH];
+        (1.0 - share) * Lanes::read(row) + share * Lanes::read(&row[1..])
     }
 }
 
@@ -66,44 +80,41 @@ impl Level {
 struct Patch {
     x: usize,
     y: usize,
-    luma: [f32; PATCH * PATCH],
+    luma: Rows,
     /// Along x and along y.
-    gradient: [[f32; PATCH * PATCH]; 2],
+    gradient: [Rows; 2],
     inverse: [f32; 3],
 }
 
 impl Patch {
+    #[inline(always)]
     fn new(level: &Level, x: usize, y: usize) -> Self {
-        let at = |k: usize| ((x + k % PATCH) as isize, (y + k / PATCH) as isize);
-        let mut luma: [f32; PATCH * PATCH] = std::array::from_fn(|k| level.luma.clamped(at(k).0, at(k).1));
-        let slope = |axis: usize| std::array::from_fn(|k| level.gradient.clamped(at(k).0, at(k).1)[axis]);
-        let mut gradient: [[f32; PATCH * PATCH]; 2] = [slope(0), slope(1)];
         let count = (PATCH * PATCH) as f32;
-        let mean = luma.iter().sum::<f32>() / count;
-        luma.iter_mut().for_each(|v| *v -= mean);
+        let mut luma = cut(&level.plane, x, y);
         // Differences of mean-free patches have mean-free derivatives.
-        for slope in &mut gradient {
-            let mean = slope.iter().sum::<f32>() / count;
-            slope.iter_mut().for_each(|g| *g -= mean);
+        let mut gradient = [cut(&level.slopes[0], x, y), cut(&level.slopes[1], x, y)];
+        for rows in std::iter::once(&mut luma).chain(&mut gradient) {
+            let mean = Lanes::splat(total(rows) / count);
+            rows.iter_mut().for_each(|row| *row = *row - mean);
         }
-        let moment = |a: usize, b: usize| gradient[a].iter().zip(&gradient[b]).map(|(g, h)| g * h).sum::<f32>();
         // The ridge (of a contrast of one grey step in 8 bits) keeps flat patches where they are.
         let ridge = count * (1.0 / 255.0f32).powi(2);
-        let (xx, xy, yy) = (moment(0, 0) + ridge, moment(0, 1), moment(1, 1) + ridge);
+        let [gx, gy] = &gradient;
+        let (xx, xy, yy) = (total(&product(gx, gx)) + ridge, total(&product(gx, gy)), total(&product(gy, gy)) + ridge);
         let determinant = xx * yy - xy * xy;
         Self { x, y, luma, gradient, inverse: [yy / determinant, -xy / determinant, xx / determinant] }
     }
 
     /// The difference to the second picture at shift `u`, without its mean, and its mean square.
     #[inline(always)]
-    fn difference(&self, second: &Level, u: [f32; 2]) -> ([f32; PATCH * PATCH], f32) {
+    fn difference(&self, second: &Level, u: [f32; 2]) -> (Rows, f32) {
         let mut d = second.patch_at(self.x as f32 + u[0], self.y as f32 + u[1]);
         let count = (PATCH * PATCH) as f32;
-        let mean = total(&d, |v| v) / count;
-        for (v, own) in d.iter_mut().zip(&self.luma) {
-            *v -= mean + own;
+        let mean = Lanes::splat(total(&d) / count);
+        for (row, own) in d.iter_mut().zip(&self.luma) {
+            *row = *row - (mean + *own);
         }
-        let square = total(&d, |v| v * v) / count;
+        let square = total(&product(&d, &d)) / count;
         (d, square)
     }
 
@@ -118,8 +129,8 @@ impl Patch {
                 break;
             }
             best = (square, u);
-            let along = |slope: &[f32; PATCH * PATCH]| total(&std::array::from_fn(|k| d[k] * slope[k]), |v| v);
-            let (bx, by) = (along(&self.gradient[0]), along(&self.gradient[1]));
+            let bx = total(&product(&d, &self.gradient[0]));
+            let by = total(&product(&d, &self.gradient[1]));
             let [xx, xy, yy] = self.inverse;
             let step = [xx * bx + xy * by, xy * bx + yy * by];
             u = [u[0] - step[0], u[1] - step[1]];
@@ -131,33 +142,53 @@ impl Patch {
     }
 }
 
-/// Sum of a value of each pixel of a patch, column by column first: a fixed order that the compiler can vectorise.
+/// The pixels of a plane below a patch; beyond the edge those that are nearest to it.
 #[inline(always)]
-fn total(patch: &[f32; PATCH * PATCH], value: impl Fn(f32) -> f32) -> f32 {
-    let mut columns = [0.0; PATCH];
-    for row in patch.chunks_exact(PATCH) {
-        for (sum, v) in columns.iter_mut().zip(row) {
-            *sum += value(*v);
-        }
+fn cut(plane: &Plane, x: usize, y: usize) -> Rows {
+    let mut rows = [Lanes::splat(0.0); PATCH];
+    for (j, row) in rows.iter_mut().enumerate() {
+        *row = plane.clamped_lanes(x, y + j);
     }
-    columns.iter().sum()
+    rows
+}
+
+/// Pixel by pixel.
+#[inline(always)]
+fn product(a: &Rows, b: &Rows) -> Rows {
+    let mut product = *a;
+    for (a, b) in product.iter_mut().zip(b) {
+        *a = *a * *b;
+    }
+    product
+}
+
+/// Sum over a patch, column by column first.
+#[inline(always)]
+fn total(patch: &Rows) -> f32 {
+    let mut columns = Lanes::splat(0.0);
+    for row in patch {
+        columns = columns + *row;
+    }
+    columns.sum()
 }
 
 /// The dense flow of a level from the coarser level's, brought to this size.
+#[inline(always)]
 pub(super) fn search(first: &Level, second: &Level, coarse: &Flow) -> Flow {
     let (width, height) = (first.luma.width(), first.luma.height());
     let columns = grid(width);
     let rows = grid(height);
-    let patches: Vec<Patch> =
-        rows.iter().flat_map(|&y| columns.iter().map(move |&x| (x, y))).map(|(x, y)| Patch::new(first, x, y)).collect();
+    let mut patches = Vec::with_capacity(rows.len() * columns.len());
+    for &y in &rows {
+        for &x in &columns {
+            patches.push(Patch::new(first, x, y));
+        }
+    }
     let middle = PATCH / 2;
     let from_coarse = |p: &Patch| coarse.get((p.x + middle).min(width - 1), (p.y + middle).min(height - 1));
     let mut shifts: Vec<[f32; 2]> = patches.iter().map(from_coarse).collect();
     for backwards in [false, true] {
-        vectorised(
-            #[inline(always)]
-            || sweep(&patches, second, &mut shifts, columns.len(), backwards),
-        );
+        sweep(&patches, second, &mut shifts, columns.len(), backwards);
     }
     blend(first, second, &patches, &shifts)
 }
@@ -196,6 +227,7 @@ fn sweep(patches: &[Patch], second: &Level, shifts: &mut [[f32; 2]], columns: us
 }
 
 /// Each pixel takes the mean of the shifts of the patches over it, weighted by 1 / max(1, |difference| in 8-bit steps).
+#[inline(always)]
 fn blend(first: &Level, second: &Level, patches: &[Patch], shifts: &[[f32; 2]]) -> Flow {
     let (width, height) = (first.luma.width(), first.luma.height());
     let mut sums = Raster::new(width, height, [0.0f32; 3]);
@@ -203,7 +235,7 @@ fn blend(first: &Level, second: &Level, patches: &[Patch], shifts: &[[f32; 2]]) 
         let seen = second.patch_at(patch.x as f32 + u[0], patch.y as f32 + u[1]);
         for y in patch.y..(patch.y + PATCH).min(height) {
             for x in patch.x..(patch.x + PATCH).min(width) {
-                let there = seen[(y - patch.y) * PATCH + x - patch.x];
+                let there = seen[y - patch.y].get(x - patch.x);
                 let weight = 1.0 / (255.0 * (there - first.luma.get(x, y)).abs()).max(1.0);
                 let [su, sv, sw] = sums.get(x, y);
                 sums.set(x, y, [su + weight * u[0], sv + weight * u[1], sw + weight]);

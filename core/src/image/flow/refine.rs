@@ -7,8 +7,9 @@
 
 use super::Flow;
 use super::patches::Level;
-use crate::numeric::vector::vectorised;
-use crate::scene::Raster;
+use super::plane::{Board, Plane};
+use super::terms::Terms;
+use crate::numeric::lanes::{LANES, Lanes};
 
 /// Weight of smoothness (8-bit luma units).
 const SMOOTHNESS: f32 = 20.0;
@@ -25,234 +26,337 @@ const SWEEPS: usize = 5;
 /// Over-relaxation.
 const RELAXATION: f32 = 1.6;
 
-/// Pixels that are worked on at once.
-const LANES: usize = 8;
-
-/// A value of each of some neighbouring pixels.
-type Lanes = [f32; LANES];
-
 /// Improves `flow` in place.
+#[inline(always)]
 pub(super) fn refine(first: &Level, second: &Level, flow: &mut Flow) {
-    let (width, height) = (flow.width(), flow.height());
-    if width < 3 || height < 3 {
+    if flow.width() < 3 || flow.height() < 3 {
         return;
     }
-    vectorised(
-        #[inline(always)]
-        || improve(first, second, flow, (width, height)),
-    );
-}
-
-#[inline(always)]
-fn improve(first: &Level, second: &Level, flow: &mut Flow, (width, height): (usize, usize)) {
+    let (width, height) = (flow.width(), flow.height());
     let terms = Terms::new(first, second, flow);
-    let mut moved = Bordered::new(flow);
+    let mut moved = planes(flow);
+    let from = moved.clone();
+    let mut equations = Equations::new(&from, width, height);
     for _ in 0..OUTER {
-        let equations = equations(&terms, flow, &moved);
+        moved.iter_mut().for_each(Plane::continue_border);
+        equations.weigh(&terms, &from, &moved);
         for _ in 0..SWEEPS {
             for colour in 0..2 {
-                relax(&equations, flow, &mut moved, colour);
+                equations.relax(colour);
             }
         }
+        equations.moved.iter().zip(&mut moved).for_each(|(board, plane)| board.join(plane));
     }
     for y in 0..height {
-        flow.row_mut(y).copy_from_slice(&moved.row(y)[1..=width]);
+        let [u, v] = moved.each_ref().map(|plane| plane.row(y));
+        flow.row_mut(y).iter_mut().zip(u.iter().zip(v)).for_each(|(flow, (u, v))| *flow = [*u, *v]);
     }
 }
 
-/// A flow with a border of one pixel, so that every pixel has four neighbours.
-struct Bordered {
-    stride: usize,
-    data: Vec<[f32; 2]>,
-}
-
-impl Bordered {
-    fn new(flow: &Flow) -> Self {
-        let stride = flow.width() + 2;
-        let mut data = vec![[0.0; 2]; stride * (flow.height() + 2)];
-        for y in 0..flow.height() {
-            data[(y + 1) * stride + 1..][..flow.width()].copy_from_slice(flow.row(y));
-        }
-        Self { stride, data }
-    }
-
-    /// A row of the flow with its border on both sides.
-    #[inline(always)]
-    fn row(&self, y: usize) -> &[[f32; 2]] {
-        &self.data[(y + 1) * self.stride..][..self.stride]
-    }
-}
-
-/// The equations of a pixel for its change of flow.
-#[derive(Clone, Copy, Default)]
-struct Equation {
-    /// Weights of the links to the right, lower, left and upper neighbour; 0 where there is none.
-    links: [f32; 4],
-    /// Picture terms: xy, and both right-hand sides.
-    cross: f32,
-    right: [f32; 2],
-    /// Inverse of the diagonal.
-    inverse: [f32; 2],
-}
-
-/// Brightness, x-gradient and y-gradient change at each pixel in 8-bit units, each linear in the update: value + x du +
-/// y dv. Nine planes of one value a pixel, their rows filled up with zeros to whole [`Lanes`].
-struct Terms {
-    stride: usize,
-    planes: [Vec<f32>; 9],
-}
-
-impl Terms {
-    #[inline(always)]
-    fn new(first: &Level, second: &Level, flow: &Flow) -> Self {
-        let (width, height) = (flow.width(), flow.height());
-        let warped = Raster::from_fn(width, height, |x, y| {
-            let [u, v] = flow.get(x, y);
-            let (px, py) = (x as f32 + u, y as f32 + v);
-            // A shift that leaves the picture has nothing to be compared with.
-            let seen = px >= 0.0 && py >= 0.0 && px <= (width - 1) as f32 && py <= (height - 1) as f32;
-            let g = super::read(&second.gradient, px, py);
-            [255.0 * second.luma_at(px, py), 255.0 * g[0], 255.0 * g[1], f32::from(u8::from(seen))]
-        });
-        let stride = width.next_multiple_of(LANES);
-        let mut planes = [(); 9].map(|()| vec![0.0; stride * height]);
-        for y in 0..height {
-            for x in (0..width).filter(|&x| warped.get(x, y)[3] != 0.0) {
-                for (plane, value) in planes.iter_mut().zip(linearised(first, &warped, (x, y)).as_flattened()) {
-                    plane[y * stride + x] = *value;
-                }
-            }
-        }
-        Self { stride, planes }
-    }
-
-    /// The terms of some pixels of a row, from column `x` on.
-    #[inline(always)]
-    fn lanes(&self, x: usize, y: usize) -> [[Lanes; 3]; 3] {
-        let from = y * self.stride + x;
-        let read = |plane: usize| -> Lanes {
-            let values = &self.planes[plane][from..from + LANES];
-            std::array::from_fn(|v| values[v])
-        };
-        [0, 3, 6].map(|first| [read(first), read(first + 1), read(first + 2)])
-    }
-}
-
-/// The terms of one pixel.
+/// The shifts along x and along y.
 #[inline(always)]
-fn linearised(first: &Level, warped: &Raster<[f32; 4]>, (x, y): (usize, usize)) -> [[f32; 3]; 3] {
-    let (w, xi, yi) = (warped.get(x, y), x as isize, y as isize);
-    let slope = |k: usize| {
-        let dx = 0.5 * (warped.clamped(xi + 1, yi)[k] - warped.clamped(xi - 1, yi)[k]);
-        let dy = 0.5 * (warped.clamped(xi, yi + 1)[k] - warped.clamped(xi, yi - 1)[k]);
-        (dx, dy)
-    };
-    let g = first.gradient.get(x, y);
-    let own = [255.0 * first.luma.get(x, y), 255.0 * g[0], 255.0 * g[1]];
-    std::array::from_fn(|k| {
-        // Brightness has its derivative at hand; averaged with the first picture's it is second-order exact.
-        let (dx, dy) = if k == 0 { (0.5 * (w[1] + own[1]), 0.5 * (w[2] + own[2])) } else { slope(k) };
-        [w[k] - own[k], dx, dy]
+fn planes(flow: &Flow) -> [Plane; 2] {
+    [0, 1].map(|axis: usize| {
+        let mut plane = Plane::zeros(flow.width(), flow.height());
+        for y in 0..flow.height() {
+            plane.row_mut(y).iter_mut().zip(flow.row(y)).for_each(|(value, shift)| *value = shift[axis]);
+        }
+        plane
     })
 }
 
-/// The equations of all pixels, their robust weights those of the flow so far.
-#[inline(always)]
-fn equations(terms: &Terms, flow: &Flow, moved: &Bordered) -> Raster<Equation> {
-    let (width, height) = (flow.width(), flow.height());
-    let links = link_weights(moved, width, height);
-    let mut equations = Raster::new(width, height, Equation::default());
-    for y in 0..height {
-        for x in (0..width).step_by(LANES) {
-            let count = LANES.min(width - x);
-            let (mut change, mut weight) = ([[0.0; LANES]; 2], [0.0; LANES]);
-            let mut around = [[0.0; 4]; LANES];
-            for v in 0..count {
-                let (from, to) = (flow.get(x + v, y), moved.row(y)[x + v + 1]);
-                (change[0][v], change[1][v]) = (to[0] - from[0], to[1] - from[1]);
-                let [right, below] = links.get(x + v, y);
-                let left = if x + v > 0 { links.get(x + v - 1, y)[0] } else { 0.0 };
-                let above = if y > 0 { links.get(x + v, y - 1)[1] } else { 0.0 };
-                around[v] = [right, below, left, above];
-                weight[v] = right + below + left + above;
-            }
-            let [xx, cross, yy, bx, by] = normal_equations(&terms.lanes(x, y), &change);
-            let inverse = [xx, yy].map(|own| -> Lanes { std::array::from_fn(|v| 1.0 / (own[v] + weight[v])) });
-            for (v, equation) in equations.row_mut(y)[x..x + count].iter_mut().enumerate() {
-                let inverse = inverse.map(|inverse| inverse[v]);
-                *equation = Equation { links: around[v], cross: cross[v], right: [bx[v], by[v]], inverse };
-            }
-        }
-    }
-    equations
+/// The equations of all pixels for their change of flow, and the flow that they change.
+struct Equations {
+    width: usize,
+    height: usize,
+    /// Weights of the links to the right and to the lower neighbour; 0 where there is none.
+    links: [Board; 2],
+    /// Picture terms: xy, and both right-hand sides.
+    cross: Board,
+    right: [Board; 2],
+    /// Inverse of the diagonal.
+    inverse: [Board; 2],
+    /// The flow at the start, and as it is now.
+    from: [Board; 2],
+    moved: [Board; 2],
 }
 
-/// Robustly weighted normal equations of some pixels: xx, xy, yy, bx, by.
-#[inline(always)]
-fn normal_equations(terms: &[[Lanes; 3]; 3], [du, dv]: &[Lanes; 2]) -> [Lanes; 5] {
-    let mut sums = [[0.0; LANES]; 5];
-    let robust = |square: f32| 1.0 / (square + EPSILON * EPSILON).sqrt();
-    let square = |v: f32| v * v;
-    for v in 0..LANES {
-        let [brightness, gx, gy] = terms.each_ref().map(|term| term.each_ref().map(|part| part[v]));
-        let rest = |l: [f32; 3]| l[0] + l[1] * du[v] + l[2] * dv[v];
-        // Divided by the slope, a change counts as a distance: strong edges do not outweigh weak ones (Zimmer 2011).
-        let flat = |l: [f32; 3]| 1.0 / (l[1] * l[1] + l[2] * l[2] + 0.01);
-        let (nb, nx, ny) = (flat(brightness), flat(gx), flat(gy));
-        let wb = BRIGHTNESS * nb * robust(nb * square(rest(brightness)));
-        let wg = GRADIENT * robust(nx * square(rest(gx)) + ny * square(rest(gy)));
-        for (l, w) in [(brightness, wb), (gx, wg * nx), (gy, wg * ny)] {
-            for (sum, add) in sums.iter_mut().zip([l[1] * l[1], l[1] * l[2], l[2] * l[2], l[0] * l[1], l[0] * l[2]]) {
-                sum[v] += w * add;
+impl Equations {
+    #[inline(always)]
+    fn new(from: &[Plane; 2], width: usize, height: usize) -> Self {
+        let empty = Board::zeros(width, height);
+        let both = || [empty.clone(), empty.clone()];
+        let mut boards = both();
+        for (board, plane) in boards.iter_mut().zip(from) {
+            for y in 0..height {
+                for x in (0..width).step_by(LANES) {
+                    board.set(x, y, plane.lanes(x as isize, y as isize));
+                }
+            }
+        }
+        let (cross, links, right, inverse) = (empty.clone(), both(), both(), both());
+        Self { width, height, links, cross, right, inverse, from: boards.clone(), moved: boards }
+    }
+
+    /// Makes the equations, their robust weights those of the flow so far.
+    #[inline(always)]
+    fn weigh(&mut self, terms: &Terms, from: &[Plane; 2], moved: &[Plane; 2]) {
+        let (width, height) = (self.width, self.height);
+        let [right, below] = link_weights(moved, width, height);
+        for y in 0..height {
+            for x in (0..width).step_by(LANES) {
+                let (xi, yi) = (x as isize, y as isize);
+                let du = moved[0].lanes(xi, yi) - from[0].lanes(xi, yi);
+                let dv = moved[1].lanes(xi, yi) - from[1].lanes(xi, yi);
+                let weight =
+                    right.lanes(xi, yi) + below.lanes(xi, yi) + right.lanes(xi - 1, yi) + below.lanes(xi, yi - 1);
+                let sums = normal_equations(terms, (xi, yi), du, dv);
+                self.links[0].set(x, y, right.lanes(xi, yi));
+                self.links[1].set(x, y, below.lanes(xi, yi));
+                self.cross.set(x, y, sums.xy);
+                self.right[0].set(x, y, sums.bx);
+                self.right[1].set(x, y, sums.by);
+                self.inverse[0].set(x, y, Lanes::splat(1.0) / (sums.xx + weight));
+                self.inverse[1].set(x, y, Lanes::splat(1.0) / (sums.yy + weight));
             }
         }
     }
+
+    /// One relaxation of the pixels of a chequerboard's colour.
+    #[inline(always)]
+    fn relax(&mut self, colour: usize) {
+        let other = 1 - colour;
+        for row in 1..=self.height {
+            let shift = (row + 1 + colour) % 2;
+            for k in (1..1 + self.width.div_ceil(2)).step_by(LANES) {
+                let at = (other, k, row, shift);
+                let weights = Near {
+                    right: self.links[0].lanes(colour, k, row),
+                    below: self.links[1].lanes(colour, k, row),
+                    left: self.links[0].lanes(other, k + shift - 1, row),
+                    above: self.links[1].lanes(other, k, row - 1),
+                };
+                let (hu, hv, cross) = (
+                    self.from[0].lanes(colour, k, row),
+                    self.from[1].lanes(colour, k, row),
+                    self.cross.lanes(colour, k, row),
+                );
+                let (du, dv) = (self.moved[0].lanes(colour, k, row) - hu, self.moved[1].lanes(colour, k, row) - hv);
+                let pu = weights.pull(Near::of(&self.moved[0], at), hu, self.right[0].lanes(colour, k, row));
+                let pv = weights.pull(Near::of(&self.moved[1], at), hv, self.right[1].lanes(colour, k, row));
+                let du = du + RELAXATION * ((pu - cross * dv) * self.inverse[0].lanes(colour, k, row) - du);
+                let dv = dv + RELAXATION * ((pv - cross * du) * self.inverse[1].lanes(colour, k, row) - dv);
+                self.moved[0].set_lanes(colour, k, row, hu + du);
+                self.moved[1].set_lanes(colour, k, row, hv + dv);
+            }
+        }
+    }
+}
+
+/// A value of each neighbour of some pixels.
+struct Near {
+    right: Lanes,
+    below: Lanes,
+    left: Lanes,
+    above: Lanes,
+}
+
+impl Near {
+    /// Of pixels of a board; `colour` is the neighbours'.
+    #[inline(always)]
+    fn of(board: &Board, (colour, k, row, shift): (usize, usize, usize, usize)) -> Self {
+        Self {
+            right: board.lanes(colour, k + shift, row),
+            below: board.lanes(colour, k, row + 1),
+            left: board.lanes(colour, k + shift - 1, row),
+            above: board.lanes(colour, k, row - 1),
+        }
+    }
+
+    /// Where neighbours pull by these weights, less the right-hand side.
+    #[inline(always)]
+    fn pull(&self, near: Near, here: Lanes, right_hand: Lanes) -> Lanes {
+        -right_hand
+            + self.right * (near.right - here)
+            + self.below * (near.below - here)
+            + self.left * (near.left - here)
+            + self.above * (near.above - here)
+    }
+}
+
+/// Sums of normal equations of some pixels.
+struct Sums {
+    xx: Lanes,
+    xy: Lanes,
+    yy: Lanes,
+    bx: Lanes,
+    by: Lanes,
+}
+
+impl Sums {
+    #[inline(always)]
+    fn add(&mut self, weight: Lanes, term: &[Lanes; 3]) {
+        let [rest, x, y] = *term;
+        self.xx = self.xx + weight * (x * x);
+        self.xy = self.xy + weight * (x * y);
+        self.yy = self.yy + weight * (y * y);
+        self.bx = self.bx + weight * (rest * x);
+        self.by = self.by + weight * (rest * y);
+    }
+}
+
+/// The terms of some pixels of one kind: the change, and its derivatives along x and y.
+#[inline(always)]
+fn term([change, x_slope, y_slope]: &[Plane; 3], (x, y): (isize, isize)) -> [Lanes; 3] {
+    [change.lanes(x, y), x_slope.lanes(x, y), y_slope.lanes(x, y)]
+}
+
+/// What is left of a change after the update, squared.
+#[inline(always)]
+fn rest([change, x, y]: &[Lanes; 3], du: Lanes, dv: Lanes) -> Lanes {
+    let rest = *change + *x * du + *y * dv;
+    rest * rest
+}
+
+/// Divided by the slope, a change counts as a distance: strong edges do not outweigh weak ones (Zimmer 2011).
+#[inline(always)]
+fn flat([_, x, y]: &[Lanes; 3]) -> Lanes {
+    Lanes::splat(1.0) / (*x * *x + *y * *y + Lanes::splat(0.01))
+}
+
+/// ψ'.
+#[inline(always)]
+fn robust(square: Lanes) -> Lanes {
+    Lanes::splat(1.0) / (square + Lanes::splat(EPSILON * EPSILON)).sqrt()
+}
+
+/// Robustly weighted normal equations of some pixels.
+#[inline(always)]
+fn normal_equations(Terms(terms): &Terms, at: (isize, isize), du: Lanes, dv: Lanes) -> Sums {
+    let (brightness, gx, gy) = (term(&terms[0], at), term(&terms[1], at), term(&terms[2], at));
+    let (nb, nx, ny) = (flat(&brightness), flat(&gx), flat(&gy));
+    let wb = BRIGHTNESS * nb * robust(nb * rest(&brightness, du, dv));
+    let wg = GRADIENT * robust(nx * rest(&gx, du, dv) + ny * rest(&gy, du, dv));
+    let zero = Lanes::splat(0.0);
+    let mut sums = Sums { xx: zero, xy: zero, yy: zero, bx: zero, by: zero };
+    sums.add(wb, &brightness);
+    sums.add(wg * nx, &gx);
+    sums.add(wg * ny, &gy);
     sums
+}
+
+/// Squared difference of the shifts of some pixels and of those at `to`.
+#[inline(always)]
+fn apart(moved: &[Plane; 2], (x, y): (isize, isize), to: (isize, isize)) -> Lanes {
+    let u = moved[0].lanes(x, y) - moved[0].lanes(to.0, to.1);
+    let v = moved[1].lanes(x, y) - moved[1].lanes(to.0, to.1);
+    u * u + v * v
 }
 
 /// Weight of the smoothness link of each pixel to its right and to its lower neighbour.
 #[inline(always)]
-fn link_weights(moved: &Bordered, width: usize, height: usize) -> Raster<[f32; 2]> {
-    let mut diffusivity = Raster::new(width, height, 0.0f32);
+fn link_weights(moved: &[Plane; 2], width: usize, height: usize) -> [Plane; 2] {
+    let mut diffusivity = Plane::zeros(width, height);
     for y in 0..height {
-        let (here, below) = (&moved.row(y)[1..], &moved.row((y + 1).min(height - 1))[1..]);
         for x in (0..width).step_by(LANES) {
-            let count = LANES.min(width - x);
-            let mut squares = [0.0; LANES];
-            for (v, sum) in squares[..count].iter_mut().enumerate() {
-                let (x, right) = (x + v, (x + v + 1).min(width - 1));
-                let square = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
-                *sum = square(here[x], here[right]) + square(here[x], below[x]);
-            }
-            let weights = squares.map(|square: f32| SMOOTHNESS / (square + EPSILON * EPSILON).sqrt());
-            diffusivity.row_mut(y)[x..x + count].copy_from_slice(&weights[..count]);
+            let (x, y) = (x as isize, y as isize);
+            let squares = apart(moved, (x, y), (x + 1, y)) + apart(moved, (x, y), (x, y + 1));
+            let sum = squares + Lanes::splat(EPSILON * EPSILON);
+            diffusivity.set_lanes(x as usize, y as usize, Lanes::splat(SMOOTHNESS) / sum.sqrt());
         }
     }
-    Raster::from_fn(width, height, |x, y| {
-        let half = |x2: usize, y2: usize| 0.5 * (diffusivity.get(x, y) + diffusivity.get(x2, y2));
-        [if x + 1 < width { half(x + 1, y) } else { 0.0 }, if y + 1 < height { half(x, y + 1) } else { 0.0 }]
-    })
+    let mut links = [Plane::zeros(width, height), Plane::zeros(width, height)];
+    for y in 0..height {
+        for x in (0..width).step_by(LANES) {
+            let (xi, yi) = (x as isize, y as isize);
+            let here = diffusivity.lanes(xi, yi);
+            links[0].set_lanes(x, y, 0.5 * (here + diffusivity.lanes(xi + 1, yi)));
+            if y + 1 < height {
+                links[1].set_lanes(x, y, 0.5 * (here + diffusivity.lanes(xi, yi + 1)));
+            }
+        }
+        links[0].row_mut(y)[width - 1] = 0.0;
+    }
+    links
 }
 
-/// One relaxation of the pixels of a chequerboard's colour.
-#[inline(always)]
-fn relax(equations: &Raster<Equation>, flow: &Flow, moved: &mut Bordered, colour: usize) {
-    let (width, height, stride) = (flow.width(), flow.height(), moved.stride);
-    for y in 0..height {
-        let (equations, from) = (equations.row(y), flow.row(y));
-        let rows = &mut moved.data[y * stride..][..3 * stride];
-        for x in ((y + colour) % 2..width).step_by(2) {
-            let Equation { links, cross, right, inverse } = equations[x];
-            let (here, at) = (from[x], stride + x + 1);
-            let mut pull = [-right[0], -right[1]];
-            for (w, neighbour) in links.into_iter().zip([at + 1, at + stride, at - 1, at - stride]) {
-                pull[0] += w * (rows[neighbour][0] - here[0]);
-                pull[1] += w * (rows[neighbour][1] - here[1]);
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Some number for each pixel, 0 to 1.
+    fn plane(width: usize, height: usize, seed: usize) -> Plane {
+        let mut plane = Plane::zeros(width, height);
+        for y in 0..height {
+            for (x, value) in plane.row_mut(y).iter_mut().enumerate() {
+                *value = ((x * 7 + y * 13 + seed * 29) as f32 * 1.7).sin().abs();
             }
-            let [du, dv] = [rows[at][0] - here[0], rows[at][1] - here[1]];
-            let du = du + RELAXATION * ((pull[0] - cross * dv) * inverse[0] - du);
-            let dv = dv + RELAXATION * ((pull[1] - cross * du) * inverse[1] - dv);
-            rows[at] = [here[0] + du, here[1] + dv];
+        }
+        plane
+    }
+
+    fn board(plane: &Plane, width: usize, height: usize) -> Board {
+        let mut board = Board::zeros(width, height);
+        for y in 0..height {
+            for x in (0..width).step_by(LANES) {
+                board.set(x, y, plane.lanes(x as isize, y as isize));
+            }
+        }
+        board
+    }
+
+    /// One pixel after the other, as the equations are written.
+    fn relax_naively(planes: &[Plane; 9], moved: &mut [Plane; 2], colour: usize, (width, height): (usize, usize)) {
+        let at = |k: usize, x: usize, y: usize| planes[k].row(y)[x];
+        for y in 0..height {
+            for x in (0..width).filter(|x| (x + y) % 2 == colour) {
+                let right = if x + 1 < width { at(0, x, y) } else { 0.0 };
+                let below = if y + 1 < height { at(1, x, y) } else { 0.0 };
+                let left = if x > 0 { at(0, x - 1, y) } else { 0.0 };
+                let above = if y > 0 { at(1, x, y - 1) } else { 0.0 };
+                let near =
+                    [(right, x + 1, y), (below, x, y + 1), (left, x.wrapping_sub(1), y), (above, x, y.wrapping_sub(1))];
+                let here = [at(7, x, y), at(8, x, y)];
+                let mut pull = [-at(3, x, y), -at(4, x, y)];
+                for (weight, x, y) in near.into_iter().filter(|(weight, ..)| *weight != 0.0) {
+                    pull[0] += weight * (moved[0].row(y)[x] - here[0]);
+                    pull[1] += weight * (moved[1].row(y)[x] - here[1]);
+                }
+                let [du, dv] = [moved[0].row(y)[x] - here[0], moved[1].row(y)[x] - here[1]];
+                let du = du + RELAXATION * ((pull[0] - at(2, x, y) * dv) * at(5, x, y) - du);
+                let dv = dv + RELAXATION * ((pull[1] - at(2, x, y) * du) * at(6, x, y) - dv);
+                (moved[0].row_mut(y)[x], moved[1].row_mut(y)[x]) = (here[0] + du, here[1] + dv);
+            }
+        }
+    }
+
+    #[test]
+    fn the_colours_apart_are_relaxed_as_one_pixel_after_the_other() {
+        for (width, height) in [(3, 3), (8, 5), (16, 4), (17, 9), (21, 6)] {
+            let mut planes: [Plane; 9] = std::array::from_fn(|seed| plane(width, height, seed));
+            (0..height).for_each(|y| planes[0].row_mut(y)[width - 1] = 0.0);
+            planes[1].row_mut(height - 1).fill(0.0);
+            let mut moved = [plane(width, height, 9), plane(width, height, 10)];
+            let [right, below, cross, bx, by, ix, iy, u, v] = planes.each_ref().map(|p| board(p, width, height));
+            let mut equations = Equations {
+                width,
+                height,
+                links: [right, below],
+                cross,
+                right: [bx, by],
+                inverse: [ix, iy],
+                from: [u, v],
+                moved: moved.each_ref().map(|p| board(p, width, height)),
+            };
+            for colour in [0, 1, 0] {
+                equations.relax(colour);
+                relax_naively(&planes, &mut moved, colour, (width, height));
+            }
+            let mut fast = [Plane::zeros(width, height), Plane::zeros(width, height)];
+            equations.moved.iter().zip(&mut fast).for_each(|(board, plane)| board.join(plane));
+            for (fast, naive) in fast.iter().zip(&moved) {
+                (0..height).for_each(|y| assert_eq!(fast.row(y), naive.row(y), "{width} x {height}, row {y}"));
+            }
         }
     }
 }

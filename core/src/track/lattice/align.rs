@@ -273,8 +273,9 @@ fn add_look(
         let mut sums = CellSums::default();
         let turn = rotations[cell[0].cell].normalize_or(Point::X);
         let turn = [turn.x as f32, turn.y as f32];
+        let corners = texture.corners(cell[0].cell, nodes);
         for texel in cell {
-            let place = texel.binding.at(nodes);
+            let place = texel.place(&corners);
             if target.cover.hides(place) {
                 continue;
             }

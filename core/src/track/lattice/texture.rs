@@ -6,6 +6,7 @@ use crate::geometry::Point;
 use crate::numeric::vector::vectorised;
 use crate::scene::Raster;
 use crate::track::features::{Features, LEVELS, Padded, Sample, WORKING_LINES, difference};
+use glam::Vec2;
 
 /// Weight of samples in the band around the contour. They hold the ink line's outer side; being background in part,
 /// they count for less than the inside.
@@ -171,11 +172,14 @@ impl Texture {
     fn look(&self, picture: &Features, nodes: &[Point], seen: impl Fn(Point) -> bool) -> (f64, f64) {
         let level = picture.level(MEASURED_LEVEL);
         let (mut sum, mut weights) = (0.0, 0.0);
-        for texel in self.measured() {
-            let place = texel.binding.at(nodes);
-            let wrong = texel.cost(level.colour(place));
-            sum += f64::from(texel.weight * if seen(place) { wrong } else { UNSEEN });
-            weights += f64::from(texel.weight);
+        for cell in self.measured().chunk_by(|a, b| a.cell == b.cell) {
+            let corners = self.corners(cell[0].cell, nodes);
+            for texel in cell {
+                let place = texel.place(&corners);
+                let wrong = texel.cost(level.colour(place));
+                sum += f64::from(texel.weight * if seen(place) { wrong } else { UNSEEN });
+                weights += f64::from(texel.weight);
+            }
         }
         (sum, weights)
     }
@@ -198,18 +202,41 @@ impl Texture {
     /// The same; what is not `seen` is [`UNSEEN`].
     pub fn differences_where(&self, picture: &Features, nodes: &[Point], seen: impl Fn(Point) -> bool) -> Vec<f32> {
         let level = picture.level(MEASURED_LEVEL);
-        let of = |t: &Texel| {
-            let place = t.binding.at(nodes);
-            if seen(place) { t.cost(level.colour(place)) } else { UNSEEN }
-        };
+        let mut differences = Vec::with_capacity(self.measured().len());
         vectorised(
             #[inline(always)]
-            || self.measured().iter().map(of).collect(),
-        )
+            || {
+                for cell in self.measured().chunk_by(|a, b| a.cell == b.cell) {
+                    let corners = self.corners(cell[0].cell, nodes);
+                    for texel in cell {
+                        let place = texel.place(&corners);
+                        differences.push(if seen(place) { texel.cost(level.colour(place)) } else { UNSEEN });
+                    }
+                }
+            },
+        );
+        differences
+    }
+
+    /// Where a pose puts the corners of a cell.
+    #[inline(always)]
+    pub fn corners(&self, cell: usize, nodes: &[Point]) -> Corners {
+        let [a, b, c, d] = self.mesh.cells[cell];
+        Corners([nodes[a].as_vec2(), nodes[b].as_vec2(), nodes[c].as_vec2(), nodes[d].as_vec2()])
     }
 }
 
+/// Where a pose puts the corners of a cell: what is done once for all its samples.
+pub struct Corners([Vec2; 4]);
+
 impl Texel {
+    /// Where it is when its cell's corners are there.
+    #[inline(always)]
+    pub fn place(&self, Corners([a, b, c, d]): &Corners) -> Point {
+        let [wa, wb, wc, wd] = self.weights;
+        ((*a * wa + *b * wb) + (*c * wc + *d * wd)).as_dvec2()
+    }
+
     /// What it costs where the picture has the colour `seen`: the squared difference, at most [`WORST`].
     ///
     /// Outside the part the ground may have changed since the key, as it does when a limb swings from before the hair to
@@ -218,7 +245,7 @@ impl Texel {
     #[inline(always)]
     fn cost(&self, seen: Padded) -> f32 {
         let wrong = difference(seen, self.key.colour).min(WORST);
-        let Some(own) = self.own else { return wrong };
+        let Some(own) = self.own.filter(|_| wrong > OTHER_GROUND) else { return wrong };
         wrong.min(OTHER_GROUND.max(WORST * (-difference(seen, own) / ALIKE).exp()))
     }
 }

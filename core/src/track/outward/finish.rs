@@ -18,9 +18,6 @@ use crate::track::stage::Kit;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::collections::BTreeMap;
 
-/// Fall of the templates' cost that makes a refined contour worth taking.
-const WORTH: f64 = 0.01;
-
 /// Follows a part outward from its only key.
 pub(super) fn track(kit: Kit, job: &OutwardJob) -> Result<OutwardTrack, TrackError> {
     if job.key.is_empty() || job.size.0 == 0 || job.size.1 == 0 {
@@ -140,6 +137,5 @@ fn on_frame(
 fn refined(ground: &Ground, refiner: &Refiner, seen: &Seen, rough: &[Point]) -> Vec<Point> {
     let pins = seen.correction.as_ref().map(|c| c.pins.iter().map(|(&j, &p)| (j, p / ground.scale)).collect());
     let frame = Frame { picture: &seen.features, cover: &seen.cover, share: 0.0, pins: pins.unwrap_or_default() };
-    let fine = refiner.refine(&frame, rough);
-    if refiner.cost(&frame, &fine) < refiner.cost(&frame, rough) - WORTH { fine } else { rough.to_vec() }
+    refiner.improved(&frame, rough.to_vec())
 }

@@ -37,6 +37,8 @@ const PASSES: [(Window, [(f64, f64); 3]); 2] = [
     (Window { reach: [5, 6] }, [(6.0, 0.5), (4.0, 0.3), (3.0, 0.2)]),
     (Window { reach: [2, 3] }, [(3.0, 0.2), (2.0, 0.15), (2.0, 0.1)]),
 ];
+/// Fall of the templates' cost that makes a refined contour worth taking.
+const WORTH: f64 = 0.01;
 /// A cost counts at most this much: a sample cannot be worse than lost.
 const LOST: f64 = 0.5;
 
@@ -89,8 +91,15 @@ impl Refiner {
         self.templates.forget_figure();
     }
 
-    /// Refined control points, from rough ones.
-    pub fn refine(&self, frame: &Frame, start: &[Point]) -> Vec<Point> {
+    /// Refined control points, or the rough ones where the templates fit those no worse.
+    pub fn improved(&self, frame: &Frame, rough: Vec<Point>) -> Vec<Point> {
+        let (fine, before) = self.refine(frame, &rough);
+        if self.cost(frame, &fine) < before - WORTH { fine } else { rough }
+    }
+
+    /// Refined control points, from rough ones, and how badly the templates fit at those, as [`Refiner::cost`] says it.
+    fn refine(&self, frame: &Frame, start: &[Point]) -> (Vec<Point>, f64) {
+        let mut before = None;
         let mut points = start.to_vec();
         for (window, rounds) in &PASSES {
             let (places, angles) = self.samples.frames(&points);
@@ -98,6 +107,7 @@ impl Refiner {
                 .into_par_iter()
                 .map(|s| response::map(frame, window, (places[s], angles[s]), self.templates.of(s)))
                 .collect();
+            before.get_or_insert_with(|| mean_cost(&maps));
             for &(reach, weight) in rounds {
                 let now = self.samples.places(&points);
                 let pulls: Vec<pull::Pull> = (0..places.len())
@@ -105,11 +115,11 @@ impl Refiner {
                     .collect();
                 let edges = self.links.wanted(&self.keys, &points, frame.share);
                 let solved = solve::solve(&self.samples, &pulls, &self.links, &edges, weight, &points, &frame.pins);
-                let Some(solved) = solved else { return points };
+                let Some(solved) = solved else { return (points, before.unwrap_or(LOST)) };
                 points = solved;
             }
         }
-        points
+        (points, before.unwrap_or(LOST))
     }
 
     /// How badly the templates fit at control points: mean of each sample's cost, by how much of it a key shows.
@@ -120,11 +130,16 @@ impl Refiner {
             .into_par_iter()
             .map(|s| response::map(frame, &window, (places[s], angles[s]), self.templates.of(s)))
             .collect();
-        let (mut sum, mut weights) = (0.0, 1e-6);
-        for map in maps {
-            sum += map.shown * f64::from(map.costs[0]).min(LOST);
-            weights += map.shown;
-        }
-        sum / weights
+        mean_cost(&maps)
     }
+}
+
+/// Mean of the samples' costs where they are, by how much of each a key shows.
+fn mean_cost(maps: &[response::Map]) -> f64 {
+    let (mut sum, mut weights) = (0.0, 1e-6);
+    for map in maps {
+        sum += map.shown * f64::from(map.costs[map.costs.len() / 2]).min(LOST);
+        weights += map.shown;
+    }
+    sum / weights
 }

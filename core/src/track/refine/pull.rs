@@ -11,6 +11,8 @@ use crate::geometry::Point;
 const TAU: f64 = 0.007;
 /// Smallest spread of a place, in working pixels: s of the module's formula.
 const SPREAD: f64 = 0.7;
+/// A place whose probability is smaller than the largest one's by the exponential of this counts for nothing.
+const NEGLIGIBLE: f64 = 25.0;
 /// Least costs at which a sample counts fully, and not at all.
 const GOOD: f64 = 0.15;
 const BAD: f64 = 0.55;
@@ -53,23 +55,35 @@ pub fn pull(map: &Map, (place, tangent): (Point, Point), now: Point, reach: f64,
 /// Mean, covariance (xx, xy, yy), and the least cost within twice the reach.
 fn moments(map: &Map, u: Point, reach: f64) -> (Point, [f64; 3], f64) {
     let inverse = 0.5 / (reach * reach);
-    let columns = 2 * map.reach[1] + 1;
-    let each = || {
-        map.costs.iter().enumerate().map(move |(i, &cost)| {
-            let i = i as i32;
-            let d = Point::new(f64::from(i / columns - map.reach[0]), f64::from(i % columns - map.reach[1]));
-            (d, f64::from(cost), (d - u).length_squared())
-        })
-    };
-    let lowest = each().map(|(_, cost, far)| cost / TAU + far * inverse).fold(f64::INFINITY, f64::min);
-    let near = each().filter(|(_, _, far)| *far < 4.0 * reach * reach);
-    let least = near.map(|(_, cost, _)| cost).fold(1.0, f64::min);
+    let columns = 2 * map.reach[1] as usize + 1;
+    let mut exponents = Vec::with_capacity(map.costs.len());
+    let (mut lowest, mut least) = (f64::INFINITY, 1.0f64);
+    for (row, costs) in map.costs.chunks_exact(columns).enumerate() {
+        let x = f64::from(row as i32 - map.reach[0]) - u.x;
+        for (column, &cost) in costs.iter().enumerate() {
+            let y = f64::from(column as i32 - map.reach[1]) - u.y;
+            let (cost, far) = (f64::from(cost), x * x + y * y);
+            let exponent = cost / TAU + far * inverse;
+            lowest = lowest.min(exponent);
+            if far < 4.0 * reach * reach {
+                least = least.min(cost);
+            }
+            exponents.push(exponent);
+        }
+    }
     let (mut sum, mut first, mut second) = (0.0, Point::ZERO, [0.0; 3]);
-    for (d, cost, far) in each() {
-        let w = (lowest - cost / TAU - far * inverse).exp();
-        sum += w;
-        first += d * w;
-        second = [second[0] + w * d.x * d.x, second[1] + w * d.x * d.y, second[2] + w * d.y * d.y];
+    for (row, exponents) in exponents.chunks_exact(columns).enumerate() {
+        let x = f64::from(row as i32 - map.reach[0]);
+        for (column, exponent) in exponents.iter().enumerate() {
+            if exponent - lowest > NEGLIGIBLE {
+                continue;
+            }
+            let d = Point::new(x, f64::from(column as i32 - map.reach[1]));
+            let w = (lowest - exponent).exp();
+            sum += w;
+            first += d * w;
+            second = [second[0] + w * d.x * d.x, second[1] + w * d.x * d.y, second[2] + w * d.y * d.y];
+        }
     }
     let mean = first / sum;
     let covariance =

@@ -6,8 +6,9 @@
 //! like it (1 − c of the difference from that), since a contour that has slid inwards shows just that.
 
 use super::Frame;
-use super::template::{HALF, LEVEL, Template, offsets};
+use super::template::{Cell, HALF, LEVEL, Template, offsets};
 use crate::geometry::Point;
+use crate::numeric::lanes::{LANES, Lanes};
 use crate::numeric::vector::vectorised;
 use crate::scene::Colour;
 
@@ -36,14 +37,12 @@ pub struct Map {
     pub shown: f64,
 }
 
-/// Displacements that are worked on at once; rows of a window are padded to a multiple of it.
-const LANES: usize = 8;
-
 /// What the window and the templates around it show.
 struct Seen {
     /// Planes of one value a place, along the normal innermost: red, green, blue, and 1 where a nearer part hides the
     /// place, else 0.
     planes: [Vec<f32>; 4],
+    any_hidden: bool,
     stride: usize,
 }
 
@@ -58,17 +57,19 @@ pub fn map(frame: &Frame, window: &Window, (place, tangent): (Point, Point), tem
     let serves = templates.map(|t| t.shown > SHOWN && t.weight > 0.0);
     let used = (0..2).filter(|&k| serves[k] || serves == [false, false]).map(|k| templates[k]);
     let mut costs = vec![1.0f32; rows * columns];
-    let mut sums = vec![[0.0f32; LANES]; rows * padded / LANES];
+    let mut sums = vec![Lanes::splat(0.0); rows * padded / LANES];
     for template in used {
-        sums.fill([0.0; LANES]);
+        sums.fill(Lanes::splat(0.0));
         vectorised(
             #[inline(always)]
             || add_costs(template, &seen, &mut sums, padded / LANES),
         );
         let scale = 1.0 / template.weight.max(1e-6);
         for (row, sums) in costs.chunks_exact_mut(columns).zip(sums.chunks_exact(padded / LANES)) {
-            for (cost, sum) in row.iter_mut().zip(sums.as_flattened()) {
-                *cost = cost.min(sum * scale);
+            for (costs, sums) in row.chunks_mut(LANES).zip(sums) {
+                for (v, cost) in costs.iter_mut().enumerate() {
+                    *cost = cost.min(sums.get(v) * scale);
+                }
             }
         }
     }
@@ -83,67 +84,65 @@ fn seen(frame: &Frame, window: &Window, (place, tangent): (Point, Point), paddin
     let stride = size[1] + padding;
     let level = frame.picture.level(LEVEL);
     let empty = || vec![0.0f32; size[0] * stride];
-    let mut seen = Seen { planes: [empty(), empty(), empty(), empty()], stride };
+    let mut planes = [empty(), empty(), empty(), empty()];
+    let [red, green, blue, hidden] = &mut planes;
+    let mut any_hidden = false;
+    let corner = [0, 1].map(|axis: usize| -f64::from(window.reach[axis] + HALF[axis]));
+    let normal = tangent.perp();
     for a in 0..size[0] {
-        for b in 0..size[1] {
-            let offset = [a as i32 - window.reach[0] - HALF[0], b as i32 - window.reach[1] - HALF[1]];
-            let p = place + tangent.rotate(Point::new(f64::from(offset[0]), f64::from(offset[1])));
-            let at = a * stride + b;
-            // A colour's fourth value is zero.
-            let mut values = level.colour(p);
-            values.w += f32::from(u8::from(frame.cover.hides(p)));
-            (0..4).for_each(|k| seen.planes[k][at] = values[k]);
+        let first = place + tangent * (corner[0] + a as f64) + normal * corner[1];
+        let row = a * stride..a * stride + size[1];
+        level.colours_along(first, normal, [&mut red[row.clone()], &mut green[row.clone()], &mut blue[row.clone()]]);
+        for (b, hidden) in hidden[row].iter_mut().enumerate() {
+            if frame.cover.hides(first + normal * b as f64) {
+                *hidden = 1.0;
+                any_hidden = true;
+            }
         }
     }
-    seen
+    Seen { planes, any_hidden, stride }
 }
 
 /// Adds the weighted cost of each of the template's offsets at all displacements, `lanes` groups a row.
 #[inline(always)]
-fn add_costs(template: &Template, seen: &Seen, sums: &mut [[f32; LANES]], lanes: usize) {
-    let cells = offsets(0).flat_map(|a| offsets(1).map(move |b| (a, b)));
-    for ((a, b), cell) in cells.zip(&template.cells) {
-        let corner = (a + HALF[0]) as usize * seen.stride + (b + HALF[1]) as usize;
-        match &cell.own {
-            None => add_cell(seen, corner, cell.weight, sums, lanes, |colour| wrong(colour, &cell.colour)),
-            Some(own) => add_cell(seen, corner, cell.weight, sums, lanes, |colour| {
-                wrong(colour, &cell.colour).min(OTHER_GROUND.max(1.0 - wrong(colour, own)))
-            }),
-        }
-    }
-}
-
-/// Adds the weighted cost of one offset at all displacements; `corner` is the place in the planes at the first of them.
-#[inline(always)]
-fn add_cell(
-    seen: &Seen,
-    corner: usize,
-    weight: f32,
-    sums: &mut [[f32; LANES]],
-    lanes: usize,
-    cost: impl Fn(Colour) -> f32,
-) {
-    for (u, row) in sums.chunks_exact_mut(lanes).enumerate() {
-        let from = corner + u * seen.stride;
-        for (group, sums) in row.iter_mut().enumerate() {
-            let from = from + group * LANES;
-            let read = |plane: &[f32]| -> [f32; LANES] { std::array::from_fn(|v| plane[from..from + LANES][v]) };
-            let [r, g, b, hidden] = seen.planes.each_ref().map(|plane| read(plane));
-            let cost: [f32; LANES] = std::array::from_fn(|v| {
-                let cost = cost([r[v], g[v], b[v]]);
-                hidden[v].mul_add(HIDDEN - cost, cost)
-            });
-            for (sum, cost) in sums.iter_mut().zip(cost) {
-                *sum = weight.mul_add(cost, *sum);
+fn add_costs(template: &Template, seen: &Seen, sums: &mut [Lanes], lanes: usize) {
+    let mut cells = template.cells.iter();
+    for a in offsets(0) {
+        for b in offsets(1) {
+            let Some(cell) = cells.next() else { return };
+            let corner = (a + HALF[0]) as usize * seen.stride + (b + HALF[1]) as usize;
+            for (u, row) in sums.chunks_exact_mut(lanes).enumerate() {
+                for (group, sum) in row.iter_mut().enumerate() {
+                    let at = corner + u * seen.stride + group * LANES;
+                    *sum = Lanes::splat(cell.weight).mul_add(seen.cost(cell, at), *sum);
+                }
             }
         }
     }
 }
 
-/// Robust difference of two colours, 0 to 1.
+impl Seen {
+    /// What an offset costs at some displacements; `at` is the place in the planes at the first of them.
+    #[inline(always)]
+    fn cost(&self, cell: &Cell, at: usize) -> Lanes {
+        let [r, g, b, hidden] = &self.planes;
+        let colour = [Lanes::read(&r[at..]), Lanes::read(&g[at..]), Lanes::read(&b[at..])];
+        let mut cost = wrong(&colour, &cell.colour);
+        if let Some(own) = &cell.own {
+            let inwards = Lanes::splat(1.0) - wrong(&colour, own);
+            cost = cost.min(Lanes::splat(OTHER_GROUND).max(inwards));
+        }
+        if !self.any_hidden {
+            return cost;
+        }
+        Lanes::read(&hidden[at..]).mul_add(Lanes::splat(HIDDEN) - cost, cost)
+    }
+}
+
+/// Robust difference of some colours to one, 0 to 1.
 #[inline(always)]
-fn wrong(a: Colour, b: &Colour) -> f32 {
-    let [r, g, b]: Colour = std::array::from_fn(|k| a[k] - b[k]);
+fn wrong([r, g, b]: &[Lanes; 3], colour: &Colour) -> Lanes {
+    let (r, g, b) = (*r - Lanes::splat(colour[0]), *g - Lanes::splat(colour[1]), *b - Lanes::splat(colour[2]));
     let square = r.mul_add(r, g.mul_add(g, b * b));
-    square / (square + TOLERANCE)
+    square / (square + Lanes::splat(TOLERANCE))
 }
