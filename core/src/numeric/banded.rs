@@ -8,6 +8,7 @@
 //! of [`BLOCK`] times.
 
 use super::vector::vectorised;
+use std::ops::Range;
 
 /// Rows that are finished together.
 const BLOCK: usize = 4;
@@ -42,6 +43,11 @@ impl BandMatrix {
     /// Number of rows.
     pub fn size(&self) -> usize {
         self.size
+    }
+
+    /// The columns of row `i` that lie in the band.
+    pub fn row_range(&self, i: usize) -> Range<usize> {
+        i.saturating_sub(self.half)..(i + self.half + 1).min(self.size)
     }
 
     /// Sets every entry to zero.

@@ -11,7 +11,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub(crate) const LANES: usize = 8;
 
 /// [`LANES`] values.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct Lanes([f32; LANES]);
 
@@ -26,6 +26,12 @@ impl Lanes {
     #[inline(always)]
     pub fn splat(value: f32) -> Self {
         Self([value; LANES])
+    }
+
+    /// One value for the first four and one for the others.
+    #[inline(always)]
+    pub fn of_fours(first: f32, second: f32) -> Self {
+        Self([first, first, first, first, second, second, second, second])
     }
 
     /// Whole numbers.

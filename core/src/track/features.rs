@@ -47,6 +47,10 @@ pub fn working_scale(height: usize) -> f64 {
 pub struct Level {
     /// Working pixels in a pixel, across and down: the last row and column reach over the picture's edge.
     size: f64,
+    /// One by that.
+    inverse: f32,
+    /// What one of a pixel's numbers is as a slope, by working pixel.
+    slope: f32,
     /// The pixels, the last of each row and of each column twice: every place has four around it.
     raster: Raster<Pixel>,
 }
@@ -98,7 +102,8 @@ impl Level {
                 raster.row_mut(height).copy_from_slice(&last);
             },
         );
-        Self { size, raster }
+        let inverse = 1.0 / size as f32;
+        Self { size, inverse, slope: inverse / UNIT, raster }
     }
 
     /// Bilinear reading at `p` in working pixels; outside the picture the nearest edge is read.
@@ -110,18 +115,16 @@ impl Level {
             + weights[1] * pair(above, 12)
             + (weights[2] * pair(below, 0) + weights[3] * pair(below, 12)))
         .fours();
-        let slope = 1.0 / (UNIT * self.size as f32);
         let down = mixed(above, below, &weights, 8);
-        Sample { colour: colour * (1.0 / UNIT), slopes: [along * slope, down * slope] }
+        Sample { colour: colour * (1.0 / UNIT), slopes: [along * self.slope, down * self.slope] }
     }
 
     /// The values of the two pixels above and of the two below `p`, and the bilinear weights of the four.
     #[inline(always)]
     fn around(&self, p: Point) -> ([&[i16]; 2], [f32; 4]) {
         let (width, height) = self.dimensions();
-        let inverse = 1.0 / self.size as f32;
-        let (x, fx) = split(p.x as f32 * inverse, width);
-        let (y, fy) = split(p.y as f32 * inverse, height);
+        let (x, fx) = split(p.x as f32 * self.inverse, width);
+        let (y, fy) = split(p.y as f32 * self.inverse, height);
         let first = y * (width + 1) + x;
         let data = self.raster.data();
         let rows = [&data[first..first + 2], &data[first + width + 1..first + width + 3]];

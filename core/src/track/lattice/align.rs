@@ -19,6 +19,7 @@ use super::shape;
 use super::texture::{Cover, PAIRS, Texel, Texture};
 use crate::geometry::Point;
 use crate::numeric::banded::BandMatrix;
+use crate::numeric::lanes::Lanes;
 use crate::numeric::vector::vectorised;
 use crate::track::features::{Features, LEVELS, Padded, Sample, total};
 
@@ -56,10 +57,11 @@ pub struct Target<'a> {
     pub anchors: &'a Anchors,
 }
 
-/// What does not change from step to step: the weighted matrix of the shape term. Made once a lattice.
+/// What does not change from step to step: the weighted matrix of the shape term over the unknowns of each level. Made once
+/// a lattice.
 #[derive(Clone, Debug)]
 pub struct Aligner {
-    constant: BandMatrix,
+    constants: [BandMatrix; LEVELS.len()],
 }
 
 impl Aligner {
@@ -68,7 +70,7 @@ impl Aligner {
         let mut constant = mesh.matrix();
         constant.add_scaled(&shape::stiffness(mesh), STIFFNESS);
         (0..constant.size()).for_each(|i| constant.add(i, i, RIDGE));
-        Self { constant }
+        Self { constants: std::array::from_fn(|level| mesh.unknowns(level).restricted_matrix(&constant)) }
     }
 
     /// Improves a pose on the levels of the indices given (in [`LEVELS`]), in that order.
@@ -102,21 +104,25 @@ impl Aligner {
         level: usize,
         equations: &mut Option<Equations>,
     ) -> Option<f64> {
-        let mesh = &texture.mesh;
+        let (mesh, unknowns) = (&texture.mesh, texture.mesh.unknowns(level));
         let rotations = shape::rotations(mesh, nodes);
-        let mut matrix = equations.is_none().then(|| self.constant.clone());
-        let mut gradient = vec![0.0; 2 * nodes.len()];
+        let mut matrix = equations.is_none().then(|| self.constants[level].clone());
+        let mut bending = vec![0.0; 2 * nodes.len()];
+        shape::add_gradient(mesh, nodes, &rotations, STIFFNESS, &mut bending);
+        let mut gradient = unknowns.restricted(&bending);
         vectorised(
             #[inline(always)]
             || add_look(texture, target, nodes, level, &rotations, matrix.as_mut(), &mut gradient),
         );
+        let anchors = target.anchors.of_shifts(nodes, unknowns);
         if let Some(matrix) = matrix {
-            *equations = Some(Equations::new(matrix, target.anchors)?);
+            *equations = Some(Equations::new(matrix, &anchors)?);
         }
-        shape::add_gradient(mesh, nodes, &rotations, STIFFNESS, &mut gradient);
         gradient.iter_mut().for_each(|g| *g = -*g);
-        equations.as_ref()?.solve(&mut gradient, nodes, target.anchors);
-        moved(&gradient, nodes, LONGEST_STEP * LEVELS[level] as f64)
+        let unmoved = vec![Point::ZERO; gradient.len() / 2];
+        equations.as_ref()?.solve(&mut gradient, &unmoved, &anchors);
+        let shifts = unknowns.spread(&gradient);
+        moved(&shifts, nodes, LONGEST_STEP * LEVELS[level] as f64)
     }
 }
 
@@ -150,7 +156,7 @@ impl<'a> Settler<'a> {
             let rotations = shape::rotations(self.mesh, &nodes);
             shape::add_gradient(self.mesh, &nodes, &rotations, -1.0, &mut gradient);
             equations.solve(&mut gradient, &nodes, self.anchors);
-            if moved(&gradient, &mut nodes, f64::INFINITY).is_none() {
+            if moved(&points(&gradient), &mut nodes, f64::INFINITY).is_none() {
                 break;
             }
         }
@@ -184,7 +190,7 @@ pub fn draw(mesh: &Mesh, start: &[Point], anchors: &Anchors, hold: &[f64]) -> Ve
                 gradient[2 * n + 1] += pull.y;
             }
             equations.solve(&mut gradient, &nodes, &target);
-            if moved(&gradient, &mut nodes, f64::INFINITY).is_none() {
+            if moved(&points(&gradient), &mut nodes, f64::INFINITY).is_none() {
                 return nodes;
             }
         }
@@ -192,28 +198,37 @@ pub fn draw(mesh: &Mesh, start: &[Point], anchors: &Anchors, hold: &[f64]) -> Ve
     nodes
 }
 
+/// Coordinates as points.
+fn points(coordinates: &[f64]) -> Vec<Point> {
+    coordinates.as_chunks().0.iter().copied().map(Point::from_array).collect()
+}
+
 /// Moves the nodes by a step, shortened to `longest`. Its length before; none, and no move, where it is not finite.
-fn moved(step: &[f64], nodes: &mut [Point], longest: f64) -> Option<f64> {
-    let length = step.iter().fold(0.0f64, |most, d| most.max(d.abs()));
-    if !length.is_finite() {
+fn moved(step: &[Point], nodes: &mut [Point], longest: f64) -> Option<f64> {
+    if !step.iter().all(|d| d.is_finite()) {
         return None;
     }
+    let length = step.iter().fold(0.0f64, |most, d| most.max(d.abs().max_element()));
     let share = if length > longest { longest / length } else { 1.0 };
-    for (n, p) in nodes.iter_mut().enumerate() {
-        *p += Point::new(step[2 * n], step[2 * n + 1]) * share;
+    for (p, step) in nodes.iter_mut().zip(step) {
+        *p += *step * share;
     }
     Some(length)
 }
 
-/// Sums of one cell: second derivatives (xx, xy, yy) for each of [`PAIRS`] of its nodes, first derivatives (x, y) for each
-/// node.
-#[derive(Default)]
+/// Sums of one of the unknowns' cells: second derivatives (xx, xy, yy) for each of [`PAIRS`] of its nodes, first derivatives
+/// for each node, by x and then by y.
 struct CellSums {
     pairs: [[f32; PAIRS.len()]; 3],
-    nodes: [[f32; 4]; 2],
+    nodes: Lanes,
 }
 
 impl CellSums {
+    #[inline(always)]
+    fn new() -> Self {
+        Self { pairs: [[0.0; PAIRS.len()]; 3], nodes: Lanes::splat(0.0) }
+    }
+
     /// Adds a sample's 3 second derivatives.
     #[inline(always)]
     fn add_second(&mut self, texel: &Texel, second: [f32; 3]) {
@@ -226,19 +241,16 @@ impl CellSums {
 
     /// Adds a sample's 2 first derivatives.
     #[inline(always)]
-    fn add_first(&mut self, texel: &Texel, first: [f32; 2]) {
-        for (sums, value) in self.nodes.iter_mut().zip(first) {
-            for (sum, weight) in sums.iter_mut().zip(&texel.weights) {
-                *sum = weight.mul_add(value, *sum);
-            }
-        }
+    fn add_first(&mut self, texel: &Texel, [x, y]: [f32; 2]) {
+        self.nodes = texel.moved_by.mul_add(Lanes::of_fours(x, y), self.nodes);
     }
 
     #[inline(always)]
     fn scatter(&self, nodes: &[usize; 4], matrix: Option<&mut BandMatrix>, gradient: &mut [f64]) {
+        let by_node = self.nodes.to_array();
         for (a, &n) in nodes.iter().enumerate() {
-            gradient[2 * n] += f64::from(self.nodes[0][a]);
-            gradient[2 * n + 1] += f64::from(self.nodes[1][a]);
+            gradient[2 * n] += f64::from(by_node[a]);
+            gradient[2 * n + 1] += f64::from(by_node[4 + a]);
         }
         let Some(matrix) = matrix else { return };
         for (pair, (a, b)) in PAIRS.iter().enumerate().filter_map(|(k, pair)| Some((k, (*pair)?))) {
@@ -266,32 +278,33 @@ fn add_look(
     gradient: &mut [f64],
 ) {
     let texels = &texture.texels[level];
+    let unknowns = texture.mesh.unknowns(level);
     let share = (texture.mesh.cells.len() as f64 / texels.len() as f64) as f32;
     let inverse = 1.0 / (TOLERANCE[level] * TOLERANCE[level]);
     let picture = target.picture.level(level);
-    for cell in texels.chunk_by(|a, b| a.cell == b.cell) {
-        let mut sums = CellSums::default();
-        let turn = rotations[cell[0].cell].normalize_or(Point::X);
-        let turn = [turn.x as f32, turn.y as f32];
-        let corners = texture.corners(cell[0].cell, nodes);
-        for texel in cell {
-            let place = texel.place(&corners);
-            if target.cover.hides(place) {
-                continue;
-            }
-            let seen = picture.sample(place);
-            let (gx, gy) = slopes(&seen, texel, turn);
-            let rest = seen.colour - texel.key.colour;
-            let rho = 1.0 + total(rest * rest) * inverse;
-            let weight = share * texel.weight / (rho * rho);
-            let second = [gx * gx, gx * gy, gy * gy].map(total);
-            let first = [gx * rest, gy * rest].map(total);
-            sums.add_first(texel, first.map(|v| weight * v));
-            if matrix.is_some() {
-                sums.add_second(texel, second.map(|v| weight * v));
+    for group in texels.chunk_by(|a, b| unknowns.cell_of[a.cell] == unknowns.cell_of[b.cell]) {
+        let mut sums = CellSums::new();
+        for cell in group.chunk_by(|a, b| a.cell == b.cell) {
+            let turn = rotations[cell[0].cell].normalize_or(Point::X);
+            let turn = [turn.x as f32, turn.y as f32];
+            let corners = texture.corners(cell[0].cell, nodes);
+            for texel in cell {
+                let place = texel.place(&corners);
+                if target.cover.hides(place) {
+                    continue;
+                }
+                let seen = picture.sample(place);
+                let (gx, gy) = slopes(&seen, texel, turn);
+                let rest = seen.colour - texel.key.colour;
+                let rho = 1.0 + total(rest * rest) * inverse;
+                let weight = share * texel.weight / (rho * rho);
+                sums.add_first(texel, [gx * rest, gy * rest].map(|v| weight * total(v)));
+                if matrix.is_some() {
+                    sums.add_second(texel, [gx * gx, gx * gy, gy * gy].map(|v| weight * total(v)));
+                }
             }
         }
-        sums.scatter(&texture.mesh.cells[cell[0].cell], matrix.as_deref_mut(), gradient);
+        sums.scatter(&unknowns.cells[unknowns.cell_of[group[0].cell]], matrix.as_deref_mut(), gradient);
     }
 }
 

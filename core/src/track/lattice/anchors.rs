@@ -1,6 +1,7 @@
 //! Places that the artist fixed, as linear constraints on a lattice's nodes.
 
 use super::mesh::Mesh;
+use super::unknowns::Unknowns;
 use crate::geometry::{Point, similarity::Similarity};
 use crate::track::job::Correction;
 
@@ -53,6 +54,12 @@ impl Anchors {
     pub fn toward(&self, nodes: &[Point], share: f64) -> Self {
         let nearer = |a: &Anchor| Anchor { terms: a.terms.clone(), place: a.place - a.missing(nodes) * (1.0 - share) };
         Self { anchors: self.anchors.iter().map(nearer).collect() }
+    }
+
+    /// What they ask of the shifts of an alignment's unknowns, when the nodes are at `nodes`.
+    pub fn of_shifts(&self, nodes: &[Point], unknowns: &Unknowns) -> Self {
+        let of_shifts = |a: &Anchor| Anchor { terms: unknowns.terms(&a.terms), place: a.missing(nodes) };
+        Self { anchors: self.anchors.iter().map(of_shifts).collect() }
     }
 
     /// A pose turned by `angle` about the mean of its anchored places.

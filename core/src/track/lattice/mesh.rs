@@ -1,5 +1,7 @@
 //! The lattice of a part at a key: square cells over its region, and points bound to them.
 
+use super::grid::Numbered;
+use super::unknowns::Unknowns;
 use crate::geometry::{Point, polygon, polyline};
 use crate::numeric::banded::BandMatrix;
 
@@ -42,8 +44,8 @@ pub struct Mesh {
     contour: Vec<Point>,
     closed: bool,
     grid: Grid,
-    cell_of: Vec<Option<u32>>,
-    half: usize,
+    cell_of: Vec<Option<usize>>,
+    unknowns: [Unknowns; 2],
 }
 
 /// An axis-aligned grid of square cells.
@@ -73,6 +75,8 @@ impl Grid {
 
 /// Cells of a lattice at the most; a larger part has larger cells.
 const MOST_CELLS: f64 = 900.0;
+/// Levels of the pyramid, from the coarsest on, on which neighbouring nodes move together.
+const COARSE_LEVELS: usize = 2;
 
 impl Mesh {
     /// The lattice of a contour; `control` in working pixels, at least one point.
@@ -100,8 +104,8 @@ impl Mesh {
             contour: control.to_vec(),
             closed,
             grid,
-            cell_of: vec![None; grid.columns * grid.rows],
-            half: 0,
+            cell_of: Vec::new(),
+            unknowns: [(); 2].map(|()| Unknowns::every(&Numbered::new(0, 0, &[]))),
         };
         mesh.occupy();
         mesh.stiffness = vec![1.0; mesh.cells.len()];
@@ -147,7 +151,7 @@ impl Mesh {
     /// Index of the cell that holds `p`, or of the cell nearest to it, and the binding of `p` to it.
     pub fn bind_in_cell(&self, p: Point) -> (usize, Binding) {
         let cell = match self.cell_of[self.grid.index(p)] {
-            Some(cell) => cell as usize,
+            Some(cell) => cell,
             None => self.nearest_cell(p),
         };
         let nodes = self.cells[cell];
@@ -163,7 +167,13 @@ impl Mesh {
 
     /// The zero matrix over the nodes' coordinates: unknown 2 n is x of node n, 2 n + 1 its y.
     pub fn matrix(&self) -> BandMatrix {
-        BandMatrix::zeros(2 * self.rest.len(), self.half)
+        let [_, every] = &self.unknowns;
+        every.matrix()
+    }
+
+    /// What an alignment solves for on a level of the pyramid (index in [`LEVELS`](crate::track::features::LEVELS)).
+    pub fn unknowns(&self, level: usize) -> &Unknowns {
+        &self.unknowns[usize::from(level >= COARSE_LEVELS)]
     }
 
     /// The places of the control points when the nodes are at `nodes`.
@@ -203,38 +213,10 @@ impl Mesh {
                 }
             }
         }
-        self.number(&taken);
-    }
-
-    /// Numbers the nodes line by line across the shorter side, so that the band of the equations is narrow.
-    fn number(&mut self, taken: &[bool]) {
-        let Grid { columns, rows, .. } = self.grid;
-        let is_taken = |c: usize, r: usize| c < columns && r < rows && taken[r * columns + c];
-        let mut node_of = vec![usize::MAX; (columns + 1) * (rows + 1)];
-        let wide = columns > rows;
-        let (lines, across) = if wide { (columns, rows) } else { (rows, columns) };
-        for line in 0..=lines {
-            for place in 0..=across {
-                let (c, r) = if wide { (line, place) } else { (place, line) };
-                let (left, above) = (c.wrapping_sub(1), r.wrapping_sub(1));
-                if is_taken(c, r) || is_taken(left, r) || is_taken(c, above) || is_taken(left, above) {
-                    node_of[r * (columns + 1) + c] = self.rest.len();
-                    self.rest.push(self.grid.corner(c, r));
-                }
-            }
-        }
-        for r in 0..rows {
-            for c in 0..columns {
-                if is_taken(c, r) {
-                    let node = |c: usize, r: usize| node_of[r * (columns + 1) + c];
-                    let cell = [node(c, r), node(c + 1, r), node(c, r + 1), node(c + 1, r + 1)];
-                    self.cell_of[r * columns + c] = Some(self.cells.len() as u32);
-                    let reach = cell.iter().max().unwrap_or(&0) - cell.iter().min().unwrap_or(&0);
-                    self.half = self.half.max(2 * reach + 1);
-                    self.cells.push(cell);
-                }
-            }
-        }
+        let numbered = Numbered::new(columns, rows, &taken);
+        self.rest = numbered.nodes.iter().map(|&(c, r)| self.grid.corner(c, r)).collect();
+        self.unknowns = [Unknowns::coarse(&numbered, columns, rows), Unknowns::every(&numbered)];
+        (self.cells, self.cell_of) = (numbered.cells, numbered.cell_of);
     }
 }
 
@@ -274,8 +256,9 @@ mod tests {
     fn the_band_of_the_equations_follows_the_shorter_side() {
         let mesh = Mesh::new(&bar(), true);
         let turned: Vec<Point> = bar().into_iter().map(|p| Point::new(p.y, p.x)).collect();
-        assert_eq!(mesh.half, Mesh::new(&turned, true).half);
-        assert!(mesh.half < mesh.rest.len());
+        let band = |mesh: &Mesh| mesh.matrix().row_range(0).end;
+        assert_eq!(band(&mesh), band(&Mesh::new(&turned, true)));
+        assert!(band(&mesh) < mesh.rest.len());
     }
 
     #[test]

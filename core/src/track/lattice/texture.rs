@@ -3,6 +3,7 @@
 use super::mesh::{Binding, Mesh};
 use super::shape;
 use crate::geometry::Point;
+use crate::numeric::lanes::Lanes;
 use crate::numeric::vector::vectorised;
 use crate::scene::Raster;
 use crate::track::features::{Features, LEVELS, Padded, Sample, WORKING_LINES, difference};
@@ -106,9 +107,11 @@ pub struct Texel {
     pub own: Option<Padded>,
     /// The cell it lies in.
     pub cell: usize,
-    /// The weights of the cell's nodes, and their products in pairs, in the order of [`PAIRS`].
+    /// The weights of the cell's nodes.
     pub weights: [f32; 4],
-    /// See `weights`.
+    /// The weights of the nodes that an alignment moves it by, twice.
+    pub(crate) moved_by: Lanes,
+    /// Their products in pairs, in the order of [`PAIRS`].
     pub products: [f32; PAIRS.len()],
 }
 
@@ -133,7 +136,7 @@ pub const PAIRS: [Option<(usize, usize)>; 12] = [
 pub struct Texture {
     /// The lattice.
     pub mesh: Mesh,
-    /// Samples by level, from coarse to fine, in the order of their cells.
+    /// Samples by level, from coarse to fine; those of a cell, and of a cell of the level's unknowns, are together.
     pub texels: [Vec<Texel>; 3],
     /// Width of the picture in working pixels: what lies outside is unseen.
     width: f64,
@@ -251,7 +254,7 @@ impl Texel {
 }
 
 fn sample_level(mesh: &Mesh, key: &Features, cover: &Cover, width: f64, level: usize) -> Vec<Texel> {
-    let pixel = LEVELS[level] as f64;
+    let (pixel, unknowns) = (LEVELS[level] as f64, mesh.unknowns(level));
     let wanted = if level == 0 { (mesh.area() / FINE_SAMPLES).sqrt().max(pixel) } else { 0.75 * pixel };
     let step = wanted.min(mesh.side / 2.5).max(1.5).max((mesh.area() / 20_000.0).sqrt());
     let (low, high) = mesh.bounds();
@@ -266,16 +269,18 @@ fn sample_level(mesh: &Mesh, key: &Features, cover: &Cover, width: f64, level: u
                 let (cell, binding) = mesh.bind_in_cell(p);
                 let weight = if inside { 1.0 } else { BAND_WEIGHT };
                 let weights = binding.weights.map(|w| w as f32);
-                let products = PAIRS.map(|pair| pair.map_or(0.0, |(a, b)| weights[a] * weights[b]));
+                let moved_by = unknowns.weights(cell, &binding.nodes, &binding.weights).map(|w| w as f32);
+                let products = PAIRS.map(|pair| pair.map_or(0.0, |(a, b)| moved_by[a] * moved_by[b]));
                 let sample = key.level(level).sample(p);
                 let own = if inside || level != MEASURED_LEVEL { None } else { own_colour(mesh, key, p, &sample) };
                 let across = if inside { None } else { mesh.outward(p).map(|n| [n.x as f32, n.y as f32]) };
-                texels.push(Texel { binding, key: sample, weight, cell, weights, products, across, own });
+                let moved_by = Lanes::from_fn(|v| moved_by[v % 4]);
+                texels.push(Texel { binding, key: sample, weight, cell, weights, moved_by, products, across, own });
             }
         }
     }
     let mut texels = thin(texels);
-    texels.sort_by_key(|texel| texel.cell);
+    texels.sort_by_key(|texel| (unknowns.cell_of[texel.cell], texel.cell));
     texels
 }
 
@@ -301,9 +306,9 @@ mod tests {
     fn texel(own: Option<Padded>) -> Texel {
         let mesh = Mesh::new(&[(0.0, 0.0), (40.0, 0.0), (40.0, 40.0)].map(|(x, y)| Point::new(x, y)), true);
         let key = Sample { colour: Padded::new(0.9, 0.9, 0.9, 0.0), ..Sample::default() };
-        let (weights, products) = ([0.25; 4], [0.0625; PAIRS.len()]);
+        let (weights, moved_by, products) = ([0.25; 4], Lanes::splat(0.25), [0.0625; PAIRS.len()]);
         let binding = mesh.bind(Point::new(30.0, 10.0));
-        Texel { binding, key, weight: BAND_WEIGHT, across: None, own, cell: 0, weights, products }
+        Texel { binding, key, weight: BAND_WEIGHT, across: None, own, cell: 0, weights, moved_by, products }
     }
 
     #[test]
