@@ -12,6 +12,7 @@ use crate::numeric::vector::vectorised;
 use crate::scene::Raster;
 use rustfft::num_complex::Complex32;
 use rustfft::{Fft, FftPlanner};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A transform: real and imaginary parts, column by column.
@@ -54,13 +55,13 @@ impl Correlator {
             let row = &mut data[y * self.width..][..picture.width()];
             row.iter_mut().zip(picture.row(y)).for_each(|(c, &v)| c.re = v);
         }
-        self.transformed(data)
+        self.transformed(data, [0..picture.height(), 0..0])
     }
 
     /// The transform of two patterns for [`Correlator::correlate`]. They may not be larger than the pictures.
     pub fn patterns(&self, patterns: [&Raster<f32>; 2]) -> Spectrum {
         let mut data = vec![Complex32::default(); self.width * self.height];
-        for (pattern, unit) in patterns.into_iter().zip([Complex32::new(1.0, 0.0), Complex32::new(0.0, 1.0)]) {
+        for (pattern, unit) in patterns.iter().zip([Complex32::new(1.0, 0.0), Complex32::new(0.0, 1.0)]) {
             assert!(pattern.width() <= self.width && pattern.height() <= self.height);
             for y in 0..pattern.height() {
                 let turned = &mut data[(self.height - y) % self.height * self.width..][..self.width];
@@ -69,7 +70,9 @@ impl Correlator {
                 }
             }
         }
-        self.transformed(data)
+        // Row 0 stays the first one; the others come from the end.
+        let others = patterns.iter().map(|pattern| pattern.height()).max().unwrap_or(0).saturating_sub(1);
+        self.transformed(data, [0..1, self.height - others..self.height])
     }
 
     /// Sums of correlations of the pictures with the pairs of patterns in the same order: entry (x, y) of each of the
@@ -82,17 +85,22 @@ impl Correlator {
         );
         self.inverse[1].process(&mut turned);
         let mut data = vec![Complex32::default(); turned.len()];
-        transpose(&turned, &mut data, self.height);
+        transpose_rows(&turned, 0, &mut data, self.height, self.width);
         self.inverse[0].process(&mut data);
         let scale = 1.0 / data.len() as f32;
         let raster = |plane| Raster::from_vec(self.width, self.height, plane).unwrap_or_else(|| Raster::new(0, 0, 0.0));
         [raster(data.iter().map(|c| scale * c.re).collect()), raster(data.iter().map(|c| scale * c.im).collect())]
     }
 
-    fn transformed(&self, mut data: Vec<Complex32>) -> Spectrum {
-        self.forward[0].process(&mut data);
+    /// Of a picture that is zero but for some rows: the transform of nothing is nothing.
+    fn transformed(&self, mut data: Vec<Complex32>, rows: [Range<usize>; 2]) -> Spectrum {
         let mut turned = vec![Complex32::default(); data.len()];
-        transpose(&data, &mut turned, self.width);
+        for rows in rows.into_iter().filter(|rows| !rows.is_empty()) {
+            let first = rows.start;
+            let rows = &mut data[first * self.width..rows.end * self.width];
+            self.forward[0].process(rows);
+            transpose_rows(rows, first, &mut turned, self.width, self.height);
+        }
         self.forward[1].process(&mut turned);
         Spectrum { re: turned.iter().map(|c| c.re).collect(), im: turned.iter().map(|c| c.im).collect() }
     }
@@ -121,15 +129,15 @@ fn add_products(pictures: &[Spectrum], patterns: &[Spectrum], sums: &mut [Comple
     }
 }
 
-/// Rows of `width` values made columns, in tiles that stay in the processor's cache.
-fn transpose(from: &[Complex32], to: &mut [Complex32], width: usize) {
+/// Rows of `width` values made columns of `height`, from column `first` on, in tiles that stay in the processor's cache.
+fn transpose_rows(rows: &[Complex32], first: usize, to: &mut [Complex32], width: usize, height: usize) {
     const TILE: usize = 16;
-    let height = from.len() / width;
-    for y0 in (0..height).step_by(TILE) {
+    let count = rows.len() / width;
+    for y0 in (0..count).step_by(TILE) {
         for x0 in (0..width).step_by(TILE) {
-            for y in y0..(y0 + TILE).min(height) {
+            for y in y0..(y0 + TILE).min(count) {
                 for x in x0..(x0 + TILE).min(width) {
-                    to[x * height + y] = from[y * width + x];
+                    to[x * height + first + y] = rows[y * width + x];
                 }
             }
         }

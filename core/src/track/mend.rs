@@ -66,7 +66,7 @@ fn about(stage: &Stage, d: usize, model: usize, lead: &Lead, place: Point) -> Ve
         for degrees in (0..360).step_by(TURN_STEP) {
             let turn = Point::from_angle((degrees as f64).to_radians());
             let nodes = shape.iter().map(|&q| turn.rotate(q - pivot) + place).collect();
-            starts.push(own.measured(&scenery, nodes));
+            starts.push(own.ranked(&scenery, nodes));
         }
     }
     starts.sort_by(|a, b| a.energy.total_cmp(&b.energy));

@@ -9,7 +9,7 @@ use super::TrackError;
 use super::features::Features;
 use super::lattice::align::{Aligner, Settler, Target, draw, settle};
 use super::lattice::anchors::Anchors;
-use super::lattice::texture::{Cover, Texture};
+use super::lattice::texture::{Cover, Texture, in_picture};
 use super::store::FLOW_LEVEL;
 use crate::geometry::Point;
 use crate::image::flow::Flow;
@@ -70,8 +70,8 @@ impl Model {
         for start in distinct(starts) {
             let start = settler.settle(&start);
             let aligned = self.aligner.align(&self.texture, target, &start, &[0]);
-            poses.push(self.measured(scenery, aligned));
-            poses.push(self.measured(scenery, start));
+            poses.push(self.ranked(scenery, aligned));
+            poses.push(self.ranked(scenery, start));
         }
         poses.sort_by(|a, b| a.energy.total_cmp(&b.energy));
         if poses.get(1).is_some_and(|second| mean_distance(&second.nodes, &poses[0].nodes) < SAME_POSE) {
@@ -147,6 +147,12 @@ impl Model {
     pub fn seen(&self, scenery: &Scenery, start: &[Point]) -> Pose {
         let nodes = self.aligner.align(&self.texture, scenery.target(), start, &[1, 2]);
         self.measured(scenery, nodes)
+    }
+
+    /// A pose with a rough energy: what is only compared with others before it is aligned further.
+    pub fn ranked(&self, scenery: &Scenery, nodes: Vec<Point>) -> Pose {
+        let seen = |p| if scenery.weighed { !scenery.cover.hides(p) } else { in_picture(p, scenery.cover.width()) };
+        Pose { energy: self.texture.rough_energy_where(scenery.features, &nodes, seen), nodes }
     }
 
     /// A pose with its energy.
