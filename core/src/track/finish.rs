@@ -15,7 +15,7 @@ use super::stage::{Kit, Stage};
 use super::tasks::Task;
 use crate::geometry::{Point, polygon};
 use crate::scene::Scene;
-use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use std::sync::{Arc, OnceLock};
 
 /// Distance in working pixels at which the other key's model is no longer taken to mean the same place.
@@ -131,6 +131,7 @@ pub(super) fn finish(
     let refiner = OnceLock::new();
     let settled: Vec<Settled> = (0..stage.drawings.len())
         .into_par_iter()
+        .with_max_len(1)
         .map(|d| {
             kit.progress.report("Tracking", 0.9)?;
             let known = before.and_then(|before| before.of(pooled, &plan, d));

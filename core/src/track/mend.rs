@@ -12,7 +12,7 @@ use super::propagate::{Pose, mean_distance};
 use super::rototoon::Pooled;
 use super::stage::Stage;
 use crate::geometry::Point;
-use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
 /// Step of the turns tried about a joint, in degrees.
 const TURN_STEP: usize = 15;
@@ -41,8 +41,9 @@ pub(super) fn mend(stage: &Stage, source: &Pooled, path: &[usize], leads: &[Lead
 
 /// Hypotheses about the joints with surer parts.
 fn led(stage: &Stage, pools: &Pools, last: usize, leads: &[Lead]) -> Result<Pools, TrackError> {
-    (0..=last)
+    (0..last + 1)
         .into_par_iter()
+        .with_max_len(1)
         .map(|d| {
             let mut found = Vec::new();
             for lead in leads.iter().filter(|_| d != 0 && d != last && !stage.corrected(d)) {

@@ -180,6 +180,7 @@ fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
         })
         .collect();
     lost.par_iter()
+        .with_max_len(1)
         .enumerate()
         .map(|(drawing, &lost)| {
             let mut found = Vec::new();

@@ -14,6 +14,8 @@
 //! Why: cartoons have flat colours and hard lines, so that a part's look at a key says nearly everything about it; a
 //! chain that compares with the key cannot drift; going both ways covers what appears or is hidden on one side.
 //!
+//! Work is handed to threads piece by piece (`with_max_len`): who is handed several would be waited for at the end.
+//!
 //! Each step is a pure function of what it is given, and the last result of each is kept: a pin on one part leaves the
 //! pools of all others, and all that the choice does not change.
 
@@ -171,7 +173,7 @@ impl Rototoon {
                 }
             }
         }
-        Vec::from_iter(pairs).par_iter().try_for_each(|&(from, to)| {
+        Vec::from_iter(pairs).par_iter().with_max_len(1).try_for_each(|&(from, to)| {
             progress.report("Reading frames", 0.0)?;
             self.store.flow(frames, from, to).map(|_| ())
         })
@@ -205,6 +207,7 @@ impl Rototoon {
                 wave.iter().map(|&t| job(scene, tasks[t], occluders(scene, tasks, &done, t))).collect();
             let results: Vec<Result<FoundPools, TrackError>> = wave
                 .par_iter()
+                .with_max_len(1)
                 .zip(&jobs)
                 .map(|(&t, job)| {
                     let kit = Kit { store: &self.store, frames, progress: &shared.of(t), mechanisms: self.mechanisms };
@@ -278,6 +281,7 @@ impl Rototoon {
         let members: Vec<usize> = (0..stretch.len()).collect();
         let mended: Vec<Result<Mended, TrackError>> = members
             .par_iter()
+            .with_max_len(1)
             .map(|&m| {
                 let source = &pooled[stretch[m]];
                 let key = source.key();
@@ -314,6 +318,7 @@ impl Rototoon {
     ) -> Result<Vec<(SpanTrack, bool)>, TrackError> {
         let results: Vec<Result<(SpanTrack, Option<Finished>), TrackError>> = stretch
             .par_iter()
+            .with_max_len(1)
             .zip(plans)
             .zip(mended)
             .map(|((&t, plan), source)| {

@@ -8,9 +8,9 @@ use super::TrackError;
 use super::drawings::same_drawing;
 use super::features::Features;
 use super::search::Sought;
-use crate::image::flow::{Flow, dense_flow};
+use crate::image::flow::{Flow, Pyramid, dense_flow};
 use crate::scene::{FrameNumber, FrameSource, Progress};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
@@ -38,6 +38,7 @@ struct Kept {
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Key {
     Features(FrameNumber),
+    Pyramid(FrameNumber),
     Flow(FrameNumber, FrameNumber),
     Sought(FrameNumber, usize),
     Held(FrameNumber),
@@ -46,6 +47,7 @@ enum Key {
 #[derive(Clone)]
 enum Value {
     Features(Arc<Features>),
+    Pyramid(Arc<Pyramid>),
     Flow(Arc<Flow>),
     Sought(Arc<Sought>),
     Held(bool),
@@ -101,7 +103,7 @@ impl Store {
         let Some((first, rest)) = numbers.split_first() else { return Ok(()) };
         let one = self.features(frames, *first)?.bytes();
         let most = BUDGET / 2 / one.max(1);
-        rest[..rest.len().min(most)].par_iter().try_for_each(|&frame| {
+        rest[..rest.len().min(most)].par_iter().with_max_len(1).try_for_each(|&frame| {
             progress.report("Reading frames", 0.0)?;
             self.features(frames, frame).map(|_| ())
         })
@@ -113,15 +115,31 @@ impl Store {
         if let Some(Value::Flow(known)) = self.get(key) {
             return Ok(known);
         }
-        let (first, second) = (self.features(frames, from)?, self.features(frames, to)?);
-        let luma = |features: &Features| features.level(FLOW_LEVEL).luma();
+        let (first, second) = (self.pyramid(frames, from)?, self.pyramid(frames, to)?);
         let make = || {
-            let flow = dense_flow(&luma(&first), &luma(&second));
+            let flow = dense_flow(&first, &second);
             (size_of_val(flow.data()), Value::Flow(Arc::new(flow)))
         };
         match self.once(key, make) {
             Value::Flow(flow) => Ok(flow),
             _ => unreachable!("a flow is kept under the key of a flow"),
+        }
+    }
+
+    /// The picture of a frame, to compute flow on.
+    fn pyramid(&self, frames: &dyn FrameSource, frame: FrameNumber) -> Result<Arc<Pyramid>, TrackError> {
+        let key = Key::Pyramid(frame);
+        if let Some(Value::Pyramid(known)) = self.get(key) {
+            return Ok(known);
+        }
+        let features = self.features(frames, frame)?;
+        let make = || {
+            let pyramid = Pyramid::new(&features.level(FLOW_LEVEL).luma());
+            (pyramid.bytes(), Value::Pyramid(Arc::new(pyramid)))
+        };
+        match self.once(key, make) {
+            Value::Pyramid(pyramid) => Ok(pyramid),
+            _ => unreachable!("a pyramid is kept under the key of one"),
         }
     }
 

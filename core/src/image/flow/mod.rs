@@ -27,9 +27,45 @@ pub type Flow = Raster<[f32; 2]>;
 /// Smallest side of a picture that the search works on: below it the patches would cover most of the picture.
 const SMALLEST: usize = 16;
 
-/// Flow from `first` to `second`, both luma of 0 to 1 and of one size.
-pub fn dense_flow(first: &Raster<f32>, second: &Raster<f32>) -> Flow {
-    assert_eq!((first.width(), first.height()), (second.width(), second.height()), "pictures of one size");
+/// A picture in halves of its size, ready for the flow to or from it: made once, it serves all the pictures beside it.
+pub struct Pyramid {
+    /// From fine to coarse.
+    levels: Vec<Level>,
+}
+
+impl Pyramid {
+    /// Of luma of 0 to 1.
+    pub fn new(luma: &Raster<f32>) -> Self {
+        vectorised(
+            #[inline(always)]
+            || Self::of(luma),
+        )
+    }
+
+    #[inline(always)]
+    fn of(luma: &Raster<f32>) -> Self {
+        let mut levels = vec![Level::new(luma.clone())];
+        while let Some(last) = levels.last().filter(|last| last.luma.width().min(last.luma.height()) >= 2 * SMALLEST) {
+            levels.push(Level::new(halved(&last.luma)));
+        }
+        Self { levels }
+    }
+
+    /// Width and height of the picture.
+    pub fn size(&self) -> (usize, usize) {
+        let finest = &self.levels[0].luma;
+        (finest.width(), finest.height())
+    }
+
+    /// Bytes kept.
+    pub fn bytes(&self) -> usize {
+        self.levels.iter().map(Level::bytes).sum()
+    }
+}
+
+/// Flow from `first` to `second`, pictures of one size.
+pub fn dense_flow(first: &Pyramid, second: &Pyramid) -> Flow {
+    assert_eq!(first.size(), second.size(), "pictures of one size");
     vectorised(
         #[inline(always)]
         || coarse_to_fine(first, second),
@@ -37,20 +73,11 @@ pub fn dense_flow(first: &Raster<f32>, second: &Raster<f32>) -> Flow {
 }
 
 #[inline(always)]
-fn coarse_to_fine(first: &Raster<f32>, second: &Raster<f32>) -> Flow {
-    let mut levels = vec![(Level::new(first.clone()), Level::new(second.clone()))];
-    while let Some((a, b)) = levels.last() {
-        if a.luma.width().min(a.luma.height()) < 2 * SMALLEST {
-            break;
-        }
-        levels.push((Level::new(halved(&a.luma)), Level::new(halved(&b.luma))));
-    }
-    let (coarsest, _) = &levels[levels.len() - 1];
-    let mut flow = Raster::new(coarsest.luma.width(), coarsest.luma.height(), [0.0; 2]);
-    for (a, b) in levels.iter().rev() {
-        if (flow.width(), flow.height()) != (a.luma.width(), a.luma.height()) {
-            flow = doubled(&flow, a.luma.width(), a.luma.height());
-        }
+fn coarse_to_fine(first: &Pyramid, second: &Pyramid) -> Flow {
+    let mut flow = Raster::new(0, 0, [0.0; 2]);
+    for (a, b) in first.levels.iter().zip(&second.levels).rev() {
+        let (width, height) = (a.luma.width(), a.luma.height());
+        flow = if flow.width() == 0 { Raster::new(width, height, [0.0; 2]) } else { doubled(&flow, width, height) };
         flow = search(a, b, &flow);
         refine::refine(a, b, &mut flow);
     }
@@ -110,7 +137,7 @@ mod tests {
 
     #[test]
     fn a_shift_is_found_to_a_fraction_of_a_pixel() {
-        let flow = dense_flow(&shifted(0.0, 0.0), &shifted(5.3, -3.6));
+        let flow = dense_flow(&Pyramid::new(&shifted(0.0, 0.0)), &Pyramid::new(&shifted(5.3, -3.6)));
         for y in (12..78).step_by(6) {
             for x in (12..108).step_by(6) {
                 let [u, v] = flow.get(x, y);
@@ -121,14 +148,15 @@ mod tests {
 
     #[test]
     fn equal_pictures_have_no_flow() {
-        let flow = dense_flow(&shifted(0.0, 0.0), &shifted(0.0, 0.0));
+        let flow = dense_flow(&Pyramid::new(&shifted(0.0, 0.0)), &Pyramid::new(&shifted(0.0, 0.0)));
         assert!(flow.data().iter().all(|[u, v]| u.abs() < 1e-3 && v.abs() < 1e-3));
     }
 
     #[test]
     fn tiny_and_flat_pictures_are_no_trouble() {
         for (width, height) in [(1, 1), (5, 40), (64, 1)] {
-            let flow = dense_flow(&Raster::new(width, height, 0.5), &Raster::new(width, height, 0.7));
+            let [first, second] = [0.5, 0.7].map(|grey| Pyramid::new(&Raster::new(width, height, grey)));
+            let flow = dense_flow(&first, &second);
             assert!(flow.data().iter().all(|[u, v]| u.is_finite() && v.is_finite()));
         }
     }

@@ -4,6 +4,7 @@ use super::Flow;
 use super::plane::Plane;
 use crate::numeric::lanes::{LANES, Lanes};
 use crate::scene::Raster;
+use glam::Vec4;
 
 /// Side of a patch in pixels.
 const PATCH: usize = LANES;
@@ -24,6 +25,8 @@ pub(super) struct Level {
     pub luma: Raster<f32>,
     pub plane: Plane,
     pub slopes: [Plane; 2],
+    /// Luma, its derivatives, and nothing.
+    pub together: Raster<Vec4>,
     /// Luma, continued beyond the edges by [`BEYOND`] pixels.
     wide: Raster<f32>,
 }
@@ -47,7 +50,16 @@ impl Level {
         let wide = Raster::from_fn(width + 2 * BEYOND, height + 2 * BEYOND, |x, y| {
             luma.get(inner(x, width), inner(y, height))
         });
-        Self { luma, plane, slopes, wide }
+        let together = Raster::from_fn(width, height, |x, y| {
+            Vec4::new(luma.get(x, y), slopes[0].row(y)[x], slopes[1].row(y)[x], 0.0)
+        });
+        Self { luma, plane, slopes, together, wide }
+    }
+
+    /// Bytes kept.
+    pub fn bytes(&self) -> usize {
+        let planes: usize = std::iter::once(&self.plane).chain(&self.slopes).map(Plane::bytes).sum();
+        planes + size_of_val(self.luma.data()) + size_of_val(self.wide.data()) + size_of_val(self.together.data())
     }
 
     /// Bilinear luma of a patch whose first pixel is at pixel-centre coordinates.

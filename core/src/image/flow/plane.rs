@@ -19,6 +19,11 @@ impl Plane {
         Self { width, height, stride, data: vec![0.0; stride * (height + 2)] }
     }
 
+    /// Bytes kept.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.data[..])
+    }
+
     /// Index of a pixel; -1 and the picture's size are the border.
     #[inline(always)]
     fn index(&self, x: isize, y: isize) -> usize {

@@ -4,8 +4,6 @@ use super::Flow;
 use super::patches::Level;
 use super::plane::Plane;
 use crate::numeric::lanes::{LANES, Lanes};
-use crate::scene::Raster;
-use glam::Vec4;
 
 /// Brightness, x-gradient and y-gradient change at each pixel in 8-bit units, each linear in the update: value + x du +
 /// y dv. All zero where the shift leaves the picture.
@@ -51,9 +49,6 @@ fn linearised(own: [&Plane; 3], warped: &[Plane; 3], k: usize, (x, y): (isize, i
 #[inline(always)]
 fn warp(second: &Level, flow: &Flow) -> ([Plane; 3], Plane) {
     let (width, height) = (flow.width(), flow.height());
-    let all = Raster::from_fn(width, height, |x, y| {
-        Vec4::new(second.plane.row(y)[x], second.slopes[0].row(y)[x], second.slopes[1].row(y)[x], 0.0)
-    });
     let mut planes = [(); 4].map(|()| Plane::zeros(width, height));
     for y in 0..height {
         let [luma, along, down, inside] = &mut planes;
@@ -62,7 +57,7 @@ fn warp(second: &Level, flow: &Flow) -> ([Plane; 3], Plane) {
             let (px, py) = (x as f32 + u, y as f32 + v);
             // A shift that leaves the picture has nothing to be compared with.
             let seen = px >= 0.0 && py >= 0.0 && px <= (width - 1) as f32 && py <= (height - 1) as f32;
-            let values = 255.0 * super::read(&all, px, py);
+            let values = 255.0 * super::read(&second.together, px, py);
             (luma[x], along[x], down[x]) = (values.x, values.y, values.z);
             inside[x] = f32::from(u8::from(seen));
         }

@@ -6,7 +6,7 @@ use crate::geometry::{Point, polygon};
 use crate::scene::Raster;
 use crate::track::lattice::texture::UNSEEN;
 use crate::track::pool::{Hypothesis, Pools};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -131,10 +131,11 @@ impl Shadows {
             pairs.iter().copied().filter(|p| !known.masks.contains_key(&pair(p))).collect();
         let silhouettes: Vec<Silhouettes> = index
             .par_iter()
+            .with_max_len(1)
             .map(|&n| if unknown.iter().any(|u| u.1 == n) { silhouettes(&contenders[n]) } else { Vec::new() })
             .collect();
         let fresh: Vec<Vec<Fresh>> =
-            index.par_iter().map(|&f| masks_on(contenders, &silhouettes, &unknown, f)).collect();
+            index.par_iter().with_max_len(1).map(|&f| masks_on(contenders, &silhouettes, &unknown, f)).collect();
         let costs: Vec<Arc<Costs>> = contenders
             .par_iter()
             .map(|c| known.costs.get(&address(c.pools)).map_or_else(|| Arc::new(sample_costs(c)), |(_, k)| k.clone()))
