@@ -23,7 +23,7 @@ const FITS: f32 = 0.01;
 const SAME_POSE: f64 = 1.0;
 /// Mean distance of the nodes (working pixels) of two starts that come to one pose: the step at which the coarsest level
 /// of an alignment ends.
-const SAME_START: f64 = 1.6;
+const SAME_START: f64 = 2.4;
 /// Weight of a place that is right, beside the lattice's stiffness.
 const HOLD: f64 = 0.3;
 

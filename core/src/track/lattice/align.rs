@@ -32,7 +32,7 @@ const ITERATIONS: [usize; 3] = [6, 5, 4];
 /// Longest step of a node, in pixels of the level.
 const LONGEST_STEP: f64 = 2.0;
 /// A step shorter than this ends the level, in pixels of the level.
-const SHORTEST_STEP: f64 = 0.2;
+const SHORTEST_STEP: f64 = 0.3;
 /// Samples below which a level says too little about a pose.
 const FEWEST_SAMPLES: usize = 6;
 /// Steps that the equations' matrix serves: it changes slowly, and to factor it is half of the work.
