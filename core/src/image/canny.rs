@@ -59,9 +59,6 @@ impl Default for CannyOptions {
 /// Fractions of a level that the blurred luma is held in.
 const PARTS: f64 = 16.0;
 
-/// tan 22.5° times 2¹⁵, the border between a straight and a slanting direction.
-const TAN_22_5: i32 = 13573;
-
 /// What non-maximum suppression says of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Mark {
@@ -272,14 +269,17 @@ fn suppress_row(levels: &Raster<i16>, rows: &[GradientRow; 3], thresholds: &Thre
     }
 }
 
-/// The neighbour along the gradient. No gradient lies on a border between sectors, since their tangents are irrational
-/// and the rounded one is used for both axes alike.
+/// The neighbour along the gradient.
+///
+/// The border between a straight and a slanting direction is at tan 22.5° = √2 − 1: a ≤ (√2 − 1) b is (a + b)² ≤ 2 b², in
+/// whole numbers without rounding. Since it is irrational, no gradient lies on it.
 #[inline]
 fn direction(gx: i32, gy: i32) -> (isize, isize) {
     let (ax, ay) = (gx.abs(), gy.abs());
-    if (ay << 15) < ax * TAN_22_5 {
+    let square = (ax + ay) * (ax + ay);
+    if square < 2 * ax * ax {
         (1, 0)
-    } else if (ax << 15) < ay * TAN_22_5 {
+    } else if square < 2 * ay * ay {
         (0, 1)
     } else if (gx < 0) == (gy < 0) {
         (1, 1)

@@ -7,6 +7,8 @@
 //! picture's own. Cells turn freely: their best turns are refitted in each iteration (local / global steps), and the key's
 //! slope is turned with its cell.
 //!
+//! On the two coarser levels nodes move together with their neighbours ([`super::unknowns`]): one cell says too little there.
+//!
 //! Of a sample outside the part only the slope across the contour counts. What changes along the contour out there belongs
 //! to the ground: where the outline of a head meets that of an ear before it, the corner is no place on the ear, and a
 //! lattice that follows it is drawn along its part. It is worth 0.7 points of 100 over fourteen sequences, 5 where parts
