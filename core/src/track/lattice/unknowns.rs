@@ -1,6 +1,6 @@
 //! What an alignment solves for: how the nodes of a lattice are shifted, all of them, or together with their neighbours.
 //!
-//! The pyramid's coarser levels cannot tell neighbouring nodes apart: a cell is no larger there than one to three pixels.
+//! The pyramid's coarser levels hardly tell neighbouring nodes apart: a cell is one to three pixels wide on the coarsest.
 //! On them the nodes are shifted by a lattice of twice the side, bilinearly; x = x₀ + P δ. P are the weights of the coarse
 //! nodes at each node, δ their shifts, and the normal equations become PᵀHP δ = Pᵀb (Galerkin's coarse equations; Briggs,
 //! Henson & McCormick, *A Multigrid Tutorial*, ch. 10). What a pose has of finer bends it keeps. A quarter of the unknowns
@@ -14,7 +14,7 @@ use super::grid::Numbered;
 use crate::geometry::Point;
 use crate::numeric::banded::BandMatrix;
 
-/// Weights of up to four of the unknowns' nodes, by their numbers; those that are not needed are zero.
+/// Weights of the unknowns' nodes by their numbers, four always: a node may be named again, or weigh nothing.
 type Shares = [(usize, f64); 4];
 
 /// The nodes whose shifts are solved for, and how they shift those of a lattice.
