@@ -132,15 +132,10 @@ impl Patch {
 
     /// Gradient descent on the mean square difference, with the derivatives of the first picture (inverse search).
     #[inline(always)]
-    fn descend(&self, second: &Level, start: [f32; 2]) -> [f32; 2] {
+    fn descend(&self, second: &Level, start: [f32; 2], (mut d, square): (Rows, f32)) -> Found {
+        let mut best = Found { shift: start, square, settled: false };
         let mut u = start;
-        let mut best = (f32::INFINITY, start);
-        for _ in 0..STEPS {
-            let (d, square) = self.difference(second, u);
-            if square >= best.0 {
-                break;
-            }
-            best = (square, u);
+        for _ in 1..STEPS {
             let bx = total(&product(&d, &self.gradient[0]));
             let by = total(&product(&d, &self.gradient[1]));
             let [xx, xy, yy] = self.inverse;
@@ -149,9 +144,26 @@ impl Patch {
             if (u[0] - start[0]).hypot(u[1] - start[1]) > FURTHEST {
                 break;
             }
+            let square;
+            (d, square) = self.difference(second, u);
+            if square >= best.square {
+                best.settled = true;
+                break;
+            }
+            (best.shift, best.square) = (u, square);
         }
-        best.1
+        best
     }
+}
+
+/// Where a patch has come to.
+#[derive(Clone, Copy)]
+struct Found {
+    shift: [f32; 2],
+    /// Mean square difference there.
+    square: f32,
+    /// Whether descending further leads nowhere.
+    settled: bool,
 }
 
 /// The pixels of a plane below a patch; beyond the edge those that are nearest to it.
@@ -198,11 +210,12 @@ pub(super) fn search(first: &Level, second: &Level, coarse: &Flow) -> Flow {
     }
     let middle = PATCH / 2;
     let from_coarse = |p: &Patch| coarse.get((p.x + middle).min(width - 1), (p.y + middle).min(height - 1));
-    let mut shifts: Vec<[f32; 2]> = patches.iter().map(from_coarse).collect();
+    let unsought = |p: &Patch| Found { shift: from_coarse(p), square: f32::INFINITY, settled: false };
+    let mut found: Vec<Found> = patches.iter().map(unsought).collect();
     for backwards in [false, true] {
-        sweep(&patches, second, &mut shifts, columns.len(), backwards);
+        sweep(&patches, second, &mut found, columns.len(), backwards);
     }
-    blend(first, second, &patches, &shifts)
+    blend(first, second, &patches, &found)
 }
 
 /// Top-left corners of the patches along one side: they reach over the far edge, so that each pixel is covered.
@@ -211,39 +224,41 @@ fn grid(count: usize) -> Vec<usize> {
 }
 
 /// One pass over the patches in reading order (or from the end): each starts from its own shift or that of the two
-/// neighbours passed before, whichever fits best, and descends.
+/// neighbours passed before, whichever fits best, and descends. From where it has settled before it need not.
 #[inline(always)]
-fn sweep(patches: &[Patch], second: &Level, shifts: &mut [[f32; 2]], columns: usize, backwards: bool) {
+fn sweep(patches: &[Patch], second: &Level, found: &mut [Found], columns: usize, backwards: bool) {
     let count = patches.len();
     for k in 0..count {
         let i = if backwards { count - 1 - k } else { k };
         let (column, row) = (i % columns, i / columns);
         let rows = count / columns;
-        let mut starts = [Some(i), None, None];
-        if backwards {
-            starts[1] = (column + 1 < columns).then_some(i + 1);
-            starts[2] = (row + 1 < rows).then_some(i + columns);
+        let neighbours = if backwards {
+            [(column + 1 < columns).then_some(i + 1), (row + 1 < rows).then_some(i + columns)]
         } else {
-            starts[1] = (column > 0).then(|| i - 1);
-            starts[2] = (row > 0).then(|| i - columns);
-        }
-        let mut best = (f32::INFINITY, shifts[i]);
-        for start in starts.into_iter().flatten() {
-            let (_, square) = patches[i].difference(second, shifts[start]);
-            if square < best.0 {
-                best = (square, shifts[start]);
+            [(column > 0).then(|| i - 1), (row > 0).then(|| i - columns)]
+        };
+        let (patch, own) = (&patches[i], found[i]);
+        let mut start = own.shift;
+        let mut fit = if own.settled { None } else { Some(patch.difference(second, start)) };
+        let mut square = fit.as_ref().map_or(own.square, |fit| fit.1);
+        for shift in neighbours.into_iter().flatten().map(|n| found[n].shift).filter(|shift| *shift != own.shift) {
+            let there = patch.difference(second, shift);
+            if there.1 < square {
+                (start, square, fit) = (shift, there.1, Some(there));
             }
         }
-        shifts[i] = patches[i].descend(second, best.1);
+        if let Some(fit) = fit {
+            found[i] = patch.descend(second, start, fit);
+        }
     }
 }
 
 /// Each pixel takes the mean of the shifts of the patches over it, weighted by 1 / max(1, |difference| in 8-bit steps).
 #[inline(always)]
-fn blend(first: &Level, second: &Level, patches: &[Patch], shifts: &[[f32; 2]]) -> Flow {
+fn blend(first: &Level, second: &Level, patches: &[Patch], found: &[Found]) -> Flow {
     let (width, height) = (first.luma.width(), first.luma.height());
     let mut sums = Raster::new(width, height, [0.0f32; 3]);
-    for (patch, u) in patches.iter().zip(shifts) {
+    for (patch, Found { shift: u, .. }) in patches.iter().zip(found) {
         let seen = second.patch_at(patch.x as f32 + u[0], patch.y as f32 + u[1]);
         for y in patch.y..(patch.y + PATCH).min(height) {
             for x in patch.x..(patch.x + PATCH).min(width) {
