@@ -29,6 +29,15 @@ pub struct Bundle {
     pub ofx: PathBuf,
 }
 
+impl Bundle {
+    /// Where the last one is.
+    pub fn last() -> Self {
+        let built = target().join(TRIPLE).join("release");
+        let zip = target().join(format!("rototoon-{}-linux_x64.zip", env!("CARGO_PKG_VERSION")));
+        Self { zip, library: built.join(LIBRARY), cli: built.join("rototoon"), ofx: ofx::place() }
+    }
+}
+
 /// What packs the extension: Blender's packager from a wheel, or an installed Blender.
 #[derive(Clone, Debug)]
 pub enum Packager {
@@ -40,18 +49,23 @@ pub enum Packager {
 
 /// Builds, packs and validates.
 pub fn bundle(packager: &Packager) -> Result<Bundle> {
-    let (library, cli, plugin) = build()?;
-    let ofx = ofx::lay_out(&plugin)?;
-    let staged = stage(&library)?;
-    let zip = pack(packager, &staged)?;
-    println!("bundle: {}", zip.display());
-    Ok(Bundle { zip, library, cli, ofx })
+    let bundle = Bundle::last();
+    build(&bundle)?;
+    ofx::lay_out(&bundle.library.with_file_name(PLUGIN))?;
+    pack(packager, &stage(&bundle.library)?, &bundle.zip)?;
+    println!("bundle: {}", bundle.zip.display());
+    Ok(bundle)
+}
+
+/// What builds against an old glibc: the interpreter of an environment with zig and cargo-zigbuild.
+pub fn tools() -> Result<PathBuf> {
+    python::venv("venv-build", &python::find_any()?, &["cargo-zigbuild", "ziglang"])
 }
 
 /// Builds library, command line and OpenFX plugin; all need only [`GLIBC`].
-fn build() -> Result<(PathBuf, PathBuf, PathBuf)> {
+fn build(bundle: &Bundle) -> Result<()> {
     ensure!(cfg!(all(target_os = "linux", target_arch = "x86_64")), "the bundle is built on Linux x86-64 only");
-    let tools = python::venv("venv-build", &python::find_any()?, &["cargo-zigbuild", "ziglang"])?;
+    let tools = tools()?;
     let bin = tools.parent().context("an interpreter lies in a folder")?;
     let path = std::env::var_os("PATH").unwrap_or_default();
     let path = std::env::join_paths(std::iter::once(bin.to_path_buf()).chain(std::env::split_paths(&path)))?;
@@ -60,22 +74,15 @@ fn build() -> Result<(PathBuf, PathBuf, PathBuf)> {
         let _ = capture(command("rustup").args(["target", "add", TRIPLE]));
     }
     let versioned = format!("{TRIPLE}.{}.{}", GLIBC.0, GLIBC.1);
-    // As one unit the core takes minutes on one processor, which is worth it for artists, and not for a test.
-    let in_parts = ["--config", "profile.release.package.rototoon.codegen-units=16"];
-    let in_parts = std::env::var_os("CI").map_or(&in_parts[..0], |_| &in_parts[..]);
     run(command(bin.join("cargo-zigbuild"))
         .args(["zigbuild", "--quiet", "--release", "--target", &versioned])
-        .args(in_parts)
         .args(["-p", "rototoon-capi", "-p", "rototoon-cli", "-p", "rototoon-ofx"])
         .env("PATH", path)
         // The zip is downloaded by artists: no line tables.
         .env("CARGO_PROFILE_RELEASE_DEBUG", "none")
         .env("CARGO_PROFILE_RELEASE_STRIP", "symbols"))?;
-    let built = target().join(TRIPLE).join("release");
-    let (library, cli) = (built.join(LIBRARY), built.join("rototoon"));
-    elf::assert_glibc(&library, GLIBC)?;
-    elf::assert_glibc(&cli, GLIBC)?;
-    Ok((library, cli, built.join(PLUGIN)))
+    elf::assert_glibc(&bundle.library, GLIBC)?;
+    elf::assert_glibc(&bundle.cli, GLIBC)
 }
 
 /// The extension's folder as it is packed: the add-on's files, the library, the licence.
@@ -103,7 +110,7 @@ fn stage(library: &Path) -> Result<PathBuf> {
     Ok(staged)
 }
 
-fn pack(packager: &Packager, staged: &Path) -> Result<PathBuf> {
+fn pack(packager: &Packager, staged: &Path, place: &Path) -> Result<()> {
     let out = target().join("bundle/out");
     empty_folder(&out)?;
     run(packager
@@ -114,10 +121,9 @@ fn pack(packager: &Packager, staged: &Path) -> Result<PathBuf> {
         .arg(&out))?;
     let built: Vec<PathBuf> = std::fs::read_dir(&out)?.map(|e| Ok(e?.path())).collect::<Result<_>>()?;
     let [zip] = built.as_slice() else { bail!("the packager left {built:?}, expected one zip") };
+    ensure!(zip.file_name() == place.file_name(), "the packager left {zip:?}, expected it to be called as {place:?}");
     run(packager.command()?.arg("validate").arg(zip))?;
-    let place = target().join(zip.file_name().context("the zip has a name")?);
-    std::fs::rename(zip, &place).with_context(|| format!("cannot move {zip:?} to {place:?}"))?;
-    Ok(place)
+    std::fs::rename(zip, place).with_context(|| format!("cannot move {zip:?} to {place:?}"))
 }
 
 impl Packager {

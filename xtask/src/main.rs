@@ -13,6 +13,7 @@ mod ofx;
 mod photograph;
 mod python;
 mod shell;
+mod steps;
 mod test;
 
 use clap::{Parser, Subcommand};
@@ -41,6 +42,9 @@ enum Command {
         /// Also run the OpenFX plugin under valgrind.
         #[arg(long)]
         valgrind: bool,
+        /// Run one step only, on what those before it left.
+        #[arg(long, value_name = "NAME")]
+        step: Option<String>,
     },
     /// Build and validate the extension's zip and the OpenFX bundle.
     Bundle,
@@ -67,7 +71,8 @@ enum Command {
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Demo { project, blender } => demo::demo(project, blender),
-        Command::Test { valgrind } => test::test(valgrind),
+        Command::Test { step: Some(step), .. } => test::step(&step),
+        Command::Test { valgrind, step: None } => test::test(valgrind),
         Command::Bundle => bundle::bundle(&bundle::Packager::from_wheel()?).map(|_| ()),
         Command::Generate { check } => generate::generate(check),
         Command::BenchFit(arguments) => bench_fit::bench_fit(&arguments),

@@ -9,14 +9,19 @@ use std::path::{Path, PathBuf};
 const SYSTEM: [&str; 7] =
     ["libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "librt.so.1", "libgcc_s.so.1", "ld-linux-x86-64.so.2"];
 
-/// Lays the bundle out around the library; returns its folder.
-pub fn lay_out(library: &Path) -> Result<PathBuf> {
+/// Where the bundle is.
+pub fn place() -> PathBuf {
+    target().join("Rototoon.ofx.bundle")
+}
+
+/// Lays the bundle out around the library.
+pub fn lay_out(library: &Path) -> Result<()> {
     elf::assert_glibc(library, bundle::GLIBC)?;
     let file = std::fs::read(library).with_context(|| format!("cannot read {library:?}"))?;
     let needed = elf::needed_libraries(&file).with_context(|| format!("{library:?}"))?;
     let foreign: Vec<_> = needed.iter().filter(|name| !SYSTEM.contains(&name.as_str())).collect();
     ensure!(foreign.is_empty(), "{library:?} needs {foreign:?}, expected nothing beyond {SYSTEM:?}");
-    let place = target().join("Rototoon.ofx.bundle");
+    let place = place();
     empty_folder(&place)?;
     let contents = place.join("Contents");
     let (binaries, resources) = (contents.join("Linux-x86-64"), contents.join("Resources"));
@@ -33,7 +38,7 @@ pub fn lay_out(library: &Path) -> Result<PathBuf> {
     std::fs::copy(root().join("LICENSE"), resources.join("LICENSE"))?;
     println!("OpenFX: {}", place.display());
     println!("  hosts look in /usr/OFX/Plugins and in the folders that OFX_PLUGIN_PATH lists: copy it to one of them");
-    Ok(place)
+    Ok(())
 }
 
 fn property_list() -> String {

@@ -1,106 +1,86 @@
-//! `test`: everything that is checked, each step to its end, and a summary that hides nothing.
+//! `test`: everything that is checked, each step to its end ([`crate::steps`]).
 
-use crate::bundle::{Bundle, Packager, bundle};
+use crate::bundle::{self, Bundle, Packager, bundle};
 use crate::generate::generate;
 use crate::python::{self, WHEELS, Wheel};
 use crate::shell::{capture, cargo, command, empty_folder, root, run, target, works};
+use crate::steps::{Step, in_own_process, run_all};
 use anyhow::{Result, bail};
 use rototoon_tests::{doll, sample};
-use std::path::Path;
-use std::time::Instant;
+use std::path::PathBuf;
 
 /// The package that is built apart: it compiles C++.
 const OFX_HOST: &str = "rototoon-ofx-host";
-
-/// How a step ended.
-enum Outcome {
-    Passed,
-    Failed(String),
-    NotRun(String),
-}
-
-/// The steps done so far.
-#[derive(Default)]
-struct Report {
-    steps: Vec<(String, Outcome, f64)>,
-}
-
-impl Report {
-    /// Runs a step; `Ok(Some(reason))` says that it could not be run here.
-    fn step(&mut self, name: &str, body: impl FnOnce() -> Result<Option<String>>) -> bool {
-        println!("\n=== {name}");
-        let start = Instant::now();
-        let outcome = match body() {
-            Ok(None) => Outcome::Passed,
-            Ok(Some(reason)) => Outcome::NotRun(reason),
-            Err(error) => {
-                eprintln!("{error:#}");
-                Outcome::Failed(format!("{error:#}"))
-            }
-        };
-        let passed = matches!(outcome, Outcome::Passed);
-        self.steps.push((name.to_owned(), outcome, start.elapsed().as_secs_f64()));
-        passed
-    }
-
-    fn print(&self) {
-        println!("\n=== Summary");
-        for (name, outcome, seconds) in &self.steps {
-            let (word, reason) = match outcome {
-                Outcome::Passed => ("passed", String::new()),
-                Outcome::Failed(reason) => ("FAILED", format!(": {}", reason.lines().next().unwrap_or_default())),
-                Outcome::NotRun(reason) => ("NOT RUN", format!(": {reason}")),
-            };
-            println!("{word:<8} {name} ({seconds:.0} s){reason}");
-        }
-    }
-
-    fn finish(&self) -> Result<()> {
-        self.print();
-        let count = |f: fn(&Outcome) -> bool| self.steps.iter().filter(|(_, outcome, _)| f(outcome)).count();
-        let failed = count(|o| matches!(o, Outcome::Failed(_)));
-        let not_run = count(|o| matches!(o, Outcome::NotRun(_)));
-        if not_run > 0 {
-            println!("{not_run} of {} steps could not be run here", self.steps.len());
-        }
-        if failed > 0 {
-            bail!("{failed} of {} steps failed", self.steps.len());
-        }
-        Ok(())
-    }
-}
+/// Steps at once.
+const AT_ONCE: usize = 2;
+/// Names of the steps that others wait for.
+const ENVIRONMENTS: &str = "Python environments";
+const BUNDLE: &str = "extension bundle";
+const FILES: &str = "sample cartoon";
 
 /// Runs all checks. Fails where one fails; what could not be run is said, and fails nothing.
 pub fn test(valgrind: bool) -> Result<()> {
     if !works("cc", &["--version"]) {
         bail!("no C compiler (cc) was found; install one, for example: apt-get install gcc");
     }
-    let mut report = Report::default();
-    report.step("format", || component("fmt", "rustfmt", &["fmt", "--all", "--check"]));
-    report.step("clippy", || {
-        let arguments = ["clippy", "--quiet", "--workspace", "--exclude", OFX_HOST, "--all-targets"];
-        component("clippy", "clippy", &[&arguments[..], &["--", "-D", "warnings"]].concat())
-    });
-    report.step("Rust tests", || {
-        run(cargo().args(["test", "--quiet", "--workspace", "--exclude", OFX_HOST])).map(|()| None)
-    });
-    report.step("generated files are current", || generate(true).map(|()| None));
-    let mut built = None;
-    report.step("extension bundle", || {
-        built = Some(bundle(&Packager::from_wheel()?)?);
-        Ok(None)
-    });
-    report.step("OpenFX host", || ofx_tests(built.as_ref()));
-    if valgrind {
-        report.step("OpenFX host under valgrind", valgrind_tests);
-    }
-    report.step("Python tests", || python_tests(built.as_ref()));
-    let files = target().join("sample-files");
-    report.step("sample cartoon", || sample_files(&files).map(|()| None));
+    let steps = steps(valgrind);
+    let run = |name: &str| {
+        println!("started: {name}");
+        in_own_process(name)
+    };
+    run_all(&steps, AT_ONCE, &run).finish()
+}
+
+/// Runs one of the checks, as a part of [`test`].
+pub fn step(name: &str) -> Result<()> {
+    let steps = steps(true);
+    let Some(step) = steps.iter().find(|step| step.name == name) else {
+        let names: Vec<&str> = steps.iter().map(|step| &step.name[..]).collect();
+        bail!("--step: there is none called {name:?}, expected one of {names:?}");
+    };
+    step.run_here()
+}
+
+/// All checks, those that others wait for first.
+fn steps(valgrind: bool) -> Vec<Step> {
+    let mut steps = vec![
+        Step::new("format", || component("fmt", "rustfmt", &["fmt", "--all", "--check"])),
+        Step::new(ENVIRONMENTS, || environments().map(|()| None)),
+        Step::new("clippy", clippy).builds(),
+        Step::new(BUNDLE, || bundle(&Packager::from_wheel()?).map(|_| None)).after(ENVIRONMENTS),
+        Step::new("Rust tests", rust_tests).builds().after("clippy"),
+        Step::new("generated files are current", || generate(true).map(|()| None)),
+        Step::new(FILES, || sample_files().map(|()| None)),
+        Step::new("Python tests", python_tests).needs(BUNDLE),
+        Step::new("OpenFX host", ofx_tests).builds().needs(BUNDLE),
+    ];
     for wheel in WHEELS {
-        report.step(&format!("Blender {}", wheel.blender), || blender_tests(wheel, built.as_ref(), &files));
+        let name = format!("Blender {}", wheel.blender);
+        steps.push(Step::new(&name, move || blender_tests(wheel)).needs(BUNDLE).needs(FILES));
     }
-    report.finish()
+    if valgrind {
+        steps.push(Step::new("OpenFX host under valgrind", valgrind_tests).after("OpenFX host"));
+    }
+    steps
+}
+
+/// The environments of all steps, made before they are wanted: downloads leave the processors to the compiler.
+fn environments() -> Result<()> {
+    bundle::tools()?;
+    python_environment()?;
+    for wheel in WHEELS {
+        python::blender_venv(wheel)?;
+    }
+    Ok(())
+}
+
+fn clippy() -> Result<Option<String>> {
+    let arguments = ["clippy", "--quiet", "--workspace", "--exclude", OFX_HOST, "--all-targets"];
+    component("clippy", "clippy", &[&arguments[..], &["--", "-D", "warnings"]].concat())
+}
+
+fn rust_tests() -> Result<Option<String>> {
+    run(cargo().args(["test", "--quiet", "--no-fail-fast", "--workspace", "--exclude", OFX_HOST])).map(|()| None)
 }
 
 /// A cargo subcommand that comes as a component of the toolchain; added by rustup where it is missing.
@@ -116,13 +96,12 @@ fn component(subcommand: &str, name: &str, arguments: &[&str]) -> Result<Option<
 }
 
 /// The plugin in the official host library, which is compiled for it.
-fn ofx_tests(built: Option<&Bundle>) -> Result<Option<String>> {
-    let Some(built) = built else { return Ok(Some("the bundle failed".into())) };
+fn ofx_tests() -> Result<Option<String>> {
     if let Some(reason) = missing_package("c++", "g++") {
         return Ok(Some(reason));
     }
     run(cargo().args(["clippy", "--quiet", "-p", OFX_HOST, "--all-targets", "--", "-D", "warnings"]))?;
-    run(cargo().args(["test", "--quiet", "-p", OFX_HOST]).env("ROTOTOON_OFX_BUNDLE", &built.ofx))?;
+    run(cargo().args(["test", "--quiet", "-p", OFX_HOST]).env("ROTOTOON_OFX_BUNDLE", Bundle::last().ofx))?;
     Ok(None)
 }
 
@@ -149,25 +128,33 @@ fn missing_package(program: &str, package: &str) -> Option<String> {
 }
 
 /// pytest without Blender, on the packed library.
-fn python_tests(built: Option<&Bundle>) -> Result<Option<String>> {
-    let Some(built) = built else { return Ok(Some("the bundle failed".into())) };
-    let python = python::venv("venv-python", &python::find_any()?, &["pytest", "numpy"])?;
-    run(command(python)
+fn python_tests() -> Result<Option<String>> {
+    let built = Bundle::last();
+    run(command(python_environment()?)
         .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/python"])
         .env("ROTOTOON_LIBRARY", &built.library)
         .env("ROTOTOON_CLI", &built.cli))?;
     Ok(None)
 }
 
+fn python_environment() -> Result<PathBuf> {
+    python::venv("venv-python", &python::find_any()?, &["pytest", "numpy"])
+}
+
+/// Where the sample cartoon and the doll are.
+fn files() -> PathBuf {
+    target().join("sample-files")
+}
+
 /// The sample cartoon and the doll, which tests in Blender track and reshape.
-fn sample_files(folder: &Path) -> Result<()> {
-    sample::write(&folder.join("sample"))?;
-    doll::write(&folder.join("doll"))
+fn sample_files() -> Result<()> {
+    sample::write(&files().join("sample"))?;
+    doll::write(&files().join("doll"))
 }
 
 /// pytest inside one Blender, with the zip installed in a configuration of its own.
-fn blender_tests(wheel: Wheel, built: Option<&Bundle>, files: &Path) -> Result<Option<String>> {
-    let Some(built) = built else { return Ok(Some("the bundle failed".into())) };
+fn blender_tests(wheel: Wheel) -> Result<Option<String>> {
+    let built = Bundle::last();
     let Some(python) = python::blender_venv(wheel)? else {
         return Ok(Some(format!("it needs Python {}, which was not found", wheel.python)));
     };
@@ -178,30 +165,9 @@ fn blender_tests(wheel: Wheel, built: Option<&Bundle>, files: &Path) -> Result<O
         .env("ROTOTOON_ZIP", &built.zip)
         .env("ROTOTOON_CLI", &built.cli)
         .env("ROTOTOON_ROOT", root())
-        .env("ROTOTOON_SAMPLE", files)
+        .env("ROTOTOON_SAMPLE", files())
         .env("BLENDER_USER_RESOURCES", resources)
         // The library of the zip is what is tested.
         .env_remove("ROTOTOON_LIBRARY"))?;
     Ok(None)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_failed_step_fails_the_whole_and_the_others_go_on() {
-        let mut report = Report::default();
-        assert!(report.step("a", || Ok(None)));
-        assert!(!report.step("b", || bail!("broken")));
-        assert!(!report.step("c", || Ok(Some("no such machine".into()))));
-        assert_eq!(report.finish().unwrap_err().to_string(), "1 of 3 steps failed");
-    }
-
-    #[test]
-    fn what_could_not_be_run_fails_nothing() {
-        let mut report = Report::default();
-        report.step("a", || Ok(Some("no such machine".into())));
-        report.finish().unwrap();
-    }
 }
