@@ -62,24 +62,28 @@ impl Step {
         self
     }
 
-    /// Does it here and now, and writes down how it ended ([`in_own_process`] reads it).
+    /// Does it here and now, and writes down how it ended ([`in_own_process`] reads it); an error where it failed.
     pub fn run_here(&self) -> Result<()> {
-        let (word, reason) = match (self.body)() {
-            Ok(None) => ("passed", String::new()),
-            Ok(Some(reason)) => ("not run", reason),
-            Err(error) => {
-                eprintln!("{error:#}");
-                ("failed", format!("{error:#}"))
-            }
+        let ended = (self.body)();
+        let told = match &ended {
+            Ok(None) => "passed\n".to_owned(),
+            Ok(Some(reason)) => format!("not run\n{reason}"),
+            Err(error) => format!("failed\n{error:#}"),
         };
-        let file = file(&self.name, "outcome");
-        fs::write(&file, format!("{word}\n{reason}")).with_context(|| format!("cannot write {file:?}"))
+        if let Ok(Some(reason)) = &ended {
+            println!("it could not be run here: {reason}");
+        }
+        let file = file(&self.name, "outcome")?;
+        fs::write(&file, told).with_context(|| format!("cannot write {file:?}"))?;
+        ended.map(|_| ())
     }
 }
 
 /// A file beside the steps' others: its log, or its outcome.
-fn file(step: &str, kind: &str) -> PathBuf {
-    target().join("test").join(format!("{}.{kind}", step.replace(' ', "-")))
+fn file(step: &str, kind: &str) -> Result<PathBuf> {
+    let folder = target().join("test");
+    fs::create_dir_all(&folder).with_context(|| format!("cannot make {folder:?}"))?;
+    Ok(folder.join(format!("{}.{kind}", step.replace(' ', "-"))))
 }
 
 /// Runs a step as `xtask test --step NAME`, and prints what it printed.
@@ -91,8 +95,7 @@ pub fn in_own_process(step: &str) -> Outcome {
 }
 
 fn child(step: &str) -> Result<Outcome> {
-    let (log, outcome) = (file(step, "log"), file(step, "outcome"));
-    fs::create_dir_all(target().join("test")).context("cannot make a folder for what the steps say")?;
+    let (log, outcome) = (file(step, "log")?, file(step, "outcome")?);
     let _ = fs::remove_file(&outcome);
     let output = File::create(&log).with_context(|| format!("cannot write {log:?}"))?;
     let program = std::env::current_exe().context("this program has no place")?;
