@@ -237,10 +237,13 @@ impl LaneSums {
         for row in 0..2 * walk.radius + 1 {
             let from = at + row * walk.stride;
             let [p0, p1, p2] = [0, 1, 2].map(|c| &walk.planes[c][from..from + LANES]);
-            for i in 0..LANES {
+            // Plain loops and choices: where little is optimised, as in tests, a range's steps and `min` are calls.
+            let mut i = 0;
+            while i < LANES {
                 // Distances are cut just beyond the range, so that three squares fit 16 bits.
                 let square = |v: i16, c: i16| {
-                    let d = (v - c).max(c - v).min(cap);
+                    let d = if v > c { v - c } else { c - v };
+                    let d = if d < cap { d } else { cap };
                     d * d
                 };
                 let distance = square(p0[i], colour[0]) + square(p1[i], colour[1]) + square(p2[i], colour[2]);
@@ -250,6 +253,7 @@ impl LaneSums {
                 sums.colour[1][i] += near & p1[i];
                 sums.colour[2][i] += near & p2[i];
                 sums.y[i] += near & row as i16;
+                i += 1;
             }
         }
         sums

@@ -138,15 +138,23 @@ impl BandMatrix {
 fn take<const N: usize>(target: &mut [f64], rows: [&[f64]; N]) {
     let factors = rows.map(|row| row[0]);
     let rows = rows.map(|row| row.as_chunks::<LANES>().0);
+    // Plain loops: where little is optimised, as in tests, each step of an iterator is a call.
     for (g, group) in target.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
         let mut sum = [0.0; LANES];
-        for (factor, row) in factors.iter().zip(rows) {
-            for (total, u) in sum.iter_mut().zip(row[g]) {
-                *total = factor.mul_add(u, *total);
+        let mut n = 0;
+        while n < N {
+            let (factor, row) = (factors[n], &rows[n][g]);
+            let mut v = 0;
+            while v < LANES {
+                sum[v] = factor.mul_add(row[v], sum[v]);
+                v += 1;
             }
+            n += 1;
         }
-        for (value, total) in group.iter_mut().zip(sum) {
-            *value -= total;
+        let mut v = 0;
+        while v < LANES {
+            group[v] -= sum[v];
+            v += 1;
         }
     }
 }

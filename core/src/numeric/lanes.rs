@@ -7,6 +7,20 @@
 use glam::Vec4;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+/// [`Lanes`] of the values of an expression of their index. The loop is a plain one: where little is optimised, as in tests,
+/// each step of a range is a call.
+macro_rules! each {
+    ($v:ident => $value:expr) => {{
+        let mut all = [0.0; LANES];
+        let mut $v = 0;
+        while $v < LANES {
+            all[$v] = $value;
+            $v += 1;
+        }
+        Lanes(all)
+    }};
+}
+
 /// Values that are worked on at once.
 pub(crate) const LANES: usize = 8;
 
@@ -37,11 +51,7 @@ impl Lanes {
     /// Whole numbers.
     #[inline(always)]
     pub fn of_integers(values: &[i16; LANES]) -> Self {
-        let mut all = [0.0; LANES];
-        for v in 0..LANES {
-            all[v] = f32::from(values[v]);
-        }
-        Self(all)
+        each!(v => f32::from(values[v]))
     }
 
     /// The first and the second four.
@@ -54,31 +64,19 @@ impl Lanes {
     /// Product with `factor` plus `add`, rounded once; only where it is compiled for this machine.
     #[inline(always)]
     pub fn mul_add(self, factor: Self, add: Self) -> Self {
-        let mut all = self;
-        for v in 0..LANES {
-            all.0[v] = self.0[v].mul_add(factor.0[v], add.0[v]);
-        }
-        all
+        each!(v => self.0[v].mul_add(factor.0[v], add.0[v]))
     }
 
     /// The lesser of each two.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
-        let mut all = self;
-        for v in 0..LANES {
-            all.0[v] = if self.0[v] < other.0[v] { self.0[v] } else { other.0[v] };
-        }
-        all
+        each!(v => if self.0[v] < other.0[v] { self.0[v] } else { other.0[v] })
     }
 
     /// The greater of each two.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
-        let mut all = self;
-        for v in 0..LANES {
-            all.0[v] = if self.0[v] > other.0[v] { self.0[v] } else { other.0[v] };
-        }
-        all
+        each!(v => if self.0[v] > other.0[v] { self.0[v] } else { other.0[v] })
     }
 
     /// 0, 1, 2 and so on.
@@ -118,21 +116,13 @@ impl Lanes {
 
     #[inline(always)]
     pub fn sqrt(self) -> Self {
-        let mut all = self;
-        for v in &mut all.0 {
-            *v = v.sqrt();
-        }
-        all
+        each!(v => self.0[v].sqrt())
     }
 
     /// The first `count`, and zero for the others.
     #[inline(always)]
     pub fn first(self, count: usize) -> Self {
-        let mut all = self;
-        for v in 0..LANES {
-            all.0[v] = if v < count { all.0[v] } else { 0.0 };
-        }
-        all
+        each!(v => if v < count { self.0[v] } else { 0.0 })
     }
 
     /// The values of even and of odd index.
@@ -145,11 +135,7 @@ impl Lanes {
     /// These where `mask` is not zero, and zero elsewhere.
     #[inline(always)]
     pub fn kept(self, mask: Self) -> Self {
-        let mut all = self;
-        for v in 0..LANES {
-            all.0[v] = if mask.0[v] != 0.0 { all.0[v] } else { 0.0 };
-        }
-        all
+        each!(v => if mask.0[v] != 0.0 { self.0[v] } else { 0.0 })
     }
 }
 
@@ -158,11 +144,7 @@ impl Add for Lanes {
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        let mut all = self;
-        for v in 0..LANES {
-            all.0[v] += other.0[v];
-        }
-        all
+        each!(v => self.0[v] + other.0[v])
     }
 }
 
@@ -171,11 +153,7 @@ impl Sub for Lanes {
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        let mut all = self;
-        for v in 0..LANES {
-            all.0[v] -= other.0[v];
-        }
-        all
+        each!(v => self.0[v] - other.0[v])
     }
 }
 
@@ -184,11 +162,7 @@ impl Mul for Lanes {
 
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        let mut all = self;
-        for v in 0..LANES {
-            all.0[v] *= other.0[v];
-        }
-        all
+        each!(v => self.0[v] * other.0[v])
     }
 }
 
@@ -206,11 +180,7 @@ impl Div for Lanes {
 
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        let mut all = self;
-        for v in 0..LANES {
-            all.0[v] /= other.0[v];
-        }
-        all
+        each!(v => self.0[v] / other.0[v])
     }
 }
 
@@ -219,10 +189,6 @@ impl Neg for Lanes {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        let mut all = self;
-        for v in &mut all.0 {
-            *v = -*v;
-        }
-        all
+        each!(v => -self.0[v])
     }
 }

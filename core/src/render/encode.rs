@@ -5,7 +5,9 @@
 
 use crate::image::colour;
 use crate::scene::{Colour, Raster};
-use image::{DynamicImage, ImageBuffer, ImageFormat};
+use image::codecs::openexr::OpenExrEncoder;
+use image::codecs::png::PngEncoder;
+use image::{DynamicImage, ImageBuffer};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -113,12 +115,13 @@ pub fn matte(picture: &Raster<f32>, format: Format) -> Result<Vec<u8>, EncodeErr
 fn bytes(image: Option<DynamicImage>, format: Format, width: usize, height: usize) -> Result<Vec<u8>, EncodeError> {
     let failed = |reason: String| EncodeError { width, height, reason };
     let image = image.ok_or_else(|| failed("the size does not fit".to_owned()))?;
-    let format = match format {
-        Format::Png => ImageFormat::Png,
-        Format::Exr => ImageFormat::OpenExr,
-    };
     let mut out = Cursor::new(Vec::new());
-    image.write_to(&mut out, format).map_err(|error| failed(error.to_string()))?;
+    // The encoder is named: to write any format would compile them all.
+    let written = match format {
+        Format::Png => image.write_with_encoder(PngEncoder::new(&mut out)),
+        Format::Exr => image.write_with_encoder(OpenExrEncoder::new(&mut out)),
+    };
+    written.map_err(|error| failed(error.to_string()))?;
     Ok(out.into_inner())
 }
 

@@ -356,7 +356,7 @@ mod tests {
 
     #[test]
     fn pictures_of_any_size_have_features() {
-        for (width, height) in [(1, 1), (3, 700), (1000, 2)] {
+        for (width, height) in [(1, 1), (3, 700), (100, 2)] {
             let features = Features::new(&Raster::new(width, height, [1.0, 0.5, 0.0]));
             let s = features.level(0).sample(Point::new(1e6, -1e6));
             assert!((s.colour.x - 1.0).abs() < 1e-3 && s.slopes[0].x.abs() < 1e-3);

@@ -36,10 +36,14 @@ use super::tasks::{SharedProgress, Task, assemble, job, nearer_contours, next_wa
 use super::tracker::{SceneSolver, Tracking};
 use super::{TrackError, corrected};
 use crate::geometry::Point;
-use crate::scene::{FrameNumber, FrameSource, Progress, Scene, Span};
+use crate::scene::{Footage, FrameNumber, FrameSource, Progress, Scene, Span};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+
+/// How many times as wide as high pictures may be: they are worked on with [540 lines](super::features), so that a strip of
+/// few lines would be enlarged to hundreds of millions of pixels.
+const WIDEST: usize = 32;
 
 /// The default preset's solver.
 #[derive(Default)]
@@ -88,6 +92,7 @@ impl SceneSolver for Rototoon {
         frames: &dyn FrameSource,
         progress: &dyn Progress,
     ) -> Result<Tracking, TrackError> {
+        check_shape(&scene.footage)?;
         let tasks = tasks(scene);
         let single = outward::plan::subjects(scene).len();
         let between = tasks.len() as f64 / (tasks.len() + single).max(1) as f64;
@@ -103,6 +108,15 @@ impl SceneSolver for Rototoon {
     fn forget(&mut self) {
         *self = Self::new(self.mechanisms);
     }
+}
+
+/// Refuses footage that is far too wide for its height.
+fn check_shape(footage: &Footage) -> Result<(), TrackError> {
+    let (width, height) = (footage.width, footage.height);
+    if width > WIDEST * height {
+        return Err(TrackError::TooWide { width, height, limit: WIDEST });
+    }
+    Ok(())
 }
 
 impl Rototoon {

@@ -107,6 +107,16 @@ pub enum TrackError {
         /// Number of points of the part.
         count: usize,
     },
+    /// Pictures of a shape that no scene has: scaled to the lines that the tracker works on they would fill the memory.
+    #[error("footage: found pictures of {width}x{height} pixels, expected at most {limit} times as wide as high")]
+    TooWide {
+        /// Width of the footage.
+        width: usize,
+        /// Height of the footage.
+        height: usize,
+        /// The largest quotient of both.
+        limit: usize,
+    },
 }
 
 /// What tracking found, in the order of the scene's parts.

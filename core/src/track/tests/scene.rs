@@ -10,6 +10,9 @@ pub(super) const WIDTH: usize = 240;
 pub(super) const HEIGHT: usize = 180;
 pub(super) const LAST: FrameNumber = 6;
 
+/// Half the width of an outline.
+const OUTLINE: f64 = 1.0;
+
 /// An outlined shape of one colour, and where it is on each frame.
 pub(super) struct Shape {
     pub(super) rest: Vec<Point>,
@@ -35,18 +38,14 @@ impl Shape {
 pub(super) struct Drawn(pub(super) Vec<Shape>);
 
 impl Drawn {
-    /// Colour at a point: the fill of the nearest shape, its outline 2 px wide, or paper.
-    fn colour_at(&self, frame: FrameNumber, p: Point) -> Colour {
-        for shape in self.0.iter().rev() {
+    /// What a picture shows on a frame, the nearest shape first: contour, its bounds with the outline, and fill.
+    fn shown(&self, frame: FrameNumber) -> Vec<(Vec<Point>, (Point, Point), Colour)> {
+        let one = |shape: &Shape| {
             let contour = shape.contour(frame);
-            if polyline::distance(p, &contour, true) <= 1.0 {
-                return [0.05; 3];
-            }
-            if polygon::contains(&contour, p) {
-                return shape.colour;
-            }
-        }
-        [0.95, 0.93, 0.9]
+            let (low, high) = polygon::bounds(&contour).expect("a shape has points");
+            (contour, (low - OUTLINE, high + OUTLINE), shape.colour)
+        };
+        self.0.iter().rev().map(one).collect()
     }
 
     pub(super) fn scene(&self, parts: Vec<Part>) -> Scene {
@@ -56,14 +55,29 @@ impl Drawn {
     }
 }
 
+/// Colour at a point: the fill of the nearest shape, its outline 2 px wide, or paper.
+fn colour_at(shown: &[(Vec<Point>, (Point, Point), Colour)], p: Point) -> Colour {
+    let near = shown.iter().filter(|(_, (low, high), _)| p.cmpge(*low).all() && p.cmple(*high).all());
+    for (contour, _, colour) in near {
+        if polyline::distance(p, contour, true) <= OUTLINE {
+            return [0.05; 3];
+        }
+        if polygon::contains(contour, p) {
+            return *colour;
+        }
+    }
+    [0.95, 0.93, 0.9]
+}
+
 impl FrameSource for Drawn {
     fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
+        let shown = self.shown(frame);
         let offsets = [0.17, 0.5, 0.83];
         let picture = Raster::from_fn(WIDTH, HEIGHT, |x, y| {
             let mut sum = [0.0f32; 3];
             for dy in offsets {
                 for dx in offsets {
-                    let colour = self.colour_at(frame, Point::new(x as f64 + dx, y as f64 + dy));
+                    let colour = colour_at(&shown, Point::new(x as f64 + dx, y as f64 + dy));
                     (0..3).for_each(|k| sum[k] += colour[k] / 9.0);
                 }
             }
@@ -249,4 +263,14 @@ fn odd_parts_give_finite_tracks() {
         assert!(track.tracks.values().flatten().all(|p| p.is_finite()), "{}", part.name);
         assert!(track.confidence.values().flatten().all(|c| (0.0..=1.0).contains(c)), "{}", part.name);
     }
+}
+
+#[test]
+fn pictures_that_would_fill_the_memory_are_refused() {
+    let drawn = limb_and_ball();
+    let mut scene = drawn.scene(vec![drawn.0[0].part("limb", 1.0)]);
+    (scene.footage.width, scene.footage.height) = (10_000, 1);
+    let error = Tracker::new(TrackOptions::default()).track(&scene, &drawn, &Silent).unwrap_err();
+    let told = "footage: found pictures of 10000x1 pixels, expected at most 32 times as wide as high";
+    assert_eq!(error.to_string(), told);
 }
