@@ -6,6 +6,7 @@ use crate::image::Sequence;
 use crate::project::drawings::{Drawings, DrawnPeg, WrittenTiming, drawing_place, peg_key_place, peg_place};
 use crate::project::{Document, Problems};
 use crate::scene::{Footage, FrameError, FrameNumber, FrameSource, Progress};
+use crate::track::rototoon::WIDEST;
 use crate::tween::peg::{self, PegError};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::path::Path;
@@ -17,6 +18,7 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
         problems.error(error.place, format!("found {}, expected {}", error.found, error.expected));
     }
     problems.append(drawing_problems(document));
+    shape(&document.scene.footage, &mut problems);
     let sequence = Sequence::keeping(&document.scene.footage, folder, 0)?;
     let numbers: Vec<FrameNumber> = (document.scene.footage.first..=document.scene.footage.last).collect();
     let mut done = 0;
@@ -30,6 +32,15 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
         progress.report("Reading frames", done as f64 / numbers.len() as f64)?;
     }
     Ok(problems)
+}
+
+/// Pictures that can be drawn on, but not tracked.
+fn shape(footage: &Footage, problems: &mut Problems) {
+    let (width, height) = (footage.width, footage.height);
+    if width > WIDEST * height {
+        let expected = format!("to be tracked they must be at most {WIDEST} times as wide as high");
+        problems.warning("footage", format!("found pictures of {width}x{height} pixels; {expected}"));
+    }
 }
 
 /// Everything that is wrong with a document's drawings, pairs and pegs: fields that are not as they must be, and, where
@@ -182,6 +193,20 @@ mod tests {
         let mut fields = good();
         change(&mut fields);
         assert_eq!(said(&fields).0, expected);
+    }
+
+    #[test]
+    fn strips_are_warned_of() {
+        let warned = |width, height| {
+            let footage = Footage { pattern: "%d.png".into(), first: 0, last: 1, fps: 12.0, width, height };
+            let mut problems = Problems::default();
+            shape(&footage, &mut problems);
+            problems.warnings().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        assert!(warned(320, 10).is_empty());
+        let told =
+            "footage: found pictures of 321x10 pixels; to be tracked they must be at most 32 times as wide as high";
+        assert_eq!(warned(321, 10), [told]);
     }
 
     #[test]

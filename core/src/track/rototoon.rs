@@ -43,7 +43,7 @@ use std::sync::Arc;
 
 /// How many times as wide as high pictures may be: they are worked on with [540 lines](super::features), so that a strip of
 /// few lines would be enlarged to hundreds of millions of pixels.
-const WIDEST: usize = 32;
+pub const WIDEST: usize = 32;
 
 /// The default preset's solver.
 #[derive(Default)]
