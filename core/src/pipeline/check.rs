@@ -6,7 +6,7 @@ use crate::image::Sequence;
 use crate::project::drawings::{Drawings, DrawnPeg, WrittenTiming, drawing_place, peg_key_place, peg_place};
 use crate::project::{Document, Problems};
 use crate::scene::{Footage, FrameError, FrameNumber, FrameSource, Progress};
-use crate::track::rototoon::WIDEST;
+use crate::track::rototoon::{WIDEST, too_wide};
 use crate::tween::peg::{self, PegError};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::path::Path;
@@ -36,8 +36,8 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
 
 /// Pictures that can be drawn on, but not tracked.
 fn shape(footage: &Footage, problems: &mut Problems) {
-    let (width, height) = (footage.width, footage.height);
-    if width > WIDEST * height {
+    if too_wide(footage) {
+        let (width, height) = (footage.width, footage.height);
         let expected = format!("to be tracked they must be at most {WIDEST} times as wide as high");
         problems.warning("footage", format!("found pictures of {width}x{height} pixels; {expected}"));
     }

@@ -92,7 +92,10 @@ impl SceneSolver for Rototoon {
         frames: &dyn FrameSource,
         progress: &dyn Progress,
     ) -> Result<Tracking, TrackError> {
-        check_shape(&scene.footage)?;
+        if too_wide(&scene.footage) {
+            let Footage { width, height, .. } = scene.footage;
+            return Err(TrackError::TooWide { width, height, limit: WIDEST });
+        }
         let tasks = tasks(scene);
         let single = outward::plan::subjects(scene).len();
         let between = tasks.len() as f64 / (tasks.len() + single).max(1) as f64;
@@ -110,13 +113,9 @@ impl SceneSolver for Rototoon {
     }
 }
 
-/// Refuses footage that is far too wide for its height.
-fn check_shape(footage: &Footage) -> Result<(), TrackError> {
-    let (width, height) = (footage.width, footage.height);
-    if width > WIDEST * height {
-        return Err(TrackError::TooWide { width, height, limit: WIDEST });
-    }
-    Ok(())
+/// Whether footage is more than [`WIDEST`] times as wide as high.
+pub fn too_wide(footage: &Footage) -> bool {
+    footage.width > WIDEST * footage.height
 }
 
 impl Rototoon {
