@@ -34,11 +34,11 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
     Ok(problems)
 }
 
-/// Pictures that can be drawn on, but not tracked.
+/// Pictures that can be drawn on, but that the default preset does not track.
 fn shape(footage: &Footage, problems: &mut Problems) {
     if too_wide(footage) {
         let (width, height) = (footage.width, footage.height);
-        let expected = format!("to be tracked they must be at most {WIDEST} times as wide as high");
+        let expected = format!("the default preset tracks those at most {WIDEST} times as wide as high");
         problems.warning("footage", format!("found pictures of {width}x{height} pixels; {expected}"));
     }
 }
@@ -204,8 +204,7 @@ mod tests {
             problems.warnings().map(ToString::to_string).collect::<Vec<_>>()
         };
         assert!(warned(320, 10).is_empty());
-        let told =
-            "footage: found pictures of 321x10 pixels; to be tracked they must be at most 32 times as wide as high";
+        let told = "footage: found pictures of 321x10 pixels; the default preset tracks those at most 32 times as wide as high";
         assert_eq!(warned(321, 10), [told]);
     }
 
