@@ -1,38 +1,38 @@
-//! Rototoon's core: contour capture for drawn animation.
+//! Rototoon: contour capture, in-betweening and style transfer for drawn animation.
 //!
-//! # Reading order
+//! This crate joins the stages ([`pipeline`]) and names all of them in one place. Each stage is a crate of its own:
 //!
-//! 1. [`scene`]: what the stages hand to each other (footage, parts, pictures, progress).
-//! 2. [`image`]: pictures from files and what is computed on them.
-//! 3. [`track`]: contours from key frames to every frame.
-//! 4. [`snap`]: contours onto the drawn ink.
-//! 5. [`tween`]: the drawings between drawings on key frames, hidden lines.
-//! 6. [`style`]: a motion re-made in another character's manner.
-//! 7. [`reshape`]: a drawing that follows a skeleton, and which part is in front.
-//! 8. [`render`]: pictures of what was found. [`export`]: the same for other programs, and [`import`] their shapes and motions.
-//! 9. [`project`]: the document that holds all of it.
-//! 10. [`pipeline`]: the stages joined.
-//!
-//! [`geometry`] and [`numeric`] serve them all; [`curve`] holds quadratic B-splines, and [`fit`] makes them from points.
+//! | name here | crate | what it does |
+//! | --- | --- | --- |
+//! | [`numeric`], [`geometry`], [`curve`], [`scene`] | `rototoon-base` | what all stages share |
+//! | [`image`] | `rototoon-image` | pictures from files, filters, optical flow |
+//! | [`fit`] | `rototoon-fit` | quadratic B-splines from points |
+//! | [`track`] | `rototoon-track` | contours from key frames to every frame |
+//! | [`snap`] | `rototoon-snap` | tracked contours onto the drawn ink |
+//! | [`tween`] | `rototoon-tween` | matched strokes, in-betweens, hidden lines |
+//! | [`style`] | `rototoon-style` | a motion re-made in another character's manner |
+//! | [`reshape`] | `rototoon-reshape` | a drawing that follows a skeleton |
+//! | [`project`] | `rototoon-document` | the project document and the clip library |
+//! | [`export`], [`import`] | `rototoon-exchange` | other programs' files |
+//! | [`render`] | `rototoon-render` | mattes, overlays, id pictures |
 //!
 //! # Coordinates
 //!
-//! Pixels, x right, y down, origin at the outer top-left corner of the picture: a pixel's centre lies at +0.5.
+//! Pixels, x right, y down. The origin is the outer top-left corner of the picture, so the centre of a pixel lies at +0.5.
 //! Hosts convert at their border.
 
-pub mod curve;
-pub mod export;
-pub mod fit;
-pub mod geometry;
-pub mod image;
-pub mod import;
-pub mod numeric;
+#![forbid(unsafe_code)]
+
 pub mod pipeline;
-pub mod project;
-pub mod render;
-pub mod reshape;
-pub mod scene;
-pub mod snap;
-pub mod style;
-pub mod track;
-pub mod tween;
+
+pub use rototoon_base::{curve, geometry, numeric, scene};
+pub use rototoon_document as project;
+pub use rototoon_exchange::{export, import};
+pub use rototoon_fit as fit;
+pub use rototoon_image as image;
+pub use rototoon_render as render;
+pub use rototoon_reshape as reshape;
+pub use rototoon_snap as snap;
+pub use rototoon_style as style;
+pub use rototoon_track as track;
+pub use rototoon_tween as tween;

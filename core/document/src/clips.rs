@@ -1,0 +1,362 @@
+//! Files of skeleton clips.
+//!
+//! ```json
+//! {"rototoon_clips": 1, "fps": 30, "keypoints": ["pelvis", "…"],
+//!  "clips": [{"character": "anna", "motion": "walk", "points": [[[x, y], "17 of them"], "one list a frame"]}]}
+//! ```
+//!
+//! x right, y down, in any one unit a character. A translated clip also holds `deviation`: for each frame and key point
+//! the standard deviation of its place, in the same unit. Fields that are not known are left out of what is written anew.
+
+use super::output::{WriteError, write_whole};
+use super::plain_clips as plain;
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::Clip;
+use rototoon_base::scene::skeleton::{COUNT, NAMES, Posture};
+use serde_json::Value;
+use std::path::Path;
+
+/// Version of the form.
+pub const VERSION: u64 = 1;
+
+/// What is wrong with a file of clips or of a key pose.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ClipsError {
+    /// The file cannot be read.
+    #[error("{origin}: cannot read: {reason}")]
+    Unreadable {
+        /// The file.
+        origin: String,
+        /// What the system said.
+        reason: String,
+    },
+    /// The text is not JSON.
+    #[error("{origin}: not JSON (which has no NaN or Infinity either): {reason}")]
+    Syntax {
+        /// The file.
+        origin: String,
+        /// What the reader said, with line and column.
+        reason: String,
+    },
+    /// The file was written by a later version.
+    #[error("{origin}: rototoon_clips: found version {found}, expected {VERSION} or less; a newer Rototoon reads it")]
+    Later {
+        /// The file.
+        origin: String,
+        /// Its version.
+        found: u64,
+    },
+    /// A field is missing or holds something else.
+    #[error("{origin}: {place}: found {found}, expected {expected}")]
+    Field {
+        /// The file.
+        origin: String,
+        /// Where, with the clip's names and the frame.
+        place: String,
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: String,
+    },
+}
+
+/// A file of clips.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clips {
+    /// The clips in the file's order. No two have the same character and motion.
+    pub clips: Vec<Clip>,
+    /// Frames a second.
+    pub fps: f64,
+}
+
+impl Clips {
+    /// Reads a file.
+    pub fn load(path: &Path) -> Result<Self, ClipsError> {
+        Self::parse(&read(path)?, &path.display().to_string())
+    }
+
+    /// Reads text; `origin` names it in errors.
+    ///
+    /// What is as it must be is read straight into numbers. Only where it is not, it is read once more, value by value, to say
+    /// what is wrong and where.
+    pub fn parse(text: &str, origin: &str) -> Result<Self, ClipsError> {
+        match plain::read(text) {
+            Some(clips) => Ok(clips),
+            None => Self::parse_by_value(text, origin),
+        }
+    }
+
+    /// The same by way of a tree of values: slow, and every error has its place.
+    fn parse_by_value(text: &str, origin: &str) -> Result<Self, ClipsError> {
+        let reader = Reader { origin };
+        let document = reader.json(text)?;
+        reader.version(&document)?;
+        let fps = match document.get("fps") {
+            None => 25.0,
+            Some(value) => value
+                .as_f64()
+                .filter(|fps| *fps > 0.0)
+                .ok_or_else(|| reader.wrong("fps", value, "a positive number of frames a second"))?,
+        };
+        reader.key_points(&document)?;
+        let list = document.get("clips").unwrap_or(&Value::Null);
+        let list = list.as_array().ok_or_else(|| reader.wrong("clips", list, "a list of clips"))?;
+        let mut clips: Vec<Clip> = Vec::with_capacity(list.len());
+        for (k, value) in list.iter().enumerate() {
+            let clip = reader.clip(k, value)?;
+            let twin = clips.iter().position(|c| c.character == clip.character && c.motion == clip.motion);
+            if let Some(twin) = twin {
+                let place = place_of(k, &clip.character, &clip.motion);
+                let found = format!("the character and motion of clips[{twin}] again");
+                return Err(reader.field(place, found, "each motion of a character once"));
+            }
+            clips.push(clip);
+        }
+        Ok(Self { clips, fps })
+    }
+
+    /// The file's text.
+    pub fn text(&self) -> String {
+        plain::written(self) + "\n"
+    }
+
+    /// Writes a file, whole or not at all.
+    pub fn save(&self, path: &Path) -> Result<(), WriteError> {
+        write_whole(path, self.text().as_bytes())
+    }
+}
+
+/// A posture that the animator drew for one frame of the result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnPose {
+    /// The frame, from 0.
+    pub frame: usize,
+    /// The key points; any common shift of all is left out of account.
+    pub posture: Posture,
+}
+
+/// Reads drawn key poses: one posture (`[[x, y], …]`, for the first frame), or `{"frame", "points"}`, or a list of those.
+pub fn load_key_poses(path: &Path) -> Result<Vec<DrawnPose>, ClipsError> {
+    parse_key_poses(&read(path)?, &path.display().to_string())
+}
+
+/// Reads drawn key poses from text; `origin` names it in errors.
+pub fn parse_key_poses(text: &str, origin: &str) -> Result<Vec<DrawnPose>, ClipsError> {
+    let reader = Reader { origin };
+    let document = reader.json(text)?;
+    let pose = |value: &Value, place: &str| -> Result<DrawnPose, ClipsError> {
+        let frame = value.get("frame").unwrap_or(&Value::Null);
+        let frame = frame
+            .as_u64()
+            .and_then(|frame| usize::try_from(frame).ok())
+            .ok_or_else(|| reader.wrong(format!("{place}.frame"), frame, "a frame number from 0"))?;
+        let points = value.get("points").unwrap_or(&Value::Null);
+        Ok(DrawnPose { frame, posture: reader.posture(points, &format!("{place}.points"))? })
+    };
+    match &document {
+        Value::Object(_) => Ok(vec![pose(&document, "key pose")?]),
+        Value::Array(list) if list.first().is_some_and(Value::is_object) => {
+            list.iter().enumerate().map(|(k, value)| pose(value, &format!("key pose [{k}]"))).collect()
+        }
+        other => Ok(vec![DrawnPose { frame: 0, posture: reader.posture(other, "key pose")? }]),
+    }
+}
+
+fn read(path: &Path) -> Result<String, ClipsError> {
+    std::fs::read_to_string(path)
+        .map_err(|e| ClipsError::Unreadable { origin: path.display().to_string(), reason: e.to_string() })
+}
+
+fn place_of(index: usize, character: &str, motion: &str) -> String {
+    format!("clips[{index}] ({character:?}, {motion:?})")
+}
+
+struct Reader<'a> {
+    origin: &'a str,
+}
+
+impl Reader<'_> {
+    fn json(&self, text: &str) -> Result<Value, ClipsError> {
+        serde_json::from_str(text).map_err(|e| ClipsError::Syntax { origin: self.origin.into(), reason: e.to_string() })
+    }
+
+    fn field(&self, place: impl Into<String>, found: impl Into<String>, expected: impl Into<String>) -> ClipsError {
+        ClipsError::Field {
+            origin: self.origin.into(),
+            place: place.into(),
+            found: found.into(),
+            expected: expected.into(),
+        }
+    }
+
+    fn wrong(&self, place: impl Into<String>, found: &Value, expected: &str) -> ClipsError {
+        self.field(place, kind(found), expected)
+    }
+
+    fn version(&self, document: &Value) -> Result<(), ClipsError> {
+        let version = document.get("rototoon_clips").unwrap_or(&Value::Null);
+        match version.as_u64() {
+            Some(1..=VERSION) => Ok(()),
+            Some(found) if found > VERSION => Err(ClipsError::Later { origin: self.origin.into(), found }),
+            _ => Err(self.wrong("rototoon_clips", version, "the version of the form, 1")),
+        }
+    }
+
+    fn key_points(&self, document: &Value) -> Result<(), ClipsError> {
+        let Some(value) = document.get("keypoints") else { return Ok(()) };
+        let names = value.as_array().ok_or_else(|| self.wrong("keypoints", value, "a list of names"))?;
+        if names.len() != COUNT {
+            return Err(self.field("keypoints", format!("{} names", names.len()), format!("{COUNT}")));
+        }
+        match names.iter().zip(NAMES).position(|(name, expected)| name.as_str() != Some(expected)) {
+            None => Ok(()),
+            Some(k) => Err(self.field(format!("keypoints[{k}]"), names[k].to_string(), format!("{:?}", NAMES[k]))),
+        }
+    }
+
+    fn clip(&self, index: usize, value: &Value) -> Result<Clip, ClipsError> {
+        let name = |field: &str| match value.get(field).and_then(Value::as_str) {
+            Some(name) if !name.is_empty() => Ok(name.to_owned()),
+            _ => {
+                let found = value.get(field).unwrap_or(&Value::Null);
+                Err(self.wrong(format!("clips[{index}].{field}"), found, "a name"))
+            }
+        };
+        let (character, motion) = (name("character")?, name("motion")?);
+        let place = place_of(index, &character, &motion);
+        let points = value.get("points").unwrap_or(&Value::Null);
+        let frames = match points.as_array() {
+            Some(frames) if !frames.is_empty() => frames,
+            Some(_) => return Err(self.field(format!("{place}.points"), "no frames", "at least one")),
+            None => return Err(self.wrong(format!("{place}.points"), points, "a list of frames")),
+        };
+        let postures = frames
+            .iter()
+            .enumerate()
+            .map(|(frame, posture)| self.posture(posture, &format!("{place}, frame {frame}")))
+            .collect::<Result<_, _>>()?;
+        Ok(Clip::new(character, motion, postures))
+    }
+
+    fn posture(&self, value: &Value, place: &str) -> Result<Posture, ClipsError> {
+        let points = value.as_array().ok_or_else(|| self.wrong(place, value, "a list of key points"))?;
+        if points.len() != COUNT {
+            return Err(self.field(place, format!("{} key points", points.len()), format!("{COUNT}")));
+        }
+        let mut posture = [Point::ZERO; COUNT];
+        for (k, point) in points.iter().enumerate() {
+            let pair = point.as_array().map(Vec::as_slice);
+            posture[k] = match pair {
+                Some([x, y]) => match (x.as_f64(), y.as_f64()) {
+                    (Some(x), Some(y)) => Point::new(x, y),
+                    _ => return Err(self.field(format!("{place}, {}", NAMES[k]), point.to_string(), "two numbers")),
+                },
+                _ => return Err(self.wrong(format!("{place}, {}", NAMES[k]), point, "two numbers")),
+            };
+        }
+        Ok(posture)
+    }
+}
+
+fn kind(value: &Value) -> String {
+    match value {
+        Value::Null => "nothing".into(),
+        Value::Array(list) => format!("a list of {}", list.len()),
+        Value::Object(_) => "an object".into(),
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(points: &str) -> String {
+        format!(
+            r#"{{"rototoon_clips": 1, "fps": 12, "clips": [{{"character": "a", "motion": "walk", "points": {points}}}]}}"#
+        )
+    }
+
+    fn posture() -> String {
+        format!("[{}]", vec!["[1.5, -2]"; COUNT].join(","))
+    }
+
+    fn error(text: &str) -> String {
+        Clips::parse(text, "f.json").unwrap_err().to_string()
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let clips = Clips::parse(&file(&format!("[{}]", posture())), "f").unwrap();
+        assert_eq!(clips.fps, 12.0);
+        assert_eq!(clips.clips[0].postures, vec![[Point::new(1.5, -2.0); COUNT]]);
+        assert_eq!(Clips::parse(&clips.text(), "f").unwrap(), clips);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_place() {
+        let place = r#"f.json: clips[0] ("a", "walk")"#;
+        assert_eq!(error(&file("[]")), format!("{place}.points: found no frames, expected at least one"));
+        assert_eq!(error(&file("[[[1, 2]]]")), format!("{place}, frame 0: found 1 key points, expected 17"));
+        let bad = posture().replacen("[1.5, -2]", "[1.5, \"x\"]", 3);
+        assert_eq!(
+            error(&file(&format!("[{}, {bad}]", posture()))),
+            format!("{place}, frame 1, pelvis: found [1.5,\"x\"], expected two numbers")
+        );
+        assert!(error(&file("[[[NaN, 1]]]")).starts_with("f.json: not JSON (which has no NaN or Infinity either)"));
+        assert!(error(r#"{"rototoon_clips": 2}"#).contains("found version 2, expected 1 or less"));
+        assert!(error(r#"{"rototoon_clips": 1}"#).contains("clips: found nothing, expected a list of clips"));
+        assert!(error(r#"{"rototoon_clips": 1, "keypoints": ["pelvis"]}"#).contains("found 1 names, expected 17"));
+    }
+
+    #[test]
+    fn both_ways_of_reading_agree() {
+        let good = file(&format!("[{}, {}]", posture(), posture().replace("1.5", "1e-3")));
+        let frame = format!("[{}]", posture());
+        for text in [
+            good.clone(),
+            good.replace("\"fps\": 12, ", ""),
+            good.replace("12", "23.976"),
+            good.replace("\"a\"", "\"\\u00e4\\n\""),
+            good.replacen('{', "{\"more\": [1, {\"x\": null}], ", 1),
+            good.replacen('{', "{\"clips\": 3, ", 1),
+            good.replacen('{', "{\"keypoints\": null, ", 1),
+            good.replace("12", "null"),
+            good.replace("12", "0"),
+            good.replace("walk", ""),
+            good.replace("[1.5, -2]", "[1.5, -2, 0]"),
+            good.replace("[1.5, -2]", "[1.5]"),
+            good.replace("1.5", "1e999"),
+            good.replace("1.5", "true"),
+            file(&frame.replacen("[1.5, -2],", "", 1)),
+            file(&frame.replacen("[[1.5", "[[1.5, -2], [1.5", 1)),
+            file("[]"),
+            good.clone() + "x",
+            good.replace("rototoon_clips\": 1", "rototoon_clips\": 1.0"),
+            good.replace("rototoon_clips\": 1", "rototoon_clips\": 0"),
+        ] {
+            if let Some(quick) = plain::read(&text) {
+                assert_eq!(Ok(quick), Clips::parse_by_value(&text, "f"), "{text}");
+            }
+        }
+        assert!(plain::read(&good).is_some() && plain::read(&good.replacen('{', "{\"more\": 0, ", 1)).is_some());
+    }
+
+    #[test]
+    fn a_motion_stands_once_a_character() {
+        let clip = format!(r#"{{"character": "a", "motion": "walk", "points": [{}]}}"#, posture());
+        let text = format!(r#"{{"rototoon_clips": 1, "clips": [{clip}, {clip}]}}"#);
+        assert!(error(&text).contains(r#"clips[1] ("a", "walk"): found the character and motion of clips[0] again"#));
+    }
+
+    #[test]
+    fn key_poses_come_in_three_forms() {
+        let plain = parse_key_poses(&posture(), "k").unwrap();
+        assert_eq!((plain.len(), plain[0].frame), (1, 0));
+        let one = format!(r#"{{"frame": 7, "points": {}}}"#, posture());
+        assert_eq!(parse_key_poses(&one, "k").unwrap()[0].frame, 7);
+        assert_eq!(parse_key_poses(&format!("[{one}, {one}]"), "k").unwrap().len(), 2);
+        let wrong = parse_key_poses(r#"[{"frame": -1}]"#, "k").unwrap_err().to_string();
+        assert_eq!(wrong, "k: key pose [0].frame: found -1, expected a frame number from 0");
+    }
+}

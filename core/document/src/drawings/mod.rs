@@ -1,0 +1,351 @@
+//! Drawings on key frames, pairs made by hand, pegs, and the in-betweens made from them.
+//!
+//! A document may hold, beside what it holds already:
+//!
+//! ```json
+//! "drawings": [{"frame": 0, "spacing": "smooth", "corner": false, "strokes": [
+//!     {"points": [[x, y], "…"], "closed": true, "colour": [r, g, b], "material": 0, "layer": 2, "peg": "arm"}, "…"]}, "…"],
+//! "pairs": [{"frame": 0, "from": 3, "to": 5}, {"frame": 0, "from": 4, "to": null}],
+//! "pegs": [{"name": "arm", "parent": "body", "pivot": [x, y], "keys": [
+//!     {"frame": 0, "shift": [x, y], "turn": 30, "scale": 1.2, "timing": "ease_in_out"}, "…"]}]
+//! ```
+//!
+//! - `drawings`: frames rising; strokes from behind to the front. `colour` (sRGB, 0 to 1), `material`, `layer` and
+//!   `peg` may be left out, and so may `corner`, a corner in time: velocities do not join there. `spacing` says how the
+//!   movement to the next drawing runs: `"smooth"` (also where it is left out), a movement function, or a spacing
+//!   chart, the list of shares of the way, one for each frame between.
+//! - A movement function is one of `"constant"` (a hold), `"linear"`, `"ease_in"`, `"ease_out"`, `"ease_in_out"`,
+//!   `"cosine"`, `"bounce"`, or `{"curve": [[time, share], …]}`, or `{"bounce": count}`.
+//! - `pairs`: stroke `from` of the drawing on `frame` is stroke `to` of the next one, or none; by index from 0.
+//! - `pegs`: `turn` in degrees from x towards y, whole turns count; what is left out of a key is at rest, a `parent`
+//!   that is left out is none.
+//!
+//! Tweening writes, in place of those of an earlier run:
+//!
+//! ```json
+//! "matches": [{"frame": 0, "next": 8, "pairs": [{"from": 3, "to": 5, "reversed": false, "start": 0.25, "confidence": 0.97,
+//!     "by_hand": true}, "…"], "split": [{"whole": 1, "pieces": [[2, false], [7, true]]}], "joined": [], "vanished": [4],
+//!     "appeared": []}, "…"],
+//! "in_betweens": [{"frame": 1, "strokes": [{"track": 0, "points": [[x, y], "…"], "closed": true, "opacity": 1, "colour": "…",
+//!     "material": "…", "layer": "…"}, "…"]}, "…"]
+//! ```
+//!
+//! - `start`: of closed strokes the share of the counterpart's length at which the first point of the other lies.
+//! - `track`: the same number for the same stroke on all frames.
+
+mod read;
+
+pub use read::{read_pegs, read_timing};
+
+use super::Document;
+use super::fields::{array, wrong};
+use super::save::DECIMALS;
+use super::schema::{Field, TOP};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::FrameNumber;
+use serde_json::{Map, Value, json};
+
+pub use super::fields::FieldError as DrawingsError;
+
+/// A movement function or chart as it is written.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum WrittenTiming {
+    /// `"smooth"`.
+    #[default]
+    Smooth,
+    /// A name.
+    Named(String),
+    /// `{"curve": [[time, share], …]}`.
+    Curve(Vec<(f64, f64)>),
+    /// `{"bounce": count}`.
+    Bounce(u32),
+    /// A list of shares.
+    Chart(Vec<f64>),
+}
+
+/// A stroke of a drawing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DrawnStroke {
+    /// Its points in pixels.
+    pub points: Vec<Point>,
+    /// Whether the last point joins the first.
+    pub closed: bool,
+    /// sRGB-encoded, 0 to 1.
+    pub colour: Option<[f32; 3]>,
+    /// Number of its material.
+    pub material: Option<u32>,
+    /// Number of its layer.
+    pub layer: Option<u32>,
+    /// Index of its peg.
+    pub peg: Option<usize>,
+}
+
+/// A drawing on a key frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawing {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// From behind to the front.
+    pub strokes: Vec<DrawnStroke>,
+    /// How the movement to the next drawing runs.
+    pub spacing: WrittenTiming,
+    /// Whether velocities need not join here.
+    pub corner: bool,
+}
+
+/// A pair made by hand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawnPair {
+    /// Index of the earlier drawing.
+    pub drawing: usize,
+    /// Stroke of it.
+    pub from: usize,
+    /// Stroke of the next one.
+    pub to: Option<usize>,
+}
+
+/// A peg's key.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnPegKey {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// In pixels.
+    pub shift: Point,
+    /// In degrees.
+    pub turn: f64,
+    /// 1 at rest.
+    pub scale: f64,
+    /// How the movement to the next key runs.
+    pub timing: WrittenTiming,
+}
+
+/// A peg.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DrawnPeg {
+    /// Unique name.
+    pub name: String,
+    /// Index of the peg that it hangs on.
+    pub parent: Option<usize>,
+    /// In pixels.
+    pub pivot: Point,
+    /// Its keys.
+    pub keys: Vec<DrawnPegKey>,
+}
+
+/// What a document holds for tweening.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawings {
+    /// Frames rising.
+    pub drawings: Vec<Drawing>,
+    /// Pairs made by hand.
+    pub pairs: Vec<DrawnPair>,
+    /// Pegs.
+    pub pegs: Vec<DrawnPeg>,
+}
+
+/// A drawing between keys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnBetween {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// From behind to the front: track, opacity, stroke.
+    pub strokes: Vec<(usize, f64, DrawnStroke)>,
+}
+
+impl Document {
+    /// The drawings, pairs and pegs of the document; none where it has none.
+    ///
+    /// # Errors
+    ///
+    /// The first field that is not as it must be.
+    pub fn drawings(&self) -> Result<Drawings, DrawingsError> {
+        let (read, problems) = self.drawings_and_problems();
+        problems.into_iter().next().map_or(Ok(read), Err)
+    }
+
+    /// The drawings, pairs and pegs of the document, and every field of theirs that is not as it must be. What is wrong
+    /// is at its default among the rest, in its place.
+    pub fn drawings_and_problems(&self) -> (Drawings, Vec<DrawingsError>) {
+        read::Reader::default().document(self)
+    }
+
+    /// Puts the list `json` into a field that the document's scene does not hold, in place of what was there.
+    pub(super) fn set_other_field(&mut self, name: &'static str, json: String) {
+        if self.layout.top.is_empty() {
+            self.layout.top.extend(TOP.map(Field::Known));
+        }
+        let field = Field::Unknown { name: name.into(), json };
+        match self.layout.top.iter_mut().find(|field| field.name() == name) {
+            Some(known) => *known = field,
+            None => self.layout.top.push(field),
+        }
+    }
+
+    pub(super) fn other_field(&self, name: &str) -> Option<&str> {
+        self.layout.top.iter().find_map(|field| match field {
+            Field::Unknown { name: own, json } if own == name => Some(json.as_str()),
+            _ => None,
+        })
+    }
+
+    /// The list in such a field; empty where there is none.
+    pub(super) fn other_list(&self, name: &'static str) -> Result<Vec<Value>, DrawingsError> {
+        match self.other_field(name) {
+            Some(json) => {
+                let value = serde_json::from_str(json).map_err(|e| wrong(name, &e.to_string(), "JSON"))?;
+                array(Some(&value), name).cloned()
+            }
+            None => Ok(Vec::new()),
+        }
+    }
+
+    /// Puts drawings into the document.
+    pub fn set_drawings(&mut self, drawings: &[Drawing]) {
+        let written = drawings.iter().map(|d| {
+            let strokes = d.strokes.iter().map(|s| Value::Object(stroke_fields(s, |v| v))).collect::<Vec<_>>();
+            json!({"frame": d.frame, "strokes": strokes})
+        });
+        self.set_other_field("drawings", lines(written));
+    }
+
+    /// Puts what tweening found into the document: matches, as JSON objects, and the drawings between keys.
+    pub fn set_in_betweens(&mut self, matches: Vec<Value>, drawn: &[DrawnBetween]) {
+        let rounded = |v: f64| (v * 10f64.powi(DECIMALS)).round() / 10f64.powi(DECIMALS);
+        let written = drawn.iter().map(|between| {
+            let stroke = |(track, opacity, stroke): &(usize, f64, DrawnStroke)| {
+                let mut fields = Map::new();
+                fields.insert("track".into(), json!(track));
+                fields.extend(stroke_fields(stroke, rounded));
+                fields.insert("opacity".into(), json!(rounded(*opacity)));
+                Value::Object(fields)
+            };
+            json!({"frame": between.frame, "strokes": between.strokes.iter().map(stroke).collect::<Vec<_>>()})
+        });
+        self.set_other_field("in_betweens", lines(written));
+        self.set_other_field("matches", lines(matches.into_iter()));
+    }
+}
+
+/// JSON path of a drawing, with its frame.
+pub fn drawing_place(index: usize, frame: FrameNumber) -> String {
+    format!("drawings[{index}] (frame {frame})")
+}
+
+/// JSON path of a pair made by hand, with the frame of its earlier drawing.
+pub fn pair_place(index: usize, frame: FrameNumber) -> String {
+    format!("pairs[{index}] (frame {frame})")
+}
+
+/// JSON path of a peg, with its name.
+pub fn peg_place(index: usize, name: &str) -> String {
+    format!("pegs[{index}] {name:?}")
+}
+
+/// JSON path of a key of the peg at `peg`, with its frame.
+pub fn peg_key_place(peg: &str, key: usize, frame: FrameNumber) -> String {
+    format!("{peg}.keys[{key}] (frame {frame})")
+}
+
+/// A list with one element a line.
+pub(super) fn lines(values: impl Iterator<Item = Value>) -> String {
+    let lines: Vec<String> = values.map(|value| format!("\n    {value}")).collect();
+    if lines.is_empty() { "[]".into() } else { format!("[{}\n  ]", lines.join(",")) }
+}
+
+fn stroke_fields(stroke: &DrawnStroke, written: impl Fn(f64) -> f64) -> Map<String, Value> {
+    let mut fields = Map::new();
+    let points: Vec<Value> = stroke.points.iter().map(|p| json!([written(p.x), written(p.y)])).collect();
+    fields.insert("points".into(), Value::Array(points));
+    fields.insert("closed".into(), json!(stroke.closed));
+    if let Some(colour) = stroke.colour {
+        fields.insert("colour".into(), json!(colour.map(|c| (f64::from(c) * 1e4).round() / 1e4)));
+    }
+    for (name, number) in [("material", stroke.material), ("layer", stroke.layer)] {
+        if let Some(number) = number {
+            fields.insert(name.into(), json!(number));
+        }
+    }
+    fields
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn document(fields: &str) -> Document {
+        let text = format!(
+            r#"{{"rototoon": 1, "footage": {{"pattern": "f_%d.png", "first": 0, "last": 9, "fps": 24, "width": 64,
+            "height": 48}}, "parts": [], {fields}}}"#
+        );
+        Document::parse(&text, "a.json").unwrap()
+    }
+
+    #[test]
+    fn everything_is_read() {
+        let read = document(
+            r#""drawings": [{"frame": 0, "spacing": [0.2, 0.9], "strokes": [{"points": [[1, 2.5], [3, 4]], "closed": false,
+            "colour": [0, 0.5, 1], "material": 3, "layer": 1, "peg": "arm"}]}, {"frame": 3, "corner": true, "strokes": []}],
+            "pairs": [{"frame": 0, "from": 0, "to": null}],
+            "pegs": [{"name": "arm", "parent": "body", "pivot": [1, 1], "keys": [{"frame": 0, "turn": 90,
+            "timing": {"curve": [[0.5, 0.2]]}}]}, {"name": "body", "pivot": [0, 0], "keys": []}]"#,
+        )
+        .drawings()
+        .unwrap();
+        let stroke = &read.drawings[0].strokes[0];
+        assert_eq!(stroke.points, [Point::new(1.0, 2.5), Point::new(3.0, 4.0)]);
+        assert_eq!(
+            (stroke.colour, stroke.material, stroke.layer, stroke.peg),
+            (Some([0.0, 0.5, 1.0]), Some(3), Some(1), Some(0))
+        );
+        assert_eq!(read.drawings[0].spacing, WrittenTiming::Chart(vec![0.2, 0.9]));
+        assert!(read.drawings[1].corner);
+        assert_eq!(read.pairs, [DrawnPair { drawing: 0, from: 0, to: None }]);
+        assert_eq!((read.pegs[0].parent, read.pegs[0].keys[0].turn), (Some(1), 90.0));
+        assert_eq!(read.pegs[0].keys[0].timing, WrittenTiming::Curve(vec![(0.5, 0.2)]));
+        assert_eq!(document(r#""x": 1"#).drawings(), Ok(Drawings::default()));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_place() {
+        let said = |fields: &str| document(fields).drawings().unwrap_err().to_string();
+        assert_eq!(said(r#""drawings": 7"#), "drawings: found 7, expected a list");
+        let stroke = |text: &str| said(&format!(r#""drawings": [{{"frame": 0, "strokes": [{text}]}}]"#));
+        assert_eq!(stroke("{}"), "drawings[0] (frame 0).strokes[0].points: found nothing, expected a list");
+        assert_eq!(
+            stroke(r#"{"points": [[1, "x"]], "closed": true}"#),
+            r#"drawings[0] (frame 0).strokes[0].points[0]: found [1,"x"], expected a point [x, y] of numbers between -1e6 and 1e6"#
+        );
+        assert!(
+            stroke(r#"{"points": [], "closed": true, "peg": "none"}"#)
+                .ends_with(r#"found "none", expected the name of a peg"#)
+        );
+        let twice = r#""drawings": [{"frame": 4, "strokes": []}, {"frame": 4, "strokes": []}]"#;
+        assert_eq!(said(twice), "drawings[1] (frame 4).frame: found 4, expected more than 4, that of drawings[0]");
+        assert_eq!(
+            said(r#""pairs": [{"frame": 4, "from": 0, "to": 1}]"#),
+            "pairs[0].frame: found 4, expected the frame of a drawing that has a next one"
+        );
+        assert!(
+            said(r#""pegs": [{"name": "a"}, {"name": "a"}]"#)
+                .starts_with("pegs[1] \"a\".name: found \"a\", expected a unique name: it is that of pegs[0]")
+        );
+    }
+
+    #[test]
+    fn results_are_written_beside_what_was_there_and_read_again() {
+        let mut doc = document(r#""in_betweens": [1], "note": "kept""#);
+        let stroke =
+            DrawnStroke { points: vec![Point::new(1.0 / 3.0, 2.0)], material: Some(2), ..DrawnStroke::default() };
+        let drawn = [DrawnBetween { frame: 2, strokes: vec![(5, 0.5, stroke.clone())] }];
+        doc.set_in_betweens(vec![json!({"frame": 0})], &drawn);
+        let text = doc.to_json();
+        assert!(text.contains(r#"{"frame":2,"strokes":[{"track":5,"points":[[0.3333,2.0]],"closed":false,"material":2,"opacity":0.5}]}"#), "{text}");
+        assert!(text.contains(r#""note": "kept""#) && text.contains(r#"{"frame":0}"#));
+        let again = Document::parse(&text, "a.json").unwrap();
+        assert_eq!(again.to_json(), text);
+        let mut fresh = Document::new(doc.scene.clone());
+        fresh.set_drawings(&[Drawing { frame: 1, strokes: vec![stroke.clone()], ..Drawing::default() }]);
+        let read = Document::parse(&fresh.to_json(), "b.json").unwrap().drawings().unwrap();
+        assert_eq!(read.drawings[0].strokes, [stroke]);
+    }
+}

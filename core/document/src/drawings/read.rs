@@ -1,0 +1,243 @@
+//! Reads drawings, pairs and pegs of JSON values.
+//!
+//! What is wrong is noted, and reading goes on with the default in its place: indices stay what they are, and all that
+//! is wrong is found at once. What depends on a field that could not be read is not complained of again.
+
+use super::super::Document;
+use super::super::fields::{array, count, described, flag, frame, given, number, object, point, wrong};
+use super::{
+    Drawing, Drawings, DrawingsError, DrawnPair, DrawnPeg, DrawnPegKey, DrawnStroke, WrittenTiming, drawing_place,
+    pair_place, peg_key_place, peg_place,
+};
+use rototoon_base::scene::FrameNumber;
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+
+/// A movement function or chart of a JSON value; `place` names it in errors.
+pub fn read_timing(value: &Value, place: &str) -> Result<WrittenTiming, DrawingsError> {
+    timing(Some(value), place)
+}
+
+/// Pegs of JSON values.
+pub fn read_pegs(values: &[Value]) -> Result<Vec<DrawnPeg>, DrawingsError> {
+    let mut reader = Reader::default();
+    let pegs = reader.pegs(values);
+    reader.problems.into_iter().next().map_or(Ok(pegs), Err)
+}
+
+/// What is wrong so far.
+#[derive(Default)]
+pub(super) struct Reader {
+    problems: Vec<DrawingsError>,
+}
+
+/// A drawing as far as it could be read.
+struct Read {
+    drawing: Drawing,
+    /// The frame, where it could be read.
+    frame: Option<FrameNumber>,
+    /// Whether its strokes could be counted.
+    counted: bool,
+}
+
+impl Reader {
+    /// Reads all that a document holds, pegs first, since strokes name them.
+    pub fn document(mut self, document: &Document) -> (Drawings, Vec<DrawingsError>) {
+        let mut list = |name| self.noted(document.other_list(name));
+        let (pegs, drawings, pairs) = (list("pegs"), list("drawings"), list("pairs"));
+        // Pairs of drawings that could not be read are not looked for among the others.
+        let listed = drawings.is_some();
+        let (pegs, drawings, pairs) =
+            (pegs.unwrap_or_default(), drawings.unwrap_or_default(), pairs.unwrap_or_default());
+        let pegs = self.pegs(&pegs);
+        let names: BTreeMap<&str, usize> = pegs.iter().enumerate().map(|(k, peg)| (peg.name.as_str(), k)).collect();
+        let read: Vec<Read> = drawings.iter().enumerate().map(|(k, value)| self.drawing(value, k, &names)).collect();
+        self.order(&read);
+        let known = listed && read.iter().all(|read| read.frame.is_some());
+        let pairs = self.pairs(&pairs, &read, known);
+        let drawings = read.into_iter().map(|read| read.drawing).collect();
+        (Drawings { drawings, pairs, pegs }, self.problems)
+    }
+
+    /// What was read; if that failed, nothing, and the problem is noted.
+    fn noted<T>(&mut self, read: Result<T, DrawingsError>) -> Option<T> {
+        read.map_err(|problem| self.problems.push(problem)).ok()
+    }
+
+    fn drawing(&mut self, value: &Value, k: usize, pegs: &BTreeMap<&str, usize>) -> Read {
+        let mut place = format!("drawings[{k}]");
+        let none = Read { drawing: Drawing::default(), frame: None, counted: false };
+        let Some(fields) = self.noted(object(value, &place)) else { return none };
+        let on = self.noted(frame(fields.get("frame"), &format!("{place}.frame")));
+        if let Some(on) = on {
+            place = drawing_place(k, on);
+        }
+        let list = self.noted(array(fields.get("strokes"), &format!("{place}.strokes")));
+        let strokes = list.into_iter().flatten().enumerate();
+        let strokes = strokes.map(|(i, s)| self.noted(stroke(s, &format!("{place}.strokes[{i}]"), pegs)));
+        let drawing = Drawing {
+            frame: on.unwrap_or_default(),
+            strokes: strokes.map(Option::unwrap_or_default).collect(),
+            spacing: self.noted(given(fields, &place, "spacing", timing)).flatten().unwrap_or_default(),
+            corner: self.noted(given(fields, &place, "corner", flag)).flatten().unwrap_or_default(),
+        };
+        Read { drawing, frame: on, counted: list.is_some() }
+    }
+
+    /// Frames rise.
+    fn order(&mut self, read: &[Read]) {
+        let mut last: Option<(usize, FrameNumber)> = None;
+        for (k, frame) in read.iter().enumerate().filter_map(|(k, read)| Some((k, read.frame?))) {
+            match last {
+                Some((before, least)) if frame <= least => {
+                    let expected = format!("more than {least}, that of drawings[{before}]");
+                    let place = format!("{}.frame", drawing_place(k, frame));
+                    self.problems.push(wrong(&place, &frame.to_string(), &expected));
+                }
+                _ => last = Some((k, frame)),
+            }
+        }
+    }
+
+    /// The pairs; `known` says whether the frames of all drawings could be read.
+    fn pairs(&mut self, list: &[Value], drawings: &[Read], known: bool) -> Vec<DrawnPair> {
+        let mut seen = BTreeMap::new();
+        let mut found = Vec::new();
+        for (k, value) in list.iter().enumerate() {
+            let Some(pair) = self.noted(pair(value, k, drawings, known)).flatten() else { continue };
+            let place = pair_place(k, drawings[pair.drawing].drawing.frame);
+            let sides = [("from", 0, Some(pair.from)), ("to", 1, pair.to)];
+            for (field, side, stroke) in sides.into_iter().filter_map(|(f, side, stroke)| Some((f, side, stroke?))) {
+                let place = format!("{place}.{field}");
+                let read = &drawings[pair.drawing + side];
+                let (count, on) = (read.drawing.strokes.len(), read.drawing.frame);
+                if stroke >= count && read.counted {
+                    let expected = format!("the index of one of the {count} strokes on frame {on}");
+                    self.problems.push(wrong(&place, &stroke.to_string(), &expected));
+                } else if let Some(first) = seen.insert((pair.drawing, side, stroke), k) {
+                    let expected = format!("one that pairs[{first}] does not hold already");
+                    self.problems.push(wrong(&place, &format!("stroke {stroke} on frame {on}"), &expected));
+                }
+            }
+            found.push(pair);
+        }
+        found
+    }
+
+    fn pegs(&mut self, list: &[Value]) -> Vec<DrawnPeg> {
+        let mut names: BTreeMap<&str, usize> = BTreeMap::new();
+        for (k, value) in list.iter().enumerate() {
+            let Some(fields) = self.noted(object(value, &format!("pegs[{k}]"))) else { continue };
+            let name = fields.get("name");
+            let text = name.and_then(Value::as_str).unwrap_or_default();
+            if text.is_empty() {
+                self.problems.push(wrong(&format!("pegs[{k}].name"), &described(name), "a unique name"));
+            } else if let Some(first) = names.get(text) {
+                let expected = format!("a unique name: it is that of pegs[{first}]");
+                self.problems.push(wrong(&format!("{}.name", peg_place(k, text)), &described(name), &expected));
+            } else {
+                names.insert(text, k);
+            }
+        }
+        list.iter().enumerate().map(|(k, value)| self.peg(value, k, &names)).collect()
+    }
+
+    /// The peg; if it is no object, one without a name, which has been complained of.
+    fn peg(&mut self, value: &Value, k: usize, names: &BTreeMap<&str, usize>) -> DrawnPeg {
+        let none = Map::new();
+        let fields = value.as_object().unwrap_or(&none);
+        let name = fields.get("name").and_then(Value::as_str).unwrap_or_default().to_owned();
+        let mut peg = DrawnPeg { name, ..DrawnPeg::default() };
+        if !value.is_object() {
+            return peg;
+        }
+        let place = if peg.name.is_empty() { format!("pegs[{k}]") } else { peg_place(k, &peg.name) };
+        let parent = |value: Option<&Value>, place: &str| named(value, place, names);
+        peg.parent = self.noted(given(fields, &place, "parent", parent)).flatten();
+        peg.pivot = self.noted(point(fields.get("pivot"), &format!("{place}.pivot"))).unwrap_or_default();
+        let keys = self.noted(array(fields.get("keys"), &format!("{place}.keys")));
+        let keys = keys.into_iter().flatten().enumerate();
+        peg.keys = keys.filter_map(|(j, value)| self.noted(peg_key(value, &place, j))).collect();
+        peg
+    }
+}
+
+fn stroke(value: &Value, place: &str, pegs: &BTreeMap<&str, usize>) -> Result<DrawnStroke, DrawingsError> {
+    let fields = object(value, place)?;
+    let list = array(fields.get("points"), &format!("{place}.points"))?;
+    let points = list.iter().enumerate().map(|(i, p)| point(Some(p), &format!("{place}.points[{i}]")));
+    let colour = |value: Option<&Value>, place: &str| {
+        let channels = value.and_then(Value::as_array).filter(|list| list.len() == 3);
+        let channel = |c: usize| channels?[c].as_f64().filter(|v| (0.0..=1.0).contains(v)).map(|v| v as f32);
+        let all = || Some([channel(0)?, channel(1)?, channel(2)?]);
+        all().ok_or_else(|| wrong(place, &described(value), "three numbers from 0 to 1"))
+    };
+    let peg = |value: Option<&Value>, place: &str| named(value, place, pegs);
+    Ok(DrawnStroke {
+        points: points.collect::<Result<_, _>>()?,
+        closed: flag(fields.get("closed"), &format!("{place}.closed"))?,
+        colour: given(fields, place, "colour", colour)?,
+        material: given(fields, place, "material", count)?,
+        layer: given(fields, place, "layer", count)?,
+        peg: given(fields, place, "peg", peg)?,
+    })
+}
+
+fn named(value: Option<&Value>, place: &str, pegs: &BTreeMap<&str, usize>) -> Result<usize, DrawingsError> {
+    let found = value.and_then(Value::as_str).and_then(|name| pegs.get(name));
+    found.copied().ok_or_else(|| wrong(place, &described(value), "the name of a peg"))
+}
+
+/// The pair, if its drawing could be read.
+fn pair(value: &Value, k: usize, drawings: &[Read], known: bool) -> Result<Option<DrawnPair>, DrawingsError> {
+    let place = format!("pairs[{k}]");
+    let fields = object(value, &place)?;
+    let at = format!("{place}.frame");
+    let on = frame(fields.get("frame"), &at)?;
+    let drawing = drawings.iter().position(|read| read.frame == Some(on)).filter(|&k| k + 1 < drawings.len());
+    let Some(drawing) = drawing else {
+        let missing = || wrong(&at, &on.to_string(), "the frame of a drawing that has a next one");
+        return if known { Err(missing()) } else { Ok(None) };
+    };
+    let place = pair_place(k, on);
+    let to = match fields.get("to") {
+        Some(Value::Null) => None,
+        value => Some(count(value, &format!("{place}.to"))?),
+    };
+    Ok(Some(DrawnPair { drawing, from: count(fields.get("from"), &format!("{place}.from"))?, to }))
+}
+
+fn peg_key(value: &Value, peg: &str, k: usize) -> Result<DrawnPegKey, DrawingsError> {
+    let place = format!("{peg}.keys[{k}]");
+    let fields = object(value, &place)?;
+    let on = frame(fields.get("frame"), &format!("{place}.frame"))?;
+    let place = peg_key_place(peg, k, on);
+    Ok(DrawnPegKey {
+        frame: on,
+        shift: given(fields, &place, "shift", point)?.unwrap_or_default(),
+        turn: given(fields, &place, "turn", number)?.unwrap_or(0.0),
+        scale: given(fields, &place, "scale", number)?.unwrap_or(1.0),
+        timing: given(fields, &place, "timing", timing)?.unwrap_or_default(),
+    })
+}
+
+fn timing(value: Option<&Value>, place: &str) -> Result<WrittenTiming, DrawingsError> {
+    match value {
+        Some(Value::String(name)) if name == "smooth" => Ok(WrittenTiming::Smooth),
+        Some(Value::String(name)) => Ok(WrittenTiming::Named(name.clone())),
+        Some(Value::Array(list)) => {
+            let share = |(k, v): (usize, &Value)| number(Some(v), &format!("{place}[{k}]"));
+            list.iter().enumerate().map(share).collect::<Result<_, _>>().map(WrittenTiming::Chart)
+        }
+        Some(Value::Object(fields)) if fields.contains_key("bounce") => {
+            count(fields.get("bounce"), &format!("{place}.bounce")).map(WrittenTiming::Bounce)
+        }
+        Some(Value::Object(fields)) => {
+            let place = format!("{place}.curve");
+            let list = array(fields.get("curve"), &place)?;
+            let pair = |(k, v): (usize, &Value)| point(Some(v), &format!("{place}[{k}]")).map(|p| (p.x, p.y));
+            list.iter().enumerate().map(pair).collect::<Result<_, _>>().map(WrittenTiming::Curve)
+        }
+        other => Err(wrong(place, &described(other), "a movement function or a spacing chart")),
+    }
+}

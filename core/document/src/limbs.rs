@@ -1,0 +1,295 @@
+//! Limbs on a document's contours, the frames with swapped sides, and marks "in front" and "behind".
+//!
+//! A document may hold, beside what it holds already:
+//!
+//! ```json
+//! "limbs": [{"from": "r_shoulder", "to": "r_elbow",
+//!     "start": {"points": [{"part": "near arm", "at": 0}, {"part": "near arm", "at": 10}], "share": 0.5},
+//!     "end": {"points": [{"part": "near arm", "drawn": {"0": [x, y], "23": [x, y]}}, {"part": "near arm", "at": 7.5}]},
+//!     "carries": ["near arm", {"part": "near mitten", "turn": 0.5}], "bends": {"0": [x, y]}, "rigidity": 1}, "…"],
+//! "limb_swaps": [[14, 23]],
+//! "depth_marks": [{"front": "near arm", "behind": "coat", "first": 0, "last": 9}, "…"]
+//! ```
+//!
+//! - `from` and `to`: key points by name ([`rototoon_base::scene::skeleton::NAMES`]). Each end lies between two calibration points on
+//!   contours, `share` of the way from the first to the second (½ where it is left out).
+//! - `at`: a place between control points, 7.5 halfway from point 7 to point 8. `drawn`: points near the contour by frame, bound
+//!   to its nearest place there, sliding along it between these frames.
+//! - `carries`: the parts that follow the limb when the drawing is reshaped; where it is left out, those that its calibration
+//!   points lie on. `turn` says how much of the limb's turn a part takes that hangs on the limb's end, 0 to 1.
+//! - `bends`: control points of the limb's Bézier spline, in pixels, by frame. `rigidity`: how stiff it is beside other limbs.
+//! - `limb_swaps`: from a frame to a frame (both included) the contours show the other side: left and right change places.
+//! - `depth_marks`: one part in front of another, on all frames where `first` and `last` are left out.
+
+use super::Document;
+use super::drawings::lines;
+use super::fields::{FieldError, array, described, frame, given, number, object, point, wrong};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::FrameNumber;
+use rototoon_base::scene::limbs::{Binding, Calibration, Carried, DepthMark, Limb, LimbEnd, LimbSet};
+use rototoon_base::scene::skeleton::NAMES;
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+
+/// Largest rigidity: beyond it the stiffest triangle would drown the softest one's digits.
+const MOST_RIGID: f64 = 1e4;
+
+impl Document {
+    /// The limbs, swaps and marks of the document; none where it has none.
+    ///
+    /// # Errors
+    ///
+    /// The first field that is not as it must be.
+    pub fn limbs(&self) -> Result<LimbSet, FieldError> {
+        let limbs = self.other_list("limbs")?;
+        let limbs = limbs.iter().enumerate().map(|(k, value)| limb(value, &format!("limbs[{k}]")));
+        let swaps = self.other_list("limb_swaps")?;
+        let swaps = swaps.iter().enumerate().map(|(k, value)| swap(value, &format!("limb_swaps[{k}]")));
+        let marks = self.other_list("depth_marks")?;
+        let marks = marks.iter().enumerate().map(|(k, value)| self.mark(value, &format!("depth_marks[{k}]")));
+        Ok(LimbSet {
+            limbs: limbs.collect::<Result<_, _>>()?,
+            swaps: swaps.collect::<Result<_, _>>()?,
+            marks: marks.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Puts limbs, swaps and marks into the document, in place of those that it had.
+    pub fn set_limbs(&mut self, set: &LimbSet) {
+        self.set_other_field("limbs", lines(set.limbs.iter().map(written)));
+        self.set_other_field("limb_swaps", lines(set.swaps.iter().map(|(first, last)| json!([first, last]))));
+        let mark = |m: &DepthMark| {
+            let mut fields = Map::from_iter([("front".into(), json!(m.front)), ("behind".into(), json!(m.behind))]);
+            let ends = [("first", m.first, FrameNumber::MIN), ("last", m.last, FrameNumber::MAX)];
+            let given = ends.into_iter().filter(|(_, frame, open)| frame != open);
+            fields.extend(given.map(|(name, frame, _)| (name.to_owned(), json!(frame))));
+            Value::Object(fields)
+        };
+        self.set_other_field("depth_marks", lines(set.marks.iter().map(mark)));
+    }
+
+    fn mark(&self, value: &Value, place: &str) -> Result<DepthMark, FieldError> {
+        let fields = object(value, place)?;
+        let part = |name: &str| {
+            let found = fields.get(name);
+            let known = found.and_then(Value::as_str).filter(|n| self.scene.parts.iter().any(|part| part.name == *n));
+            known
+                .map(str::to_owned)
+                .ok_or_else(|| wrong(&format!("{place}.{name}"), &described(found), "the name of a part"))
+        };
+        Ok(DepthMark {
+            front: part("front")?,
+            behind: part("behind")?,
+            first: given(fields, place, "first", frame)?.unwrap_or(FrameNumber::MIN),
+            last: given(fields, place, "last", frame)?.unwrap_or(FrameNumber::MAX),
+        })
+    }
+}
+
+fn limb(value: &Value, place: &str) -> Result<Limb, FieldError> {
+    let fields = object(value, place)?;
+    let (from, to) = (key_point(fields, place, "from")?, key_point(fields, place, "to")?);
+    if from == to {
+        return Err(wrong(&format!("{place}.to"), &format!("{:?} again", NAMES[to]), "another key point than from"));
+    }
+    // From here on the place names the limb by its key points too.
+    let place = format!("{place} ({} to {})", NAMES[from], NAMES[to]);
+    let (start, end) = (end(fields, &place, "start")?, end(fields, &place, "end")?);
+    let carries = match fields.get("carries") {
+        None => carried_by_default(&start, &end),
+        given => {
+            let list = array(given, &format!("{place}.carries"))?;
+            list.iter()
+                .enumerate()
+                .map(|(k, v)| carried(v, &format!("{place}.carries[{k}]")))
+                .collect::<Result<_, _>>()?
+        }
+    };
+    let rigidity = given(fields, &place, "rigidity", number)?.unwrap_or(1.0);
+    if !(1.0 / MOST_RIGID..=MOST_RIGID).contains(&rigidity) {
+        return Err(wrong(&format!("{place}.rigidity"), &rigidity.to_string(), "a number from 0.0001 to 10000"));
+    }
+    let bends = given(fields, &place, "bends", points_by_frame)?.unwrap_or_default();
+    Ok(Limb { from, to, start, end, carries, bends, rigidity })
+}
+
+fn key_point(fields: &Map<String, Value>, place: &str, name: &str) -> Result<usize, FieldError> {
+    let found = fields.get(name);
+    let index = found.and_then(Value::as_str).and_then(|text| NAMES.iter().position(|known| *known == text));
+    index.ok_or_else(|| {
+        wrong(&format!("{place}.{name}"), &described(found), &format!("a key point: one of {}", NAMES.join(", ")))
+    })
+}
+
+fn end(fields: &Map<String, Value>, place: &str, name: &str) -> Result<LimbEnd, FieldError> {
+    let place = format!("{place}.{name}");
+    let fields = object(fields.get(name).unwrap_or(&Value::Null), &place)?;
+    let list = array(fields.get("points"), &format!("{place}.points"))?;
+    let [first, second] = list.as_slice() else {
+        return Err(wrong(&format!("{place}.points"), &format!("a list of {}", list.len()), "two calibration points"));
+    };
+    let points =
+        [calibration(first, &format!("{place}.points[0]"))?, calibration(second, &format!("{place}.points[1]"))?];
+    let share = given(fields, &place, "share", number)?.unwrap_or(0.5);
+    if (-1.0..=2.0).contains(&share) {
+        Ok(LimbEnd { points, share })
+    } else {
+        Err(wrong(&format!("{place}.share"), &share.to_string(), "a number from -1 to 2"))
+    }
+}
+
+fn calibration(value: &Value, place: &str) -> Result<Calibration, FieldError> {
+    let fields = object(value, place)?;
+    let part = name_of(fields.get("part"), &format!("{place}.part"))?;
+    let at = given(fields, place, "at", number)?;
+    let drawn = given(fields, place, "drawn", points_by_frame)?;
+    let binding = match (at, drawn) {
+        (Some(at), None) => Binding::Place(at),
+        (None, Some(points)) => Binding::Drawn(points),
+        _ => return Err(wrong(place, &described(Some(value)), "either at or drawn")),
+    };
+    Ok(Calibration { part, binding })
+}
+
+fn name_of(value: Option<&Value>, place: &str) -> Result<String, FieldError> {
+    let name = value.and_then(Value::as_str).map(str::to_owned);
+    name.ok_or_else(|| wrong(place, &described(value), "the name of a part"))
+}
+
+fn points_by_frame(value: Option<&Value>, place: &str) -> Result<BTreeMap<FrameNumber, Point>, FieldError> {
+    let fields = object(value.unwrap_or(&Value::Null), place)?;
+    let entry = |(key, value): (&String, &Value)| {
+        let frame = key.parse::<FrameNumber>().ok().filter(|frame| frame.to_string() == *key);
+        let frame = frame.ok_or_else(|| wrong(place, &format!("the key {key:?}"), "a frame number such as \"11\""))?;
+        Ok((frame, point(Some(value), &format!("{place}.{key:?}"))?))
+    };
+    fields.iter().map(entry).collect()
+}
+
+fn carried(value: &Value, place: &str) -> Result<Carried, FieldError> {
+    let Some(fields) = value.as_object() else {
+        return Ok(Carried { part: name_of(Some(value), place)?, turn: 1.0 });
+    };
+    let turn = given(fields, place, "turn", number)?.unwrap_or(1.0);
+    if (0.0..=1.0).contains(&turn) {
+        Ok(Carried { part: name_of(fields.get("part"), &format!("{place}.part"))?, turn })
+    } else {
+        Err(wrong(&format!("{place}.turn"), &turn.to_string(), "a number from 0 to 1"))
+    }
+}
+
+/// The parts that the calibration points of both ends lie on, each once.
+pub fn carried_by_default(start: &LimbEnd, end: &LimbEnd) -> Vec<Carried> {
+    let mut found: Vec<Carried> = Vec::new();
+    for point in start.points.iter().chain(&end.points) {
+        if found.iter().all(|known| known.part != point.part) {
+            found.push(Carried { part: point.part.clone(), turn: 1.0 });
+        }
+    }
+    found
+}
+
+fn swap(value: &Value, place: &str) -> Result<(FrameNumber, FrameNumber), FieldError> {
+    let expected = "two frames, the first and the last";
+    let list = array(Some(value), place)?;
+    let [first, last] = list.as_slice() else { return Err(wrong(place, &described(Some(value)), expected)) };
+    let (first, last) = (frame(Some(first), place)?, frame(Some(last), place)?);
+    if first <= last { Ok((first, last)) } else { Err(wrong(place, &format!("{first} and {last}"), expected)) }
+}
+
+fn written(limb: &Limb) -> Value {
+    let by_frame = |points: &BTreeMap<FrameNumber, Point>| -> Value {
+        points.iter().map(|(frame, p)| (frame.to_string(), json!([p.x, p.y]))).collect::<Map<_, _>>().into()
+    };
+    let calibration = |point: &Calibration| match &point.binding {
+        Binding::Place(at) => json!({"part": point.part, "at": at}),
+        Binding::Drawn(points) => json!({"part": point.part, "drawn": by_frame(points)}),
+    };
+    let end = |end: &LimbEnd| json!({"points": end.points.each_ref().map(calibration), "share": end.share});
+    let carries = |c: &Carried| if c.turn == 1.0 { json!(c.part) } else { json!({"part": c.part, "turn": c.turn}) };
+    let mut fields = Map::new();
+    fields.insert("from".into(), NAMES[limb.from].into());
+    fields.insert("to".into(), NAMES[limb.to].into());
+    fields.insert("start".into(), end(&limb.start));
+    fields.insert("end".into(), end(&limb.end));
+    fields.insert("carries".into(), limb.carries.iter().map(carries).collect());
+    if !limb.bends.is_empty() {
+        fields.insert("bends".into(), by_frame(&limb.bends));
+    }
+    if limb.rigidity != 1.0 {
+        fields.insert("rigidity".into(), json!(limb.rigidity));
+    }
+    Value::Object(fields)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn document(fields: &str) -> Document {
+        let text = format!(
+            r#"{{"rototoon": 1, "footage": {{"pattern": "f_%d.png", "first": 0, "last": 9, "fps": 24, "width": 64,
+            "height": 48}}, "parts": [{{"name": "arm", "keys": {{}}}}, {{"name": "body", "keys": {{}}}}], {fields}}}"#
+        );
+        Document::parse(&text, "a.json").unwrap()
+    }
+
+    const END: &str = r#"{"points": [{"part": "arm", "at": 1}, {"part": "arm", "drawn": {"0": [1, 2]}}]}"#;
+
+    fn limb_text(more: &str) -> String {
+        format!(r#""limbs": [{{"from": "r_elbow", "to": "r_wrist", "start": {END}, "end": {END}{more}}}]"#)
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let more = r#", "carries": ["arm", {"part": "hand", "turn": 0.5}], "bends": {"3": [4, 5]}, "rigidity": 2"#;
+        let fields = format!(
+            r#"{}, "limb_swaps": [[3, 9]], "depth_marks": [{{"front": "arm", "behind": "body", "first": 2}}]"#,
+            limb_text(more)
+        );
+        let set = document(&fields).limbs().unwrap();
+        assert_eq!((set.limbs[0].from, set.limbs[0].to, set.limbs[0].rigidity), (9, 10, 2.0));
+        assert_eq!(set.limbs[0].carries[1], Carried { part: "hand".into(), turn: 0.5 });
+        assert_eq!(set.swaps, [(3, 9)]);
+        assert_eq!((set.marks[0].first, set.marks[0].last), (2, FrameNumber::MAX));
+        let mut other = document(r#""note": 1"#);
+        assert_eq!(other.limbs().unwrap(), LimbSet::default());
+        other.set_limbs(&set);
+        let again = Document::parse(&other.to_json(), "b.json").unwrap();
+        assert_eq!(again.limbs().unwrap(), set);
+        assert!(other.to_json().contains(r#""note": 1"#));
+    }
+
+    #[test]
+    fn a_limb_carries_what_it_is_drawn_on() {
+        let set = document(&limb_text("")).limbs().unwrap();
+        assert_eq!(set.limbs[0].carries, [Carried { part: "arm".into(), turn: 1.0 }]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_place() {
+        let said = |fields: &str| document(fields).limbs().unwrap_err().to_string();
+        assert!(
+            said(r#""limbs": [{"from": "knee"}]"#).starts_with("limbs[0].from: found \"knee\", expected a key point")
+        );
+        assert!(said(r#""limbs": [{"from": "neck", "to": "neck"}]"#).contains("found \"neck\" again"));
+        let one = r#""limbs": [{"from": "neck", "to": "head", "start": {"points": [{"part": "arm"}]}}]"#;
+        assert!(
+            said(one).starts_with("limbs[0] (neck to head).start.points: found a list of 1, expected two"),
+            "{}",
+            said(one)
+        );
+        assert!(said(&limb_text(r#", "rigidity": 0"#)).contains(".rigidity: found 0, expected"));
+        assert!(
+            said(&limb_text(r#", "bends": {"x": [1, 2]}"#)).contains("found the key \"x\", expected a frame number")
+        );
+        assert_eq!(
+            said(r#""limb_swaps": [[5, 2]]"#),
+            "limb_swaps[0]: found 5 and 2, expected two frames, the first and the last"
+        );
+        assert_eq!(
+            said(r#""depth_marks": [{"front": "arm", "behind": "leg"}]"#),
+            "depth_marks[0].behind: found \"leg\", expected the name of a part"
+        );
+    }
+}

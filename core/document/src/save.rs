@@ -1,0 +1,214 @@
+//! Writes documents.
+//!
+//! One line a frame, numbers as short as they can be read back exactly. What the artist made (keys, pins, centres) is
+//! written as it is; what was computed is rounded to [`DECIMALS`] decimals, a tenth of a thousandth of a pixel, except
+//! where it equals a key or a pin, so that "keys included, unchanged" holds in the file too.
+
+use super::output::{WriteError, write_whole};
+use super::problem::Problems;
+use super::schema::{FOOTAGE, Field, PART, TOP, completed};
+use super::{Document, validate};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Footage, FrameNumber, Part};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Decimals of computed coordinates and confidences.
+pub const DECIMALS: i32 = 4;
+
+/// Why a document could not be saved. The file is as it was before.
+#[derive(Debug, thiserror::Error)]
+pub enum SaveError {
+    /// The scene is not valid; a document of it could not be read again.
+    #[error("{path}: not saved, since the document is not valid: {problems}")]
+    Invalid {
+        /// The file.
+        path: String,
+        /// What is wrong.
+        problems: Problems,
+    },
+    /// The file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+impl Document {
+    /// Writes the document; the file appears whole or stays as it was.
+    pub fn save(&self, path: &Path) -> Result<(), SaveError> {
+        let problems = validate::problems(&self.scene);
+        if problems.error_count() > 0 {
+            return Err(SaveError::Invalid { path: path.display().to_string(), problems });
+        }
+        Ok(write_whole(path, self.to_json().as_bytes())?)
+    }
+
+    /// The document as text. Of a scene that is not valid ([`Document::problems`]) it may be unreadable.
+    pub fn to_json(&self) -> String {
+        let mut out = String::from("{");
+        let fields = completed(&self.layout.top, &TOP);
+        for (i, field) in fields.iter().enumerate() {
+            begin(&mut out, i, "\n  ", field.name());
+            match field.as_ref() {
+                Field::Unknown { json, .. } => out += json,
+                Field::Known("rototoon") => out += &self.layout.version,
+                Field::Known("footage") => self.footage(&mut out),
+                Field::Known(_) => self.parts(&mut out),
+            }
+        }
+        out + "\n}\n"
+    }
+
+    fn footage(&self, out: &mut String) {
+        let Footage { pattern, first, last, fps, width, height } = &self.scene.footage;
+        *out += "{";
+        for (i, field) in completed(&self.layout.footage, &FOOTAGE).iter().enumerate() {
+            begin(out, i, if i > 0 { " " } else { "" }, field.name());
+            match field.as_ref() {
+                Field::Unknown { json, .. } => *out += json,
+                Field::Known("pattern") => text(out, pattern),
+                Field::Known("first") => number(out, f64::from(*first)),
+                Field::Known("last") => number(out, f64::from(*last)),
+                Field::Known("fps") => number(out, *fps),
+                Field::Known("width") => number(out, *width as f64),
+                Field::Known(_) => number(out, *height as f64),
+            }
+        }
+        *out += "}";
+    }
+
+    fn parts(&self, out: &mut String) {
+        list(out, &self.scene.parts, "\n    ", "\n  ", |out, part| {
+            let own = self.layout.parts.get(&part.name).map_or(&[][..], Vec::as_slice);
+            *out += "{";
+            let mut count = 0;
+            for field in completed(own, &PART) {
+                if own.iter().any(|known| known.name() == field.name()) || !is_default(part, field.name()) {
+                    begin(out, count, "\n      ", field.name());
+                    part_field(out, part, &field);
+                    count += 1;
+                }
+            }
+            *out += "\n    }";
+        });
+    }
+}
+
+/// Whether a field of a part says nothing and may be left out.
+fn is_default(part: &Part, name: &str) -> bool {
+    match name {
+        "pins" => part.pins.is_empty(),
+        "centers" => part.centers.is_empty(),
+        "tracks" => part.tracks.is_empty(),
+        "confidence" => part.confidence.is_empty(),
+        "curves" => part.curves.is_empty(),
+        "wants_key" => part.wants_key.is_empty(),
+        "depths" => part.depths.is_empty(),
+        _ => false,
+    }
+}
+
+fn part_field(out: &mut String, part: &Part, field: &Field) {
+    match field {
+        Field::Unknown { json, .. } => *out += json,
+        Field::Known("name") => text(out, &part.name),
+        Field::Known("closed") => *out += if part.closed { "true" } else { "false" },
+        Field::Known("depth") => number(out, part.depth),
+        Field::Known("keys") => {
+            frames(out, &part.keys, |out, _, points| list(out, points, "", "", |out, p| pair(out, *p)))
+        }
+        Field::Known("pins") => frames(out, &part.pins, |out, _, pins| {
+            *out += "{";
+            for (i, (index, p)) in pins.iter().enumerate() {
+                begin(out, i, if i > 0 { " " } else { "" }, &index.to_string());
+                pair(out, *p);
+            }
+            *out += "}";
+        }),
+        Field::Known("centers") => frames(out, &part.centers, |out, _, p| pair(out, *p)),
+        Field::Known("tracks") => frames(out, &part.tracks, |out, frame, points| track(out, part, frame, points)),
+        Field::Known("confidence") => {
+            frames(out, &part.confidence, |out, _, values| list(out, values, "", "", |out, v| number(out, rounded(*v))))
+        }
+        Field::Known("wants_key") => {
+            list(out, &part.wants_key, "", "", |out, frame| number(out, f64::from(*frame)));
+        }
+        Field::Known("depths") => frames(out, &part.depths, |out, _, depth| number(out, *depth)),
+        Field::Known(_) => frames(out, &part.curves, |out, _, paths| {
+            list(out, paths, "", "", |out, path| list(out, path, "", "", |out, p| pair(out, rounded_point(*p))))
+        }),
+    }
+}
+
+fn track(out: &mut String, part: &Part, frame: FrameNumber, points: &[Point]) {
+    let (key, pins) = (part.keys.get(&frame), part.pins.get(&frame));
+    let indexed: Vec<_> = points.iter().enumerate().collect();
+    list(out, &indexed, "", "", |out, &(index, &p)| {
+        let made = [key.and_then(|key| key.get(index)), pins.and_then(|pins| pins.get(&index))];
+        pair(out, if made.contains(&Some(&p)) { p } else { rounded_point(p) });
+    });
+}
+
+fn rounded(value: f64) -> f64 {
+    let scale = 10f64.powi(DECIMALS);
+    (value * scale).round() / scale
+}
+
+fn rounded_point(p: Point) -> Point {
+    Point::new(rounded(p.x), rounded(p.y))
+}
+
+/// Separator, line break and name of the field `index` of an object.
+fn begin(out: &mut String, index: usize, space: &str, name: &str) {
+    if index > 0 {
+        *out += ",";
+    }
+    *out += space;
+    text(out, name);
+    *out += ": ";
+}
+
+fn frames<T>(out: &mut String, map: &BTreeMap<FrameNumber, T>, mut write: impl FnMut(&mut String, FrameNumber, &T)) {
+    *out += "{";
+    for (i, (frame, value)) in map.iter().enumerate() {
+        begin(out, i, "\n        ", &frame.to_string());
+        write(out, *frame, value);
+    }
+    *out += if map.is_empty() { "}" } else { "\n      }" };
+}
+
+fn list<T>(out: &mut String, items: &[T], space: &str, end: &str, mut write: impl FnMut(&mut String, &T)) {
+    *out += "[";
+    for (i, item) in items.iter().enumerate() {
+        if i > 0 {
+            *out += if space.is_empty() { ", " } else { "," };
+        }
+        *out += space;
+        write(out, item);
+    }
+    *out += if items.is_empty() { "]" } else { end };
+    if !items.is_empty() {
+        *out += "]";
+    }
+}
+
+fn pair(out: &mut String, p: Point) {
+    *out += "[";
+    number(out, p.x);
+    *out += ", ";
+    number(out, p.y);
+    *out += "]";
+}
+
+/// The shortest text that reads back as the same number.
+fn number(out: &mut String, value: f64) {
+    if value.is_finite() {
+        let _ = write!(out, "{value}"); // writing to a String cannot fail
+    } else {
+        *out += "null";
+    }
+}
+
+fn text(out: &mut String, value: &str) {
+    *out += &serde_json::Value::from(value).to_string();
+}

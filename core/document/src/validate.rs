@@ -1,0 +1,292 @@
+//! What a document must hold beyond being well-formed.
+//!
+//! Errors make a document unusable. Warnings name what has no effect (corrections outside the keys) or can hardly be
+//! meant (contours without area); the data stay in the document, since the artist made them.
+
+use super::problem::Problems;
+use super::schema::{MAX_COORDINATE, MAX_FRAME_NUMBER, MAX_FRAMES, MAX_SIZE};
+use super::shape::part_place;
+use rototoon_base::geometry::{Point, polygon};
+use rototoon_base::scene::{Footage, FrameNumber, FramePattern, Part, Scene};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Everything that is wrong with a scene.
+pub fn problems(scene: &Scene) -> Problems {
+    let footage = &scene.footage;
+    let raw = RawFootage {
+        pattern: Some(footage.pattern.clone()),
+        first: Some(footage.first.into()),
+        last: Some(footage.last.into()),
+        fps: Some(footage.fps),
+        width: i64::try_from(footage.width).ok(),
+        height: i64::try_from(footage.height).ok(),
+    };
+    let mut problems = Problems::default();
+    raw.checked(|field, message| problems.error(format!("footage.{field}"), message));
+    problems.append(parts_problems(&scene.parts, Some(footage)));
+    problems
+}
+
+/// A footage before its fields are known to fit.
+pub(super) struct RawFootage {
+    pub pattern: Option<String>,
+    pub first: Option<i64>,
+    pub last: Option<i64>,
+    pub fps: Option<f64>,
+    pub width: Option<i64>,
+    pub height: Option<i64>,
+}
+
+impl RawFootage {
+    /// The footage where all fields fit; calls `error(field, message)` for each that does not.
+    pub fn checked(self, mut error: impl FnMut(&'static str, String)) -> Option<Footage> {
+        let pattern = self.pattern.filter(|pattern| {
+            let parsed = FramePattern::parse(pattern);
+            if let Err(problem) = &parsed {
+                error("pattern", problem.to_string());
+            }
+            parsed.is_ok()
+        });
+        let mut whole = |field, value: Option<i64>, low: i64, high: i64| {
+            value.filter(|value| {
+                let fits = (low..=high).contains(value);
+                if !fits {
+                    error(field, format!("found {value}, expected {low} to {high}"));
+                }
+                fits
+            })
+        };
+        let first = whole("first", self.first, -MAX_FRAME_NUMBER, MAX_FRAME_NUMBER);
+        let last = whole("last", self.last, -MAX_FRAME_NUMBER, MAX_FRAME_NUMBER);
+        let width = whole("width", self.width, 1, MAX_SIZE as i64);
+        let height = whole("height", self.height, 1, MAX_SIZE as i64);
+        let fps = self.fps.filter(|fps| {
+            let fits = fps.is_finite() && *fps > 0.0;
+            if !fits {
+                error("fps", format!("found {fps}, expected more than 0"));
+            }
+            fits
+        });
+        if let (Some(first), Some(last)) = (first, last) {
+            if last < first {
+                error("last", format!("found {last}, expected at least the first frame, {first}"));
+                return None;
+            }
+            if last - first >= MAX_FRAMES {
+                error("last", format!("found {} frames, expected at most {MAX_FRAMES}", last - first + 1));
+                return None;
+            }
+        }
+        Some(Footage {
+            pattern: pattern?,
+            first: FrameNumber::try_from(first?).ok()?,
+            last: FrameNumber::try_from(last?).ok()?,
+            fps: fps?,
+            width: usize::try_from(width?).ok()?,
+            height: usize::try_from(height?).ok()?,
+        })
+    }
+}
+
+/// Everything that is wrong with the parts of a document.
+pub(super) fn parts_problems(parts: &[Part], footage: Option<&Footage>) -> Problems {
+    let mut problems = Problems::default();
+    if parts.is_empty() {
+        problems.warning("parts", "there is no part, so there is nothing to track");
+    }
+    let mut first_of = BTreeMap::new();
+    for (index, part) in parts.iter().enumerate() {
+        let place = part_place(index, Some(&part.name));
+        if part.name.is_empty() {
+            problems.error(format!("{place}.name"), "found no name, expected a unique one");
+        } else if let Some(first) = first_of.get(&part.name) {
+            problems.error(format!("{place}.name"), format!("found the name of parts[{first}], expected a unique one"));
+        } else {
+            first_of.insert(&part.name, index);
+        }
+        PartCheck { part, place, footage, problems: &mut problems }.run();
+    }
+    problems
+}
+
+/// One part under inspection.
+struct PartCheck<'a> {
+    part: &'a Part,
+    place: String,
+    footage: Option<&'a Footage>,
+    problems: &'a mut Problems,
+}
+
+impl PartCheck<'_> {
+    fn run(mut self) {
+        if !self.part.depth.is_finite() {
+            self.error("depth", format!("found {}, expected a finite number", self.part.depth));
+        }
+        self.coordinates();
+        self.keys();
+        self.pins();
+        self.centers();
+        self.results();
+    }
+
+    fn error(&mut self, below: impl AsRef<str>, message: impl Into<String>) {
+        self.problems.error(format!("{}.{}", self.place, below.as_ref()), message);
+    }
+
+    fn warning(&mut self, below: impl AsRef<str>, message: impl Into<String>) {
+        self.problems.warning(format!("{}.{}", self.place, below.as_ref()), message);
+    }
+
+    fn coordinates(&mut self) {
+        let part = self.part;
+        for (field, frames) in [("keys", &part.keys), ("tracks", &part.tracks)] {
+            for (frame, points) in frames {
+                self.points(points, |index| format!("{field}.\"{frame}\"[{index}]"));
+            }
+        }
+        for (frame, pins) in &part.pins {
+            for (index, &point) in pins {
+                self.points(&[point], |_| format!("pins.\"{frame}\".\"{index}\""));
+            }
+        }
+        for (frame, &center) in &part.centers {
+            self.points(&[center], |_| format!("centers.\"{frame}\""));
+        }
+        for (frame, paths) in &part.curves {
+            for (segment, path) in paths.iter().enumerate() {
+                self.points(path, |index| format!("curves.\"{frame}\"[{segment}][{index}]"));
+            }
+        }
+    }
+
+    fn points(&mut self, points: &[Point], place: impl Fn(usize) -> String) {
+        for (index, point) in points.iter().enumerate() {
+            if !(point.is_finite() && point.abs().max_element() <= MAX_COORDINATE) {
+                let found = format!("found [{:?}, {:?}]", point.x, point.y);
+                self.error(
+                    place(index),
+                    format!("{found}, expected coordinates from -{MAX_COORDINATE} to {MAX_COORDINATE}"),
+                );
+            }
+        }
+    }
+
+    fn keys(&mut self) {
+        let part = self.part;
+        if part.keys.is_empty() {
+            self.warning("keys", "there is no key, so the part is not tracked");
+        }
+        let Some((first, points)) = part.keys.first_key_value() else { return };
+        match points.len() {
+            0 => self.warning("keys", "the part has no points, so there is nothing to track"),
+            n @ 1..=2 if part.closed => {
+                self.warning("keys", format!("the part is closed but has {n} points, which enclose no area"))
+            }
+            1 => self.warning("keys", "the part has one point, which makes no contour"),
+            _ => {}
+        }
+        for (frame, key) in &part.keys {
+            let place = format!("keys.\"{frame}\"");
+            if key.len() != points.len() {
+                let expected = format!("expected {} as on the part's first key, frame {first}", points.len());
+                self.error(&place, format!("found {} points, {expected}", key.len()));
+            }
+            self.frame_inside(&place, *frame);
+            self.contour(&place, key);
+        }
+    }
+
+    fn frame_inside(&mut self, place: &str, frame: FrameNumber) {
+        if let Some(Footage { first, last, .. }) = self.footage
+            && !(*first..=*last).contains(&frame)
+        {
+            self.error(place, format!("found frame {frame}, expected one of the footage, {first} to {last}"));
+        }
+    }
+
+    fn contour(&mut self, place: &str, points: &[Point]) {
+        const LEAST_AREA: f64 = 1e-6;
+        if self.part.closed && points.len() > 2 && polygon::signed_area(points).abs() < LEAST_AREA {
+            self.warning(place, "the contour encloses no area");
+        }
+        let (Some(footage), Some((low, high))) = (self.footage, polygon::bounds(points)) else { return };
+        let size = Point::new(footage.width as f64, footage.height as f64);
+        if low.cmpgt(size).any() || high.cmplt(Point::ZERO).any() {
+            let picture = format!("{}x{}", footage.width, footage.height);
+            self.warning(place, format!("the contour lies wholly outside the picture of {picture} pixels"));
+        }
+    }
+
+    fn pins(&mut self) {
+        let part = self.part;
+        let count = part.point_count();
+        for (frame, pins) in &part.pins {
+            let place = format!("pins.\"{frame}\"");
+            for index in pins.keys().filter(|index| !part.keys.is_empty() && **index >= count) {
+                self.error(
+                    format!("{place}.\"{index}\""),
+                    format!("found point {index}, expected one of 0 to {}", count.saturating_sub(1)),
+                );
+            }
+            self.correction(&place, *frame);
+        }
+    }
+
+    fn centers(&mut self) {
+        let part = self.part;
+        for frame in part.centers.keys() {
+            self.correction(&format!("centers.\"{frame}\""), *frame);
+        }
+    }
+
+    fn correction(&mut self, place: &str, frame: FrameNumber) {
+        if !acts(self.part, frame) {
+            let why = if self.part.keys.contains_key(&frame) { "on a key" } else { "not between two keys" };
+            self.warning(place, format!("frame {frame} is {why}, so the correction is kept but has no effect"));
+        }
+    }
+
+    fn results(&mut self) {
+        let part = self.part;
+        let count = part.point_count();
+        let stale: BTreeSet<_> =
+            part.tracks.iter().filter(|(_, points)| points.len() != count).map(|(f, _)| f).collect();
+        if let Some(frame) = stale.first() {
+            let found = part.tracks[frame].len();
+            self.warning(
+                format!("tracks.\"{frame}\""),
+                format!("found {found} points, but the keys have {count}: track again"),
+            );
+        }
+        let uneven =
+            part.confidence.iter().find(|(f, values)| part.tracks.get(f).is_none_or(|t| t.len() != values.len()));
+        if let Some((frame, _)) = uneven {
+            self.warning(
+                format!("confidence.\"{frame}\""),
+                "the number of values is not that of the tracked points: track again",
+            );
+        }
+        for (frame, values) in &part.confidence {
+            if let Some(index) = values.iter().position(|value| !(0.0..=1.0).contains(value)) {
+                let found = values[index];
+                self.warning(format!("confidence.\"{frame}\"[{index}]"), format!("found {found}, expected 0 to 1"));
+            }
+        }
+        let segments = part.segment_count();
+        if let Some((frame, paths)) = part.curves.iter().find(|(_, paths)| paths.len() != segments) {
+            let found = paths.len();
+            self.warning(
+                format!("curves.\"{frame}\""),
+                format!("found {found} paths, but there are {segments} segments: snap again"),
+            );
+        }
+    }
+}
+
+/// Whether a correction on this frame has an effect: it lies between two keys, or beside the only one.
+pub fn acts(part: &Part, frame: FrameNumber) -> bool {
+    let (Some((&first, _)), Some((&last, _))) = (part.keys.first_key_value(), part.keys.last_key_value()) else {
+        return false;
+    };
+    (first == last || first < frame && frame < last) && !part.keys.contains_key(&frame)
+}

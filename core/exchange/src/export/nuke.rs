@@ -1,0 +1,138 @@
+//! Shapes for Nuke: a RotoPaint node as text (`.nk`), to open as a script or to paste into one.
+//!
+//! Each part is a Bézier shape in the root layer, the nearest first, as the node lists them. A point is three pairs of
+//! numbers: the handle before it, itself, the handle after it, handles relative to their point. They are zero, so that the
+//! sides are straight as the part's are. Where a part has several frames each number is a curve of keys `{{frame value} …}`.
+//! Coordinates are pixels, x right, y up, origin at the lower left; the lifetime of a shape ends with its frames.
+//!
+//! Foundry: Nuke Developer Kit, «Roto serialisation format» (version 1.2 of the curves, since Nuke 7). Numbers are written as
+//! `x` and the eight hexadecimal digits of a 32-bit float, as Nuke writes them.
+
+use super::outlines::Outlines;
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{FrameNumber, Scene, palette};
+use std::fmt::Write;
+
+/// Handles are relative to their point.
+const RELATIVE_HANDLES: u32 = 8192;
+/// The last point does not join the first.
+const OPEN: u32 = 32;
+/// The lifetime of a shape is a range of frames.
+const FRAME_RANGE: f64 = 4.0;
+
+/// The scene's parts as a RotoPaint node, points of snapped paths about `spacing` pixels apart.
+pub fn nuke(scene: &Scene, spacing: f64) -> String {
+    let (width, height) = (scene.footage.width, scene.footage.height);
+    let mut out = String::from("set cut_paste_input [stack 0]\nversion 7.0 v1\nRotoPaint {\n inputs 0\n");
+    let _ = writeln!(out, " format \"{width} {height} 0 0 {width} {height} 1 \"");
+    let (x, y) = (number(0.5 * width as f64), number(0.5 * height as f64));
+    let version = number(1.2);
+    let _ = write!(
+        out,
+        " curves {{{{{{v {version}}}\n  {{f 0}}\n  {{n\n   {{layer Root\n    {{f 0}}\n    {{t {x} {y}}}\n    {{a}}"
+    );
+    for index in super::nearest_first(scene) {
+        shape(&mut out, scene, index, spacing);
+    }
+    out + "}}}}\n name Rototoon\n}\n"
+}
+
+fn shape(out: &mut String, scene: &Scene, index: usize, spacing: f64) {
+    let part = &scene.parts[index];
+    let keys = Outlines::new(part, spacing).within(scene.footage.first, scene.footage.last);
+    let (Some((first, start)), Some((last, _))) = (keys.first(), keys.last()) else { return };
+    let flag = if part.closed { RELATIVE_HANDLES } else { RELATIVE_HANDLES | OPEN };
+    let _ =
+        write!(out, "\n    {{curvegroup {} 512 bezier\n     {{{{cc\n       {{f {flag}}}\n       {{p", name(&part.name));
+    let height = scene.footage.height as f64;
+    for point in 0..start.len() {
+        let channel =
+            |value: &dyn Fn(Point) -> f64| channel(keys.iter().map(|(frame, points)| (*frame, value(points[point]))));
+        let _ = write!(
+            out,
+            "\n        {{0 0}}\n        {{{} {}}}\n        {{0 0}}",
+            channel(&|p| p.x),
+            channel(&|p| height - p.y)
+        );
+    }
+    let middle = start.iter().sum::<Point>() / start.len() as f64;
+    let [r, g, b] = palette::distinct(index).map(|c| number(c.into()));
+    let _ = write!(
+        out,
+        "}}}}     idem}}\n     {{tx {} {} {}}}\n     {{a ro {r} go {g} bo {b} ao 1 ltn {} ltm {} ltt {}}}}}",
+        number((*first).into()),
+        number(middle.x),
+        number(height - middle.y),
+        number((*first).into()),
+        number((*last).into()),
+        number(FRAME_RANGE),
+    );
+}
+
+/// A number, or a curve of keys where it changes from frame to frame.
+fn channel(values: impl Iterator<Item = (FrameNumber, f64)>) -> String {
+    let keys: Vec<_> = values.map(|(frame, value)| (number(frame.into()), number(value))).collect();
+    match keys.first() {
+        Some((_, value)) if keys.iter().all(|(_, other)| other == value) => value.clone(),
+        _ => {
+            let keys: Vec<_> = keys.iter().map(|(frame, value)| format!("{{{frame} {value}}}")).collect();
+            format!("{{{}}}", keys.join(" "))
+        }
+    }
+}
+
+/// A 32-bit float as its bits.
+fn number(value: f64) -> String {
+    let bits = (value as f32).to_bits();
+    if bits == 0 { "0".to_owned() } else { format!("x{bits:x}") }
+}
+
+/// A name in quotes, without what ends or escapes them.
+fn name(name: &str) -> String {
+    let plain = |c: char| if "\"'\\{}[]$".contains(c) || c.is_control() { '_' } else { c };
+    format!("\"{}\"", name.chars().map(plain).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon_base::scene::{Footage, Part};
+    use std::collections::BTreeMap;
+
+    fn scene() -> Scene {
+        let at = |x: f64| vec![Point::new(x, 2.0), Point::new(8.0, 2.0), Point::new(8.0, 10.0)];
+        let part = |name: &str, depth, closed| Part {
+            name: name.into(),
+            closed,
+            depth,
+            keys: BTreeMap::from([(1, at(0.5)), (3, at(2.0))]),
+            ..Part::default()
+        };
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30 };
+        Scene { footage, parts: vec![part("far {arm}", 0.0, true), part("near", 2.0, false)] }
+    }
+
+    #[test]
+    fn braces_balance_and_shapes_come_nearest_first() {
+        let text = nuke(&scene(), 1.0);
+        assert_eq!(text.matches('{').count(), text.matches('}').count(), "{text}");
+        let names: Vec<_> = text.split("curvegroup ").skip(1).map(|rest| rest.split('"').nth(1).unwrap()).collect();
+        assert_eq!(names, ["near", "far _arm_"]);
+        assert!(text.contains("{f 8224}") && text.contains("{f 8192}"));
+    }
+
+    #[test]
+    fn what_moves_has_keys_and_what_rests_has_none() {
+        let text = nuke(&scene(), 1.0);
+        // Frames 1 and 3 as floats, 0.5 and 2; y is turned up: 28 and 20.
+        let moving = "{{{x3f800000 x3f000000} {x40400000 x40000000}} x41e00000}";
+        assert!(text.contains(moving), "{text}");
+        assert!(text.contains("{x41000000 x41a00000}"), "{text}");
+        assert!(text.contains("ltn x3f800000 ltm x40400000 ltt x40800000"), "{text}");
+    }
+
+    #[test]
+    fn numbers_are_the_bits_of_floats() {
+        assert_eq!([number(0.0), number(1024.0), number(-1.0)], ["0", "x44800000", "xbf800000"]);
+    }
+}

@@ -1,0 +1,62 @@
+//! A part's contour with the same number of points on every frame, as formats with animated shapes need it.
+//!
+//! A snapped path is resampled by arc length, each segment to the count that its longest path asks for. Without snapped
+//! paths the points are the control points.
+
+use rototoon_base::geometry::{Point, polyline};
+use rototoon_base::scene::{FrameNumber, Part};
+
+/// Most points that one segment is given.
+const MOST_POINTS: f64 = 2000.0;
+/// Least distance between points, in pixels.
+const LEAST_SPACING: f64 = 0.25;
+
+/// Contours of one part.
+#[derive(Clone, Debug)]
+pub struct Outlines<'a> {
+    part: &'a Part,
+    /// Number of points of each segment, its end left out; nothing where the part has no snapped paths.
+    counts: Vec<usize>,
+}
+
+impl<'a> Outlines<'a> {
+    /// The contours of a part with points of snapped paths about `spacing` pixels apart.
+    pub fn new(part: &'a Part, spacing: f64) -> Self {
+        let spacing = spacing.max(LEAST_SPACING);
+        let mut counts = Vec::new();
+        for &frame in part.curves.keys() {
+            let Some(paths) = part.complete_curves(frame) else { continue };
+            counts.resize(paths.len(), 1);
+            for (count, path) in counts.iter_mut().zip(paths) {
+                let wanted = (polyline::length(path, false) / spacing).ceil().clamp(1.0, MOST_POINTS);
+                *count = (*count).max(wanted as usize);
+            }
+        }
+        Self { part, counts }
+    }
+
+    /// The contour on a frame; none where the part has none there, or one without points.
+    pub fn at(&self, frame: FrameNumber) -> Option<Vec<Point>> {
+        let points = self.part.points_at(frame).filter(|points| !points.is_empty())?;
+        if self.counts.is_empty() {
+            return Some(points.clone());
+        }
+        let n = points.len();
+        let curves = self.part.complete_curves(frame);
+        let mut line = Vec::new();
+        for (i, &count) in self.counts.iter().enumerate().take(n) {
+            let straight = [points[i], points[(i + 1) % n]];
+            let segment = curves.and_then(|paths| paths.get(i)).map_or(&straight[..], Vec::as_slice);
+            line.extend(&polyline::resample(segment, false, count + 1)[..count]);
+        }
+        if !self.part.closed {
+            line.extend(points.last());
+        }
+        Some(line)
+    }
+
+    /// Frames of `first` to `last` on which there is a contour, with it.
+    pub fn within(&self, first: FrameNumber, last: FrameNumber) -> Vec<(FrameNumber, Vec<Point>)> {
+        (first..=last).filter_map(|frame| Some((frame, self.at(frame)?))).collect()
+    }
+}

@@ -1,0 +1,225 @@
+//! SVG with one animated path a part.
+//!
+//! Each part is a `path` with a `title` and a SMIL animation of its `d` over the footage, looped; browsers play it as it is.
+//! Each path of a part has the same number of points on every frame, as SMIL needs to interpolate ([`super::outlines`]).
+//! Where a part has no contour it is hidden. Drawn from far to near by depth.
+
+use super::outlines::Outlines;
+use super::xml::escaped;
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::palette;
+use rototoon_base::scene::{FrameNumber, Scene};
+use std::fmt::Write;
+
+/// How a path goes from one frame to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Motion {
+    /// Each frame is held until the next.
+    #[default]
+    Hold,
+    /// Points move evenly.
+    Linear,
+}
+
+impl Motion {
+    /// Every motion with its id.
+    pub const ALL: [(Self, &str); 2] = [(Self::Hold, "hold"), (Self::Linear, "linear")];
+
+    /// The motion of an id.
+    pub fn from_id(id: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(_, name)| *name == id).map(|(motion, _)| *motion)
+    }
+}
+
+/// How to write.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SvgOptions {
+    /// How paths move.
+    pub motion: Motion,
+    /// Distance between points of snapped paths, in pixels; at least 0.25.
+    pub spacing: f64,
+}
+
+impl Default for SvgOptions {
+    fn default() -> Self {
+        Self { motion: Motion::Hold, spacing: 2.0 }
+    }
+}
+
+/// Width of lines at 540 lines, in pixels.
+const LINE_WIDTH: f64 = 2.0;
+/// Opacity of fills: what lies behind a part stays visible.
+const FILL_OPACITY: f64 = 0.35;
+
+/// The scene as an SVG document in the footage's pixels.
+pub fn svg(scene: &Scene, options: &SvgOptions) -> String {
+    let footage = &scene.footage;
+    let (width, height) = (footage.width, footage.height);
+    let mut out = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n"
+    );
+    let line = LINE_WIDTH * (height as f64 / 540.0).max(0.5);
+    let _ = writeln!(out, "<g stroke-width=\"{line}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">");
+    let mut order: Vec<usize> = (0..scene.parts.len()).collect();
+    order.sort_by(|&a, &b| scene.parts[a].depth.total_cmp(&scene.parts[b].depth));
+    for index in order {
+        path(&mut out, scene, index, options);
+    }
+    out + "</g>\n</svg>\n"
+}
+
+fn path(out: &mut String, scene: &Scene, index: usize, options: &SvgOptions) {
+    let part = &scene.parts[index];
+    let frames: Vec<FrameNumber> = (scene.footage.first..=scene.footage.last).collect();
+    let outlines = Outlines::new(part, options.spacing);
+    let shape = |&frame: &FrameNumber| Some(data(&outlines.at(frame)?, part.closed));
+    let shapes: Vec<Option<String>> = frames.iter().map(shape).collect();
+    let Some(start) = shapes.iter().flatten().next().cloned() else { return };
+    let colour = palette::hex(palette::distinct(index));
+    let fill = if part.closed { colour.as_str() } else { "none" };
+    let _ = writeln!(
+        out,
+        "<path id=\"part-{index}\" fill=\"{fill}\" fill-opacity=\"{FILL_OPACITY}\" stroke=\"{colour}\" d=\"{start}\">\n<title>{}</title>",
+        escaped(&part.name)
+    );
+    let seconds = frames.len() as f64 / scene.footage.fps;
+    let filled = nearest(&shapes, &start);
+    animate(out, "d", seconds, options.motion, &filled);
+    let visible: Vec<_> = shapes.iter().map(|shape| if shape.is_some() { "visible" } else { "hidden" }).collect();
+    if visible.contains(&"hidden") {
+        animate(out, "visibility", seconds, Motion::Hold, &visible);
+    }
+    *out += "</path>\n";
+}
+
+/// Where there is no shape, the one before it, and before the first one the first.
+fn nearest<'a>(shapes: &'a [Option<String>], first: &'a str) -> Vec<&'a str> {
+    let mut last = first;
+    shapes
+        .iter()
+        .map(|shape| {
+            last = shape.as_deref().unwrap_or(last);
+            last
+        })
+        .collect()
+}
+
+/// One animation. Of held values only the changes are written.
+fn animate(out: &mut String, attribute: &str, seconds: f64, motion: Motion, values: &[&str]) {
+    let n = values.len();
+    let mut kept: Vec<(usize, &str)> = values.iter().copied().enumerate().collect();
+    match motion {
+        Motion::Hold => kept.dedup_by_key(|(_, value)| *value),
+        // The last frame lasts as long as the others.
+        Motion::Linear => kept.push((n, values[n - 1])),
+    }
+    let mode = if motion == Motion::Hold { "discrete" } else { "linear" };
+    let times: Vec<_> = kept.iter().map(|(frame, _)| decimal(*frame as f64 / n as f64, 6).to_string()).collect();
+    let texts: Vec<_> = kept.iter().map(|(_, value)| *value).collect();
+    let _ = writeln!(
+        out,
+        "<animate attributeName=\"{attribute}\" dur=\"{}s\" repeatCount=\"indefinite\" calcMode=\"{mode}\" keyTimes=\"{}\" values=\"{}\"/>",
+        decimal(seconds, 6),
+        times.join(";"),
+        texts.join(";")
+    );
+}
+
+/// The path of a contour.
+fn data(line: &[Point], closed: bool) -> String {
+    let mut text = String::new();
+    for (i, &p) in line.iter().enumerate() {
+        text += match i {
+            0 => "M",
+            1 => "L",
+            _ => " ",
+        };
+        write_point(&mut text, p);
+    }
+    if closed {
+        text += "Z";
+    }
+    text
+}
+
+fn write_point(out: &mut String, p: Point) {
+    let _ = write!(out, "{} {}", decimal(p.x, 2), decimal(p.y, 2));
+}
+
+/// A number with at most `digits` decimals.
+fn decimal(value: f64, digits: i32) -> f64 {
+    let scale = 10f64.powi(digits);
+    (value * scale).round() / scale + 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon_base::scene::{Footage, Part};
+    use std::collections::BTreeMap;
+
+    fn scene() -> Scene {
+        let at = |x: f64| vec![Point::new(x, 0.0), Point::new(x + 8.0, 0.0), Point::new(x, 8.0)];
+        let part = Part {
+            name: "a < \"b\" & \u{1}c".into(),
+            closed: true,
+            keys: BTreeMap::from([(1, at(0.0)), (3, at(2.0))]),
+            tracks: BTreeMap::from([(1, at(0.0)), (2, at(0.0)), (3, at(2.0))]),
+            ..Part::default()
+        };
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30 };
+        Scene { footage, parts: vec![part] }
+    }
+
+    fn attribute<'a>(text: &'a str, name: &str) -> Vec<&'a str> {
+        text.split(&format!(" {name}=\"")).skip(1).map(|rest| rest.split('"').next().unwrap()).collect()
+    }
+
+    #[test]
+    fn a_part_is_one_path_over_the_footage() {
+        let text = svg(&scene(), &SvgOptions::default());
+        assert_eq!(attribute(&text, "viewBox"), ["0 0 40 30"]);
+        assert!(text.contains("<title>a &lt; &quot;b&quot; &amp; c</title>"));
+        assert_eq!(attribute(&text, "dur"), ["0.32s", "0.32s"]);
+        assert_eq!(attribute(&text, "values"), ["M0 0L8 0 0 8Z;M2 0L10 0 2 8Z", "hidden;visible"]);
+        assert_eq!(attribute(&text, "keyTimes"), ["0;0.75", "0;0.25"]);
+    }
+
+    #[test]
+    fn even_motion_ends_at_one_with_the_last_frame() {
+        let text = svg(&scene(), &SvgOptions { motion: Motion::Linear, ..SvgOptions::default() });
+        assert_eq!(attribute(&text, "keyTimes")[0], "0;0.25;0.5;0.75;1");
+        let values: Vec<_> = attribute(&text, "values")[0].split(';').collect();
+        assert_eq!(values.len(), 5);
+        assert_eq!(values[3], values[4]);
+    }
+
+    #[test]
+    fn snapped_paths_have_the_same_number_of_points_on_each_frame() {
+        let mut scene = scene();
+        let bent = |y: f64| {
+            let p = |x: f64, y: f64| Point::new(x, y);
+            vec![
+                vec![p(0.0, 0.0), p(4.0, y), p(8.0, 0.0)],
+                vec![p(8.0, 0.0), p(0.0, 8.0)],
+                vec![p(0.0, 8.0), p(0.0, 0.0)],
+            ]
+        };
+        scene.parts[0].curves = BTreeMap::from([(1, bent(0.0)), (2, bent(-30.0))]);
+        let text = svg(&scene, &SvgOptions::default());
+        let lengths: Vec<_> =
+            attribute(&text, "values")[0].split(';').map(|value| value.split([' ', 'L']).count()).collect();
+        assert_eq!(lengths.len(), 3, "{text}");
+        assert!(lengths[0] > 60 && lengths.iter().all(|length| *length == lengths[0]), "{lengths:?}");
+    }
+
+    #[test]
+    fn parts_without_contour_are_left_out() {
+        let mut scene = scene();
+        scene.parts[0].keys.clear();
+        scene.parts[0].tracks.clear();
+        assert!(!svg(&scene, &SvgOptions::default()).contains("<path"));
+        scene.parts[0].keys.insert(0, Vec::new());
+        assert!(!svg(&scene, &SvgOptions::default()).contains("<path"));
+    }
+}

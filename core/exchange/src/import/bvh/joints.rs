@@ -1,0 +1,383 @@
+//! Which joints of a BVH file are the template's key points.
+//!
+//! Names are compared without case, blanks and punctuation, without what stands before a colon (`mixamorig:Hips`) and without a
+//! few customary prefixes (`joint_`, `Bip01`, `DEF-`); the side is a word or letter at either end (`LeftArm`, `l_arm`, `arm.L`,
+//! `Arm_L`, `lShldr`). What is left is looked up in a list for each key point, first come first served: programs agree about words
+//! but not about where they put them. A *shoulder* is the joint of the upper arm in one file and the collar bone in another; it
+//! counts only where nothing is called *arm* or *upper arm*. The lists serve the names of Biovision and CMU files, Mixamo,
+//! MotionBuilder, LAFAN, 3ds Max Biped, Poser and Daz, Unreal, SMPL, Blender's Rigify, and the Bandai Namco research data.
+//!
+//! Spines have any number of joints, so the chest is found by place: the joint between pelvis and neck that is nearest to the
+//! template's share of the way, or that share itself where none is near. The top of the head is the end of the head's chain; a head
+//! without a joint lies on the way from the neck to that end.
+//!
+//! [`JointMap`] says what names do not tell.
+
+use super::parse::{Bvh, Node};
+use glam::DVec3;
+use rototoon_base::scene::proportions::TEMPLATE;
+use rototoon_base::scene::skeleton::{COUNT, NAMES};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// What joints are called that limbs hang on: key point without its side, names of such joints.
+const LIMBS: [(&str, &[&str]); 6] = [
+    ("shoulder", &["arm", "upperarm", "uparm", "shldr", "shldrbend", "shoulderjoint", "shoulder"]),
+    ("elbow", &["forearm", "lowerarm", "lowarm", "forearmbend", "elbow", "elbowjoint"]),
+    ("wrist", &["hand", "wrist", "wristjoint"]),
+    ("hip", &["upleg", "upperleg", "thigh", "thighbend", "hip", "hipjoint", "buttock"]),
+    ("knee", &["leg", "lowerleg", "lowleg", "shin", "calf", "knee", "kneejoint"]),
+    ("ankle", &["foot", "ankle", "anklejoint"]),
+];
+/// What joints of the middle are called.
+const MIDDLE: [(&str, &[&str]); 4] = [
+    ("pelvis", &["hips", "hip", "pelvis", "root", "spine"]),
+    ("neck", &["neck", "neck1", "neck01", "necklower", "lowerneck", "spine004"]),
+    ("head", &["head", "skull", "spine006"]),
+    ("head_top", &["headtop", "headtopend", "headend", "headnub", "topofhead"]),
+];
+/// What stands before names and says nothing.
+const PREFIXES: [&str; 8] = ["mixamorig", "joint", "bip001", "bip01", "bip1", "def", "jbip", "character1"];
+/// Share of the torso within which a spine's joint is the chest.
+const CHEST_REACH: f64 = 0.2;
+/// Where the head begins between the neck and its top: the template's share.
+const HEAD_SHARE: f64 = TEMPLATE.0[2] / (TEMPLATE.0[2] + TEMPLATE.0[3]);
+/// How far the top of the head lies beyond a head without an end, in lengths of the neck.
+const HEAD_TOP: f64 = TEMPLATE.0[3] / TEMPLATE.0[2];
+
+/// A key point's place among a file's nodes: their weighted sum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place(pub Vec<(usize, f64)>);
+
+impl Place {
+    /// The place, for places of the nodes.
+    pub fn at(&self, nodes: &[DVec3]) -> DVec3 {
+        self.0.iter().map(|&(node, weight)| nodes[node] * weight).sum()
+    }
+
+    fn node(node: usize) -> Self {
+        Self(vec![(node, 1.0)])
+    }
+
+    fn between(from: &Self, to: &Self, share: f64) -> Self {
+        let part =
+            |place: &Self, by: f64| place.0.iter().map(|(node, weight)| (*node, weight * by)).collect::<Vec<_>>();
+        Self([part(from, 1.0 - share), part(to, share)].concat())
+    }
+}
+
+/// Joints given for key points: of several joints, their mean.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct JointMap(pub BTreeMap<usize, Vec<String>>);
+
+/// Why key points have no joints.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MapError {
+    /// The map is not as it must be.
+    #[error("{place}: found {found}, expected {expected}")]
+    Map {
+        /// Where in the map.
+        place: String,
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: String,
+    },
+    /// A joint of the map is not in the file.
+    #[error("joints, {point}: found no joint {joint:?} in the file, expected one of {known}")]
+    Unknown {
+        /// The key point.
+        point: &'static str,
+        /// The joint.
+        joint: String,
+        /// The file's joints.
+        known: String,
+    },
+    /// Names do not tell where key points are.
+    #[error("found no joint for {missing}; say which of the file's they are in a map of joints; the file has {known}")]
+    Missing {
+        /// The key points.
+        missing: String,
+        /// The file's joints.
+        known: String,
+    },
+}
+
+impl JointMap {
+    /// Reads a map, `{"l_wrist": "Hand.L", "chest": ["Spine1", "Spine2"]}`; the end of a joint's chain is `"Head/end"`.
+    pub fn parse(text: &str) -> Result<Self, MapError> {
+        let wrong = |place: &str, found: String, expected: &str| MapError::Map {
+            place: place.to_owned(),
+            found,
+            expected: expected.to_owned(),
+        };
+        let document: Value =
+            serde_json::from_str(text).map_err(|e| wrong("joints", format!("no JSON ({e})"), "JSON"))?;
+        let expected = "an object with a joint, or a list of joints, for each key point";
+        let entries = document.as_object().ok_or_else(|| wrong("joints", shown(&document), expected))?;
+        let mut map = BTreeMap::new();
+        for (point, value) in entries {
+            let place = format!("joints, {point:?}");
+            let known = || wrong(&place, "no such key point".into(), &format!("one of {}", NAMES.join(", ")));
+            let index = NAMES.iter().position(|name| name == point).ok_or_else(known)?;
+            let one = |value: &Value| value.as_str().filter(|name| !name.is_empty()).map(str::to_owned);
+            let joints = match value {
+                Value::Array(list) if !list.is_empty() => list.iter().map(one).collect::<Option<Vec<_>>>(),
+                value => one(value).map(|joint| vec![joint]),
+            };
+            map.insert(index, joints.ok_or_else(|| wrong(&place, shown(value), "a joint's name, or a list of them"))?);
+        }
+        Ok(Self(map))
+    }
+}
+
+fn shown(value: &Value) -> String {
+    match value {
+        Value::Array(list) => format!("a list of {}", list.len()),
+        Value::Object(_) => "an object".into(),
+        other => other.to_string(),
+    }
+}
+
+/// The places of all key points.
+pub fn places(bvh: &Bvh, map: &JointMap) -> Result<[Place; COUNT], MapError> {
+    let joints = Joints::new(&bvh.nodes);
+    let mut found: [Option<Place>; COUNT] = std::array::from_fn(|_| None);
+    for (&point, names) in map.0.iter().filter(|(point, _)| **point < COUNT) {
+        found[point] = Some(joints.given(NAMES[point], names)?);
+    }
+    for (point, place) in found.iter_mut().enumerate().filter(|(_, place)| place.is_none()) {
+        *place = joints.named(NAMES[point]).map(Place::node);
+    }
+    joints.fill_head(&mut found);
+    let chest = index("chest");
+    if found[chest].is_none() {
+        found[chest] = found[0].as_ref().zip(found[index("neck")].as_ref()).map(|(p, n)| joints.chest(p, n));
+    }
+    let missing: Vec<&str> = (0..COUNT).filter(|&k| found[k].is_none()).map(|k| NAMES[k]).collect();
+    if missing.is_empty() {
+        // None is missing, so the default is never used.
+        Ok(found.map(|place| place.unwrap_or(Place(Vec::new()))))
+    } else {
+        Err(MapError::Missing { missing: missing.join(", "), known: joints.known() })
+    }
+}
+
+fn index(point: &str) -> usize {
+    NAMES.iter().position(|name| *name == point).unwrap_or_default()
+}
+
+/// The nodes of a file with what their names say.
+struct Joints<'a> {
+    nodes: &'a [Node],
+    /// Side and name, simplified.
+    words: Vec<(Option<char>, String)>,
+    /// Places at rest.
+    rest: Vec<DVec3>,
+}
+
+impl<'a> Joints<'a> {
+    fn new(nodes: &'a [Node]) -> Self {
+        let mut rest: Vec<DVec3> = Vec::with_capacity(nodes.len());
+        for node in nodes {
+            rest.push(node.offset + node.parent.map_or(DVec3::ZERO, |parent| rest[parent]));
+        }
+        Self { nodes, words: nodes.iter().map(|node| simplified(&node.name)).collect(), rest }
+    }
+
+    fn known(&self) -> String {
+        let names: Vec<&str> = self.nodes.iter().filter(|node| !node.end).map(|node| node.name.as_str()).collect();
+        names.join(", ")
+    }
+
+    /// Joints of a map.
+    fn given(&self, point: &'static str, names: &[String]) -> Result<Place, MapError> {
+        let weight = 1.0 / names.len() as f64;
+        let one = |name: &String| {
+            let is = |node: &Node, end: bool, name: &str| node.end == end && node.name.eq_ignore_ascii_case(name);
+            let joint = self.nodes.iter().position(|node| is(node, false, name));
+            let end = || {
+                let name = name.strip_suffix("/end")?;
+                self.nodes.iter().position(|node| is(node, true, name))
+            };
+            let unknown = || MapError::Unknown { point, joint: name.clone(), known: self.known() };
+            joint.or_else(end).map(|node| (node, weight)).ok_or_else(unknown)
+        };
+        names.iter().map(one).collect::<Result<_, _>>().map(Place)
+    }
+
+    /// The joint that a key point's name means.
+    fn named(&self, point: &str) -> Option<usize> {
+        let (side, plain) = match point.split_once('_') {
+            Some((side @ ("l" | "r"), plain)) => (side.chars().next(), plain),
+            _ => (None, point),
+        };
+        let list = if side.is_some() { LIMBS.as_slice() } else { MIDDLE.as_slice() };
+        let (_, names) = list.iter().find(|(name, _)| *name == plain)?;
+        names.iter().find_map(|name| {
+            let is = |k: &usize| !self.nodes[*k].end && self.words[*k] == (side, (*name).to_owned());
+            (0..self.nodes.len()).find(is)
+        })
+    }
+
+    /// The end of the chain that hangs on a node, by the longest way up from it.
+    fn end_of(&self, node: usize) -> Option<usize> {
+        let hangs = |k: &usize| self.nodes[*k].end && self.nodes[*k].parent == Some(node);
+        let away = |k: &usize| self.rest[*k].distance_squared(self.rest[node]);
+        (0..self.nodes.len()).filter(hangs).max_by(|a, b| away(a).total_cmp(&away(b)))
+    }
+
+    /// Head and top of the head where names do not tell them.
+    fn fill_head(&self, found: &mut [Option<Place>; COUNT]) {
+        let [neck, head, top] = ["neck", "head", "head_top"].map(index);
+        let only = |place: &Option<Place>| match place.as_ref()?.0.as_slice() {
+            [(node, _)] => Some(*node),
+            _ => None,
+        };
+        let Some(neck_place) = found[neck].clone() else { return };
+        if found[top].is_none() {
+            let chain = only(&found[head]).or_else(|| only(&found[neck]).filter(|_| found[head].is_none()));
+            found[top] = chain.and_then(|node| self.end_of(node)).map(Place::node);
+        }
+        match (&found[head], &found[top]) {
+            (None, Some(end)) => found[head] = Some(Place::between(&neck_place, end, HEAD_SHARE)),
+            (Some(joint), None) => found[top] = Some(Place::between(&neck_place, joint, 1.0 + HEAD_TOP)),
+            _ => {}
+        }
+    }
+
+    /// The chest: the joint between pelvis and neck nearest to the template's share of the way, or that share of it.
+    fn chest(&self, pelvis: &Place, neck: &Place) -> Place {
+        let share = TEMPLATE.0[0];
+        let (from, to) = (pelvis.at(&self.rest), neck.at(&self.rest));
+        let wanted = from.lerp(to, share);
+        let away = |k: &usize| self.rest[*k].distance(wanted);
+        let first = neck.0.first().map(|(node, _)| *node);
+        let chain = std::iter::successors(first.and_then(|node| self.nodes[node].parent), |k| self.nodes[*k].parent);
+        let nearest = chain.min_by(|a, b| away(a).total_cmp(&away(b)));
+        match nearest.filter(|k| away(k) <= CHEST_REACH * from.distance(to)) {
+            Some(node) => Place::node(node),
+            None => Place::between(pelvis, neck, share),
+        }
+    }
+}
+
+/// Side and name without what differs from program to program.
+fn simplified(name: &str) -> (Option<char>, String) {
+    let name = name.rsplit(':').next().unwrap_or(name);
+    let marked = words(name);
+    let joined: String = marked.concat();
+    let without = PREFIXES.iter().find_map(|prefix| joined.strip_prefix(prefix).filter(|rest| !rest.is_empty()));
+    let mut words = marked;
+    if let Some(rest) = without {
+        let mut drop = joined.len() - rest.len();
+        for word in &mut words {
+            let cut = drop.min(word.len());
+            word.drain(..cut);
+            drop -= cut;
+        }
+        words.retain(|word| !word.is_empty());
+    }
+    let side = |word: &str| match word {
+        "l" | "left" => Some('l'),
+        "r" | "right" => Some('r'),
+        _ => None,
+    };
+    let found = [words.first(), words.last()].into_iter().flatten().find_map(|word| side(word));
+    if found.is_some() && words.len() > 1 {
+        let at = if words.first().is_some_and(|word| side(word).is_some()) { 0 } else { words.len() - 1 };
+        words.remove(at);
+        return (found, words.concat());
+    }
+    run_together(words.concat())
+}
+
+/// A side written at the front of a word, `leftarm` or `lhand`; one letter only before what is called so.
+fn run_together(word: String) -> (Option<char>, String) {
+    let limb = |rest: &str| LIMBS.iter().any(|(_, names)| names.contains(&rest));
+    for (side, long, short) in [('l', "left", "l"), ('r', "right", "r")] {
+        let rest = word.strip_prefix(long).or_else(|| word.strip_prefix(short)).filter(|rest| limb(rest));
+        if let Some(rest) = rest {
+            return (Some(side), rest.to_owned());
+        }
+    }
+    (None, word)
+}
+
+/// The words of a name in lower case: `LeftUpLeg`, `left_up_leg` and `lUpLeg` are told apart at capitals, punctuation and digits'
+/// ends. Numbers stay with the word before them.
+fn words(name: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    let mut fresh = true;
+    let mut before = ' ';
+    for c in name.chars() {
+        if !c.is_ascii_alphanumeric() {
+            fresh = true;
+        } else {
+            let capital = c.is_ascii_uppercase() && !before.is_ascii_uppercase();
+            let lone =
+                c.is_ascii_lowercase() && before.is_ascii_uppercase() && words.last().is_some_and(|w| w.len() > 1);
+            if lone {
+                // `LHip`: the last capital begins the word.
+                let taken = words.last_mut().and_then(String::pop);
+                words.push(taken.into_iter().collect());
+            } else if fresh || capital || words.is_empty() {
+                words.push(String::new());
+            }
+            if let Some(word) = words.last_mut() {
+                word.push(c.to_ascii_lowercase());
+            }
+            fresh = false;
+        }
+        before = c;
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_simplified() {
+        let (l, r, no) = (Some('l'), Some('r'), None);
+        for (name, side, plain) in [
+            ("Hips", no, "hips"),
+            ("mixamorig:LeftUpLeg", l, "upleg"),
+            ("mixamorig_RightForeArm", r, "forearm"),
+            ("LHipJoint", l, "hipjoint"),
+            ("joint_Root", no, "root"),
+            ("UpperArm_L", l, "upperarm"),
+            ("upper_arm.R", r, "upperarm"),
+            ("lShldr", l, "shldr"),
+            ("Bip01 R UpperArm", r, "upperarm"),
+            ("Bip01", no, "bip01"),
+            ("LEFT_WRIST", l, "wrist"),
+            ("DEF-thigh.L", l, "thigh"),
+            ("L", no, "l"),
+            ("leftarm", l, "arm"),
+            ("rhand", r, "hand"),
+            ("leg", no, "leg"),
+            ("LeftLeg", l, "leg"),
+            ("neck_01", no, "neck01"),
+            ("Leg", no, "leg"),
+            ("", no, ""),
+        ] {
+            assert_eq!(simplified(name), (side, plain.to_owned()), "{name}");
+        }
+    }
+
+    #[test]
+    fn maps_say_what_is_wrong() {
+        let map = JointMap::parse(r#"{"l_wrist": "Hand", "chest": ["A", "B"]}"#).unwrap();
+        assert_eq!(map.0[&1], ["A", "B"]);
+        let error = |text: &str| JointMap::parse(text).unwrap_err().to_string();
+        assert!(error("{").starts_with("joints: found no JSON"));
+        assert!(error("[1]").starts_with("joints: found a list of 1, expected an object"));
+        assert!(
+            error(r#"{"tail": "x"}"#).starts_with(r#"joints, "tail": found no such key point, expected one of pelvis"#)
+        );
+        assert!(error(r#"{"head": []}"#).contains("found a list of 0, expected a joint's name"));
+        assert!(error(r#"{"head": 3}"#).contains("found 3, expected a joint's name"));
+    }
+}

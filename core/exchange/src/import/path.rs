@@ -1,0 +1,162 @@
+//! Bézier paths as contours.
+//!
+//! The contour of an animated path has the same number of points on every key: each segment is cut into equal steps of its
+//! parameter, as many as its most curved form needs. With second differences of at most D between control points the
+//! second derivative of a cubic is at most 6 D, and a chord over a step h of the parameter is left by at most h² ∕ 8 of that:
+//! n steps stay within ¾ D ∕ n². A straight segment stays one.
+
+use rototoon_base::geometry::{Point, polyline};
+
+/// Farthest that a contour may leave its path, in pixels.
+const TOLERANCE: f64 = 0.1;
+/// Handles nearer than this to their chord make a straight segment, in pixels.
+const STRAIGHT: f64 = 1e-3;
+/// Most points of one segment.
+const MOST_STEPS: f64 = 200.0;
+
+/// A path of cubic segments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    /// Where it begins.
+    pub start: Point,
+    /// Two handles and the end of each segment. Of a closed path the last one leads back to the start.
+    pub segments: Vec<[Point; 3]>,
+    /// Whether it is closed.
+    pub closed: bool,
+}
+
+impl Path {
+    /// A path that only has its start.
+    pub fn new(start: Point) -> Self {
+        Self { start, segments: Vec::new(), closed: false }
+    }
+
+    /// Where it ends.
+    pub fn end(&self) -> Point {
+        self.segments.last().map_or(self.start, |segment| segment[2])
+    }
+
+    /// Goes straight to a point.
+    pub fn line(&mut self, to: Point) {
+        let from = self.end();
+        self.segments.push([from.lerp(to, 1.0 / 3.0), from.lerp(to, 2.0 / 3.0), to]);
+    }
+
+    /// Goes along a cubic to a point.
+    pub fn cubic(&mut self, first: Point, second: Point, to: Point) {
+        self.segments.push([first, second, to]);
+    }
+
+    /// Goes straight back to the start.
+    pub fn close(&mut self) {
+        self.line(self.start);
+        self.closed = true;
+    }
+
+    /// The path with a change applied to all its points.
+    pub fn map(&self, f: impl Fn(Point) -> Point) -> Self {
+        let segments = self.segments.iter().map(|segment| segment.map(&f)).collect();
+        Self { start: f(self.start), segments, closed: self.closed }
+    }
+
+    fn cubics(&self) -> impl Iterator<Item = [Point; 4]> + '_ {
+        let mut from = self.start;
+        self.segments.iter().map(move |&[first, second, to]| [std::mem::replace(&mut from, to), first, second, to])
+    }
+}
+
+/// The contours of a path's keys; `None` where they are not built alike.
+pub fn contours(keys: &[Path]) -> Option<Vec<Vec<Point>>> {
+    let first = keys.first()?;
+    let mut count = first.segments.len();
+    if keys.iter().any(|key| key.segments.len() != count || key.closed != first.closed) {
+        return None;
+    }
+    // A drawing program may end a closed path on its start before it closes it.
+    let returns = |key: &Path| key.cubics().last().is_some_and(|[from, .., to]| from.distance(to) < STRAIGHT);
+    if first.closed && count > 1 && keys.iter().all(returns) {
+        count -= 1;
+    }
+    let steps: Vec<usize> =
+        (0..count).map(|at| keys.iter().filter_map(|key| key.cubics().nth(at)).map(steps).max().unwrap_or(1)).collect();
+    let contour = |key: &Path| {
+        let mut points = Vec::new();
+        for (cubic, &steps) in key.cubics().zip(&steps) {
+            points.extend((0..steps).map(|k| at(&cubic, k as f64 / steps as f64)));
+        }
+        if !first.closed || count == 0 {
+            points.push(key.end());
+        }
+        points
+    };
+    Some(keys.iter().map(contour).collect())
+}
+
+/// The number of steps that a cubic needs.
+fn steps(cubic: [Point; 4]) -> usize {
+    let [a, b, c, d] = cubic;
+    let off = |p: Point| polyline::nearest_on_segment(p, a, d).distance(p);
+    if off(b) < STRAIGHT && off(c) < STRAIGHT {
+        return 1;
+    }
+    let bend = (a - 2.0 * b + c).length().max((b - 2.0 * c + d).length());
+    (0.75 * bend / TOLERANCE).sqrt().ceil().clamp(1.0, MOST_STEPS) as usize
+}
+
+fn at([a, b, c, d]: &[Point; 4], t: f64) -> Point {
+    let u = 1.0 - t;
+    u * u * u * *a + 3.0 * u * u * t * *b + 3.0 * u * t * t * *c + t * t * t * *d
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn p(x: f64, y: f64) -> Point {
+        Point::new(x, y)
+    }
+
+    #[test]
+    fn straight_paths_keep_their_points() {
+        let mut path = Path::new(p(1.0, 1.0));
+        path.line(p(9.0, 1.0));
+        path.line(p(9.0, 7.0));
+        assert_eq!(contours(&[path.clone()]).unwrap(), [[p(1.0, 1.0), p(9.0, 1.0), p(9.0, 7.0)]]);
+        path.close();
+        assert_eq!(contours(&[path.clone()]).unwrap()[0].len(), 3);
+        // Handles on their points, as in Silhouette, make straight sides too.
+        path.segments[0] = [path.start, p(9.0, 1.0), p(9.0, 1.0)];
+        assert_eq!(contours(&[path.clone()]).unwrap()[0].len(), 3);
+        let mut twice = Path::new(p(1.0, 1.0));
+        for to in [p(9.0, 1.0), p(9.0, 7.0), p(1.0, 1.0)] {
+            twice.line(to);
+        }
+        twice.close();
+        assert_eq!(contours(&[twice]).unwrap()[0].len(), 3);
+    }
+
+    #[test]
+    fn curves_are_followed_with_the_same_points_on_every_key() {
+        const ROUND: f64 = 0.552_284_75;
+        let quarter = |radius: f64| {
+            let mut path = Path::new(p(radius, 0.0));
+            path.cubic(p(radius, radius * ROUND), p(radius * ROUND, radius), p(0.0, radius));
+            path
+        };
+        let found = contours(&[quarter(3.0), quarter(80.0)]).unwrap();
+        assert_eq!(found[0].len(), found[1].len());
+        for pair in found[1].windows(2) {
+            let middle = pair[0].midpoint(pair[1]).length();
+            assert!(80.0 - middle < TOLERANCE && middle < 80.1, "{middle}");
+        }
+        assert!(found[1].len() < 40, "{}", found[1].len());
+    }
+
+    #[test]
+    fn keys_that_are_built_differently_are_refused() {
+        let mut longer = Path::new(Point::ZERO);
+        longer.line(Point::ONE);
+        assert_eq!(contours(&[Path::new(Point::ZERO), longer]), None);
+        assert_eq!(contours(&[Path::new(Point::ONE)]).unwrap(), [[Point::ONE]]);
+    }
+}

@@ -1,0 +1,279 @@
+//! Silhouette shapes (`.fxs`).
+//!
+//! Each `Object` (or `Shape`) of type `Shape` has a property `path` whose keys hold a `Path` of `Point`s: of a Bézier the
+//! point and two handles, of a B-spline one point. [`rototoon_base::scene::Footage`] says where pixels are; coordinates are those that
+//! the export writes: from the middle of the picture in heights of the picture, y down, frames from the session's first.
+//!
+//! - Public descriptions do not agree which handle of a point leads on. The order is taken that gives a shape the shorter
+//!   control polygon over all its keys.
+//! - B-splines are taken as uniform cubic ones; of an open one the ends are doubled twice, so that it reaches them.
+//! - Transformed layers and animated opacity are not applied: a transformation is an error, since the shape would lie
+//!   elsewhere. Hidden shapes are left out with a warning.
+
+use super::path::{Path, contours};
+use super::problem::{number, parsed, place};
+use super::{ImportError, Shape, Shapes, free_name};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Footage, FrameNumber};
+use roxmltree::Node;
+use std::collections::BTreeMap;
+
+/// A point with its handles, as far as it has them.
+type Knot = [Point; 3];
+
+/// One key of a path.
+struct Key {
+    frame: FrameNumber,
+    closed: bool,
+    spline: bool,
+    knots: Vec<Knot>,
+}
+
+/// Reads the shapes of a Silhouette document for footage.
+pub fn silhouette(text: &str, footage: &Footage) -> Result<Shapes, ImportError> {
+    let document = parsed(text)?;
+    let root = document.root_element();
+    if root.tag_name().name() != "Silhouette" {
+        return Err(ImportError::at(root, "expected <Silhouette>, the root of a Silhouette shape file"));
+    }
+    let first = number(root, "sessionStartFrame")?.unwrap_or(footage.first.into());
+    let mut found = Shapes::default();
+    for node in root.descendants().filter(Node::is_element) {
+        let kind = node.attribute("type").unwrap_or(node.tag_name().name());
+        match (node.tag_name().name(), kind) {
+            ("Property", _) if node.attribute("id") == Some("transform.matrix") => untransformed(node)?,
+            ("Object" | "Shape", "Shape")
+                if node.attribute("hidden").is_some_and(|text| text.eq_ignore_ascii_case("true")) =>
+            {
+                let name = node.attribute("label").unwrap_or("");
+                found.warnings.push(format!("{}: the hidden shape {name:?} is left out", place(node)));
+            }
+            ("Object" | "Shape", "Shape") => {
+                let name = free_name(node.attribute("label").unwrap_or(""), &found.shapes);
+                found.shapes.push(shape(node, name, first, footage)?);
+            }
+            _ => {}
+        }
+    }
+    if found.shapes.is_empty() {
+        return Err(ImportError::Nothing("an <Object type=\"Shape\"> that is not hidden"));
+    }
+    found.shapes.reverse();
+    Ok(found)
+}
+
+/// The matrices of a layer must change nothing.
+fn untransformed(property: Node) -> Result<(), ImportError> {
+    const IDENTITY: [f64; 16] = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
+    for node in property.children().filter(Node::is_element) {
+        let text = node.text().unwrap_or("");
+        let numbers: Vec<_> = text.split(['(', ')', ',']).filter_map(|part| part.trim().parse::<f64>().ok()).collect();
+        let same = numbers.iter().zip(IDENTITY).all(|(a, b)| (a - b).abs() < 1e-9);
+        if !same || ![0, IDENTITY.len()].contains(&numbers.len()) {
+            let message = format!("transform.matrix: found {:?}, expected no transformation of layers", text.trim());
+            return Err(ImportError::at(node, message));
+        }
+    }
+    Ok(())
+}
+
+fn shape(node: Node, name: String, first: f64, footage: &Footage) -> Result<Shape, ImportError> {
+    let properties = node.descendants().filter(|n| n.tag_name().name() == "Property");
+    let Some(property) = properties.into_iter().find(|n| n.attribute("id") == Some("path")) else {
+        return Err(ImportError::at(node, format!("shape {name:?}: found no <Property id=\"path\">, expected one")));
+    };
+    let mut keys = Vec::new();
+    for node in property.children().filter(Node::is_element) {
+        keys.push(key(node, first, footage)?);
+    }
+    keys.sort_by_key(|key| key.frame);
+    let Some(closed) = keys.first().map(|key| key.closed) else {
+        return Err(ImportError::at(property, "found no key, expected <Key> or <Value> with a <Path>"));
+    };
+    let swapped = length(&keys, true) < length(&keys, false);
+    let paths: Vec<Path> = keys.iter().map(|key| built(key, swapped)).collect();
+    let Some(contours) = contours(&paths) else {
+        let counts: Vec<_> = keys.iter().map(|key| format!("{} on frame {}", key.knots.len(), key.frame)).collect();
+        let found = counts.join(", ");
+        let message =
+            format!("shape {name:?}: found keys of {found} points, expected the same number and kind on each");
+        return Err(ImportError::at(property, message));
+    };
+    let keys: BTreeMap<_, _> = keys.iter().map(|key| key.frame).zip(contours).collect();
+    Ok(Shape { name, closed, keys })
+}
+
+fn key(node: Node, first: f64, footage: &Footage) -> Result<Key, ImportError> {
+    let frame = number(node, "frame")?.map_or(footage.first.into(), |frame| frame + first);
+    if frame.fract() != 0.0 || !(f64::from(footage.first)..=f64::from(footage.last)).contains(&frame) {
+        let own = format!("{} to {}", footage.first, footage.last);
+        return Err(ImportError::at(
+            node,
+            format!("found a key on frame {frame}, expected a frame of the footage, {own}"),
+        ));
+    }
+    let Some(path) = node.children().find(|n| n.tag_name().name() == "Path") else {
+        return Err(ImportError::at(node, "found no <Path>, expected one"));
+    };
+    let kind = path.attribute("type").unwrap_or("Bezier");
+    let spline = kind.eq_ignore_ascii_case("bspline");
+    if !spline && !kind.eq_ignore_ascii_case("bezier") {
+        return Err(ImportError::at(path, format!("type: found {kind:?}, expected \"Bezier\" or \"Bspline\"")));
+    }
+    let closed = path.attribute("closed").is_none_or(|text| text.eq_ignore_ascii_case("true"));
+    let points = path.children().filter(|n| n.tag_name().name() == "Point");
+    let knots = points.map(|point| knot(point, footage)).collect::<Result<Vec<_>, _>>()?;
+    if knots.is_empty() {
+        return Err(ImportError::at(path, "found no <Point>, expected at least one"));
+    }
+    Ok(Key { frame: frame as FrameNumber, closed, spline, knots })
+}
+
+fn knot(node: Node, footage: &Footage) -> Result<Knot, ImportError> {
+    let text = node.text().unwrap_or("").trim();
+    let numbers: Option<Vec<f64>> =
+        text.split(',').map(|part| part.trim().trim_matches(['(', ')']).parse().ok()).collect();
+    let numbers = numbers.filter(|numbers| numbers.iter().all(|n| n.is_finite())).unwrap_or_default();
+    let (width, height) = (footage.width as f64, footage.height as f64);
+    let placed = |pair: &[f64]| Point::new(pair[0] * height + 0.5 * width, (pair[1] + 0.5) * height);
+    match numbers.len() {
+        // Points of B-splines may have a weight behind them.
+        2 | 3 => Ok([placed(&numbers); 3]),
+        6.. => Ok([placed(&numbers), placed(&numbers[2..]), placed(&numbers[4..])]),
+        _ => Err(ImportError::at(node, format!("found {text:?}, expected (x,y) or (x,y),(x,y),(x,y)"))),
+    }
+}
+
+/// The path of a key, with the third point of a knot leading on where `swapped`, else the second.
+fn built(key: &Key, swapped: bool) -> Path {
+    let (on, back) = if swapped { (2, 1) } else { (1, 2) };
+    let knots = if key.spline { beziers(key) } else { key.knots.iter().map(|k| [k[0], k[on], k[back]]).collect() };
+    let mut path = Path::new(knots[0][0]);
+    for pair in knots.windows(2) {
+        path.cubic(pair[0][1], pair[1][2], pair[1][0]);
+    }
+    if let (true, [first, .., last]) = (key.closed, &knots[..]) {
+        path.cubic(last[1], first[2], first[0]);
+        path.closed = true;
+    }
+    path.closed |= key.closed;
+    path
+}
+
+/// The Bézier knots of a uniform cubic B-spline: point, handle on, handle back.
+fn beziers(key: &Key) -> Vec<Knot> {
+    let mut guides: Vec<Point> = key.knots.iter().map(|knot| knot[0]).collect();
+    if !key.closed {
+        let (first, last) = (guides[0], guides[guides.len() - 1]);
+        guides.insert(0, first);
+        guides.push(last);
+        // A guide three times over is where the curve begins or ends.
+        guides.insert(0, first);
+        guides.push(last);
+    }
+    let n = guides.len();
+    let knot = |k: usize| {
+        let (before, own, after) = (guides[(k + n - 1) % n], guides[k], guides[(k + 1) % n]);
+        let (on, back) = (own.lerp(after, 1.0 / 3.0), own.lerp(before, 1.0 / 3.0));
+        [on.midpoint(back), on, back]
+    };
+    if key.closed { (0..n).map(knot).collect() } else { (1..n - 1).map(knot).collect() }
+}
+
+/// Length of the control polygons of all keys.
+fn length(keys: &[Key], swapped: bool) -> f64 {
+    let polygon = |key: &Key| {
+        let path = built(key, swapped);
+        let mut from = path.start;
+        let each = path.segments.iter().flatten().map(|&p| std::mem::replace(&mut from, p).distance(p));
+        each.sum::<f64>()
+    };
+    keys.iter().map(polygon).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FOOTAGE: fn() -> Footage =
+        || Footage { pattern: "%d".into(), first: 10, last: 20, fps: 1.0, width: 200, height: 100 };
+
+    fn file(shape: &str, path: &str) -> String {
+        format!(
+            "<Silhouette sessionStartFrame=\"10\">\n<Object type=\"Shape\" {shape}><Properties>\n<Property id=\"path\">{path}</Property></Properties></Object></Silhouette>"
+        )
+    }
+
+    fn key(frame: i32, kind: &str, points: &[&str]) -> String {
+        let points: String = points.iter().map(|p| format!("<Point>{p}</Point>")).collect();
+        format!("<Key frame=\"{frame}\"><Path closed=\"True\" type=\"{kind}\">{points}</Path></Key>")
+    }
+
+    #[test]
+    fn handles_lead_on_whichever_way_they_are_written() {
+        // A disc of radius 20 pixels about the middle of the picture.
+        let round = 0.2 * 0.552_284_75;
+        let knots = [(0.2, 0.0), (0.0, 0.2), (-0.2, 0.0), (0.0, -0.2)];
+        let text = |(x, y): (f64, f64), turned: f64| {
+            let (dx, dy) = (-y / 0.2 * round * turned, x / 0.2 * round * turned);
+            format!("({x},{y}),({},{}),({},{})", x + dx, y + dy, x - dx, y - dy)
+        };
+        for turned in [1.0, -1.0] {
+            let points: Vec<String> = knots.iter().map(|&knot| text(knot, turned)).collect();
+            let points: Vec<&str> = points.iter().map(String::as_str).collect();
+            let found = silhouette(&file("label=\"disc\"", &key(3, "Bezier", &points)), &FOOTAGE()).unwrap();
+            let shape = &found.shapes[0];
+            assert_eq!((shape.name.as_str(), shape.closed), ("disc", true));
+            for p in &shape.keys[&13] {
+                assert!((p.distance(Point::new(100.0, 50.0)) - 20.0).abs() < 0.02, "{p}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_spline_lies_within_its_guides_and_reaches_open_ends() {
+        let points = ["(-0.2,-0.2)", "(0.2,-0.2)", "(0.2,0.2)", "(-0.2,0.2)"];
+        let closed = silhouette(&file("", &key(0, "Bspline", &points)), &FOOTAGE()).unwrap();
+        let far = |p: &Point| p.distance(Point::new(100.0, 50.0));
+        assert!(closed.shapes[0].keys[&10].iter().all(|p| far(p) > 12.0 && far(p) < 20.0));
+        let text = file("", &key(0, "Bspline", &points)).replace("True", "False");
+        let open = &silhouette(&text, &FOOTAGE()).unwrap().shapes[0];
+        assert!(!open.closed);
+        let ends = [open.keys[&10][0], *open.keys[&10].last().unwrap()];
+        assert!(ends[0].distance(Point::new(80.0, 30.0)) < 1e-9 && ends[1].distance(Point::new(80.0, 70.0)) < 1e-9);
+    }
+
+    #[test]
+    fn errors_name_the_element_and_what_was_expected() {
+        let points = ["(0,0)", "(0.1,0)", "(0,0.1)"];
+        let good = key(0, "Bezier", &points);
+        for (text, place, message) in [
+            (
+                file("", &key(30, "Bezier", &points)),
+                "line 3, column 21: <Key>",
+                "frame 40, expected a frame of the footage, 10 to 20",
+            ),
+            (file("", &key(0, "Oval", &points)), "<Path>", "found \"Oval\", expected \"Bezier\" or \"Bspline\""),
+            (file("", &key(0, "Bezier", &["(0;0)"])), "<Point>", "found \"(0;0)\", expected (x,y)"),
+            (file("", &key(0, "Bezier", &["(NaN,0)"])), "<Point>", "expected (x,y)"),
+            (file("", &key(0, "Bezier", &[])), "<Path>", "found no <Point>"),
+            (
+                file("label=\"a\"", &(good.clone() + &key(1, "Bezier", &points[..2]))),
+                "<Property>",
+                "3 on frame 10, 2 on frame 11",
+            ),
+            (file("label=\"a\"", ""), "<Property>", "found no key"),
+            (file("", &good).replace("\"path\"", "\"p\""), "<Object>", "expected one"),
+            (file("", &good).replace("Silhouette", "Svg"), "<Svg>", "expected <Silhouette>"),
+            (file("hidden=\"True\"", &good), "found no shape", "not hidden"),
+            ("<Silhouette>".into(), "it is no XML", ""),
+        ] {
+            let error = silhouette(&text, &FOOTAGE()).unwrap_err().to_string();
+            assert!(error.contains(place) && error.contains(message), "{error}");
+        }
+        let moved = "<Property id=\"transform.matrix\"><Value>(1,0,0,0,0,1,0,0,0,0,1,0,0.2,0,0,1)</Value></Property>";
+        let text = file("", &good).replace("<Object", &format!("{moved}<Object"));
+        assert!(silhouette(&text, &FOOTAGE()).unwrap_err().to_string().contains("expected no transformation"));
+        assert!(silhouette(&text.replace(",0.2,0,0,1)", ",0,0,0,1)"), &FOOTAGE()).is_ok());
+    }
+}

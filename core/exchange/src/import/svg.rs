@@ -1,0 +1,309 @@
+//! Shapes of an SVG document.
+//!
+//! Paths, polygons, polylines, lines, rectangles, circles and ellipses with their transformations become shapes, each
+//! sub-path of a path one by itself. The document's view box is laid over the footage. A shape's name is that of its
+//! `title`, of Inkscape's label, or its `id`.
+//!
+//! A path with a SMIL animation of its `d` (`svg_animation`), as the export writes it, has a key wherever its form changes
+//! and where a held form ends; other shapes have one key, on a frame that the caller names. What is not drawn where it
+//! stands (definitions, clips, masks, patterns, symbols) is left out, and so, with a warning, are text, pictures and `use`.
+
+use super::path::{Path, contours};
+use super::problem::{number, parsed, place};
+use super::svg_animation::{Keyed, keyed};
+use super::{ImportError, Shape, Shapes, free_name};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Footage, FrameNumber};
+use roxmltree::Node;
+use std::str::FromStr;
+use svgtypes::{PointsParser, SimplePathSegment, SimplifyingPathParser, Transform, ViewBox};
+
+/// Elements whose content is not drawn where it stands.
+const NOT_DRAWN: [&str; 9] =
+    ["defs", "clipPath", "mask", "pattern", "symbol", "marker", "linearGradient", "radialGradient", "filter"];
+/// Elements that draw something that has no outline here.
+const WITHOUT_OUTLINE: [&str; 4] = ["text", "image", "use", "foreignObject"];
+/// Largest difference of proportions between document and footage.
+const PROPORTIONS: f64 = 0.005;
+
+/// Reads the shapes of an SVG document for footage; still ones get their key on frame `still`.
+pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, ImportError> {
+    let document = parsed(text)?;
+    let root = document.root_element();
+    if root.tag_name().name() != "svg" {
+        return Err(ImportError::at(root, "expected <svg>, the root of an SVG document"));
+    }
+    let mut reader = Reader { footage, still, found: Shapes::default() };
+    let over = laid_over(root, footage)?;
+    reader.group(root, over)?;
+    if reader.found.shapes.is_empty() {
+        return Err(ImportError::Nothing("a path, polygon, polyline, line, rect, circle or ellipse"));
+    }
+    Ok(reader.found)
+}
+
+/// The transformation from the document's units to pixels of the footage.
+fn laid_over(root: Node, footage: &Footage) -> Result<Transform, ImportError> {
+    let view = match root.attribute("viewBox") {
+        Some(text) => ViewBox::from_str(text).map_err(|error| {
+            ImportError::at(root, format!("viewBox: found {text:?}, expected four numbers ({error})"))
+        })?,
+        None => match (pixels(root, "width")?, pixels(root, "height")?) {
+            (Some(width), Some(height)) => ViewBox::new(0.0, 0.0, width, height),
+            _ => ViewBox::new(0.0, 0.0, footage.width as f64, footage.height as f64),
+        },
+    };
+    let (x, y) = (footage.width as f64 / view.w, footage.height as f64 / view.h);
+    if !(x > 0.0 && y > 0.0) || (x / y - 1.0).abs() > PROPORTIONS {
+        let (width, height) = (footage.width, footage.height);
+        let message =
+            format!("found a picture of {}x{}, expected the footage's proportions, {width}x{height}", view.w, view.h);
+        return Err(ImportError::at(root, message));
+    }
+    Ok(Transform::new(x, 0.0, 0.0, y, -view.x * x, -view.y * y))
+}
+
+/// A length in pixels; none where there is none or a share of something.
+fn pixels(node: Node, name: &str) -> Result<Option<f64>, ImportError> {
+    let Some(text) = node.attribute(name) else { return Ok(None) };
+    let text = text.trim();
+    let plain = text.strip_suffix("px").unwrap_or(text);
+    match plain.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(Some(value)),
+        _ if text.ends_with('%') => Ok(None),
+        _ => Err(ImportError::at(node, format!("{name}: found {text:?}, expected pixels"))),
+    }
+}
+
+struct Reader<'a> {
+    footage: &'a Footage,
+    still: FrameNumber,
+    found: Shapes,
+}
+
+impl Reader<'_> {
+    fn group(&mut self, node: Node, outer: Transform) -> Result<(), ImportError> {
+        for child in node.children().filter(Node::is_element) {
+            let name = child.tag_name().name();
+            if NOT_DRAWN.contains(&name) || hidden(child) {
+                continue;
+            }
+            if WITHOUT_OUTLINE.contains(&name) {
+                self.found.warnings.push(format!("{}: <{name}> has no outline here and is left out", place(child)));
+                continue;
+            }
+            let inner = joined(outer, own_transform(child)?);
+            match outline(child)? {
+                Some(text) => self.shape(child, &text, inner)?,
+                None if ["g", "a", "svg", "switch"].contains(&name) => self.group(child, inner)?,
+                None => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn shape(&mut self, node: Node, text: &str, transform: Transform) -> Result<(), ImportError> {
+        let keys = match keyed(node, self.footage)? {
+            Some(keys) => keys,
+            None => vec![Keyed { frame: self.still, text: text.to_owned() }],
+        };
+        let mut frames = Vec::new();
+        for key in &keys {
+            let paths = paths(node, &key.text)?.iter().map(|path| path.map(|p| moved(p, transform))).collect();
+            let paths: Vec<Path> = paths;
+            frames.push((key.frame, paths));
+        }
+        let Some((first, start)) = frames.first() else { return Ok(()) };
+        for number in 0..start.len() {
+            let own: Vec<Path> = frames.iter().filter_map(|(_, paths)| paths.get(number).cloned()).collect();
+            let contours = contours(&own).filter(|contours| contours.len() == frames.len()).ok_or_else(|| {
+                let message =
+                    format!("found paths of several kinds, expected the commands of frame {first} on each key");
+                ImportError::at(node, message)
+            })?;
+            let name = free_name(&name(node), &self.found.shapes);
+            let keys = frames.iter().map(|(frame, _)| *frame).zip(contours).collect();
+            self.found.shapes.push(Shape { name, closed: start[number].closed, keys });
+        }
+        Ok(())
+    }
+}
+
+fn hidden(node: Node) -> bool {
+    let style = node.attribute("style").unwrap_or("").replace(' ', "");
+    node.attribute("display") == Some("none") || style.contains("display:none")
+}
+
+fn name(node: Node) -> String {
+    let title = node.children().find(|child| child.tag_name().name() == "title").and_then(|title| title.text());
+    let label = || node.attributes().find(|attribute| attribute.name() == "label").map(|attribute| attribute.value());
+    title.or_else(label).or_else(|| node.attribute("id")).unwrap_or("").to_owned()
+}
+
+fn own_transform(node: Node) -> Result<Transform, ImportError> {
+    let Some(text) = node.attribute("transform") else { return Ok(Transform::default()) };
+    Transform::from_str(text).map_err(|error| {
+        ImportError::at(node, format!("transform: found {text:?}, expected transformations ({error})"))
+    })
+}
+
+/// First `inner`, then `outer`.
+fn joined(outer: Transform, inner: Transform) -> Transform {
+    let (o, i) = (outer, inner);
+    Transform::new(
+        o.a * i.a + o.c * i.b,
+        o.b * i.a + o.d * i.b,
+        o.a * i.c + o.c * i.d,
+        o.b * i.c + o.d * i.d,
+        o.a * i.e + o.c * i.f + o.e,
+        o.b * i.e + o.d * i.f + o.f,
+    )
+}
+
+fn moved(p: Point, t: Transform) -> Point {
+    Point::new(t.a * p.x + t.c * p.y + t.e, t.b * p.x + t.d * p.y + t.f)
+}
+
+/// The path data of a shape's element; none of another.
+fn outline(node: Node) -> Result<Option<String>, ImportError> {
+    let value = |name: &str| number(node, name).map(Option::unwrap_or_default);
+    let positive = |name: &str| match number(node, name)? {
+        Some(value) if value >= 0.0 => Ok(value),
+        found => Err(ImportError::at(node, format!("{name}: found {found:?}, expected a number from 0"))),
+    };
+    Ok(Some(match node.tag_name().name() {
+        "path" => node.attribute("d").unwrap_or("").to_owned(),
+        "polygon" => listed(node)? + "Z",
+        "polyline" => listed(node)?,
+        "line" => format!("M{} {}L{} {}", value("x1")?, value("y1")?, value("x2")?, value("y2")?),
+        "circle" => ellipse(value("cx")?, value("cy")?, positive("r")?, positive("r")?),
+        "ellipse" => ellipse(value("cx")?, value("cy")?, positive("rx")?, positive("ry")?),
+        "rect" => {
+            let (width, height) = (positive("width")?, positive("height")?);
+            let (rx, ry) = (number(node, "rx")?, number(node, "ry")?);
+            let round =
+                |own: Option<f64>, other: Option<f64>, size: f64| own.or(other).unwrap_or(0.0).clamp(0.0, 0.5 * size);
+            rectangle([value("x")?, value("y")?], [width, height], [round(rx, ry, width), round(ry, rx, height)])
+        }
+        _ => return Ok(None),
+    }))
+}
+
+fn listed(node: Node) -> Result<String, ImportError> {
+    let text = node.attribute("points").unwrap_or("");
+    let points: Vec<_> = PointsParser::from(text).map(|(x, y)| format!("{x} {y}")).collect();
+    let numbers = text.split([' ', ',', '\t', '\n', '\r']).filter(|part| !part.is_empty()).count();
+    if points.is_empty() || numbers % 2 != 0 {
+        return Err(ImportError::at(node, format!("points: found {text:?}, expected pairs of numbers")));
+    }
+    Ok(format!("M{}", points.join(" ")))
+}
+
+fn ellipse(x: f64, y: f64, rx: f64, ry: f64) -> String {
+    format!("M{} {y}A{rx} {ry} 0 0 1 {} {y}A{rx} {ry} 0 0 1 {} {y}Z", x + rx, x - rx, x + rx)
+}
+
+fn rectangle([x, y]: [f64; 2], [width, height]: [f64; 2], [rx, ry]: [f64; 2]) -> String {
+    if rx == 0.0 || ry == 0.0 {
+        return format!("M{x} {y}h{width}v{height}h{}Z", -width);
+    }
+    let (along, down) = (width - 2.0 * rx, height - 2.0 * ry);
+    let corner = |dx: f64, dy: f64| format!("a{rx} {ry} 0 0 1 {dx} {dy}");
+    let (a, b, c, d) = (corner(rx, ry), corner(-rx, ry), corner(-rx, -ry), corner(rx, -ry));
+    format!("M{} {y}h{along}{a}v{down}{b}h{}{c}v{}{d}Z", x + rx, -along, -down)
+}
+
+/// The sub-paths of path data that lead somewhere.
+fn paths(node: Node, text: &str) -> Result<Vec<Path>, ImportError> {
+    let mut paths: Vec<Path> = Vec::new();
+    for segment in SimplifyingPathParser::from(text) {
+        let segment = segment.map_err(|error| {
+            let start: String = text.chars().take(40).collect();
+            ImportError::at(node, format!("d: found {start:?}…, expected path data ({error})"))
+        })?;
+        if let SimplePathSegment::MoveTo { x, y } = segment {
+            paths.push(Path::new(Point::new(x, y)));
+            continue;
+        }
+        let Some(path) = paths.last_mut() else { continue };
+        match segment {
+            SimplePathSegment::LineTo { x, y } => path.line(Point::new(x, y)),
+            SimplePathSegment::CurveTo { x1, y1, x2, y2, x, y } => {
+                path.cubic(Point::new(x1, y1), Point::new(x2, y2), Point::new(x, y));
+            }
+            SimplePathSegment::Quadratic { x1, y1, x, y } => {
+                let (from, middle, to) = (path.end(), Point::new(x1, y1), Point::new(x, y));
+                path.cubic(from.lerp(middle, 2.0 / 3.0), to.lerp(middle, 2.0 / 3.0), to);
+            }
+            SimplePathSegment::ClosePath => path.close(),
+            SimplePathSegment::MoveTo { .. } => {}
+        }
+    }
+    paths.retain(|path| !path.segments.is_empty());
+    Ok(paths)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon_base::geometry::polygon;
+
+    fn footage() -> Footage {
+        Footage { pattern: "%d".into(), first: 5, last: 8, fps: 10.0, width: 200, height: 100 }
+    }
+
+    fn read(content: &str) -> Result<Shapes, ImportError> {
+        svg(&format!("<svg viewBox=\"10 0 100 50\">{content}</svg>"), &footage(), 6)
+    }
+
+    #[test]
+    fn every_basic_shape_has_its_outline() {
+        let found = read(
+            "<!-- far --><rect id=\"r\" x=\"10\" width=\"20\" height=\"10\"/><g transform=\"translate(10 5) scale(2)\">
+            <circle r=\"4\"><title>disc</title></circle><ellipse cx=\"3\" rx=\"2\" ry=\"1\"/></g>
+            <rect x=\"20\" y=\"20\" width=\"20\" height=\"10\" rx=\"2\"/><line x2=\"10\"/><polyline points=\"10,0 20,0 20,5\"/>
+            <polygon points=\"10,0 20,0 20,5\"/><path id=\"r\" d=\"M10 0q10 0 10 10M30 0h10v10z\"/><defs><rect width=\"1\" height=\"1\"/></defs>",
+        )
+        .unwrap();
+        let area = |index: usize| polygon::signed_area(&found.shapes[index].keys[&6]).abs();
+        let names: Vec<_> = found.shapes.iter().map(|shape| (shape.name.as_str(), shape.closed)).collect();
+        let expected =
+            [("r", true), ("disc", true), ("shape", true), ("shape 2", true), ("shape 3", false), ("shape 4", false)];
+        assert_eq!(names[..6], expected);
+        assert_eq!(names[6..], [("shape 5", true), ("r 2", false), ("r 3", true)]);
+        assert_eq!(
+            found.shapes[0].keys[&6],
+            [(0.0, 0.0), (40.0, 0.0), (40.0, 20.0), (0.0, 20.0)].map(|(x, y)| Point::new(x, y))
+        );
+        let round = std::f64::consts::PI;
+        assert!((area(1) - round * 256.0).abs() < 8.0 && (area(2) - round * 32.0).abs() < 3.0);
+        assert!((area(3) - (800.0 - 16.0 * (4.0 - round))).abs() < 2.0, "{}", area(3));
+        assert_eq!(area(8), 200.0);
+    }
+
+    #[test]
+    fn what_has_no_outline_is_told_and_left_out() {
+        let found = read("<path d=\"M0 0h5\"/>\n<text>a</text><g display=\"none\"><path d=\"M0 0h5\"/></g>").unwrap();
+        assert_eq!(found.shapes.len(), 1);
+        assert_eq!(found.warnings, ["line 2, column 1: <text> has no outline here and is left out"]);
+    }
+
+    #[test]
+    fn errors_name_the_element_and_what_was_expected() {
+        for (content, place, message) in [
+            ("\n <path d=\"M0 0 L5\"/>", "line 2, column 2: <path>: d: found", "expected path data"),
+            ("<circle r=\"-1\"/>", "<circle>", "r: found Some(-1.0), expected a number from 0"),
+            ("<rect width=\"a\" height=\"1\"/>", "<rect>", "width: found \"a\", expected a number"),
+            ("<polygon points=\"1 2 3\"/>", "<polygon>", "expected pairs of numbers"),
+            ("<g transform=\"turn(3)\"><path d=\"M0 0h1\"/></g>", "<g>", "transform: found \"turn(3)\""),
+            ("<g/>", "found no shape", "expected a path"),
+            ("<g>", "it is no XML", ""),
+        ] {
+            let error = read(content).unwrap_err().to_string();
+            assert!(error.contains(place) && error.contains(message), "{error}");
+        }
+        let wide =
+            svg("<svg viewBox=\"0 0 100 100\"><path d=\"M0 0h1\"/></svg>", &footage(), 6).unwrap_err().to_string();
+        assert!(wide.contains("found a picture of 100x100, expected the footage's proportions, 200x100"), "{wide}");
+    }
+}

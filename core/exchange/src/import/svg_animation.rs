@@ -1,0 +1,148 @@
+//! SMIL animations of a path's data, as keys on frames.
+//!
+//! An `animate` of `d` has its values at shares of its duration, `keyTimes`, or evenly. Held values (`calcMode="discrete"`)
+//! give a key on the first and on the last frame that each is held for; others give one on the frame nearest to their time.
+//! An `animate` of `visibility` takes away what is hidden. Animations begin with the footage's first frame; repeats are not
+//! followed, and the value at the very end of an animation, which lies a frame behind the footage, is left out.
+
+use super::ImportError;
+use rototoon_base::scene::{Footage, FrameNumber};
+use roxmltree::Node;
+
+/// Path data on a frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Keyed {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// The path data.
+    pub text: String,
+}
+
+/// One animation: frames from the first of the footage with the values that begin there.
+struct Animation<'a> {
+    values: Vec<(i64, &'a str)>,
+    held: bool,
+}
+
+/// The keys of an element's path data; none where it is not animated.
+pub(super) fn keyed(node: Node, footage: &Footage) -> Result<Option<Vec<Keyed>>, ImportError> {
+    let Some(data) = animation(node, "d", footage)? else { return Ok(None) };
+    let visibility = animation(node, "visibility", footage)?;
+    let count = i64::from(footage.last) - i64::from(footage.first) + 1;
+    let visible = |frame: i64| {
+        let now = visibility.as_ref().and_then(|shown| shown.values.iter().rev().find(|(start, _)| *start <= frame));
+        now.is_none_or(|(_, value)| *value != "hidden")
+    };
+    let current = |frame: i64| data.values.iter().rposition(|(start, _)| *start <= frame);
+    let mut keys = Vec::new();
+    for frame in 0..count {
+        let Some(index) = current(frame).filter(|_| visible(frame)) else { continue };
+        let same = |other: i64| (0..count).contains(&other) && visible(other) && current(other) == Some(index);
+        let wanted = if data.held { !same(frame - 1) || !same(frame + 1) } else { data.values[index].0 == frame };
+        if wanted {
+            let text = data.values[index].1.to_owned();
+            keys.push(Keyed { frame: (frame + i64::from(footage.first)) as FrameNumber, text });
+        }
+    }
+    Ok(Some(keys))
+}
+
+fn animation<'a>(node: Node<'a, 'a>, attribute: &str, footage: &Footage) -> Result<Option<Animation<'a>>, ImportError> {
+    let is_it =
+        |child: &Node| child.tag_name().name() == "animate" && child.attribute("attributeName") == Some(attribute);
+    let Some(animate) = node.children().find(is_it) else { return Ok(None) };
+    let expect = |name: &str, message: &str| {
+        let found = animate.attribute(name);
+        ImportError::at(animate, format!("{name}: found {found:?}, expected {message}"))
+    };
+    let list = |name: &str| {
+        animate.attribute(name).map(|text| text.trim().trim_end_matches(';').split(';').map(str::trim).collect())
+    };
+    let values: Vec<&str> = list("values").ok_or_else(|| expect("values", "values separated by semicolons"))?;
+    let seconds =
+        seconds(animate.attribute("dur").unwrap_or("")).ok_or_else(|| expect("dur", "seconds such as 2.5s"))?;
+    let held = animate.attribute("calcMode") == Some("discrete");
+    let even = |index: usize| index as f64 / if held { values.len() } else { (values.len() - 1).max(1) } as f64;
+    let times: Vec<f64> = match list("keyTimes") {
+        None => (0..values.len()).map(even).collect(),
+        Some(texts) => {
+            let texts: Vec<&str> = texts;
+            let times: Option<Vec<f64>> = texts.iter().map(|text| text.parse().ok()).collect();
+            let rising = |times: &Vec<f64>| times.is_sorted() && times.iter().all(|time| (0.0..=1.0).contains(time));
+            times
+                .filter(|times| times.len() == values.len() && rising(times))
+                .ok_or_else(|| expect("keyTimes", &format!("{} rising numbers from 0 to 1", values.len())))?
+        }
+    };
+    let frames = seconds * footage.fps;
+    let count = i64::from(footage.last) - i64::from(footage.first) + 1;
+    if frames.round() as i64 > count {
+        return Err(expect("dur", &format!("at most the footage's {count} frames at {} a second", footage.fps)));
+    }
+    let values = times.iter().map(|time| (time * frames).round() as i64).zip(values).collect();
+    Ok(Some(Animation { values, held }))
+}
+
+/// A duration in seconds.
+fn seconds(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let (number, unit) = match (text.strip_suffix("ms"), text.strip_suffix('s')) {
+        (Some(number), _) => (number, 1e-3),
+        (None, Some(number)) => (number, 1.0),
+        (None, None) => (text, 1.0),
+    };
+    number.parse::<f64>().ok().map(|number| number * unit).filter(|seconds| seconds.is_finite() && *seconds > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keys(animations: &str) -> Result<Vec<(FrameNumber, String)>, ImportError> {
+        let footage = Footage { pattern: "%d".into(), first: 5, last: 14, fps: 10.0, width: 20, height: 10 };
+        let text = format!("<path>{animations}</path>");
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let keys = keyed(document.root_element(), &footage)?;
+        Ok(keys.unwrap_or_default().into_iter().map(|key| (key.frame, key.text)).collect())
+    }
+
+    fn expected(keys: &[(FrameNumber, &str)]) -> Vec<(FrameNumber, String)> {
+        keys.iter().map(|(frame, text)| (*frame, (*text).to_owned())).collect()
+    }
+
+    const HELD: &str = "<animate attributeName='d' dur='1s' calcMode='discrete' keyTimes='0;0.3;0.4' values='a;b;c;'/>";
+
+    #[test]
+    fn held_values_have_keys_at_both_ends() {
+        let found = keys(HELD).unwrap();
+        assert_eq!(found, expected(&[(5, "a"), (7, "a"), (8, "b"), (9, "c"), (14, "c")]));
+    }
+
+    #[test]
+    fn what_is_hidden_has_no_keys() {
+        let hidden = "<animate attributeName='visibility' dur='1000ms' calcMode='discrete' keyTimes='0;0.1;0.6'
+            values='hidden;visible;hidden'/>";
+        let found = keys(&format!("{HELD}{hidden}")).unwrap();
+        assert_eq!(found, expected(&[(6, "a"), (7, "a"), (8, "b"), (9, "c"), (10, "c")]));
+    }
+
+    #[test]
+    fn moving_values_have_keys_at_their_times() {
+        let found = keys("<animate attributeName='d' dur='1' values='a;b;c'/>").unwrap();
+        assert_eq!(found, expected(&[(5, "a"), (10, "b")]));
+        assert!(keys("<animate attributeName='fill' dur='1' values='a'/>").unwrap().is_empty());
+    }
+
+    #[test]
+    fn errors_say_what_was_expected() {
+        for (from, to, message) in [
+            ("1s", "soon", "dur: found Some(\"soon\"), expected seconds"),
+            ("1s", "3s", "at most the footage's 10 frames at 10 a second"),
+            ("0;0.3", "0.5;0.3", "expected 3 rising numbers from 0 to 1"),
+            ("values", "to", "values: found None"),
+        ] {
+            let error = keys(&HELD.replace(from, to)).unwrap_err().to_string();
+            assert!(error.contains("line 1, column 7: <animate>: ") && error.contains(message), "{error}");
+        }
+    }
+}

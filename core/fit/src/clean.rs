@@ -1,0 +1,104 @@
+//! Points made ready: no two equal ones in a row, and none far apart.
+//!
+//! Fitting looks at points; the tolerance is for the line through them. Long segments therefore get points in between,
+//! at most [`SPACING`] tolerances apart as long as that does not multiply the work ([`MOST`]); what is missed between
+//! them the final measurement finds.
+
+use rototoon_base::geometry::Point;
+
+/// Wanted spacing of points in tolerances.
+const SPACING: f64 = 6.0;
+/// Points added are at most about this many for each one given, and a few.
+const MOST: f64 = 3.0;
+const FEW: f64 = 200.0;
+
+/// A polyline ready for fitting.
+#[derive(Clone, Debug)]
+pub(super) struct Cleaned {
+    /// Points without repetitions, long segments filled; of a closed one the first is not repeated at the end.
+    pub points: Vec<Point>,
+    /// Arc length at each.
+    pub lengths: Vec<f64>,
+    /// Length of the whole, the closing segment included.
+    pub total: f64,
+    /// For each point that was given, the index of its like in `points`.
+    pub places: Vec<usize>,
+}
+
+/// Points without repetitions, and for each given point the index of its like.
+pub(super) fn distinct(points: &[Point], closed: bool) -> (Vec<Point>, Vec<usize>) {
+    let mut kept: Vec<Point> = Vec::with_capacity(points.len());
+    let mut places = Vec::with_capacity(points.len());
+    for &p in points {
+        if kept.last() != Some(&p) {
+            kept.push(p);
+        }
+        places.push(kept.len() - 1);
+    }
+    while closed && kept.len() > 1 && kept.first() == kept.last() {
+        kept.pop();
+    }
+    places.iter_mut().filter(|place| **place >= kept.len()).for_each(|place| *place = 0);
+    (kept, places)
+}
+
+/// The polyline ready for fitting. There is at least one point.
+pub(super) fn cleaned(points: &[Point], closed: bool, tolerance: f64) -> Cleaned {
+    let (kept, mut places) = distinct(points, closed);
+    let n = kept.len();
+    let segments = if closed && n > 1 { n } else { n - 1 };
+    let length: f64 = (0..segments).map(|i| kept[i].distance(kept[(i + 1) % n])).sum();
+    let spacing = (SPACING * tolerance).max(length / (MOST * n as f64 + FEW));
+    let (mut all, mut lengths, mut indices) = (Vec::with_capacity(n), Vec::with_capacity(n), Vec::with_capacity(n));
+    let mut walked = 0.0;
+    for i in 0..segments {
+        let (a, b) = (kept[i], kept[(i + 1) % n]);
+        let step = a.distance(b);
+        let parts = (step / spacing).ceil().max(1.0);
+        indices.push(all.len());
+        for k in 0..parts as usize {
+            let share = k as f64 / parts;
+            all.push(a.lerp(b, share));
+            lengths.push(walked + step * share);
+        }
+        walked += step;
+    }
+    if segments < n {
+        indices.push(all.len());
+        all.push(kept[n - 1]);
+        lengths.push(walked);
+    }
+    places.iter_mut().for_each(|place| *place = indices[*place]);
+    Cleaned { points: all, lengths, total: walked, places }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn repetitions_go_and_are_found_again() {
+        let (a, b, c) = (Point::ZERO, Point::new(3.0, 0.0), Point::new(3.0, 4.0));
+        let open = cleaned(&[a, a, b, b, b, c, a], false, 100.0);
+        assert_eq!((open.points, open.places, open.total), (vec![a, b, c, a], vec![0, 0, 1, 1, 1, 2, 3], 12.0));
+        let closed = cleaned(&[a, b, c, a, a], true, 100.0);
+        assert_eq!((closed.points, closed.places, closed.total), (vec![a, b, c], vec![0, 1, 2, 0, 0], 12.0));
+        assert_eq!(cleaned(&[b, b, b], true, 1.0).points, [b]);
+    }
+
+    proptest! {
+        #[test]
+        fn long_segments_are_filled_evenly(
+            points in prop::collection::vec((-50.0f64..50.0, -50.0f64..50.0), 1..20), closed: bool, tolerance in 0.01f64..5.0,
+        ) {
+            let points: Vec<Point> = points.into_iter().map(Point::from).collect();
+            let data = cleaned(&points, closed, tolerance);
+            for (p, &place) in points.iter().zip(&data.places) {
+                prop_assert!(data.points[place].distance(*p) < 1e-12);
+            }
+            prop_assert!(data.lengths.windows(2).all(|pair| pair[0] < pair[1]));
+            prop_assert!(data.points.len() <= 5 * points.len() + 202);
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Where pieces should end: first guess and improvement.
+//!
+//! **Guess.** Along the points, each parabola is grown as far as a least-squares one stays within the tolerance (the
+//! first step of Yang et al. 1986, with least squares instead of slopes read off noisy neighbours). Its length is what
+//! the curve allows there: short where curvature changes fast, long where it is even. The pieces of a uniform spline
+//! cannot change their length at once, so the cuts are smoothed.
+//!
+//! **Improvement.** The error of a parabola grows with the third to fourth power of its length. A piece whose error is
+//! e has used (e / tolerance)^¼ of the length it may have; cuts at even sums of these shares even out the errors
+//! (equidistribution; de Boor 1973).
+
+use super::grow::grow;
+use rototoon_base::geometry::Point;
+
+/// Exponent from error to the share of the allowed length.
+const SHARE: f64 = 0.25;
+/// Errors are read within these multiples of the tolerance.
+const SHARE_RANGE: (f64, f64) = (0.1, 8.0);
+/// Rounds of smoothing of the cuts.
+const SMOOTHING: usize = 2;
+
+/// Cuts along a section by arc length of its points, and the weight of each stretch between two of them.
+#[derive(Clone, Debug)]
+pub(super) struct Profile {
+    pub cuts: Vec<f64>,
+    pub weights: Vec<f64>,
+}
+
+impl Profile {
+    /// Grows parabolas over the points, whose arc lengths are `lengths`.
+    pub fn grown(points: &[Point], lengths: &[f64], tolerance: f64) -> Self {
+        let mut cuts = vec![lengths[0]];
+        let mut start = 0;
+        while start + 1 < points.len() {
+            start = farthest(points, lengths, start, tolerance);
+            cuts.push(lengths[start]);
+        }
+        let weights = vec![1.0; cuts.len() - 1];
+        Self { cuts, weights }
+    }
+
+    /// The pieces of a fit with their largest errors.
+    pub fn measured(cuts: Vec<f64>, errors: &[f64], tolerance: f64) -> Self {
+        let share = |e: &f64| (e / tolerance).clamp(SHARE_RANGE.0, SHARE_RANGE.1).powf(SHARE);
+        let weights = errors.iter().map(share).collect();
+        Self { cuts, weights }
+    }
+
+    /// Sum of the weights: about how many pieces are needed.
+    pub fn total(&self) -> f64 {
+        self.weights.iter().sum()
+    }
+
+    /// `pieces` + 1 cuts at even sums of the weights, smoothed.
+    pub fn cut(&self, pieces: usize) -> Vec<f64> {
+        let total = self.total();
+        let mut cuts = Vec::with_capacity(pieces + 1);
+        let (mut k, mut before) = (0, 0.0);
+        for i in 0..=pieces {
+            let target = total * i as f64 / pieces as f64;
+            while k + 1 < self.weights.len() && before + self.weights[k] < target {
+                before += self.weights[k];
+                k += 1;
+            }
+            let share = ((target - before) / self.weights[k]).clamp(0.0, 1.0);
+            cuts.push(self.cuts[k] + (self.cuts[k + 1] - self.cuts[k]) * share);
+        }
+        for _ in 0..SMOOTHING {
+            let old = cuts.clone();
+            for i in 1..pieces {
+                cuts[i] = 0.25 * (old[i - 1] + 2.0 * old[i] + old[i + 1]);
+            }
+        }
+        cuts
+    }
+}
+
+/// Index of the last point that one parabola reaches from `start` within the tolerance; at least the next.
+fn farthest(points: &[Point], lengths: &[f64], start: usize, tolerance: f64) -> usize {
+    let last = points.len() - 1;
+    let fits = |end: usize| parabola_error(&points[start..=end], &lengths[start..=end]) <= tolerance;
+    grow(start, last, 4, |good| 1 + (good - start) / 32, fits)
+}
+
+/// Largest distance across the curve from the least-squares parabola in arc length.
+fn parabola_error(points: &[Point], lengths: &[f64]) -> f64 {
+    let (n, first) = (points.len(), lengths[0]);
+    let span = lengths[n - 1] - first;
+    if n < 4 || span <= 0.0 {
+        return 0.0;
+    }
+    let at = |j: usize| 2.0 * (lengths[j] - first) / span - 1.0;
+    let (mut m, mut sums) = ([0.0; 5], [Point::ZERO; 3]);
+    for j in 0..n {
+        let s = at(j);
+        let powers = [1.0, s, s * s];
+        for (i, power) in powers.into_iter().enumerate() {
+            m[i] += power;
+            sums[i] += power * (points[j] - points[0]);
+        }
+        m[3] += powers[2] * s;
+        m[4] += powers[2] * powers[2];
+    }
+    let Some([c0, c1, c2]) = solve(m, sums) else { return 0.0 };
+    (0..n).fold(0.0, |worst: f64, j| {
+        let s = at(j);
+        let error = c0 + (c1 + c2 * s) * s - (points[j] - points[0]);
+        let across = (c1 + 2.0 * s * c2).normalize_or_zero();
+        worst.max(if across == Point::ZERO { error.length() } else { across.perp_dot(error).abs() })
+    })
+}
+
+/// Solves the moment equations of a quadratic by elimination.
+fn solve(m: [f64; 5], sums: [Point; 3]) -> Option<[Point; 3]> {
+    let mut a = [[m[0], m[1], m[2]], [m[1], m[2], m[3]], [m[2], m[3], m[4]]];
+    let mut b = sums;
+    for k in 0..3 {
+        if a[k][k].abs() <= 1e-12 * m[0] {
+            return None;
+        }
+        for i in k + 1..3 {
+            let factor = a[i][k] / a[k][k];
+            for j in k..3 {
+                a[i][j] -= factor * a[k][j];
+            }
+            let by = b[k] * factor;
+            b[i] -= by;
+        }
+    }
+    let c2 = b[2] / a[2][2];
+    let c1 = (b[1] - c2 * a[1][2]) / a[1][1];
+    Some([(b[0] - c1 * a[0][1] - c2 * a[0][2]) / a[0][0], c1, c2])
+}

@@ -1,0 +1,435 @@
+//! A picture from a file: PNG, JPEG, TIFF, BMP, WebP or OpenEXR, told by its content, not by its name.
+//!
+//! Whatever the file holds becomes three channels, sRGB-encoded, 0 to 1:
+//!
+//! - **Whole numbers** (1 to 16 bits a channel, grey, palette, colour, CMYK) are taken as sRGB-encoded.
+//! - **Floats** (OpenEXR, float TIFF) are light: they are encoded, and cut to 0 to 1. What is not a number is black.
+//! - **Transparency** is laid over a mid grey, sRGB-encoded 0.5. Ink may be black or white; on white or black paper the
+//!   one or the other would vanish, on grey both keep their edges. Whole numbers are mixed as encoded values, as
+//!   painting programs mix their antialiased edges; OpenEXR holds light multiplied by alpha and is mixed as light.
+//! - **Animations** (PNG, WebP) give their first frame.
+//!
+//! Limits: colour profiles and gamma chunks are not applied, nor is the orientation that cameras note. TIFF with a
+//! palette and OpenEXR without R, G and B channels are refused by the decoder, with its reason. A picture may take
+//! 2 GiB at most while it is decoded.
+
+use super::colour::{decode as to_light, encode};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use rototoon_base::scene::{Colour, Raster};
+use std::fs::File;
+use std::io::{self, BufReader};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+/// What transparent pixels are laid over, sRGB-encoded.
+pub const BACKDROP: f32 = 0.5;
+
+/// Most bytes that decoding may take.
+const MOST_BYTES: u64 = 2 << 30;
+
+/// Why a file gives no picture.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DecodeError {
+    /// There is no such file.
+    #[error("no such file")]
+    Missing,
+    /// The file is no picture that can be read: what the decoder or the system said.
+    #[error("{0}")]
+    Unreadable(String),
+    /// The picture is not of the size asked for.
+    #[error("the picture is {width}x{height} pixels")]
+    WrongSize {
+        /// Width of the picture in the file.
+        width: usize,
+        /// Height of the picture in the file.
+        height: usize,
+    },
+}
+
+impl From<io::Error> for DecodeError {
+    fn from(error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::NotFound => Self::Missing,
+            _ => Self::Unreadable(error.to_string()),
+        }
+    }
+}
+
+impl From<image::ImageError> for DecodeError {
+    fn from(error: image::ImageError) -> Self {
+        Self::Unreadable(error.to_string())
+    }
+}
+
+/// Width and height of the picture in a file, in pixels. Reads no more than the file's head.
+pub fn probe(path: &Path) -> Result<(usize, usize), DecodeError> {
+    guarded(|| {
+        let (width, height) = open(path)?.into_dimensions()?;
+        Ok((width as usize, height as usize))
+    })
+}
+
+/// The picture in a file; of another size than `expected`, if one is given, it is an error and not decoded.
+pub fn decode(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<Colour>, DecodeError> {
+    decoded(path, expected, colours)
+}
+
+/// The picture in a file with its transparency: light, not cut, multiplied by alpha, and alpha. What is not a number is
+/// 0, what is infinite the largest number there is. Errors as with [`decode`].
+pub fn decode_layer(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<[f32; 4]>, DecodeError> {
+    decoded(path, expected, layer)
+}
+
+/// A file's pixels, made from what the decoder gives and whether that is multiplied by alpha.
+fn decoded<T: Copy>(
+    path: &Path,
+    expected: Option<(usize, usize)>,
+    pixels: impl FnOnce(DynamicImage, bool) -> Vec<T>,
+) -> Result<Raster<T>, DecodeError> {
+    guarded(|| {
+        let reader = open(path)?;
+        let multiplied = reader.format() == Some(ImageFormat::OpenExr);
+        let decoder = reader.into_decoder()?;
+        let (width, height) = decoder.dimensions();
+        let (width, height) = (width as usize, height as usize);
+        if expected.is_some_and(|size| size != (width, height)) {
+            return Err(DecodeError::WrongSize { width, height });
+        }
+        if decoder.total_bytes() > MOST_BYTES {
+            let reason =
+                format!("{width}x{height} pixels take {} bytes, more than {MOST_BYTES}", decoder.total_bytes());
+            return Err(DecodeError::Unreadable(reason));
+        }
+        let pixels = pixels(DynamicImage::from_decoder(decoder)?, multiplied);
+        Raster::from_vec(width, height, pixels)
+            .ok_or_else(|| DecodeError::Unreadable(format!("fewer pixels than {width}x{height}")))
+    })
+}
+
+/// A file opened, its format found.
+fn open(path: &Path) -> Result<ImageReader<BufReader<File>>, DecodeError> {
+    let file = File::open(path)?;
+    if file.metadata()?.is_dir() {
+        return Err(DecodeError::Unreadable("it is a folder".into()));
+    }
+    let mut reader = ImageReader::new(BufReader::new(file)).with_guessed_format()?;
+    if reader.format().is_none() {
+        return Err(DecodeError::Unreadable("not a PNG, JPEG, TIFF, BMP, WebP or OpenEXR picture".into()));
+    }
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MOST_BYTES);
+    reader.limits(limits);
+    Ok(reader)
+}
+
+/// A decoder that panics on a broken file is an error like any other.
+fn guarded<T>(work: impl FnOnce() -> Result<T, DecodeError>) -> Result<T, DecodeError> {
+    let failed = |_| Err(DecodeError::Unreadable("the decoder failed on it".into()));
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(failed)
+}
+
+/// The pixels as colours over the backdrop.
+fn colours(picture: DynamicImage, multiplied: bool) -> Vec<Colour> {
+    match picture {
+        DynamicImage::ImageLuma8(p) => whole::<1, _>(p.as_raw(), byte),
+        DynamicImage::ImageLumaA8(p) => whole::<2, _>(p.as_raw(), byte),
+        DynamicImage::ImageRgb8(p) => whole::<3, _>(p.as_raw(), byte),
+        DynamicImage::ImageRgba8(p) => whole::<4, _>(p.as_raw(), byte),
+        DynamicImage::ImageLuma16(p) => whole::<1, _>(p.as_raw(), word),
+        DynamicImage::ImageLumaA16(p) => whole::<2, _>(p.as_raw(), word),
+        DynamicImage::ImageRgb16(p) => whole::<3, _>(p.as_raw(), word),
+        DynamicImage::ImageRgba16(p) => whole::<4, _>(p.as_raw(), word),
+        DynamicImage::ImageRgb32F(p) => p.pixels().map(|p| p.0.map(encoded)).collect(),
+        other => other.to_rgba32f().pixels().map(|p| light_over(p.0, multiplied)).collect(),
+    }
+}
+
+/// The pixels as light multiplied by alpha, and alpha.
+fn layer(picture: DynamicImage, multiplied: bool) -> Vec<[f32; 4]> {
+    let light = matches!(picture, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
+    let number = |v: f32| if v.is_nan() { 0.0 } else { v.clamp(f32::MIN, f32::MAX) };
+    let pixel = |pixel: [f32; 4]| {
+        let [r, g, b, alpha] = pixel.map(number);
+        let alpha = alpha.clamp(0.0, 1.0);
+        let own = if multiplied { 1.0 } else { alpha };
+        let [r, g, b] = [r, g, b].map(|v| own * if light { v } else { to_light(v) });
+        [r, g, b, alpha]
+    };
+    picture.into_rgba32f().pixels().map(|p| pixel(p.0)).collect()
+}
+
+fn byte(v: u8) -> f32 {
+    v as f32 / 255.0
+}
+
+fn word(v: u16) -> f32 {
+    v as f32 / 65535.0
+}
+
+/// Encoded values in groups of `N`: grey, grey and alpha, colour, colour and alpha.
+fn whole<const N: usize, V: Copy>(values: &[V], unit: impl Fn(V) -> f32) -> Vec<Colour> {
+    let over = |v: f32, alpha: f32| BACKDROP + alpha * (v - BACKDROP);
+    let (pixels, _) = values.as_chunks::<N>();
+    let colour = |pixel: &[V; N]| {
+        let v = pixel.map(&unit);
+        match N {
+            1 => [v[0]; 3],
+            2 => [over(v[0], v[1]); 3],
+            3 => [v[0], v[1], v[2]],
+            _ => [0, 1, 2].map(|c| over(v[c], v[3])),
+        }
+    };
+    pixels.iter().map(colour).collect()
+}
+
+/// Light with alpha over the backdrop, encoded.
+fn light_over([r, g, b, alpha]: [f32; 4], multiplied: bool) -> Colour {
+    let alpha = if alpha.is_nan() { 0.0 } else { alpha.clamp(0.0, 1.0) };
+    let own = if multiplied { 1.0 } else { alpha };
+    [r, g, b].map(|v| encoded(own * v + (1.0 - alpha) * to_light(BACKDROP)))
+}
+
+/// Light encoded and cut to 0 to 1.
+fn encoded(light: f32) -> f32 {
+    if light.is_nan() { 0.0 } else { encode(light).clamp(0.0, 1.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{ExtendedColorType, ImageBuffer, Luma, LumaA, Rgb, Rgba};
+    use std::path::PathBuf;
+    use tempfile::TempDir;
+
+    fn folder() -> TempDir {
+        tempfile::tempdir().unwrap()
+    }
+
+    fn close(a: Colour, b: Colour, within: f32) -> bool {
+        a.iter().zip(b).all(|(a, b)| (a - b).abs() <= within)
+    }
+
+    /// Writes a picture of 5 × 4 pixels and reads it back.
+    fn there_and_back(name: &str, picture: impl Into<DynamicImage>) -> Raster<Colour> {
+        let folder = folder();
+        let path = folder.path().join(name);
+        picture.into().save(&path).unwrap();
+        assert_eq!(probe(&path), Ok((5, 4)));
+        let read = decode(&path, Some((5, 4))).unwrap();
+        assert_eq!((read.width(), read.height()), (5, 4));
+        read
+    }
+
+    fn shade(x: u32, y: u32) -> [u8; 3] {
+        [(x * 50) as u8, (y * 60) as u8, 130]
+    }
+
+    #[test]
+    fn colours_of_every_8_bit_format() {
+        let picture = || ImageBuffer::from_fn(5, 4, |x, y| Rgb(shade(x, y)));
+        for name in ["a.png", "a.tiff", "a.tif", "a.bmp", "a.webp"] {
+            let read = there_and_back(name, picture());
+            for (x, y, p) in picture().enumerate_pixels() {
+                assert_eq!(read.get(x as usize, y as usize), p.0.map(|v| v as f32 / 255.0), "{name}");
+            }
+        }
+        let flat = there_and_back("a.jpg", ImageBuffer::from_pixel(5, 4, Rgb([200u8, 30, 90])));
+        assert!(close(flat.get(2, 2), [200.0, 30.0, 90.0].map(|v| v / 255.0), 0.02), "{:?}", flat.get(2, 2));
+    }
+
+    #[test]
+    fn grey_and_16_bits() {
+        for name in ["a.png", "a.tiff"] {
+            let grey = there_and_back(name, ImageBuffer::from_fn(5, 4, |x, _| Luma([(x * 9000) as u16])));
+            assert_eq!(grey.get(3, 1), [27000.0 / 65535.0; 3], "{name}");
+            let deep = there_and_back(name, ImageBuffer::from_fn(5, 4, |x, y| Rgb([x as u16, 65535, 256 * y as u16])));
+            assert_eq!(deep.get(3, 1), [3.0 / 65535.0, 1.0, 256.0 / 65535.0], "{name}");
+        }
+        for name in ["a.png", "a.tiff", "a.bmp", "a.jpg"] {
+            let grey = there_and_back(name, ImageBuffer::from_pixel(5, 4, Luma([77u8])));
+            assert!(close(grey.get(4, 3), [77.0 / 255.0; 3], 0.01), "{name}");
+        }
+    }
+
+    #[test]
+    fn transparency_shows_the_backdrop() {
+        let alphas = [0u8, 255, 51];
+        for name in ["a.png", "a.tiff", "a.webp"] {
+            let ink = |x: u32| Rgba([0, 255, 255, alphas[x as usize % 3]]);
+            let read = there_and_back(name, ImageBuffer::from_fn(5, 4, |x, _| ink(x)));
+            assert!(close(read.get(0, 0), [0.5; 3], 1e-6), "{name}");
+            assert!(close(read.get(1, 0), [0.0, 1.0, 1.0], 1e-6), "{name}");
+            assert!(close(read.get(2, 0), [0.4, 0.6, 0.6], 1e-6), "{name}");
+        }
+        let read = there_and_back("a.png", ImageBuffer::from_pixel(5, 4, LumaA([65535u16, 13107])));
+        assert!(close(read.get(0, 0), [0.6; 3], 1e-6));
+    }
+
+    #[test]
+    fn light_is_encoded() {
+        let light = [0.0, 0.214_041_14, 7.0];
+        for name in ["a.exr", "a.tiff"] {
+            let read = there_and_back(name, ImageBuffer::from_pixel(5, 4, Rgb(light)));
+            assert!(close(read.get(1, 1), [0.0, 0.5, 1.0], 1e-4), "{name}: {:?}", read.get(1, 1));
+        }
+        let read = there_and_back("a.exr", ImageBuffer::from_pixel(5, 4, Rgba([f32::NAN, f32::INFINITY, -1.0, 1.0])));
+        assert_eq!(read.get(1, 1), [0.0, 1.0, 0.0]);
+    }
+
+    #[test]
+    fn layers_keep_transparency_and_light_above_one() {
+        let layer = |name: &str, image: DynamicImage| {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join(name);
+            image.save(&path).unwrap();
+            decode_layer(&path, Some((3, 1))).unwrap().data().to_vec()
+        };
+        let near = |pixels: &[[f32; 4]], wanted: [[f32; 4]; 3]| {
+            let off = pixels.iter().flatten().zip(wanted.iter().flatten()).map(|(a, b)| (a - b).abs());
+            assert!(off.fold(0.0, f32::max) < 1e-6, "{pixels:?} {wanted:?}");
+        };
+        let inks = [Rgba([0u8, 255, 51, 255]), Rgba([255, 255, 255, 51]), Rgba([255, 0, 0, 0])];
+        let png = ImageBuffer::from_fn(3, 1, |x, _| inks[x as usize]);
+        near(
+            &layer("a.png", DynamicImage::ImageRgba8(png)),
+            [[0.0, 1.0, to_light(0.2), 1.0], [0.2, 0.2, 0.2, 0.2], [0.0; 4]],
+        );
+        let lights = [Rgba([4.0f32, 0.5, f32::NAN, 1.0]), Rgba([0.25, 0.0, 0.0, 0.5]), Rgba([0.0; 4])];
+        let exr = ImageBuffer::from_fn(3, 1, |x, _| lights[x as usize]);
+        near(&layer("a.exr", DynamicImage::ImageRgba32F(exr)), [[4.0, 0.5, 0.0, 1.0], [0.25, 0.0, 0.0, 0.5], [0.0; 4]]);
+    }
+
+    #[test]
+    fn exr_is_multiplied_by_alpha_already() {
+        let half = to_light(0.5);
+        let read = there_and_back("a.exr", ImageBuffer::from_pixel(5, 4, Rgba([0.5 * half, 0.0, 0.5, 0.5f32])));
+        let want = [0.5, encode(0.5 * half), encode(0.5 + 0.5 * half)];
+        assert!(close(read.get(1, 1), want, 1e-4), "{:?} {want:?}", read.get(1, 1));
+        let clear = there_and_back("a.exr", ImageBuffer::from_pixel(5, 4, Rgba([0.0, 0.0, 0.0, 0.0f32])));
+        assert!(close(clear.get(1, 1), [0.5; 3], 1e-4));
+    }
+
+    /// PNG's check sum of a chunk, bit by bit.
+    fn crc(bytes: &[u8]) -> u32 {
+        !bytes.iter().fold(!0u32, |sum, &byte| {
+            (0..8).fold(sum ^ byte as u32, |s, _| if s & 1 == 1 { (s >> 1) ^ 0xEDB8_8320 } else { s >> 1 })
+        })
+    }
+
+    fn chunk(kind: &[u8; 4], data: &[u8]) -> Vec<u8> {
+        let body = [kind.as_slice(), data].concat();
+        [&(data.len() as u32).to_be_bytes()[..], &body, &crc(&body).to_be_bytes()].concat()
+    }
+
+    /// A zlib stream that stores its bytes as they are.
+    fn stored(bytes: &[u8]) -> Vec<u8> {
+        let len = bytes.len() as u16;
+        let (a, b) = bytes.iter().fold((1u32, 0u32), |(a, b), &v| {
+            let a = (a + v as u32) % 65521;
+            (a, (b + a) % 65521)
+        });
+        let head = [0x78, 0x01, 1];
+        [&head[..], &len.to_le_bytes(), &(!len).to_le_bytes(), bytes, &((b << 16) | a).to_be_bytes()].concat()
+    }
+
+    /// A PNG by hand: `rows` are filter byte and packed pixels; `extra` chunks come before and after the picture data.
+    fn png(size: [u32; 2], bits: u8, kind: u8, before: &[Vec<u8>], rows: &[u8], after: &[Vec<u8>]) -> Vec<u8> {
+        let header = [&size[0].to_be_bytes()[..], &size[1].to_be_bytes(), &[bits, kind, 0, 0, 0]].concat();
+        let mut all = b"\x89PNG\r\n\x1a\n".to_vec();
+        all.extend(chunk(b"IHDR", &header));
+        all.extend(before.concat());
+        all.extend(chunk(b"IDAT", &stored(rows)));
+        all.extend(after.concat());
+        all.extend(chunk(b"IEND", &[]));
+        all
+    }
+
+    fn file(folder: &TempDir, name: &str, bytes: &[u8]) -> PathBuf {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    }
+
+    #[test]
+    fn one_bit_and_palette_png() {
+        let folder = folder();
+        let bits = png([10, 2], 1, 0, &[], &[0, 0b1010_0000, 0b0100_0000, 0, 0, 0], &[]);
+        let read = decode(&file(&folder, "bits.png", &bits), Some((10, 2))).unwrap();
+        let white: Vec<usize> = (0..10).filter(|&x| read.get(x, 0) == [1.0; 3]).collect();
+        assert_eq!(white, [0, 2, 9]);
+        assert!(read.row(1).iter().all(|&c| c == [0.0; 3]));
+
+        // Two bits a pixel, four colours, the last of them transparent.
+        let palette = [chunk(b"PLTE", &[0, 0, 0, 255, 0, 0, 0, 255, 0, 9, 9, 9]), chunk(b"tRNS", &[255, 255, 255, 0])];
+        let indexed = png([4, 1], 2, 3, &palette, &[0, 0b00_01_10_11], &[]);
+        let read = decode(&file(&folder, "palette.png", &indexed), None).unwrap();
+        assert_eq!(read.row(0), [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5; 3]]);
+    }
+
+    #[test]
+    fn first_frame_of_an_animated_png() {
+        let control = |sequence: u32| {
+            let size = [&sequence.to_be_bytes()[..], &2u32.to_be_bytes(), &1u32.to_be_bytes(), &[0; 8]].concat();
+            chunk(b"fcTL", &[&size[..], &[0, 1, 0, 10, 0, 0]].concat())
+        };
+        let animation = chunk(b"acTL", &[0, 0, 0, 2, 0, 0, 0, 0]);
+        let second = chunk(b"fdAT", &[&2u32.to_be_bytes()[..], &stored(&[0, 255, 255])].concat());
+        let bytes = png([2, 1], 8, 0, &[animation, control(0)], &[0, 51, 102], &[control(1), second]);
+        let folder = folder();
+        let read = decode(&file(&folder, "a.png", &bytes), Some((2, 1))).unwrap();
+        assert_eq!(read.row(0), [[0.2; 3], [0.4; 3]]);
+    }
+
+    #[test]
+    fn first_frame_of_an_animated_webp() {
+        let folder = folder();
+        let still = |value: u8| {
+            let mut bytes = Vec::new();
+            let encoder = image::codecs::webp::WebPEncoder::new_lossless(&mut bytes);
+            encoder.encode(&[value; 6], 2, 1, ExtendedColorType::Rgb8).unwrap();
+            bytes[12..].to_vec()
+        };
+        let riff = |kind: &[u8; 4], data: &[u8]| [&kind[..], &(data.len() as u32).to_le_bytes(), data].concat();
+        let frame =
+            |value| riff(b"ANMF", &[&[0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 100, 0, 0, 0][..], &still(value)].concat());
+        let head = riff(b"VP8X", &[2, 0, 0, 0, 1, 0, 0, 0, 0, 0]);
+        let body = [b"WEBP".to_vec(), head, riff(b"ANIM", &[0; 6]), frame(51), frame(204)].concat();
+        let read = decode(&file(&folder, "a.webp", &riff(b"RIFF", &body)), Some((2, 1))).unwrap();
+        assert!(close(read.get(0, 0), [0.2; 3], 0.01), "{:?}", read.get(0, 0));
+    }
+
+    #[test]
+    fn the_content_counts_not_the_name() {
+        let folder = folder();
+        let path = folder.path().join("a.png");
+        let picture = ImageBuffer::from_pixel(1, 1, Rgb([255u8, 0, 0]));
+        picture.save_with_format(&path, ImageFormat::Bmp).unwrap();
+        assert_eq!(decode(&path, None).unwrap().data(), [[1.0, 0.0, 0.0]]);
+    }
+
+    #[test]
+    fn errors_say_what_is_wrong() {
+        let folder = folder();
+        assert_eq!(probe(&folder.path().join("none.png")), Err(DecodeError::Missing));
+        assert_eq!(decode(&folder.path().join("none.png"), None), Err(DecodeError::Missing));
+        let reason = |bytes: &[u8]| match decode(&file(&folder, "a.png", bytes), None) {
+            Err(DecodeError::Unreadable(reason)) => reason,
+            other => panic!("{other:?}"),
+        };
+        assert!(reason(b"").contains("not a PNG"));
+        assert!(reason(b"a text, not a picture").contains("not a PNG"));
+        let whole = png([4, 1], 8, 0, &[], &[0, 1, 2, 3, 4], &[]);
+        assert!(!reason(&whole[..30]).is_empty());
+        assert!(!reason(&whole[..50]).is_empty());
+        let path = file(&folder, "b.png", &whole);
+        assert_eq!(decode(&path, Some((4, 2))), Err(DecodeError::WrongSize { width: 4, height: 1 }));
+        assert!(matches!(decode(folder.path(), None), Err(DecodeError::Unreadable(_))));
+    }
+
+    #[test]
+    fn a_small_file_that_claims_to_be_huge_is_refused() {
+        let folder = folder();
+        let bytes = png([60000, 60000], 16, 6, &[], &[0], &[]);
+        assert!(matches!(decode(&file(&folder, "a.png", &bytes), None), Err(DecodeError::Unreadable(_))));
+    }
+}

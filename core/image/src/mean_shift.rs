@@ -1,0 +1,532 @@
+//! The mean-shift filter, which flattens colours and keeps edges.
+//!
+//! Every pixel starts a walk in position and colour together: it moves to the mean place and the mean colour of the
+//! pixels in the window around it whose colour is nearer than the range, again and again until it stands still, and
+//! takes the colour where it ends (Comaniciu & Meer, "Mean shift: a robust approach toward feature space analysis",
+//! PAMI 2002, §3 and filtering of §4.1, with the flat kernel). Paint and compression noise go, ink stays.
+//!
+//! **From coarse to fine.** The walk is done on a picture halved `levels` times; the result is enlarged, and on the
+//! next finer level only the pixels near a colour border are walked again: inside a flat colour the enlarged result is
+//! right already. Steps, rounding and stopping rule are those of OpenCV's `pyrMeanShiftFiltering`, so that its
+//! parameters (`sp`, `sr`, `maxLevel`) mean the same here. Three things differ: the pixels near a colour border are the
+//! same number to each side of it, those at the border of the picture are among them, and on a coarser level the
+//! halved radius is rounded once, so that all windows are of one size.
+//!
+//! **Speed.** The colours are whole numbers of 8 bits in three planes of `i16` with a frame of a colour that is far
+//! from every other. So a window is whole rows of 16 pixels without any test for the picture's border, and its sums
+//! are lanes of 16-bit integers: exact, in any order. Rows of the picture are independent and run in parallel.
+//!
+//! Limits: colours are rounded to 8 bits, values outside 0 to 1 are cut; the range is at most 100 levels and the
+//! spatial radius at most 60 pixels (16 bits hold no more), larger ones are cut.
+
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSlice, ParallelSliceMut};
+use rototoon_base::numeric::vector::vectorised;
+use rototoon_base::scene::{Colour, Raster};
+
+/// How to filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeanShiftOptions {
+    /// Half the window's side in pixels, 1 to 60: the window has 2 · `radius` + 1 pixels a side.
+    pub radius: usize,
+    /// Largest Euclidean distance of colours that count as near, in 8-bit levels, 0 to 100.
+    pub range: usize,
+    /// How often the picture is halved first; 0 walks every pixel at full size.
+    pub levels: usize,
+    /// Largest number of steps of a walk.
+    pub steps: usize,
+}
+
+impl Default for MeanShiftOptions {
+    /// Radius 5, range 20, one halving, 5 steps: OpenCV's defaults for the last two.
+    fn default() -> Self {
+        Self { radius: 5, range: 20, levels: 1, steps: 5 }
+    }
+}
+
+/// A colour of 8-bit levels.
+type Levels = [u8; 3];
+
+/// Sum of steps, squared in colour and plain in position, at which a walk has come to rest.
+const REST: i32 = 1;
+
+/// The least squared distance that makes a colour border between neighbours of the coarser level.
+const LEAST_BORDER: i32 = 16;
+
+/// The picture filtered, at 8 bits a channel.
+pub fn mean_shift(picture: &Raster<Colour>, options: &MeanShiftOptions) -> Raster<Colour> {
+    let round = |v: f32| (255.0 * v.clamp(0.0, 1.0) + 0.5) as i32 as u8;
+    let levels = converted(picture, round);
+    converted(&mean_shift_levels(&levels, options), |v| v as f32 / 255.0)
+}
+
+/// Every channel of every pixel converted.
+fn converted<A, B>(picture: &Raster<[A; 3]>, convert: impl Fn(A) -> B + Sync) -> Raster<[B; 3]>
+where
+    A: Copy + Sync,
+    B: Copy + Default + Send,
+{
+    let mut out = Raster::new(picture.width(), picture.height(), [B::default(); 3]);
+    let pieces = out.data_mut().par_chunks_mut(PIECE).zip(picture.data().par_chunks(PIECE));
+    pieces.for_each(|(out, pixels)| {
+        vectorised(
+            #[inline(always)]
+            || {
+                for (out, &value) in out.as_flattened_mut().iter_mut().zip(pixels.as_flattened()) {
+                    *out = convert(value);
+                }
+            },
+        );
+    });
+    out
+}
+
+/// The picture of 8-bit levels filtered.
+pub fn mean_shift_levels(picture: &Raster<Levels>, options: &MeanShiftOptions) -> Raster<Levels> {
+    if picture.data().is_empty() {
+        return picture.clone();
+    }
+    let mut halves: Vec<Raster<Levels>> = Vec::new();
+    while halves.len() < options.levels {
+        let last = halves.last().unwrap_or(picture);
+        if last.width() < 2 || last.height() < 2 {
+            break;
+        }
+        let half = halve(last);
+        halves.push(half);
+    }
+    let range = options.range.min(100) as i32;
+    let walk = |level: usize, source| {
+        let radius = (options.radius as f64 / (1u64 << level.min(60)) as f64).round_ties_even() as usize;
+        Walk::new(source, radius.clamp(1, 60), range, options.steps)
+    };
+    let top = halves.len();
+    let mut result = walk(top, halves.last().unwrap_or(picture)).filter(None);
+    for level in (0..top).rev() {
+        let source = if level == 0 { picture } else { &halves[level - 1] };
+        let near = near_borders(&result, source.width(), source.height(), range);
+        let enlarged = double(&result, source.width(), source.height());
+        result = walk(level, source).filter(Some((enlarged, &near)));
+    }
+    result
+}
+
+/// Pixels that one task converts.
+const PIECE: usize = 1 << 14;
+
+/// Pixels in a lane group.
+const LANES: usize = 16;
+
+/// A value that is far from every colour, however far the range reaches.
+const FAR: i16 = -1000;
+
+/// A picture made ready for walks.
+struct Walk<'a> {
+    source: &'a Raster<Levels>,
+    planes: [Vec<i16>; 3],
+    stride: usize,
+    radius: usize,
+    range: i32,
+    steps: usize,
+}
+
+/// What the near pixels of a window sum to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Sums {
+    count: i32,
+    colour: [i32; 3],
+    /// Relative to the window's left column.
+    x: i32,
+    /// Relative to the window's top row.
+    y: i32,
+}
+
+impl<'a> Walk<'a> {
+    fn new(source: &'a Raster<Levels>, radius: usize, range: i32, steps: usize) -> Self {
+        let groups = (2 * radius + 1).div_ceil(LANES);
+        let stride = source.width() + groups * LANES;
+        let mut planes = [0, 1, 2].map(|_| vec![FAR; stride * (source.height() + 2 * radius)]);
+        for y in 0..source.height() {
+            for (x, colour) in source.row(y).iter().enumerate() {
+                for (plane, &value) in planes.iter_mut().zip(colour) {
+                    plane[(y + radius) * stride + x + radius] = value as i16;
+                }
+            }
+        }
+        Self { source, planes, stride, radius, range, steps }
+    }
+
+    /// Walks from every pixel, or only from those marked, the others keeping the colour given.
+    fn filter(&self, known: Option<(Raster<Levels>, &Raster<bool>)>) -> Raster<Levels> {
+        let (mut out, marked) = match known {
+            Some((colours, marked)) => (colours, Some(marked)),
+            None => (self.source.clone(), None),
+        };
+        out.data_mut().par_chunks_mut(self.source.width()).enumerate().for_each(|(y, row)| {
+            vectorised(
+                #[inline(always)]
+                || {
+                    for (x, colour) in row.iter_mut().enumerate() {
+                        if marked.is_none_or(|marked| marked.get(x, y)) {
+                            *colour = self.end_of(x, y);
+                        }
+                    }
+                },
+            );
+        });
+        out
+    }
+
+    /// The colour where the walk from a pixel ends.
+    #[inline(always)]
+    fn end_of(&self, x: usize, y: usize) -> Levels {
+        let (mut x, mut y) = (x as i32, y as i32);
+        let mut colour = self.source.get(x as usize, y as usize).map(i32::from);
+        for _ in 0..self.steps {
+            let sums = self.window(x as usize, y as usize, colour);
+            if sums.count == 0 {
+                break;
+            }
+            let share = 1.0 / sums.count as f64;
+            let mean = |sum: i32| (sum as f64 * share).round_ties_even() as i32;
+            // Means are rounded as places in the picture: a half goes to the even one.
+            let from_window = |sum: i32, at: i32| mean(sum + sums.count * (at - self.radius as i32));
+            let (to_x, to_y) = (from_window(sums.x, x), from_window(sums.y, y));
+            let to = sums.colour.map(mean);
+            let moved = (to_x - x).abs() + (to_y - y).abs();
+            let changed: i32 = to.iter().zip(colour).map(|(a, b)| (a - b) * (a - b)).sum();
+            (x, y, colour) = (to_x, to_y, to);
+            if moved == 0 || moved + changed <= REST {
+                break;
+            }
+        }
+        colour.map(|v| v as u8)
+    }
+
+    /// Sums over the pixels around (`x`, `y`) that are near to `colour`.
+    #[inline(always)]
+    fn window(&self, x: usize, y: usize, colour: [i32; 3]) -> Sums {
+        let side = 2 * self.radius + 1;
+        let colour = colour.map(|v| v as i16);
+        let mut sums = Sums::default();
+        for start in (0..side).step_by(LANES) {
+            let lanes = LaneSums::over(self, y * self.stride + x + start, side.min(start + LANES) - start, colour);
+            lanes.add_to(&mut sums, start as i32);
+        }
+        sums
+    }
+}
+
+/// Sums of a column of lane groups, one a lane.
+#[derive(Default)]
+struct LaneSums {
+    count: [i16; LANES],
+    colour: [[i16; LANES]; 3],
+    y: [i16; LANES],
+}
+
+impl LaneSums {
+    /// Over `columns` columns from place `at` of the planes and all rows of the window. A lane sums at most 121 values
+    /// of 255, which 16 bits hold.
+    #[inline(always)]
+    fn over(walk: &Walk, at: usize, columns: usize, colour: [i16; 3]) -> Self {
+        let mut sums = Self::default();
+        let cap = (walk.range + 1) as i16;
+        let limit = (walk.range * walk.range) as i16;
+        let mut inside = [0i16; LANES];
+        inside[..columns].fill(-1);
+        for row in 0..2 * walk.radius + 1 {
+            let from = at + row * walk.stride;
+            let [p0, p1, p2] = [0, 1, 2].map(|c| &walk.planes[c][from..from + LANES]);
+            // Plain loops and choices: where little is optimised, as in tests, a range's steps and `min` are calls.
+            let mut i = 0;
+            while i < LANES {
+                // Distances are cut just beyond the range, so that three squares fit 16 bits.
+                let square = |v: i16, c: i16| {
+                    let d = if v > c { v - c } else { c - v };
+                    let d = if d < cap { d } else { cap };
+                    d * d
+                };
+                let distance = square(p0[i], colour[0]) + square(p1[i], colour[1]) + square(p2[i], colour[2]);
+                let near = inside[i] & -i16::from(distance <= limit);
+                sums.count[i] -= near;
+                sums.colour[0][i] += near & p0[i];
+                sums.colour[1][i] += near & p1[i];
+                sums.colour[2][i] += near & p2[i];
+                sums.y[i] += near & row as i16;
+                i += 1;
+            }
+        }
+        sums
+    }
+
+    #[inline(always)]
+    fn add_to(&self, sums: &mut Sums, start: i32) {
+        for i in 0..LANES {
+            let count = self.count[i] as i32;
+            sums.count += count;
+            sums.x += count * (start + i as i32);
+            sums.y += self.y[i] as i32;
+            for c in 0..3 {
+                sums.colour[c] += self.colour[c][i] as i32;
+            }
+        }
+    }
+}
+
+/// Burt & Adelson's kernel for a pyramid of pictures, times 16.
+const KERNEL: [i32; 5] = [1, 4, 6, 4, 1];
+
+/// The index mirrored at the border pixels.
+fn mirrored(index: isize, len: usize) -> usize {
+    super::gaussian::Border::Reflect101.index(index, len)
+}
+
+/// Half the size, rounded up, after the pyramid's kernel.
+fn halve(picture: &Raster<Levels>) -> Raster<Levels> {
+    let (width, height) = (picture.width(), picture.height());
+    let mut out = Raster::new(width.div_ceil(2), height.div_ceil(2), [0; 3]);
+    let small = out.width();
+    // Two pixels more at each end, mirrored.
+    let scratch = || vec![[0i32; 3]; width + 4];
+    out.data_mut().par_chunks_mut(small).enumerate().for_each_init(scratch, |sums, (y, out)| {
+        let rows = [-2, -1, 0, 1, 2].map(|k| picture.row(mirrored(2 * y as isize + k, height)).as_flattened());
+        vectorised(
+            #[inline(always)]
+            || {
+                let middle = &mut sums[2..width + 2];
+                for (i, sum) in middle.as_flattened_mut().iter_mut().enumerate() {
+                    *sum = (0..5).map(|k| KERNEL[k] * rows[k][i] as i32).sum();
+                }
+                for i in [-2, -1, width as isize, width as isize + 1] {
+                    sums[(i + 2) as usize] = sums[2 + mirrored(i, width)];
+                }
+                for (taps, out) in sums.windows(5).step_by(2).zip(out) {
+                    for c in 0..3 {
+                        let sum: i32 = (0..5).map(|k| KERNEL[k] * taps[k][c]).sum();
+                        out[c] = ((sum + 128) >> 8) as u8;
+                    }
+                }
+            },
+        );
+    });
+    out
+}
+
+/// The coarser row left of (or above), at and right of a finer one that lies on a coarse one; of one between two, the
+/// two, the first of them twice. With the kernel's weights, which sum to 8.
+fn taps(index: usize, coarse: usize) -> [(usize, i32); 3] {
+    let centre = (index / 2).min(coarse - 1);
+    let next = (centre + 1).min(coarse - 1);
+    if index % 2 == 1 {
+        return [(centre, 0), (centre, 4), (next, 4)];
+    }
+    [(mirrored(centre as isize - 1, coarse), 1), (centre, 6), (next, 1)]
+}
+
+/// Enlarged to the given size, twice its own or one less, by the pyramid's kernel.
+fn double(picture: &Raster<Levels>, width: usize, height: usize) -> Raster<Levels> {
+    let coarse = picture.width();
+    let mut out = Raster::new(width, height, [0; 3]);
+    // One pixel more at each end.
+    let scratch = || vec![[0i32; 3]; coarse + 2];
+    out.data_mut().par_chunks_mut(width).enumerate().for_each_init(scratch, |sums, (y, out)| {
+        let rows = taps(y, picture.height()).map(|(row, weight)| (picture.row(row).as_flattened(), weight));
+        vectorised(
+            #[inline(always)]
+            || {
+                let middle = &mut sums[1..=coarse];
+                for (i, sum) in middle.as_flattened_mut().iter_mut().enumerate() {
+                    *sum = rows.iter().map(|(row, weight)| weight * row[i] as i32).sum();
+                }
+                sums[0] = sums[1 + mirrored(-1, coarse)];
+                sums[coarse + 1] = sums[coarse];
+                for (near, pair) in sums.windows(3).zip(out.chunks_mut(2)) {
+                    for c in 0..3 {
+                        let on = near[0][c] + 6 * near[1][c] + near[2][c];
+                        let between = 4 * (near[1][c] + near[2][c]);
+                        for (out, sum) in pair.iter_mut().zip([on, between]) {
+                            out[c] = ((sum + 32) >> 6) as u8;
+                        }
+                    }
+                }
+            },
+        );
+    });
+    out
+}
+
+/// Which pixels of the finer level lie at a colour border of the coarser: around coarse pixels one of whose eight
+/// neighbours is as far as the range.
+fn near_borders(coarse: &Raster<Levels>, width: usize, height: usize, range: i32) -> Raster<bool> {
+    let limit = (range * range).max(LEAST_BORDER);
+    let mut marked = Raster::new(width, height, false);
+    for y in 0..coarse.height() {
+        for x in 0..coarse.width() {
+            // Each pair of neighbours once.
+            for (i, j) in [(x + 1, y), (x.wrapping_sub(1), y + 1), (x, y + 1), (x + 1, y + 1)] {
+                if i < coarse.width() && j < coarse.height() && distance(coarse.get(x, y), coarse.get(i, j)) >= limit {
+                    mark_around(&mut marked, 2 * x, 2 * y);
+                    mark_around(&mut marked, 2 * i, 2 * j);
+                }
+            }
+        }
+    }
+    marked
+}
+
+/// Squared Euclidean distance.
+fn distance(a: Levels, b: Levels) -> i32 {
+    (0..3).map(|c| (a[c] as i32 - b[c] as i32).pow(2)).sum()
+}
+
+/// Marks the finer pixel that a coarse pixel lies on, and its eight neighbours.
+fn mark_around(marked: &mut Raster<bool>, x: usize, y: usize) {
+    let columns = x.saturating_sub(1)..(x + 2).min(marked.width());
+    for j in y.saturating_sub(1)..(y + 2).min(marked.height()) {
+        marked.row_mut(j)[columns.clone()].fill(true);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A walk by the definition.
+    fn naive(picture: &Raster<Levels>, x: usize, y: usize, radius: usize, range: i32, steps: usize) -> Levels {
+        let (mut x, mut y, mut colour) = (x, y, picture.get(x, y));
+        for _ in 0..steps {
+            let mut near = Vec::new();
+            for j in y.saturating_sub(radius)..(y + radius + 1).min(picture.height()) {
+                for i in x.saturating_sub(radius)..(x + radius + 1).min(picture.width()) {
+                    if distance(picture.get(i, j), colour) <= range * range {
+                        near.push((i, j));
+                    }
+                }
+            }
+            if near.is_empty() {
+                break;
+            }
+            let mean = |f: &dyn Fn(&(usize, usize)) -> usize| {
+                (near.iter().map(f).sum::<usize>() as f64 * (1.0 / near.len() as f64)).round_ties_even() as usize
+            };
+            let to = (mean(&|p| p.0), mean(&|p| p.1));
+            let to_colour = [0, 1, 2].map(|c| mean(&|p| picture.get(p.0, p.1)[c] as usize) as u8);
+            let moved = to.0.abs_diff(x) + to.1.abs_diff(y);
+            let still = moved == 0 || moved as i32 + distance(to_colour, colour) <= 1;
+            (x, y, colour) = (to.0, to.1, to_colour);
+            if still {
+                break;
+            }
+        }
+        colour
+    }
+
+    /// Noise around few colours, so that windows are partly near.
+    fn pictures() -> impl Strategy<Value = Raster<Levels>> {
+        (1usize..26, 1usize..26, 1u8..60).prop_flat_map(|(w, h, noise)| {
+            let pixel = (prop::array::uniform3(0..noise), prop::sample::select(vec![[0u8, 0, 0], [120, 40, 190]]));
+            let pixel = pixel.prop_map(|(n, base)| [n[0] + base[0], n[1] + base[1], n[2] + base[2]]);
+            prop::collection::vec(pixel, w * h).prop_map(move |data| Raster::from_vec(w, h, data).unwrap())
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn equals_the_definition(
+            picture in pictures(), radius in 1usize..12, range in 0usize..101, steps in 0usize..6
+        ) {
+            let options = MeanShiftOptions { radius, range, levels: 0, steps };
+            let wanted = Raster::from_fn(picture.width(), picture.height(), |x, y| {
+                naive(&picture, x, y, radius, range as i32, steps)
+            });
+            prop_assert_eq!(mean_shift_levels(&picture, &options), wanted);
+        }
+
+        #[test]
+        fn finer_level_walks_at_borders_only(picture in pictures(), radius in 2usize..7, range in 1usize..40) {
+            let options = MeanShiftOptions { radius, range, levels: 1, steps: 5 };
+            prop_assume!(picture.width() > 1 && picture.height() > 1);
+            let half_radius = (radius as f64 / 2.0).round_ties_even() as usize;
+            let half = MeanShiftOptions { radius: half_radius, levels: 0, ..options };
+            let coarse = mean_shift_levels(&halve(&picture), &half);
+            let (w, h) = (picture.width(), picture.height());
+            let enlarged = double(&coarse, w, h);
+            let pixels = || (0..coarse.height()).flat_map(|y| (0..coarse.width()).map(move |x| (x, y)));
+            let limit = (range * range).max(16) as i32;
+            let borders: Vec<_> = pixels()
+                .filter(|&(x, y)| {
+                    pixels().any(|(i, j)| {
+                        i.abs_diff(x).max(j.abs_diff(y)) == 1 && distance(coarse.get(i, j), coarse.get(x, y)) >= limit
+                    })
+                })
+                .collect();
+            let wanted = Raster::from_fn(w, h, |x, y| {
+                if borders.iter().any(|(i, j)| (2 * i).abs_diff(x) <= 1 && (2 * j).abs_diff(y) <= 1) {
+                    naive(&picture, x, y, radius, range as i32, 5)
+                } else {
+                    enlarged.get(x, y)
+                }
+            });
+            prop_assert_eq!(mean_shift_levels(&picture, &options), wanted);
+        }
+
+        #[test]
+        fn halving_is_the_double_sum(picture in pictures()) {
+            let half = halve(&picture);
+            for y in 0..half.height() {
+                for x in 0..half.width() {
+                    let mut sum = 0;
+                    for j in 0..5 {
+                        for i in 0..5 {
+                            let column = mirrored((2 * x + i) as isize - 2, picture.width());
+                            let row = mirrored((2 * y + j) as isize - 2, picture.height());
+                            sum += KERNEL[i] * KERNEL[j] * picture.get(column, row)[1] as i32;
+                        }
+                    }
+                    prop_assert_eq!(half.get(x, y)[1] as i32, (sum + 128) / 256);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn doubling_keeps_slopes() {
+        let coarse = Raster::from_fn(8, 6, |x, y| [(20 * x) as u8, (20 * y) as u8, 77]);
+        let fine = double(&coarse, 15, 12);
+        for y in 2..10 {
+            for x in 2..13 {
+                assert_eq!(fine.get(x, y), [(10 * x) as u8, (10 * y) as u8, 77]);
+            }
+        }
+    }
+
+    #[test]
+    fn noise_goes_and_the_edge_stays() {
+        let noisy = Raster::from_fn(40, 30, |x, y| {
+            let noise = ((x * 7 + y * 13 + x * y) % 9) as u8;
+            if x < 20 { [30 + noise, 40, 60 + noise] } else { [200, 180 + noise, 90] }
+        });
+        let flat = mean_shift_levels(&noisy, &MeanShiftOptions::default());
+        let spread = |columns: std::ops::Range<usize>, c: usize| {
+            let values: Vec<_> =
+                columns.flat_map(|x| (0..30).map(move |y| (x, y))).map(|(x, y)| flat.get(x, y)[c]).collect();
+            values.iter().max().unwrap() - values.iter().min().unwrap()
+        };
+        assert!(spread(0..20, 0) <= 3, "{}", spread(0..20, 0));
+        assert!(spread(20..40, 1) <= 3, "{}", spread(20..40, 1));
+    }
+
+    #[test]
+    fn sizes_and_options_at_their_limits() {
+        for (w, h) in [(1, 1), (1, 9), (9, 1), (2, 2), (3, 5)] {
+            let picture = Raster::new(w, h, [9, 8, 7]);
+            for levels in [0, 1, 9] {
+                let options = MeanShiftOptions { radius: 1000, range: 1000, levels, steps: 5 };
+                assert_eq!(mean_shift_levels(&picture, &options), picture);
+            }
+        }
+        let empty = Raster::new(0, 3, [0.0; 3]);
+        assert_eq!(mean_shift(&empty, &MeanShiftOptions::default()), empty);
+    }
+}

@@ -1,0 +1,245 @@
+//! The pictures of a footage, decoded when they are asked for and kept for a while.
+//!
+//! Trackers ask for the same few frames again and again, and a sequence does not fit into memory: the pictures used
+//! last stay, up to a number of bytes. What a caller gets does not depend on what was kept. Decoding happens outside
+//! the lock, so that several threads decode at once; two that want the same picture at the same moment may both decode
+//! it, which costs time but can never deadlock within a pool of threads.
+
+use super::decode::{DecodeError, decode, decode_layer};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use rototoon_base::scene::{Colour, Footage, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Raster};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Bytes of pictures that a sequence keeps unless told otherwise.
+pub const KEPT_BYTES: usize = 256 << 20;
+
+/// A footage whose pictures are read from files.
+#[derive(Debug)]
+pub struct Sequence {
+    footage: Footage,
+    folder: PathBuf,
+    pattern: FramePattern,
+    kept: Mutex<Kept>,
+}
+
+impl Sequence {
+    /// The footage of a document that lies in `folder`. Reads no file. An error if the pattern is none.
+    pub fn new(footage: &Footage, folder: &Path) -> Result<Self, PatternError> {
+        Self::keeping(footage, folder, KEPT_BYTES)
+    }
+
+    /// As [`Sequence::new`], keeping pictures of at most `bytes` bytes; 0 keeps none.
+    pub fn keeping(footage: &Footage, folder: &Path, bytes: usize) -> Result<Self, PatternError> {
+        let pattern = FramePattern::parse(&footage.pattern)?;
+        let kept = Mutex::new(Kept { most: bytes, ..Kept::default() });
+        Ok(Self { footage: footage.clone(), folder: folder.into(), pattern, kept })
+    }
+
+    /// The footage.
+    pub fn footage(&self) -> &Footage {
+        &self.footage
+    }
+
+    /// Where a frame's file should be.
+    pub fn path(&self, frame: FrameNumber) -> PathBuf {
+        self.folder.join(self.pattern.path(frame))
+    }
+
+    /// Decodes frames in parallel, in their order; all pictures are in memory at once. Of several errors the one of the
+    /// earliest frame in the list.
+    pub fn pictures(&self, frames: &[FrameNumber]) -> Result<Vec<Arc<Raster<Colour>>>, FrameError> {
+        let results: Vec<_> = frames.par_iter().map(|&frame| self.picture(frame)).collect();
+        results.into_iter().collect()
+    }
+
+    /// Decodes frames in parallel so that they are at hand, in their order as many as are kept. Errors are not told:
+    /// who asks for the frame will meet them.
+    pub fn prefetch(&self, frames: &[FrameNumber]) {
+        let bytes = (self.footage.width * self.footage.height * size_of::<Colour>()).max(1);
+        let most = self.locked().most / bytes;
+        frames[..frames.len().min(most)].par_iter().for_each(|&frame| {
+            let _ = self.picture(frame);
+        });
+    }
+
+    /// Forgets the pictures kept, since files may have changed.
+    pub fn forget(&self) {
+        let mut kept = self.locked();
+        *kept = Kept { most: kept.most, ..Kept::default() };
+    }
+
+    /// A thread that panicked leaves the pictures as they should be: nothing panics between two changes.
+    fn locked(&self) -> std::sync::MutexGuard<'_, Kept> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A frame with its transparency, as [`decode_layer`] gives it; it is not kept.
+    pub fn layer(&self, frame: FrameNumber) -> Result<Raster<[f32; 4]>, FrameError> {
+        self.inside(frame)?;
+        self.read(frame, decode_layer)
+    }
+
+    fn inside(&self, frame: FrameNumber) -> Result<(), FrameError> {
+        let (first, last) = (self.footage.first, self.footage.last);
+        if (first..=last).contains(&frame) { Ok(()) } else { Err(FrameError::Outside { frame, first, last }) }
+    }
+
+    fn read<T>(
+        &self,
+        frame: FrameNumber,
+        decode: impl FnOnce(&Path, Option<(usize, usize)>) -> Result<T, DecodeError>,
+    ) -> Result<T, FrameError> {
+        let (width, height) = (self.footage.width, self.footage.height);
+        let path = self.path(frame);
+        decode(&path, Some((width, height))).map_err(|error| match error {
+            DecodeError::Missing => FrameError::Missing { frame, path },
+            DecodeError::Unreadable(reason) => FrameError::Unreadable { frame, path, reason },
+            DecodeError::WrongSize { width: found_width, height: found_height } => {
+                FrameError::WrongSize { frame, path, found_width, found_height, width, height }
+            }
+        })
+    }
+}
+
+impl FrameSource for Sequence {
+    fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
+        self.inside(frame)?;
+        if let Some(picture) = self.locked().get(frame) {
+            return Ok(picture);
+        }
+        let picture = Arc::new(self.read(frame, decode)?);
+        self.locked().put(frame, &picture);
+        Ok(picture)
+    }
+}
+
+/// The pictures used last.
+#[derive(Debug, Default)]
+struct Kept {
+    /// Each with the time of its last use.
+    pictures: BTreeMap<FrameNumber, (Arc<Raster<Colour>>, u64)>,
+    bytes: usize,
+    most: usize,
+    time: u64,
+}
+
+impl Kept {
+    fn get(&mut self, frame: FrameNumber) -> Option<Arc<Raster<Colour>>> {
+        self.time += 1;
+        let (picture, used) = self.pictures.get_mut(&frame)?;
+        *used = self.time;
+        Some(picture.clone())
+    }
+
+    /// Keeps a picture; those that were not used for longest make room. One that is too large by itself is not kept.
+    fn put(&mut self, frame: FrameNumber, picture: &Arc<Raster<Colour>>) {
+        let bytes = |picture: &Raster<Colour>| size_of_val(picture.data());
+        let own = bytes(picture);
+        if own > self.most || self.pictures.contains_key(&frame) {
+            return;
+        }
+        while self.bytes + own > self.most {
+            let oldest = self.pictures.iter().min_by_key(|(_, (_, used))| *used).map(|(&frame, _)| frame);
+            let Some((dropped, _)) = oldest.and_then(|frame| self.pictures.remove(&frame)) else { break };
+            self.bytes -= bytes(&dropped);
+        }
+        self.time += 1;
+        self.bytes += own;
+        self.pictures.insert(frame, (picture.clone(), self.time));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{ImageBuffer, Rgb};
+    use tempfile::TempDir;
+
+    /// Frames 1 to 6 of 4 × 3 pixels, each of a grey of its own.
+    fn footage() -> (TempDir, Footage) {
+        let folder = tempfile::tempdir().unwrap();
+        for frame in 1..=6u8 {
+            let picture = ImageBuffer::from_pixel(4, 3, Rgb([frame * 10; 3]));
+            picture.save(folder.path().join(format!("f{frame:03}.png"))).unwrap();
+        }
+        let footage = Footage { pattern: "f%03d.png".into(), first: 1, last: 6, fps: 25.0, width: 4, height: 3 };
+        (folder, footage)
+    }
+
+    const BYTES: usize = 4 * 3 * 12;
+
+    fn held(sequence: &Sequence) -> Vec<FrameNumber> {
+        let kept = sequence.locked();
+        assert_eq!(kept.bytes, kept.pictures.len() * BYTES);
+        kept.pictures.keys().copied().collect()
+    }
+
+    #[test]
+    fn pictures_come_in_their_order() {
+        let (folder, footage) = footage();
+        for bytes in [0, BYTES, 3 * BYTES, KEPT_BYTES] {
+            let sequence = Sequence::keeping(&footage, folder.path(), bytes).unwrap();
+            let pictures = sequence.pictures(&[5, 1, 6, 5]).unwrap();
+            let greys: Vec<_> = pictures.iter().map(|p| (p.get(3, 2)[1] * 255.0).round()).collect();
+            assert_eq!(greys, [50.0, 10.0, 60.0, 50.0]);
+        }
+    }
+
+    #[test]
+    fn pictures_used_last_are_kept() {
+        let (folder, footage) = footage();
+        let sequence = Sequence::keeping(&footage, folder.path(), 3 * BYTES + 1).unwrap();
+        for frame in [1, 2, 3, 1, 4] {
+            sequence.picture(frame).unwrap();
+        }
+        assert_eq!(held(&sequence), [1, 3, 4]);
+        let again = sequence.picture(3).unwrap();
+        std::fs::remove_file(folder.path().join("f003.png")).unwrap();
+        assert!(Arc::ptr_eq(&again, &sequence.picture(3).unwrap()));
+        sequence.forget();
+        assert_eq!(held(&sequence), [0; 0]);
+        assert!(matches!(sequence.picture(3), Err(FrameError::Missing { frame: 3, .. })));
+    }
+
+    #[test]
+    fn prefetch_stops_at_what_is_kept() {
+        let (folder, footage) = footage();
+        let sequence = Sequence::keeping(&footage, folder.path(), 2 * BYTES).unwrap();
+        sequence.prefetch(&[4, 9, 2, 3]);
+        assert_eq!(held(&sequence), [4]);
+        sequence.prefetch(&[2, 3, 5]);
+        assert_eq!(held(&sequence), [2, 3]);
+        let none = Sequence::keeping(&footage, folder.path(), 0).unwrap();
+        none.prefetch(&[1, 2]);
+        assert_eq!(held(&none), [0; 0]);
+    }
+
+    #[test]
+    fn errors_name_frame_and_file() {
+        let (folder, footage) = footage();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::remove_file(at("f002.png")).unwrap();
+        std::fs::write(at("f003.png"), "text").unwrap();
+        ImageBuffer::from_pixel(9, 3, Rgb([0u8; 3])).save(at("f004.png")).unwrap();
+        let sequence = Sequence::new(&footage, folder.path()).unwrap();
+        assert_eq!(sequence.picture(7), Err(FrameError::Outside { frame: 7, first: 1, last: 6 }));
+        assert_eq!(sequence.picture(2), Err(FrameError::Missing { frame: 2, path: at("f002.png") }));
+        let unreadable = sequence.picture(3).unwrap_err();
+        assert!(matches!(&unreadable, FrameError::Unreadable { frame: 3, path, .. } if *path == at("f003.png")));
+        let path = at("f004.png");
+        let wrong = FrameError::WrongSize { frame: 4, path, found_width: 9, found_height: 3, width: 4, height: 3 };
+        assert_eq!(sequence.picture(4), Err(wrong));
+        assert_eq!(sequence.pictures(&[1, 3, 2]), Err(unreadable));
+        assert!(Sequence::new(&Footage { pattern: "a.png".into(), ..footage }, folder.path()).is_err());
+    }
+
+    #[test]
+    fn an_absolute_pattern_forgets_the_folder() {
+        let (folder, footage) = footage();
+        let pattern = folder.path().join("f%03d.png").to_str().unwrap().to_owned();
+        let sequence = Sequence::new(&Footage { pattern, ..footage }, Path::new("elsewhere")).unwrap();
+        assert!(sequence.picture(1).is_ok());
+    }
+}

@@ -1,0 +1,150 @@
+//! Which part is in a pixel and how much of it, as Cryptomatte layers: any keyer that reads them gets each part's matte
+//! back by its name, exact at antialiased and overlapping borders.
+//!
+//! Of each pixel the parts are ranked by the area that they show. A rank is a pair of channels, the part's id and its
+//! coverage; two ranks make a layer `CryptoObject00`, `CryptoObject01`, … of red and green, blue and alpha. An id is the
+//! MurmurHash3_32 of the part's name, taken as the bits of a float; a hash whose exponent would be all zeros or all ones
+//! (denormal, infinite or no number) has the exponent's lowest bit turned over. The manifest, a JSON object of names and
+//! ids as eight hexadecimal digits, and the rules used stand in the file's header.
+//!
+//! There are six ranks, as is usual, and more where a pixel of the frame needs them: nothing is ever left out.
+//!
+//! J. Friedman, A. C. Jones: Fully automatic ID mattes with support for motion blur and transparency. SIGGRAPH posters,
+//! 2015. The Cryptomatte specification, version 1.2.
+
+use super::layers::{Attribute, Channel};
+use super::visible::{Share, Visible};
+use rototoon_base::scene::Scene;
+
+/// Name of the layers.
+pub const LAYER: &str = "CryptoObject";
+/// Least number of ranks.
+const RANKS: usize = 6;
+
+/// Two names have the same id and cannot be told apart.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("parts {first:?} and {second:?} have the same Cryptomatte id: expected another name for one of them")]
+pub struct SameId {
+    /// A part's name.
+    pub first: String,
+    /// Another's.
+    pub second: String,
+}
+
+/// MurmurHash3_32 with seed 0.
+pub fn murmur3(bytes: &[u8]) -> u32 {
+    let scrambled = |block: u32| block.wrapping_mul(0xcc9e_2d51).rotate_left(15).wrapping_mul(0x1b87_3593);
+    let blocks = bytes.chunks_exact(4);
+    let rest = blocks.remainder();
+    let mut hash = 0u32;
+    for block in blocks {
+        hash ^= scrambled(u32::from_le_bytes([block[0], block[1], block[2], block[3]]));
+        hash = hash.rotate_left(13).wrapping_mul(5).wrapping_add(0xe654_6b64);
+    }
+    if !rest.is_empty() {
+        hash ^= scrambled(rest.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte)));
+    }
+    hash ^= bytes.len() as u32;
+    hash = (hash ^ hash >> 16).wrapping_mul(0x85eb_ca6b);
+    hash = (hash ^ hash >> 13).wrapping_mul(0xc2b2_ae35);
+    hash ^ hash >> 16
+}
+
+/// The id of a name, as the bits of a finite, normal float.
+pub fn id(name: &str) -> u32 {
+    let hash = murmur3(name.as_bytes());
+    let exponent = hash >> 23 & 0xff;
+    if exponent == 0 || exponent == 0xff { hash ^ 1 << 23 } else { hash }
+}
+
+/// What a file's header says of the layers.
+pub fn attributes(scene: &Scene, parts: Option<&[usize]>) -> Result<Vec<Attribute>, SameId> {
+    let mut manifest = serde_json::Map::new();
+    let mut ids: Vec<(u32, &str)> = Vec::new();
+    for (index, part) in scene.parts.iter().enumerate() {
+        if !part.closed || parts.is_some_and(|parts| !parts.contains(&index)) {
+            continue;
+        }
+        let id = id(&part.name);
+        if let Some((_, first)) = ids.iter().find(|(known, _)| *known == id) {
+            return Err(SameId { first: (*first).to_owned(), second: part.name.clone() });
+        }
+        ids.push((id, &part.name));
+        manifest.insert(part.name.clone(), format!("{id:08x}").into());
+    }
+    let key = &format!("{:08x}", murmur3(LAYER.as_bytes()))[..7];
+    let attribute = |field: &str, value: String| Attribute { name: format!("cryptomatte/{key}/{field}"), value };
+    Ok(vec![
+        attribute("name", LAYER.to_owned()),
+        attribute("hash", "MurmurHash3_32".to_owned()),
+        attribute("conversion", "uint32_to_float32".to_owned()),
+        attribute("manifest", serde_json::Value::from(manifest).to_string()),
+    ])
+}
+
+/// The channels of all ranks.
+pub fn channels(scene: &Scene, visible: &Visible) -> Vec<Channel> {
+    let ids: Vec<f32> = scene.parts.iter().map(|part| f32::from_bits(id(&part.name))).collect();
+    let ranks = visible.most().max(RANKS).next_multiple_of(2);
+    let count = visible.width() * visible.height();
+    let mut channels: Vec<Channel> = (0..ranks / 2)
+        .flat_map(|layer| ["R", "G", "B", "A"].map(|channel| format!("{LAYER}{layer:02}.{channel}")))
+        .map(|name| Channel { name, values: vec![0.0; count] })
+        .collect();
+    let mut ranked: Vec<Share> = Vec::new();
+    for (at, pixel) in visible.pixels().enumerate() {
+        ranked.clear();
+        ranked.extend(pixel);
+        // Of equal shares the nearer one stays first.
+        ranked.sort_by(|a, b| b.coverage.total_cmp(&a.coverage));
+        for (rank, share) in ranked.iter().enumerate() {
+            channels[2 * rank].values[at] = ids[share.part];
+            channels[2 * rank + 1].values[at] = share.coverage;
+        }
+    }
+    channels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use rototoon_base::scene::{Footage, Part};
+
+    #[test]
+    fn the_hash_has_its_published_values() {
+        for (text, hash) in [
+            ("", 0),
+            ("hello", 0x248b_fa47),
+            ("hello, world", 0x149b_bb7f),
+            ("The quick brown fox jumps over the lazy dog", 0x2e4f_f723),
+        ] {
+            assert_eq!(murmur3(text.as_bytes()), hash, "{text}");
+        }
+    }
+
+    #[test]
+    fn the_header_names_every_closed_part() {
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 0, fps: 1.0, width: 2, height: 2 };
+        let part = |name: &str, closed| Part { name: name.into(), closed, ..Part::default() };
+        let parts = vec![part("near \"arm\"", true), part("line", false), part("été", true)];
+        let mut scene = Scene { footage, parts };
+        let found = attributes(&scene, None).unwrap();
+        assert!(found.iter().all(|attribute| attribute.name.len() < 32));
+        let manifest: serde_json::Value = serde_json::from_str(&found[3].value).unwrap();
+        assert_eq!(manifest.as_object().unwrap().len(), 2);
+        assert_eq!(manifest["near \"arm\""], format!("{:08x}", id("near \"arm\"")));
+        assert!(found[3].value.contains("été"));
+        scene.parts[2].name = "near \"arm\"".into();
+        assert_eq!(attributes(&scene, None).unwrap_err().second, "near \"arm\"");
+        assert_eq!(attributes(&scene, Some(&[0])).unwrap()[3].value.matches(':').count(), 1);
+    }
+
+    proptest! {
+        #[test]
+        fn an_id_is_a_normal_number(name in ".*") {
+            prop_assert!(f32::from_bits(id(&name)).is_normal());
+            prop_assert!((id(&name) ^ murmur3(name.as_bytes())) & !(1 << 23) == 0);
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Pictures as bytes of a PNG or OpenEXR file.
+//!
+//! PNG holds what the screen shows (8 bits a channel), mattes with 16 bits. OpenEXR holds 32-bit floats: colours in
+//! linear light, mattes as white premultiplied by its alpha, which compositors take as it is, cutouts likewise.
+
+use image::codecs::openexr::OpenExrEncoder;
+use image::codecs::png::PngEncoder;
+use image::{DynamicImage, ImageBuffer};
+use rototoon_base::scene::{Colour, Raster};
+use rototoon_image::colour;
+use std::io::Cursor;
+use std::path::Path;
+
+/// A kind of picture file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Portable Network Graphics.
+    Png,
+    /// OpenEXR.
+    Exr,
+}
+
+impl Format {
+    /// The format that a file's name asks for.
+    pub fn of(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "png" => Some(Self::Png),
+            "exr" => Some(Self::Exr),
+            _ => None,
+        }
+    }
+}
+
+/// A picture could not be made into a file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("cannot encode a picture of {width}x{height} pixels: {reason}")]
+pub struct EncodeError {
+    /// Width.
+    pub width: usize,
+    /// Height.
+    pub height: usize,
+    /// What the encoder said.
+    pub reason: String,
+}
+
+/// A colour picture as the bytes of a file.
+pub fn colours(picture: &Raster<Colour>, format: Format) -> Result<Vec<u8>, EncodeError> {
+    let (width, height) = (picture.width() as u32, picture.height() as u32);
+    let image = match format {
+        Format::Png => {
+            let bytes = picture.data().iter().flatten().map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8).collect();
+            ImageBuffer::from_raw(width, height, bytes).map(DynamicImage::ImageRgb8)
+        }
+        Format::Exr => {
+            let values = picture.data().iter().flatten().map(|&c| colour::decode(c)).collect();
+            ImageBuffer::from_raw(width, height, values).map(DynamicImage::ImageRgb32F)
+        }
+    };
+    bytes(image, format, picture.width(), picture.height())
+}
+
+/// A premultiplied picture with alpha, its colours as the screen shows them, as the bytes of a PNG file.
+pub fn premultiplied(picture: &Raster<[f32; 4]>) -> Result<Vec<u8>, EncodeError> {
+    let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
+    // PNG holds colours that are not premultiplied.
+    let straight = |&[r, g, b, a]: &[f32; 4]| {
+        let whole = if a > 0.0 { a } else { 1.0 };
+        [byte(r / whole), byte(g / whole), byte(b / whole), byte(a)]
+    };
+    let image = ImageBuffer::from_raw(
+        picture.width() as u32,
+        picture.height() as u32,
+        picture.data().iter().flat_map(straight).collect(),
+    );
+    bytes(image.map(DynamicImage::ImageRgba8), Format::Png, picture.width(), picture.height())
+}
+
+/// Light multiplied by alpha, and alpha, as the bytes of a file.
+pub fn layer(picture: &Raster<[f32; 4]>, format: Format) -> Result<Vec<u8>, EncodeError> {
+    let (width, height) = (picture.width(), picture.height());
+    match format {
+        Format::Png => {
+            let shown = |&[r, g, b, alpha]: &[f32; 4]| {
+                let whole = if alpha > 0.0 { alpha } else { 1.0 };
+                let [r, g, b] = [r, g, b].map(|v| alpha * colour::encode(v / whole));
+                [r, g, b, alpha]
+            };
+            let shown = Raster::from_fn(width, height, |x, y| shown(&picture.get(x, y)));
+            premultiplied(&shown)
+        }
+        Format::Exr => {
+            let values = picture.data().iter().flatten().copied().collect();
+            let image = ImageBuffer::from_raw(width as u32, height as u32, values).map(DynamicImage::ImageRgba32F);
+            bytes(image, format, width, height)
+        }
+    }
+}
+
+/// A matte as the bytes of a file.
+pub fn matte(picture: &Raster<f32>, format: Format) -> Result<Vec<u8>, EncodeError> {
+    let (width, height) = (picture.width() as u32, picture.height() as u32);
+    let image = match format {
+        Format::Png => {
+            let values = picture.data().iter().map(|v| (v.clamp(0.0, 1.0) * 65535.0).round() as u16).collect();
+            ImageBuffer::from_raw(width, height, values).map(DynamicImage::ImageLuma16)
+        }
+        Format::Exr => {
+            let values = picture.data().iter().flat_map(|&v| [v; 4]).collect();
+            ImageBuffer::from_raw(width, height, values).map(DynamicImage::ImageRgba32F)
+        }
+    };
+    bytes(image, format, picture.width(), picture.height())
+}
+
+fn bytes(image: Option<DynamicImage>, format: Format, width: usize, height: usize) -> Result<Vec<u8>, EncodeError> {
+    let failed = |reason: String| EncodeError { width, height, reason };
+    let image = image.ok_or_else(|| failed("the size does not fit".to_owned()))?;
+    let mut out = Cursor::new(Vec::new());
+    // The encoder is named: to write any format would compile them all.
+    let written = match format {
+        Format::Png => image.write_with_encoder(PngEncoder::new(&mut out)),
+        Format::Exr => image.write_with_encoder(OpenExrEncoder::new(&mut out)),
+    };
+    written.map_err(|error| failed(error.to_string()))?;
+    Ok(out.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_encoded_is_decoded() {
+        let picture = Raster::from_fn(5, 3, |x, y| [x as f32 / 4.0, y as f32 / 2.0, 0.2]);
+        for (format, exact) in [(Format::Png, 0.003), (Format::Exr, 1e-5)] {
+            let image = image::load_from_memory(&colours(&picture, format).unwrap()).unwrap().to_rgb32f();
+            for (pixel, colour) in image.pixels().zip(picture.data()) {
+                let wanted = colour.map(|c| if format == Format::Exr { colour::decode(c) } else { c });
+                assert!(
+                    pixel.0.iter().zip(wanted).all(|(a, b)| (a - b).abs() < exact),
+                    "{format:?} {pixel:?} {wanted:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn mattes_keep_their_steps() {
+        let picture = Raster::from_fn(300, 1, |x, _| x as f32 / 299.0);
+        for format in [Format::Png, Format::Exr] {
+            let image = image::load_from_memory(&matte(&picture, format).unwrap()).unwrap().to_rgba32f();
+            for (pixel, value) in image.pixels().zip(picture.data()) {
+                assert!((pixel.0[0] - value).abs() < 1e-4, "{format:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_name_gives_the_format() {
+        assert_eq!(Format::of(Path::new("a.0001.EXR")), Some(Format::Exr));
+        assert_eq!(Format::of(Path::new("a.jpg")), None);
+        assert_eq!(Format::of(Path::new("png")), None);
+    }
+}

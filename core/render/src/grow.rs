@@ -1,0 +1,151 @@
+//! The outline of a union of polygons moved outward or inward.
+//!
+//! The distance of pixels to the border of the union (not to the borders that its polygons have inside it) gives the moved
+//! border: a pixel is covered by ½ plus the amount plus the distance, positive inside, between 0 and 1. Parts that touch
+//! stay one when they shrink, and corners become round when they grow, as in morphology by a disc.
+//!
+//! The border comes from [`super::coverage`]: sides steeper than 45° bound intervals of rows, the others intervals of
+//! columns.
+
+use super::coverage::{Edge, Shape, Side, Sink, Window, edges, intervals};
+use super::line::{Stretch, squared_distances};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::Raster;
+
+/// Coverage of the union of polygons in a window, grown by `amount` pixels or shrunk where that is negative. `None`
+/// where `go_on`, asked at each row, says no.
+pub fn grown(
+    polygons: &[Vec<Point>],
+    amount: f64,
+    window: Window,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Option<Raster<f32>> {
+    let shape = Shape::new(&[polygons.to_vec()]);
+    let mut result = Raster::new(window.width(), window.height(), 0.0f32);
+    let whole = shape.rows(window, &mut |y, row| {
+        result.row_mut((y - window.top) as usize).copy_from_slice(row);
+        go_on()
+    });
+    if !whole {
+        return None;
+    }
+    if amount == 0.0 {
+        return Some(result);
+    }
+    let reach = amount.abs() + 1.0;
+    let near = window.grown(reach.ceil() as i64 + 1);
+    let across: Vec<Vec<Point>> = polygons.iter().map(|points| points.iter().map(|p| p.yx()).collect()).collect();
+    let mut border = steep(&shape, near);
+    let level = steep(&Shape::new(&[across]), near.transposed());
+    border.extend(level.into_iter().map(|piece| Stretch { ends: piece.ends.map(|p| p.yx()), ..piece }));
+    let distances = squared_distances(&border, reach, window, go_on)?;
+    for (value, distance) in result.data_mut().iter_mut().zip(distances.data()) {
+        let signed = if *value >= 0.5 { distance.sqrt() } else { -distance.sqrt() };
+        let moved = (0.5 + amount as f32 + signed).clamp(0.0, 1.0);
+        *value = if amount > 0.0 { value.max(moved) } else { value.min(moved) };
+    }
+    Some(result)
+}
+
+trait Exchanged {
+    fn yx(&self) -> Point;
+}
+
+impl Exchanged for Point {
+    fn yx(&self) -> Point {
+        Point::new(self.y, self.x)
+    }
+}
+
+/// The stretches of sides no less steep than 45° that bound the union.
+fn steep(shape: &Shape, window: Window) -> Vec<Stretch> {
+    let edges = edges(shape);
+    let mut border = Border { edges, last: vec![None; edges.len()], pieces: Vec::new() };
+    intervals(shape, window, &mut border);
+    let share = |edge: &Edge, height: i64| (height - edge.top) as f64 / (edge.bottom - edge.top) as f64;
+    let stretch = |&(index, top, bottom): &(usize, i64, i64)| {
+        let edge: &Edge = &edges[index];
+        Stretch { ends: edge.ends, from: share(edge, top), to: share(edge, bottom) }
+    };
+    border.pieces.iter().map(stretch).collect()
+}
+
+struct Border<'a> {
+    edges: &'a [Edge],
+    /// The last piece of each side.
+    last: Vec<Option<usize>>,
+    /// Side, and heights from and to.
+    pieces: Vec<(usize, i64, i64)>,
+}
+
+impl Sink for Border<'_> {
+    fn interval(&mut self, left: &Side, right: &Side, top: i64, bottom: i64) {
+        for index in [left.edge, right.edge] {
+            let [a, b] = self.edges[index].ends;
+            if (b.x - a.x).abs() > (b.y - a.y).abs() {
+                continue;
+            }
+            match self.last[index].map(|piece| &mut self.pieces[piece]) {
+                Some(piece) if piece.2 == top => piece.2 = bottom,
+                _ => {
+                    self.last[index] = Some(self.pieces.len());
+                    self.pieces.push((index, top, bottom));
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WINDOW: Window = Window { left: 0, top: 0, right: 24, bottom: 20 };
+
+    fn rectangle(x0: f64, y0: f64, x1: f64, y1: f64) -> Vec<Point> {
+        vec![Point::new(x0, y0), Point::new(x1, y0), Point::new(x1, y1), Point::new(x0, y1)]
+    }
+
+    fn area(polygons: &[Vec<Point>], amount: f64) -> f64 {
+        let picture = grown(polygons, amount, WINDOW, &mut || true).unwrap();
+        picture.data().iter().map(|value| f64::from(*value)).sum()
+    }
+
+    #[test]
+    fn a_rectangle_grows_and_shrinks_by_the_amount() {
+        let one = [rectangle(6.0, 6.0, 16.0, 13.0)];
+        assert!((area(&one, 0.0) - 70.0).abs() < 1e-4);
+        assert!((area(&one, -2.0) - 18.0).abs() < 0.1, "{}", area(&one, -2.0));
+        let grown = 70.0 + 2.0 * 3.0 * 17.0 + std::f64::consts::PI * 9.0;
+        assert!((area(&one, 3.0) - grown).abs() < 0.3, "{} {grown}", area(&one, 3.0));
+    }
+
+    #[test]
+    fn parts_that_touch_shrink_as_one() {
+        let two = [rectangle(4.0, 4.0, 10.5, 14.0), rectangle(10.5, 4.0, 20.0, 14.0), rectangle(8.0, 6.0, 13.0, 10.0)];
+        let one = [rectangle(4.0, 4.0, 20.0, 14.0)];
+        let shrunk = |polygons: &[Vec<Point>]| grown(polygons, -1.5, WINDOW, &mut || true).unwrap();
+        assert_eq!(shrunk(&two), shrunk(&one));
+    }
+
+    #[test]
+    fn any_window_has_the_same_values() {
+        let shapes =
+            [vec![Point::new(3.0, 2.0), Point::new(20.0, 9.0), Point::new(5.0, 18.0)], rectangle(8.0, 3.0, 12.0, 19.5)];
+        for amount in [-1.7, 2.4] {
+            let whole = grown(&shapes, amount, WINDOW, &mut || true).unwrap();
+            let part = Window { left: 7, top: 5, right: 13, bottom: 12 };
+            let piece = grown(&shapes, amount, part, &mut || true).unwrap();
+            for y in 0..7 {
+                for x in 0..6 {
+                    assert_eq!(piece.get(x, y), whole.get(x + 7, y + 5), "{amount} {x} {y}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn it_ends_when_told() {
+        assert_eq!(grown(&[rectangle(0.0, 0.0, 5.0, 5.0)], 1.0, WINDOW, &mut || false), None);
+    }
+}

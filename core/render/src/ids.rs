@@ -1,0 +1,223 @@
+//! Which part is where, and the whole matte of each part: pictures with a layer for each, as the bytes of a file.
+//!
+//! A picture of ids is a colour for each part. In OpenEXR its channels R, G, B and A hold that picture in linear light, and
+//! the Cryptomatte layers stand beside them. A matte with layers holds the matte of all parts in R, G, B and A as without
+//! layers, and in the channel A of a layer of its name each part's own, whether another part hides it or not.
+
+use super::encode::{self, EncodeError, Format};
+use super::layers::{self, Channel, layer_name};
+use super::visible::{Visible, visible};
+use super::{cryptomatte, matte};
+use rototoon_base::scene::{FrameNumber, Raster, Scene, palette};
+use rototoon_image::colour;
+use std::collections::BTreeSet;
+
+/// A colour for each part, by the area that it shows of a pixel: red, green, blue as the screen shows them, premultiplied
+/// by the alpha that comes fourth.
+pub fn ids(visible: &Visible) -> Raster<[f32; 4]> {
+    let mut pixels = visible.pixels();
+    Raster::from_fn(visible.width(), visible.height(), |_, _| {
+        let mut sum = [0.0; 4];
+        for share in pixels.next().unwrap_or(&[]) {
+            let [r, g, b] = palette::distinct(share.part);
+            for (sum, value) in sum.iter_mut().zip([r, g, b, 1.0]) {
+                *sum += share.coverage * value;
+            }
+        }
+        sum
+    })
+}
+
+/// The bytes of a picture of ids.
+pub fn id_picture(
+    scene: &Scene,
+    frame: FrameNumber,
+    parts: Option<&[usize]>,
+    format: Format,
+) -> Result<Vec<u8>, EncodeError> {
+    let visible = visible(scene, frame, parts);
+    let picture = ids(&visible);
+    if format == Format::Png {
+        return encode::premultiplied(&picture);
+    }
+    let (width, height) = (picture.width(), picture.height());
+    let attributes = cryptomatte::attributes(scene, parts).map_err(|error| EncodeError {
+        width,
+        height,
+        reason: error.to_string(),
+    })?;
+    let mut channels = cryptomatte::channels(scene, &visible);
+    for (index, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
+        let light = |pixel: &[f32; 4]| match (index, pixel[3]) {
+            (3, alpha) => alpha,
+            (_, alpha) if alpha > 0.0 => colour::decode(pixel[index] / alpha) * alpha,
+            _ => 0.0,
+        };
+        channels.push(Channel { name: name.to_owned(), values: picture.data().iter().map(light).collect() });
+    }
+    layers::encode(width, height, channels, &attributes)
+}
+
+/// The bytes of an OpenEXR file of the matte of all parts and of each.
+pub fn matte_layers(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Result<Vec<u8>, EncodeError> {
+    let whole = matte::matte(scene, frame, parts);
+    let mut channels: Vec<Channel> =
+        ["R", "G", "B", "A"].map(|name| Channel { name: name.to_owned(), values: whole.data().to_vec() }).into();
+    let mut taken = BTreeSet::new();
+    for (index, part) in scene.parts.iter().enumerate() {
+        if part.closed && parts.is_none_or(|parts| parts.contains(&index)) {
+            let name = format!("{}.A", layer_name(&part.name, &mut taken));
+            channels.push(Channel { name, values: matte::matte(scene, frame, Some(&[index])).data().to_vec() });
+        }
+    }
+    layers::encode(whole.width(), whole.height(), channels, &[])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon_base::geometry::Point;
+    use rototoon_base::scene::{Footage, Part};
+    use std::collections::BTreeMap;
+
+    /// Discs in a ring, each over the next, all of them in the middle.
+    fn scene(count: usize) -> Scene {
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 0, fps: 1.0, width: 60, height: 50 };
+        let part = |index: usize| {
+            let turn = std::f64::consts::TAU / count as f64;
+            let middle = Point::new(30.3, 24.6) + 10.0 * Point::from_angle(turn * index as f64);
+            let points = (0..30).map(|k| middle + 10.4 * Point::from_angle(0.21 * f64::from(k))).collect();
+            let depth = (index * 2 % count) as f64;
+            let name = format!("part {index}.é");
+            Part { name, closed: true, depth, keys: BTreeMap::from([(0, points)]), ..Part::default() }
+        };
+        Scene { footage, parts: (0..count).map(part).collect() }
+    }
+
+    type File = (BTreeMap<String, Vec<f32>>, BTreeMap<String, String>);
+
+    fn read(bytes: &[u8]) -> File {
+        use exr::prelude::{ReadChannels, ReadLayers};
+        let image = exr::prelude::read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .first_valid_layer()
+            .all_attributes()
+            .from_buffered(std::io::Cursor::new(bytes))
+            .unwrap();
+        let text = |text: &exr::prelude::Text| String::from_utf8(text.as_slice().to_vec()).unwrap();
+        let layer = &image.layer_data;
+        let channels = &layer.channel_data.list;
+        let channels = channels.iter().map(|c| (text(&c.name), c.sample_data.values_as_f32().collect())).collect();
+        let attributes = layer.attributes.other.iter().filter_map(|(name, value)| match value {
+            exr::prelude::AttributeValue::Text(value) => Some((text(name), text(value))),
+            _ => None,
+        });
+        (channels, attributes.collect())
+    }
+
+    /// A part's matte by the rules of the specification alone.
+    fn keyed((channels, attributes): &File, name: &str) -> Vec<f32> {
+        let value = |field: &str| {
+            let mut found =
+                attributes.iter().filter(|(key, _)| key.starts_with("cryptomatte/") && key.ends_with(field));
+            let value = found.next().unwrap().1.clone();
+            assert!(found.next().is_none());
+            value
+        };
+        assert_eq!([value("/hash"), value("/conversion")], ["MurmurHash3_32", "uint32_to_float32"]);
+        let manifest: serde_json::Value = serde_json::from_str(&value("/manifest")).unwrap();
+        let id = u32::from_str_radix(manifest[name].as_str().unwrap(), 16).unwrap();
+        let layer = value("/name");
+        let mut sum = vec![0.0; channels["A"].len()];
+        for rank in (0..100).take_while(|rank| channels.contains_key(&format!("{layer}{rank:02}.R"))) {
+            for pair in [["R", "G"], ["B", "A"]] {
+                let [ids, coverage] = pair.map(|channel| &channels[&format!("{layer}{rank:02}.{channel}")]);
+                for (at, sum) in sum.iter_mut().enumerate() {
+                    if ids[at].to_bits() == id {
+                        *sum += coverage[at];
+                    }
+                }
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn every_part_is_keyed_from_the_cryptomatte_layers() {
+        for count in [1, 3, 9] {
+            let scene = scene(count);
+            let file = read(&id_picture(&scene, 0, None, Format::Exr).unwrap());
+            assert_eq!(file.0.len() % 4, 0);
+            let mut nearest: Vec<usize> = (0..count).collect();
+            nearest.sort_by(|&a, &b| scene.parts[b].depth.total_cmp(&scene.parts[a].depth));
+            for (rank, &part) in nearest.iter().enumerate() {
+                let before = matte::matte(&scene, 0, Some(&nearest[..rank]));
+                let with = matte::matte(&scene, 0, Some(&nearest[..=rank]));
+                let found = keyed(&file, &scene.parts[part].name);
+                let mut partial = 0;
+                for (at, found) in found.iter().enumerate() {
+                    let expected = with.data()[at] - before.data()[at];
+                    assert!((found - expected).abs() < 1.0 / 255.0, "{count} {part} {at}: {found} {expected}");
+                    partial += usize::from((0.05..0.95).contains(&expected));
+                }
+                assert!(partial > 4, "{count} {part}: {partial}");
+            }
+            let whole = matte::matte(&scene, 0, None);
+            assert!(file.0["A"].iter().zip(whole.data()).all(|(a, b)| (a - b).abs() < 1e-5));
+        }
+    }
+
+    #[test]
+    fn ranks_fall_and_what_is_unused_is_zero() {
+        let (channels, _) = read(&id_picture(&scene(9), 0, None, Format::Exr).unwrap());
+        let rank = |rank: usize| {
+            let [id, coverage] = [["R", "G"], ["B", "A"]][rank % 2];
+            let name = |channel: &str| format!("CryptoObject{:02}.{channel}", rank / 2);
+            (&channels[&name(id)], &channels[&name(coverage)])
+        };
+        for at in 0..60 * 50 {
+            for n in 0..6 {
+                let (id, coverage) = rank(n);
+                assert_eq!(id[at] == 0.0, coverage[at] == 0.0);
+                assert!(n == 0 || coverage[at] <= rank(n - 1).1[at]);
+            }
+        }
+    }
+
+    #[test]
+    fn more_parts_in_a_pixel_than_ranks_are_all_kept() {
+        let mut scene = scene(9);
+        for (index, part) in scene.parts.iter_mut().enumerate() {
+            let (left, right) = (30.0 + index as f64 / 9.0, 30.0 + (index + 1) as f64 / 9.0);
+            let points = [(left, 20.0), (right, 20.0), (right, 30.0), (left, 30.0)].map(|(x, y)| Point::new(x, y));
+            part.keys.insert(0, points.into());
+        }
+        let file = read(&id_picture(&scene, 0, None, Format::Exr).unwrap());
+        for part in &scene.parts {
+            assert!((keyed(&file, &part.name)[25 * 60 + 30] - 1.0 / 9.0).abs() < 1e-5);
+        }
+        assert!(file.0.contains_key("CryptoObject04.R") && !file.0.contains_key("CryptoObject05.R"));
+    }
+
+    #[test]
+    fn layers_hold_whole_mattes() {
+        let scene = scene(3);
+        let (channels, _) = read(&matte_layers(&scene, 0, Some(&[0, 2])).unwrap());
+        let names: Vec<_> = channels.keys().map(String::as_str).collect();
+        assert_eq!(names, ["A", "B", "G", "R", "part 0_é.A", "part 2_é.A"]);
+        assert_eq!(channels["A"], matte::matte(&scene, 0, Some(&[0, 2])).data());
+        assert_eq!(channels["part 2_é.A"], matte::matte(&scene, 0, Some(&[2])).data());
+    }
+
+    #[test]
+    fn ids_in_png_are_colours_of_parts() {
+        let scene = scene(2);
+        let bytes = id_picture(&scene, 0, None, Format::Png).unwrap();
+        let image = image::load_from_memory(&bytes).unwrap().to_rgba8();
+        let [r, g, b] = palette::distinct(0).map(|c| (c * 255.0).round() as u8);
+        assert_eq!(image.get_pixel(40, 24).0, [r, g, b, 255]);
+        assert_eq!(image.get_pixel(0, 0).0[3], 0);
+    }
+}

@@ -1,0 +1,115 @@
+//! Coverage of the closed parts on a frame; [`super::coverage`] has the areas.
+
+use super::coverage::{Shape, Window};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{FrameNumber, Part, Raster, Scene};
+
+/// Coverage, 0 to 1, of the union of closed parts on a frame: of those with the given indices, or of all. Snapped paths
+/// are used where they are there. Parts that are open, or have no contour on the frame, cover nothing.
+pub fn matte(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Raster<f32> {
+    let wanted = |index: usize| parts.is_none_or(|parts| parts.contains(&index));
+    let outlines: Vec<_> = scene
+        .parts
+        .iter()
+        .enumerate()
+        .filter(|(index, part)| wanted(*index) && part.closed)
+        .filter_map(|(_, part): (usize, &Part)| part.outline(frame))
+        .collect();
+    coverage(&outlines, scene.footage.width, scene.footage.height)
+}
+
+/// A frame's pixels, multiplied by alpha, where closed parts are: what [`matte`] covers of them.
+pub fn cutout(
+    scene: &Scene,
+    frame: FrameNumber,
+    pixels: &Raster<[f32; 4]>,
+    parts: Option<&[usize]>,
+) -> Raster<[f32; 4]> {
+    let matte = matte(scene, frame, parts);
+    Raster::from_fn(pixels.width(), pixels.height(), |x, y| pixels.get(x, y).map(|v| v * matte.get(x, y)))
+}
+
+/// Coverage of the union of closed polygons.
+pub fn coverage(polygons: &[Vec<Point>], width: usize, height: usize) -> Raster<f32> {
+    let mut result = Raster::new(width, height, 0.0f32);
+    let window = Window { left: 0, top: 0, right: width as i64, bottom: height as i64 };
+    Shape::new(&[polygons.to_vec()]).rows(window, &mut |y, row| {
+        result.row_mut(y as usize).copy_from_slice(row);
+        true
+    });
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use rototoon_base::geometry::polygon;
+
+    fn rectangle(x0: f64, y0: f64, x1: f64, y1: f64) -> Vec<Point> {
+        vec![Point::new(x0, y0), Point::new(x1, y0), Point::new(x1, y1), Point::new(x0, y1)]
+    }
+
+    #[test]
+    fn upright_borders_cover_exactly() {
+        let picture = coverage(&[rectangle(0.25, 0.3, 2.5, 1.0)], 4, 2);
+        let near = |x, value: f32| assert!((picture.get(x, 0) - value).abs() < 1e-6, "{x}");
+        near(0, 0.75 * 0.7);
+        near(1, 0.7);
+        near(2, 0.5 * 0.7);
+        near(3, 0.0);
+        assert!(picture.row(1).iter().all(|value| *value == 0.0));
+    }
+
+    #[test]
+    fn parts_that_touch_leave_no_seam_and_overlap_counts_once() {
+        let touching = coverage(&[rectangle(0.0, 0.0, 1.5, 1.0), rectangle(1.5, 0.0, 3.0, 1.0)], 3, 1);
+        assert!(touching.data().iter().all(|value| (value - 1.0).abs() < 1e-6));
+        let doubled = coverage(&[rectangle(0.0, 0.0, 1.5, 1.0), rectangle(0.5, 0.0, 1.5, 1.0)], 2, 1);
+        assert!((doubled.get(1, 0) - 0.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_contour_that_folds_over_itself_has_no_hole() {
+        let mut twice = rectangle(0.0, 0.0, 2.0, 2.0);
+        twice.extend(rectangle(0.0, 0.0, 2.0, 2.0));
+        assert!(coverage(&[twice], 2, 2).data().iter().all(|value| (value - 1.0).abs() < 1e-6));
+    }
+
+    #[test]
+    fn contours_off_the_picture_and_without_area_cover_nothing() {
+        let flat = vec![Point::new(1.0, 1.0), Point::new(3.0, 3.0)];
+        let far = rectangle(-1e6, -1e6, -10.0, -10.0);
+        let picture = coverage(&[flat, far, Vec::new(), vec![Point::ONE]], 5, 5);
+        assert!(picture.data().iter().all(|value| *value == 0.0));
+    }
+
+    proptest! {
+        #[test]
+        fn the_coverage_of_a_triangle_sums_to_its_area(points in prop::array::uniform6(1.0f64..19.0)) {
+            let triangle: Vec<_> = points.chunks(2).map(|p| Point::new(p[0], p[1])).collect();
+            let sum: f64 = coverage(std::slice::from_ref(&triangle), 20, 20).data().iter().map(|v| f64::from(*v)).sum();
+            prop_assert!((sum - polygon::signed_area(&triangle).abs()).abs() < 1e-3);
+        }
+
+        #[test]
+        fn coverage_is_that_of_many_samples(points in prop::array::uniform6(-2.0f64..8.0)) {
+            const SAMPLES: usize = 40;
+            let triangle: Vec<_> = points.chunks(2).map(|p| Point::new(p[0], p[1])).collect();
+            let picture = coverage(std::slice::from_ref(&triangle), 6, 6);
+            let at = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
+            for y in 0..6 {
+                for x in 0..6 {
+                    let hits = (0..SAMPLES * SAMPLES)
+                        .filter(|k| {
+                            let p = Point::new(x as f64 + at(k % SAMPLES), y as f64 + at(k / SAMPLES));
+                            polygon::contains(&triangle, p)
+                        })
+                        .count();
+                    let reference = hits as f32 / (SAMPLES * SAMPLES) as f32;
+                    prop_assert!((picture.get(x, y) - reference).abs() < 0.04, "{x} {y}: {} {reference}", picture.get(x, y));
+                }
+            }
+        }
+    }
+}

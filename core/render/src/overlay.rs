@@ -1,0 +1,221 @@
+//! Contours, control points, keys and confidence drawn over a frame.
+//!
+//! Each part has a colour of its own. A segment is as opaque as its less certain end is sure; a control point goes from red
+//! (not sure) over yellow to green (sure). The artist's keys are white squares, pins white rings.
+//!
+//! Lines are drawn on a transparent layer, antialiased, and laid over the frame in floats: what is not drawn on keeps
+//! its exact colour.
+
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::palette;
+use rototoon_base::scene::{Colour, FrameNumber, Part, Raster, Scene};
+use tiny_skia::{Color, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
+
+/// Lines for which widths are given; they grow with the picture.
+const REFERENCE_LINES: f64 = 540.0;
+/// Opacity of a segment that is not sure at all.
+const FAINTEST: f32 = 0.3;
+/// Width of the dark border around lines, as a share of the line's width on each side.
+const BORDER: f32 = 0.5;
+
+/// What an overlay shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OverlayOptions {
+    /// Width of lines, in pixels at 540 lines.
+    pub line_width: f64,
+    /// Whether control points are shown.
+    pub points: bool,
+    /// Whether confidence is shown.
+    pub confidence: bool,
+}
+
+impl Default for OverlayOptions {
+    fn default() -> Self {
+        Self { line_width: 2.0, points: true, confidence: true }
+    }
+}
+
+/// The frame's picture with the contours of all parts, farther ones first. `parts` limits it to those with these
+/// indices. A picture too large to draw on comes back as it is.
+pub fn overlay(
+    scene: &Scene,
+    frame: FrameNumber,
+    picture: &Raster<Colour>,
+    parts: Option<&[usize]>,
+    options: &OverlayOptions,
+) -> Raster<Colour> {
+    let Some(mut layer) = Pixmap::new(picture.width() as u32, picture.height() as u32) else { return picture.clone() };
+    let mut order: Vec<usize> =
+        (0..scene.parts.len()).filter(|i| parts.is_none_or(|parts| parts.contains(i))).collect();
+    order.sort_by(|&a, &b| scene.parts[a].depth_at(frame).total_cmp(&scene.parts[b].depth_at(frame)));
+    let width = (options.line_width * (picture.height() as f64 / REFERENCE_LINES).max(0.5)) as f32;
+    for index in order {
+        let part = &scene.parts[index];
+        let Some(points) = part.points_at(frame) else { continue };
+        let pen = Pen { part, frame, points, colour: palette::distinct(index), width, options };
+        pen.segments(&mut layer);
+        if options.points {
+            pen.points(&mut layer);
+        }
+    }
+    composite(picture, &layer)
+}
+
+fn composite(picture: &Raster<Colour>, layer: &Pixmap) -> Raster<Colour> {
+    let mut result = picture.clone();
+    for (pixel, over) in result.data_mut().iter_mut().zip(layer.pixels()) {
+        let rest = 1.0 - f32::from(over.alpha()) / 255.0;
+        let over = [over.red(), over.green(), over.blue()];
+        for (c, o) in pixel.iter_mut().zip(over) {
+            *c = f32::from(o) / 255.0 + rest * *c;
+        }
+    }
+    result
+}
+
+/// Draws one part on one frame.
+struct Pen<'a> {
+    part: &'a Part,
+    frame: FrameNumber,
+    points: &'a [Point],
+    colour: Colour,
+    width: f32,
+    options: &'a OverlayOptions,
+}
+
+impl Pen<'_> {
+    fn confidence(&self, index: usize) -> f32 {
+        let known = self.part.confidence.get(&self.frame).and_then(|values| values.get(index));
+        if self.options.confidence { known.map_or(1.0, |value| value.clamp(0.0, 1.0) as f32) } else { 1.0 }
+    }
+
+    fn segments(&self, layer: &mut Pixmap) {
+        let n = self.points.len();
+        let curves = self.part.complete_curves(self.frame);
+        let count = if self.part.closed && n > 1 { n } else { n.saturating_sub(1) };
+        let paths: Vec<_> = (0..count)
+            .filter_map(|i| {
+                let ends = [self.points[i], self.points[(i + 1) % n]];
+                let line = curves.and_then(|paths| paths.get(i)).map_or(&ends[..], Vec::as_slice);
+                let sure = self.confidence(i).min(self.confidence((i + 1) % n));
+                Some((polyline(line)?, FAINTEST + (1.0 - FAINTEST) * sure))
+            })
+            .collect();
+        // All borders first: none lies over a neighbour's line.
+        for (path, alpha) in &paths {
+            stroke(layer, path, [0.0; 3], 0.5 * alpha, self.width * (1.0 + 2.0 * BORDER));
+        }
+        for (path, alpha) in &paths {
+            stroke(layer, path, self.colour, *alpha, self.width);
+        }
+    }
+
+    fn points(&self, layer: &mut Pixmap) {
+        let (key, pins) = (self.part.keys.contains_key(&self.frame), self.part.pins.get(&self.frame));
+        let size = self.width * 1.1;
+        for (index, &p) in self.points.iter().enumerate() {
+            let (x, y) = (p.x as f32, p.y as f32);
+            if key {
+                let square = tiny_skia::Rect::from_xywh(x - size, y - size, 2.0 * size, 2.0 * size);
+                if let Some(path) = square.map(PathBuilder::from_rect) {
+                    stroke(layer, &path, [0.0; 3], 0.8, self.width * 0.8);
+                    fill(layer, &path, [1.0; 3]);
+                }
+                continue;
+            }
+            let Some(dot) = PathBuilder::from_circle(x, y, size) else { continue };
+            let shown = self.options.confidence && self.part.confidence.contains_key(&self.frame);
+            stroke(layer, &dot, [0.0; 3], 0.8, self.width * 0.6);
+            fill(layer, &dot, if shown { sureness(self.confidence(index)) } else { self.colour });
+            let ring =
+                pins.is_some_and(|pins| pins.contains_key(&index)).then(|| PathBuilder::from_circle(x, y, 2.2 * size));
+            if let Some(ring) = ring.flatten() {
+                stroke(layer, &ring, [1.0; 3], 1.0, self.width * 0.7);
+            }
+        }
+    }
+}
+
+/// Red for 0, yellow for ½, green for 1.
+fn sureness(confidence: f32) -> Colour {
+    [(2.0 - 2.0 * confidence).min(1.0), (2.0 * confidence).min(1.0), 0.1]
+}
+
+fn polyline(points: &[Point]) -> Option<Path> {
+    let mut builder = PathBuilder::new();
+    for (i, p) in points.iter().enumerate() {
+        if i == 0 {
+            builder.move_to(p.x as f32, p.y as f32);
+        } else {
+            builder.line_to(p.x as f32, p.y as f32);
+        }
+    }
+    builder.finish()
+}
+
+fn paint(colour: Colour, alpha: f32) -> Paint<'static> {
+    let mut paint = Paint::default();
+    let [r, g, b] = colour.map(|c| c.clamp(0.0, 1.0));
+    paint.set_color(Color::from_rgba(r, g, b, alpha.clamp(0.0, 1.0)).unwrap_or(Color::BLACK));
+    paint
+}
+
+fn stroke(layer: &mut Pixmap, path: &Path, colour: Colour, alpha: f32, width: f32) {
+    let stroke = Stroke { width, line_cap: LineCap::Round, line_join: LineJoin::Round, ..Stroke::default() };
+    layer.stroke_path(path, &paint(colour, alpha), &stroke, Transform::identity(), None);
+}
+
+fn fill(layer: &mut Pixmap, path: &Path, colour: Colour) {
+    layer.fill_path(path, &paint(colour, 1.0), tiny_skia::FillRule::Winding, Transform::identity(), None);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon_base::scene::Footage;
+    use std::collections::BTreeMap;
+
+    fn scene() -> Scene {
+        let square: Vec<_> = [(8.0, 8.0), (32.0, 8.0), (32.0, 32.0), (8.0, 32.0)].map(Point::from).to_vec();
+        let part = Part {
+            name: "a".into(),
+            closed: true,
+            keys: BTreeMap::from([(0, square.clone())]),
+            tracks: BTreeMap::from([(0, square.clone()), (1, square)]),
+            confidence: BTreeMap::from([(0, vec![1.0; 4]), (1, vec![0.0; 4])]),
+            ..Part::default()
+        };
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 2, fps: 12.0, width: 40, height: 40 };
+        Scene { footage, parts: vec![part] }
+    }
+
+    fn changed(frame: FrameNumber, options: &OverlayOptions) -> Raster<Colour> {
+        overlay(&scene(), frame, &Raster::new(40, 40, [0.3; 3]), None, options)
+    }
+
+    #[test]
+    fn only_the_contour_is_drawn_on() {
+        let picture = changed(0, &OverlayOptions::default());
+        for (x, y, drawn) in [(20, 8, true), (8, 20, true), (20, 20, false), (1, 1, false)] {
+            assert_eq!(picture.get(x, y) != [0.3; 3], drawn, "{x} {y}");
+        }
+        assert_eq!(changed(2, &OverlayOptions::default()).data(), Raster::new(40, 40, [0.3; 3]).data());
+    }
+
+    #[test]
+    fn what_is_not_sure_is_fainter() {
+        let difference = |options: &OverlayOptions| {
+            let [r, g, b] = changed(1, options).get(20, 8);
+            (r - 0.3).abs() + (g - 0.3).abs() + (b - 0.3).abs()
+        };
+        let bold = OverlayOptions { line_width: 6.0, ..OverlayOptions::default() };
+        assert!(difference(&bold) < 0.6 * difference(&OverlayOptions { confidence: false, ..bold }));
+    }
+
+    #[test]
+    fn keys_look_different_from_tracked_points() {
+        let options = OverlayOptions { line_width: 4.0, ..OverlayOptions::default() };
+        assert_ne!(changed(0, &options).get(8, 8), changed(1, &options).get(8, 8));
+        assert_eq!(changed(0, &options).get(8, 8), [1.0; 3]);
+    }
+}

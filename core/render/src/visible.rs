@@ -1,0 +1,215 @@
+//! How much of each pixel every part shows, nearer parts over farther ones.
+//!
+//! What a part shows is the coverage of the union of it and all nearer parts less the coverage of the union of the nearer
+//! ones alone. Both come from [`super::coverage`], so the shares of a pixel are areas, not products of opacities: parts
+//! that touch along a border leave no third colour there, and the shares of all parts sum to their matte. Parts of equal
+//! depth lie as in the document, later ones over earlier ones.
+//!
+//! Pictures are made in bands of rows, and each part within its own bounds, so that the cost grows with the pixels that
+//! parts cover and not with pixels times parts.
+
+use super::coverage::{Shape, Window};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{FrameNumber, Raster, Scene};
+
+/// Rows that are worked on together.
+const BAND: i64 = 64;
+/// A share below this is rounding, not area.
+const LEAST: f32 = 1.0 / (1 << 18) as f32;
+
+/// What a part shows of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Share {
+    /// Index of the part in the scene.
+    pub part: usize,
+    /// Area of the pixel, above 0 and at most 1.
+    pub coverage: f32,
+}
+
+/// The shares of every pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Visible {
+    width: usize,
+    height: usize,
+    /// For each pixel where its shares begin, and one more for the end.
+    starts: Vec<usize>,
+    shares: Vec<Share>,
+}
+
+impl Visible {
+    /// Pixels in a row.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Number of rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// The shares of each pixel, row by row from the top left; the nearest part first.
+    pub fn pixels(&self) -> impl Iterator<Item = &[Share]> {
+        self.starts.windows(2).map(|ends| &self.shares[ends[0]..ends[1]])
+    }
+
+    /// Most shares that any pixel has.
+    pub fn most(&self) -> usize {
+        self.pixels().map(<[Share]>::len).max().unwrap_or(0)
+    }
+}
+
+/// A part's outline and its bounds in whole pixels.
+struct Outline {
+    part: usize,
+    points: Vec<Point>,
+    bounds: Window,
+}
+
+/// What closed parts show on a frame: those with the given indices, or all. Snapped paths are used where they are there.
+pub fn visible(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Visible {
+    let outlines = outlines(scene, frame, parts);
+    let (width, height) = (scene.footage.width, scene.footage.height);
+    let mut result = Visible { width, height, starts: vec![0], shares: Vec::new() };
+    result.starts.reserve(width * height);
+    for top in (0..height as i64).step_by(BAND as usize) {
+        let band = Window { left: 0, top, right: width as i64, bottom: (top + BAND).min(height as i64) };
+        for pixel in shares(&outlines, band) {
+            result.shares.extend(pixel);
+            result.starts.push(result.shares.len());
+        }
+    }
+    result
+}
+
+/// The outlines of closed parts, the nearest first.
+fn outlines(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Vec<Outline> {
+    let mut order: Vec<usize> = (0..scene.parts.len()).collect();
+    order.retain(|index| scene.parts[*index].closed && parts.is_none_or(|parts| parts.contains(index)));
+    order.sort_by(|&a, &b| scene.parts[b].depth.total_cmp(&scene.parts[a].depth).then(b.cmp(&a)));
+    let outline = |part: usize| {
+        let points = scene.parts[part].outline(frame)?;
+        let bounds = bounds(&points)?;
+        Some(Outline { part, points, bounds })
+    };
+    order.into_iter().filter_map(outline).collect()
+}
+
+fn bounds(points: &[Point]) -> Option<Window> {
+    let whole = points.iter().all(|p| p.is_finite());
+    let (least, most) = points.iter().fold((Point::MAX, Point::MIN), |(a, b), &p| (a.min(p), b.max(p)));
+    // A float beyond the whole numbers becomes the largest one.
+    (whole && !points.is_empty()).then(|| Window {
+        left: least.x.floor() as i64,
+        top: least.y.floor() as i64,
+        right: most.x.ceil() as i64,
+        bottom: most.y.ceil() as i64,
+    })
+}
+
+fn common(a: Window, b: Window) -> Option<Window> {
+    let (left, top) = (a.left.max(b.left), a.top.max(b.top));
+    let (right, bottom) = (a.right.min(b.right), a.bottom.min(b.bottom));
+    (left < right && top < bottom).then_some(Window { left, top, right, bottom })
+}
+
+/// The shares of each pixel of a band.
+fn shares(outlines: &[Outline], band: Window) -> Vec<Vec<Share>> {
+    let mut pixels: Vec<Vec<Share>> = vec![Vec::new(); band.width() * band.height()];
+    let mut covered = Raster::new(band.width(), band.height(), 0.0f32);
+    for (index, outline) in outlines.iter().enumerate() {
+        let Some(window) = common(outline.bounds, band) else { continue };
+        let near = outlines[..=index].iter().filter(|other| common(other.bounds, window).is_some());
+        let union: Vec<Vec<Point>> = near.map(|other| other.points.clone()).collect();
+        Shape::new(&[union]).rows(window, &mut |y, row| {
+            let first = (y - band.top) as usize * band.width() + (window.left - band.left) as usize;
+            let before = &mut covered.data_mut()[first..first + row.len()];
+            for (x, (before, &now)) in before.iter_mut().zip(row).enumerate() {
+                let coverage = now - *before;
+                if coverage >= LEAST {
+                    pixels[first + x].push(Share { part: outline.part, coverage });
+                    *before = now;
+                }
+            }
+            true
+        });
+    }
+    pixels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matte;
+    use proptest::prelude::*;
+    use rototoon_base::scene::{Footage, Part};
+    use std::collections::BTreeMap;
+
+    fn scene(parts: Vec<(f64, Vec<Point>)>) -> Scene {
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 0, fps: 1.0, width: 20, height: 70 };
+        let part = |(index, (depth, points)): (usize, (f64, Vec<Point>))| Part {
+            name: format!("part {index}"),
+            closed: true,
+            depth,
+            keys: BTreeMap::from([(0, points)]),
+            ..Part::default()
+        };
+        Scene { footage, parts: parts.into_iter().enumerate().map(part).collect() }
+    }
+
+    fn rectangle(x0: f64, y0: f64, x1: f64, y1: f64) -> Vec<Point> {
+        vec![Point::new(x0, y0), Point::new(x1, y0), Point::new(x1, y1), Point::new(x0, y1)]
+    }
+
+    fn share(visible: &Visible, part: usize, x: usize, y: usize) -> f32 {
+        let pixel = visible.pixels().nth(y * visible.width() + x).unwrap();
+        pixel.iter().filter(|share| share.part == part).map(|share| share.coverage).sum()
+    }
+
+    #[test]
+    fn nearer_parts_hide_and_borders_share_their_pixels() {
+        // The second is nearest, the third lies behind both and ends where the second begins.
+        let parts = vec![
+            (1.0, rectangle(0.0, 0.0, 10.0, 5.0)),
+            (2.0, rectangle(4.25, 0.0, 8.0, 5.0)),
+            (0.0, rectangle(2.0, 1.0, 4.25, 6.0)),
+        ];
+        let visible = visible(&scene(parts), 0, None);
+        for (x, expected) in [(3, [1.0, 0.0, 0.0]), (4, [0.25, 0.75, 0.0]), (6, [0.0, 1.0, 0.0]), (9, [1.0, 0.0, 0.0])]
+        {
+            for (part, expected) in expected.into_iter().enumerate() {
+                assert!((share(&visible, part, x, 2) - expected).abs() < 1e-6, "{x} {part}");
+            }
+        }
+        assert!((share(&visible, 2, 4, 5) - 0.25).abs() < 1e-6);
+        assert_eq!(visible.most(), 2);
+    }
+
+    #[test]
+    fn equal_depths_lie_as_in_the_document_and_open_parts_show_nothing() {
+        let mut scene = scene(vec![(0.0, rectangle(0.0, 0.0, 4.0, 4.0)), (0.0, rectangle(0.0, 0.0, 4.0, 4.0))]);
+        assert_eq!(share(&visible(&scene, 0, None), 1, 1, 1), 1.0);
+        assert_eq!(share(&visible(&scene, 0, Some(&[0])), 0, 1, 1), 1.0);
+        scene.parts[1].closed = false;
+        assert_eq!(share(&visible(&scene, 0, None), 0, 1, 1), 1.0);
+        assert_eq!(visible(&scene, 3, None).most(), 0);
+    }
+
+    proptest! {
+        #[test]
+        fn shares_are_what_unions_leave(corners in prop::collection::vec(prop::array::uniform6(-4.0f64..74.0), 1..5)) {
+            let triangle = |c: &[f64; 6]| c.chunks(2).map(|p| Point::new(0.3 * p[0], p[1])).collect::<Vec<_>>();
+            let parts: Vec<_> = corners.iter().enumerate().map(|(k, c)| (-(k as f64), triangle(c))).collect();
+            let polygons: Vec<_> = parts.iter().map(|(_, points)| points.clone()).collect();
+            let scene = scene(parts);
+            let visible = visible(&scene, 0, None);
+            let unions: Vec<_> = (0..=polygons.len()).map(|n| matte::coverage(&polygons[..n], 20, 70)).collect();
+            for (at, pixel) in visible.pixels().enumerate() {
+                for part in 0..polygons.len() {
+                    let expected = unions[part + 1].data()[at] - unions[part].data()[at];
+                    let found: f32 = pixel.iter().filter(|s| s.part == part).map(|s| s.coverage).sum();
+                    prop_assert!((found - expected).abs() < 1e-5, "{at} {part}: {found} {expected}");
+                }
+            }
+        }
+    }
+}

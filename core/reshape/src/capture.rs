@@ -1,0 +1,323 @@
+//! From tracked contours to a skeleton clip: 17 key points on every frame (Liang et al. 2012, section 3).
+//!
+//! Where a limb's four calibration points are there, its key points are told by them ([`rototoon_base::scene::limbs`]). What no contour
+//! tells is filled in, so that a clip is always whole:
+//!
+//! 1. A part that is not there on a frame: the way from the parent key point, straight between the frames that tell it, held
+//!    before the first and after the last.
+//! 2. A limb that is nowhere defined: the same way as on the other side of the body, where that is known.
+//! 3. Otherwise the template's proportions: the torso upright through what is known of it, limbs hanging.
+//!
+//! [`Captured::guessed`] says what was filled in. Frames on which the contours show the other side ([`LimbSet::swaps`]) have
+//! left and right exchanged before anything is filled in.
+
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::limbs::{BindingError, Bound, LimbSet};
+use rototoon_base::scene::proportions::TEMPLATE;
+use rototoon_base::scene::skeleton::{COUNT, MIRROR, NAMES, PARENTS, Posture};
+use rototoon_base::scene::{FrameNumber, Part};
+use std::ops::RangeInclusive;
+
+/// Key points of a frame as far as the contours tell them.
+pub type Seen = [Option<Point>; COUNT];
+
+/// Key points from contours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Captured {
+    /// The first frame.
+    pub first: FrameNumber,
+    /// A posture a frame.
+    pub postures: Vec<Posture>,
+    /// For each key point the number of frames on which it was filled in.
+    pub guessed: [usize; COUNT],
+}
+
+/// Why nothing was captured.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CaptureError {
+    /// The document has no limbs.
+    #[error("limbs: found none, expected at least the torso (pelvis, chest, neck)")]
+    NoLimbs,
+    /// A calibration point cannot be found on its contour.
+    #[error("limbs[{limb}] ({from} to {to}).{end}.points[{point}].{source}")]
+    Binding {
+        /// Index of the limb.
+        limb: usize,
+        /// Name of its first key point.
+        from: &'static str,
+        /// Name of its second.
+        to: &'static str,
+        /// `start` or `end`.
+        end: &'static str,
+        /// 0 or 1.
+        point: usize,
+        /// What is wrong.
+        source: BindingError,
+    },
+    /// No frame shows the torso.
+    #[error("frames {first} to {last}: found no frame on which limbs tell both pelvis and neck, expected at least one")]
+    NoTorso {
+        /// First frame asked for.
+        first: FrameNumber,
+        /// Last frame asked for.
+        last: FrameNumber,
+    },
+    /// The torso has no length.
+    #[error("frame {frame}: found pelvis and neck on one spot, expected a torso with a length")]
+    FlatTorso {
+        /// The frame.
+        frame: FrameNumber,
+    },
+}
+
+/// Limbs that are bound to contours.
+pub struct Bindings<'a> {
+    set: &'a LimbSet,
+    parts: &'a [Part],
+    ends: Vec<[[Bound; 2]; 2]>,
+}
+
+impl<'a> Bindings<'a> {
+    /// Binds all calibration points.
+    pub fn new(set: &'a LimbSet, parts: &'a [Part]) -> Result<Self, CaptureError> {
+        if set.limbs.is_empty() {
+            return Err(CaptureError::NoLimbs);
+        }
+        let mut ends = Vec::with_capacity(set.limbs.len());
+        for (limb, l) in set.limbs.iter().enumerate() {
+            let bind = |end: &'static str, point: usize| {
+                let given = if end == "start" { &l.start } else { &l.end };
+                given.points[point].bind(parts).map_err(|source| {
+                    let (from, to) = (NAMES[l.from], NAMES[l.to]);
+                    CaptureError::Binding { limb, from, to, end, point, source }
+                })
+            };
+            ends.push([[bind("start", 0)?, bind("start", 1)?], [bind("end", 0)?, bind("end", 1)?]]);
+        }
+        Ok(Self { set, parts, ends })
+    }
+
+    /// Both key points of a limb on a frame (eqs. 2, 3).
+    pub fn limb(&self, limb: usize, frame: FrameNumber) -> [Option<Point>; 2] {
+        let shares = [self.set.limbs[limb].start.share, self.set.limbs[limb].end.share];
+        std::array::from_fn(|end| {
+            let [a, b] = &self.ends[limb][end];
+            Some(a.at(self.parts, frame)?.lerp(b.at(self.parts, frame)?, shares[end]))
+        })
+    }
+
+    /// Where calibration point `point` of end `end` (0 the start) of a limb is bound.
+    pub fn bound(&self, limb: usize, end: usize, point: usize) -> &Bound {
+        &self.ends[limb][end][point]
+    }
+
+    /// What the contours tell on a frame; sides as they are drawn.
+    pub fn drawn(&self, frame: FrameNumber) -> Seen {
+        let mut sums = [(Point::ZERO, 0.0); COUNT];
+        for (k, limb) in self.set.limbs.iter().enumerate() {
+            for (point, found) in [limb.from, limb.to].into_iter().zip(self.limb(k, frame)) {
+                if let Some(p) = found {
+                    sums[point].0 += p;
+                    sums[point].1 += 1.0;
+                }
+            }
+        }
+        sums.map(|(sum, count)| (count > 0.0).then(|| sum / count))
+    }
+
+    /// What the contours tell on a frame, left and right exchanged where the document says so.
+    pub fn seen(&self, frame: FrameNumber) -> Seen {
+        let drawn = self.drawn(frame);
+        if self.set.swapped(frame) { std::array::from_fn(|k| drawn[MIRROR[k]]) } else { drawn }
+    }
+}
+
+/// Captures a clip: of the given frames those from the first to the last on which the torso is told.
+pub fn capture(set: &LimbSet, parts: &[Part], frames: RangeInclusive<FrameNumber>) -> Result<Captured, CaptureError> {
+    let bindings = Bindings::new(set, parts)?;
+    let mut all: Vec<(FrameNumber, Seen)> = frames.clone().map(|frame| (frame, bindings.seen(frame))).collect();
+    all.iter_mut().for_each(|(_, seen)| complete_torso(seen));
+    let told = |(_, seen): &(FrameNumber, Seen)| seen[0].is_some() && seen[2].is_some();
+    let (Some(begin), Some(end)) = (all.iter().position(told), all.iter().rposition(told)) else {
+        return Err(CaptureError::NoTorso { first: *frames.start(), last: *frames.end() });
+    };
+    let all = &all[begin..=end];
+    for (frame, seen) in all {
+        if let (Some(pelvis), Some(neck)) = (seen[0], seen[2])
+            && pelvis.distance(neck) <= 1e-6
+        {
+            return Err(CaptureError::FlatTorso { frame: *frame });
+        }
+    }
+    let seen: Vec<Seen> = all.iter().map(|(_, seen)| *seen).collect();
+    let guessed = std::array::from_fn(|k| seen.iter().filter(|frame| frame[k].is_none()).count());
+    Ok(Captured { first: all[0].0, postures: filled(&seen), guessed })
+}
+
+/// The middle of the body from its sides, where it is not told itself.
+fn complete_torso(seen: &mut Seen) {
+    let middle = |a: Option<Point>, b: Option<Point>| a.zip(b).map(|(a, b)| a.midpoint(b));
+    seen[0] = seen[0].or(middle(seen[11], seen[14]));
+    seen[2] = seen[2].or(middle(seen[5], seen[8]));
+    let share = TEMPLATE.0[0] / TEMPLATE.torso();
+    seen[1] = seen[1].or(seen[0].zip(seen[2]).map(|(pelvis, neck)| pelvis.lerp(neck, share)));
+}
+
+/// Postures without holes.
+fn filled(seen: &[Seen]) -> Vec<Posture> {
+    let mut made = vec![[Point::ZERO; COUNT]; seen.len()];
+    let pelvis: Vec<Option<Point>> = seen.iter().map(|frame| frame[0]).collect();
+    for (posture, p) in made.iter_mut().zip(in_between(&pelvis).unwrap_or_default()) {
+        posture[0] = p;
+    }
+    for k in 1..COUNT {
+        let way = |k: usize| -> Option<Vec<Point>> {
+            // From the parent that stands there, told or filled in.
+            let ways: Vec<_> = seen.iter().map(|frame| Some(frame[k]? - frame[PARENTS[k]].or(frame[0])?)).collect();
+            in_between(&ways)
+        };
+        let found = way(k).or_else(|| way(MIRROR[k]));
+        for frame in 0..seen.len() {
+            let parent = made[frame][PARENTS[k]];
+            made[frame][k] = match (seen[frame][k], &found) {
+                (Some(p), _) => p,
+                (None, Some(ways)) => parent + ways[frame],
+                (None, None) => parent + template_way(k, &made[frame]),
+            };
+        }
+    }
+    made
+}
+
+/// The way to a key point in the template, for the torso of a posture whose points before it are known.
+fn template_way(k: usize, posture: &Posture) -> Point {
+    let torso = if k > 2 { posture[0].distance(posture[1]) + posture[1].distance(posture[2]) } else { 0.0 };
+    let up = if k > 2 { (posture[2] - posture[0]).normalize_or(-Point::Y) } else { -Point::Y };
+    let length = TEMPLATE.0[k - 1] * torso;
+    match k {
+        3 | 4 => up * length,
+        5 | 8 | 11 | 14 => up * (if k < 11 { -0.2 } else { 0.0 } * length),
+        _ => Point::Y * length,
+    }
+}
+
+/// Values on all frames, straight between those that are known and held beyond them; none where nothing is known.
+fn in_between(values: &[Option<Point>]) -> Option<Vec<Point>> {
+    let known: Vec<(usize, Point)> = values.iter().enumerate().filter_map(|(k, v)| Some((k, (*v)?))).collect();
+    let (first, last) = (known.first()?, known.last()?);
+    let at = |frame: usize| {
+        let after = known.partition_point(|(k, _)| *k < frame);
+        match (after.checked_sub(1).map(|k| known[k]), known.get(after)) {
+            (Some((a, p)), Some((b, q))) => p.lerp(*q, (frame - a) as f64 / (b - a) as f64),
+            (None, _) => first.1,
+            (_, None) => last.1,
+        }
+    };
+    Some((0..values.len()).map(at).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon_base::scene::limbs::{Binding, Calibration, Limb, LimbEnd};
+    use std::collections::BTreeMap;
+
+    /// A part of four points round each of two ends, on frames 0 to 4 moved by (frame, 0).
+    fn part(name: &str, from: Point, to: Point, frames: &[FrameNumber]) -> Part {
+        let side = Point::new(0.0, 1.0);
+        let at = |frame: &FrameNumber| {
+            let shift = Point::new(f64::from(*frame), 0.0);
+            (*frame, [from - side, to - side, to + side, from + side].map(|p| p + shift).to_vec())
+        };
+        Part { name: name.into(), closed: true, keys: frames.iter().map(at).collect(), ..Part::default() }
+    }
+
+    fn limb(from: usize, to: usize, part: &str) -> Limb {
+        let end = |a: f64, b: f64| LimbEnd {
+            points: [a, b].map(|at| Calibration { part: part.into(), binding: Binding::Place(at) }),
+            share: 0.5,
+        };
+        Limb {
+            from,
+            to,
+            start: end(0.0, 3.0),
+            end: end(1.0, 2.0),
+            carries: Vec::new(),
+            bends: BTreeMap::new(),
+            rigidity: 1.0,
+        }
+    }
+
+    const EVERY: [FrameNumber; 5] = [0, 1, 2, 3, 4];
+
+    fn figure() -> (LimbSet, Vec<Part>) {
+        let v = Point::new;
+        let parts = vec![
+            part("torso", v(0.0, 10.0), v(0.0, 0.0), &EVERY),
+            part("arm", v(2.0, 0.0), v(6.0, 0.0), &[0, 1, 3, 4]),
+            part("leg", v(1.0, 10.0), v(1.0, 20.0), &EVERY),
+        ];
+        let set =
+            LimbSet { limbs: vec![limb(0, 2, "torso"), limb(8, 9, "arm"), limb(14, 15, "leg")], ..LimbSet::default() };
+        (set, parts)
+    }
+
+    #[test]
+    fn key_points_lie_between_their_calibration_points() {
+        let (set, parts) = figure();
+        let clip = capture(&set, &parts, 0..=4).unwrap();
+        assert_eq!((clip.first, clip.postures.len()), (0, 5));
+        for (frame, posture) in clip.postures.iter().enumerate() {
+            let x = frame as f64;
+            assert_eq!(posture[0], Point::new(x, 10.0));
+            assert_eq!(posture[2], Point::new(x, 0.0));
+            assert_eq!(posture[1], Point::new(x, 4.5));
+            assert_eq!(posture[15], Point::new(x + 1.0, 20.0));
+        }
+    }
+
+    #[test]
+    fn what_is_missing_is_filled_in_and_told() {
+        let (set, parts) = figure();
+        let clip = capture(&set, &parts, 0..=4).unwrap();
+        assert_eq!(clip.guessed[9], 1);
+        assert!(clip.postures[2][9].distance(Point::new(8.0, 0.0)) < 1e-12, "the arm's part is not there on frame 2");
+        // The other arm is like this one, and so is the other leg.
+        assert!(clip.postures[1][6].distance(clip.postures[1][9]) < 1e-12);
+        assert_eq!(clip.guessed[6], 5);
+        // The head stands on the neck, the hand hangs.
+        assert!(clip.postures[0][4].y < clip.postures[0][3].y && clip.postures[0][3].y < 0.0);
+        assert!(clip.postures[0][10].y > clip.postures[0][9].y);
+        assert!(clip.postures.iter().flatten().all(|p| p.is_finite()));
+    }
+
+    #[test]
+    fn swapped_sides_are_swapped_back() {
+        let (mut set, parts) = figure();
+        set.swaps = vec![(3, 4)];
+        let clip = capture(&set, &parts, 0..=4).unwrap();
+        assert_eq!(clip.postures[1][15], Point::new(2.0, 20.0));
+        assert_eq!(clip.postures[4][12], Point::new(5.0, 20.0));
+        assert_eq!((clip.guessed[15], clip.guessed[12]), (2, 3));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        let (mut set, mut parts) = figure();
+        assert_eq!(capture(&LimbSet::default(), &parts, 0..=4).unwrap_err(), CaptureError::NoLimbs);
+        let error = capture(&set, &parts, 7..=9).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "frames 7 to 9: found no frame on which limbs tell both pelvis and neck, expected at least one"
+        );
+        set.limbs[1].end.points[1].part = "wing".into();
+        let error = capture(&set, &parts, 0..=4).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "limbs[1] (r_shoulder to r_elbow).end.points[1].part: found \"wing\", expected one of torso, arm, leg"
+        );
+        set.limbs.truncate(1);
+        parts[0].keys.insert(2, vec![Point::ONE; 4]);
+        assert_eq!(capture(&set, &parts, 0..=4).unwrap_err(), CaptureError::FlatTorso { frame: 2 });
+    }
+}

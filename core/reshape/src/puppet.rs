@@ -1,0 +1,425 @@
+//! A drawn part that follows the limbs it goes with (Liang et al. 2012, section 5).
+//!
+//! A part is triangulated from its outline ([`super::triangulate`]). Mesh vertices near the key points of its limbs,
+//! and near samples of the limbs' splines (sub-key points, eq. 11), become handles. On a frame each handle's point on
+//! the spline at rest goes to the same place along the new spline, its parameter; what lay between it and the vertex
+//! turns with the spline. The mesh follows as rigidly as possible ([`super::arap`]), and with it every point that it
+//! holds.
+//!
+//! The print moves sub-key points from frame to frame, which lets errors pile up, as it says itself: with both key
+//! points, and then to the nearest point of the new spline (eqs. 12 to 14, [`follow`]). Here each frame starts from the
+//! drawing at rest, and their places along the limb stay. Drawn to the nearest point ([`Options::printed`]) they slide
+//! together where a limb is curved much. Without sub-key points ([`Options::sub_keys`] 0) this is plain
+//! as-rigid-as-possible manipulation by key points, the comparison that the paper draws: between key points limbs then
+//! leave their splines. (Width across a sharp elbow is kept no better with sub-key points than without: they hold both
+//! limbs straight, and the inside of the bend is pressed together.)
+//!
+//! A part that its limbs carry *whole* (a head: its key points lie closer together than it is wide, and a skull neither
+//! stretches nor bends) moves without bending or growing, whatever becomes of their lengths: it stays where the first
+//! of its limbs begins, and is turned as fits all their ends best, the farther ones counting more (the rotation of
+//! least squares about a fixed point). As a mesh it would follow every change of a neck's length in the picture, and be
+//! drawn out to a drop.
+//!
+//! A part that hangs on a limb's end with less than two handles (a hand, a shoe, a hat) is rigid: it moves with the
+//! nearest place of the spline and takes a share of its turn.
+
+use super::arap::{ArapError, Mesh, Solver};
+use super::limb::{Bend, follow, sub_keys};
+use super::triangulate::{Held, Triangles, TriangulateError, triangulate};
+use rototoon_base::curve::quadratic::Quadratic;
+use rototoon_base::geometry::{Point, polygon};
+
+/// Triangle edges in a square as large as the part.
+const EDGES: f64 = 6.0;
+
+/// How parts are reshaped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Sub-key points of a limb; 0 for plain as-rigid-as-possible manipulation by key points.
+    pub sub_keys: usize,
+    /// Whether sub-key points are drawn to the nearest point of their spline, as printed ([`follow`]), and not kept at
+    /// their place along it. On strongly curved limbs they then slide together.
+    pub printed: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { sub_keys: 5, printed: false }
+    }
+}
+
+/// A limb on a frame, or in the drawing at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimbPose {
+    /// Its key points.
+    pub ends: (Point, Point),
+    /// How it is bent.
+    pub bend: Bend,
+}
+
+impl LimbPose {
+    /// Its spline.
+    pub fn spline(&self) -> Quadratic {
+        self.bend.spline(self.ends.0, self.ends.1)
+    }
+}
+
+/// A limb that a part goes with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carrier {
+    /// Index of the limb.
+    pub limb: usize,
+    /// Share of its turn that a part takes which hangs on it.
+    pub turn: f64,
+    /// Weight of the triangles around it.
+    pub rigidity: f64,
+    /// Whether a part that only such limbs carry keeps its shape and size.
+    pub whole: bool,
+}
+
+/// Why a part cannot be reshaped.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PuppetError {
+    /// Its outline cannot be triangulated.
+    #[error(transparent)]
+    Outline(#[from] TriangulateError),
+    /// Its mesh cannot be posed.
+    #[error(transparent)]
+    Mesh(#[from] ArapError),
+    /// It goes with no limb.
+    #[error("found no limb that carries it, expected at least one")]
+    NoCarrier,
+}
+
+/// A vertex that follows a limb.
+#[derive(Clone, Copy, Debug)]
+struct Handle {
+    limb: usize,
+    /// The point of the spline at rest.
+    on: Point,
+    /// From there to the vertex.
+    offset: Point,
+}
+
+enum Drive {
+    /// Moves with a place of a limb's spline.
+    Rigid { carrier: Carrier, parameter: f64, points: Vec<Point> },
+    /// Keeps its shape and size, and stays with the beginning of its first limb.
+    Whole { limbs: Vec<usize>, turn: f64, points: Vec<Point> },
+    /// Bends with its limbs.
+    Mesh { solver: Box<Solver>, handles: Vec<Handle>, held: Vec<Held> },
+}
+
+/// A part ready to be posed again and again.
+pub struct Puppet {
+    rest: Vec<LimbPose>,
+    drive: Drive,
+    printed: bool,
+}
+
+impl Puppet {
+    /// A part with its outline at rest, the points that shall follow it, the limbs at rest (all of the character), and
+    /// those that carry it.
+    pub fn new(
+        outline: &[Point],
+        points: &[Point],
+        rest: &[LimbPose],
+        carriers: &[Carrier],
+        options: &Options,
+    ) -> Result<Self, PuppetError> {
+        let Some(first) = carriers.first() else { return Err(PuppetError::NoCarrier) };
+        let drive = match mesh(outline, points, rest, carriers, options)? {
+            Some(_) if carriers.iter().all(|carrier| carrier.whole) => whole(points, rest, carriers),
+            Some(drive) => drive,
+            None => hanging(outline, points, rest, carriers).unwrap_or(Drive::Rigid {
+                carrier: *first,
+                parameter: 1.0,
+                points: points.to_vec(),
+            }),
+        };
+        Ok(Self { rest: rest.to_vec(), drive, printed: options.printed })
+    }
+
+    /// Whether it moves without bending.
+    pub fn is_rigid(&self) -> bool {
+        !matches!(self.drive, Drive::Mesh { .. })
+    }
+
+    /// The points for the limbs of a frame.
+    pub fn pose(&mut self, limbs: &[LimbPose]) -> Result<Vec<Point>, PuppetError> {
+        match &mut self.drive {
+            Drive::Rigid { carrier, parameter, points } => {
+                let (rest, now) = (self.rest[carrier.limb].spline(), limbs[carrier.limb].spline());
+                let turn = Point::from_angle(carrier.turn * angle(&rest, &now, *parameter, *parameter));
+                let (from, to) = (rest.point(*parameter), now.point(*parameter));
+                Ok(points.iter().map(|p| to + turn.rotate(*p - from)).collect())
+            }
+            Drive::Whole { limbs: own, turn, points } => {
+                let (from, to) = (self.rest[own[0]].ends.0, limbs[own[0]].ends.0);
+                let ends = own.iter().map(|&k| (self.rest[k].ends.1 - from, limbs[k].ends.1 - to));
+                let turn = Point::from_angle(*turn * turn_between(ends));
+                Ok(points.iter().map(|p| to + turn.rotate(*p - from)).collect())
+            }
+            Drive::Mesh { solver, handles, held } => {
+                let places: Vec<Point> =
+                    handles.iter().map(|h| target(h, &self.rest[h.limb], &limbs[h.limb], self.printed)).collect();
+                let vertices = solver.solve(&places)?;
+                Ok(held.iter().map(|h| h.at(&vertices)).collect())
+            }
+        }
+    }
+}
+
+/// Where a handle goes.
+fn target(handle: &Handle, rest: &LimbPose, now: &LimbPose, printed: bool) -> Point {
+    let (before, after) = (rest.spline(), now.spline());
+    let at = before.nearest(handle.on).parameter;
+    let (on, there) = if printed {
+        let on = follow(handle.on, rest.ends, now.ends, &after);
+        (on, after.nearest(on).parameter)
+    } else {
+        (after.point(at), at)
+    };
+    let turn = angle(&before, &after, at, there);
+    on + Point::from_angle(turn).rotate(handle.offset)
+}
+
+/// The turn from a spline's direction at a parameter to another's; of what has no direction, none.
+fn angle(from: &Quadratic, to: &Quadratic, at: f64, there: f64) -> f64 {
+    let direction = |spline: &Quadratic, u: f64| {
+        let tangent = (spline.p1 - spline.p0).lerp(spline.p2 - spline.p1, u);
+        if tangent.length_squared() > 1e-18 { tangent } else { spline.p2 - spline.p0 }
+    };
+    let (a, b) = (direction(from, at), direction(to, there));
+    if a.length_squared() > 1e-18 && b.length_squared() > 1e-18 { a.angle_to(b) } else { 0.0 }
+}
+
+/// The turn about the origin that brings the first points of pairs nearest to the second, by least squares.
+fn turn_between(pairs: impl Iterator<Item = (Point, Point)>) -> f64 {
+    let (cosine, sine) = pairs.fold((0.0, 0.0), |(c, s), (a, b)| (c + a.dot(b), s + a.perp_dot(b)));
+    if cosine == 0.0 && sine == 0.0 { 0.0 } else { sine.atan2(cosine) }
+}
+
+/// A part that keeps its shape. It stays with the limb that begins where no other ends.
+fn whole(points: &[Point], rest: &[LimbPose], carriers: &[Carrier]) -> Drive {
+    let hangs = |a: &Carrier| {
+        let start = rest[a.limb].ends.0;
+        carriers.iter().any(|b| b.limb != a.limb && rest[b.limb].ends.1.distance(start) <= 1e-6)
+    };
+    let mut order = carriers.to_vec();
+    order.sort_by_key(hangs); // stable: of several the first that is given
+    let limbs = order.iter().map(|carrier| carrier.limb).collect();
+    Drive::Whole { limbs, turn: order[0].turn, points: points.to_vec() }
+}
+
+/// The mesh of a part, unless it has too few handles.
+fn mesh(
+    outline: &[Point],
+    points: &[Point],
+    rest: &[LimbPose],
+    carriers: &[Carrier],
+    options: &Options,
+) -> Result<Option<Drive>, PuppetError> {
+    let edge = (polygon::signed_area(outline).abs().sqrt() / EDGES).max(1e-9);
+    let whole = triangulate(&[outline.to_vec()], &[], edge)?;
+    // What hangs on the rest by one vertex could turn freely about it: the rest alone is posed, and holds what it holds.
+    let posed = whole.pieces().into_iter().find_map(|piece| {
+        let (vertices, handles) = handles(&piece, edge, rest, carriers, options);
+        (vertices.len() > 1).then_some((piece, vertices, handles))
+    });
+    let Some((shape, vertices, handles)) = posed else { return Ok(None) };
+    let weight = |corners: &[usize; 3]| {
+        let middle = corners.map(|v| shape.vertices[v]).iter().sum::<Point>() / 3.0;
+        let nearest = carriers.iter().min_by(|a, b| {
+            let away = |c: &Carrier| rest[c.limb].spline().nearest(middle).distance;
+            away(a).total_cmp(&away(b))
+        });
+        nearest.map_or(1.0, |carrier| carrier.rigidity)
+    };
+    let weights = shape.triangles.iter().map(weight).collect();
+    let held = points.iter().map(|p| shape.hold(*p)).collect();
+    let mesh = Mesh::with_rigidity(shape.vertices, shape.triangles, weights)?;
+    match Solver::new(mesh, &vertices) {
+        Ok(solver) => Ok(Some(Drive::Mesh { solver: Box::new(solver), handles, held })),
+        // A piece of a torn outline that no limb reaches: the part as a whole is rigid then.
+        Err(ArapError::Adrift { .. }) => Ok(None),
+        Err(other) => Err(other.into()),
+    }
+}
+
+/// Vertices that follow limbs, each once; what is farther than an edge from its vertex has none.
+fn handles(
+    shape: &Triangles,
+    edge: f64,
+    rest: &[LimbPose],
+    carriers: &[Carrier],
+    options: &Options,
+) -> (Vec<usize>, Vec<Handle>) {
+    let (mut vertices, mut found): (Vec<usize>, Vec<Handle>) = (Vec::new(), Vec::new());
+    for carrier in carriers {
+        let pose = &rest[carrier.limb];
+        let spline = pose.spline();
+        let nearest = |p: Point| {
+            let away = |v: &Point| v.distance_squared(p);
+            (0..shape.vertices.len()).min_by(|&a, &b| away(&shape.vertices[a]).total_cmp(&away(&shape.vertices[b])))
+        };
+        let ends = [pose.ends.0, pose.ends.1].map(|p| (nearest(p), p));
+        let between = sub_keys(&spline, &shape.vertices, options.sub_keys);
+        let between = between.into_iter().map(|v| (Some(v), spline.nearest(shape.vertices[v]).point));
+        for (vertex, on) in ends.into_iter().chain(between) {
+            let Some(vertex) = vertex.filter(|v| shape.vertices[*v].distance(on) <= edge && !vertices.contains(v))
+            else {
+                continue;
+            };
+            vertices.push(vertex);
+            found.push(Handle { limb: carrier.limb, on, offset: shape.vertices[vertex] - on });
+        }
+    }
+    (vertices, found)
+}
+
+/// A part that hangs on the nearest of its limbs.
+fn hanging(outline: &[Point], points: &[Point], rest: &[LimbPose], carriers: &[Carrier]) -> Option<Drive> {
+    let middle = polygon::center(outline);
+    let near = |carrier: &Carrier| rest[carrier.limb].spline().nearest(middle);
+    let carrier = carriers.iter().min_by(|a, b| near(a).distance.total_cmp(&near(b).distance))?;
+    Some(Drive::Rigid { carrier: *carrier, parameter: near(carrier).parameter, points: points.to_vec() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon_base::geometry::polyline;
+
+    fn v(x: f64, y: f64) -> Point {
+        Point::new(x, y)
+    }
+
+    /// A straight arm of two limbs along x, 100 long and 20 wide.
+    fn arm() -> (Vec<Point>, Vec<LimbPose>) {
+        let straight = |a: Point, b: Point| LimbPose { ends: (a, b), bend: Bend::STRAIGHT };
+        let line = [v(-5.0, -10.0), v(105.0, -10.0), v(105.0, 10.0), v(-5.0, 10.0)];
+        let outline = polyline::resample(&line, true, 52);
+        (outline, vec![straight(v(0.0, 0.0), v(50.0, 0.0)), straight(v(50.0, 0.0), v(100.0, 0.0))])
+    }
+
+    fn carrier(limb: usize) -> Carrier {
+        Carrier { limb, turn: 1.0, rigidity: 1.0, whole: false }
+    }
+
+    fn bent(elbow: f64) -> Vec<LimbPose> {
+        let (_, mut limbs) = arm();
+        limbs[1].ends.1 = v(50.0, 0.0) + Point::from_angle(elbow) * 50.0;
+        limbs
+    }
+
+    #[test]
+    fn limbs_moved_rigidly_move_the_part_rigidly() {
+        let (outline, rest) = arm();
+        let mut puppet =
+            Puppet::new(&outline, &outline, &rest, &[carrier(0), carrier(1)], &Options::default()).unwrap();
+        assert!(!puppet.is_rigid());
+        let turn = |p: Point| Point::from_angle(2.2).rotate(p) + v(30.0, -8.0);
+        let moved: Vec<LimbPose> =
+            rest.iter().map(|l| LimbPose { ends: (turn(l.ends.0), turn(l.ends.1)), ..*l }).collect();
+        let found = puppet.pose(&moved).unwrap();
+        assert!(outline.iter().zip(&found).all(|(a, b)| turn(*a).distance(*b) < 1e-8));
+    }
+
+    #[test]
+    fn sub_key_points_keep_limbs_on_their_splines() {
+        let (outline, rest) = arm();
+        let middle: Vec<Point> = (1..10).map(|k| v(10.0 * k as f64, 0.0)).collect();
+        let strayed = |sub_keys: usize, limbs: &[LimbPose]| {
+            let options = Options { sub_keys, ..Options::default() };
+            let mut puppet = Puppet::new(&outline, &middle, &rest, &[carrier(0), carrier(1)], &options).unwrap();
+            let away = |p: &Point| limbs.iter().map(|l| l.spline().nearest(*p).distance).fold(f64::INFINITY, f64::min);
+            puppet.pose(limbs).unwrap().iter().map(away).sum::<f64>()
+        };
+        let mut curved = bent(0.5);
+        curved.iter_mut().for_each(|limb| limb.bend = Bend { along: 0.5, across: 0.3 });
+        for limbs in [bent(1.6), curved] {
+            assert!(strayed(5, &limbs) < 0.5 * strayed(0, &limbs), "{} {}", strayed(5, &limbs), strayed(0, &limbs));
+        }
+    }
+
+    #[test]
+    fn a_drawn_sleeve_bends_at_the_elbow() {
+        let points = [
+            (286.65087781207876, 237.52800161289488),
+            (275.4858133122582, 260.41842547509924),
+            (267.2832869578837, 282.48407364878403),
+            (262.00127940390485, 303.742315298805),
+            (259.5972008032425, 324.2365926872229),
+            (249.5526814625554, 325.9994401606485),
+            (239.60279919675747, 323.7634073127771),
+            (241.26372059609517, 300.43268470119494),
+            (246.13671304211624, 276.41592635121594),
+            (254.17918668774192, 251.7565745249007),
+            (265.34912218792124, 226.47199838710512),
+            (280.14600120967117, 224.01184164094093),
+        ];
+        let outline = points.map(Point::from).to_vec();
+        let across = |a: usize, b: usize| outline[a].midpoint(outline[b]);
+        let [shoulder, elbow, wrist] = [across(0, 10), across(2, 8), across(4, 6)];
+        let straight = |a: Point, b: Point| LimbPose { ends: (a, b), bend: Bend::STRAIGHT };
+        let rest = [straight(shoulder, elbow), straight(elbow, wrist)];
+        for turn in [-2.0, -1.0, 1.0, 2.0] {
+            let hand = elbow + Point::from_angle(turn).rotate(wrist - elbow);
+            let limbs = [straight(shoulder, elbow), straight(elbow, hand)];
+            let mut puppet =
+                Puppet::new(&outline, &[wrist, shoulder], &rest, &[carrier(0), carrier(1)], &Options::default())
+                    .unwrap();
+            let found = puppet.pose(&limbs).unwrap();
+            assert!(found[0].distance(hand) < 2.0 && found[1].distance(shoulder) < 2.0, "{turn}: {found:?} {hand}");
+        }
+    }
+
+    #[test]
+    fn what_hangs_on_an_end_is_rigid_and_takes_its_share_of_the_turn() {
+        let (_, rest) = arm();
+        let hand = [v(104.0, -6.0), v(124.0, -6.0), v(124.0, 6.0), v(104.0, 6.0)];
+        let pose = |turn: f64| {
+            let carriers = [Carrier { turn, ..carrier(1) }];
+            let mut puppet = Puppet::new(&hand, &hand, &rest, &carriers, &Options::default()).unwrap();
+            assert!(puppet.is_rigid());
+            puppet.pose(&bent(std::f64::consts::FRAC_PI_2)).unwrap()
+        };
+        assert!(pose(1.0)[0].distance(v(56.0, 54.0)) < 1e-9, "{}", pose(1.0)[0]);
+        assert!(pose(0.0)[0].distance(v(54.0, 44.0)) < 1e-9, "{}", pose(0.0)[0]);
+    }
+
+    #[test]
+    fn a_head_keeps_its_shape_on_a_neck_that_grows() {
+        let (_, rest) = arm(); // neck from 0 to 50, head from 50 to 100
+        let head = polyline::resample(&[v(20.0, -40.0), v(110.0, -40.0), v(110.0, 40.0), v(20.0, 40.0)], true, 40);
+        let points = [head.clone(), vec![v(0.0, 0.0)]].concat();
+        let posed = |whole: bool, limbs: &[LimbPose]| {
+            let carriers = [1, 0].map(|limb| Carrier { whole, ..carrier(limb) });
+            let mut puppet = Puppet::new(&head, &points, &rest, &carriers, &Options::default()).unwrap();
+            assert_eq!(puppet.is_rigid(), whole);
+            puppet.pose(limbs).unwrap()
+        };
+        let mut limbs = rest.clone();
+        (limbs[0].ends.1, limbs[1].ends) = (v(0.0, 80.0), (v(0.0, 80.0), v(0.0, 170.0)));
+        let found = posed(true, &limbs);
+        assert!(points.iter().zip(&found).all(|(a, b)| a.perp().distance(*b) < 1e-9), "turned about the neck");
+        let grown = polygon::signed_area(&posed(false, &limbs)[..40]) / polygon::signed_area(&head);
+        assert!((grown - 1.0).abs() > 0.1, "a mesh grows with its limbs: {grown}");
+        limbs.iter_mut().for_each(|limb| limb.ends = (v(3.0, 4.0), v(3.0, 4.0)));
+        assert_eq!(posed(true, &limbs)[40], v(3.0, 4.0));
+    }
+
+    #[test]
+    fn a_limb_that_shrinks_to_a_point_leaves_finite_places() {
+        let (outline, mut limbs) = arm();
+        let mut puppet =
+            Puppet::new(&outline, &outline, &limbs, &[carrier(0), carrier(1)], &Options::default()).unwrap();
+        limbs[1].ends.1 = limbs[1].ends.0;
+        assert!(puppet.pose(&limbs).unwrap().iter().all(|p| p.is_finite()));
+        let none = Puppet::new(&outline, &outline, &limbs, &[], &Options::default());
+        assert!(matches!(none, Err(PuppetError::NoCarrier)));
+        let flat = Puppet::new(&outline[..1], &[], &limbs, &[carrier(0)], &Options::default());
+        assert!(matches!(flat, Err(PuppetError::Outline(TriangulateError::Flat { outline: 0 }))));
+    }
+}

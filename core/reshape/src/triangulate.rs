@@ -1,0 +1,389 @@
+//! A triangle mesh of what outlines enclose.
+//!
+//! Constrained Delaunay triangulation, refined after Ruppert 1995 and Chew 1993 (crate `spade`): edges of the outlines stay
+//! edges, no angle is smaller than [`LEAST_ANGLE`] except where the outlines themselves are sharper, and no triangle is much
+//! larger than an equilateral one on the wanted edge.
+//!
+//! Drawn outlines are not always clean, so they are repaired first: points on one spot count once, long segments are divided,
+//! and where a line crosses itself or another one the crossing becomes a vertex. What is enclosed follows the winding number:
+//! not 0 in the outlines and 0 in the holes. So an outline that folds over itself has no hole there, as in rendering.
+//!
+//! Limits: triangles are not refined where an outline lies over itself an even number of times. Detail finer than a tenth of
+//! the wanted edge is smoothed away. Triangles that remain slivers (at crossings under a tiny angle) are left out.
+
+use rototoon_base::geometry::{Point, polygon, polyline};
+use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
+use std::collections::BTreeMap;
+
+/// Smallest angle of refined triangles, in degrees; refinement is certain to end below 20.7, and does nearly always at this.
+pub const LEAST_ANGLE: f64 = 25.0;
+/// Points nearer to the last one than this share of the wanted edge are left out.
+const SHORTEST: f64 = 0.1;
+/// Largest triangle, in areas of an equilateral one on the wanted edge.
+const LARGEST: f64 = 1.6;
+/// Triangles smaller than this share of the wanted edge's square are not refined further: the sharp ends of outlines.
+const SMALLEST: f64 = 0.04;
+/// Triangles with less than this share of the area of an equilateral one on their longest edge are slivers.
+const SLIVER: f64 = 1e-5;
+/// Most vertices that refinement may add: for each point of the outlines, and for each triangle of the wanted size in their box.
+const MOST: [f64; 2] = [10.0, 4.0];
+
+/// Why there is no mesh.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TriangulateError {
+    /// A point is not finite or too far away.
+    #[error("outline {outline}, point {point}: found {found}, expected numbers between -1e9 and 1e9")]
+    Point {
+        /// Its outline.
+        outline: usize,
+        /// Its index.
+        point: usize,
+        /// What was found.
+        found: Point,
+    },
+    /// An outline encloses nothing.
+    #[error("outline {outline}: found no area that it encloses (its points are on a line or a spot), expected some")]
+    Flat {
+        /// The outline.
+        outline: usize,
+    },
+    /// There is nothing at all, or the holes take all of it.
+    #[error("outlines: found nothing that is inside of them and outside of the holes")]
+    Nothing,
+    /// The wanted edge is no length.
+    #[error("edge: found {found}, expected a positive length")]
+    Edge {
+        /// What was found.
+        found: f64,
+    },
+}
+
+/// Vertices and triangles; three vertices each, all turning the same way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Triangles {
+    /// Places of the vertices.
+    pub vertices: Vec<Point>,
+    /// Vertices of each triangle.
+    pub triangles: Vec<[usize; 3]>,
+}
+
+/// Triangulates what `outlines` enclose and `holes` do not, with edges of about the given length in pixels.
+pub fn triangulate(outlines: &[Vec<Point>], holes: &[Vec<Point>], edge: f64) -> Result<Triangles, TriangulateError> {
+    if !(edge > 0.0 && edge.is_finite()) {
+        return Err(TriangulateError::Edge { found: edge });
+    }
+    let rings: Vec<Vec<Point>> =
+        outlines.iter().chain(holes).enumerate().map(|(k, ring)| cleaned(k, ring, edge)).collect::<Result<_, _>>()?;
+    let (outside, inside) = rings.split_at(outlines.len());
+    let mut mesh = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
+    for ring in &rings {
+        constrain(&mut mesh, ring);
+    }
+    let largest = LARGEST * 3f64.sqrt() / 4.0 * edge * edge;
+    // What lies outside is not refined: flat angles between an outline and its hull would cut it into crumbs.
+    let parameters = RefinementParameters::<f64>::new()
+        .exclude_outer_faces(true)
+        .with_angle_limit(AngleLimit::from_deg(LEAST_ANGLE))
+        .with_max_allowed_area(largest)
+        .with_min_required_area(SMALLEST * edge * edge)
+        .with_max_additional_vertices(most(&rings, largest));
+    mesh.refine(parameters);
+    collect(&mesh, outside, inside)
+}
+
+/// A ring whose points are neither on one spot nor farther apart than an edge.
+fn cleaned(outline: usize, ring: &[Point], edge: f64) -> Result<Vec<Point>, TriangulateError> {
+    if let Some(point) = polyline::first_unusable(ring) {
+        return Err(TriangulateError::Point { outline, point, found: ring[point] });
+    }
+    let mut kept: Vec<Point> = Vec::with_capacity(ring.len());
+    for &p in ring {
+        if kept.last().is_none_or(|last| last.distance(p) > SHORTEST * edge) {
+            kept.push(p);
+        }
+    }
+    while kept.len() > 1 && kept[0].distance(kept[kept.len() - 1]) <= SHORTEST * edge {
+        kept.pop();
+    }
+    let length = polyline::length(&kept, true);
+    if kept.len() < 3 || !encloses(&kept, 1e-6 * length * length) {
+        return Err(TriangulateError::Flat { outline });
+    }
+    let mut divided = Vec::with_capacity(kept.len());
+    for (a, b) in polyline::segments(&kept, true) {
+        let pieces = (a.distance(b) / edge).round().max(1.0);
+        divided.extend((0..pieces as usize).map(|k| a.lerp(b, k as f64 / pieces)));
+    }
+    Ok(divided)
+}
+
+/// Whether a ring encloses more than an area, also where its loops run against each other.
+fn encloses(ring: &[Point], least: f64) -> bool {
+    let fan: f64 = (1..ring.len() - 1).map(|k| (ring[k] - ring[0]).perp_dot(ring[k + 1] - ring[0]).abs()).sum();
+    polygon::signed_area(ring).abs() > least || fan > 4.0 * least
+}
+
+fn constrain(mesh: &mut ConstrainedDelaunayTriangulation<Point2<f64>>, ring: &[Point]) {
+    // Coordinates are checked to be finite and of a usable size, which is all that insertion asks for.
+    let handles: Vec<_> = ring.iter().filter_map(|p| mesh.insert(Point2::new(p.x, p.y)).ok()).collect();
+    for k in 0..handles.len() {
+        let (from, to) = (handles[k], handles[(k + 1) % handles.len()]);
+        if from != to {
+            mesh.add_constraint_and_split(from, to, |crossing| crossing);
+        }
+    }
+}
+
+/// How many vertices may be added; sharp ends would take more and more of them.
+fn most(rings: &[Vec<Point>], largest: f64) -> usize {
+    let points: Vec<Point> = rings.iter().flatten().copied().collect();
+    let size = polygon::bounds(&points).map_or(Point::ZERO, |(low, high)| high - low);
+    (MOST[0] * points.len() as f64 + MOST[1] * size.x * size.y / largest) as usize
+}
+
+/// How often a ring goes round a point.
+fn winding(ring: &[Point], p: Point) -> i32 {
+    polyline::segments(ring, true)
+        .map(|(a, b)| match (a.y <= p.y, b.y <= p.y) {
+            (true, false) if (b - a).perp_dot(p - a) > 0.0 => 1,
+            (false, true) if (b - a).perp_dot(p - a) < 0.0 => -1,
+            _ => 0,
+        })
+        .sum()
+}
+
+fn collect(
+    mesh: &ConstrainedDelaunayTriangulation<Point2<f64>>,
+    outlines: &[Vec<Point>],
+    holes: &[Vec<Point>],
+) -> Result<Triangles, TriangulateError> {
+    let mut number = vec![usize::MAX; mesh.num_vertices()];
+    let mut found = Triangles { vertices: Vec::new(), triangles: Vec::new() };
+    for face in mesh.inner_faces() {
+        let corners = face.vertices();
+        let at = corners.map(|v| Point::new(v.position().x, v.position().y));
+        let middle = (at[0] + at[1] + at[2]) / 3.0;
+        // Each outline by itself: two that run against each other do not cancel out.
+        let within = |rings: &[Vec<Point>]| rings.iter().any(|ring| winding(ring, middle) != 0);
+        if !within(outlines) || within(holes) || is_sliver(&at) {
+            continue;
+        }
+        found.triangles.push(std::array::from_fn(|k| {
+            let slot = &mut number[corners[k].fix().index()];
+            if *slot == usize::MAX {
+                *slot = found.vertices.len();
+                found.vertices.push(at[k]);
+            }
+            *slot
+        }));
+    }
+    if found.triangles.is_empty() { Err(TriangulateError::Nothing) } else { Ok(found) }
+}
+
+fn is_sliver([a, b, c]: &[Point; 3]) -> bool {
+    let longest = a.distance_squared(*b).max(b.distance_squared(*c)).max(c.distance_squared(*a));
+    (*b - *a).perp_dot(*c - *a).abs() < 2.0 * SLIVER * 0.433 * longest
+}
+
+/// A point held by a triangle: it moves as the weighted mean of the corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// The corners' vertices.
+    pub corners: [usize; 3],
+    /// Their weights, which sum to 1; a point outside of the mesh has negative ones.
+    pub weights: [f64; 3],
+}
+
+impl Held {
+    /// The point for places of the vertices.
+    pub fn at(&self, places: &[Point]) -> Point {
+        (0..3).map(|k| places[self.corners[k]] * self.weights[k]).sum()
+    }
+}
+
+impl Triangles {
+    /// The pieces that hang together by edges, the largest by area first.
+    pub fn pieces(&self) -> Vec<Self> {
+        let mut owner: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+        let mut piece: Vec<usize> = (0..self.triangles.len()).collect();
+        for (t, [a, b, c]) in self.triangles.iter().enumerate() {
+            for (v, w) in [(a, b), (b, c), (c, a)] {
+                if let Some(&other) = owner.get(&(*v.min(w), *v.max(w))) {
+                    let (x, y) = (root(&mut piece, t), root(&mut piece, other));
+                    piece[x.max(y)] = x.min(y);
+                }
+                owner.insert((*v.min(w), *v.max(w)), t);
+            }
+        }
+        let mut found: BTreeMap<usize, Vec<[usize; 3]>> = BTreeMap::new();
+        for (t, corners) in self.triangles.iter().enumerate() {
+            found.entry(root(&mut piece, t)).or_default().push(*corners);
+        }
+        let mut pieces: Vec<Self> = found.into_values().map(|triangles| self.part(&triangles)).collect();
+        pieces.sort_by(|a, b| b.area().total_cmp(&a.area()));
+        pieces
+    }
+
+    /// Some of the triangles with their vertices.
+    fn part(&self, triangles: &[[usize; 3]]) -> Self {
+        let mut number: BTreeMap<usize, usize> = BTreeMap::new();
+        let mut vertices = Vec::new();
+        let mut renumbered = |v: usize| {
+            *number.entry(v).or_insert_with(|| {
+                vertices.push(self.vertices[v]);
+                vertices.len() - 1
+            })
+        };
+        let triangles = triangles.iter().map(|corners| corners.map(&mut renumbered)).collect();
+        Self { vertices, triangles }
+    }
+
+    fn area(&self) -> f64 {
+        self.triangles.iter().map(|t| polygon::signed_area(&t.map(|v| self.vertices[v])).abs()).sum()
+    }
+
+    /// Binds a point to the triangle that it lies in, or to the nearest one.
+    pub fn hold(&self, p: Point) -> Held {
+        let weights = |corners: &[usize; 3]| {
+            let [a, b, c] = corners.map(|v| self.vertices[v]);
+            let area = (b - a).perp_dot(c - a);
+            let (u, v) = ((p - a).perp_dot(c - a) / area, (b - a).perp_dot(p - a) / area);
+            [1.0 - u - v, u, v]
+        };
+        let away = |corners: &[usize; 3]| {
+            if weights(corners).iter().all(|w| *w >= 0.0) {
+                return 0.0;
+            }
+            let [a, b, c] = corners.map(|v| self.vertices[v]);
+            [(a, b), (b, c), (c, a)]
+                .into_iter()
+                .map(|(s, e)| p.distance_squared(polyline::nearest_on_segment(p, s, e)))
+                .fold(f64::INFINITY, f64::min)
+        };
+        let mut best = (f64::INFINITY, self.triangles[0]);
+        for corners in &self.triangles {
+            let distance = away(corners);
+            if distance < best.0 {
+                best = (distance, *corners);
+            }
+        }
+        Held { corners: best.1, weights: weights(&best.1) }
+    }
+}
+
+/// The first of the pieces that are one with a piece.
+fn root(piece: &mut [usize], mut t: usize) -> usize {
+    while piece[t] != t {
+        piece[t] = piece[piece[t]];
+        t = piece[t];
+    }
+    t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::slice::from_ref;
+
+    fn ring(count: usize, radius: f64, wave: f64) -> Vec<Point> {
+        let at = |k: usize| {
+            let angle = std::f64::consts::TAU * k as f64 / count as f64;
+            Point::from_angle(angle) * (radius + wave * (5.0 * angle).sin()) + Point::new(100.0, 80.0)
+        };
+        (0..count).map(at).collect()
+    }
+
+    fn area(mesh: &Triangles) -> f64 {
+        let of = |t: &[usize; 3]| polygon::signed_area(&t.map(|v| mesh.vertices[v]));
+        mesh.triangles.iter().map(|t| of(t).abs()).sum()
+    }
+
+    fn least_angle(mesh: &Triangles) -> f64 {
+        let angle = |t: &[usize; 3], k: usize| {
+            let [a, b, c] = [t[k], t[(k + 1) % 3], t[(k + 2) % 3]].map(|v| mesh.vertices[v]);
+            (b - a).angle_to(c - a).abs().to_degrees()
+        };
+        mesh.triangles.iter().flat_map(|t| (0..3).map(|k| angle(t, k))).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn a_wavy_ring_is_filled_with_good_triangles() {
+        let outline = ring(60, 50.0, 8.0);
+        let mesh = triangulate(std::slice::from_ref(&outline), &[], 6.0).unwrap();
+        assert!((area(&mesh) / polygon::signed_area(&outline).abs() - 1.0).abs() < 1e-3);
+        assert!(least_angle(&mesh) > 20.0, "{}", least_angle(&mesh));
+        assert!((200..1200).contains(&mesh.triangles.len()), "{}", mesh.triangles.len());
+        crate::arap::Mesh::new(mesh.vertices, mesh.triangles).unwrap();
+    }
+
+    #[test]
+    fn holes_stay_open() {
+        let (outline, hole) = (ring(60, 50.0, 0.0), ring(30, 20.0, 0.0));
+        let mesh = triangulate(from_ref(&outline), from_ref(&hole), 6.0).unwrap();
+        let wanted = polygon::signed_area(&outline).abs() - polygon::signed_area(&hole).abs();
+        assert!((area(&mesh) / wanted - 1.0).abs() < 1e-2);
+        assert!(least_angle(&mesh) > 20.0);
+        assert_eq!(triangulate(from_ref(&hole), &[outline], 6.0), Err(TriangulateError::Nothing));
+    }
+
+    #[test]
+    fn an_outline_that_crosses_itself_is_filled_by_winding() {
+        let v = Point::new;
+        // Two squares in a figure of eight, and a fold that lies over itself.
+        let eight = vec![v(0.0, 0.0), v(40.0, 40.0), v(40.0, 0.0), v(0.0, 40.0)];
+        let mesh = triangulate(&[eight], &[], 5.0).unwrap();
+        assert!((area(&mesh) - 800.0).abs() < 1.0, "{}", area(&mesh));
+        assert_eq!(mesh.pieces().len(), 2, "its halves touch in a point");
+        let mut twice = vec![v(0.0, 0.0), v(30.0, 0.0), v(30.0, 30.0), v(0.0, 30.0)];
+        twice.extend([v(0.0, 0.0), v(20.0, 0.0), v(20.0, 20.0), v(0.0, 20.0)]);
+        let mesh = triangulate(&[twice], &[], 5.0).unwrap();
+        assert!((area(&mesh) - 900.0).abs() < 1.0, "{}", area(&mesh));
+    }
+
+    #[test]
+    fn sharp_tips_end() {
+        let v = Point::new;
+        let needle = vec![v(0.0, 0.0), v(200.0, 1.0), v(0.0, 2.0)];
+        let mesh = triangulate(&[needle], &[], 4.0).unwrap();
+        assert!(mesh.vertices.len() < 3_000, "{}", mesh.vertices.len());
+        crate::arap::Mesh::new(mesh.vertices, mesh.triangles).unwrap();
+    }
+
+    #[test]
+    fn points_are_held_inside_and_outside() {
+        let mesh = triangulate(&[ring(24, 30.0, 0.0)], &[], 8.0).unwrap();
+        for p in [Point::new(101.0, 82.0), Point::new(140.0, 80.0), mesh.vertices[3]] {
+            let held = mesh.hold(p);
+            assert!(held.at(&mesh.vertices).distance(p) < 1e-9);
+            let turn = |q: &Point| Point::from_angle(0.4).rotate(*q) + Point::new(3.0, 4.0);
+            let moved: Vec<Point> = mesh.vertices.iter().map(turn).collect();
+            assert!(held.at(&moved).distance(turn(&p)) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        let v = Point::new;
+        let flat = vec![v(0.0, 0.0), v(5.0, 5.0), v(10.0, 10.0)];
+        assert_eq!(triangulate(&[ring(9, 5.0, 0.0), flat], &[], 1.0), Err(TriangulateError::Flat { outline: 1 }));
+        assert_eq!(triangulate(&[vec![]], &[], 1.0), Err(TriangulateError::Flat { outline: 0 }));
+        let broken = vec![v(0.0, 0.0), v(f64::NAN, 0.0), v(1.0, 1.0)];
+        let error = triangulate(&[broken], &[], 1.0).unwrap_err().to_string();
+        assert!(error.starts_with("outline 0, point 1: found [NaN, 0], expected"), "{error}");
+        assert!(matches!(triangulate(&[], &[], 0.0), Err(TriangulateError::Edge { found: 0.0 })));
+        assert_eq!(triangulate(&[], &[], 1.0), Err(TriangulateError::Nothing));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+        #[test]
+        fn any_scribble_gives_a_usable_mesh_or_an_error(points in prop::collection::vec((0.0f64..60.0, 0.0f64..60.0), 3..14)) {
+            let outline: Vec<Point> = points.into_iter().map(Point::from).collect();
+            if let Ok(mesh) = triangulate(std::slice::from_ref(&outline), &[], 6.0) {
+                prop_assert!(crate::arap::Mesh::new(mesh.vertices.clone(), mesh.triangles.clone()).is_ok());
+                prop_assert_eq!(triangulate(&[outline], &[], 6.0).unwrap(), mesh);
+            }
+        }
+    }
+}

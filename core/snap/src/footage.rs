@@ -1,0 +1,217 @@
+//! All parts of a scene on all of their frames.
+//!
+//! Frames are independent but for one thing: whether a part's ink centre or edge is followed is decided by all of its
+//! frames together. Paths of both kinds are therefore found where a frame's own points are in doubt, and the part's vote
+//! chooses in the end; so each picture is asked for once.
+//!
+//! As many frames are in work as there are threads, and no more: a picture is dropped before the next is asked for.
+
+use super::cost::Follow;
+use super::snapper::{InkVote, SnapOptions, Snapper};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Cancelled, FrameError, FrameNumber, FrameSource, Part, Progress, Scene};
+use std::collections::BTreeMap;
+
+/// Snapped paths of one part: by frame, one path a segment.
+pub type PartCurves = BTreeMap<FrameNumber, Vec<Vec<Point>>>;
+
+/// Why snapping failed. Nothing was changed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SnapError {
+    /// A picture could not be had.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// One part on one frame.
+struct Found {
+    part: usize,
+    vote: InkVote,
+    /// Along edges and along lines; one of them is missing where the options leave no choice.
+    paths: [Option<Vec<Vec<Point>>>; 2],
+}
+
+/// Snaps every part on every frame of its tracks, or of its keys where it has no tracks. The result has one entry a part.
+///
+/// Each picture is asked for once, and the result does not depend on the number of threads. Progress is reported by the
+/// calling thread, after as many frames as there are threads; cancelling takes effect there.
+///
+/// # Errors
+///
+/// The error of the first frame, in time order, whose picture cannot be had; [`SnapError::Cancelled`] when told to stop.
+pub fn snap_scene(
+    scene: &Scene,
+    frames: &dyn FrameSource,
+    options: &SnapOptions,
+    progress: &dyn Progress,
+) -> Result<Vec<PartCurves>, SnapError> {
+    let work = contours_by_frame(scene);
+    let numbers: Vec<FrameNumber> = work.keys().copied().collect();
+    progress.report("snap", 0.0)?;
+    let mut found: Vec<(FrameNumber, Vec<Found>)> = Vec::with_capacity(numbers.len());
+    for batch in numbers.chunks(rayon::current_num_threads().max(1)) {
+        let results: Vec<_> = batch
+            .par_iter()
+            .map(|frame| Ok((*frame, snap_frame(scene, &work[frame], &*frames.picture(*frame)?, options))))
+            .collect::<Vec<Result<_, FrameError>>>();
+        for result in results {
+            found.push(result?);
+        }
+        progress.report("snap", found.len() as f64 / numbers.len() as f64)?;
+    }
+    Ok(choose(scene.parts.len(), found))
+}
+
+/// By frame, the parts that have a contour on it, with the contour.
+fn contours_by_frame(scene: &Scene) -> BTreeMap<FrameNumber, Vec<(usize, &[Point])>> {
+    let mut work: BTreeMap<FrameNumber, Vec<(usize, &[Point])>> = BTreeMap::new();
+    for (index, part) in scene.parts.iter().enumerate() {
+        for (&frame, points) in contours(part) {
+            work.entry(frame).or_default().push((index, points));
+        }
+    }
+    work
+}
+
+fn contours(part: &Part) -> &BTreeMap<FrameNumber, Vec<Point>> {
+    if part.tracks.is_empty() { &part.keys } else { &part.tracks }
+}
+
+fn snap_frame(
+    scene: &Scene,
+    contours: &[(usize, &[Point])],
+    picture: &rototoon_base::scene::Raster<rototoon_base::scene::Colour>,
+    options: &SnapOptions,
+) -> Vec<Found> {
+    let snapper = Snapper::new(picture);
+    let snap = |part: usize, points: &[Point], follow: Follow| {
+        snapper.snap(points, scene.parts[part].closed, &SnapOptions { follow, ..*options })
+    };
+    let each = contours.iter().map(|&(part, points)| {
+        let auto = options.follow == Follow::Auto;
+        let vote = if auto { snapper.vote(points) } else { InkVote::default() };
+        let wanted = |follow| (auto || options.follow == follow).then(|| snap(part, points, follow));
+        Found { part, vote, paths: [wanted(Follow::Edge), wanted(Follow::Line)] }
+    });
+    each.collect()
+}
+
+/// Of each part, the paths of the kind that its frames together vote for.
+fn choose(parts: usize, found: Vec<(FrameNumber, Vec<Found>)>) -> Vec<PartCurves> {
+    let mut votes = vec![InkVote::default(); parts];
+    for entry in found.iter().flat_map(|(_, entries)| entries) {
+        votes[entry.part] = votes[entry.part].and(entry.vote);
+    }
+    let mut result = vec![PartCurves::new(); parts];
+    for (frame, entries) in found {
+        for Found { part, paths: [edge, line], .. } in entries {
+            let paths = if votes[part].winner() == Follow::Line { line.or(edge) } else { edge.or(line) };
+            result[part].insert(frame, paths.unwrap_or_default());
+        }
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon_base::scene::{Colour, Footage, Raster, Silent};
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// A dark disc outline that moves to the right; frame 7 is missing.
+    struct Disc {
+        asked: AtomicUsize,
+    }
+
+    const SIZE: usize = 60;
+
+    impl FrameSource for Disc {
+        fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
+            self.asked.fetch_add(1, Ordering::Relaxed);
+            if frame == 7 {
+                return Err(FrameError::Outside { frame, first: 0, last: 6 });
+            }
+            let centre = centre(frame);
+            Ok(Arc::new(Raster::from_fn(SIZE, SIZE, |x, y| {
+                let away = (Point::new(x as f64 + 0.5, y as f64 + 0.5).distance(centre) - 15.0).abs();
+                [(away - 1.0).clamp(0.0, 1.0) as f32; 3]
+            })))
+        }
+    }
+
+    fn centre(frame: FrameNumber) -> Point {
+        Point::new(25.0 + f64::from(frame), 30.0)
+    }
+
+    fn ring(frame: FrameNumber) -> Vec<Point> {
+        (0..6).map(|k| centre(frame) + 15.0 * Point::from_angle(f64::from(k))).collect()
+    }
+
+    fn scene() -> Scene {
+        let tracked = Part {
+            name: "ring".into(),
+            closed: true,
+            keys: [0, 6].map(|f| (f, ring(f))).into(),
+            tracks: (0..=6).map(|f| (f, ring(f))).collect(),
+            ..Part::default()
+        };
+        let keyed = Part { name: "arc".into(), keys: [(2, ring(2))].into(), ..Part::default() };
+        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 6, fps: 24.0, width: SIZE, height: SIZE };
+        Scene { footage, parts: vec![tracked, keyed, Part::default()] }
+    }
+
+    #[test]
+    fn parts_are_snapped_on_their_tracks_or_keys_and_pictures_asked_for_once() {
+        let source = Disc { asked: AtomicUsize::new(0) };
+        let curves = snap_scene(&scene(), &source, &SnapOptions::default(), &Silent).unwrap();
+        assert_eq!(source.asked.load(Ordering::Relaxed), 7);
+        assert_eq!(curves[0].keys().copied().collect::<Vec<_>>(), (0..=6).collect::<Vec<_>>());
+        assert_eq!(curves[1].keys().copied().collect::<Vec<_>>(), [2]);
+        assert!(curves[2].is_empty());
+        assert_eq!((curves[0][&3].len(), curves[1][&2].len()), (6, 5));
+        for (&frame, paths) in &curves[0] {
+            for p in paths.iter().flatten() {
+                assert!((p.distance(centre(frame)) - 15.0).abs() < 0.5, "frame {frame}: {p}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_number_of_threads_changes_nothing() {
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let source = Disc { asked: AtomicUsize::new(0) };
+            pool.install(|| snap_scene(&scene(), &source, &SnapOptions::default(), &Silent).unwrap())
+        };
+        assert_eq!(on(1), on(3));
+    }
+
+    #[test]
+    fn a_missing_picture_is_named() {
+        let mut scene = scene();
+        scene.parts[1].keys.insert(7, ring(7));
+        let source = Disc { asked: AtomicUsize::new(0) };
+        let error = snap_scene(&scene, &source, &SnapOptions::default(), &Silent).unwrap_err();
+        assert_eq!(error.to_string(), "frame 7 is outside the footage, which has frames 0 to 6");
+    }
+
+    #[test]
+    fn a_refused_report_cancels() {
+        struct Impatient;
+        impl Progress for Impatient {
+            fn report(&self, _: &str, done: f64) -> Result<(), Cancelled> {
+                if done > 0.0 { Err(Cancelled) } else { Ok(()) }
+            }
+        }
+        let source = Disc { asked: AtomicUsize::new(0) };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let result = pool.install(|| snap_scene(&scene(), &source, &SnapOptions::default(), &Impatient));
+        assert_eq!(result, Err(SnapError::Cancelled(Cancelled)));
+        assert_eq!(source.asked.load(Ordering::Relaxed), 2);
+    }
+}

@@ -1,0 +1,188 @@
+//! Clips of one motion brought together in time.
+//!
+//! **Dynamic time warping** (Sakoe & Chiba 1978): the monotone path of least total distance between two clips of postures,
+//! steps (1, 1), (1, 0), (0, 1), found by dynamic programming within a band about the diagonal. Each frame of the leading
+//! clip gets the mean time of the frames it is paired with.
+//!
+//! **Gait cycles** by self-similarity: the lag at which a clip is most like itself, as the first deep minimum of the mean
+//! distance between frames that lie a lag apart (as the autocorrelation method for pitch does, with de Cheveigné &
+//! Kawahara's normalisation by the mean over shorter lags, which keeps the minimum at lag zero out).
+
+use super::Request;
+use rototoon_base::scene::Clip;
+use rototoon_base::scene::clip::{between, resample};
+use rototoon_base::scene::skeleton::{COUNT, Posture};
+
+/// Half width of the band, as a share of the longer clip.
+const BAND: f64 = 0.3;
+
+/// A minimum counts as a cycle where the normalised distance falls below this.
+const ALIKE: f64 = 0.35;
+
+/// Squared distance of two postures, the pelvis of each as its origin.
+fn distance(a: &Posture, b: &Posture) -> f64 {
+    (1..COUNT).map(|k| ((a[k] - a[0]) - (b[k] - b[0])).length_squared()).sum()
+}
+
+/// The path of least distance: pairs of frames from (0, 0) to the last of both.
+pub fn time_warp(a: &[Posture], b: &[Posture]) -> Vec<(usize, usize)> {
+    let (n, m) = (a.len(), b.len());
+    if n == 0 || m == 0 {
+        return Vec::new();
+    }
+    let slope = (m.max(2) - 1) as f64 / (n.max(2) - 1) as f64;
+    let band = (BAND * m.max(n) as f64).max(slope + 1.0).max(2.0);
+    let inside = |i: usize, j: usize| n == 1 || m == 1 || (j as f64 - i as f64 * slope).abs() <= band;
+    let mut cost = vec![f64::INFINITY; n * m];
+    for i in 0..n {
+        for j in 0..m {
+            if !inside(i, j) {
+                continue;
+            }
+            let before = match (i, j) {
+                (0, 0) => 0.0,
+                _ => steps(i, j).map(|(i, j)| cost[i * m + j]).fold(f64::INFINITY, f64::min),
+            };
+            cost[i * m + j] = before + distance(&a[i], &b[j]);
+        }
+    }
+    let mut path = vec![(n - 1, m - 1)];
+    while let Some(&(i, j)) = path.last().filter(|&&at| at != (0, 0)) {
+        let best = steps(i, j).min_by(|p, q| cost[p.0 * m + p.1].total_cmp(&cost[q.0 * m + q.1]));
+        path.extend(best);
+    }
+    path.reverse();
+    path
+}
+
+/// Where a path may have come from; the diagonal first, so that it wins among equals.
+fn steps(i: usize, j: usize) -> impl Iterator<Item = (usize, usize)> {
+    let diagonal = (i > 0 && j > 0).then(|| (i - 1, j - 1));
+    let (up, left) = ((i > 0).then(|| (i - 1, j)), (j > 0).then(|| (i, j - 1)));
+    diagonal.into_iter().chain(up).chain(left)
+}
+
+/// A clip in the frames of another that shows the same motion: for each of the leading clip's frames the posture at the
+/// same moment of the motion.
+pub fn warped(clip: &[Posture], leading: &[Posture]) -> Vec<Posture> {
+    let path = time_warp(leading, clip);
+    let mut times = vec![(0.0, 0.0); leading.len()];
+    for (i, j) in path {
+        times[i].0 += j as f64;
+        times[i].1 += 1.0;
+    }
+    // Pairs are whole frames: smoothing over neighbours takes the stairs out, and keeps what is monotone monotone.
+    let mean: Vec<f64> = times.iter().map(|(sum, count)| sum / f64::max(*count, 1.0)).collect();
+    let last = mean.len().saturating_sub(1);
+    (0..mean.len())
+        .map(|i| {
+            let reach = i.min(last - i).min(2);
+            let near = &mean[i - reach..=i + reach];
+            between(clip, near.iter().sum::<f64>() / near.len() as f64)
+        })
+        .collect()
+}
+
+/// Frames of one cycle of a clip; `None` of one that does not repeat itself.
+pub fn cycle_length(postures: &[Posture]) -> Option<usize> {
+    let n = postures.len();
+    let apart =
+        |lag: usize| (0..n - lag).map(|i| distance(&postures[i], &postures[i + lag])).sum::<f64>() / (n - lag) as f64;
+    let longest = n * 2 / 3;
+    let mut sum = 0.0;
+    let mut normalised = vec![1.0];
+    for lag in 1..=longest {
+        let here = apart(lag);
+        sum += here;
+        normalised.push(if sum > 0.0 { here * lag as f64 / sum } else { 1.0 });
+    }
+    let first = (2..longest).find(|&lag| normalised[lag] < ALIKE && normalised[lag] <= normalised[lag + 1])?;
+    Some(first)
+}
+
+/// The cycles of a clip, cut where it is most like its first frame; empty where it does not repeat itself.
+pub fn cycles(postures: &[Posture]) -> Vec<Vec<Posture>> {
+    let Some(length) = cycle_length(postures) else { return Vec::new() };
+    let reach = (length / 6).max(1);
+    let mut cuts = vec![0];
+    while let Some(next) = cuts.last().map(|cut| cut + length).filter(|next| *next < postures.len()) {
+        let near = next - reach..(next + reach + 1).min(postures.len());
+        let best =
+            near.min_by(|&i, &j| distance(&postures[i], &postures[0]).total_cmp(&distance(&postures[j], &postures[0])));
+        cuts.extend(best);
+    }
+    cuts.windows(2).map(|cut| postures[cut[0]..cut[1]].to_vec()).collect()
+}
+
+/// How long the style's clips last beside the content's, over the motions that both show: the mean ratio of frames.
+pub(super) fn pace(clips: &[Clip], request: &Request) -> f64 {
+    let frames = |character: &str, motion: &str| {
+        clips.iter().find(|c| c.character == character && c.motion == motion).map(|c| c.postures.len() as f64)
+    };
+    let ratios: Vec<f64> = clips
+        .iter()
+        .filter(|c| c.character == request.style && c.motion != request.motion)
+        .filter_map(|c| Some((c.postures.len() as f64 / frames(request.content, &c.motion)?).ln()))
+        .collect();
+    if ratios.is_empty() { 1.0 } else { (ratios.iter().sum::<f64>() / ratios.len() as f64).exp() }
+}
+
+/// Plays a clip slower (`ratio` above 1) or faster.
+pub(super) fn change_pace(clip: &mut Clip, ratio: f64) {
+    let (before, after) = (clip.postures.len(), (clip.postures.len() as f64 * ratio).round().max(1.0) as usize);
+    clip.postures = resample(&clip.postures, after);
+    let step = (before.max(1) - 1) as f64 / after.saturating_sub(1).max(1) as f64;
+    clip.deviation = (0..after)
+        .filter_map(|frame| clip.deviation.get(((frame as f64 * step).round() as usize).min(before - 1)).copied())
+        .collect();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon_base::geometry::Point;
+
+    fn swing(phase: f64) -> Posture {
+        std::array::from_fn(|k| {
+            Point::new(k as f64 * phase.sin(), (2.0 * phase).cos() + k as f64 * phase.cos()) * (k.min(1) as f64)
+        })
+    }
+
+    #[test]
+    fn a_clip_played_unevenly_is_brought_back() {
+        let phase = |t: f64| 3.0 * t;
+        let lead: Vec<Posture> = (0..40).map(|i| swing(phase(i as f64 / 39.0))).collect();
+        let uneven: Vec<Posture> = (0..60).map(|i| swing(phase((i as f64 / 59.0).powf(1.4)))).collect();
+        let back = warped(&uneven, &lead);
+        assert_eq!(back.len(), 40);
+        let error = |clip: &[Posture]| clip.iter().zip(&lead).map(|(a, b)| distance(a, b)).sum::<f64>();
+        assert!(
+            error(&back) < 0.02 * error(&resample(&uneven, 40)),
+            "{} {}",
+            error(&back),
+            error(&resample(&uneven, 40))
+        );
+        assert_eq!(time_warp(&lead, &lead), (0..40).map(|i| (i, i)).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn clips_of_very_unequal_length_still_have_a_path() {
+        let (one, many) = (vec![swing(0.3)], (0..50).map(|i| swing(i as f64 * 0.1)).collect::<Vec<_>>());
+        assert_eq!(time_warp(&one, &many).len(), 50);
+        assert_eq!(warped(&one, &many).len(), 50);
+        assert_eq!(warped(&many, &one).len(), 1);
+        let three: Vec<Posture> = many[..3].to_vec();
+        assert_eq!(time_warp(&three, &many).last(), Some(&(2, 49)));
+    }
+
+    #[test]
+    fn a_walk_is_cut_into_its_cycles() {
+        let turn = std::f64::consts::TAU;
+        let clip: Vec<Posture> = (0..100).map(|i| swing(turn * i as f64 / 24.0)).collect();
+        assert_eq!(cycle_length(&clip), Some(24));
+        assert_eq!(cycles(&clip).iter().map(Vec::len).collect::<Vec<_>>(), [24, 24, 24, 24]);
+        let once: Vec<Posture> = (0..50).map(|i| swing(1.5 * i as f64 / 50.0)).collect();
+        assert_eq!(cycle_length(&once), None);
+        assert_eq!(cycle_length(&once[..1]), None);
+    }
+}

@@ -1,0 +1,529 @@
+//! Non-negative style factorisation (Liang et al. 2012, section 4, algorithm 1), X ≈ UV.
+//!
+//! X (n × d, no negative entries) holds a posture a row; U (n × k) holds the codes, V (k × d) a basis of postures. The paper
+//! minimises ½‖X − UV‖² + α ΣV + β-weighted class term (eq. 7) by turns:
+//!
+//! 1. U ← U − μ [(UV − X)Vᵀ + β (UW − Y)Wᵀ], μ = 1/λ, λ a bound on the largest eigenvalue of VVᵀ + β WWᵀ. The step is
+//!    missing in the print; one over the Lipschitz constant is the largest that never overshoots.
+//! 2. Negative entries of U become zero (the print: "set all U_ij to 0", which would wipe the matrix; see
+//!    [`Reading::Literal`] for what the print does).
+//! 3. Columns of U get root mean square 1, the scale moved into V (the print: rows of unit length, which loses each frame's
+//!    magnitude).
+//! 4. V ← V ∘ (UᵀX) / (UᵀUV + α), Hoyer's (2002) multiplicative step, as printed.
+//! 5. At the end, V̄ = V A Aᵀ with A the leading eigenvectors of VᵀV (eq. 6, which as printed has rank one and cannot satisfy
+//!    UV̄ ≈ X); negative entries become zero.
+//!
+//! The class term of the print, ‖WV − Y‖² with W = YVᵀ(VVᵀ)⁻¹, multiplies matrices that do not fit and never enters the
+//! updates. Labels belong to postures, so codes should tell them: Y ≈ UW, W by ridge regression, and β lets it act on U.
+//!
+//! Steps are repeated until the relative error changes by less than a tolerance over ten rounds, or to a limit. Starts are
+//! pseudo-random with a fixed seed.
+//!
+//! **Speed.** XVᵀ and UᵀX are matrix products of n·d·k; everything else is smaller. Postures are taken in pieces of [`ROWS`]
+//! rows, which stay in a processor's cache, side by side on all threads; sums over the pieces are made in their order, so
+//! that the result is the same on any number of threads. Products go through faer's kernels; the objective is found
+//! from the products at hand, ‖X − UV‖² = ‖X‖² − 2⟨V, UᵀX⟩ + ⟨V, UᵀUV⟩, at no extra pass.
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+use rototoon_base::numeric::vector::dot;
+
+/// Rounds between looks at the error.
+const LOOK: usize = 10;
+/// Rows of a piece.
+const ROWS: usize = 512;
+/// What keeps divisions from zero.
+const TINY: f64 = 1e-12;
+/// Ridge of the class regression, as a share of the mean squared code.
+const CLASS_RIDGE: f64 = 1e-2;
+/// Steps of V a round: with UᵀU and UᵀX at hand another costs next to nothing (Gillis & Glineur 2012, "Accelerated
+/// Multiplicative Updates").
+const BASIS_STEPS: usize = 3;
+/// Steps of U a round where there are few codes, so that XVᵀ costs more than they do.
+const CODE_STEPS: usize = 2;
+/// Power iterations that bound λ each round; V changes little between rounds.
+const POWER_STEPS: usize = 2;
+
+/// Which reading of the paper.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reading {
+    /// The one described above.
+    #[default]
+    Consistent,
+    /// As printed: a negative entry wipes U, rows of U have unit length, eq. 6 keeps one direction.
+    Literal,
+}
+
+/// How to factor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// k: number of basis postures.
+    pub rank: usize,
+    /// α: sparseness of V.
+    pub sparseness: f64,
+    /// β: how much codes are drawn to tell the classes.
+    pub class_weight: f64,
+    /// r of eq. 6: directions that V keeps; `None` for all.
+    pub directions: Option<usize>,
+    /// Most rounds.
+    pub rounds: usize,
+    /// Ends when the relative error changes by less than this over ten rounds.
+    pub tolerance: f64,
+    /// Start of the pseudo-random numbers.
+    pub seed: u64,
+    /// Which reading.
+    pub reading: Reading,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            rank: 24,
+            sparseness: 0.0,
+            class_weight: 0.0,
+            directions: None,
+            rounds: 200,
+            tolerance: 1e-5,
+            seed: 1,
+            reading: Reading::Consistent,
+        }
+    }
+}
+
+/// Why the rounds ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// The error changes by less than the tolerance.
+    Converged,
+    /// The limit of rounds.
+    Rounds,
+    /// All codes are zero: nothing can come back from that.
+    Wiped,
+}
+
+/// A factorisation.
+#[derive(Clone, Debug)]
+pub struct Factorisation {
+    /// U: codes, n × k.
+    pub codes: Mat<f64>,
+    /// V: basis postures, k × d.
+    pub basis: Mat<f64>,
+    /// W: classes from codes, k × classes.
+    pub classes: Mat<f64>,
+    /// ‖X − UV‖ / ‖X‖.
+    pub error: f64,
+    /// Rounds done.
+    pub rounds: usize,
+    /// Why they ended.
+    pub ended: Ended,
+}
+
+/// Why a matrix was not factored.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FactorError {
+    /// An entry is negative or not finite.
+    #[error("row {row}, column {column}: found {found}, expected a number from 0")]
+    Entry {
+        /// Its row.
+        row: usize,
+        /// Its column.
+        column: usize,
+        /// What was found.
+        found: f64,
+    },
+    /// Labels do not fit.
+    #[error("labels: found {found}, expected one for each of {rows} rows")]
+    Labels {
+        /// Number of labels.
+        found: usize,
+        /// Number of rows.
+        rows: usize,
+    },
+    /// No basis posture.
+    #[error("rank: found 0, expected at least 1")]
+    Rank,
+}
+
+/// The class of each row as a matrix of zeros and ones.
+pub fn indicator(labels: &[usize]) -> Mat<f64> {
+    let classes = labels.iter().max().map_or(0, |most| most + 1);
+    Mat::from_fn(labels.len(), classes, |row, class| if labels[row] == class { 1.0 } else { 0.0 })
+}
+
+/// Factors a matrix of postures; `labels` holds the class of each row, or nothing.
+pub fn factor(x: MatRef<'_, f64>, labels: &[usize], options: &Options) -> Result<Factorisation, FactorError> {
+    check(x, labels, options)?;
+    let (n, d, k) = (x.nrows(), x.ncols(), options.rank);
+    let y = indicator(labels);
+    let (mut u, mut v) = start(x, options);
+    let norm = x.squared_norm_l2();
+    let mut state = Work::new(n, d, k);
+    let (mut error, mut ended, mut rounds) = (f64::INFINITY, Ended::Rounds, options.rounds);
+    let mut w = Mat::zeros(k, y.ncols());
+    for round in 0..options.rounds {
+        if options.class_weight > 0.0 && !labels.is_empty() {
+            w = regression(&u, &y);
+        }
+        state.step_codes(x, &mut u, &v, (&w, &y), options);
+        if u.squared_norm_l2() == 0.0 {
+            (ended, rounds, error) = (Ended::Wiped, round + 1, 1.0);
+            break;
+        }
+        normalise(&mut u, &mut v, options.reading);
+        let residual = state.step_basis(x, &u, &mut v, options.sparseness, norm);
+        if (round + 1) % LOOK == 0 {
+            let now = (residual.max(0.0) / norm.max(TINY)).sqrt();
+            if (error - now).abs() < options.tolerance {
+                (ended, rounds) = (Ended::Converged, round + 1);
+                break;
+            }
+            error = now;
+        }
+    }
+    if ended != Ended::Wiped {
+        let keep = if options.reading == Reading::Literal { Some(1) } else { options.directions };
+        remodel(&mut v, keep);
+        let mut rest = x.to_owned();
+        matmul(&mut rest, Accum::Add, &u, &v, -1.0, Par::Seq);
+        error = (rest.squared_norm_l2() / norm.max(TINY)).sqrt();
+        w = regression(&u, &y);
+    }
+    Ok(Factorisation { codes: u, basis: v, classes: w, error, rounds, ended })
+}
+
+fn check(x: MatRef<'_, f64>, labels: &[usize], options: &Options) -> Result<(), FactorError> {
+    if options.rank == 0 {
+        return Err(FactorError::Rank);
+    }
+    if !labels.is_empty() && labels.len() != x.nrows() {
+        return Err(FactorError::Labels { found: labels.len(), rows: x.nrows() });
+    }
+    for column in 0..x.ncols() {
+        for row in 0..x.nrows() {
+            let found = x[(row, column)];
+            if !(found >= 0.0 && found.is_finite()) {
+                return Err(FactorError::Entry { row, column, found });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Pseudo-random codes and basis of the right size: numbers from 0.1 to 1.1, scaled so that UV has the mean of X.
+fn start(x: MatRef<'_, f64>, options: &Options) -> (Mat<f64>, Mat<f64>) {
+    let (n, d, k) = (x.nrows(), x.ncols(), options.rank);
+    let mut state = options.seed;
+    let mut next = || {
+        // SplitMix64 (Steele, Lea & Flood 2014).
+        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64 + 0.1
+    };
+    let mut u = Mat::zeros(n, k);
+    let mut v = Mat::zeros(k, d);
+    (0..k).for_each(|j| (0..n).for_each(|i| u[(i, j)] = next()));
+    (0..d).for_each(|j| (0..k).for_each(|i| v[(i, j)] = next()));
+    let mean = x.sum() / (n * d).max(1) as f64;
+    let made = u.sum() / (n * k).max(1) as f64 * v.sum() / (k * d).max(1) as f64 * k as f64;
+    v *= faer::Scale(mean / made.max(TINY));
+    (u, v)
+}
+
+/// Matrices that every round uses.
+struct Work {
+    vv: Mat<f64>,
+    step: Mat<f64>,
+    target: Mat<f64>,
+    direction: Mat<f64>,
+    uu: Mat<f64>,
+    ux: Mat<f64>,
+    uuv: Mat<f64>,
+}
+
+impl Work {
+    fn new(n: usize, d: usize, k: usize) -> Self {
+        Self {
+            vv: Mat::zeros(k, k),
+            step: Mat::zeros(n, k),
+            target: Mat::zeros(n, k),
+            direction: Mat::from_fn(k, 1, |_, _| 1.0),
+            uu: Mat::zeros(k, k),
+            ux: Mat::zeros(k, d),
+            uuv: Mat::zeros(k, d),
+        }
+    }
+
+    /// Steps 1 and 2.
+    fn step_codes(
+        &mut self,
+        x: MatRef<'_, f64>,
+        u: &mut Mat<f64>,
+        v: &Mat<f64>,
+        (w, y): (&Mat<f64>, &Mat<f64>),
+        options: &Options,
+    ) {
+        let beta = if y.ncols() > 0 { options.class_weight } else { 0.0 };
+        matmul(&mut self.vv, Accum::Replace, v, v.transpose(), 1.0, Par::Seq);
+        if beta > 0.0 {
+            matmul(&mut self.vv, Accum::Add, w, w.transpose(), beta, Par::Seq);
+            matmul(&mut self.target, Accum::Replace, y, w.transpose(), beta, Par::Seq);
+        }
+        let target_so_far = if beta > 0.0 { Accum::Add } else { Accum::Replace };
+        let mu = 1.0 / self.largest().max(TINY);
+        let few = 2 * u.ncols() <= x.ncols() && options.reading == Reading::Consistent;
+        let steps = if few { CODE_STEPS } else { 1 };
+        let vv = &self.vv;
+        let pieces = pieces_mut(u.as_mut()).into_par_iter().zip(pieces_mut(self.step.as_mut()));
+        let pieces = pieces.zip(pieces_mut(self.target.as_mut())).zip(pieces_of(x));
+        let move_piece = |(((mut u, mut step), mut target), x): (((MatMut<f64>, _), MatMut<f64>), _)| {
+            matmul(&mut target, target_so_far, x, v.transpose(), 1.0, Par::Seq);
+            (0..steps).fold(false, |negative, _| negative | code_step(&mut u, &mut step, &target, vv, mu))
+        };
+        let negative = pieces.map(move_piece).reduce(|| false, |a, b| a | b);
+        if negative && options.reading == Reading::Literal {
+            u.fill(0.0);
+        }
+    }
+
+    /// A bound on the largest eigenvalue of the matrix that U is multiplied by: power iterations, then the Collatz–Wielandt
+    /// bound max (Av)_i / v_i, which holds from above for matrices without negative entries; otherwise the largest row sum.
+    fn largest(&mut self) -> f64 {
+        let k = self.vv.nrows();
+        let mut bound = f64::INFINITY;
+        for _ in 0..POWER_STEPS {
+            let next = &self.vv * &self.direction;
+            let ratio = (0..k).map(|i| next[(i, 0)] / self.direction[(i, 0)].max(TINY)).fold(0.0, f64::max);
+            bound = bound.min(ratio);
+            let size = next.norm_max().max(TINY);
+            self.direction = Mat::from_fn(k, 1, |i, _| (next[(i, 0)] / size).max(1e-3));
+        }
+        let sums = (0..k).map(|i| (0..k).map(|j| self.vv[(i, j)].abs()).sum::<f64>()).fold(0.0, f64::max);
+        let mixed = (0..k).any(|j| self.vv.col_as_slice(j).iter().any(|v| *v < 0.0));
+        if mixed { sums } else { bound.min(sums) }
+    }
+
+    /// Step 4; gives ‖X − UV‖² of the V before it.
+    fn step_basis(&mut self, x: MatRef<'_, f64>, u: &Mat<f64>, v: &mut Mat<f64>, alpha: f64, norm: f64) -> f64 {
+        let mut first = 0.0;
+        let products = |(u, x): (MatRef<f64>, MatRef<f64>)| (u.transpose() * u, u.transpose() * x);
+        let pieces = pieces_of(u.as_ref()).into_par_iter().zip(pieces_of(x));
+        let sums: Vec<(Mat<f64>, Mat<f64>)> = pieces.map(products).collect();
+        self.uu.fill(0.0);
+        self.ux.fill(0.0);
+        for (uu, ux) in sums {
+            self.uu += uu;
+            self.ux += ux;
+        }
+        for step in 0..BASIS_STEPS {
+            matmul(&mut self.uuv, Accum::Replace, &self.uu, &*v, 1.0, Par::Seq);
+            let mut residual = norm;
+            for j in 0..v.ncols() {
+                let (ux, uuv) = (self.ux.col_as_slice(j), self.uuv.col_as_slice(j));
+                for (k, value) in v.col_as_slice_mut(j).iter_mut().enumerate() {
+                    residual += *value * (uuv[k] - 2.0 * ux[k]);
+                    *value *= ux[k] / (uuv[k] + alpha + TINY);
+                }
+            }
+            if step == 0 {
+                first = residual;
+            }
+        }
+        first
+    }
+}
+
+/// One step of the codes of some postures, negative ones made zero; whether there were any.
+fn code_step(u: &mut MatMut<f64>, step: &mut MatMut<f64>, target: &MatMut<f64>, vv: &Mat<f64>, mu: f64) -> bool {
+    let mut negative = false;
+    matmul(step.as_mut(), Accum::Replace, u.as_ref(), vv, -1.0, Par::Seq);
+    for j in 0..u.ncols() {
+        let (step, target) = (step.as_ref().col(j), target.as_ref().col(j));
+        let along = step.iter().zip(target.iter());
+        for (value, (step, target)) in u.as_mut().col_mut(j).iter_mut().zip(along) {
+            *value += mu * (step + target);
+            negative |= *value < 0.0;
+            *value = value.max(0.0);
+        }
+    }
+    negative
+}
+
+/// The rows of a matrix in pieces of [`ROWS`].
+fn pieces_of(matrix: MatRef<'_, f64>) -> Vec<MatRef<'_, f64>> {
+    let starts = (0..matrix.nrows()).step_by(ROWS);
+    starts.map(|first| matrix.subrows(first, ROWS.min(matrix.nrows() - first))).collect()
+}
+
+/// See [`pieces_of`].
+fn pieces_mut(mut rest: MatMut<'_, f64>) -> Vec<MatMut<'_, f64>> {
+    let mut pieces = Vec::new();
+    while rest.nrows() > 0 {
+        let rows = ROWS.min(rest.nrows());
+        let (piece, below) = rest.split_at_row_mut(rows);
+        pieces.push(piece);
+        rest = below;
+    }
+    pieces
+}
+
+/// Step 3.
+fn normalise(u: &mut Mat<f64>, v: &mut Mat<f64>, reading: Reading) {
+    if reading == Reading::Literal {
+        for i in 0..u.nrows() {
+            let size = (0..u.ncols()).map(|j| u[(i, j)].powi(2)).sum::<f64>().sqrt();
+            (0..u.ncols()).for_each(|j| u[(i, j)] /= size.max(TINY));
+        }
+        return;
+    }
+    let n = u.nrows().max(1) as f64;
+    for j in 0..u.ncols() {
+        let column = u.col_as_slice_mut(j);
+        let size = (dot(column, column) / n).sqrt();
+        if size > TINY {
+            let inverse = 1.0 / size;
+            column.iter_mut().for_each(|v| *v *= inverse);
+            (0..v.ncols()).for_each(|c| v[(j, c)] *= size);
+        }
+    }
+}
+
+/// W of Y ≈ UW by ridge regression.
+fn regression(u: &Mat<f64>, y: &Mat<f64>) -> Mat<f64> {
+    if y.ncols() == 0 {
+        return Mat::zeros(u.ncols(), 0);
+    }
+    let mut products = u.transpose() * u;
+    let ridge = CLASS_RIDGE * (0..u.ncols()).map(|j| products[(j, j)]).sum::<f64>() / u.ncols() as f64;
+    (0..u.ncols()).for_each(|j| products[(j, j)] += ridge.max(TINY));
+    let right = u.transpose() * y;
+    match products.llt(Side::Lower) {
+        Ok(factor) => faer::linalg::solvers::Solve::solve(&factor, &right),
+        Err(_) => Mat::zeros(u.ncols(), y.ncols()),
+    }
+}
+
+/// Step 5.
+fn remodel(v: &mut Mat<f64>, directions: Option<usize>) {
+    let Some(keep) = directions.filter(|keep| *keep < v.ncols().min(v.nrows())) else { return };
+    let Ok(eigen) = (v.transpose() * &*v).self_adjoint_eigen(Side::Lower) else { return };
+    let leading = eigen.U().subcols(v.ncols() - keep, keep).to_owned();
+    let mut modelled = &*v * &leading * leading.transpose();
+    for j in 0..modelled.ncols() {
+        modelled.col_as_slice_mut(j).iter_mut().for_each(|value| *value = value.max(0.0));
+    }
+    *v = modelled;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// Postures of a smooth family, without negative entries.
+    fn postures(n: usize, d: usize) -> Mat<f64> {
+        Mat::from_fn(n, d, |i, j| {
+            let (t, s) = (i as f64 / n as f64, j as f64);
+            2.5 + (TAU * t + 0.4 * s).sin() + 0.6 * (2.0 * TAU * t * (1.0 + s / d as f64)).cos()
+        })
+    }
+
+    /// The same steps, written plainly.
+    fn naive(x: &Mat<f64>, mut u: Mat<f64>, mut v: Mat<f64>, rounds: usize) -> (Mat<f64>, Mat<f64>) {
+        for _ in 0..rounds {
+            let vv = &v * v.transpose();
+            let eigen = vv.self_adjoint_eigen(Side::Lower).unwrap();
+            let step = (&u * &v - x) * v.transpose();
+            let mu = 1.0 / eigen.S()[v.nrows() - 1];
+            u = Mat::from_fn(u.nrows(), u.ncols(), |i, j| (u[(i, j)] - mu * step[(i, j)]).max(0.0));
+            normalise(&mut u, &mut v, Reading::Consistent);
+            let (up, down) = (u.transpose() * x, u.transpose() * &u * &v);
+            v = Mat::from_fn(v.nrows(), v.ncols(), |i, j| v[(i, j)] * up[(i, j)] / (down[(i, j)] + TINY));
+        }
+        (u, v)
+    }
+
+    #[test]
+    fn the_error_is_that_of_the_naive_steps_or_less() {
+        let x = postures(120, 14);
+        let options = Options { rank: 6, tolerance: 0.0, ..Options::default() };
+        let found = factor(x.as_ref(), &[], &options).unwrap();
+        let (u, v) = start(x.as_ref(), &options);
+        let (u, v) = naive(&x, u, v, 200);
+        let plain = (&u * &v - &x).norm_l2() / x.norm_l2();
+        assert!(found.error < 1.02 * plain && found.error > 0.3 * plain, "{} {plain}", found.error);
+        assert!(found.error < 0.05);
+        assert_eq!((found.rounds, found.ended), (200, Ended::Rounds));
+        let smallest = |m: &Mat<f64>| (0..m.ncols()).flat_map(|j| m.col_as_slice(j).to_vec()).fold(0.0, f64::min);
+        assert_eq!((smallest(&found.codes), smallest(&found.basis)), (0.0, 0.0));
+    }
+
+    #[test]
+    fn rounds_end_when_nothing_changes_and_are_the_same_each_time() {
+        let x = postures(60, 8);
+        let options = Options { rank: 4, rounds: 5000, tolerance: 1e-4, ..Options::default() };
+        let (a, b) = (factor(x.as_ref(), &[], &options).unwrap(), factor(x.as_ref(), &[], &options).unwrap());
+        assert_eq!(a.ended, Ended::Converged);
+        assert!(a.rounds < 5000);
+        assert_eq!(a.codes, b.codes);
+    }
+
+    #[test]
+    fn the_print_taken_literally_wipes_the_codes() {
+        let options = Options { rank: 6, reading: Reading::Literal, ..Options::default() };
+        let found = factor(postures(120, 14).as_ref(), &[], &options).unwrap();
+        assert_eq!(found.ended, Ended::Wiped);
+        assert_eq!(found.error, 1.0);
+    }
+
+    #[test]
+    fn rows_of_unit_length_lose_the_magnitude_of_a_frame() {
+        // Two frames of one posture, one twice as large: with rows of unit length both codes are the same.
+        let x = Mat::from_fn(2, 5, |i, j| (i + 1) as f64 * (j + 1) as f64);
+        let (mut u, mut v) = (Mat::from_fn(2, 1, |i, _| (i + 1) as f64), Mat::from_fn(1, 5, |_, j| (j + 1) as f64));
+        normalise(&mut u, &mut v, Reading::Consistent);
+        assert!((&u * &v - &x).norm_l2() < 1e-12);
+        normalise(&mut u, &mut v, Reading::Literal);
+        assert_eq!(u[(0, 0)], u[(1, 0)]);
+    }
+
+    #[test]
+    fn classes_are_told_better_by_codes_that_were_drawn_to() {
+        let x = postures(90, 12);
+        let labels: Vec<usize> = (0..90).map(|i| i / 30).collect();
+        let wrong = |weight: f64| {
+            let options = Options { rank: 8, class_weight: weight, ..Options::default() };
+            let found = factor(x.as_ref(), &labels, &options).unwrap();
+            ((&found.codes * &found.classes - indicator(&labels)).norm_l2(), found.error)
+        };
+        let (plain, drawn) = (wrong(0.0), wrong(1.0));
+        assert!(drawn.0 < plain.0, "{plain:?} {drawn:?}");
+        assert!(drawn.1 >= plain.1);
+    }
+
+    #[test]
+    fn few_directions_of_the_basis_are_worse_and_all_change_nothing() {
+        let x = postures(60, 10);
+        let error = |directions| {
+            let options = Options { rank: 6, directions, ..Options::default() };
+            factor(x.as_ref(), &[], &options).unwrap().error
+        };
+        assert_eq!(error(Some(6)), error(None));
+        assert!(error(Some(4)) < error(Some(1)));
+        assert!(error(None) < error(Some(1)));
+    }
+
+    #[test]
+    fn what_cannot_be_factored_is_named() {
+        let mut x = postures(4, 3);
+        let options = Options { rank: 2, ..Options::default() };
+        assert_eq!(factor(x.as_ref(), &[0], &options).unwrap_err(), FactorError::Labels { found: 1, rows: 4 });
+        x[(2, 1)] = -1.0;
+        let error = factor(x.as_ref(), &[], &options).unwrap_err();
+        assert_eq!(error.to_string(), "row 2, column 1: found -1, expected a number from 0");
+        assert_eq!(factor(x.as_ref(), &[], &Options { rank: 0, ..options }).unwrap_err(), FactorError::Rank);
+        let zero = factor(Mat::zeros(3, 3).as_ref(), &[], &Options::default()).unwrap();
+        assert!(zero.codes.norm_l2().is_finite());
+    }
+}

@@ -1,0 +1,254 @@
+//! What a made clip must keep: limb lengths, and feet that stand.
+//!
+//! **Limb lengths.** Averages of swinging limbs are too short, and nothing in a Gaussian model of coordinates knows that a
+//! thigh has one length. In the picture a limb may still look shorter when it points towards the viewer, so each limb is
+//! held within the lengths that the character's own clips show. Per frame, the least move of all key points together that
+//! does this: Gauss–Newton on the constraints, Δ = Jᵀ(JJᵀ)⁻¹ c (Bender et al., "A Survey on Position-Based Simulation",
+//! 2014, solves the same one by one), the pelvis fixed.
+//!
+//! **Contacts.** Where an ankle of the content's clip hardly moves through the picture, that of the made clip shall not
+//! either. First the way of the pelvis takes up what standing feet move in common, straight between contacts; what is left,
+//! the leg takes up by inverse kinematics of its two limbs (law of cosines), fading in and out beside the contact. Clips with
+//! the pelvis at the origin throughout know of no ground, and nothing is done.
+
+use rototoon_base::geometry::Point;
+use rototoon_base::numeric::dense::DenseCholesky;
+use rototoon_base::scene::clip::resample;
+use rototoon_base::scene::skeleton::{COUNT, LEGS, LIMBS, PARENTS, Posture, limb_lengths, torso};
+
+/// Most rounds of the limb constraints. The second already leaves little of long limbs, short ones take a few more.
+const ROUNDS: usize = 12;
+/// A foot stands where it moves less than this between frames, in torso lengths.
+const STANDING: f64 = 0.015;
+/// For at least this many frames.
+const LEAST_FRAMES: usize = 3;
+/// Frames over which a correction fades beside a contact.
+const FADE: usize = 4;
+
+/// Holds limbs within the lengths that `own` postures show; `held` frames are left as they are.
+pub fn keep_lengths(postures: &mut [Posture], own: &[Posture], held: &[usize]) {
+    if own.is_empty() {
+        return;
+    }
+    let mut range = [(f64::INFINITY, 0.0f64); LIMBS];
+    for posture in own {
+        for (range, length) in range.iter_mut().zip(limb_lengths(posture)) {
+            *range = (range.0.min(length), range.1.max(length));
+        }
+    }
+    for (frame, posture) in postures.iter_mut().enumerate() {
+        if !held.contains(&frame) {
+            (0..ROUNDS).for_each(|_| constrain(posture, &range));
+        }
+    }
+}
+
+/// One Gauss–Newton step towards limbs within their ranges.
+fn constrain(posture: &mut Posture, range: &[(f64, f64); LIMBS]) {
+    let lengths = limb_lengths(posture);
+    let active: Vec<(usize, f64)> = (0..LIMBS)
+        .filter_map(|limb| {
+            let wanted = lengths[limb].clamp(range[limb].0, range[limb].1) - lengths[limb];
+            (wanted.abs() > 1e-12 && lengths[limb] > 1e-9).then_some((limb, wanted))
+        })
+        .collect();
+    let n = active.len();
+    let ends = |limb: usize| (limb + 1, PARENTS[limb + 1]);
+    let direction = |limb: usize| (posture[limb + 1] - posture[PARENTS[limb + 1]]) / lengths[limb];
+    // A row of J: +d at the child, −d at the parent unless that is the pelvis.
+    let along = |limb: usize, point: usize| match ends(limb) {
+        (child, _) if child == point => direction(limb),
+        (_, parent) if parent == point && point != 0 => -direction(limb),
+        _ => Point::ZERO,
+    };
+    let mut products = vec![0.0; n * n];
+    for (i, (a, _)) in active.iter().enumerate() {
+        for (j, (b, _)) in active.iter().enumerate() {
+            let shared = [ends(*a).0, ends(*a).1];
+            products[i * n + j] = shared.iter().map(|&p| along(*a, p).dot(along(*b, p))).sum();
+        }
+    }
+    let Some(factor) = DenseCholesky::new(n, &products) else { return };
+    let mut forces: Vec<f64> = active.iter().map(|(_, wanted)| *wanted).collect();
+    factor.solve(&mut forces, 1);
+    let mut moved = [Point::ZERO; COUNT];
+    for ((limb, _), force) in active.iter().zip(forces) {
+        let (child, parent) = ends(*limb);
+        moved[child] += along(*limb, child) * force;
+        moved[parent] += along(*limb, parent) * force;
+    }
+    posture.iter_mut().zip(moved).for_each(|(p, d)| *p += d);
+}
+
+/// Frames, from first to one past the last, through which a foot stands.
+pub fn contacts(postures: &[Posture], ankle: usize) -> Vec<std::ops::Range<usize>> {
+    let size = postures.iter().map(torso).sum::<f64>() / postures.len().max(1) as f64;
+    let still: Vec<bool> =
+        postures.windows(2).map(|pair| pair[0][ankle].distance(pair[1][ankle]) < STANDING * size).collect();
+    let mut found = Vec::new();
+    let mut start = None;
+    for (k, is) in still.iter().chain(std::iter::once(&false)).enumerate() {
+        match (start, is) {
+            (None, true) => start = Some(k),
+            (Some(from), false) => {
+                found.extend((k + 1 - from >= LEAST_FRAMES).then_some(from..k + 1));
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// Keeps the feet of a made clip where they stand in the content's.
+pub fn keep_contacts(postures: &mut [Posture], content: &[Posture]) {
+    let content = resample(content, postures.len());
+    let size = content.iter().map(torso).sum::<f64>() / content.len().max(1) as f64;
+    if content.iter().all(|p| p[0].distance(content[0][0]) < 1e-6 * size) {
+        return;
+    }
+    let standing = LEGS.map(|leg| contacts(&content, leg[2]));
+    let shifts = |postures: &[Posture]| -> Vec<(usize, std::ops::Range<usize>, Vec<Point>)> {
+        LEGS.iter()
+            .zip(&standing)
+            .enumerate()
+            .flat_map(|(leg, (points, ranges))| ranges.iter().map(move |range| (leg, points[2], range.clone())))
+            .map(|(leg, ankle, range)| {
+                let middle = range.clone().map(|f| postures[f][ankle]).sum::<Point>() / range.len() as f64;
+                let shift = range.clone().map(|f| middle - postures[f][ankle]).collect();
+                (leg, range, shift)
+            })
+            .collect()
+    };
+    let mut common: Vec<(Point, f64)> = vec![(Point::ZERO, 0.0); postures.len()];
+    for (_, range, shift) in shifts(postures) {
+        for (frame, shift) in range.zip(shift) {
+            common[frame].0 += shift;
+            common[frame].1 += 1.0;
+        }
+    }
+    let known: Vec<(usize, Point)> =
+        common.iter().enumerate().filter(|(_, c)| c.1 > 0.0).map(|(f, c)| (f, c.0 / c.1)).collect();
+    for (frame, posture) in postures.iter_mut().enumerate() {
+        let shift = between_known(&known, frame);
+        posture.iter_mut().for_each(|p| *p += shift);
+    }
+    for (leg, range, shift) in shifts(postures) {
+        let first = range.start.saturating_sub(FADE);
+        for frame in first..(range.end + FADE).min(postures.len()) {
+            let inside = frame.clamp(range.start, range.end - 1);
+            let weight = 1.0 - frame.abs_diff(inside) as f64 / (FADE + 1) as f64;
+            reach(&mut postures[frame], &LEGS[leg], shift[inside - range.start] * weight);
+        }
+    }
+}
+
+fn between_known(known: &[(usize, Point)], frame: usize) -> Point {
+    let after = known.partition_point(|(f, _)| *f < frame);
+    match (after.checked_sub(1).and_then(|k| known.get(k)), known.get(after)) {
+        (Some((f, a)), Some((g, b))) => a.lerp(*b, (frame - f) as f64 / (g - f) as f64),
+        (Some((_, a)), None) | (None, Some((_, a))) => *a,
+        (None, None) => Point::ZERO,
+    }
+}
+
+/// Moves an ankle; the knee follows so that both limbs keep their lengths, on the side where it was.
+fn reach(posture: &mut Posture, [hip, knee, ankle]: &[usize; 3], shift: Point) {
+    let (h, k, a) = (posture[*hip], posture[*knee], posture[*ankle]);
+    let (upper, lower) = (h.distance(k), k.distance(a));
+    let target = a + shift;
+    let way = target - h;
+    let distance = way.length().clamp((upper - lower).abs(), upper + lower);
+    if distance < 1e-9 || way.length() < 1e-9 {
+        return;
+    }
+    let direction = way.normalize();
+    let along = (distance * distance + upper * upper - lower * lower) / (2.0 * distance);
+    let across = (upper * upper - along * along).max(0.0).sqrt();
+    let side = if (a - h).perp_dot(k - h) >= 0.0 { 1.0 } else { -1.0 };
+    posture[*knee] = h + direction * along + direction.perp() * (side * across);
+    posture[*ankle] = h + direction * distance;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn standing(x: f64) -> Posture {
+        let mut p = [Point::ZERO; COUNT];
+        for (k, y) in [(0, 0.0), (1, -0.6), (2, -1.0), (3, -1.2), (4, -1.5), (5, -0.9), (6, -0.5), (7, -0.1)] {
+            p[k] = Point::new(0.05 * k as f64, y);
+        }
+        for k in 8..11 {
+            p[k] = p[k - 3] + Point::new(0.1, 0.02);
+        }
+        for (leg, side) in LEGS.iter().zip([-0.1, 0.1]) {
+            p[leg[0]] = Point::new(side, 0.05);
+            p[leg[1]] = Point::new(side + 0.15, 1.0);
+            p[leg[2]] = Point::new(side, 1.9);
+        }
+        p.map(|q| q + Point::new(x, 0.0))
+    }
+
+    #[test]
+    fn limbs_come_back_to_their_lengths_and_the_pelvis_stays() {
+        let own = [standing(0.0)];
+        let mut shrunk = [own[0].map(|p| p * 0.93)];
+        keep_lengths(&mut shrunk, &own, &[]);
+        for (a, b) in limb_lengths(&shrunk[0]).iter().zip(limb_lengths(&own[0])) {
+            assert!((a - b).abs() < 1e-6, "{a} {b}");
+        }
+        assert_eq!(shrunk[0][0], Point::ZERO);
+        let mut held = [own[0].map(|p| p * 0.93)];
+        keep_lengths(&mut held, &own, &[0]);
+        assert_eq!(held[0], own[0].map(|p| p * 0.93));
+    }
+
+    #[test]
+    fn a_limb_without_length_is_left_alone() {
+        let own = [standing(0.0)];
+        let mut flat = [own[0]];
+        flat[0][7] = flat[0][6];
+        keep_lengths(&mut flat, &own, &[]);
+        assert!(flat[0].iter().all(|p| p.is_finite()));
+    }
+
+    #[test]
+    fn a_foot_that_stands_stays_and_legs_keep_their_lengths() {
+        // The content's left foot stands while its body moves on; in the made clip it slides.
+        let frames = 12;
+        let content: Vec<Posture> = (0..frames)
+            .map(|f| {
+                let mut p = standing(0.03 * f as f64);
+                p[13] = Point::new(0.0, 1.9);
+                p
+            })
+            .collect();
+        assert_eq!(contacts(&content, 13), vec![0..frames]);
+        assert!(contacts(&content, 16).is_empty());
+        let mut made: Vec<Posture> = (0..frames)
+            .map(|f| {
+                let mut p = content[f];
+                p[13] += Point::new(0.01 * f as f64, 0.01 * (f % 3) as f64);
+                p
+            })
+            .collect();
+        let before: Vec<[f64; 2]> = made.iter().map(|p| [p[11].distance(p[12]), p[12].distance(p[13])]).collect();
+        keep_contacts(&mut made, &content);
+        for (p, before) in made.iter().zip(before) {
+            assert!(p[13].distance(made[0][13]) < 1e-9);
+            assert!((p[11].distance(p[12]) - before[0]).abs() < 1e-9);
+            assert!((p[12].distance(p[13]) - before[1]).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn without_a_way_there_is_no_ground() {
+        let content: Vec<Posture> = (0..5).map(|_| standing(0.0)).collect();
+        let mut made: Vec<Posture> =
+            content.iter().enumerate().map(|(f, p)| p.map(|q| q * (1.0 + 0.01 * f as f64))).collect();
+        let before = made.clone();
+        keep_contacts(&mut made, &content);
+        assert_eq!(made, before);
+    }
+}

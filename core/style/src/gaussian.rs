@@ -1,0 +1,467 @@
+//! What a character adds to a motion, predicted from what it adds to others and what others add: Gaussian processes.
+//!
+//! Let X[s, m] hold the clip of character s and motion m in the coordinates of `basis`, one column an axis. With the mean
+//! motion taken out, each axis is a Gaussian process over characters × (motion, time) with covariance
+//! (K_s + c 11ᵀ) ⊗ K_m: K_m from `kernels`, K_s between characters, c large (which frees the mean of a motion).
+//!
+//! - **Characters.** K_s = (1 − γ) S + γ I, S the covariance of what characters add on average over time, from all other
+//!   motions than the one in question: two that walk, run and stand alike are expected to jump alike.
+//! - **Motions.** The static half of K_m is drawn by g towards the covariance observed among the other characters: from who
+//!   leans when walking, one knows who leans when walking sideways, whatever their postures' likeness says.
+//! - **Leaving one clip out.** With the Kronecker form the prediction of a clip from all others needs no new
+//!   factorisation: e = (B⁻¹)[K⁻¹ X], B the clip's block of K⁻¹ (Rasmussen & Williams 2006, eq. 5.12, blockwise). The hole of
+//!   the grid is predicted by the same formula, in which what fills it cancels out.
+//! - **Averaging.** Noise, weight of the posture, γ and g take the values of a small grid. Which are best differs from
+//!   axis to axis and between the static and the moving part (a stoop goes through all motions, a waving hand does not), so
+//!   each gets its own average, weighted by the leave-one-out error E as exp(−κ log E): a likelihood of Gaussian errors,
+//!   κ in proportion to the number of clips. Nothing is fixed by hand that the clips can tell.
+//! - **Stance.** What a clip is on average over time, most of what there is to foretell, comes from a process of its own:
+//!   `stance`.
+//! - **Uncertainty.** The covariance of the leave-one-out errors over time, axis by axis, is the covariance of what is
+//!   predicted; `key_pose` conditions on drawn postures with it.
+//!
+//! Limits: cost grows with the cube of motions × cosines; a posture is one point of a Gaussian, so manners that choose
+//! between two ways of doing a thing get the mean of both.
+
+use super::basis::{Axes, COSINES, MODEL_FRAMES, cosines};
+use super::grid::{Grid, Row, WIDTH, mean};
+use super::kernels::{Kernels, Weights};
+use super::key_pose::{Errors, condition, deviation};
+use super::{Prediction, STEP, stance};
+use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rototoon_base::numeric::dense::DenseCholesky;
+use rototoon_base::numeric::vector::dot;
+use rototoon_base::scene::{Cancelled, Progress};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// c.
+const MEAN_VARIANCE: f64 = 30.0;
+/// Values of n, w_p, γ and g.
+const NOISE: [f64; 3] = [0.05, 0.2, 0.8];
+const POSTURE: [f64; 3] = [0.05, 0.2, 0.6];
+const SHRINK: [f64; 3] = [0.4, 0.7, 1.0];
+const OBSERVED: [f64; 4] = [0.0, 0.3, 0.6, 0.85];
+/// κ for each clip: a clip counts as about one and a half independent numbers an axis.
+const WEIGHT_PER_CLIP: f64 = 0.85;
+/// How far the outputs are whitened before motions are compared.
+const WHITENED: f64 = 0.8;
+/// Rounds in which holes of the grid beside the wanted one are filled.
+const FILLING: usize = 3;
+
+/// The clips as numbers: `x[s]` holds motions × cosines rows of one number an axis.
+pub(super) struct Cells {
+    pub characters: usize,
+    pub motions: usize,
+    pub axes: usize,
+    /// By character and motion whether there is a clip; else what stands there was filled in.
+    pub known: Vec<bool>,
+    pub x: Vec<Vec<f64>>,
+}
+
+impl Cells {
+    fn new(grid: &Grid, axes: &Axes) -> Self {
+        let (characters, motions) = (grid.characters.len(), grid.motions.len());
+        let basis = cosines(MODEL_FRAMES);
+        let mut cells = Self {
+            characters,
+            motions,
+            axes: axes.len(),
+            known: vec![false; characters * motions],
+            x: vec![vec![0.0; motions * COSINES * axes.len()]; characters],
+        };
+        for s in 0..characters {
+            for m in 0..motions {
+                let Some(rows) = grid.rows(s, m, MODEL_FRAMES) else { continue };
+                cells.known[s * motions + m] = true;
+                let at = m * COSINES * axes.len();
+                for (row, cosine) in rows.iter().zip(&basis) {
+                    let coordinates = axes.coordinates(row);
+                    for (k, c) in cosine.iter().enumerate() {
+                        let line = &mut cells.x[s][at + k * axes.len()..at + (k + 1) * axes.len()];
+                        line.iter_mut().zip(&coordinates).for_each(|(sum, v)| *sum += c * v);
+                    }
+                }
+            }
+        }
+        for s in 0..characters {
+            for m in (0..motions).filter(|m| !cells.known[s * motions + m]) {
+                let mean = cells.mean_of(m, s);
+                cells.x[s][m * mean.len()..(m + 1) * mean.len()].copy_from_slice(&mean);
+            }
+        }
+        cells
+    }
+
+    /// A clip.
+    pub fn block(&self, s: usize, m: usize) -> &[f64] {
+        let size = COSINES * self.axes;
+        &self.x[s][m * size..(m + 1) * size]
+    }
+
+    /// Mean of the known clips of a motion without a character's; zero where there is none.
+    pub fn mean_of(&self, m: usize, without: usize) -> Vec<f64> {
+        let mut sum = vec![0.0; COSINES * self.axes];
+        let mut count = 0.0;
+        for s in (0..self.characters).filter(|&s| s != without && self.known[s * self.motions + m]) {
+            count += 1.0;
+            sum.iter_mut().zip(self.block(s, m)).for_each(|(a, b)| *a += b);
+        }
+        sum.iter_mut().for_each(|v| *v /= f64::max(count, 1.0));
+        sum
+    }
+
+    /// Inverse of K_s + c 11ᵀ for each motion, which is left out of S.
+    fn style_precisions(&self, shrink: f64) -> Vec<Vec<f64>> {
+        let n = self.characters;
+        let means: Vec<Vec<f64>> = (0..self.motions).map(|m| self.mean_of(m, usize::MAX)).collect();
+        let d = self.axes;
+        let precision = |left_out: usize| {
+            let mut s = vec![0.0; n * n];
+            for m in (0..self.motions).filter(|&m| m != left_out) {
+                let rest: Vec<Vec<f64>> = (0..n)
+                    .map(|c| self.block(c, m)[..d].iter().zip(&means[m][..d]).map(|(a, b)| a - b).collect())
+                    .collect();
+                (0..n * n).for_each(|k| s[k] += dot(&rest[k / n], &rest[k % n]));
+            }
+            let trace: f64 = (0..n).map(|i| s[i * n + i]).sum();
+            let scale = if trace > 0.0 { (1.0 - shrink) * n as f64 / trace } else { 0.0 };
+            for (k, value) in s.iter_mut().enumerate() {
+                let own = if k / n == k % n { shrink.max(1e-3) } else { 0.0 };
+                *value = *value * scale + own + MEAN_VARIANCE;
+            }
+            DenseCholesky::new(n, &s).map_or_else(|| vec![0.0; n * n], |factor| factor.inverse())
+        };
+        (0..self.motions).map(precision).collect()
+    }
+
+    /// Covariance among motions of what characters other than one add on average over time; unit mean variance.
+    fn observed(&self, without: usize) -> Vec<f64> {
+        let (n, d) = (self.motions, self.axes);
+        let others: Vec<usize> = (0..self.characters).filter(|&s| s != without).collect();
+        let mut rest: Vec<Vec<f64>> = Vec::new(); // a motion: others × axes
+        for m in 0..n {
+            let mut mean = vec![0.0; d];
+            for &s in &others {
+                mean.iter_mut().zip(self.block(s, m)).for_each(|(a, b)| *a += b / others.len() as f64);
+            }
+            rest.push(
+                others
+                    .iter()
+                    .flat_map(|&s| (0..d).map(move |k| (s, k)))
+                    .map(|(s, k)| self.block(s, m)[k] - mean[k])
+                    .collect(),
+            );
+        }
+        let variance: Vec<f64> =
+            (0..d).map(|k| rest.iter().flat_map(|r| r.iter().skip(k).step_by(d)).map(|v| v * v).sum()).collect();
+        let average = variance.iter().sum::<f64>() / d.max(1) as f64;
+        for row in &mut rest {
+            for (k, value) in row.iter_mut().enumerate() {
+                *value /= (WHITENED * variance[k % d] + (1.0 - WHITENED) * average).sqrt().max(1e-12);
+            }
+        }
+        let mut among: Vec<f64> = (0..n * n).map(|k| dot(&rest[k / n], &rest[k % n])).collect();
+        let trace: f64 = (0..n).map(|i| among[i * n + i]).sum();
+        let scale = if trace > 0.0 { n as f64 / trace } else { 0.0 };
+        among.iter_mut().for_each(|v| *v *= scale);
+        among
+    }
+}
+
+/// One setting's predictions of every clip from all others, in the layout of [`Cells`]; `None` where its covariance is not
+/// positive definite.
+type LeftOut = Option<Vec<Vec<f64>>>;
+
+/// What all settings share.
+struct Shared<'a> {
+    cells: &'a Cells,
+    kernels: &'a Kernels,
+    even: usize,
+    observed: Vec<Vec<f64>>,
+    /// For each γ.
+    styles: Vec<Styles>,
+}
+
+/// Characters beside each other.
+struct Styles {
+    /// The precision by left-out motion.
+    precisions: Vec<Vec<f64>>,
+    /// Σ_t (K_s⁻¹)[s, t] Z[t] by character s and left-out motion.
+    mixed: Vec<Vec<Vec<f64>>>,
+}
+
+impl<'a> Shared<'a> {
+    fn new(cells: &'a Cells, kernels: &'a Kernels, even: usize, shrinks: &[f64]) -> Self {
+        let observed = (0..cells.characters).into_par_iter().map(|s| cells.observed(s)).collect();
+        let styles = shrinks.par_iter().map(|&shrink| {
+            let precisions = cells.style_precisions(shrink);
+            let mixed = (0..cells.characters).map(|s| mixed(cells, &precisions, s)).collect();
+            Styles { precisions, mixed }
+        });
+        Self { cells, kernels, even, observed, styles: styles.collect() }
+    }
+}
+
+/// For one character and each left-out motion: clips less the mean of the others, weighted by the precision's row.
+fn mixed(cells: &Cells, precisions: &[Vec<f64>], s: usize) -> Vec<Vec<f64>> {
+    let means: Vec<f64> = (0..cells.motions).flat_map(|m| cells.mean_of(m, s)).collect();
+    let n = cells.characters;
+    precisions
+        .iter()
+        .map(|precision| {
+            let mut sum = vec![0.0; means.len()];
+            for t in 0..n {
+                let weight = precision[s * n + t];
+                let clips = cells.x[t].iter().zip(&means);
+                sum.iter_mut().zip(clips).for_each(|(a, (x, mean))| *a += weight * (x - mean));
+            }
+            sum
+        })
+        .collect()
+}
+
+/// All settings of γ and g for one covariance of motions; g outermost.
+fn left_out(shared: &Shared, weights: Weights, observed: &[f64]) -> Vec<LeftOut> {
+    let cells = shared.cells;
+    let empty = || Some(vec![vec![0.0; cells.x.first().map_or(0, Vec::len)]; cells.characters]);
+    let mut found: Vec<LeftOut> = (0..observed.len() * shared.styles.len()).map(|_| empty()).collect();
+    for even in [true, false] {
+        let columns = if even { 0..shared.even } else { shared.even..cells.axes };
+        let covariance = shared.kernels.covariance(weights, even);
+        let split = Split::new(shared.kernels.size, &covariance);
+        for (k, &g) in observed.iter().enumerate() {
+            for s in 0..cells.characters {
+                let precision = split.as_ref().and_then(|split| split.drawn(&shared.observed[s], g));
+                for q in 0..shared.styles.len() {
+                    let place = &mut found[k * shared.styles.len() + q];
+                    let done = place
+                        .as_mut()
+                        .zip(precision.as_ref())
+                        .and_then(|(into, precision)| clips_of(shared, precision, q, s, columns.clone(), &mut into[s]));
+                    if done.is_none() {
+                        *place = None;
+                    }
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Predicts each clip of a character from all others.
+fn clips_of(
+    shared: &Shared,
+    precision: &[f64],
+    q: usize,
+    s: usize,
+    columns: std::ops::Range<usize>,
+    into: &mut [f64],
+) -> Option<()> {
+    let (cells, size, d) = (shared.cells, shared.kernels.size, shared.cells.axes);
+    let Styles { precisions, mixed } = &shared.styles[q];
+    let width = columns.len();
+    for m in 0..cells.motions {
+        let at = m * COSINES;
+        let mut block = vec![0.0; COSINES * COSINES];
+        let mut error = vec![0.0; COSINES * width];
+        for i in 0..COSINES {
+            let row = &precision[(at + i) * size..(at + i + 1) * size];
+            block[i * COSINES..(i + 1) * COSINES].copy_from_slice(&row[at..at + COSINES]);
+            let sum = &mut error[i * width..(i + 1) * width];
+            for (n, weight) in row.iter().enumerate() {
+                let values = &mixed[s][m][n * d + columns.start..n * d + columns.end];
+                sum.iter_mut().zip(values).for_each(|(a, v)| *a += weight * v);
+            }
+        }
+        DenseCholesky::new(COSINES, &block)?.solve(&mut error, width);
+        let own = precisions[m][s * cells.characters + s];
+        for i in 0..COSINES {
+            for c in 0..width {
+                let place = (at + i) * d + columns.start + c;
+                into[place] = cells.x[s][place] - error[i * width + c] / own;
+            }
+        }
+    }
+    Some(())
+}
+
+/// The inverse of a covariance of motions, taken apart so that its static block can be exchanged cheaply: with E the static
+/// rows, K⁻¹ = A₀ + Q (K / rest) ⁻¹ Qᵀ, and only the Schur complement K / rest changes with that block.
+struct Split {
+    n: usize,
+    /// K_EE.
+    fixed: Vec<f64>,
+    /// K_EE less what the moving rows explain.
+    complement: Vec<f64>,
+    rest: Vec<f64>,
+    q: Vec<f64>,
+}
+
+impl Split {
+    fn new(n: usize, covariance: &[f64]) -> Option<Self> {
+        let inverse = DenseCholesky::new(n, covariance)?.inverse();
+        let m = n / COSINES;
+        let at = |i: usize, j: usize| (i * COSINES) * n + j * COSINES;
+        let pick = |from: &[f64]| (0..m * m).map(|k| from[at(k / m, k % m)]).collect::<Vec<f64>>();
+        let (fixed, own) = (pick(covariance), pick(&inverse));
+        let complement = DenseCholesky::new(m, &own)?.inverse();
+        let mut q = vec![0.0; n * m];
+        for i in 0..n {
+            for j in 0..m {
+                q[i * m + j] = (0..m).map(|e| inverse[i * n + e * COSINES] * complement[e * m + j]).sum();
+            }
+        }
+        let mut rest = inverse;
+        add_product(&mut rest, &q, &own, n, m, -1.0);
+        Some(Self { n, fixed, complement, rest, q })
+    }
+
+    /// The inverse with the static block drawn by `share` towards an observed covariance of unit mean variance.
+    fn drawn(&self, observed: &[f64], share: f64) -> Option<Vec<f64>> {
+        let m = self.n / COSINES;
+        let scale = (0..m).map(|i| self.fixed[i * m + i]).sum::<f64>() / m as f64;
+        let changed: Vec<f64> =
+            (0..m * m).map(|k| self.complement[k] + share * (observed[k] * scale - self.fixed[k])).collect();
+        let middle = DenseCholesky::new(m, &changed)?.inverse();
+        let mut inverse = self.rest.clone();
+        add_product(&mut inverse, &self.q, &middle, self.n, m, 1.0);
+        Some(inverse)
+    }
+}
+
+/// into += factor · Q M Qᵀ.
+fn add_product(into: &mut [f64], q: &[f64], middle: &[f64], n: usize, m: usize, factor: f64) {
+    let mut left = vec![0.0; n * m];
+    for i in 0..n {
+        for j in 0..m {
+            left[i * m + j] = factor * (0..m).map(|e| q[i * m + e] * middle[e * m + j]).sum::<f64>();
+        }
+    }
+    for i in 0..n {
+        for j in 0..n {
+            into[i * n + j] += dot(&left[i * m..(i + 1) * m], &q[j * m..(j + 1) * m]);
+        }
+    }
+}
+
+/// Fills holes of the grid beside the wanted one with what a middling setting predicts.
+fn fill(cells: &mut Cells, kernels: &Kernels, even: usize, target: (usize, usize)) {
+    let holes: Vec<(usize, usize)> = (0..cells.characters)
+        .flat_map(|s| (0..cells.motions).map(move |m| (s, m)))
+        .filter(|&(s, m)| !cells.known[s * cells.motions + m] && (s, m) != target)
+        .collect();
+    let middling = Weights { posture: POSTURE[1], noise: NOISE[1] };
+    for _ in 0..if holes.is_empty() { 0 } else { FILLING } {
+        let shared = Shared::new(cells, kernels, even, &SHRINK[1..2]);
+        let Some(found) = left_out(&shared, middling, &OBSERVED[1..2]).remove(0) else { return };
+        let size = COSINES * cells.axes;
+        for &(s, m) in &holes {
+            let place = m * size..(m + 1) * size;
+            cells.x[s][place.clone()].copy_from_slice(&found[s][place]);
+        }
+    }
+}
+
+/// Averages settings, and tells the errors of what that average predicts.
+fn averaged(cells: &Cells, found: &[Vec<Vec<f64>>], target: (usize, usize)) -> (Vec<f64>, Errors) {
+    let (d, motions) = (cells.axes, cells.motions);
+    let clips: Vec<(usize, usize)> = (0..cells.characters)
+        .flat_map(|s| (0..motions).map(move |m| (s, m)))
+        .filter(|&(s, m)| cells.known[s * motions + m] && (s, m) != target)
+        .collect();
+    let sharpness = WEIGHT_PER_CLIP * clips.len() as f64;
+    let mut errors = Errors::new(d, clips.iter().map(|(_, m)| *m).collect());
+    let mut coefficients = vec![0.0; COSINES * d];
+    for axis in 0..d {
+        for band in [0..1, 1..COSINES] {
+            let wrong = |setting: &Vec<Vec<f64>>| {
+                let part =
+                    clips.iter().flat_map(|&(s, m)| band.clone().map(move |k| (s, (m * COSINES + k) * d + axis)));
+                part.map(|(s, at)| (setting[s][at] - cells.x[s][at]).powi(2)).sum::<f64>() + 1e-9
+            };
+            let log: Vec<f64> = found.iter().map(|setting| wrong(setting).ln()).collect();
+            let least = log.iter().copied().fold(f64::INFINITY, f64::min);
+            let weights: Vec<f64> = log.iter().map(|e| (-sharpness * (e - least)).exp()).collect();
+            let total: f64 = weights.iter().sum();
+            let average = |s: usize, at: usize| {
+                found.iter().zip(&weights).map(|(setting, w)| w * setting[s][at]).sum::<f64>() / total
+            };
+            for k in band {
+                let at = |m: usize| (m * COSINES + k) * d + axis;
+                coefficients[k * d + axis] = average(target.0, at(target.1));
+                for (c, &(s, m)) in clips.iter().enumerate() {
+                    errors.set(c, k, axis, cells.x[s][at(m)] - average(s, at(m)));
+                }
+            }
+        }
+    }
+    (coefficients, errors)
+}
+
+/// Makes the wanted clip.
+pub(super) fn predict(
+    grid: &Grid,
+    keys: &[(usize, Row)],
+    strength: f64,
+    progress: &dyn Progress,
+) -> Result<Prediction, Cancelled> {
+    let means: Vec<Vec<Row>> = (0..grid.motions.len())
+        .map(|m| {
+            mean((0..grid.characters.len()).filter_map(|s| grid.rows(s, m, MODEL_FRAMES)))
+                .unwrap_or_else(|| vec![[0.0; WIDTH]; MODEL_FRAMES])
+        })
+        .collect();
+    let mut residuals: Vec<Row> = Vec::new();
+    for (m, mean) in means.iter().enumerate() {
+        for rows in (0..grid.characters.len()).filter_map(|s| grid.rows(s, m, MODEL_FRAMES)) {
+            residuals.extend(rows.iter().zip(mean).map(|(a, b)| -> Row { std::array::from_fn(|d| a[d] - b[d]) }));
+        }
+    }
+    let axes = Axes::of(residuals.iter());
+    let target = (grid.style, grid.motion);
+    let kernels = Kernels::new(&means);
+    let mut cells = Cells::new(grid, &axes);
+    fill(&mut cells, &kernels, axes.even, target);
+    progress.report(STEP, 0.1)?;
+    let bases: Vec<Weights> =
+        NOISE.iter().flat_map(|&noise| POSTURE.iter().map(move |&posture| Weights { posture, noise })).collect();
+    let shared = Shared::new(&cells, &kernels, axes.even, &SHRINK);
+    let done = AtomicUsize::new(0);
+    let found = bases.par_iter().map(|&base| {
+        let found = left_out(&shared, base, &OBSERVED);
+        let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
+        progress.report(STEP, 0.1 + 0.8 * finished as f64 / bases.len() as f64)?;
+        Ok(found)
+    });
+    let found: Vec<Vec<LeftOut>> = found.collect::<Result<_, Cancelled>>()?;
+    let found: Vec<Vec<Vec<f64>>> = found.into_iter().flatten().flatten().collect();
+    let (mut coefficients, errors) = averaged(&cells, &found, target);
+    if let Some(stance) = stance::predict(&cells, &kernels, axes.even, target) {
+        coefficients[..stance.len()].copy_from_slice(&stance);
+    }
+    let mean = cells.mean_of(grid.motion, grid.style);
+    for (c, mean) in coefficients.iter_mut().zip(&mean) {
+        *c = strength * (*c - mean);
+    }
+    Ok(assemble(grid, &axes, coefficients, &errors, keys))
+}
+
+/// The clip of what is added to the mean motion, with key poses met.
+fn assemble(grid: &Grid, axes: &Axes, coefficients: Vec<f64>, errors: &Errors, keys: &[(usize, Row)]) -> Prediction {
+    let mean = grid.mean_without(grid.style, grid.motion, grid.frames).unwrap_or_default();
+    let basis = cosines(grid.frames);
+    let wanted: Vec<(usize, Vec<f64>)> = keys
+        .iter()
+        .map(|(frame, key)| (*frame, axes.coordinates(&std::array::from_fn(|d| key[d] - mean[*frame][d]))))
+        .collect();
+    let (coefficients, covariances) = condition(coefficients, errors, grid.motion, &basis, &wanted);
+    let rows = mean.iter().zip(&basis).map(|(mean, cosine)| {
+        let mut row = *mean;
+        for (axis, vector) in axes.vectors.iter().enumerate() {
+            let along: f64 = cosine.iter().enumerate().map(|(k, c)| c * coefficients[k * axes.len() + axis]).sum();
+            row.iter_mut().zip(vector).for_each(|(value, v)| *value += along * v);
+        }
+        row
+    });
+    Prediction { rows: rows.collect(), deviation: deviation(&covariances, axes, &basis) }
+}

@@ -1,0 +1,209 @@
+//! Clips as a grid of characters × motions, in one frame: the pelvis at the origin, the torso of length one.
+//!
+//! Dividing by a character's torso and taking the pelvis out is the global half of the paper's unification (Liang et al.
+//! 2012, eq. 4): what remains of proportion is part of the manner and is learned with it. Every clip of a motion is
+//! brought to the content's number of frames; clips of that length are taken as aligned, others are aligned to the
+//! content (or the motion's first clip) first.
+
+use super::align;
+use super::{Request, StyleError};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::Clip;
+use rototoon_base::scene::clip::resample;
+use rototoon_base::scene::skeleton::{COUNT, Posture, torso};
+
+/// Numbers a posture: x and y of each key point.
+pub(super) const WIDTH: usize = 2 * COUNT;
+
+/// A posture as numbers, x before y.
+pub(super) type Row = [f64; WIDTH];
+
+/// The clips that a translation learns from, without the one that it makes.
+pub(super) struct Grid {
+    /// Names in the order of their first clip.
+    pub characters: Vec<String>,
+    /// The motions that at least two characters show, and the wanted one.
+    pub motions: Vec<String>,
+    /// Index of the character whose manner is wanted.
+    pub style: usize,
+    /// Index of the character whose motion it was.
+    pub content: usize,
+    /// Index of the wanted motion.
+    pub motion: usize,
+    /// Torso length of each character in the unit of its clips.
+    pub torso: Vec<f64>,
+    /// Frames of the content's clip.
+    pub frames: usize,
+    clips: Vec<Option<Vec<Posture>>>,
+}
+
+impl Grid {
+    /// Sorts clips for a request.
+    pub fn new(clips: &[Clip], request: &Request) -> Result<Self, StyleError> {
+        check(clips, request)?;
+        let mut characters: Vec<String> = Vec::new();
+        for clip in clips {
+            if !characters.contains(&clip.character) {
+                characters.push(clip.character.clone());
+            }
+        }
+        if !characters.iter().any(|c| c == request.style) {
+            characters.push(request.style.to_owned()); // known by drawn poses alone
+        }
+        let mut motions: Vec<String> = Vec::new();
+        for clip in clips {
+            let shown = clips.iter().filter(|c| c.motion == clip.motion && !is_target(c, request)).count();
+            if !motions.contains(&clip.motion) && (shown >= 2 || clip.motion == request.motion) {
+                motions.push(clip.motion.clone());
+            }
+        }
+        let index = |names: &[String], name: &str| names.iter().position(|n| n == name).unwrap_or(0);
+        let (style, content) = (index(&characters, request.style), index(&characters, request.content));
+        let motion = index(&motions, request.motion);
+        let torso = characters.iter().map(|name| torso_of(clips, name)).collect::<Result<_, _>>()?;
+        let mut grid = Self { style, content, motion, torso, frames: 0, clips: Vec::new(), characters, motions };
+        grid.fill(clips, request);
+        Ok(grid)
+    }
+
+    fn fill(&mut self, clips: &[Clip], request: &Request) {
+        self.clips = vec![None; self.characters.len() * self.motions.len()];
+        for clip in clips.iter().filter(|c| !is_target(c, request)) {
+            let place = |names: &[String], name: &str| names.iter().position(|n| n == name);
+            if let (Some(s), Some(m)) = (place(&self.characters, &clip.character), place(&self.motions, &clip.motion)) {
+                let postures = clip.postures.iter().map(|p| unified(p, self.torso[s])).collect();
+                self.clips[s * self.motions.len() + m] = Some(postures);
+            }
+        }
+        for m in 0..self.motions.len() {
+            self.align(m);
+        }
+        self.frames = self.get(self.content, self.motion).map_or(1, <[Posture]>::len);
+    }
+
+    /// Brings all clips of a motion to the frames of one of them.
+    fn align(&mut self, m: usize) {
+        let count = self.motions.len();
+        let of = |s: usize| s * count + m;
+        let order = std::iter::once(self.content).chain(0..self.characters.len());
+        let Some(lead) = order.into_iter().find(|&s| self.clips[of(s)].is_some()) else { return };
+        let Some(leading) = self.clips[of(lead)].clone() else { return };
+        for s in 0..self.characters.len() {
+            if let Some(clip) = self.clips[of(s)].as_mut().filter(|clip| clip.len() != leading.len()) {
+                *clip = align::warped(clip, &leading);
+            }
+        }
+    }
+
+    /// A clip, unified and aligned; `None` where the grid has none.
+    pub fn get(&self, character: usize, motion: usize) -> Option<&[Posture]> {
+        self.clips[character * self.motions.len() + motion].as_deref()
+    }
+
+    /// A clip as numbers in `frames` frames.
+    pub fn rows(&self, character: usize, motion: usize, frames: usize) -> Option<Vec<Row>> {
+        self.get(character, motion).map(|clip| resample(clip, frames).iter().map(row).collect())
+    }
+
+    /// Mean of the clips of a motion over characters, without one of them; `None` where that leaves none.
+    pub fn mean_without(&self, character: usize, motion: usize, frames: usize) -> Option<Vec<Row>> {
+        mean((0..self.characters.len()).filter(|&s| s != character).filter_map(|s| self.rows(s, motion, frames)))
+    }
+}
+
+/// Mean of clips of equal length.
+pub(super) fn mean(clips: impl Iterator<Item = Vec<Row>>) -> Option<Vec<Row>> {
+    let mut count = 0.0;
+    let sum = clips.inspect(|_| count += 1.0).reduce(|mut sum, clip| {
+        for (a, b) in sum.iter_mut().flatten().zip(clip.iter().flatten()) {
+            *a += b;
+        }
+        sum
+    });
+    sum.map(|mut sum| {
+        sum.iter_mut().flatten().for_each(|v| *v /= count);
+        sum
+    })
+}
+
+/// A posture with the pelvis at the origin, in torso lengths.
+pub(super) fn unified(posture: &Posture, torso: f64) -> Posture {
+    std::array::from_fn(|k| (posture[k] - posture[0]) / torso)
+}
+
+/// A posture as numbers.
+pub(super) fn row(posture: &Posture) -> Row {
+    std::array::from_fn(|k| posture[k / 2][k % 2])
+}
+
+/// Numbers as a posture.
+pub(super) fn posture(row: &Row) -> Posture {
+    std::array::from_fn(|k| Point::new(row[2 * k], row[2 * k + 1]))
+}
+
+fn is_target(clip: &Clip, request: &Request) -> bool {
+    clip.character == request.style && clip.motion == request.motion
+}
+
+fn torso_of(clips: &[Clip], name: &str) -> Result<f64, StyleError> {
+    let mut lengths: Vec<f64> =
+        clips.iter().filter(|c| c.character == name).flat_map(|c| c.postures.iter().map(torso)).collect();
+    if lengths.is_empty() {
+        return Ok(1.0);
+    }
+    lengths.sort_by(f64::total_cmp);
+    match lengths[lengths.len() / 2] {
+        length if length > 0.0 && length.is_finite() => Ok(length),
+        found => Err(StyleError::Torso { character: name.to_owned(), found }),
+    }
+}
+
+fn check(clips: &[Clip], request: &Request) -> Result<(), StyleError> {
+    let names = |of: &dyn Fn(&Clip) -> String| {
+        let mut names: Vec<String> = clips.iter().map(of).collect();
+        names.sort();
+        names.dedup();
+        names.join(", ")
+    };
+    for clip in clips {
+        let broken = clip.postures.iter().position(|posture| posture.iter().any(|p| !p.is_finite()));
+        if let Some(frame) = broken.or(clip.postures.is_empty().then_some(0)) {
+            return Err(StyleError::Broken { character: clip.character.clone(), motion: clip.motion.clone(), frame });
+        }
+    }
+    let has = |character: &str| clips.iter().any(|c| c.character == character);
+    if request.style == request.content {
+        return Err(StyleError::SameCharacter { character: request.style.to_owned() });
+    }
+    for character in [request.style, request.content] {
+        let by_keys = character == request.style && !request.keys.is_empty();
+        if !has(character) && !by_keys {
+            return Err(StyleError::Character { found: character.to_owned(), known: names(&|c| c.character.clone()) });
+        }
+    }
+    if !clips.iter().any(|c| c.motion == request.motion) {
+        return Err(StyleError::Motion { found: request.motion.to_owned(), known: names(&|c| c.motion.clone()) });
+    }
+    let content = clips.iter().find(|c| c.character == request.content && c.motion == request.motion);
+    let Some(content) = content else {
+        return Err(StyleError::Content { character: request.content.to_owned(), motion: request.motion.to_owned() });
+    };
+    let shared = clips.iter().any(|c| c.character == request.style && c.motion != request.motion);
+    if !shared && request.keys.is_empty() {
+        return Err(StyleError::NothingKnown {
+            character: request.style.to_owned(),
+            motion: request.motion.to_owned(),
+        });
+    }
+    let frames = content.postures.len();
+    for key in request.keys {
+        if key.frame >= frames {
+            return Err(StyleError::KeyFrame { found: key.frame, frames });
+        }
+        let length = torso(&key.posture);
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(StyleError::KeyPose { frame: key.frame, found: length });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,238 @@
+//! Translation on clips made by a rule, where the truth is known.
+
+use super::*;
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::Silent;
+use rototoon_base::scene::skeleton::{LEGS, limb_lengths};
+
+/// A figure with a stoop and a way to hold its arms, at a moment of a motion.
+fn figure(motion: usize, phase: f64, stoop: f64, arms: f64) -> Posture {
+    let turn = std::f64::consts::TAU * phase;
+    let swing = [0.5, 0.9, 0.3, 0.0][motion % 4];
+    let lean = stoop + [0.0, 0.2, -0.05, 0.4][motion % 4] * (0.5 + 0.5 * turn.sin());
+    let up = |angle: f64| Point::new(angle.sin(), -angle.cos());
+    let down = |angle: f64| Point::new(angle.sin(), angle.cos());
+    let mut p = [Point::ZERO; COUNT];
+    p[1] = p[0] + up(lean) * 0.6;
+    p[2] = p[1] + up(lean * 1.2) * 0.4;
+    p[3] = p[2] + up(lean * 1.3) * 0.15;
+    p[4] = p[3] + up(lean * 1.3) * 0.4;
+    for (shoulder, side) in [(5, 1.0), (8, -1.0)] {
+        let angle = arms + swing * side * turn.sin();
+        p[shoulder] = p[2] + Point::new(0.02 * side, 0.1);
+        p[shoulder + 1] = p[shoulder] + down(angle) * 0.56;
+        p[shoulder + 2] = p[shoulder + 1] + down(angle + 0.3 + arms) * 0.5;
+    }
+    for (leg, side) in LEGS.iter().zip([-1.0, 1.0]) {
+        let angle = swing * side * turn.sin();
+        p[leg[0]] = Point::new(0.01 * side, 0.05);
+        p[leg[1]] = p[leg[0]] + down(angle) * 0.95;
+        p[leg[2]] = p[leg[1]] + down(angle - 0.2 - 0.2 * (turn + side).cos()) * 1.0;
+    }
+    p
+}
+
+const MOTIONS: [&str; 4] = ["walk", "run", "stroll", "bow"];
+const PEOPLE: [(&str, f64, f64); 5] =
+    [("plain", 0.0, 0.0), ("old", 0.5, 0.1), ("proud", -0.15, -0.2), ("shy", 0.2, 0.4), ("bold", -0.05, 0.6)];
+
+fn clip(person: usize, motion: usize, frames: usize) -> Clip {
+    let (name, stoop, arms) = PEOPLE[person];
+    let at = |f: usize| figure(motion, f as f64 / frames as f64, stoop, arms);
+    Clip::new(name, MOTIONS[motion], (0..frames).map(at).collect())
+}
+
+fn library() -> Vec<Clip> {
+    (0..PEOPLE.len()).flat_map(|person| (0..4).map(move |motion| clip(person, motion, 24))).collect()
+}
+
+fn request<'a>(keys: &'a [KeyPose]) -> Request<'a> {
+    Request { style: "old", motion: "run", content: "plain", keys }
+}
+
+fn apart(a: &[Posture], b: &[Posture]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let frame = |p: &Posture, q: &Posture| (1..COUNT).map(|k| (p[k] - p[0]).distance(q[k] - q[0])).sum::<f64>() / 16.0;
+    a.iter().zip(b).map(|(p, q)| frame(p, q)).sum::<f64>() / a.len() as f64
+}
+
+#[test]
+fn every_preset_is_nearer_to_the_truth_than_a_copy_and_says_how_sure_it_is() {
+    let (clips, truth) = (library(), clip(1, 1, 24));
+    let copied = apart(&clip(0, 1, 24).postures, &truth.postures);
+    for (id, _, preset) in Preset::ALL {
+        let made = translate(&clips, &request(&[]), &Options { preset, ..Options::default() }, &Silent).unwrap();
+        assert_eq!((made.character.as_str(), made.motion.as_str()), ("old", "run"));
+        let error = apart(&made.postures, &truth.postures);
+        assert!(error < 0.75 * copied, "{id}: {error} beside {copied}");
+        assert_eq!(made.deviation.len(), 24);
+        assert!(made.deviation.iter().flatten().all(|s| (0.0..0.5).contains(s)), "{id}");
+        if preset == Preset::Rototoon {
+            assert!(made.deviation[3][7] > made.deviation[3][1], "hands are less sure than the chest");
+        }
+        assert_eq!(Preset::from_id(id), Some(preset));
+    }
+}
+
+#[test]
+fn the_true_clip_is_never_looked_at() {
+    let clips = library();
+    let without: Vec<Clip> =
+        clips.iter().filter(|c| (c.character.as_str(), c.motion.as_str()) != ("old", "run")).cloned().collect();
+    let make = |clips: &[Clip]| translate(clips, &request(&[]), &Options::default(), &Silent).unwrap();
+    assert_eq!(make(&clips), make(&without));
+}
+
+#[test]
+fn a_pair_of_characters_is_enough() {
+    let pair: Vec<Clip> = library().into_iter().filter(|c| c.character == "plain" || c.character == "old").collect();
+    let truth = clip(1, 1, 24);
+    let copied = apart(&clip(0, 1, 24).postures, &truth.postures);
+    // The symmetric model has a style vector as long as there are other characters: one number says nothing.
+    for (id, _, preset) in Preset::ALL.into_iter().filter(|p| p.2 != Preset::BilinearSymmetric) {
+        let made = translate(&pair, &request(&[]), &Options { preset, ..Options::default() }, &Silent).unwrap();
+        let error = apart(&made.postures, &truth.postures);
+        assert!(error < copied, "{id}: {error} beside {copied}");
+    }
+}
+
+#[test]
+fn drawn_poses_are_met_and_make_the_rest_better() {
+    let (clips, truth) = (library(), clip(1, 1, 24));
+    let pose = |frame: usize| KeyPose { frame, posture: truth.postures[frame].map(|p| p + Point::new(7.0, -3.0)) };
+    for (id, _, preset) in Preset::ALL {
+        let options = Options { preset, ..Options::default() };
+        let error = |keys: &[KeyPose]| {
+            let made = translate(&clips, &request(keys), &options, &Silent).unwrap();
+            for key in keys {
+                let at = |p: &Posture| p.map(|q| q - p[0]);
+                let (a, b) = (at(&made.postures[key.frame]), at(&key.posture));
+                assert!(a.iter().zip(b).all(|(a, b)| a.distance(b) < 1e-6), "{id}");
+            }
+            apart(&made.postures, &truth.postures)
+        };
+        let (none, one, two) = (error(&[]), error(&[pose(0)]), error(&[pose(3), pose(15)]));
+        assert!(two < none, "{id}: {none} {two}");
+        assert!(one < none || preset != Preset::Rototoon, "{none} {one}");
+    }
+}
+
+#[test]
+fn of_a_character_without_clips_a_drawn_pose_is_enough() {
+    let clips: Vec<Clip> = library().into_iter().filter(|c| c.character != "old").collect();
+    let truth = clip(1, 1, 24);
+    let key = KeyPose { frame: 0, posture: truth.postures[0] };
+    let made = translate(&clips, &request(&[key]), &Options::default(), &Silent).unwrap();
+    assert!(apart(&made.postures, &truth.postures) < apart(&clip(0, 1, 24).postures, &truth.postures));
+}
+
+#[test]
+fn holes_unequal_lengths_and_units_do_no_harm() {
+    let mut clips = library();
+    clips.retain(|c| (c.character.as_str(), c.motion.as_str()) != ("shy", "bow"));
+    for c in &mut clips {
+        if c.character == "bold" {
+            c.postures = c.resampled(31);
+        }
+        if c.character == "old" {
+            c.postures.iter_mut().for_each(|p| *p = p.map(|q| q * 80.0 + Point::new(300.0, 200.0)));
+        }
+    }
+    let made = translate(&clips, &request(&[]), &Options::default(), &Silent).unwrap();
+    let truth: Vec<Posture> = clip(1, 1, 24).postures.iter().map(|p| p.map(|q| q * 80.0)).collect();
+    let copied: Vec<Posture> = clip(0, 1, 24).postures.iter().map(|p| p.map(|q| q * 80.0)).collect();
+    assert!(apart(&made.postures, &truth) < 0.7 * apart(&copied, &truth));
+}
+
+#[test]
+fn one_frame_and_one_motion_are_no_reason_to_fail() {
+    let still: Vec<Clip> = (0..3).flat_map(|p| (0..2).map(move |m| clip(p, m, 1))).collect();
+    for (_, _, preset) in Preset::ALL {
+        let made = translate(&still, &request(&[]), &Options { preset, ..Options::default() }, &Silent).unwrap();
+        assert_eq!(made.postures.len(), 1);
+        assert!(made.postures[0].iter().all(|p| p.is_finite()));
+    }
+}
+
+#[test]
+fn limbs_keep_the_lengths_of_the_style() {
+    let made = translate(&library(), &request(&[]), &Options { strength: 1.5, ..Options::default() }, &Silent).unwrap();
+    let own = limb_lengths(&clip(1, 0, 24).postures[0]);
+    for posture in &made.postures {
+        for limb in [0, 1, 11, 12, 14, 15] {
+            assert!((limb_lengths(posture)[limb] - own[limb]).abs() < 1e-3, "{limb}");
+        }
+    }
+}
+
+#[test]
+fn the_styles_pace_may_be_taken() {
+    let mut clips = library();
+    for c in &mut clips {
+        if c.character == "old" {
+            c.postures = c.resampled(36);
+        }
+    }
+    let options = Options { pace: Pace::Style, ..Options::default() };
+    let made = translate(&clips, &request(&[]), &options, &Silent).unwrap();
+    assert_eq!((made.postures.len(), made.deviation.len()), (36, 36));
+}
+
+#[test]
+fn the_result_does_not_depend_on_threads() {
+    let clips = library();
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| translate(&clips, &request(&[]), &Options::default(), &Silent).unwrap())
+    };
+    assert_eq!(with(1), with(3));
+}
+
+#[test]
+fn what_is_wrong_with_a_request_is_named() {
+    let clips = library();
+    let error = |style: &str, motion: &str, content: &str, keys: &[KeyPose]| {
+        translate(&clips, &Request { style, motion, content, keys }, &Options::default(), &Silent)
+            .unwrap_err()
+            .to_string()
+    };
+    assert_eq!(
+        error("nobody", "run", "plain", &[]),
+        "character: found \"nobody\", expected one of bold, old, plain, proud, shy"
+    );
+    assert_eq!(error("old", "fly", "plain", &[]), "motion: found \"fly\", expected one of bow, run, stroll, walk");
+    assert!(error("old", "run", "old", &[]).contains("expected two characters"));
+    let late = KeyPose { frame: 24, posture: clips[0].postures[0] };
+    assert_eq!(error("old", "run", "plain", &[late]), "key pose: found frame 24, expected 0 to 23");
+    let flat = KeyPose { frame: 2, posture: [Point::ONE; COUNT] };
+    assert!(error("old", "run", "plain", &[flat]).contains("key pose of frame 2: found a torso of length 0"));
+}
+
+#[test]
+fn broken_clips_are_named() {
+    let error = |clips: &[Clip]| translate(clips, &request(&[]), &Options::default(), &Silent).unwrap_err().to_string();
+    let mut nan = library();
+    nan[2].postures[5][3].x = f64::NAN;
+    assert_eq!(error(&nan), "clip (\"plain\", \"stroll\"), frame 5: found no posture of finite numbers");
+    let mut flat = library();
+    flat.iter_mut().filter(|c| c.character == "shy").for_each(|c| c.postures.fill([Point::ZERO; COUNT]));
+    assert!(error(&flat).contains("character \"shy\": found a torso of length 0"));
+    let alone: Vec<Clip> = library().into_iter().filter(|c| c.motion == "run" || c.character == "plain").collect();
+    assert!(error(&alone).contains("found no other clip of \"old\" than of \"run\" and no key pose"));
+    let other: Vec<Clip> = library().into_iter().filter(|c| c.character != "plain" || c.motion != "run").collect();
+    assert!(error(&other).contains("found no clip of \"run\" by \"plain\""));
+}
+
+#[test]
+fn translation_stops_when_it_is_told_to() {
+    struct Until(f64);
+    impl Progress for Until {
+        fn report(&self, _: &str, done: f64) -> Result<(), Cancelled> {
+            if done < self.0 { Ok(()) } else { Err(Cancelled) }
+        }
+    }
+    for moment in [0.0, 0.5, 1.0] {
+        let made = translate(&library(), &request(&[]), &Options::default(), &Until(moment));
+        assert_eq!(made, Err(StyleError::Cancelled(Cancelled)));
+    }
+}

@@ -1,0 +1,71 @@
+//! Linear equations of a lattice's nodes, solved under the artist's constraints.
+//!
+//! Among all steps x with C x = c the one of least energy ½ xᵀH x − bᵀx is x₀ + H⁻¹Cᵀ (C H⁻¹ Cᵀ)⁻¹ (c − C x₀), where
+//! H x₀ = b: beside the band matrix a small dense one with a row for each anchor and axis. Both are factored once, and
+//! serve every right-hand side.
+
+use super::anchors::Anchors;
+use rototoon_base::geometry::Point;
+use rototoon_base::numeric::banded::{BandCholesky, BandMatrix};
+
+/// Stiffness left to a constraint: several control points in one cell may contradict its bilinear map, and then all
+/// give way a little. Against the lattice's own stiffness (about 1) the constraints are hard.
+const YIELD: f64 = 1e-4;
+
+/// Factored equations.
+pub struct Equations {
+    factor: BandCholesky,
+    constraints: Option<Constraints>,
+}
+
+struct Constraints {
+    /// H⁻¹ of each row of C.
+    responses: Vec<Vec<f64>>,
+    /// C H⁻¹ Cᵀ.
+    small: BandCholesky,
+}
+
+impl Equations {
+    /// From the matrix H and what is to be constrained; none where they have no solution.
+    pub fn new(matrix: BandMatrix, anchors: &Anchors) -> Option<Self> {
+        let size = matrix.size();
+        let factor = matrix.factor().ok()?;
+        let constraints = if anchors.is_empty() { None } else { Some(Constraints::new(&factor, anchors, size)?) };
+        Some(Self { factor, constraints })
+    }
+
+    /// Solves for the step from `nodes` that has the right-hand side `b`, and makes the anchors hold after it. They are
+    /// those the equations were made for, but may have moved.
+    pub fn solve(&self, b: &mut [f64], nodes: &[Point], anchors: &Anchors) {
+        self.factor.solve_in_place(b);
+        let Some(Constraints { responses, small }) = &self.constraints else { return };
+        let apply = |row: &mut dyn Iterator<Item = (usize, f64)>| row.map(|(i, w)| w * b[i]).sum::<f64>();
+        let mut multipliers: Vec<f64> =
+            anchors.missing(nodes).zip(anchors.rows()).map(|(missing, mut row)| missing - apply(&mut row)).collect();
+        small.solve_in_place(&mut multipliers);
+        for (multiplier, response) in multipliers.iter().zip(responses) {
+            b.iter_mut().zip(response).for_each(|(x, r)| *x += multiplier * r);
+        }
+    }
+}
+
+impl Constraints {
+    fn new(factor: &BandCholesky, anchors: &Anchors, size: usize) -> Option<Self> {
+        let response = |row: &mut dyn Iterator<Item = (usize, f64)>| {
+            let mut column = vec![0.0; size];
+            row.for_each(|(i, w)| column[i] += w);
+            factor.solve_in_place(&mut column);
+            column
+        };
+        let responses: Vec<Vec<f64>> = anchors.rows().map(|mut row| response(&mut row)).collect();
+        let count = responses.len();
+        let mut small = BandMatrix::zeros(count, count.saturating_sub(1));
+        for (i, row) in anchors.rows().enumerate() {
+            for (j, response) in responses[..=i].iter().enumerate() {
+                let value: f64 = row.clone().map(|(k, w)| w * response[k]).sum();
+                small.add(i, j, value + if i == j { YIELD } else { 0.0 });
+            }
+        }
+        Some(Self { responses, small: small.factor().ok()? })
+    }
+}

@@ -1,0 +1,138 @@
+//! Where a map of costs pulls its sample, and how surely along which axes: a step of regularised mean shift.
+//!
+//! p(d) ∝ exp(−C(d)/τ − |d − u|²/2ρ²) over the window, u the present displacement; mean μ and covariance Σ. The window is
+//! a part of that and is taken out again: P = (Σ + s² I)⁻¹, π = 1/(ρ² + s²), Λ = P − π I, target = Λ⁻¹ (P μ − π u) on
+//! the axes of Λ, at most 2ρ from u. Along an edge Λ vanishes: nothing is known there.
+
+use super::response::Map;
+use rototoon_base::geometry::Point;
+
+/// Temperature of the costs.
+const TAU: f64 = 0.007;
+/// Smallest spread of a place, in working pixels: s of the module's formula.
+const SPREAD: f64 = 0.7;
+/// A place whose probability is smaller than the largest one's by the exponential of this counts for nothing.
+const NEGLIGIBLE: f64 = 25.0;
+/// Least costs at which a sample counts fully, and not at all.
+const GOOD: f64 = 0.15;
+const BAD: f64 = 0.55;
+
+/// A pull along two axes across each other.
+pub struct Pull {
+    /// Unit axes in the picture.
+    pub axes: [Point; 2],
+    /// Weight along each.
+    pub weights: [f64; 2],
+    /// Wanted place along each: axis · place.
+    pub targets: [f64; 2],
+}
+
+/// The pull on a sample that is at `now`; the map is around `place` with the unit tangent given.
+pub fn pull(map: &Map, (place, tangent): (Point, Point), now: Point, reach: f64, trust: f64) -> Pull {
+    let back = Point::new(tangent.x, -tangent.y);
+    let u = back.rotate(now - place);
+    let (mean, [xx, xy, yy], least) = moments(map, u, reach);
+    let s = SPREAD * SPREAD;
+    let determinant = (xx + s) * (yy + s) - xy * xy;
+    let precision = [(yy + s) / determinant, -xy / determinant, (xx + s) / determinant];
+    let prior = 1.0 / (reach * reach + s);
+    let (values, axes) = eigen([precision[0] - prior, precision[1], precision[2] - prior]);
+    let pulled =
+        Point::new(precision[0] * mean.x + precision[1] * mean.y, precision[1] * mean.x + precision[2] * mean.y);
+    let eta = pulled - u * prior;
+    let sure = ((BAD - least) / (BAD - GOOD)).clamp(0.0, 1.0) * map.shown * trust;
+    let along = |k: usize| {
+        let value = values[k].max(1e-9);
+        let from = axes[k].dot(u);
+        let to = from + (axes[k].dot(eta) / value - from).clamp(-2.0 * reach, 2.0 * reach);
+        let axis = tangent.rotate(axes[k]);
+        (axis, value * sure, to + axis.dot(place))
+    };
+    let (a, b) = (along(0), along(1));
+    Pull { axes: [a.0, b.0], weights: [a.1, b.1], targets: [a.2, b.2] }
+}
+
+/// Mean, covariance (xx, xy, yy), and the least cost within twice the reach.
+fn moments(map: &Map, u: Point, reach: f64) -> (Point, [f64; 3], f64) {
+    let inverse = 0.5 / (reach * reach);
+    let columns = 2 * map.reach[1] as usize + 1;
+    let mut exponents = Vec::with_capacity(map.costs.len());
+    let (mut lowest, mut least) = (f64::INFINITY, 1.0f64);
+    for (row, costs) in map.costs.chunks_exact(columns).enumerate() {
+        let x = f64::from(row as i32 - map.reach[0]) - u.x;
+        for (column, &cost) in costs.iter().enumerate() {
+            let y = f64::from(column as i32 - map.reach[1]) - u.y;
+            let (cost, far) = (f64::from(cost), x * x + y * y);
+            let exponent = cost / TAU + far * inverse;
+            lowest = lowest.min(exponent);
+            if far < 4.0 * reach * reach {
+                least = least.min(cost);
+            }
+            exponents.push(exponent);
+        }
+    }
+    let (mut sum, mut first, mut second) = (0.0, Point::ZERO, [0.0; 3]);
+    for (row, exponents) in exponents.chunks_exact(columns).enumerate() {
+        let x = f64::from(row as i32 - map.reach[0]);
+        for (column, exponent) in exponents.iter().enumerate() {
+            if exponent - lowest > NEGLIGIBLE {
+                continue;
+            }
+            let d = Point::new(x, f64::from(column as i32 - map.reach[1]));
+            let w = (lowest - exponent).exp();
+            sum += w;
+            first += d * w;
+            second = [second[0] + w * d.x * d.x, second[1] + w * d.x * d.y, second[2] + w * d.y * d.y];
+        }
+    }
+    let mean = first / sum;
+    let covariance =
+        [second[0] / sum - mean.x * mean.x, second[1] / sum - mean.x * mean.y, second[2] / sum - mean.y * mean.y];
+    (mean, covariance, least)
+}
+
+/// Eigenvalues and unit eigenvectors of a symmetric 2 × 2 matrix (xx, xy, yy).
+fn eigen([xx, xy, yy]: [f64; 3]) -> ([f64; 2], [Point; 2]) {
+    let (middle, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+    let radius = half.hypot(xy);
+    let axis = Point::from_angle(0.5 * xy.atan2(half));
+    ([middle + radius, middle - radius], [axis, axis.perp()])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map(cost: impl Fn(f64, f64) -> f64) -> Map {
+        let costs = (-5..=5)
+            .flat_map(|u| (-6..=6).map(move |v| (f64::from(u), f64::from(v))))
+            .map(|(u, v)| cost(u, v) as f32)
+            .collect();
+        Map { reach: [5, 6], costs, shown: 1.0 }
+    }
+
+    #[test]
+    fn an_edge_pulls_along_its_normal_only() {
+        let edge = map(|_, v| 0.004 * (v - 2.0) * (v - 2.0));
+        let found = pull(&edge, (Point::new(50.0, 60.0), Point::X), Point::new(50.0, 60.0), 4.0, 1.0);
+        let (strong, weak) = if found.weights[0] > found.weights[1] { (0, 1) } else { (1, 0) };
+        assert!(found.axes[strong].y.abs() > 0.999);
+        assert!((found.targets[strong] * found.axes[strong].y - 62.0).abs() < 0.2, "{}", found.targets[strong]);
+        assert!(found.weights[weak] < 0.1 * found.weights[strong], "{:?}", found.weights);
+    }
+
+    #[test]
+    fn a_corner_pulls_both_ways_and_a_flat_area_not_at_all() {
+        let corner = map(|u, v| 0.004 * ((u - 1.0).powi(2) + (v + 2.0).powi(2)));
+        let tangent = Point::from_angle(0.7);
+        let place = Point::new(20.0, 30.0);
+        let found = pull(&corner, (place, tangent), place, 4.0, 1.0);
+        let want = place + tangent.rotate(Point::new(1.0, -2.0));
+        for k in 0..2 {
+            assert!((found.targets[k] - found.axes[k].dot(want)).abs() < 0.2);
+            assert!(found.weights[k] > 0.1, "{:?}", found.weights);
+        }
+        let flat = pull(&map(|_, _| 0.05), (place, tangent), place, 4.0, 1.0);
+        assert!((0..2).all(|k| flat.weights[k] < 0.5 * found.weights[k]), "{:?}", flat.weights);
+    }
+}

@@ -1,0 +1,156 @@
+//! Which of several hypotheses to follow: a path of least cost through the drawings of a span.
+//!
+//! States are pairs of neighbouring drawings' hypotheses, so that the path can be smooth in velocity (second-order
+//! Viterbi). The cost of a path is Σ √E + 0.005 min(|Δ|/z, 3) + 0.05 min(|Δ²|/z, 3): E a hypothesis' energy, Δ and Δ²
+//! first and second differences of the control points (mean length over the points), z = √(40 size) px. The caps let a
+//! part jump once it must.
+
+use rototoon_base::geometry::Point;
+
+/// Cost of speed and of change of speed, and the cap of either, in units of z.
+const SPEED: f64 = 0.005;
+const ACCELERATION: f64 = 0.05;
+const CAP: f64 = 3.0;
+
+/// What the selection weighs of a hypothesis.
+#[derive(Clone, Copy)]
+pub struct Candidate<'a> {
+    /// What it costs by itself: √E.
+    pub cost: f64,
+    /// Where it puts the control points, in working pixels.
+    pub points: &'a [Point],
+}
+
+/// The cost of motion of one part.
+#[derive(Clone, Copy, Debug)]
+pub struct Smoothness {
+    unit: f64,
+}
+
+impl Smoothness {
+    /// For a part of this size in working pixels.
+    pub fn new(size: f64) -> Self {
+        Self { unit: (40.0 * size).sqrt() }
+    }
+
+    /// Cost of moving from one drawing to the next.
+    pub fn speed(&self, a: &[Point], b: &[Point]) -> f64 {
+        SPEED * (mean_length(a.len(), |k| b[k] - a[k]) / self.unit).min(CAP)
+    }
+
+    /// Cost of moving otherwise than before, over three drawings.
+    pub fn acceleration(&self, a: &[Point], b: &[Point], c: &[Point]) -> f64 {
+        ACCELERATION * (mean_length(c.len(), |k| c[k] - 2.0 * b[k] + a[k]) / self.unit).min(CAP)
+    }
+
+    /// Cost of a whole path.
+    pub fn of_path(&self, points: &[&[Point]]) -> f64 {
+        points.windows(2).map(|w| self.speed(w[0], w[1])).sum::<f64>()
+            + points.windows(3).map(|w| self.acceleration(w[0], w[1], w[2])).sum::<f64>()
+    }
+}
+
+/// Index of the hypothesis to follow on each drawing; no drawing may be without one.
+pub fn best_path(candidates: &[Vec<Candidate>], smoothness: Smoothness) -> Vec<usize> {
+    let own = |i: usize, h: usize| candidates[i][h].cost;
+    let count = |i: usize| candidates[i].len();
+    if candidates.len() < 2 {
+        let least = |i: usize| (0..count(i)).min_by(|&a, &b| own(i, a).total_cmp(&own(i, b)));
+        return (0..candidates.len()).filter_map(least).collect();
+    }
+    let points = |i: usize, h: usize| candidates[i][h].points;
+    let speed = |i: usize, g: usize, h: usize| smoothness.speed(points(i - 1, g), points(i, h));
+    // costs[g][h]: least cost of a path that ends with hypothesis g, then h.
+    let mut costs: Vec<Vec<f64>> =
+        (0..count(0)).map(|g| (0..count(1)).map(|h| own(0, g) + own(1, h) + speed(1, g, h)).collect()).collect();
+    let mut origins: Vec<Vec<Vec<usize>>> = Vec::new();
+    for i in 2..candidates.len() {
+        let mut next = vec![vec![f64::INFINITY; count(i)]; count(i - 1)];
+        let mut from = vec![vec![0; count(i)]; count(i - 1)];
+        for g in 0..count(i - 1) {
+            let mut order: Vec<usize> = (0..count(i - 2)).collect();
+            order.sort_by(|&a, &b| costs[a][g].total_cmp(&costs[b][g]));
+            for h in 0..count(i) {
+                let step = own(i, h) + speed(i, g, h);
+                for &f in &order {
+                    // A change of speed costs nothing at the least: none of those that follow can do better.
+                    if costs[f][g] + step >= next[g][h] {
+                        break;
+                    }
+                    let bend = smoothness.acceleration(points(i - 2, f), points(i - 1, g), points(i, h));
+                    let cost = costs[f][g] + bend + step;
+                    if cost < next[g][h] {
+                        (next[g][h], from[g][h]) = (cost, f);
+                    }
+                }
+            }
+        }
+        costs = next;
+        origins.push(from);
+    }
+    trace_back(&costs, &origins)
+}
+
+/// The states of a path of least cost, from the table of the last two drawings and the origins of the ones before.
+pub(super) fn trace_back(costs: &[Vec<f64>], origins: &[Vec<Vec<usize>>]) -> Vec<usize> {
+    let (mut g, mut h) = (0, 0);
+    for (i, row) in costs.iter().enumerate() {
+        for (j, cost) in row.iter().enumerate() {
+            if *cost < costs[g][h] {
+                (g, h) = (i, j);
+            }
+        }
+    }
+    let mut path = vec![h, g];
+    for from in origins.iter().rev() {
+        (g, h) = (from[g][h], g);
+        path.push(g);
+    }
+    path.reverse();
+    path
+}
+
+fn mean_length(count: usize, vector: impl Fn(usize) -> Point) -> f64 {
+    (0..count).map(|k| vector(k).length()).sum::<f64>() / count.max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn cost_of(path: &[usize], pool: &[Vec<(f64, Point)>], size: f64) -> f64 {
+        let unit = (40.0 * size).sqrt();
+        let at = |i: usize| pool[i][path[i]].1;
+        let mut cost: f64 = (0..path.len()).map(|i| pool[i][path[i]].0.sqrt()).sum();
+        cost += (1..path.len()).map(|i| SPEED * ((at(i) - at(i - 1)).length() / unit).min(CAP)).sum::<f64>();
+        let bend = |i: usize| (at(i) - 2.0 * at(i - 1) + at(i - 2)).length();
+        cost + (2..path.len()).map(|i| ACCELERATION * (bend(i) / unit).min(CAP)).sum::<f64>()
+    }
+
+    proptest! {
+        #[test]
+        fn no_other_path_costs_less(
+            pool in prop::collection::vec(
+                prop::collection::vec((0.0f64..0.2, -40.0f64..40.0, -40.0f64..40.0), 1..4), 1..6),
+        ) {
+            let pool: Vec<Vec<(f64, Point)>> =
+                pool.into_iter().map(|c| c.into_iter().map(|(e, x, y)| (e, Point::new(x, y))).collect()).collect();
+            let candidates: Vec<Vec<Candidate>> = pool
+                .iter()
+                .map(|c| c.iter().map(|(e, p)| Candidate { cost: e.sqrt(), points: std::slice::from_ref(p) }).collect())
+                .collect();
+            let path = best_path(&candidates, Smoothness::new(50.0));
+            prop_assert_eq!(path.len(), pool.len());
+            let mut all = vec![Vec::new()];
+            for hypotheses in &pool {
+                all = all
+                    .into_iter()
+                    .flat_map(|p: Vec<usize>| (0..hypotheses.len()).map(move |h| [p.clone(), vec![h]].concat()))
+                    .collect();
+            }
+            let least = all.iter().map(|p| cost_of(p, &pool, 50.0)).fold(f64::INFINITY, f64::min);
+            prop_assert!((cost_of(&path, &pool, 50.0) - least).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,469 @@
+//! In-betweens of drawings on key frames.
+//!
+//! 1. `tracks`: matched strokes are chained through all drawings, their places followed by proportional arc length
+//!    between corners ([`correspond`], `corners`).
+//! 2. [`super::peg::propose`]: strokes that move as one are groups, which hang on each other by hinges; `motion`
+//!    carries each group from key to key along arcs. Given pegs take their place.
+//! 3. `deform`: what of a stroke's change its group does not explain is a change of shape in the group's frame, as
+//!    rigid as possible.
+//! 4. `join`: movements and changes of shape run through several keys with one velocity.
+//! 5. `contacts`: strokes that touch on both keys touch between them.
+//!
+//! Where the movement between the keys was captured, strokes follow that instead: `captured`, [`Sequence::following`].
+//!
+//! # Limits
+//!
+//! How far something has come on each frame cannot be known from two drawings: where it matters, a [`Spacing`] says it,
+//! or footage does. Without that a movement to and fro between two keys needs a key at its turning point.
+
+mod captured;
+mod check;
+mod contacts;
+mod corners;
+mod correspond;
+mod deform;
+mod join;
+mod motion;
+mod tracks;
+
+pub use captured::Captured;
+pub use check::{BetweenError, SpacingError};
+pub use correspond::Places;
+pub use tracks::{Stand, Track};
+
+use super::matching::Matching;
+use super::peg::propose::{self, Moving};
+use super::peg::{PegTree, Timing};
+use super::stroke::Stroke;
+use captured::Following;
+use deform::Deform;
+use join::{Asked, Ends, Run};
+use motion::{Hung, Motion};
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rototoon_base::geometry::similarity::Similarity;
+use rototoon_base::geometry::{Point, polygon};
+use rototoon_base::scene::FrameNumber;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// How far the drawings between two keys have come.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Spacing {
+    /// As the keys before and after suggest: with one velocity through the keys, and into rest where a movement turns
+    /// back.
+    #[default]
+    Smooth,
+    /// By a movement function.
+    Timing(Timing),
+    /// By a spacing chart: the share of the way for each frame between the keys, in order; 0 is the earlier key's
+    /// drawing, 1 the later one's, and what lies outside goes on beyond them.
+    Chart(Vec<f64>),
+}
+
+impl Spacing {
+    /// The share of the way at `u`, 0 to 1, of the time between the keys. [`Self::Smooth`] gives `u`.
+    pub fn at(&self, u: f64) -> f64 {
+        match self {
+            Self::Smooth => u,
+            Self::Timing(timing) => timing.at(u),
+            Self::Chart(shares) => {
+                let place = u * (shares.len() + 1) as f64;
+                let k = (place.max(0.0) as usize).min(shares.len());
+                let share = |k: usize| if k == 0 { 0.0 } else { shares.get(k - 1).copied().unwrap_or(1.0) };
+                let within = place - k as f64;
+                if within == 0.0 { share(k) } else { share(k) + within * (share(k + 1) - share(k)) }
+            }
+        }
+    }
+}
+
+/// A drawing on a key frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Key {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// The strokes, from behind to the front.
+    pub strokes: Vec<Stroke>,
+    /// How the movement to the next key runs.
+    pub spacing: Spacing,
+    /// Whether velocities need not join at this key: a corner in time.
+    pub corner: bool,
+}
+
+/// What strokes do that only one of two drawings has.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Leaving {
+    /// Shrink into their middle, or grow out of it (Yang et al. 1986).
+    #[default]
+    Grow,
+    /// Become transparent.
+    Fade,
+    /// Move out of the picture of this size in pixels, away from its middle.
+    Leave {
+        /// Width and height of the picture.
+        size: Point,
+    },
+}
+
+/// How in-betweens are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Strength of arcs, 0 for straight ways to 1 for full turns about the fixed point of a movement.
+    pub arcs: f64,
+    /// Whether shapes change as rigidly as possible; otherwise points move straight in their group's frame.
+    pub rigid: bool,
+    /// Whether contacts are kept.
+    pub contacts: bool,
+    /// What strokes do that only one of two drawings has.
+    pub leaving: Leaving,
+    /// Whether everything rests before the first and after the last key; otherwise it moves on with constant speed.
+    pub rest: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { arcs: 0.5, rigid: true, contacts: true, leaving: Leaving::default(), rest: true }
+    }
+}
+
+/// Pegs that are given, and what hangs on them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GivenPegs {
+    /// The pegs.
+    pub tree: PegTree,
+    /// By key and stroke the index of its peg. A track hangs on the peg of the first of its strokes that has one;
+    /// strokes without hang on groups that are found.
+    pub of: Vec<Vec<Option<usize>>>,
+}
+
+/// A stroke of a drawing between keys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InBetween {
+    /// The stroke, with as many points as on the first drawing that has it.
+    pub stroke: Stroke,
+    /// Number of its track, the same on all frames.
+    pub track: usize,
+    /// 1, or less while it fades.
+    pub opacity: f64,
+}
+
+/// A change of shape between two keys.
+#[derive(Clone, Debug, PartialEq)]
+struct Change {
+    deform: Deform,
+    run: Run,
+}
+
+/// All that in-betweens are made from, computed once for some keys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sequence {
+    keys: Vec<Key>,
+    tracks: Vec<Track>,
+    motion: Motion,
+    /// By track and span, where both of its keys have it, else `None`.
+    changes: Vec<Vec<Option<Change>>>,
+    /// By track: its points on each key in its carrier's frame.
+    local: Vec<Vec<Option<Vec<Point>>>>,
+    /// By span.
+    contacts: Vec<Vec<contacts::Contact>>,
+    captured: Arc<[Captured]>,
+    /// By track and span how it follows a captured part.
+    followed: Vec<Vec<Option<Following>>>,
+    options: Options,
+}
+
+impl Sequence {
+    /// Prepares the in-betweens of drawings, matched each with the next. Pegs that are given carry the strokes that
+    /// hang on them; all others' are found.
+    ///
+    /// # Errors
+    ///
+    /// Points that are no places, keys that do not rise, charts that do not fit; see [`BetweenError`].
+    pub fn new(
+        keys: Vec<Key>,
+        matchings: &[Matching],
+        pegs: &GivenPegs,
+        options: &Options,
+    ) -> Result<Self, BetweenError> {
+        Self::built(keys, matchings, pegs, options, None)
+    }
+
+    /// As [`Self::new`], for the frames of one span alone: that after key `base`, whose strokes' own points are
+    /// followed. The other keys give the velocities at its ends.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::new`].
+    pub fn of_span(
+        keys: Vec<Key>,
+        matchings: &[Matching],
+        pegs: &GivenPegs,
+        options: &Options,
+        base: usize,
+    ) -> Result<Self, BetweenError> {
+        Self::built(keys, matchings, pegs, options, Some(base))
+    }
+
+    fn built(
+        keys: Vec<Key>,
+        matchings: &[Matching],
+        pegs: &GivenPegs,
+        options: &Options,
+        base: Option<usize>,
+    ) -> Result<Self, BetweenError> {
+        check::check(&keys, matchings, pegs, options)?;
+        let tracks = match base {
+            Some(base) => tracks::around(&keys, matchings, base.min(matchings.len())),
+            None => tracks::chained(&keys, matchings),
+        };
+        let places = motion::by_key(&tracks, keys.len());
+        let moving: Vec<Moving> =
+            tracks.iter().zip(&places).map(|(t, places)| Moving { places, closed: t.closed }).collect();
+        let groups = propose::groups(&moving);
+        let duration = |pair: &[Key]| f64::from(pair[1].frame) - f64::from(pair[0].frame);
+        let durations: Vec<f64> = keys.windows(2).map(duration).collect();
+        let spacings: Vec<Spacing> = keys.iter().map(|key| key.spacing.clone()).collect();
+        let corners: Vec<bool> = keys.iter().map(|key| key.corner).collect();
+        let spans = durations.len();
+        let asked =
+            Asked { durations: &durations, spacings: &spacings[..spans], corners: &corners, rest: options.rest };
+        let hung = Hung { tree: pegs.tree.clone(), pegs: tracks.iter().map(|track| peg_of(track, pegs)).collect() };
+        let motion = Motion::new(&tracks, &places, &groups, &hung, &asked, options.arcs);
+        let local = local(&keys, &places, &motion);
+        let changes = local
+            .par_iter()
+            .zip(&tracks)
+            .map(|(places, track)| changes(places, track.closed, &asked, options))
+            .collect();
+        let followed = vec![vec![None; spans]; tracks.len()];
+        let (contacts, captured) = (vec![Vec::new(); spans], Arc::default());
+        let mut sequence =
+            Self { keys, tracks, motion, changes, local, contacts, captured, followed, options: *options };
+        if options.contacts {
+            let wanted = |k: &usize| base.is_none_or(|base| base == *k);
+            let touching = |k: usize| if wanted(&k) { sequence.touching(k) } else { Vec::new() };
+            sequence.contacts = (0..spans).into_par_iter().map(touching).collect();
+        }
+        Ok(sequence)
+    }
+
+    /// Lets strokes without a given peg follow the captured part that they lie on, where there is one.
+    pub fn following(mut self, captured: Arc<[Captured]>) -> Self {
+        let spans: Vec<[FrameNumber; 2]> = self.keys.windows(2).map(|pair| [pair[0].frame, pair[1].frame]).collect();
+        let of = |(t, track): (usize, &Track)| -> Vec<Option<Following>> {
+            let free = !self.motion.on_given_peg(t);
+            let part = |(k, &frames)| captured::followed(&captured, track, k, frames).filter(|_| free);
+            spans.iter().enumerate().map(part).collect()
+        };
+        self.followed = self.tracks.par_iter().enumerate().map(of).collect();
+        self.captured = captured;
+        self
+    }
+
+    /// The tracks: which stroke of which drawing is which, and where its points lie.
+    pub fn tracks(&self) -> &[Track] {
+        &self.tracks
+    }
+
+    /// The drawing on a frame, from behind to the front: on a key that drawing itself, before the first and after the
+    /// last key nothing.
+    pub fn at(&self, frame: FrameNumber) -> Vec<InBetween> {
+        let next = self.keys.partition_point(|key| key.frame <= frame);
+        let Some(k) = next.checked_sub(1) else { return Vec::new() };
+        if self.keys[k].frame == frame {
+            return self.on_key(k);
+        }
+        if next == self.keys.len() {
+            return Vec::new();
+        }
+        self.between(k, frame)
+    }
+
+    fn on_key(&self, k: usize) -> Vec<InBetween> {
+        let strokes = &self.keys[k].strokes;
+        let mut tracks = vec![usize::MAX; strokes.len()];
+        for (t, track) in self.tracks.iter().enumerate() {
+            if let Some(stand) = track.at(k).filter(|stand| !stand.part) {
+                tracks[stand.stroke] = t;
+            }
+        }
+        let drawn = |(stroke, track): (&Stroke, usize)| InBetween { stroke: stroke.clone(), track, opacity: 1.0 };
+        strokes.iter().zip(tracks).map(drawn).collect()
+    }
+
+    /// The tracks that are drawn between key `k` and the next one, from behind to the front: of a stroke in pieces the
+    /// pieces alone.
+    pub fn present(&self, k: usize) -> Vec<usize> {
+        let parts = |key: usize| -> BTreeSet<usize> {
+            let part = |track: &Track| {
+                let in_span = track.at(k).is_some() && track.at(k + 1).is_some();
+                track.at(key).filter(|stand| in_span && stand.part).map(|stand| stand.stroke)
+            };
+            self.tracks.iter().filter_map(part).collect()
+        };
+        let (split, joined) = (parts(k), parts(k + 1));
+        let whole = |track: &Track, key: usize, parts: &BTreeSet<usize>| {
+            track.at(key).is_some_and(|stand| !stand.part && parts.contains(&stand.stroke))
+        };
+        // What became one with others on this key, or comes out of one on the next, neither vanishes nor appears.
+        let there = |track: &Track| match (track.at(k), track.at(k + 1)) {
+            (Some(_), Some(_)) => true,
+            (Some(stand), None) => !stand.part && !whole(track, k, &split),
+            (None, Some(stand)) => !stand.part && !whole(track, k + 1, &joined),
+            (None, None) => false,
+        };
+        let mut found: Vec<usize> = (0..self.tracks.len()).filter(|&t| there(&self.tracks[t])).collect();
+        let mut rank = vec![0.0; self.tracks.len()];
+        let mut by_later: Vec<(usize, usize)> =
+            found.iter().filter_map(|&t| Some((self.tracks[t].at(k + 1)?.stroke, t))).collect();
+        by_later.sort_unstable();
+        let mut last = -1.0;
+        for (_, t) in by_later {
+            last = self.tracks[t].at(k).map_or(last + 1e-6, |stand| stand.stroke as f64);
+            rank[t] = last;
+        }
+        for &t in &found {
+            if let Some(stand) = self.tracks[t].at(k) {
+                rank[t] = stand.stroke as f64;
+            }
+        }
+        found.sort_by(|&a, &b| rank[a].total_cmp(&rank[b]).then(a.cmp(&b)));
+        found
+    }
+
+    fn between(&self, k: usize, frame: FrameNumber) -> Vec<InBetween> {
+        let (from, to) = (&self.keys[k], &self.keys[k + 1]);
+        let u = (f64::from(frame) - f64::from(from.frame)) / (f64::from(to.frame) - f64::from(from.frame));
+        let maps = self.motion.maps(k, u, f64::from(frame));
+        let present = self.present(k);
+        let mut points = vec![Vec::new(); self.tracks.len()];
+        let mut opacity = vec![1.0; self.tracks.len()];
+        for &t in &present {
+            let moved = || self.moved(t, k, u, &self.motion.of_track(t, &maps));
+            (points[t], opacity[t]) = self.followed_at(t, k, frame).map_or_else(moved, |points| (points, 1.0));
+        }
+        let closed: Vec<bool> = self.tracks.iter().map(|track| track.closed).collect();
+        contacts::close(&self.contacts[k], &mut points, &closed, u);
+        let drawn = present.into_iter().map(|t| InBetween {
+            stroke: Stroke { points: std::mem::take(&mut points[t]), ..self.look(t, k, u) },
+            track: t,
+            opacity: opacity[t],
+        });
+        drawn.collect()
+    }
+
+    /// The points of a track that follows a captured part.
+    fn followed_at(&self, t: usize, k: usize, frame: FrameNumber) -> Option<Vec<Point>> {
+        let points = [self.tracks[t].points(k)?, self.tracks[t].points(k + 1)?].map(Vec::as_slice);
+        self.followed[t][k].as_ref()?.at(&self.captured, points, frame)
+    }
+
+    /// A track's points in a span, and its opacity.
+    fn moved(&self, t: usize, k: usize, u: f64, map: &Similarity) -> (Vec<Point>, f64) {
+        if let Some(change) = &self.changes[t][k] {
+            let shape = change.deform.at(change.run.share(u));
+            let beside = |i: usize| Point::new(change.run.beside(2 * i, u), change.run.beside(2 * i + 1, u));
+            return (shape.iter().enumerate().map(|(i, p)| map.apply(*p + beside(i))).collect(), 1.0);
+        }
+        let goes = self.local[t][k].is_some();
+        let Some(own) = self.local[t][k].as_ref().or(self.local[t][k + 1].as_ref()) else { return (Vec::new(), 0.0) };
+        let spacing = &self.keys[k].spacing;
+        let s = if *spacing == Spacing::Smooth { Timing::EaseInOut.at(u) } else { spacing.at(u).clamp(0.0, 1.0) };
+        let there = if goes { 1.0 - s } else { s };
+        let points: Vec<Point> = own.iter().map(|p| map.apply(*p)).collect();
+        let middle = polygon::center(&points);
+        match self.options.leaving {
+            Leaving::Grow => (points.iter().map(|p| middle.lerp(*p, there)).collect(), 1.0),
+            Leaving::Fade => (points, there),
+            Leaving::Leave { size } => {
+                let away = way_out(&points, size) * (1.0 - there);
+                (points.iter().map(|p| *p + away).collect(), 1.0)
+            }
+        }
+    }
+
+    /// Everything of a track but its points.
+    fn look(&self, t: usize, k: usize, u: f64) -> Stroke {
+        let stroke = |key: usize| self.tracks[t].at(key).map(|stand| &self.keys[key].strokes[stand.stroke]);
+        let (before, after) = (stroke(k), stroke(k + 1));
+        let own = before.or(after);
+        let colour = match (before.and_then(|s| s.colour), after.and_then(|s| s.colour)) {
+            (Some(a), Some(b)) => Some([0, 1, 2].map(|c| a[c] + (b[c] - a[c]) * u as f32)),
+            (a, b) => a.or(b),
+        };
+        Stroke {
+            points: Vec::new(),
+            closed: self.tracks[t].closed,
+            colour,
+            material: own.and_then(|s| s.material),
+            layer: own.and_then(|s| s.layer),
+        }
+    }
+
+    /// The contacts of a span, by track.
+    fn touching(&self, k: usize) -> Vec<contacts::Contact> {
+        let mut strokes = Vec::with_capacity(self.tracks.len());
+        for track in &self.tracks {
+            let ends: [&[Point]; 2] = match (track.points(k), track.points(k + 1)) {
+                (Some(a), Some(b)) => [a, b],
+                _ => [&[], &[]],
+            };
+            strokes.push(contacts::Between { ends, closed: track.closed });
+        }
+        contacts::find(&strokes)
+    }
+}
+
+/// The peg of the first of a track's strokes that has one.
+fn peg_of(track: &Track, pegs: &GivenPegs) -> Option<usize> {
+    let of = |(n, stand): (usize, &Stand)| *pegs.of.get(track.first + n)?.get(stand.stroke)?;
+    track.stands.iter().enumerate().find_map(of)
+}
+
+/// Points of tracks on keys in their carriers' frames.
+fn local(keys: &[Key], places: &[Vec<Option<Vec<Point>>>], motion: &Motion) -> Vec<Vec<Option<Vec<Point>>>> {
+    let maps: Vec<_> = (0..keys.len())
+        .map(|k| {
+            let time = f64::from(keys[k].frame);
+            if k + 1 < keys.len() { motion.maps(k, 0.0, time) } else { motion.maps(k.max(1) - 1, 1.0, time) }
+        })
+        .collect();
+    let of = |(t, places): (usize, &Vec<Option<Vec<Point>>>)| {
+        let on = |(k, points): (usize, &Option<Vec<Point>>)| {
+            let back = motion.of_track(t, &maps[k]).inverse();
+            points.as_ref().map(|points| points.iter().map(|&p| back.apply(p)).collect())
+        };
+        places.iter().enumerate().map(on).collect()
+    };
+    places.par_iter().enumerate().map(of).collect()
+}
+
+fn changes(places: &[Option<Vec<Point>>], closed: bool, asked: &Asked, options: &Options) -> Vec<Option<Change>> {
+    let deforms: Vec<Option<Deform>> = places
+        .windows(2)
+        .map(|pair| Some(Deform::new(pair[0].as_ref()?, pair[1].as_ref()?, closed, options.rigid)))
+        .collect();
+    let ends: Vec<Option<Ends>> =
+        deforms.iter().map(|d| d.as_ref().map(|d| Ends { start: d.way(), end: d.way() })).collect();
+    let runs = join::runs(&ends, asked);
+    deforms.into_iter().zip(runs).map(|(deform, run)| deform.map(|deform| Change { deform, run })).collect()
+}
+
+/// The shift that takes points just out of a picture, away from its middle.
+fn way_out(points: &[Point], size: Point) -> Point {
+    let Some((low, high)) = polygon::bounds(points) else { return Point::ZERO };
+    let way = (0.5 * (low + high) - 0.5 * size).normalize_or(Point::X);
+    let out = |way: f64, low: f64, high: f64, size: f64| {
+        if way > 1e-9 {
+            (size - low) / way
+        } else if way < -1e-9 {
+            high / -way
+        } else {
+            f64::INFINITY
+        }
+    };
+    way * out(way.x, low.x, high.x, size.x).min(out(way.y, low.y, high.y, size.y)).max(0.0)
+}
+
+#[cfg(test)]
+mod tests;

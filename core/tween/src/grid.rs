@@ -1,0 +1,122 @@
+//! Nearest places among many, by a grid of square cells.
+
+use rototoon_base::geometry::{Point, polygon};
+
+/// Places sorted into cells.
+pub(super) struct Grid<'a> {
+    places: &'a [Point],
+    origin: Point,
+    cell: f64,
+    columns: i64,
+    rows: i64,
+    /// Where each cell's places start in `sorted`.
+    starts: Vec<usize>,
+    sorted: Vec<usize>,
+}
+
+/// Places a cell holds on average.
+const PER_CELL: f64 = 2.0;
+
+impl<'a> Grid<'a> {
+    pub fn new(places: &'a [Point]) -> Self {
+        let (low, high) = polygon::bounds(places).unwrap_or((Point::ZERO, Point::ZERO));
+        let extent = (high - low).max(Point::splat(1e-9));
+        let cells = (places.len() as f64 / PER_CELL).max(1.0);
+        // Of a long thin picture neither side has more cells than there should be in all.
+        let cell = (extent.x * extent.y / cells).sqrt().max(extent.max_element() / cells);
+        let (columns, rows) = ((extent.x / cell) as i64 + 1, (extent.y / cell) as i64 + 1);
+        let mut grid =
+            Self { places, origin: low, cell, columns, rows, starts: Vec::new(), sorted: (0..places.len()).collect() };
+        let cells: Vec<usize> = places.iter().map(|&p| grid.index(grid.cell_of(p))).collect();
+        grid.sorted.sort_by_key(|&i| cells[i]);
+        grid.starts = vec![0; (columns * rows) as usize + 1];
+        cells.iter().for_each(|&c| grid.starts[c + 1] += 1);
+        for c in 1..grid.starts.len() {
+            grid.starts[c] += grid.starts[c - 1];
+        }
+        grid
+    }
+
+    fn cell_of(&self, p: Point) -> (i64, i64) {
+        let at = (p - self.origin) / self.cell;
+        ((at.x as i64).clamp(0, self.columns - 1), (at.y as i64).clamp(0, self.rows - 1))
+    }
+
+    fn index(&self, (x, y): (i64, i64)) -> usize {
+        (y * self.columns + x) as usize
+    }
+
+    /// Indices of the `count` places nearest to `p`, the nearest first, of equally near ones that of smaller index;
+    /// those of a smaller index are `skip`ped where asked for.
+    pub fn nearest(&self, p: Point, count: usize) -> Vec<usize> {
+        let (x, y) = self.cell_of(p);
+        let mut found: Vec<(f64, usize)> = Vec::new();
+        for ring in 0..=self.columns.max(self.rows) {
+            self.ring((x, y), ring, |i| found.push((self.places[i].distance_squared(p), i)));
+            found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            found.truncate(count);
+            // What lies beyond the ring is at least so far away from the clamped place, thus from p.
+            let beyond = self.beyond(p, (x, y), ring);
+            if found.len() == count && found.last().is_none_or(|last| last.0 <= beyond * beyond) {
+                break;
+            }
+        }
+        found.into_iter().map(|(_, i)| i).collect()
+    }
+
+    /// Distance of `p` from the nearest cell that is not within `ring` cells of its own; 0 where p lies outside the
+    /// grid.
+    fn beyond(&self, p: Point, (x, y): (i64, i64), ring: i64) -> f64 {
+        let at = (p - self.origin) / self.cell;
+        let sides = [
+            at.x - (x - ring) as f64,
+            (x + ring + 1) as f64 - at.x,
+            at.y - (y - ring) as f64,
+            (y + ring + 1) as f64 - at.y,
+        ];
+        sides.into_iter().fold(f64::INFINITY, f64::min).max(0.0) * self.cell
+    }
+
+    fn ring(&self, (x, y): (i64, i64), ring: i64, mut visit: impl FnMut(usize)) {
+        for row in (y - ring).max(0)..=(y + ring).min(self.rows - 1) {
+            let whole = (row - y).abs() == ring;
+            let step = if whole || ring == 0 { 1 } else { 2 * ring };
+            let mut column = x - ring;
+            while column <= x + ring {
+                if (0..self.columns).contains(&column) {
+                    let cell = self.index((column, row));
+                    self.sorted[self.starts[cell]..self.starts[cell + 1]].iter().for_each(|&i| visit(i));
+                }
+                column += step;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_nearest_are_those_of_trying_all(
+            places in prop::collection::vec((-50.0f64..50.0, -3.0f64..9.0), 1..60),
+            p in (-80.0f64..80.0, -80.0f64..80.0),
+            count in 1usize..9,
+        ) {
+            let places: Vec<Point> = places.into_iter().map(Point::from).collect();
+            let p = Point::from(p);
+            let mut all: Vec<usize> = (0..places.len()).collect();
+            all.sort_by(|&a, &b| places[a].distance_squared(p).total_cmp(&places[b].distance_squared(p)).then(a.cmp(&b)));
+            all.truncate(count);
+            prop_assert_eq!(Grid::new(&places).nearest(p, count), all);
+        }
+    }
+
+    #[test]
+    fn places_on_one_spot_or_none() {
+        assert_eq!(Grid::new(&[Point::ONE; 5]).nearest(Point::ZERO, 2), [0, 1]);
+        assert!(Grid::new(&[]).nearest(Point::ZERO, 2).is_empty());
+    }
+}

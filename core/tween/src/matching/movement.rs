@@ -1,0 +1,209 @@
+//! The movement of the whole drawing, and that around each stroke.
+
+use super::super::grid::Grid;
+use super::costs::{Figure, Rows, Ways, bound};
+use super::relaxation::{self, Chosen, Neighbours};
+use super::{Fixed, Options};
+use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rototoon_base::geometry::Point;
+
+/// Step in radians of the proposed turns of the whole drawing.
+const TURN_STEP: f64 = std::f64::consts::PI / 12.0;
+/// Strokes on which movements are tried: the largest.
+const TRIED_ON: usize = 48;
+/// Strokes up to which movements are tried on all: what is known of their pairs is remembered anyway.
+const FEW: usize = 63;
+/// Movements proposed by pairs, at most.
+const MOST_PROPOSALS: usize = 120;
+/// Unexplained share of the shape up to which a pair proposes a movement.
+const PROPOSING: f64 = 0.15;
+/// Movements that are tried by matching the strokes.
+const FINALISTS: usize = 6;
+/// Difference in turn (rad), growth (logarithm) and place (in units of the drawing's radius) below which two movements
+/// are one.
+const SAME: f64 = 1e-3;
+/// Preference, for each stroke and rad², for drawings that have turned little.
+const STILLNESS: f64 = 0.02;
+/// The same for each stroke and squared shift in units of the drawing's radius.
+const RESTING: f64 = 0.02;
+/// Distance, in units of the drawing's radius, within which neighbours weigh alike.
+const NEIGHBOURHOOD: f64 = 0.4;
+/// Neighbours from which the movement around a stroke is fitted, at most.
+const NEIGHBOURS: usize = 24;
+
+/// p ↦ scale · rotate(p − source) + target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Movement {
+    pub turn: f64,
+    pub scale: f64,
+    pub source: Point,
+    pub target: Point,
+}
+
+impl Movement {
+    pub fn apply(&self, p: Point) -> Point {
+        (Point::from_angle(self.turn) * self.scale).rotate(p - self.source) + self.target
+    }
+}
+
+/// The movement of the whole drawing, and what matching under it found.
+pub(super) struct Whole {
+    pub movement: Movement,
+    /// The counterparts under that movement, and under those around each stroke which follow from them; `None` where
+    /// the movement was tried on some strokes only.
+    pub found: Option<[Vec<Option<Chosen>>; 2]>,
+}
+
+/// The movement of the whole drawing.
+pub(super) fn of_whole(a: &Figure, b: &Figure, ways: &Ways, fixed: &[Fixed], options: &Options) -> Whole {
+    let pinned = fixed.iter().enumerate().filter_map(|(i, f)| if let Fixed::To(j) = f { Some((i, *j)) } else { None });
+    let (rows, columns): (Vec<usize>, Vec<usize>) = pinned.unzip();
+    let there = |figure: &Figure| figure.outlines.iter().flatten().count();
+    let all = there(a).max(there(b)) <= FEW;
+    let (a, b) = (a.only(&largest(a, &rows)), b.only(&largest(b, &columns)));
+    // The strokes keep their numbers, so what is known of them holds.
+    let own = (!ways.are_known()).then(|| Ways::new(&a, &b));
+    let ways = own.as_ref().unwrap_or(ways);
+    let scored = |movement: Movement| (bound((&a, &b), ways, &movement, options) + prior(&a, &movement), movement);
+    let mut scores: Vec<_> = proposals(&a, &b, ways, options).into_par_iter().map(scored).collect();
+    scores.sort_by(|x, y| x.0.total_cmp(&y.0));
+    scores.truncate(FINALISTS);
+    let neighbours = Neighbours::new(&a);
+    let energy = |movement: &Movement| {
+        let rows = Rows::new((&a, &b), ways, &vec![*movement; a.outlines.len()], fixed, options);
+        let first = relaxation::relaxed(&neighbours, &b, &rows, options);
+        let around = around_each(&a, &b, &first.chosen, movement);
+        let rows = Rows::new((&a, &b), ways, &around, fixed, options);
+        let second = relaxation::relaxed(&neighbours, &b, &rows, options);
+        (second.energy + prior(&a, movement), [first.chosen, second.chosen])
+    };
+    let mut best: Option<(f64, Whole)> = None;
+    for (score, movement) in scores {
+        // What costs more at least than another one does indeed is none.
+        if best.as_ref().is_some_and(|(least, _)| score >= *least) {
+            break;
+        }
+        let (energy, found) = energy(&movement);
+        if best.as_ref().is_none_or(|(least, _)| energy < *least) {
+            best = Some((energy, Whole { movement, found: all.then_some(found) }));
+        }
+    }
+    let still = Movement { turn: 0.0, scale: 1.0, source: Point::ZERO, target: Point::ZERO };
+    best.map_or(Whole { movement: still, found: None }, |(_, whole)| whole)
+}
+
+/// Whether two movements take the drawing to about the same place.
+fn alike(a: &Figure, one: &Movement, other: &Movement) -> bool {
+    let apart = one.apply(a.middle).distance(other.apply(a.middle));
+    super::outline::wrap(one.turn - other.turn).abs() < SAME
+        && (one.scale / other.scale).ln().abs() < SAME
+        && apart < SAME * a.radius * one.scale.max(other.scale)
+}
+
+fn prior(a: &Figure, movement: &Movement) -> f64 {
+    let count = a.outlines.iter().flatten().count() as f64;
+    let shift = movement.apply(a.middle).distance(a.middle) / a.radius;
+    count * (STILLNESS * movement.turn * movement.turn + RESTING * shift.min(2.0).powi(2))
+}
+
+/// The strokes on which movements are tried: those named, and the largest.
+fn largest(figure: &Figure, named: &[usize]) -> Vec<usize> {
+    let radius = |i: usize| figure.outlines[i].as_ref().map_or(0.0, |o| o.radius);
+    let mut order: Vec<usize> = (0..figure.outlines.len()).filter(|&i| figure.outlines[i].is_some()).collect();
+    order.sort_by(|&i, &j| radius(j).total_cmp(&radius(i)).then(i.cmp(&j)));
+    if order.len() > FEW {
+        order.truncate(TRIED_ON);
+    }
+    order.extend(named);
+    order.sort_unstable();
+    order.dedup();
+    order
+}
+
+/// Movements that may be the drawing's.
+fn proposals(a: &Figure, b: &Figure, ways: &Ways, options: &Options) -> Vec<Movement> {
+    let most = options.max_scale.max(1.0);
+    let scale = (b.spread() / a.spread()).clamp(1.0 / most, most);
+    let steps = (options.max_turn / TURN_STEP).clamp(0.0, 12.0) as i32;
+    let mut result = vec![Movement { turn: 0.0, scale: 1.0, source: a.middle, target: a.middle }];
+    for k in -steps..=steps {
+        result.push(Movement { turn: f64::from(k) * TURN_STEP, scale, source: a.middle, target: b.middle });
+    }
+    let mut by_pairs = Vec::new();
+    for i in 0..a.outlines.len() {
+        for j in 0..b.outlines.len() {
+            let (Some((p, q)), Some(from), Some(to)) = (a.comparable(i, b, j), &a.outlines[i], &b.outlines[j]) else {
+                continue;
+            };
+            let scale = q.radius / p.radius;
+            if scale.max(1.0 / scale) > most {
+                continue;
+            }
+            let Some(way) =
+                ways.likely(a, i, b, j, 0.0, 0.1).into_iter().find(|way| way.turn.abs() <= options.max_turn)
+            else {
+                continue;
+            };
+            if way.residual < PROPOSING {
+                let movement = Movement { turn: way.turn, scale, source: from.centre, target: to.centre };
+                by_pairs.push((way.residual + 0.1 * way.turn * way.turn, movement));
+            }
+        }
+    }
+    by_pairs.sort_by(|x, y| x.0.total_cmp(&y.0));
+    for (_, movement) in by_pairs.into_iter().take(MOST_PROPOSALS) {
+        if !result.iter().any(|other| alike(a, &movement, other)) {
+            result.push(movement);
+        }
+    }
+    result
+}
+
+/// The movement that the matched neighbours of each stroke make, held by the whole drawing's.
+pub(super) fn around_each(a: &Figure, b: &Figure, chosen: &[Option<Chosen>], held: &Movement) -> Vec<Movement> {
+    let mut known = Vec::new();
+    for (outline, choice) in a.outlines.iter().zip(chosen) {
+        if let (Some(from), Some(choice)) = (outline, choice)
+            && let Some(to) = &b.outlines[choice.to]
+        {
+            known.push((from.centre, to.centre));
+        }
+    }
+    let places: Vec<Point> = known.iter().map(|k| k.0).collect();
+    let grid = Grid::new(&places);
+    let near = (NEIGHBOURHOOD * a.radius).powi(2);
+    let fitted = |outline: &Option<crate::matching::outline::Outline>| {
+        let Some(own) = outline else { return *held };
+        let neighbours = grid.nearest(own.centre, NEIGHBOURS + 1).into_iter().map(|k| known[k]);
+        let pairs: Vec<_> = neighbours
+            .filter(|(p, _)| *p != own.centre)
+            .map(|(p, q)| (near / (own.centre.distance_squared(p) + near), p, q))
+            .collect();
+        fit(&pairs, held, a.radius)
+    };
+    a.outlines.par_iter().map(fitted).collect()
+}
+
+/// The movement of weighted pairs of places, held by another that counts as one pair at the drawing's radius.
+fn fit(pairs: &[(f64, Point, Point)], held: &Movement, radius: f64) -> Movement {
+    if pairs.len() < 2 {
+        return *held;
+    }
+    let total: f64 = pairs.iter().map(|p| p.0).sum();
+    let source = pairs.iter().map(|p| p.0 * p.1).sum::<Point>() / total;
+    let target = pairs.iter().map(|p| p.0 * p.2).sum::<Point>() / total;
+    let mut denominator = radius * radius;
+    let mut numerator = Point::from_angle(held.turn) * (held.scale * denominator);
+    for &(weight, p, q) in pairs {
+        let (p, q) = (p - source, q - target);
+        numerator += weight * Point::new(p.dot(q), p.perp_dot(q));
+        denominator += weight * p.length_squared();
+    }
+    let factor = numerator / denominator;
+    Movement {
+        turn: factor.to_angle(),
+        scale: factor.length().clamp(0.3 * held.scale, 3.0 * held.scale),
+        source,
+        target,
+    }
+}

@@ -1,0 +1,174 @@
+//! A stroke reduced to what shapes are compared by, and the ways to lay one upon another.
+//!
+//! Both curves are sampled evenly by arc length and centred; as complex numbers p and q of unit mean square, the best
+//! similarity is r = mean(conj(p) q), and 1 − |r|² of the variance remains. It does not see size, place, turn or number
+//! of points; all starting points of closed curves and both directions are tried. A closed curve turns the same way
+//! round on both drawings, hence its direction follows from the sign of the area where it has one.
+
+use super::super::stroke::Stroke;
+use rototoon_base::geometry::similarity::Similarity;
+use rototoon_base::geometry::{Point, polygon, polyline};
+
+/// Samples of a curve.
+pub(super) const SAMPLES: usize = 32;
+/// Smallest size, in pixels, that is told apart: a dot counts as that large.
+const LEAST_RADIUS: f64 = 0.5;
+/// Area relative to the squared length from which on a closed curve has a direction of turning (a circle has 0.08).
+const LEAST_AREA: f64 = 0.005;
+/// Ways that are kept of a pair of closed curves.
+const WAYS: usize = 3;
+
+/// A stroke as it is compared.
+#[derive(Clone, Debug)]
+pub(super) struct Outline {
+    /// Mean of the samples.
+    pub centre: Point,
+    /// Root mean square distance of the samples from the centre in pixels; at least [`LEAST_RADIUS`].
+    pub radius: f64,
+    /// Length in pixels.
+    pub length: f64,
+    /// Samples in pixels.
+    pub places: Vec<Point>,
+    /// Samples, centred and divided by the radius.
+    shape: Vec<Point>,
+    /// Sign of the area: 0 for open and for thin curves.
+    turning: i8,
+    pub closed: bool,
+}
+
+/// One way to lay a curve upon another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Way {
+    /// Unexplained share of the variance, 0 to 1.
+    pub residual: f64,
+    /// Turn in radians, from x towards y.
+    pub turn: f64,
+    /// Whether the other curve is walked backwards.
+    pub reversed: bool,
+    /// Share of the other curve's length (walked forwards) at which this one's first sample lies.
+    pub start: f64,
+}
+
+impl Outline {
+    /// The outline of a stroke that is taken as closed or open; `None` where it has no points.
+    pub fn new(stroke: &Stroke, closed: bool) -> Option<Self> {
+        let places = polyline::resample(&stroke.points, closed, SAMPLES);
+        if places.is_empty() {
+            return None;
+        }
+        let centre = polygon::center(&places);
+        let square = places.iter().map(|p| p.distance_squared(centre)).sum::<f64>() / SAMPLES as f64;
+        let radius = square.sqrt().max(LEAST_RADIUS);
+        let length = polyline::length(&stroke.points, closed);
+        let area = if closed { polygon::signed_area(&places) } else { 0.0 };
+        let turning = if area.abs() > LEAST_AREA * length * length { area.signum() as i8 } else { 0 };
+        let shape = places.iter().map(|&p| (p - centre) / radius).collect();
+        Some(Self { centre, radius, length, places, shape, turning, closed })
+    }
+
+    /// All ways to lay this curve upon `other`, which is closed as this one is: by direction, all starts in order.
+    pub fn all_ways(&self, other: &Self) -> Vec<Vec<Way>> {
+        let mut found = Vec::new();
+        for reversed in [false, true] {
+            let opposed = self.turning * other.turning == -1;
+            if self.turning * other.turning != 0 && reversed != opposed {
+                continue;
+            }
+            found.push(if self.closed { self.around(other, reversed) } else { vec![self.lay(other, reversed)] });
+        }
+        found
+    }
+
+    /// The ways to lay this closed curve upon another one, by the start, all starts side by side for vector
+    /// instructions.
+    fn around(&self, other: &Self, reversed: bool) -> Vec<Way> {
+        let twice = |axis: fn(&Point) -> f64| -> Vec<f64> {
+            other.shape.iter().chain(&other.shape).chain(&other.shape[..1]).map(axis).collect()
+        };
+        let (xs, ys) = (twice(|p| p.x), twice(|p| p.y));
+        let (mut along, mut across) = ([0.0; SAMPLES], [0.0; SAMPLES]);
+        for (k, p) in self.shape.iter().enumerate() {
+            let first = if reversed { SAMPLES - k } else { k };
+            let others = xs[first..first + SAMPLES].iter().zip(&ys[first..first + SAMPLES]);
+            for ((along, across), (x, y)) in along.iter_mut().zip(&mut across).zip(others) {
+                *along += p.x * x + p.y * y;
+                *across += p.x * y - p.y * x;
+            }
+        }
+        let way = |start: usize| self.way(other, Point::new(along[start], across[start]), start, reversed);
+        (0..SAMPLES).map(way).collect()
+    }
+
+    /// The most likely ways to lay this curve upon `other`, when a turn is expected that is worth `stiffness` residual
+    /// for each rad².
+    pub fn ways(&self, other: &Self, expected: f64, stiffness: f64) -> Vec<Way> {
+        likely(&self.all_ways(other), expected, stiffness)
+    }
+
+    /// The way to lay this open curve upon another one.
+    fn lay(&self, other: &Self, reversed: bool) -> Way {
+        let first = if reversed { SAMPLES - 1 } else { 0 };
+        let mut factor = Point::ZERO;
+        for (k, p) in self.shape.iter().enumerate() {
+            let q = other.shape[if reversed { first - k } else { k }];
+            factor += Point::new(p.dot(q), p.perp_dot(q));
+        }
+        self.way(other, factor, first, reversed)
+    }
+
+    /// The way whose products add up to `sum`.
+    fn way(&self, other: &Self, sum: Point, first: usize, reversed: bool) -> Way {
+        let factor = sum / SAMPLES as f64;
+        // Two dots have nothing that could disagree.
+        let flat = |outline: &Self| outline.shape.iter().all(|p| *p == Point::ZERO);
+        let residual = if flat(self) && flat(other) { 0.0 } else { (1.0 - factor.length_squared()).clamp(0.0, 1.0) };
+        let steps = if self.closed { SAMPLES } else { SAMPLES - 1 };
+        Way { residual, turn: factor.to_angle(), reversed, start: first as f64 / steps as f64 }
+    }
+
+    /// The similarity that lays this curve upon `other` in a way.
+    pub fn movement(&self, other: &Self, way: &Way) -> Similarity {
+        let factor = Point::from_angle(way.turn) * (other.radius / self.radius);
+        Similarity { factor, source: self.centre, target: other.centre }
+    }
+}
+
+/// The most likely of all ways, when a turn is expected that is worth `stiffness` residual for each rad².
+pub(super) fn likely(all: &[Vec<Way>], expected: f64, stiffness: f64) -> Vec<Way> {
+    let mut found: Vec<(f64, Way)> = Vec::new();
+    for ways in all {
+        let costs: Vec<f64> =
+            ways.iter().map(|way| way.residual + stiffness * wrap(way.turn - expected).powi(2)).collect();
+        let n = ways.len();
+        let lowest = |k: usize| n == 1 || (costs[k] <= costs[(k + n - 1) % n] && costs[k] <= costs[(k + 1) % n]);
+        found.extend((0..n).filter(|&k| lowest(k)).map(|k| (costs[k], ways[k])));
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().take(WAYS).map(|(_, way)| way).collect()
+}
+
+/// The angle as the equivalent one from −π to π.
+pub(super) fn wrap(angle: f64) -> f64 {
+    let turn = std::f64::consts::TAU;
+    angle - turn * (angle / turn).round()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turned_and_reversed_curve_is_laid_upon_exactly() {
+        for closed in [false, true] {
+            let points = [(0.0, 0.0), (30.0, 0.0), (30.0, 12.0), (9.0, 15.0)].map(Point::from);
+            let turn = Point::from_angle(0.8) * 1.5;
+            let moved = points.iter().rev().map(|&p| turn.rotate(p) + Point::new(50.0, 9.0)).collect();
+            let (a, b) = (Stroke::new(points.into(), closed), Stroke::new(moved, closed));
+            let (a, b) = (Outline::new(&a, closed).unwrap(), Outline::new(&b, closed).unwrap());
+            let way = a.ways(&b, 0.0, 0.0)[0];
+            assert!(way.reversed && way.residual < 0.01 && (way.turn - 0.8).abs() < 0.06, "{way:?}");
+            let centre = a.movement(&b, &way).apply(Point::new(15.0, 6.0));
+            assert!(centre.distance(turn.rotate(Point::new(15.0, 6.0)) + Point::new(50.0, 9.0)) < 1.5, "{centre}");
+        }
+    }
+}

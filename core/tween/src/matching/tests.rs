@@ -1,0 +1,215 @@
+use super::*;
+use proptest::prelude::*;
+use rototoon_base::geometry::{Point, polyline};
+use rototoon_base::scene::Silent;
+
+fn run(a: &[Stroke], b: &[Stroke]) -> Matching {
+    match_strokes(a, b, &[], &Options::default(), &Silent).unwrap()
+}
+
+fn arc(centre: (f64, f64), radius: f64, from: f64, to: f64, count: usize) -> Vec<Point> {
+    let at = |k: usize| from + (to - from) * k as f64 / (count - 1) as f64;
+    (0..count).map(|k| Point::from(centre) + Point::from_angle(at(k)) * radius).collect()
+}
+
+/// A figure: body, head, two equal arms and legs of two bones each.
+fn figure(shift: Point, turn: f64, arms: f64, legs: f64) -> Vec<Stroke> {
+    let mut strokes = vec![
+        Stroke::new(
+            vec![(-30.0, -50.0), (30.0, -50.0), (25.0, 50.0), (-25.0, 50.0)].into_iter().map(Point::from).collect(),
+            true,
+        ),
+        Stroke::new(arc((0.0, -80.0), 28.0, 0.0, 6.0, 20), true),
+    ];
+    let bone = |from: Point, angle: f64| {
+        let to = from + Point::from_angle(angle) * 40.0;
+        let bulge = from.lerp(to, 0.5) + Point::from_angle(angle + 1.57) * 8.0;
+        (Stroke::new(polyline::resample(&[from, bulge, to], false, 9), false), to)
+    };
+    for (x, y, angle) in
+        [(-30.0, -45.0, 2.4 + arms), (30.0, -45.0, 0.7 - arms), (-15.0, 50.0, 1.8 + legs), (15.0, 50.0, 1.3 - legs)]
+    {
+        let (upper, joint) = bone(Point::new(x, y), angle);
+        let (lower, _) = bone(joint, angle + 0.4);
+        strokes.extend([upper, lower]);
+    }
+    let turned = Point::from_angle(turn);
+    for p in strokes.iter_mut().flat_map(|s| &mut s.points) {
+        *p = turned.rotate(*p) + shift;
+    }
+    strokes
+}
+
+/// Another order, direction, start and number of points; the index that each stroke had.
+fn redrawn(strokes: &[Stroke], order: &[usize]) -> Vec<Stroke> {
+    let again = |(k, &i): (usize, &usize)| {
+        let mut points = polyline::resample(&strokes[i].points, strokes[i].closed, 17 + 5 * (k % 4));
+        if k % 2 == 0 {
+            points.reverse();
+        }
+        if strokes[i].closed {
+            points.rotate_left(k % 11);
+        }
+        Stroke { points, ..strokes[i].clone() }
+    };
+    order.iter().enumerate().map(again).collect()
+}
+
+#[test]
+fn a_figure_that_moved_and_bent_is_found_again() {
+    let first = figure(Point::new(200.0, 200.0), 0.0, 0.0, 0.0);
+    let second = figure(Point::new(330.0, 180.0), 0.5, 0.5, -0.4);
+    let order = [7, 3, 9, 0, 5, 1, 8, 2, 4, 6];
+    let found = run(&first, &redrawn(&second, &order));
+    assert!(found.vanished.is_empty() && found.appeared.is_empty(), "{found:?}");
+    for pair in &found.pairs {
+        assert_eq!(order[pair.to], pair.from, "{found:?}");
+        assert_eq!(pair.reversed, pair.to % 2 == 0, "{pair:?}");
+    }
+}
+
+#[test]
+fn the_start_of_a_closed_curve_is_found() {
+    let points: Vec<Point> = [(0.0, 0.0), (60.0, 0.0), (60.0, 20.0), (10.0, 40.0)].map(Point::from).into();
+    let a = polyline::resample(&points, true, 64);
+    for reversed in [false, true] {
+        let mut b = a.clone();
+        b.rotate_left(16);
+        if reversed {
+            b.reverse();
+        }
+        let pair = run(&[Stroke::new(a.clone(), true)], &[Stroke::new(b.clone(), true)]).pairs[0];
+        assert_eq!(pair.reversed, reversed);
+        let at = (pair.start * 64.0).round() as usize % 64;
+        assert!(b[at].distance(a[0]) < 8.0, "{pair:?}");
+    }
+}
+
+#[test]
+fn hand_made_pairs_are_kept_and_lead_the_others() {
+    // Two equal dots side by side, each with an equal line: without a hint they stay, with one they cross.
+    let line = |x: f64| Stroke::new(vec![Point::new(x, 0.0), Point::new(x, 30.0)], false);
+    let dot = |x: f64| Stroke::new(arc((x, 36.0), 5.0, 0.0, 6.0, 12), true);
+    let frame = Stroke::new(arc((20.0, 20.0), 150.0, 0.0, 6.0, 60), true);
+    let strokes = [line(0.0), line(40.0), dot(0.0), dot(40.0), frame];
+    let to = |m: &Matching| m.pairs.iter().map(|p| p.to).collect::<Vec<_>>();
+    assert_eq!(to(&run(&strokes, &strokes)), [0, 1, 2, 3, 4]);
+    let hands = [HandPair { from: 0, to: Some(1) }, HandPair { from: 1, to: Some(0) }];
+    let found = match_strokes(&strokes, &strokes, &hands, &Options::default(), &Silent).unwrap();
+    assert_eq!(to(&found), [1, 0, 3, 2, 4]);
+    assert!(found.pairs[0].by_hand && found.pairs[0].confidence == 1.0 && !found.pairs[2].by_hand);
+    let alone = [HandPair { from: 3, to: None }];
+    let found = match_strokes(&strokes, &strokes, &alone, &Options::default(), &Silent).unwrap();
+    assert_eq!((found.vanished, found.appeared), (vec![3], vec![3]));
+}
+
+#[test]
+fn wrong_hand_made_pairs_are_named() {
+    let strokes = [Stroke::new(vec![Point::ZERO, Point::X], false)];
+    let said = |hands: &[HandPair]| {
+        match_strokes(&strokes, &strokes, hands, &Options::default(), &Silent).unwrap_err().to_string()
+    };
+    let pair = |from, to| HandPair { from, to };
+    assert_eq!(said(&[pair(2, None)]), "pair 0: found stroke 2 of the first drawing, expected less than 1");
+    assert_eq!(said(&[pair(0, Some(4))]), "pair 0: found stroke 4 of the second drawing, expected less than 1");
+    assert_eq!(
+        said(&[pair(0, Some(0)), pair(0, None)]),
+        "pair 1: stroke 0 of the first drawing has a pair made by hand already"
+    );
+}
+
+#[test]
+fn colour_and_layer_tell_equal_strokes_apart() {
+    let line = |x: f64, layer| Stroke {
+        layer: Some(layer),
+        ..Stroke::new(vec![Point::new(x, 0.0), Point::new(x + 5.0, 30.0)], false)
+    };
+    let found = run(&[line(0.0, 1), line(10.0, 2)], &[line(0.0, 2), line(10.0, 1)]);
+    assert_eq!(found.pairs.iter().map(|p| p.to).collect::<Vec<_>>(), [1, 0]);
+}
+
+#[test]
+fn a_stroke_drawn_in_pieces_is_put_together() {
+    let whole = |shift: f64| arc((shift, 0.0), 60.0, 0.2, 3.0, 57);
+    let other = Stroke::new(arc((0.0, 90.0), 25.0, 0.0, 6.0, 30), true);
+    let first = [Stroke::new(whole(0.0), false), other.clone()];
+    let (a, b) = (whole(12.0)[..25].to_vec(), whole(12.0)[25..].to_vec());
+    let b = b.into_iter().rev().collect();
+    let second = [Stroke::new(b, false), other, Stroke::new(a, false)];
+    let found = run(&first, &second);
+    assert_eq!(found.split, [InPieces { whole: 0, pieces: vec![(2, false), (0, true)] }], "{found:?}");
+    assert!(found.appeared.is_empty() && found.vanished.is_empty());
+    let back = run(&second, &first);
+    assert_eq!(back.joined, [InPieces { whole: 0, pieces: vec![(2, false), (0, true)] }], "{back:?}");
+    assert!(back.split.is_empty() && back.vanished.is_empty() && back.appeared.is_empty());
+}
+
+#[test]
+fn bad_strokes_are_named_or_left_alone() {
+    let p = Point::new;
+    let nan = [Stroke::new(vec![p(0.0, 0.0), p(f64::NAN, 1.0)], false)];
+    let error = match_strokes(&[], &nan, &[], &Options::default(), &Silent).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "second drawing: stroke 0: point 1 is (NaN, 1), expected numbers between -1e9 and 1e9"
+    );
+    assert_eq!(run(&[], &[]), Matching::default());
+    let odd = [
+        Stroke::new(vec![], true),
+        Stroke::new(vec![p(3.0, 3.0)], false),
+        Stroke::new(vec![p(50.0, 3.0); 5], true),
+        Stroke::new(vec![p(0.0, 50.0), p(9.0, 50.0)], false),
+        Stroke::new([(0.0, 0.0), (9.0, 9.0), (9.0, 0.0), (0.0, 9.0)].map(|(x, y)| p(80.0 + x, y)).into(), true),
+    ];
+    let found = run(&odd, &odd);
+    assert_eq!(found.pairs.iter().map(|p| (p.from, p.to)).collect::<Vec<_>>(), [(1, 1), (2, 2), (3, 3), (4, 4)]);
+    assert_eq!((found.vanished, found.appeared), (vec![0], vec![0]));
+    assert_eq!(run(&odd, &[]).vanished, [0, 1, 2, 3, 4]);
+}
+
+#[test]
+fn ten_thousand_strokes() {
+    let strokes: Vec<Stroke> = (0..10_000)
+        .map(|k| {
+            let (x, y) = ((k % 100) as f64 * 20.0, (k / 100) as f64 * 20.0);
+            let turn = (k * k % 97) as f64;
+            Stroke::new(arc((x, y), 6.0 + (k % 7) as f64, turn, turn + 1.0 + (k % 5) as f64, 9), false)
+        })
+        .collect();
+    let moved: Vec<Stroke> = strokes
+        .iter()
+        .rev()
+        .map(|s| Stroke::new(s.points.iter().map(|&p| p * 1.05 + Point::new(30.0, -7.0)).collect(), false))
+        .collect();
+    let found = run(&strokes, &moved);
+    let right = found.pairs.iter().filter(|p| p.to == 9_999 - p.from).count();
+    assert!(right > 9_900, "{right}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+    #[test]
+    fn every_stroke_stands_in_one_place(
+        sizes in prop::collection::vec((0usize..6, 0usize..6, any::<bool>()), 0..9),
+        values in prop::collection::vec((-20.0f64..20.0, -20.0f64..20.0), 110),
+    ) {
+        let mut values = values.into_iter().map(Point::from);
+        let mut drawing = |second: bool| -> Vec<Stroke> {
+            let count = |s: &(usize, usize, bool)| if second { s.1 } else { s.0 };
+            sizes.iter().map(|s| Stroke::new(values.by_ref().take(count(s)).collect(), s.2)).collect()
+        };
+        let (a, b) = (drawing(false), drawing(true));
+        let found = run(&a, &b);
+        let mut from: Vec<usize> = found.pairs.iter().map(|p| p.from).chain(found.vanished.clone()).collect();
+        from.extend(found.split.iter().map(|s| s.whole));
+        from.extend(found.joined.iter().flat_map(|s| s.pieces.iter().map(|p| p.0)));
+        from.sort_unstable();
+        prop_assert_eq!(from, (0..a.len()).collect::<Vec<_>>());
+        let mut to: Vec<usize> = found.pairs.iter().map(|p| p.to).chain(found.appeared.clone()).collect();
+        to.extend(found.joined.iter().map(|s| s.whole));
+        to.extend(found.split.iter().flat_map(|s| s.pieces.iter().map(|p| p.0)));
+        to.sort_unstable();
+        prop_assert_eq!(to, (0..b.len()).collect::<Vec<_>>());
+        prop_assert!(found.pairs.iter().all(|p| (0.0..=1.0).contains(&p.confidence)));
+    }
+}
