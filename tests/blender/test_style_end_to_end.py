@@ -37,7 +37,7 @@ def sample(tmp_path_factory):
         pytest.skip("no cargo to write the sample cartoon with")
     folder = tmp_path_factory.mktemp("sample")
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
-    command = [cargo, "run", "--quiet", "-p", "rototoon-tests", "--bin", "sample", "--", str(folder)]
+    command = [cargo, "run", "--quiet", "-p", "xtask-measure", "--", "sample", str(folder)]
     subprocess.run(command, cwd=ROOT, env=environment, check=True)
     return folder
 

@@ -4,11 +4,12 @@
 //! environment under `target/`), so that it loads on every Linux that Blender itself runs on; the symbol versions it needs are
 //! read back to make sure. Blender's own packager builds the zip and validates it.
 
-use crate::shell::{capture, command, copy_folder, empty_folder, root, run, target};
-use crate::{elf, ofx, python};
+use crate::{elf, ofx};
 use anyhow::{Context, Result, bail, ensure};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use xtask_shell::python;
+use xtask_shell::shell::{capture, command, copy_folder, empty_folder, root, run, target};
 
 /// The newest glibc the library may need: that of the systems Blender's own builds support (VFX platform CY2023 on).
 pub const GLIBC: (u32, u32) = (2, 28);
@@ -27,6 +28,17 @@ pub struct Bundle {
     pub cli: PathBuf,
     /// The OpenFX bundle, built with it.
     pub ofx: PathBuf,
+    /// The development commands that need the core; built with [`Programs::WithMeasure`] only.
+    pub measure: PathBuf,
+}
+
+/// What is built beside the library and the OpenFX plugin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Programs {
+    /// What artists install.
+    Installed,
+    /// Also the development commands that need the core, so that the core is compiled once for both.
+    WithMeasure,
 }
 
 impl Bundle {
@@ -34,7 +46,13 @@ impl Bundle {
     pub fn last() -> Self {
         let built = target().join(TRIPLE).join("release");
         let zip = target().join(format!("rototoon-{}-linux_x64.zip", env!("CARGO_PKG_VERSION")));
-        Self { zip, library: built.join(LIBRARY), cli: built.join("rototoon"), ofx: ofx::place() }
+        Self {
+            zip,
+            library: built.join(LIBRARY),
+            cli: built.join("rototoon"),
+            ofx: ofx::place(),
+            measure: built.join("xtask-measure"),
+        }
     }
 }
 
@@ -48,9 +66,9 @@ pub enum Packager {
 }
 
 /// Builds, packs and validates.
-pub fn bundle(packager: &Packager) -> Result<Bundle> {
+pub fn bundle(packager: &Packager, programs: Programs) -> Result<Bundle> {
     let bundle = Bundle::last();
-    build(&bundle)?;
+    build(&bundle, programs)?;
     ofx::lay_out(&bundle.library.with_file_name(PLUGIN))?;
     pack(packager, &stage(&bundle.library)?, &bundle.zip)?;
     println!("bundle: {}", bundle.zip.display());
@@ -63,7 +81,7 @@ pub fn tools() -> Result<PathBuf> {
 }
 
 /// Builds library, command line and OpenFX plugin; all need only [`GLIBC`].
-fn build(bundle: &Bundle) -> Result<()> {
+fn build(bundle: &Bundle, programs: Programs) -> Result<()> {
     ensure!(cfg!(all(target_os = "linux", target_arch = "x86_64")), "the bundle is built on Linux x86-64 only");
     let tools = tools()?;
     let bin = tools.parent().context("an interpreter lies in a folder")?;
@@ -77,6 +95,7 @@ fn build(bundle: &Bundle) -> Result<()> {
     run(command(bin.join("cargo-zigbuild"))
         .args(["zigbuild", "--quiet", "--release", "--target", &versioned])
         .args(["-p", "rototoon-capi", "-p", "rototoon-cli", "-p", "rototoon-ofx"])
+        .args(if programs == Programs::WithMeasure { &["-p", "xtask-measure"][..] } else { &[] })
         .env("PATH", path)
         // The zip is downloaded by artists: no line tables.
         .env("CARGO_PROFILE_RELEASE_DEBUG", "none")

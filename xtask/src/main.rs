@@ -1,18 +1,12 @@
 //! Development commands of Rototoon.
 
-mod bench_fit;
-mod bench_style;
-mod bench_tracking;
-mod bench_tween;
-mod bless;
 mod bundle;
 mod demo;
 mod elf;
 mod generate;
+mod measure;
 mod ofx;
 mod photograph;
-mod python;
-mod shell;
 mod steps;
 mod test;
 
@@ -55,13 +49,17 @@ enum Command {
         check: bool,
     },
     /// Measure curve fitting beside its peers on six outlines.
-    BenchFit(bench_fit::Arguments),
+    #[command(disable_help_flag = true)]
+    BenchFit(measure::Rest),
     /// Measure factorisation beside scikit-learn, reshaping beside libigl, and the style paper's experiments, with plots in target/style.
-    BenchStyle(bench_style::Arguments),
+    #[command(disable_help_flag = true)]
+    BenchStyle(measure::Rest),
     /// Measure every preset on sets with known truth, with tables and pictures in target/bench-tracking.
-    BenchTracking(bench_tracking::Arguments),
+    #[command(disable_help_flag = true)]
+    BenchTracking(measure::Rest),
     /// Measure matching and in-betweens on sets with known truth, with sheets in target/bench-tween.
-    BenchTween(bench_tween::Arguments),
+    #[command(disable_help_flag = true)]
+    BenchTween(measure::Rest),
     /// Accept the golden pictures that the tests last drew.
     Bless,
     /// Photograph the panel in a real Blender window (Debian sid in a chroot; needs root and debootstrap).
@@ -73,13 +71,13 @@ fn main() -> anyhow::Result<()> {
         Command::Demo { project, blender } => demo::demo(project, blender),
         Command::Test { step: Some(step), .. } => test::step(&step),
         Command::Test { valgrind, step: None } => test::test(valgrind),
-        Command::Bundle => bundle::bundle(&bundle::Packager::from_wheel()?).map(|_| ()),
+        Command::Bundle => bundle::bundle(&bundle::Packager::from_wheel()?, bundle::Programs::Installed).map(|_| ()),
         Command::Generate { check } => generate::generate(check),
-        Command::BenchFit(arguments) => bench_fit::bench_fit(&arguments),
-        Command::BenchStyle(arguments) => bench_style::bench_style(&arguments),
-        Command::BenchTracking(arguments) => bench_tracking::bench_tracking(&arguments),
-        Command::BenchTween(arguments) => bench_tween::bench_tween(&arguments),
-        Command::Bless => bless::bless(),
+        Command::BenchFit(rest) => measure::run("bench-fit", &rest),
+        Command::BenchStyle(rest) => measure::run("bench-style", &rest),
+        Command::BenchTracking(rest) => measure::run("bench-tracking", &rest),
+        Command::BenchTween(rest) => measure::run("bench-tween", &rest),
+        Command::Bless => measure::run("bless", &measure::Rest::default()),
         Command::Photograph => photograph::photograph(),
     }
 }

@@ -1,9 +1,9 @@
 //! The OpenFX bundle: `target/Rototoon.ofx.bundle`, laid out as OpenFX 1.4 wants ("Packaging OFX Plug-ins").
 
-use crate::shell::{empty_folder, root, target};
 use crate::{bundle, elf};
 use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
+use xtask_shell::shell::{empty_folder, root, target};
 
 /// What the plugin may need of the system: the families of libc and libm, and what unwinds.
 const SYSTEM: [&str; 7] =

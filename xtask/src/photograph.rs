@@ -4,12 +4,11 @@
 //! (debootstrap), started there under a virtual screen (Xvfb) and photographed. Sid moves, and the job needs root: where it
 //! cannot be done, that is said and nothing fails.
 
-use crate::bundle::{Packager, bundle};
-use crate::shell::{capture, command, root, run, target, works};
+use crate::bundle::{Packager, Programs, bundle};
 use anyhow::{Context, Result, bail};
-use rototoon_tests::sample;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use xtask_shell::shell::{capture, command, root, run, target, works};
 
 /// What the picture needs from Debian.
 const PACKAGES: [&str; 9] = [
@@ -57,7 +56,7 @@ pub fn photograph() -> Result<()> {
         println!("photograph: not done: {reason}");
         return Ok(());
     }
-    let bundle = bundle(&Packager::from_wheel()?)?;
+    let bundle = bundle(&Packager::from_wheel()?, Programs::WithMeasure)?;
     let folder = target().join("photograph");
     let system = folder.join("debian");
     if let Err(reason) = install(&system) {
@@ -68,7 +67,7 @@ pub fn photograph() -> Result<()> {
     std::fs::create_dir_all(&stage)?;
     std::fs::copy(&bundle.zip, stage.join("rototoon.zip"))?;
     std::fs::copy(root().join("tests/blender/photograph.py"), stage.join("photograph.py"))?;
-    sample::write(&stage.join("sample"))?;
+    run(command(&bundle.measure).arg("sample").arg(&stage))?;
     for what in PICTURES {
         let said = {
             let _proc = Mount::proc(&system)?;

@@ -4,12 +4,12 @@
 //! each other run two at a time. Cargo locks the folder that it builds in, so of those that build in the same one a single
 //! step runs at a time. What a step prints appears as a whole when it has ended.
 
-use crate::shell::{command, target};
 use anyhow::{Context, Result, bail};
 use std::fs::{self, File};
 use std::path::PathBuf;
 use std::sync::mpsc;
 use std::time::Instant;
+use xtask_shell::shell::{command, target};
 
 /// What a step does; `Ok(Some(reason))` says that it could not be done here.
 pub type Body = Box<dyn Fn() -> Result<Option<String>>>;

@@ -1,13 +1,13 @@
 //! `test`: everything that is checked, each step to its end ([`crate::steps`]).
 
-use crate::bundle::{self, Bundle, Packager, bundle};
+use crate::bundle::{self, Bundle, Packager, Programs, bundle};
 use crate::generate::generate;
-use crate::python::{self, WHEELS, Wheel};
-use crate::shell::{capture, cargo, command, empty_folder, root, run, target, works};
+use crate::measure;
 use crate::steps::{Step, in_own_process, run_all};
 use anyhow::{Result, bail};
-use rototoon_tests::{doll, sample};
 use std::path::PathBuf;
+use xtask_shell::python::{self, WHEELS, Wheel};
+use xtask_shell::shell::{capture, cargo, command, empty_folder, root, run, target, works};
 
 /// The package that is built apart: it compiles C++.
 const OFX_HOST: &str = "rototoon-ofx-host";
@@ -47,10 +47,10 @@ fn steps(valgrind: bool) -> Vec<Step> {
         Step::new("format", || component("fmt", "rustfmt", &["fmt", "--all", "--check"])),
         Step::new(ENVIRONMENTS, || environments().map(|()| None)),
         Step::new("clippy", clippy).builds(),
-        Step::new(BUNDLE, || bundle(&Packager::from_wheel()?).map(|_| None)).after(ENVIRONMENTS),
+        Step::new(BUNDLE, || bundle(&Packager::from_wheel()?, Programs::Installed).map(|_| None)).after(ENVIRONMENTS),
         Step::new("Rust tests", rust_tests).builds().after("clippy"),
         Step::new("generated files are current", || generate(true).map(|()| None)),
-        Step::new(FILES, || sample_files().map(|()| None)),
+        Step::new(FILES, || sample_files().map(|()| None)).builds().after("Rust tests"),
         Step::new("Python tests", python_tests).needs(BUNDLE),
         Step::new("OpenFX host", ofx_tests).builds().needs(BUNDLE),
     ];
@@ -148,8 +148,7 @@ fn files() -> PathBuf {
 
 /// The sample cartoon and the doll, which tests in Blender track and reshape.
 fn sample_files() -> Result<()> {
-    sample::write(&files().join("sample"))?;
-    doll::write(&files().join("doll"))
+    run(measure::program().arg("sample").arg(files()))
 }
 
 /// pytest inside one Blender, with the zip installed in a configuration of its own.

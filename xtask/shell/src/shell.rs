@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 /// The workspace's folder.
 pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the workspace").to_path_buf()
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("the package lies in the workspace").to_path_buf()
 }
 
 /// The folder of everything that is built; `CARGO_TARGET_DIR` moves it.

@@ -4,11 +4,11 @@
 //! in-betweens are held against the true frames, beside linear interpolation of rightly paired points. The measurements are
 //! made by an optimised program (`rototoon-tests`, binary `bench-tween`).
 
-use crate::shell::{cargo, command, run, target};
 use anyhow::{Context, Result};
 use clap::Args;
 use rototoon_tests::sample;
 use std::path::PathBuf;
+use xtask_shell::shell::{cargo, command, run, target};
 
 /// What to measure.
 #[derive(Args)]

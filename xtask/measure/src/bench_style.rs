@@ -6,13 +6,13 @@
 //! go to `bench-tracking` with the presets of the two papers: it counts how many points an artist corrects with either.
 
 use crate::bench_tracking;
-use crate::python;
-use crate::shell::{cargo, command, root, run, target};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use rototoon_tests::chart::{Axis, Chart, INKS, Panel, Series};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use xtask_shell::python;
+use xtask_shell::shell::{cargo, command, root, run, target};
 
 /// Peers, beside NumPy.
 const PYTHON: [&str; 3] = ["numpy", "scikit-learn==1.9.1", "libigl==2.6.3"];

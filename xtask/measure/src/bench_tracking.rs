@@ -4,7 +4,6 @@
 //! for quick development; each set and preset has a process of its own, so that nothing is warm that should be cold and
 //! its peak memory is its own. Files appear whole: an interrupted run leaves what was finished.
 
-use crate::shell::{capture, cargo, command, root, run, target};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use rototoon_tests::benchmark::growth::{self, Measured, Sample};
@@ -14,6 +13,7 @@ use rototoon_tests::benchmark::{mechanisms, own, presets, write_files};
 use rototoon_tests::puppet::Puppet;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use xtask_shell::shell::{capture, cargo, command, root, run, target};
 
 /// Times that a track is measured for its growth; the fastest counts.
 const REPEATS: usize = 5;
@@ -229,7 +229,7 @@ impl Bench {
     /// The fastest of several tracks of a drawn scene, and the largest of their peaks.
     fn time(&self, puppet: &Puppet, repeats: usize) -> Result<Sample> {
         let folder = self.out.join("drawn");
-        crate::shell::empty_folder(&folder)?;
+        xtask_shell::shell::empty_folder(&folder)?;
         let Puppet { width, height, frames, step, parts, points } = *puppet;
         let numbers = [width, height, frames, step, parts, points].map(|n| n.to_string());
         run(command(&self.program).arg("draw").arg(&folder).args(numbers))?;
@@ -268,7 +268,7 @@ mod tests {
     #[test]
     fn sets_have_names_of_their_own() {
         let base = target().join("xtask-bench-sets");
-        crate::shell::empty_folder(&base).unwrap();
+        xtask_shell::shell::empty_folder(&base).unwrap();
         let dirs = ["a/walk", "b/walk", "run"].map(|name| base.join(name));
         for dir in &dirs {
             std::fs::create_dir_all(dir).unwrap();

@@ -1,8 +1,8 @@
 //! `bless`: accepts the golden pictures that the tests last drew.
 
-use crate::shell::{root, target};
 use anyhow::{Context, Result};
 use rototoon_tests::golden;
+use xtask_shell::shell::{root, target};
 
 /// Copies each picture of `target/golden` that differs from its golden picture to `tests/golden`.
 pub fn bless() -> Result<()> {

@@ -3,11 +3,11 @@
 //! Makes a Python environment, and with Node.js a folder with the two JavaScript libraries, under `target/bench-fit`, builds
 //! the optimised program, and runs `tests/bench_fit.py`, which says what is measured and how.
 
-use crate::python;
-use crate::shell::{capture, cargo, command, root, run, target};
 use anyhow::{Context, Result};
 use clap::Args;
 use std::path::PathBuf;
+use xtask_shell::python;
+use xtask_shell::shell::{capture, cargo, command, root, run, target};
 
 /// Peers in Python, beside NumPy.
 const PYTHON: [&str; 3] = ["numpy", "scipy==1.17.1", "cu2qu==1.6.7.post2"];
