@@ -3,14 +3,14 @@
 //! The work is cut into **jobs**: one part over one span between two of its keys. A preset decides how jobs are solved, one
 //! by one or together; its solver keeps what it computed, so that after an edit only what the edit touches is solved again.
 //!
-//! - [`contract`]: what every preset is given and what it answers
-//! - [`shared`]: what belongs to no single preset: pictures worked on once, jobs solved one by one, the weakest frame
+//! - [`contract`]: what every preset is given, and what it answers
+//! - [`shared`]: what belongs to no single preset: features of pictures, jobs solved one by one, the weakest frame
 //! - [`rototoon`]: the default preset
 //! - [`zhou2011`]: the preset of Zhou & Xiao 2011
 //! - [`rotoscope`]: the presets of Agarwala et al. 2004 and Liang et al. 2012
-//! - [`tracker`]: chooses the preset, and is what the other crates call
+//! - [`tracker`]: the tracker that other crates call; it chooses the preset
 //!
-//! `contract` uses none of the others. `shared` uses `contract`, presets use both but not each other, and `tracker` uses all.
+//! `contract` uses none of the others. `shared` uses `contract`. A preset uses both, but no other preset. `tracker` uses all.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! What is asked of a tracker, and who answers: the preset's solver.
+//! The tracker: it chooses the preset's solver, checks the scene, and keeps the solver from one run to the next.
 //!
 //! A solver keeps what it computed, so that after an edit only what the edit touches is solved again. A result depends on
 //! nothing but the scene and the pictures, whatever was solved before and whatever the number of threads.

@@ -3,12 +3,12 @@
 //! 1. **Pools.** Each key gives a [`Model`](propagate::Model): the part's colours on a lattice that bends. Both are
 //!    carried drawing by drawing through the span, one forwards and one backwards, each always compared with its own key;
 //!    where they disagree they are searched for in the whole picture ([`pool`]). The artist's
-//!    corrections add to the pools ([`corrected`]).
+//!    corrections add to the pools (`corrected`).
 //! 2. **Choice.** All parts of a stretch of time choose their paths through the pools together ([`joint`]): nearer parts
 //!    hide farther ones, parts that hang together stay together. The choice adds to the pools, and is made again
-//!    ([`mend`]).
+//!    (`mend`).
 //! 3. **Finish.** The chosen poses are aligned once more where nearer parts leave them to be seen, and their contours
-//!    refined ([`finish`]).
+//!    refined (`finish`).
 //! 4. **Outward.** Parts with one key are followed from it, once the others are known ([`outward`]).
 //!
 //! Why: cartoons have flat colours and hard lines, so that a part's look at a key says nearly everything about it; a
@@ -23,8 +23,9 @@
 //! - [`stage`]: what a job is solved with
 //! - [`propagate`]: motion from a neighbour
 //! - [`search`]: motion from nowhere, by comparing everywhere
-//! - [`pool`]: the hypotheses of both; `pooled`: those of a job
-//! - `corrected`: what the artist's corrections add to them
+//! - [`pool`]: the hypotheses of both, drawing by drawing
+//! - `pooled`: the hypotheses of a job, and what they were made from
+//! - `corrected`: what the artist's corrections add to the pools
 //! - [`select`]: which hypothesis a part alone follows
 //! - [`joint`]: which hypotheses all parts follow together
 //! - `mend`: what that choice adds to the pools
