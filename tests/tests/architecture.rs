@@ -6,7 +6,7 @@
 //! - `core/track`: `contract ← shared ← {zhou2011, rotoscope, rototoon} ← tracker`. The presets do not use each other.
 //! - In every crate: files of different folders make no ring, and no more than two files of one folder do.
 //!
-//! How imports are read is said in [`imports`]; the rule for a `mod.rs` and its files is there too.
+//! [`imports`] reads the imports, and says which of them count between a `mod.rs` and its files.
 
 mod imports;
 mod rings;

@@ -1,15 +1,15 @@
-//! Which file of a crate takes what from which: read from the sources, without compiling them.
+//! Which file of a crate takes names from which other file. The sources are read as text, not compiled.
 //!
-//! - A name is taken from the file that defines it. `super::Name` and `crate::Name` are followed through every `use` that
-//!   hands the name on, so that the files of a folder may reach each other through its `mod.rs`.
-//! - `mod name;` takes nothing, and neither does a `pub use` of a name that the file itself does not go on to name: a
-//!   `mod.rs` that only lists and re-exports its files takes nothing from them. One that calls them does.
-//! - A file takes nothing from its own parent: what a `mod.rs` defines is the common ground of the files in its folder, which
-//!   it may call as well. What two folders share is no common ground: it counts.
-//! - Who imports a module takes what is named through it: `use crate::a;` with `a::f()`.
+//! - A name is taken from the file that defines it. The reader follows `super::Name` and `crate::Name` through every `use`
+//!   that hands the name on. So the files of a folder may reach each other through its `mod.rs`.
+//! - `mod name;` takes nothing. A `pub use` takes nothing either, unless the file itself names what it hands on. So a
+//!   `mod.rs` that only lists and re-exports its files takes nothing from them; one that calls them does.
+//! - A file takes nothing from its own parent. What a `mod.rs` defines is the common ground of the files in its folder, and
+//!   it may call them as well. What a file takes from any other ancestor counts.
+//! - A file that imports a module takes what it names through it: `use crate::a;` with `a::f()`.
 //! - Code for tests (`#[cfg(test)]`, files and folders called `tests`) may name anything and is left out.
 //!
-//! Limits: methods and fields are not seen, nor what macros make.
+//! Limits: the reader does not see methods and fields, nor what macros make.
 
 use super::tokens::{tokens, without_tests};
 use std::collections::{BTreeMap, BTreeSet};

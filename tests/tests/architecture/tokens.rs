@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn comments_texts_and_lifetimes_are_told_from_code() {
+    fn comments_texts_and_lifetimes_are_recognised() {
         let of = |source: &str| tokens(source).join(" ");
         assert_eq!(of("use a::b; // c::d\n/* e /* f */ g */ h"), "use a :: b ; h");
         assert_eq!(of(r##"f("a::\"b", r#"c"d"#, b"e", '"', '\'', x)"##), "f ( \" , \" , \" , \" , \" , x )");
