@@ -5,7 +5,7 @@
 //!
 //! - [`schema`]: names, order and limits of the fields
 //! - [`problem`]: what is wrong with a document, and where
-//! - [`shape`]: reading JSON that may hold anything
+//! - `shape`: reading JSON that may hold anything
 //! - [`library`]: a folder of skeleton clips with an index
 //! - [`load`], [`save`]: documents from and to files
 //! - [`validate`]: what a document must hold beyond being well-formed

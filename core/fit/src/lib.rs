@@ -5,24 +5,24 @@
 //!
 //! [`fit`] takes a drawn or traced line and gives a uniform quadratic B-spline ([`rototoon_base::curve::Spline`]). No point of
 //! the line is farther than the tolerance from the curve, and no place of the continuous curve is farther than the
-//! tolerance from the line; the largest distance is given back ([`bound`] says how it is known).
+//! tolerance from the line; the largest distance is given back (`bound` says how it is known).
 //!
 //! # The default
 //!
 //! The guiding points of a uniform spline are all that can be chosen: there are no knots to place. Where pieces end
 //! along the line follows from the guides, hence parameters are unknowns as well. With the parameters eliminated, the
-//! distances are a nonlinear least-squares problem in the guides ([`solve`]) whose Gauss–Newton steps are banded and
+//! distances are a nonlinear least-squares problem in the guides (`solve`) whose Gauss–Newton steps are banded and
 //! cheap; what remains is to find a good start and the least number of guides.
 //!
-//! 1. [`clean`]: repeated points go, long segments are filled.
-//! 2. [`corners`]: turning angle over a stretch of arc length, which a pixel staircase does not fool. Corners cut the
+//! 1. `clean`: repeated points go, long segments are filled.
+//! 2. `corners`: turning angle over a stretch of arc length, which a pixel staircase does not fool. Corners cut the
 //!    line into sections that are fitted by themselves.
-//! 3. [`profile`]: how long a parabola may be along the line.
-//! 4. [`trial`]: a fit with a given number of nodes: linear solve, least squares, then the *largest* error.
-//! 5. [`count`]: the fewest nodes for which that succeeds. [`long`]: the same in chunks, in linear time.
-//! 6. [`whole`]: sections put together and measured; [`polygon`] where nothing smooth fits.
+//! 3. `profile`: how long a parabola may be along the line.
+//! 4. `trial`: a fit with a given number of nodes: linear solve, least squares, then the *largest* error.
+//! 5. `count`: the fewest nodes for which that succeeds. `long`: the same in chunks, in linear time.
+//! 6. `whole`: sections put together and measured; `polygon` where nothing smooth fits.
 //!
-//! [`attributes`] carries pressure and the like over to the guides, [`together`] gives several curves equal numbers of
+//! `attributes` carries pressure and the like over to the guides, `together` gives several curves equal numbers of
 //! guides.
 //!
 //! # The preset `yang1986`

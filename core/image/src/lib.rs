@@ -6,7 +6,7 @@
 //! - [`canny`]: edges of the luma
 //! - [`colour`]: sRGB, luma and CIE Lab
 //! - [`correlation`]: correlation by the fast Fourier transform
-//! - [`decode`]: a picture from a file
+//! - [`decode`](mod@decode): a picture from a file
 //! - [`distance_transform`]: Manhattan distance to the nearest edge
 //! - [`flow`]: dense optical flow by inverse search
 //! - [`gaussian`]: separable blur

@@ -2,10 +2,10 @@
 //!
 //! This crate draws contours that are there already. It finds none, and it decodes no footage (`rototoon-image`).
 //!
-//! - [`overlay`]: contours, control points, keys and confidence over the footage
+//! - [`overlay`](mod@overlay): contours, control points, keys and confidence over the footage
 //! - [`coverage`]: exact area coverage of unions of polygons
 //! - [`mask`]: parts at a time, blurred by motion, grown and feathered
-//! - [`matte`]: coverage of the closed parts, and what of the footage they cover
+//! - [`matte`](mod@matte): coverage of the closed parts, and what of the footage they cover
 //! - [`visible`]: how much of each pixel every part shows, nearer parts over farther ones
 //! - [`ids`]: the same as a colour for each part; mattes with a layer for each
 //! - [`cryptomatte`]: the same as ranked ids, for keyers

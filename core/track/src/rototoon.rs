@@ -1,14 +1,14 @@
 //! The default tracker: deformable texture lattices, carried from both keys, chosen for all parts together.
 //!
-//! 1. **Pools.** Each key gives a [`Model`](super::propagate::Model): the part's colours on a lattice that bends. Both are
+//! 1. **Pools.** Each key gives a [`Model`]: the part's colours on a lattice that bends. Both are
 //!    carried drawing by drawing through the span, one forwards and one backwards, each always compared with its own key;
 //!    where they disagree they are searched for in the whole picture ([`pool`]). The artist's
-//!    corrections add to the pools ([`corrected`]).
+//!    corrections add to the pools (`corrected`).
 //! 2. **Choice.** All parts of a stretch of time choose their paths through the pools together ([`joint`]): nearer parts
 //!    hide farther ones, parts that hang together stay together. The choice adds to the pools, and is made again
-//!    ([`mend`]).
+//!    (`mend`).
 //! 3. **Finish.** The chosen poses are aligned once more where nearer parts leave them to be seen, and their contours
-//!    refined ([`finish`]).
+//!    refined (`finish`).
 //! 4. **Outward.** Parts with one key are followed from it, once the others are known ([`outward`]).
 //!
 //! Why: cartoons have flat colours and hard lines, so that a part's look at a key says nearly everything about it; a
