@@ -7,7 +7,9 @@ import os
 import bpy
 from bpy.app.handlers import persistent
 
-from . import clip_browser, footage, live, sessions
+from .blender import footage
+from .capture import live, sessions
+from .style import clip_browser
 
 _FIELDS = ("pattern", "movie")
 

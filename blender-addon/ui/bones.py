@@ -2,8 +2,8 @@
 
 import bpy
 
-from .. import clip_browser
-from ..operators.define_limbs import POINTS
+from ..style import clip_browser
+from ..style.limbs import POINTS
 from .clips import draw_browser
 
 NAMES = {name: label for name, label, _ in POINTS}

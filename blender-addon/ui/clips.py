@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import bpy
 
-from .. import clip_browser, clip_preview
-from .. import grease_pencil as gp
+from ..blender import grease_pencil as gp
+from ..style import clip_browser
+from . import clip_preview
 
 
 class ROTOTOON_UL_clips(bpy.types.UIList):

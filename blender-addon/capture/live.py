@@ -1,0 +1,364 @@
+"""Live: while an object's toggle is on, each edit of its keys, pins and centres is tracked without pressing Track.
+
+Blender's handlers only note that an object may have changed (`changed`, `undone`, the properties' callbacks). A timer,
+which exists only while something is due, calls `step`: once the artist has been still for `DELAY` seconds, it reads the
+object and compares the document with the one last tracked. Only where they differ is a run begun, in the session's
+thread; the session knows all spans that the edit did not touch, so these are not solved again. An edit that comes
+meanwhile cancels the run. The result is written from the timer, in the main thread, and only into drawings in which it
+differs from what they hold.
+
+**Undo.** A result belongs to the edit that it follows from, and no undo step is pushed for it: one undo takes back the
+edit and its result, and redo is never cut off. Blender's steps therefore may hold an edit without its result; so after
+undo and redo the object is read again, and the result is worked out again (from spans that the session mostly knows)
+and written where it is missing. Writing pushes nothing, so this cannot go round in circles.
+
+**When not.** During rendering, playback, and while any tool of Blender or of ours runs (a drag, a brush stroke): they
+hold on to what would be written. Then what is due waits. In background Blender runs no timers; scripts call `step`.
+
+After a file is opened nothing is tracked before the first edit: what the file holds counts as known.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import enum
+import time
+import traceback
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..blender import grease_pencil as gp
+from ..blender import windows
+from ..blender.errors import Problem
+from ..blender.preferences import EXTENSION
+from ..common import jobs
+from ..rototoon import Cancelled, RototoonError
+from . import document, sessions, tracking
+
+DELAY = 0.2
+"""Seconds without a change before an edit counts as finished: longer than between two events of one gesture."""
+POLL = 0.05
+"""Seconds between two looks at what runs; a twentieth is not felt as waiting."""
+BLOCKED = 0.2
+"""Seconds between two looks while a tool, playback or a render holds us off."""
+
+
+class Why(enum.IntEnum):
+    """What is due; the greater wins where several come together."""
+
+    CHANGED = 0
+    """Track if the document differs from what was tracked last."""
+    OPENED = 1
+    """Take the document as known."""
+    AGAIN = 2
+    """Track and write even if the document is the same: the strokes may have lost their result."""
+
+
+@dataclass
+class _Due:
+    since: float
+    why: Why
+
+
+_due: dict[int, _Due] = {}
+_run: tracking.Run | None = None
+_known: dict[int, tuple[dict, str]] = {}
+"""Document and method that were found when a file was opened or that cannot be tracked; by object."""
+_messages: dict[int, str] = {}
+_quiet = False
+"""Whether what Blender reports comes from us."""
+
+
+# -- noting -------------------------------------------------------------------------------------------------------
+
+
+def note(ob: bpy.types.Object, why: Why = Why.CHANGED) -> None:
+    """Notes that an object is to be looked at."""
+    if _quiet:
+        return
+    before = _due.get(ob.session_uid)
+    _due[ob.session_uid] = _Due(time.monotonic(), why if before is None else max(why, before.why))
+    _wake()
+
+
+def _wake() -> None:
+    if not bpy.app.background and not bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.register(_tick, first_interval=DELAY)
+
+
+@contextlib.contextmanager
+def _quietly() -> Iterator[None]:
+    """What Blender reports meanwhile is not taken for an edit."""
+    global _quiet
+    _quiet = True
+    try:
+        yield
+    finally:
+        _quiet = False
+
+
+def _is_live(ob: bpy.types.Object) -> bool:
+    return gp.is_drawing(ob) and ob.rototoon.live and ob.library is None and ob.data.library is None
+
+
+@persistent
+def changed(_scene=None, depsgraph=None) -> None:
+    """After each update of the scene: notes live objects whose strokes or placement are new. Writes nothing."""
+    if _quiet or depsgraph is None:
+        return
+    for update in depsgraph.updates:
+        # The object is listed too where only its strokes changed.
+        if isinstance(update.id, bpy.types.Object) and _is_live(update.id.original):
+            note(update.id.original)
+
+
+@persistent
+def undone(*_args) -> None:
+    """After undo and redo."""
+    _note_all(Why.AGAIN)
+
+
+@persistent
+def opened(*_args) -> None:
+    """After a file was opened."""
+    _note_all(Why.OPENED)
+
+
+@persistent
+def closing(*_args) -> None:
+    """Before another file is opened."""
+    reset()
+
+
+def _note_all(why: Why) -> None:
+    for ob in bpy.data.objects:
+        if _is_live(ob):
+            note(ob, why)
+
+
+def setting_changed(owner, _context) -> None:
+    """Callback of the properties that bear on tracking."""
+    if _is_live(owner.id_data):
+        note(owner.id_data)
+
+
+def toggled(settings, _context) -> None:
+    """Callback of the toggle."""
+    ob = settings.id_data
+    _known.pop(ob.session_uid, None)
+    _messages.pop(ob.session_uid, None)
+    if settings.live:
+        note(ob)
+        return
+    _due.pop(ob.session_uid, None)
+    if _run is not None and _run.uid == ob.session_uid:
+        interrupt()
+
+
+# -- working ------------------------------------------------------------------------------------------------------
+
+
+def step(now: float | None = None) -> float | None:
+    """Does what is due at `now` (seconds of `time.monotonic`); returns when to call again, `None` if all is done."""
+    if _run is None and not _due:
+        return None
+    if _held_off():
+        return BLOCKED
+    now = time.monotonic() if now is None else now
+    if _run is not None:
+        _attend(now)
+    if _run is None:
+        _begin_next(now)
+    windows.redraw_views()
+    return POLL if _run is not None or _due else None
+
+
+def status(ob: bpy.types.Object) -> tuple[str, str]:
+    """A line for the panel, and its icon."""
+    message = _messages.get(ob.session_uid)
+    if message:
+        return message, "ERROR"
+    if _run is not None and _run.uid == ob.session_uid:
+        return f"Tracking {_run.worker.fraction:.0%}", "TIME"
+    return "Follows your edits", "CHECKMARK"
+
+
+def give_way() -> None:
+    """Ends the run at once, as another operator wants the session; it is taken up again afterwards."""
+    if _run is not None:
+        _due[_run.uid] = _Due(time.monotonic(), Why.AGAIN)
+        interrupt()
+        _wake()
+
+
+def interrupt() -> None:
+    """Ends the run at once, without a result."""
+    global _run
+    if _run is not None:
+        _run.worker.cancel()
+        _run.worker.join()
+        _run = None
+
+
+def reset() -> None:
+    """Forgets everything and stops the timer."""
+    interrupt()
+    for memory in (_due, _known, _messages):
+        memory.clear()
+    if bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.unregister(_tick)
+
+
+def _tick() -> float | None:
+    try:
+        return step()
+    except Exception:  # noqa: BLE001 - a fault must not take the timer away for good: the next edit starts anew
+        traceback.print_exc()
+        reset()
+        return None
+
+
+def _held_off() -> bool:
+    """Whether something runs that must not find the strokes changed."""
+    if bpy.app.is_job_running("RENDER"):
+        return True
+    for window in bpy.context.window_manager.windows:
+        if window.screen is not None and window.screen.is_animation_playing:
+            return True
+        if any(_minds(operator.bl_idname) for operator in window.modal_operators):
+            return True
+    return False
+
+
+def _minds(name: str) -> bool:
+    """Whether a modal operator is a tool of Blender's or ours; other add-ons have some that run for hours."""
+    python = bpy.types.Operator.bl_rna_get_subclass_py(name)
+    return python is None or python.__module__.startswith(EXTENSION)
+
+
+def _object(uid: int) -> bpy.types.Object | None:
+    """The live object of the scene with this `session_uid`: undo exchanges objects, so they are looked up each time."""
+    return next((ob for ob in bpy.context.scene.objects if ob.session_uid == uid and _is_live(ob)), None)
+
+
+def _settled(uid: int, now: float) -> bool:
+    return uid in _due and now - _due[uid].since >= DELAY
+
+
+def _attend(now: float) -> None:
+    """Cancels a run that no longer fits, and writes the result of one that has ended."""
+    global _run
+    run, ob = _run, _object(_run.uid)
+    if ob is None:
+        run.worker.cancel()
+    elif not run.worker.cancelled and _settled(run.uid, now):
+        reading = _read(ob)
+        if reading is not None and reading.document == run.inputs and ob.rototoon.preset == run.preset:
+            # Undone and come back to the same: the run's own writing puts the result there.
+            del _due[run.uid]
+        else:
+            run.worker.cancel()
+    if not run.worker.advance():
+        return
+    _run = None
+    if ob is None:
+        _forget(run.uid)
+    elif not run.worker.cancelled:
+        _end(ob, run)
+
+
+def _end(ob: bpy.types.Object, run: tracking.Run) -> None:
+    error = run.worker.error
+    if isinstance(error, Cancelled):
+        return
+    try:
+        if error is not None:
+            raise error
+        if not _write(ob, run):
+            note(ob)
+    except (Problem, RototoonError) as problem:
+        _known[run.uid] = (run.inputs, run.preset)
+        _messages[run.uid] = _line(problem)
+
+
+def _write(ob: bpy.types.Object, run: tracking.Run) -> bool:
+    """Writes a result."""
+    with _quietly():
+        fits = tracking.finish(ob, run) is not None
+        # Blender reports changes when it updates, so that is done here and not left to the window.
+        bpy.context.view_layer.update()
+    if fits:
+        _known.pop(run.uid, None)
+        _messages.pop(run.uid, None)
+    return fits
+
+
+def _begin_next(now: float) -> None:
+    """Begins a run for the first object that needs one."""
+    for uid in [uid for uid in _due if _settled(uid, now)]:
+        why = _due.pop(uid).why
+        ob = _object(uid)
+        if ob is None:
+            _forget(uid)
+        elif _begin(ob, why):
+            return
+
+
+def _begin(ob: bpy.types.Object, why: Why) -> bool:
+    """Begins a run if the object needs one."""
+    global _run
+    reading = _read(ob)
+    if reading is None:
+        return False
+    uid, now = ob.session_uid, (reading.document, ob.rototoon.preset)
+    if why == Why.OPENED or not tracking.can_track(reading, ob.rototoon.preset):
+        _known[uid] = now
+        _messages.pop(uid, None)
+        return False
+    if why != Why.AGAIN and now == _tracked(ob):
+        _messages.pop(uid, None)
+        return False
+    if why != Why.AGAIN and now == _known.get(uid):
+        return False
+    try:
+        run = tracking.begin(ob, reading, ob.rototoon.preset)
+    except RototoonError as error:
+        _known[uid] = now
+        _messages[uid] = _line(error)
+        return False
+    run.worker.start()
+    _run = run
+    return True
+
+
+def _tracked(ob: bpy.types.Object) -> tuple | None:
+    entry = sessions.known(ob)
+    return None if entry is None else (entry.inputs, entry.preset)
+
+
+def _read(ob: bpy.types.Object) -> document.Reading | None:
+    """The object, or `None` and a message where it does not make a document."""
+    try:
+        with _quietly():
+            return document.read(ob)
+    except (Problem, RototoonError) as problem:
+        _messages[ob.session_uid] = _line(problem)
+        return None
+
+
+def _forget(uid: int) -> None:
+    """An object is gone or no longer live."""
+    for memory in (_due, _known, _messages):
+        memory.pop(uid, None)
+    if not any(ob.session_uid == uid for ob in bpy.data.objects):
+        sessions.forget(uid)
+
+
+def _line(problem: Exception) -> str:
+    return (str(problem).splitlines() or [type(problem).__name__])[0]
+
+
+jobs.in_background(give_way)

@@ -1,0 +1,83 @@
+"""Lines without what is covered."""
+
+import bpy
+
+from ...blender import grease_pencil as gp
+from ...blender import strokes as st
+from ...blender.errors import Problem
+from ...common import jobs
+from ...common.operators import Long, OnDrawing
+from .. import hidden
+
+
+class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
+    bl_idname = "rototoon.hidden_lines"
+    bl_label = "Remove Hidden Lines"
+    bl_description = "Cut the lines where filled strokes in front cover them, exactly, on the frames that you choose"
+    bl_options = {"REGISTER", "UNDO"}
+
+    order: bpy.props.EnumProperty(
+        name="In Front",
+        description="What covers what",
+        items=(
+            ("STROKES", "Layers and Strokes", "Higher layers cover lower ones; in a layer, later strokes earlier ones"),
+            ("LAYERS", "Layers", "Higher layers cover lower ones; strokes of a layer do not cover each other"),
+        ),
+    )
+    covers: bpy.props.EnumProperty(
+        name="Covers",
+        description="Which strokes cover",
+        items=(
+            ("FILLED", "Filled", "Strokes with a fill"),
+            ("CLOSED", "Closed", "Closed strokes too, filled or not"),
+        ),
+    )
+    action: bpy.props.EnumProperty(
+        name="Hidden Lines",
+        description="What becomes of them",
+        items=(
+            ("REMOVE", "Remove", "They are gone"),
+            ("MOVE", "Move to Layer", "They go to a layer of their own"),
+        ),
+    )
+    frames: bpy.props.EnumProperty(
+        name="Frames",
+        description="Which frames are done",
+        items=(
+            ("CURRENT", "Current", "The drawings that show on the current frame"),
+            ("RANGE", "Scene Range", "All frames of the scene; a held drawing gets a new frame where it looks another way"),
+        ),
+    )
+
+    def begin(self, context):
+        self._ob, scene = context.object, context.scene
+        self._frames = [scene.frame_current]
+        if self.frames == "RANGE":
+            self._frames = hidden.frames_between(self._ob, scene.frame_start, scene.frame_end)
+        if not any(not layer.hide and gp.frame_numbers(layer) for layer in gp.every_layer(self._ob)):
+            raise Problem("No drawings to look at: draw something, or show a layer")
+        if not st.editable_layers(self._ob, active=False):
+            raise Problem("No layer may be cut: unlock one. Contours are left alone, since tracking goes by their points")
+        self._cuts = []
+        return jobs.Stepper(self._steps(scene), "Looking at frames")
+
+    def _steps(self, scene):
+        choices = hidden.Choices(closed=self.covers == "CLOSED", by_stroke=self.order == "STROKES")
+        current, sub = scene.frame_current, scene.frame_subframe
+        try:
+            for index, frame in enumerate(self._frames):
+                if frame != scene.frame_current:
+                    scene.frame_set(frame)
+                self._cuts.extend(hidden.cut_frame(self._ob, frame, choices))
+                yield (index + 1) / len(self._frames)
+        finally:
+            if scene.frame_current != current:
+                scene.frame_set(current, subframe=sub)
+
+    def finish(self, context, work) -> str:
+        drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
+        self._ob.data.update_tag()
+        return f"{parts} hidden lines on {drawings} drawings" if drawings else "Nothing is hidden"
+
+
+CLASSES = (ROTOTOON_OT_hidden_lines,)

@@ -1,0 +1,45 @@
+"""What the operators that make a drawing follow a clip share."""
+
+import bpy
+
+from ...blender import preferences
+from ...common import jobs
+from ...common.operators import Long, OnContours
+from ...rototoon.style import reshape
+from .. import reshaping
+from ..clip_properties import shared
+
+
+class Reshaping(OnContours, Long):
+    """Reads the drawing, works in a thread, writes generated frames after it."""
+
+    sub_keys: bpy.props.IntProperty(
+        name="Sub-key Points", description="Points of each limb that hold its shape", default=5, min=0, max=100
+    )
+    folder: shared("folder")
+
+    def invoke(self, context, _event):
+        return context.window_manager.invoke_props_dialog(self)
+
+    def work(self, context, clips, before=0.0, more=None):
+        """The worker that reshapes the active drawing by what `clips(progress, threads)` gives: clips, and options.
+
+        `before` is the share of the work that `clips` does. `more(drawing)` gives further options.
+        """
+        self._ob = context.object
+        self._drawing = drawing = reshaping.begin(self._ob, context.scene.frame_current)
+        threads, sub_keys = preferences.threads(), self.sub_keys
+        further = more(drawing) if more is not None else {}
+
+        def run(progress):
+            chosen, options = clips(lambda done, step: progress(before * done, step), threads)
+            rest = lambda done, step: progress(before + (1 - before) * done, step)  # noqa: E731 - the rest of the bar
+            return reshape(drawing.project, chosen, rest, sub_keys=sub_keys, threads=threads, **options, **further)
+
+        return jobs.Worker(run)
+
+    def finish(self, context, work) -> str:
+        """Called in the end."""
+        frames = reshaping.finish(self._ob, self._drawing, work.result)
+        given = ", ".join(f"{entry['part']} ({entry['from']} to {entry['to']})" for entry in work.result.given)
+        return f"{frames} frames after frame {self._drawing.frame}" + (f"; by the nearest limb: {given}" if given else "")
