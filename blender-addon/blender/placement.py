@@ -15,6 +15,7 @@ from . import camera as cameras
 from . import footage
 from . import grease_pencil as gp
 from .errors import Problem
+from .frames import kept
 
 
 class Mapper:
@@ -30,13 +31,10 @@ class Mapper:
             self._add(ob, layers, None)
             return
         scene = bpy.context.scene
-        current, sub = scene.frame_current, scene.frame_subframe
-        try:
+        with kept(scene):
             for frame in sorted(set(frames)):
                 scene.frame_set(frame)
                 self._add(ob, layers, frame)
-        finally:
-            scene.frame_set(current, subframe=sub)
 
     def at(self, layer: int, frame: int) -> cameras.Mapping:
         """The mapping of a layer on a scene frame."""

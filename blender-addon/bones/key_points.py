@@ -14,6 +14,7 @@ import numpy as np
 from ..blender import armatures
 from ..blender import camera as cameras
 from ..blender.errors import Problem
+from ..blender.frames import kept
 from ..rototoon.style import KEY_POINTS
 from . import names as bone_names
 
@@ -57,16 +58,13 @@ def sample(ob, frames: range, which: str, into: list[np.ndarray]) -> Iterator[fl
     """Puts a posture (17, 2) for each frame into a list, a frame at each step; the scene ends where it began."""
     scene = bpy.context.scene
     table = table_of(ob)
-    current, sub = scene.frame_current, scene.frame_subframe
-    try:
+    with kept(scene):
         for number, frame in enumerate(frames):
             scene.frame_set(frame)
             posed = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
             view = armatures.view_of(scene, which)
             into.append(cameras.Mapping(view, np.eye(4)).to_pixels(key_points(posed, table)))
             yield (number + 1) / len(frames)
-    finally:
-        scene.frame_set(current, subframe=sub)
 
 
 def clips(character: str, motion: str, fps: float, postures: list[np.ndarray]) -> dict[str, Any]:

@@ -1,8 +1,8 @@
-"""Long work that leaves the window alive.
+"""Long work that does not block the window.
 
-`Worker` runs a function in a thread: the native library releases Python's lock. `Stepper` runs a generator a step at a
-time on the main thread, for work that only Blender can do. Operators run either to its end when they are executed
-(background, scripts, the redo panel), and follow it with a timer when they are invoked in a window.
+`Worker` runs a function in a thread; the native library releases Python's lock. `Stepper` runs a generator on the main thread,
+one step at a time, for work that only Blender can do. When an operator is executed (in background, in scripts, in the redo
+panel), it waits for the end of the work. When it is invoked in a window, it follows the work with a timer.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ _in_background: list[Callable[[], None]] = []
 
 
 def in_background(give_way: Callable[[], None]) -> None:
-    """Notes work that runs by itself; `give_way` ends it when an operator needs the session."""
+    """Registers work that runs without an operator. `give_way` ends it when an operator needs the session."""
     _in_background.append(give_way)
 
 
 def clear_the_way() -> None:
-    """Ends all work that runs by itself."""
+    """Ends all work that runs without an operator."""
     for give_way in _in_background:
         give_way()
 
 
 class Worker:
-    """A function of a progress callback, in a thread of its own."""
+    """Runs a function in a thread. The function gets a progress callback."""
 
     def __init__(self, run: Callable[[Callable[[float, str], bool]], object]):
         self.fraction, self.step = 0.0, ""
@@ -36,11 +36,11 @@ class Worker:
         self._thread = threading.Thread(target=self._work, name="rototoon", daemon=True)
 
     def start(self) -> None:
-        """Begins."""
+        """Starts the thread."""
         self._thread.start()
 
     def cancel(self) -> None:
-        """Asks to stop; the work stops at its next report."""
+        """Asks the work to stop. It stops at its next progress report."""
         self.cancelled = True
 
     def advance(self) -> bool:
@@ -48,11 +48,11 @@ class Worker:
         return not self._thread.is_alive()
 
     def wait(self) -> None:
-        """Gives the thread a moment."""
+        """Waits up to 0.05 s for the thread."""
         self._thread.join(0.05)
 
     def join(self) -> None:
-        """Waits for the end."""
+        """Waits for the end of the work."""
         self._thread.join()
 
     def _progress(self, fraction: float, step: str) -> bool:
@@ -62,12 +62,12 @@ class Worker:
     def _work(self) -> None:
         try:
             self.result = self._run(self._progress)
-        except BaseException as error:  # noqa: BLE001 - handed to the main thread
+        except BaseException as error:  # noqa: BLE001 - the main thread reports it
             self.error = error
 
 
 class Stepper:
-    """A generator of shares done, a step at each `advance`."""
+    """Runs a generator of finished shares, one step at each `advance`."""
 
     def __init__(self, steps: Iterator[float], step: str):
         self.fraction, self.step = 0.0, step
@@ -76,15 +76,15 @@ class Stepper:
         self._steps = steps
 
     def start(self) -> None:
-        """Nothing to do before the first step."""
+        """Does nothing: the first `advance` does the first step."""
 
     def cancel(self) -> None:
-        """Stops now; what was half made goes."""
+        """Stops now. The generator removes what it has half made."""
         self.cancelled = True
         self._steps.close()
 
     def advance(self) -> bool:
-        """Does a step; whether the work has ended."""
+        """Does one step. Returns whether the work has ended."""
         if self.cancelled:
             return True
         try:
@@ -92,12 +92,12 @@ class Stepper:
             return False
         except StopIteration:
             return True
-        except Exception as error:  # noqa: BLE001 - reported by the operator
+        except Exception as error:  # noqa: BLE001 - the operator reports it
             self.error = error
             return True
 
     def wait(self) -> None:
-        """Nothing to wait for."""
+        """Does nothing: all work happens in `advance`."""
 
     def join(self) -> None:
-        """Nothing runs between steps."""
+        """Does nothing: no work runs between two steps."""

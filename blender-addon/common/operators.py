@@ -1,6 +1,8 @@
-"""What operators share: reasons, reports, and long work."""
+"""Base classes of operators: when they are available, how they report, and long work."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import bpy
 
@@ -23,11 +25,11 @@ NAVIGATION = {
     "INBETWEEN_MOUSEMOVE",
     "WINDOW_DEACTIVATE",
 }
-"""Events that go on to the window while work runs: looking around changes nothing."""
+"""Events that the window still gets while work runs: navigation changes nothing."""
 
 
 class OnDrawing:
-    """Needs an active Grease Pencil object that can be changed."""
+    """An operator that needs an active Grease Pencil object of this file."""
 
     @classmethod
     def poll(cls, context) -> bool:
@@ -42,7 +44,7 @@ class OnDrawing:
 
 
 class OnContours(OnDrawing):
-    """Needs an active Grease Pencil object with footage and contours."""
+    """An operator that needs an active Grease Pencil object with footage and contours."""
 
     @classmethod
     def poll(cls, context) -> bool:
@@ -60,7 +62,7 @@ class OnContours(OnDrawing):
 
 
 class OnArmature:
-    """Needs an active armature of this file."""
+    """An operator that needs an active armature of this file."""
 
     @classmethod
     def poll(cls, context) -> bool:
@@ -76,7 +78,7 @@ class OnArmature:
 
 
 class InObjectMode:
-    """Needs Object Mode, as it makes objects."""
+    """An operator that needs Object Mode, since it makes objects."""
 
     @classmethod
     def poll(cls, context) -> bool:
@@ -87,31 +89,42 @@ class InObjectMode:
         return True
 
 
-class Guarded:
-    """An operator whose `run(context)` returns a message (or `None`), and may raise a `Problem`."""
+class Reporting:
+    """An operator that reports what it did, or why it could not."""
 
-    def execute(self, context):
-        """Called by Blender."""
+    def attempt(self, do: Callable[[], set[str]]) -> set[str]:
+        """Calls `do` and returns its result. A `Problem` or `RototoonError` becomes an error report."""
         try:
-            message = self.run(context)
+            return do()
         except (Problem, RototoonError) as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
+
+    def done(self, message: str | None) -> set[str]:
+        """Reports the message, if there is one."""
         if message:
             self.report({"INFO"}, message)
         return {"FINISHED"}
 
 
-class Long:
+class Guarded(Reporting):
+    """An operator whose `run(context)` returns a message or `None`, and may raise a `Problem`."""
+
+    def execute(self, context):
+        """Called by Blender."""
+        return self.attempt(lambda: self.done(self.run(context)))
+
+
+class Long(Reporting):
     """An operator with long work: `begin(context)` makes a `Worker` or `Stepper`, `finish(context, work)` writes.
 
-    Until `finish` nothing is changed, so that Esc leaves all as it was.
+    Nothing changes before `finish`, so Esc leaves everything as it was.
     """
 
     _work = None
     _timer = None
     _picked = False
-    """Whether a file browser was opened: its end calls `execute`, and the window is there to follow the work."""
+    """Whether a file browser was opened. Its end calls `execute`, and there is a window in which to follow the work."""
 
     def execute(self, context):
         """Called by Blender: waits for the work."""
@@ -119,14 +132,7 @@ class Long:
             self._picked = False
             return self._follow(context)
         jobs.clear_the_way()
-        try:
-            self._work = self.begin(context)
-            self._work.start()
-            self._wait(context)
-        except (Problem, RototoonError) as problem:
-            self.report({"ERROR"}, str(problem))
-            return {"CANCELLED"}
-        return self._end(context)
+        return self.attempt(lambda: self._work_and_wait(context))
 
     def invoke(self, context, _event):
         """Called by Blender: follows the work with a timer."""
@@ -134,14 +140,19 @@ class Long:
             return self.execute(context)
         return self._follow(context)
 
+    def _work_and_wait(self, context):
+        self._work = self.begin(context)
+        self._work.start()
+        self._wait(context)
+        return self._end(context)
+
     def _follow(self, context):
-        # It may be at work in the session that is wanted here.
+        # Work in the background may use the session that this operator needs.
         jobs.clear_the_way()
-        try:
-            self._work = self.begin(context)
-        except (Problem, RototoonError) as problem:
-            self.report({"ERROR"}, str(problem))
-            return {"CANCELLED"}
+        return self.attempt(lambda: self._work_and_follow(context))
+
+    def _work_and_follow(self, context):
+        self._work = self.begin(context)
         self._work.start()
         self._timer = context.window_manager.event_timer_add(0.05, window=context.window)
         context.window_manager.modal_handler_add(self)
@@ -158,10 +169,10 @@ class Long:
             context.workspace.status_text_set(f"{self.bl_label}: {self._work.step}  {share}   (Esc: stop)")
             return {"RUNNING_MODAL"}
         self._close(context)
-        return self._end(context)
+        return self.attempt(lambda: self._end(context))
 
     def cancel(self, context):
-        """Called by Blender when a file is loaded or the program ends meanwhile."""
+        """Called by Blender when it loads a file or quits during the work."""
         self._work.cancel()
         self._work.join()
         self._close(context)
@@ -191,13 +202,6 @@ class Long:
         if self._work.cancelled or isinstance(error, Cancelled):
             self.report({"WARNING"}, f"{self.bl_label}: stopped, nothing was changed")
             return {"CANCELLED"}
-        try:
-            if error is not None:
-                raise error
-            message = self.finish(context, self._work)
-        except (Problem, RototoonError) as problem:
-            self.report({"ERROR"}, str(problem))
-            return {"CANCELLED"}
-        if message:
-            self.report({"INFO"}, message)
-        return {"FINISHED"}
+        if error is not None:
+            raise error
+        return self.done(self.finish(context, self._work))

@@ -122,6 +122,12 @@ def defined(ob) -> list[dict[str, Any]]:
     return _extra(ob).get("limbs", [])
 
 
+def needed(ob) -> None:
+    """A `Problem` where an object has no limbs."""
+    if not defined(ob):
+        raise Problem(f'"{ob.name}" has no limbs: draw lines across them on the layer "{LAYER}", then Define Limbs')
+
+
 def _lines(ob) -> dict[int, dict[int, np.ndarray]]:
     """By key point and frame the two ends of its line, in pixels."""
     layer = gp.find_layer(ob, LAYER)

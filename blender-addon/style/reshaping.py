@@ -36,8 +36,7 @@ class Drawing:
 def begin(ob, frame: int) -> Drawing:
     """The drawing at a frame: every part's key there, or its last one before."""
     reading = document.read(ob)
-    if not limbs.defined(ob):
-        raise Problem(f'"{ob.name}" has no limbs: draw lines across them on the layer "{limbs.LAYER}", then Define Limbs')
+    limbs.needed(ob)
     offset = ob.rototoon.frame_offset
     keys = [sorted(part.keys) for part in reading.found.parts if part.keys]
     known = {number for frames in keys for number in frames}

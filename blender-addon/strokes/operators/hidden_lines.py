@@ -5,6 +5,7 @@ import bpy
 from ...blender import grease_pencil as gp
 from ...blender import strokes as st
 from ...blender.errors import Problem
+from ...blender.frames import kept
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
 from .. import hidden
@@ -63,16 +64,12 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
 
     def _steps(self, scene):
         choices = hidden.Choices(closed=self.covers == "CLOSED", by_stroke=self.order == "STROKES")
-        current, sub = scene.frame_current, scene.frame_subframe
-        try:
+        with kept(scene):
             for index, frame in enumerate(self._frames):
                 if frame != scene.frame_current:
                     scene.frame_set(frame)
                 self._cuts.extend(hidden.cut_frame(self._ob, frame, choices))
                 yield (index + 1) / len(self._frames)
-        finally:
-            if scene.frame_current != current:
-                scene.frame_set(current, subframe=sub)
 
     def finish(self, context, work) -> str:
         drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")

@@ -2,7 +2,6 @@
 
 import bpy
 
-from ...blender.errors import Problem
 from ...capture import document
 from ...common.operators import Guarded, OnContours
 from ...rototoon.style import add_to_library, capture_clip
@@ -29,8 +28,7 @@ class ROTOTOON_OT_save_clip(Guarded, Performance, OnContours, bpy.types.Operator
     def run(self, context) -> str:
         ob = context.object
         folder = folder_of(ob, self.folder)
-        if not limbs.defined(ob):
-            raise Problem(f'"{ob.name}" has no limbs: draw lines across them on the layer "{limbs.LAYER}", then Define Limbs')
+        limbs.needed(ob)
         project = document.read(ob, results=True).document
         character, offset = self.character or ob.name, ob.rototoon.frame_offset
         frames = (self.first - offset, self.last - offset) if self.last > self.first else (None, None)

@@ -4,17 +4,17 @@ import bpy
 import numpy as np
 
 from ...blender import strokes as st
+from ...blender import windows
 from ...blender.errors import Problem
 from ...common import jobs
-from ...common.operators import NAVIGATION, OnDrawing
-from ...rototoon import RototoonError
+from ...common.operators import NAVIGATION, OnDrawing, Reporting
 from .. import pair_overlay, pairing
 from .tweening_base import LAYERS
 
 HELP = "Click two strokes to pair them, Alt-click frees one, Ctrl Z takes back, Esc leaves"
 
 
-class ROTOTOON_OT_match_strokes(OnDrawing, bpy.types.Operator):
+class ROTOTOON_OT_match_strokes(OnDrawing, Reporting, bpy.types.Operator):
     bl_idname = "rototoon.match_strokes"
     bl_label = "Match Strokes"
     bl_description = (
@@ -40,15 +40,13 @@ class ROTOTOON_OT_match_strokes(OnDrawing, bpy.types.Operator):
     def execute(self, context):
         """Called by Blender: matches and stores."""
         jobs.clear_the_way()
-        try:
-            self._begin(context)
-            self._pairing.take(self._pairing.match())
-            self._pairing.store()
-        except (Problem, RototoonError) as problem:
-            self.report({"ERROR"}, str(problem))
-            return {"CANCELLED"}
-        self.report({"INFO"}, self._pairing.summary())
-        return {"FINISHED"}
+        return self.attempt(lambda: self._match_and_store(context))
+
+    def _match_and_store(self, context):
+        self._begin(context)
+        self._pairing.take(self._pairing.match())
+        self._pairing.store()
+        return self.done(self._pairing.summary())
 
     def _begin(self, context) -> None:
         ob = context.object
@@ -62,11 +60,10 @@ class ROTOTOON_OT_match_strokes(OnDrawing, bpy.types.Operator):
         if bpy.app.background or context.window is None:
             return self.execute(context)
         jobs.clear_the_way()
-        try:
-            self._begin(context)
-        except (Problem, RototoonError) as problem:
-            self.report({"ERROR"}, str(problem))
-            return {"CANCELLED"}
+        return self.attempt(lambda: self._show(context))
+
+    def _show(self, context):
+        self._begin(context)
         self._overlay = pair_overlay.PairOverlay(self._pairing)
         self._start()
         self._undone = Undone()
@@ -139,8 +136,7 @@ class ROTOTOON_OT_match_strokes(OnDrawing, bpy.types.Operator):
         if not found:
             return {"CANCELLED"}
         self._pairing.store()
-        self.report({"INFO"}, self._pairing.summary())
-        return {"FINISHED"}
+        return self.done(self._pairing.summary())
 
     def cancel(self, context):
         """Called by Blender when a file is loaded or the program ends meanwhile."""
@@ -161,7 +157,7 @@ class ROTOTOON_OT_match_strokes(OnDrawing, bpy.types.Operator):
         if self._overlay is not None:
             self._overlay.close()
             self._overlay = None
-            pair_overlay.redraw()
+            windows.redraw_views()
         if context.workspace is not None:
             context.workspace.status_text_set(None)
 
