@@ -1,6 +1,6 @@
 """Rototoon in Python, without Blender.
 
-The package needs Python 3.11 and its native library, and nothing else. Put the folder that contains `rototoon` on
+The package needs Python 3.11 or newer and its native library, nothing else. Put the folder that contains `rototoon` on
 ``sys.path``, and::
 
     from rototoon import Session
@@ -21,12 +21,12 @@ nothing has changed then.
 
 ====================  ==============================================================================
 `session`             `Session`: track, snap, correct and save a project document
-`results`             what `Session` returns
+`results`             results that `Session` returns
 `strokes`             matching, fitting and hidden lines of strokes, without a session
 `tween`               in-betweens of drawings
 `style`               skeleton clips, and drawings that follow them
 `documents`           helpers for documents
-`about`               version, place and parameters of the native library
+`about`               version, path and parameters of the native library
 `native`              the native library: loading, handles, errors
 ====================  ==============================================================================
 

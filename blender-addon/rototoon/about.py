@@ -10,15 +10,15 @@ from .native import handles, library
 
 
 def parameters() -> Any:
-    """Every parameter: id, label, kind, range, default, help. Hosts build their panels from it."""
+    """Every parameter: id, label, kind, range, default, help. Hosts build their panels from this list."""
     return json.loads(handles.take(handles.Text, "rototoon_parameters"))
 
 
 def version() -> str:
     """Version of the native library."""
-    return handles.take(handles.Text, "rototoon_version")
+    return str(handles.take(handles.Text, "rototoon_version"))
 
 
 def library_path() -> Path:
-    """The native library in use; loads it if need be."""
+    """Path of the native library in use. Loads the library if it is not loaded yet."""
     return library.load().path

@@ -1,4 +1,4 @@
-"""What `Session` returns."""
+"""Results that `Session` returns."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Job:
-    """How the tracking of one part between two neighbouring keys fared."""
+    """Tracking of one part between two neighbouring keys."""
 
     part: str
     first: int
@@ -15,7 +15,7 @@ class Job:
     last: int
     """Frame of the later key."""
     solved: bool
-    """Solved in this run; otherwise known from a run before, as nothing that bears on it had changed."""
+    """Whether this run solved it. Otherwise the result is from an earlier run, since nothing that affects it had changed."""
     termination: str
     """Why the solver stopped: ``nothing_to_solve``, ``cost_converged``, ``step_converged``, ``no_descent``,
     ``iteration_limit`` or ``path_chosen``."""
@@ -32,34 +32,36 @@ class End:
     frame: int
     """The first frame beyond the track."""
     reason: str
-    """``lost``: a key is wanted on that frame; ``cut``: another shot begins there; ``left``: the part left the picture."""
+    """``lost``: the part needs a key on that frame. ``cut``: another shot begins there. ``left``: the part left the picture."""
 
 
 @dataclass(frozen=True)
 class Summary:
-    """What `Session.track` did: one job for each part and span, parts in the document's order, then by time."""
+    """Result of `Session.track`."""
 
     jobs: list[Job]
+    """One for each part and span: parts in the document's order, spans in time order."""
     ends: list[End]
-    """Of parts with one key, in the document's order, the end before the key first."""
+    """Ends of parts with one key: parts in the document's order, the end before the key first."""
 
     @property
     def solved(self) -> int:
-        """How many jobs were solved in this run."""
+        """Number of jobs that this run solved."""
         return sum(job.solved for job in self.jobs)
 
     @property
     def reused(self) -> int:
-        """How many jobs were known from a run before."""
+        """Number of jobs whose result is from an earlier run."""
         return len(self.jobs) - self.solved
 
 
 @dataclass(frozen=True)
 class Track:
-    """The control points of a part on every frame from its first to its last key; around a single key, where trusted.
+    """The control points of a part on every frame from its first to its last key; with one key, on the frames around it that
+    can be trusted.
 
-    Both are read-only and stay valid whatever happens to the session; ``numpy.asarray`` takes them without copying.
-    Both are empty and one-dimensional where the part has not been tracked.
+    Both arrays are read-only and stay valid after the session is closed. ``numpy.asarray`` takes them without a copy. Both are
+    empty and one-dimensional where the part has not been tracked.
     """
 
     frames: memoryview

@@ -21,7 +21,7 @@ from .types import Document, Points, Progress
 
 
 class Session:
-    """A document, its pictures, and what tracking already knows. Close it, or use it in a ``with`` statement."""
+    """A document, its pictures, and the results that tracking already has. Close it, or use it in a ``with`` statement."""
 
     def __init__(self, handle: handles.Session) -> None:
         """Use `Session.open` or `Session.from_document`."""
@@ -31,72 +31,74 @@ class Session:
 
     @classmethod
     def open(cls, path: str | os.PathLike[str]) -> Session:
-        """The session of a project file; footage is sought relative to the file's folder."""
+        """Opens a project file. A relative footage pattern is relative to the file's folder."""
         handle = handles.Session.make("rototoon_session_open", *text(os.fspath(path)))
         return cls(handle)
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any], folder: str | os.PathLike[str]) -> Session:
-        """The session of a document in memory; a relative footage pattern is relative to `folder`."""
+        """Opens a document in memory. A relative footage pattern is relative to `folder`."""
         handle = handles.Session.make("rototoon_session_new", *as_json(document), *text(os.fspath(folder)))
         return cls(handle)
 
     def document(self) -> Document:
-        """The document as it stands, tracks and snapped curves included; results are rounded to 0.0001 pixels."""
-        return json.loads(self._handle.give(handles.Text, "rototoon_session_document"))
+        """The current document, with tracks and snapped curves. Results are rounded to 0.0001 pixels."""
+        document: Document = json.loads(self._handle.give(handles.Text, "rototoon_session_document"))
+        return document
 
     def set_document(self, document: Mapping[str, Any]) -> None:
-        """Puts another document in place of this one, keeping what is known of pictures and solved spans.
+        """Replaces the document, and keeps what is known of pictures and solved spans.
 
-        The next `track` solves only what differs. Refused as a whole where the document is not valid.
+        The next `track` solves only the differences. A document that is not valid is refused, and nothing changes.
         """
         self._handle.call("rototoon_session_set_document", *as_json(document))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the document; the file appears whole or not at all.
+        """Writes the document. The file is complete, or it does not appear.
 
-        In another folder than the session's, a relative footage pattern is rewritten so that it names the same files.
+        If the file is in another folder than the session, a relative footage pattern is rewritten to name the same files.
         """
         self._handle.call("rototoon_session_save", *text(os.fspath(path)))
 
     def set_footage(self, footage: Mapping[str, Any]) -> None:
-        """Replaces the document's ``footage``; what is known of the pictures is forgotten if they are others."""
+        """Replaces the document's ``footage``. If the pictures differ, the session forgets what it knows of them."""
         self._handle.call("rototoon_session_set_footage", *as_json(footage))
 
     # -- the artist's input --------------------------------------------------------------------------------------
 
     def parts(self) -> list[str]:
         """Names of the parts in the document's order."""
-        return json.loads(self._handle.give(handles.Text, "rototoon_session_parts"))
+        names: list[str] = json.loads(self._handle.give(handles.Text, "rototoon_session_parts"))
+        return names
 
     def add_part(self, part: Mapping[str, Any]) -> None:
-        """Adds a part, given as the document holds it (``name``, ``closed``, ``depth``, ``keys``, ...), at the end."""
+        """Adds a part at the end. Its form is that of the document: ``name``, ``closed``, ``depth``, ``keys``, ..."""
         self._handle.call("rototoon_session_add_part", *as_json(part))
 
     def remove_part(self, part: str) -> None:
-        """Removes a part and all that belongs to it."""
+        """Removes a part with its keys, corrections and results."""
         self._handle.call("rototoon_session_remove_part", *text(part))
 
     def set_key(self, part: str, frame: int, points: Points) -> None:
-        """Sets the artist's contour on a frame: as many points as the part's other keys have.
+        """Sets the artist's contour on a frame. It has as many points as the part's other keys.
 
-        Pins and a corrected centre on that frame give way to the key.
+        The key replaces pins and a corrected centre on that frame.
         """
         values = _flat(points)
         data = (ctypes.c_double * len(values)).from_buffer(values) if values else None
         self._handle.call("rototoon_session_set_key", *text(part), frame, data, len(values))
 
     def remove_key(self, part: str, frame: int) -> None:
-        """Removes the key on a frame; an error where there is none."""
+        """Removes the key on a frame. It is an error if there is none."""
         self._handle.call("rototoon_session_remove_key", *text(part), frame)
 
     def pin(self, part: str, frame: int, point: int, xy: Sequence[float]) -> None:
-        """Fixes one control point on a frame between keys, or beside a single one: tracking passes through it exactly."""
+        """Fixes one control point on a frame between two keys, or beside the only key. The track passes through it exactly."""
         x, y = xy
         self._handle.call("rototoon_session_pin", *text(part), frame, point, x, y)
 
     def unpin(self, part: str, frame: int, point: int | None = None) -> None:
-        """Releases a pin, or with ``point=None`` all pins of the frame; nothing happens where there is none."""
+        """Releases a pin, or with ``point=None`` all pins of the frame. Does nothing if there is no pin."""
         self._handle.call("rototoon_session_unpin", *text(part), frame, -1 if point is None else point)
 
     def set_center(self, part: str, frame: int, xy: Sequence[float]) -> None:
@@ -105,7 +107,7 @@ class Session:
         self._handle.call("rototoon_session_set_center", *text(part), frame, x, y)
 
     def clear_center(self, part: str, frame: int) -> None:
-        """Releases a corrected centre; nothing happens where there is none."""
+        """Releases a corrected centre. Does nothing if there is none."""
         self._handle.call("rototoon_session_clear_center", *text(part), frame)
 
     # -- work ----------------------------------------------------------------------------------------------------
@@ -113,13 +115,12 @@ class Session:
     def track(self, preset: str = "rototoon", progress: Progress | None = None, *, threads: int = 0) -> Summary:
         """Tracks every part between its keys and stores ``tracks`` and ``confidence`` in the document.
 
-        ``rototoon`` follows a part with one key outward from it, as far as it can be trusted; `Summary.ends` tells where
-        that ends and why, and the document's ``wants_key`` where the part was lost.
+        The preset ``rototoon`` also follows a part that has one key, before and after that key, as far as the track can be
+        trusted. `Summary.ends` says where the track ends and why. The document's ``wants_key`` lists where the part was lost.
 
-        Spans that nothing touched since they were last solved in this session are not solved again. Snapped curves of
-        frames whose track changed are dropped. `preset` is ``rototoon``, ``zhou2011``, ``agarwala2004`` or
-        ``liang2012``; `threads` is the number of threads, 0 for one a core; it does not change the result. Raises
-        `Cancelled`, the document unchanged.
+        Spans that have not changed since this session last solved them are not solved again. Snapped curves of frames whose
+        track changed are removed. `preset` is ``rototoon``, ``zhou2011``, ``agarwala2004`` or ``liang2012``. `threads` is the
+        number of threads, 0 for one per core; it does not change the result. Raises `Cancelled`; the document is unchanged then.
         """
         options = {"preset": preset, "threads": threads}
         summary = self._long("rototoon_session_track", options, progress)
@@ -129,7 +130,7 @@ class Session:
         """Lays the tracked contours along the drawn ink and stores ``curves`` in the document.
 
         Keys are snapped too. `options` are parameters of the stage ``snap`` by id, such as ``follow="line"``; see
-        `parameters`. Raises `Cancelled`, the document unchanged.
+        `rototoon.parameters`. Raises `Cancelled`; the document is unchanged then.
         """
         self._long("rototoon_session_snap", {"threads": threads, **options}, progress)
 
@@ -141,22 +142,22 @@ class Session:
         return Track(frames, points)
 
     def confidence(self, part: str) -> memoryview:
-        """How sure each point of `tracks` is, 0 to 1: float64, shape (F, N); 1 on keys."""
-        return self._handle.give(handles.TrackArrays, "rototoon_session_track_of", *text(part))[2]
+        """Confidence of each point of `tracks`, 0 to 1: float64, shape (F, N). It is 1 on keys."""
+        confidence: memoryview = self._handle.give(handles.TrackArrays, "rototoon_session_track_of", *text(part))[2]
+        return confidence
 
     def curves(self, part: str, frame: int) -> list[memoryview]:
-        """The snapped paths of a part on a frame: for each segment between control points float64 of shape (M, 2).
+        """The snapped paths of a part on a frame: for each segment between two control points float64 of shape (M, 2).
 
-        Empty where the frame has not been snapped.
+        The list is empty if the frame has not been snapped.
         """
-        return self._handle.give(handles.CurveArrays, "rototoon_session_curves_of", *text(part), frame)
+        paths: list[memoryview] = self._handle.give(handles.CurveArrays, "rototoon_session_curves_of", *text(part), frame)
+        return paths
 
     def weakest_frame(self) -> WeakestFrame | None:
-        """The frame, neither a part's key nor beside one, where the next key helps most; `None` if there is none."""
-        return json.loads(
-            self._handle.give(handles.Text, "rototoon_session_weakest_frame"),
-            object_hook=lambda found: WeakestFrame(found["frame"], found["score"]),
-        )
+        """The frame where the next key helps most. It is no key of any part and not beside one. `None` if there is no such frame."""
+        found = json.loads(self._handle.give(handles.Text, "rototoon_session_weakest_frame"))
+        return None if found is None else WeakestFrame(found["frame"], found["score"])
 
     # -- life ----------------------------------------------------------------------------------------------------
 
@@ -166,9 +167,9 @@ class Session:
         return self._handle.closed
 
     def close(self) -> None:
-        """Frees the pictures and all else; further calls raise `RototoonError`. Closing twice does nothing.
+        """Frees the pictures and everything else. Later calls raise `RototoonError`; closing twice does nothing.
 
-        A call that is running in another thread goes on to its end, and then all is freed.
+        If a call is running in another thread, it goes on to its end, and the session is freed then.
         """
         self._handle.close()
 
@@ -179,13 +180,13 @@ class Session:
         self.close()
 
     def _long(self, name: str, options: Mapping[str, Any], progress: Progress | None) -> Any:
-        """Makes a call that reports progress; an exception of `progress` cancels it and comes out here."""
+        """Makes a call that reports progress. An exception in `progress` cancels the call and is raised here."""
         with handles.progress_callback(progress) as callback:
             return json.loads(self._handle.give(handles.Text, name, *as_json(options), callback, None))
 
 
 def _flat(points: Points) -> array.array[float]:
-    """x, y, x, y, ... of pairs or of a float64 buffer of shape (N, 2)."""
+    """The numbers x, y, x, y, ... of pairs or of a float64 buffer of shape (N, 2)."""
     try:
         view = memoryview(points)  # type: ignore[arg-type]
     except TypeError:
@@ -194,6 +195,6 @@ def _flat(points: Points) -> array.array[float]:
             x, y = point
             flat.extend((x, y))
         return flat
-    if view.format != "d" or view.ndim != 2 or view.shape[1] != 2:
+    if view.format != "d" or view.ndim != 2 or view.shape is None or view.shape[1] != 2:
         raise RototoonError(f"points: expected float64 of shape (N, 2), found {view.format} of shape {view.shape}")
     return array.array("d", view.tobytes())

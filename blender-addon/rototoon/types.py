@@ -1,4 +1,4 @@
-"""Types that several modules share."""
+"""Types that several modules use."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ Document: TypeAlias = dict[str, Any]
 """A project document as ``json.load`` gives it."""
 
 Progress: TypeAlias = Callable[[float, str], bool | None]
-"""``progress(fraction, step)``: told the finished share (0 to 1, never falling) and what is being done.
+"""``progress(fraction, step)`` gets the finished share (0 to 1, never falling) and the name of the current step.
 
-Returning ``False`` cancels; ``True`` or ``None`` goes on. Called on the thread that made the long call, about twenty
-times a second at most, at least once before the work begins. An exception cancels the work and is raised from the call.
+Return ``False`` to cancel, ``True`` or ``None`` to go on. The call comes on the thread that made the long call, at most about
+twenty times a second, and at least once before the work begins. An exception cancels the work, and the long call raises it.
 """
 
 Points: TypeAlias = Iterable[Sequence[float]]

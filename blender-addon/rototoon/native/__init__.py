@@ -1,4 +1,4 @@
-"""The native library: loading, prototypes, owned handles, errors. Imports nothing of Blender.
+"""The native library: loading, prototypes, owned handles, errors.
 
-`_bindings` is generated from the C header; nothing outside this package calls a C function itself.
+`_bindings` is generated from the C header. Only this package calls C functions.
 """

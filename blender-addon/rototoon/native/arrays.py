@@ -1,4 +1,4 @@
-"""Python values as the native library takes them."""
+"""Conversion of Python values for the native library."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def as_json(value: Mapping[str, Any]) -> tuple[bytes, int]:
 
 
 def buffer(values: Any, kind: str) -> tuple[Any, int]:
-    """A C array with a copy of the numbers of a buffer or a flat sequence, and how many they are."""
+    """A C array with a copy of the numbers of a buffer or flat sequence, and their count."""
     try:
         data = memoryview(values)
     except TypeError:
@@ -35,5 +35,5 @@ def buffer(values: Any, kind: str) -> tuple[Any, int]:
         if {"l": "i", "?": "B"}.get(data.format, data.format) != kind or data.itemsize != array.array(kind).itemsize:
             raise RototoonError(f"expected numbers of type {kind}, found {data.format}")
         flat = array.array(kind, data.tobytes())
-    ctype = {"i": ctypes.c_int32, "d": ctypes.c_double, "B": ctypes.c_uint8}[kind]
+    ctype: Any = {"i": ctypes.c_int32, "d": ctypes.c_double, "B": ctypes.c_uint8}[kind]
     return (ctype * len(flat)).from_buffer(flat) if len(flat) else (ctype * 0)(), len(flat)

@@ -1,13 +1,13 @@
-"""What can go wrong, as exceptions."""
+"""Exceptions of the package."""
 
 
 class RototoonError(Exception):
-    """Bad input, a missing picture, a busy session, ...; the message says which and what was expected."""
+    """Bad input, a missing picture, a busy session, ... The message names it and says what was expected."""
 
 
 class LibraryError(RototoonError):
-    """The native library is not there, cannot be loaded, or does not fit this Python package."""
+    """The native library is missing, cannot be loaded, or does not fit this Python package."""
 
 
 class Cancelled(Exception):
-    """The progress callback asked to stop; nothing was changed."""
+    """The progress callback stopped the work. Nothing was changed."""

@@ -1,4 +1,4 @@
-"""Owned handles: each is freed once, by `close` or when it is collected, and every failure becomes an exception."""
+"""Owned handles. Each is freed once, by `close` or by the garbage collector. Every failure becomes an exception."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .errors import Cancelled, RototoonError
 
 
 def call(name: str, *arguments: Any) -> None:
-    """Calls a function whose last parameter is the error text; raises what it reports."""
+    """Calls a function whose last parameter is the error text. Raises the error that the function reports."""
     error = ctypes.c_void_p()
     status = getattr(library.load().functions, name)(*arguments, ctypes.byref(error))
     message = ""
@@ -28,7 +28,7 @@ def call(name: str, *arguments: Any) -> None:
 
 
 class Handle:
-    """A pointer that the library gave and that is freed with the `_free` of its type."""
+    """A pointer from the library. The function `_free` of its type frees it."""
 
     _free: ClassVar[str]
 
@@ -37,47 +37,47 @@ class Handle:
 
     @classmethod
     def make(cls, name: str, *arguments: Any) -> Self:
-        """The handle that a function gives through its last parameter before the error."""
+        """Calls a function that returns a handle through its last parameter before the error."""
         pointer = ctypes.c_void_p()
         call(name, *arguments, ctypes.byref(pointer))
         return cls(pointer)
 
     @property
     def closed(self) -> bool:
-        """Whether it was freed."""
+        """Whether the handle was freed."""
         return self._pointer is None
 
     def pointer(self) -> ctypes.c_void_p:
-        """The pointer; an error once closed."""
+        """The pointer. Raises `RototoonError` once the handle is closed."""
         if self._pointer is None:
             raise RototoonError(f"the {type(self).__name__.lower()} is closed")
         return self._pointer
 
-    def read(self) -> Any:
-        """What it holds, as Python objects that outlive it."""
+    def read(self, *sizes: int) -> Any:
+        """The content as Python objects that outlive the handle. `sizes` are array sizes that only the caller knows."""
         raise NotImplementedError
 
     def close(self) -> None:
-        """Frees it; a second time does nothing."""
+        """Frees the handle. A second call does nothing."""
         pointer, self._pointer = self._pointer, None
         if pointer is not None:
             getattr(library.load().functions, self._free)(pointer)
 
     def __del__(self) -> None:
-        # Not set where __init__ was never reached; nothing can be raised from here.
+        # `_pointer` is missing if `__init__` was never reached. Nothing may be raised here.
         if getattr(self, "_pointer", None) is not None:
             with contextlib.suppress(Exception):
                 Handle.close(self)
 
 
 class Text(Handle):
-    """UTF-8 text of the library."""
+    """UTF-8 text from the library."""
 
     _free = "rototoon_text_free"
 
-    def read(self) -> str:
+    def read(self, *_sizes: int) -> str:
         """The text."""
-        # Not through `call`: that reads error texts with this very method.
+        # Not through `call`, since `call` reads error texts with this method.
         data, length = ctypes.c_void_p(), ctypes.c_size_t()
         read = library.load().functions.rototoon_text_read
         status = read(self.pointer(), ctypes.byref(data), ctypes.byref(length), None)
@@ -91,8 +91,8 @@ class TrackArrays(Handle):
 
     _free = "rototoon_track_free"
 
-    def read(self) -> tuple[memoryview, memoryview, memoryview]:
-        """Frames (F,) int32, points (F, N, 2) float64, confidence (F, N) float64: copies that outlive the handle."""
+    def read(self, *_sizes: int) -> tuple[memoryview, memoryview, memoryview]:
+        """Frames (F,) int32, points (F, N, 2) float64, confidence (F, N) float64, as copies."""
         frame_count, point_count = ctypes.c_size_t(), ctypes.c_size_t()
         frames, points, confidence = ctypes.c_void_p(), ctypes.c_void_p(), ctypes.c_void_p()
         out = (frame_count, point_count, frames, points, confidence)
@@ -106,8 +106,8 @@ class CurveArrays(Handle):
 
     _free = "rototoon_curves_free"
 
-    def read(self) -> list[memoryview]:
-        """Each path (M, 2) float64: copies that outlive the handle."""
+    def read(self, *_sizes: int) -> list[memoryview]:
+        """The paths, each (M, 2) float64, as copies."""
         path_count, offsets, points = ctypes.c_size_t(), ctypes.c_void_p(), ctypes.c_void_p()
         call("rototoon_curves_read", self.pointer(), *map(ctypes.byref, (path_count, offsets, points)))
         bounds = view(offsets, "i", path_count.value + 1).tolist()
@@ -121,9 +121,10 @@ class GuideArrays(Handle):
 
     _free = "rototoon_guides_free"
 
-    def read(self, strokes: int, channels: int) -> tuple[memoryview, ...]:
+    def read(self, *sizes: int) -> tuple[memoryview, ...]:
         """Offsets (strokes + 1) int32, points (G, 2) float64, values (G, channels) float64, nearest (G,) int32 and errors
-        (strokes,) float64: copies that outlive the handle."""
+        (strokes,) float64, as copies. `sizes` are the numbers of strokes and channels."""
+        strokes, channels = sizes
         count = ctypes.c_size_t()
         out = [ctypes.c_void_p() for _ in range(5)]
         call("rototoon_guides_read", self.pointer(), ctypes.byref(count), *map(ctypes.byref, out))
@@ -139,13 +140,13 @@ class GuideArrays(Handle):
 
 
 class PieceArrays(Handle):
-    """Seen and hidden parts of strokes."""
+    """Visible and hidden parts of strokes."""
 
     _free = "rototoon_pieces_free"
 
-    def read(self) -> tuple[memoryview, ...]:
+    def read(self, *_sizes: int) -> tuple[memoryview, ...]:
         """Strokes (P,) int32, hidden (P,) int32, intervals (P, 2) float64, offsets (P + 1) int32, indices (M, 3) int32 and
-        weights (M, 3) float64: copies that outlive the handle."""
+        weights (M, 3) float64, as copies."""
         count = ctypes.c_size_t()
         out = [ctypes.c_void_p() for _ in range(6)]
         call("rototoon_pieces_read", self.pointer(), ctypes.byref(count), *map(ctypes.byref, out))
@@ -164,12 +165,12 @@ class PieceArrays(Handle):
 
 
 class MatchArrays(Handle):
-    """Which stroke is which."""
+    """Matches of strokes."""
 
     _free = "rototoon_matches_free"
 
-    def read(self) -> tuple[memoryview, ...]:
-        """Offsets (spans + 1) int32, rows (R, 4) int32 and values (R, 2) float64: copies that outlive the handle."""
+    def read(self, *_sizes: int) -> tuple[memoryview, ...]:
+        """Offsets (spans + 1) int32, rows (R, 4) int32 and values (R, 2) float64, as copies."""
         count = ctypes.c_size_t()
         out = [ctypes.c_void_p() for _ in range(3)]
         call("rototoon_matches_read", self.pointer(), ctypes.byref(count), *map(ctypes.byref, out))
@@ -179,12 +180,12 @@ class MatchArrays(Handle):
 
 
 class InBetweenArrays(Handle):
-    """Drawings between others."""
+    """In-betweens."""
 
     _free = "rototoon_in_betweens_free"
 
-    def read(self) -> tuple[memoryview, ...]:
-        """Copies that outlive the handle, in the order of `tween.InBetweens`."""
+    def read(self, *_sizes: int) -> tuple[memoryview, ...]:
+        """The arrays of `tween.InBetweens` in their order, as copies."""
         spans, points = ctypes.c_size_t(), ctypes.c_size_t()
         out = [ctypes.c_void_p() for _ in range(9)]
         call("rototoon_in_betweens_read", self.pointer(), *map(ctypes.byref, (spans, points, *out)))
@@ -207,7 +208,7 @@ class InBetweenArrays(Handle):
 
 
 class Session(Handle):
-    """A session of the library, guarded: a call during another one is refused, so nothing is freed while in use."""
+    """A session of the library. It refuses a call during another call, so nothing is freed while in use."""
 
     _free = "rototoon_session_free"
 
@@ -240,13 +241,13 @@ class Session(Handle):
             call(name, pointer, *arguments)
 
     def give(self, kind: type[Handle], name: str, *arguments: Any) -> Any:
-        """What a handle reads that a function of the session gives."""
+        """Calls a function of the session that returns a handle, and returns the content of the handle."""
         with self._alone() as pointer:
             return take(kind, name, pointer, *arguments)
 
     def close(self) -> None:
-        """Frees the session, or has the call free it that is running on it. No call can begin any more."""
-        # The wish comes first: whoever holds the guard looks for it after letting go, so one of both frees.
+        """Frees the session now, or at the end of the call that is running. No new call can begin."""
+        # `_unwanted` is set first. The call that has the guard checks it after the release, so one of the two frees the session.
         self._unwanted = True
         if self._guard.acquire(blocking=False):
             try:
@@ -256,7 +257,7 @@ class Session(Handle):
 
 
 def take(kind: type[Handle], name: str, *arguments: Any, sizes: tuple[int, ...] = ()) -> Any:
-    """What the handle reads that a function gives, told `sizes` that only the caller knows; the handle is freed."""
+    """Calls a function that returns a handle, returns the content of the handle, and frees it. `sizes` go to `read`."""
     handle = kind.make(name, *arguments)
     try:
         return handle.read(*sizes)
@@ -265,7 +266,7 @@ def take(kind: type[Handle], name: str, *arguments: Any, sizes: tuple[int, ...] 
 
 
 def take_both(first: type[Handle], second: type[Handle], name: str, *arguments: Any) -> tuple[Any, Any]:
-    """What the two handles read that a function gives; they are freed."""
+    """Calls a function that returns two handles, returns their contents, and frees them."""
     pointers = ctypes.c_void_p(), ctypes.c_void_p()
     call(name, *arguments, *map(ctypes.byref, pointers))
     one, other = first(pointers[0]), second(pointers[1])
@@ -277,13 +278,14 @@ def take_both(first: type[Handle], second: type[Handle], name: str, *arguments: 
 
 
 def view(data: ctypes.c_void_p, kind: str, *shape: int) -> memoryview:
-    """A read-only copy of an array as a memoryview; one-dimensional where it is empty (Python knows no other way)."""
+    """A read-only copy of an array as a memoryview. An empty one is one-dimensional: Python allows no other shape."""
     count = 1
     for length in shape:
         count *= length
     size = {"i": ctypes.sizeof(ctypes.c_int32), "d": ctypes.sizeof(ctypes.c_double)}[kind]
-    flat = memoryview(_copy(data, count * size))
-    return flat.cast(kind, shape) if count else flat.cast(kind)
+    flat: Any = memoryview(_copy(data, count * size))
+    made: memoryview = flat.cast(kind, shape) if count else flat.cast(kind)
+    return made
 
 
 def _copy(data: ctypes.c_void_p, size: int) -> bytes:
@@ -292,7 +294,7 @@ def _copy(data: ctypes.c_void_p, size: int) -> bytes:
 
 @contextlib.contextmanager
 def progress_callback(progress: Callable[[float, str], bool | None] | None) -> Iterator[Any]:
-    """The C callback for a Python one; what the Python one raises cancels the work and is raised at the end."""
+    """The C callback for a Python callback. An exception in the Python callback cancels the work and is raised at the end."""
     if progress is None:
         yield _bindings.RototoonProgress()
         return
@@ -301,7 +303,7 @@ def progress_callback(progress: Callable[[float, str], bool | None] | None) -> I
     def report(_user: int | None, fraction: float, step: int | None, length: int) -> int:
         try:
             return int(progress(fraction, _copy(ctypes.c_void_p(step), length).decode()) is False)
-        except BaseException as error:  # noqa: BLE001 - also KeyboardInterrupt must not be lost in the library
+        except BaseException as error:  # noqa: BLE001 - KeyboardInterrupt must not be lost in the library either
             raised.append(error)
             return 1
 

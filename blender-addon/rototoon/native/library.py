@@ -1,4 +1,4 @@
-"""Finds and loads the native library, and makes sure that it fits this Python package."""
+"""Finds and loads the native library, and checks that it fits this Python package."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from . import _bindings
 from .errors import LibraryError
 
 ENVIRONMENT = "ROTOTOON_LIBRARY"
-"""Environment variable with the path of a library to use instead of the one beside this file."""
+"""Environment variable: path of a library to use instead of the one beside this file."""
 
 _lock = threading.Lock()
 _loaded: Library | None = None
@@ -21,20 +21,20 @@ _loaded: Library | None = None
 
 @dataclass(frozen=True)
 class Library:
-    """The loaded library, its prototypes set."""
+    """The loaded library with its prototypes."""
 
     path: Path
     functions: ctypes.CDLL
 
 
 def find() -> Path:
-    """Where the library should be: what the environment names, else beside this file."""
+    """Where the library should be: at the path in the environment variable, otherwise beside this file."""
     named = os.environ.get(ENVIRONMENT)
     return Path(named) if named else Path(__file__).resolve().parent / _file_name()
 
 
 def load() -> Library:
-    """The library, loaded at the first call. Raises `LibraryError`."""
+    """The library. The first call loads it. Raises `LibraryError`."""
     global _loaded
     with _lock:
         if _loaded is None:
@@ -50,7 +50,7 @@ def _file_name() -> str:
 
 def _open(path: Path) -> Library:
     if not path.is_file():
-        raise LibraryError(f"no native library at {path}; build it, or name it in the environment as {ENVIRONMENT}")
+        raise LibraryError(f"no native library at {path}; build it, or set the environment variable {ENVIRONMENT} to its path")
     try:
         functions = ctypes.CDLL(str(path))
     except OSError as error:
@@ -64,7 +64,7 @@ def _open(path: Path) -> Library:
 
 
 def _check(path: Path, functions: ctypes.CDLL) -> None:
-    """Compares versions before any other function is called: prototypes that differ would corrupt memory."""
+    """Compares versions before any other call: a call with a wrong prototype would corrupt memory."""
     try:
         abi_version, header_hash = functions.rototoon_abi_version, functions.rototoon_header_hash
     except AttributeError as error:
@@ -76,5 +76,5 @@ def _check(path: Path, functions: ctypes.CDLL) -> None:
         found = abi_version()
         raise LibraryError(f"{path} has ABI version {found}, this package expects {expected}; install both anew")
     if header_hash() != _bindings.HEADER_HASH:
-        found, expected = f"{header_hash():016x}", f"{_bindings.HEADER_HASH:016x}"
-        raise LibraryError(f"{path} was built with header {found}, this package expects {expected}; install both anew")
+        built, ours = f"{header_hash():016x}", f"{_bindings.HEADER_HASH:016x}"
+        raise LibraryError(f"{path} was built with header {built}, this package expects {ours}; install both anew")
