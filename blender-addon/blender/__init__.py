@@ -1,9 +1,17 @@
-"""Blender's data: everything that knows how Blender keeps drawings, layers, cameras, pictures, bones and masks.
+"""Blender's data: drawings, layers, cameras, pictures, bones, masks.
 
-`grease_pencil` is the border to Blender's Grease Pencil API. Only this room and the operators use that API. What else the room
-has: `strokes` (complete drawings as arrays), `hierarchy` (where layers hang), `camera`, `placement` and `projection` (pixels and
-layer points), `footage` and `movie` (picture files), `stage` (objects to begin with), `armatures`, `actions`, `masks`, `picture_source`
-and `picture_mesh`, `preferences`, and `errors` (what an artist is told).
+`grease_pencil` wraps Blender's Grease Pencil API. Only this room uses that API. The other modules:
+
+====================================  ==============================================================
+`strokes`, `stroke_lines`, `colours`  complete drawings as arrays; strokes as lines; their visible colours
+`hierarchy`                           parents and groups of layers
+`camera`, `placement`, `projection`   pixels ↔ layer points
+`footage`, `movie`, `stage`           picture files, movies, and objects that show them
+`picture_source`, `picture_mesh`      pictures that follow clips
+`armatures`, `actions`, `masks`       bones, animation curves, masks
+`frames`, `windows`, `preferences`    the current frame, the windows, the settings
+`errors`                              the error that the artist sees
+====================================  ==============================================================
 
 May import: `rototoon`.
 """

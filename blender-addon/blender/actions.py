@@ -1,4 +1,4 @@
-"""Curves in actions of their own, in Blender's layers and slots: the same from 4.5 on."""
+"""Animation curves in new actions. Blender 4.5 and later keep them in layers and slots."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import bpy
 import numpy as np
 
 LINEAR = 1
-"""Number of the interpolation in arrays."""
+"""The value of linear interpolation in arrays of key points."""
 
 
 def give(owner, kind: str, name: str, frames: np.ndarray, curves: Mapping[tuple[str, int], np.ndarray]) -> str:
-    """Puts curves (by data path and index) into a new action and gives it to a data-block of a kind ("OBJECT", "KEY").
+    """Puts curves (by data path and index) into a new action and assigns it to `owner`, a data-block of type `kind`.
 
-    Returns the name of the action that it had, which stays in the file.
+    `kind` is "OBJECT" or "KEY". Returns the name of the action that the data-block had before, or "". That action stays in the file.
     """
     action = bpy.data.actions.new(name)
     slot = action.slots.new(id_type=kind, name=owner.name)
@@ -29,7 +29,7 @@ def give(owner, kind: str, name: str, frames: np.ndarray, curves: Mapping[tuple[
     data = owner.animation_data or owner.animation_data_create()
     before = data.action
     if before is not None:
-        # Nothing else may hold it, and then it would not be saved.
+        # Without a user the action would not be saved.
         before.use_fake_user = True
     data.action = action
     data.action_slot = slot

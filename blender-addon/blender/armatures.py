@@ -1,4 +1,4 @@
-"""Armatures: their bones at rest, the view on them, and the frames of their motion."""
+"""Armatures: their bones at rest, the view from which they are seen, and the frames of their motion."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 from . import camera as cameras
 
 SCALE = 100.0
-"""Pixels a unit where no camera shows the armature."""
+"""Pixels per unit where no camera shows the armature."""
 VIEWS = (
-    ("CAMERA", "Camera", "As the scene's camera sees it; from the front where there is none"),
+    ("CAMERA", "Camera", "As the scene's camera sees it. Without a camera, from the front"),
     ("FRONT", "Front", "Along Y"),
     ("RIGHT", "Right", "Along -X"),
 )
@@ -31,7 +31,7 @@ class Bone:
 
 
 def view_of(scene, which: str) -> cameras.View:
-    """The view of a side, or of the scene's camera on its current frame."""
+    """The view from a side, or the view of the scene's camera on the current frame."""
     if which == "CAMERA" and scene.camera is not None:
         render = scene.render
         return cameras.camera_view(scene, scene.camera, render.resolution_x, render.resolution_y, cameras.Placement())
@@ -51,7 +51,7 @@ def bones_of(ob) -> dict[str, Bone]:
 
 
 def range_of(ob, scene) -> range:
-    """The frames of an armature's motion: those of its action, else the scene's."""
+    """The frames of an armature's motion: those of its action if it has one, otherwise those of the scene."""
     data = ob.animation_data
     if data is not None and data.action is not None:
         first, last = (int(round(frame)) for frame in data.action.frame_range)

@@ -1,16 +1,15 @@
-"""Footage pixels ↔ the drawing plane, through the camera or a reference image; the one border of coordinates.
+"""Footage pixels ↔ points on the drawing plane, through a camera or a reference image. Only this module converts them.
 
-A view is a coordinate system in the world, a picture plane in it with coordinates (u, v), and rays: through a perspective
-camera they meet in the origin and the picture plane is at distance 1; through an orthographic camera or a reference
-image they run along -z. An affine map takes (u, v) to footage pixels. All steps can be inverted, so a pixel goes to the
-drawing plane and back to the same pixel; everything is computed in double precision from Blender's single precision
-settings.
+A view is a coordinate system in the world with a picture plane, coordinates (u, v) on that plane, and rays. Through a
+perspective camera, the rays meet in the origin and the picture plane is at distance 1. Through an orthographic camera or a
+reference image, they run along -z. An affine map takes (u, v) to footage pixels. All steps can be inverted: a pixel goes to
+the drawing plane and back to the same pixel. The computation is in double precision; Blender's settings are in single precision.
 
 Footage pixels: x right, y down, origin at the outer top-left corner of the picture.
 
-The camera's frame follows Blender's own rules: the sensor side that fits (auto: the longer side after pixel aspect)
-measures `sensor_width` or `sensor_height`, shift is in units of that side. A camera background image lies in the frame
-as its settings say (stretch, fit, crop, offset, rotation, scale, flips).
+The camera's frame follows Blender's rules. The side that the sensor fits (auto: the longer side after pixel aspect) measures
+`sensor_width` or `sensor_height`, and shift is in units of that side. The settings of a camera background image say where
+the footage is in the frame (stretch, fit, crop, offset, rotation, scale, flips).
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ from .errors import Problem
 
 @dataclass(frozen=True)
 class Placement:
-    """How footage lies in a camera's frame: the settings of a camera background image."""
+    """Where footage is in a camera's frame: the settings of a camera background image."""
 
     method: str = "FIT"
     offset: tuple[float, float] = (0.0, 0.0)
@@ -37,7 +36,7 @@ class Placement:
 
 @dataclass(frozen=True)
 class View:
-    """Where the rays of the footage's pixels run."""
+    """The rays of the footage's pixels."""
 
     to_view: np.ndarray
     """World to view, 4×4."""
@@ -47,10 +46,10 @@ class View:
 
 
 class Mapping:
-    """Pixels of the footage ↔ points of a layer, on one frame."""
+    """Mapping between footage pixels and layer points on one frame."""
 
     def __init__(self, view: View, layer_to_world: np.ndarray, plane: tuple[np.ndarray, np.ndarray] | None = None):
-        """`plane`: a point and a normal in layer space; by default the layer's own XZ plane, Blender's front view."""
+        """`plane` is a point and a normal in layer space. The default is the layer's XZ plane, Blender's front view."""
         self.view = view
         self.to_view = view.to_view @ layer_to_world
         self.from_view = np.linalg.inv(self.to_view)
@@ -73,7 +72,7 @@ class Mapping:
         """Pixels (..., 2) to points (..., 3) of the drawing plane in layer space."""
         pixels = np.asarray(pixels, np.float64)
         rotation, shift = self.from_view[:3, :3], self.from_view[:3, 3]
-        # What moves with the pixel: the ray's direction through a perspective camera, else where the ray begins.
+        # With the pixel moves the ray's direction (perspective camera) or the ray's start (all others).
         linear = self.linear_inverse.T @ rotation[:, :2].T
         start = -self.view.to_pixel[:, 2] @ linear
         moving = pixels @ linear
@@ -92,7 +91,7 @@ class Mapping:
         return moving
 
     def _refuse_edge_on(self, along: np.ndarray, direction: np.ndarray) -> None:
-        # The norm of every direction costs more than all else here; the largest coordinate bounds them all.
+        # The norm of every direction would cost more than everything else here. The largest coordinate is a bound for all.
         bound = 2.0 * np.abs(direction).max(initial=0.0)
         if along.size and np.abs(along).min() > 1e-9 * bound:
             return
@@ -101,11 +100,11 @@ class Mapping:
 
 
 def plane_of(points: np.ndarray, view_normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The plane on which an artist drew `points` (N, 3) in layer space: a point and its normal.
+    """The plane on which an artist drew `points` (N, 3) in layer space: a point and a normal.
 
-    Blender draws on the XZ plane (front), or facing the view through the object's origin; either is taken exactly if the
-    points lie on it. Otherwise the plane that fits best, or the plane that faces the view through the points' mean
-    where they lie on a line.
+    Blender draws on the XZ plane (front), or on the plane through the object's origin that faces the view. If the points lie on
+    one of these, it is taken exactly. Otherwise it is the plane that fits the points best. If the points lie on a line, it is the
+    plane through their mean that faces the view.
     """
     front = np.zeros(3), np.array([0.0, 1.0, 0.0])
     if not len(points):
@@ -125,10 +124,10 @@ def plane_of(points: np.ndarray, view_normal: np.ndarray) -> tuple[np.ndarray, n
 
 
 def camera_view(scene, camera, width: int, height: int, placement: Placement) -> View:
-    """The view through a camera whose frame shows footage of `width` × `height` pixels as `placement` says."""
+    """The view through a camera whose frame shows footage of `width` × `height` pixels at `placement`."""
     data = camera.data
     if data.type not in {"PERSP", "ORTHO"}:
-        raise Problem(f'Camera "{camera.name}" is of type {data.type}: only perspective and orthographic ones are known')
+        raise Problem(f'Camera "{camera.name}" is of type {data.type}: only perspective and orthographic cameras can be used')
     left, bottom, frame_width, frame_height = camera_frame(scene.render, data)
     half = _frame_half_size(placement.method, width / height, frame_width, frame_height)
     half *= placement.scale * np.array([-1 if placement.flip_x else 1, -1 if placement.flip_y else 1])
@@ -136,7 +135,7 @@ def camera_view(scene, camera, width: int, height: int, placement: Placement) ->
     centre += _frame_offset(placement.offset, data, width / height, frame_width, frame_height)
     cos, sin = math.cos(-placement.rotation), math.sin(-placement.rotation)
     turn = np.array([[cos, -sin], [sin, cos]])
-    # Pixel to (u, v): to -1..1 with y up, then scaled, turned, moved.
+    # Pixel to (u, v): to -1..1 with y up, then scale, rotation, offset.
     unit = np.array([[2 / width, 0, -1], [0, -2 / height, 1], [0, 0, 1]])
     place = np.eye(3)
     place[:2, :2] = turn * half
@@ -173,9 +172,9 @@ def _frame_half_size(method: str, image: float, width: float, height: float) -> 
 
 
 def _frame_offset(offset, data, image: float, width: float, height: float) -> np.ndarray:
-    """Blender's own rule for the offset of a background image, in units of the picture plane.
+    """The offset of a background image in units of the picture plane, by Blender's rule.
 
-    Blender measures in units of the side that the sensor fits.
+    Blender measures the offset in units of the side that the sensor fits.
     """
     frame = width / height
     unit = {"AUTO": max(width, height), "HORIZONTAL": width, "VERTICAL": height}[data.sensor_fit]
@@ -185,7 +184,7 @@ def _frame_offset(offset, data, image: float, width: float, height: float) -> np
 
 
 def reference_view(empty, width: int, height: int) -> View:
-    """The view of a reference image: rays along the image's normal, pixels where the empty shows them."""
+    """The view of a reference image. Rays run along the image's normal. Pixels are where the empty shows them."""
     image = empty.data
     aspect_x, aspect_y = image.display_aspect if image is not None else (1.0, 1.0)
     shown_width, shown_height = width * aspect_x, height * aspect_y
@@ -203,7 +202,7 @@ def reference_view(empty, width: int, height: int) -> View:
 
 
 def layer_to_world(ob, layer) -> np.ndarray:
-    """4×4: a layer's points to the world, its parent included."""
+    """4×4: a layer's points to the world. The layer's parent counts."""
     parent = layer.parent
     base = ob.matrix_world
     if parent is not None:

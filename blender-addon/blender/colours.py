@@ -1,4 +1,4 @@
-"""Colours of strokes as the artist sees them: of the material, mixed with those of points and fills."""
+"""Visible colours of strokes: the material's colour mixed with the colours of points and fills."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from . import strokes as st
 
 
 def palette(ob) -> np.ndarray:
-    """Line and fill colour (M, 2, 4) of the object's materials, linear."""
+    """Line and fill colours (M, 2, 4) of the object's materials, linear."""
     found = []
     for material in ob.data.materials:
         style = material.grease_pencil if material is not None else None
@@ -17,7 +17,7 @@ def palette(ob) -> np.ndarray:
 
 
 def of_strokes(ob, content: st.Content, materials: np.ndarray) -> np.ndarray:
-    """The colour by which each stroke is recognised, sRGB (S, 3): its fill's where it is filled, else its line's."""
+    """The colour by which each stroke is recognised, sRGB (S, 3): the fill's colour of a filled stroke, the line's colour otherwise."""
     count = len(content.sizes)
     if not count:
         return np.zeros((0, 3))

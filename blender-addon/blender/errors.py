@@ -1,5 +1,5 @@
-"""What an operator tells the artist when it cannot go on."""
+"""The error that an operator shows to the artist."""
 
 
 class Problem(Exception):
-    """A message for the artist: what was found, what was expected, what to do. Nothing was changed."""
+    """A message for the artist: what was found, what was expected, what to do. Nothing has changed."""

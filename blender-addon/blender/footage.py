@@ -1,7 +1,7 @@
-"""Where the pictures are: sequences on disk, and what Blender's images and clips show on which frame.
+"""Picture files: sequences on disk, and the pictures that Blender's images and clips show on each frame.
 
-A footage is a file name pattern with `%d` or `%0Nd` for the number, and the numbers of the first and last picture.
-The scene shows picture `n` on frame `n + frame_offset`.
+Footage is a file name pattern with `%d` or `%0Nd` for the number, and the numbers of the first and last picture. The scene
+shows picture `n` on frame `n + frame_offset`.
 """
 
 from __future__ import annotations
@@ -18,35 +18,35 @@ MOVIES = {".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm", ".mpg", ".mpeg", ".og
 
 @dataclass(frozen=True)
 class Sequence:
-    """Pictures `first` to `last`, with the picture shown on scene frame `picture + offset`."""
+    """A sequence of picture files without a gap."""
 
     pattern: str
     first: int
     last: int
     picked: int
     missing: int = 0
-    """How many pictures of the same name lie beyond a gap, and so are left out."""
+    """Number of pictures of the same name beyond a gap. They are left out."""
 
 
 @dataclass(frozen=True)
 class Source:
-    """What a Blender image or clip shows: a picture file or a movie, and when."""
+    """The picture file or movie that a Blender image or clip shows, and its timing."""
 
     path: str
     movie: bool
     frame_of_first: int | None = None
-    """Scene frame on which the movie's first frame or the picked picture is shown; `None`: not timed."""
+    """Scene frame that shows the movie's first frame or the picked picture; `None` if there is no timing."""
     timed_number: int | None = None
-    """The picture that is shown on `frame_of_first`; `None`: the picked one."""
+    """Number of the picture on `frame_of_first`; `None` for the picked picture."""
 
 
 def is_movie(path: str) -> bool:
-    """Whether a file name is a movie's."""
+    """Whether a file name has the ending of a movie."""
     return os.path.splitext(path)[1].lower() in MOVIES
 
 
 def sequence_around(path: str) -> Sequence:
-    """The pictures without a gap around a picked file: same name but for the last number in it."""
+    """The pictures around a picked file, up to the first gap. Their names differ only in the last number."""
     folder, name = os.path.split(os.path.abspath(path))
     if not os.path.isfile(path):
         raise Problem(f"No file {path}: it was moved or renamed")
@@ -58,7 +58,8 @@ def sequence_around(path: str) -> Sequence:
     widths = {len(text) for text in numbers.values()}
     padded = any(text.startswith("0") and len(text) > 1 for text in numbers.values())
     if padded:
-        # A file of another width belongs to another sequence (frame_01 beside frame_001), unless the number outgrew it.
+        # A number with another count of digits belongs to another sequence (frame_01 beside frame_001), unless it is too large
+        # for the count.
         numbers = {n: text for n, text in numbers.items() if text == f"{n:0{len(digits)}d}"}
     elif len(widths) > 1:
         numbers = {n: text for n, text in numbers.items() if text == str(n)}
@@ -76,7 +77,7 @@ def sequence_around(path: str) -> Sequence:
 
 
 def _numbers(folder: str, head: str, tail: str) -> dict[int, str]:
-    """Number and its text of every file `head` + number + `tail`."""
+    """The numbers of all files `head` + number + `tail`, with their text."""
     found = {}
     for entry in os.listdir(folder):
         middle = entry[len(head) : len(entry) - len(tail)] if tail else entry[len(head) :]
@@ -93,7 +94,7 @@ def picture(pattern: str, number: int) -> str:
 
 
 def pattern_of(ob) -> str:
-    """The absolute pattern of the object's footage; a `Problem` if its pictures are not there."""
+    """The absolute pattern of an object's footage. Raises a `Problem` if the pictures are missing."""
     import bpy
 
     settings = ob.rototoon
@@ -131,7 +132,7 @@ def size_of(path: str) -> tuple[int, int]:
 
 
 def source_of_image(image, user) -> Source:
-    """What an image datablock with its image user shows."""
+    """The source of an image data-block with its image user."""
     import bpy
 
     if image is None:
@@ -150,7 +151,7 @@ def source_of_image(image, user) -> Source:
 
 
 def source_of_clip(clip) -> Source:
-    """What a movie clip shows: its file (or first frame) on `frame_start`, `frame_offset` pictures later."""
+    """The source of a movie clip. On `frame_start` it shows its file's picture, or its first frame, shifted by `frame_offset`."""
     import bpy
 
     if clip is None:
@@ -163,7 +164,7 @@ def source_of_clip(clip) -> Source:
 
 
 def background_source(camera) -> tuple[Source, object]:
-    """What a camera shows in its background, and the background image that does."""
+    """The source of a camera's background, and its background image."""
     shown = [entry for entry in camera.data.background_images if entry.show_background_image]
     for entry in shown:
         if entry.source == "IMAGE" and entry.image is not None:
@@ -183,7 +184,7 @@ def bpy_scene_clip():
 
 
 def first_frame(source: Source, sequence: Sequence, scene_start: int) -> int:
-    """The scene frame on which the sequence's first picture is shown."""
+    """The scene frame that shows the sequence's first picture."""
     if source.frame_of_first is None:
         return scene_start
     if source.movie:
@@ -193,12 +194,12 @@ def first_frame(source: Source, sequence: Sequence, scene_start: int) -> int:
 
 
 def trimmed(sequence: Sequence, limit: int) -> Sequence:
-    """No more than `limit` pictures, from the first."""
+    """The first `limit` pictures."""
     return replace(sequence, last=min(sequence.last, sequence.first + max(limit, 1) - 1))
 
 
 def relative(path: str, blend: str) -> str:
-    """A path relative to a .blend where it lies beside or below it, or not too far; else absolute."""
+    """A path relative to a .blend file if it is at most three folders up, otherwise absolute."""
     if not blend or path.startswith("//"):
         return path
     try:

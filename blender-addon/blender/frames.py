@@ -10,7 +10,7 @@ import bpy
 
 @contextmanager
 def kept(scene: bpy.types.Scene) -> Iterator[None]:
-    """Sets the scene back to its frame at the end, where it was set to another."""
+    """At the end, sets the scene back to the frame that it had, if it has another frame then."""
     before = scene.frame_current, scene.frame_subframe
     try:
         yield

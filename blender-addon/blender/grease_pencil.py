@@ -1,11 +1,11 @@
-"""The one place that knows Blender's Grease Pencil API (version 3: Blender 4.5 to 5.2).
+"""Blender's Grease Pencil API (version 3, Blender 4.5 to 5.2): layers, frames, drawings and their attributes.
 
-A drawing is a set of strokes (Blender calls them curves) whose points lie in one flat array; the stroke `i` owns the
-points `offsets[i]` to `offsets[i + 1]`. Values live in attributes of the POINT or CURVE domain. All values go in and
-out as whole NumPy arrays: point by point, the Python API is a thousand times slower.
+A drawing is a set of strokes, which Blender calls curves. The points of all strokes are in one flat array: stroke `i` has the
+points `offsets[i]` to `offsets[i + 1]`. Values are in attributes of the POINT or CURVE domain. All values are read and written
+as complete NumPy arrays, since the Python API is a thousand times slower point by point.
 
-Three rules keep this safe: a frame is not held across `frames.new` (it dangles; the drawing stays valid), a stroke is
-not held at all, and a new attribute is filled for all strokes, since Blender's default (0) means invisible for opacity.
+Three rules keep this safe. No reference to a frame is kept across `frames.new`, which makes it dangle; the drawing stays valid. No
+reference to a stroke is kept. A new attribute is set for all strokes, since Blender's default is 0, which makes opacity invisible.
 """
 
 from __future__ import annotations
@@ -17,45 +17,45 @@ import bpy
 import numpy as np
 
 GENERATED = "GENERATED"
-"""Keyframe type of the frames that hold nothing of the artist's."""
+"""Keyframe type of frames on which nothing is the artist's."""
 KEYFRAME = "KEYFRAME"
 """Keyframe type of the artist's frames."""
 
 PART = "rototoon_part"
-"""Which part a stroke belongs to; 0 for a stroke that was never identified."""
+"""Number of the part of a stroke; 0 for a stroke without a part."""
 MADE = "rototoon_generated"
-"""Whether a stroke was written by tracking or snapping."""
+"""Whether tracking or snapping wrote the stroke."""
 CONTROL = "rototoon_control"
-"""For each drawn point, which control point of the part it is; fractions lie between two control points."""
+"""For each drawn point the index of its control point; fractions are between two control points."""
 TRACKED = "rototoon_tracked"
-"""Where tracking put a point: what differs from it was moved by the artist."""
+"""Where tracking put a point. If the point is elsewhere, the artist moved it."""
 PIN = "rototoon_pin"
 """Whether the artist fixed a point of a generated stroke."""
 CENTER = "rototoon_center"
 """The corrected centre of a generated stroke in footage pixels (x, y, 1), or (0, 0, 0)."""
 CONFIDENCE = "rototoon_confidence"
-"""How sure a tracked point is, 0 to 1."""
+"""Confidence of a tracked point, 0 to 1."""
 SEGMENT = "rototoon_segment"
-"""For each point of a snapped stroke, the segment between control points that it belongs to."""
+"""For each point of a snapped stroke the index of its segment between control points."""
 
 STROKE = "rototoon_stroke"
-"""Which stroke of its drawing a cut stroke is a part of; 0 for a stroke that was never cut."""
+"""Number of the stroke of which a cut stroke is a part; 0 for a stroke that was never cut."""
 INTERVAL = "rototoon_interval"
-"""From which parameter of that stroke to which a part reaches; both 0 for a whole stroke. Whole numbers are its points, or
-the joints of its pieces where it is a curve."""
+"""Parameters of that stroke at the start and the end of the part; both 0 for a complete stroke. Whole numbers are the stroke's
+points, or the joints of a curve's pieces."""
 
 KEY_POINT = "rototoon_key_point"
-"""Which key point of the skeleton a line across a limb tells, from 1; 0 for none."""
+"""Number of the skeleton's key point that a line across a limb marks, from 1; 0 for none."""
 
 TRACK = "rototoon_track"
-"""Which stroke of the whole film a stroke is: the same number on the keys of a layer and on the in-betweens; 0 for none."""
+"""Number that a stroke keeps on all keys and in-betweens of a layer; 0 for none."""
 TWEENED = "rototoon_tweened"
-"""Whether a stroke was drawn between keys."""
+"""Whether the stroke is an in-between."""
 NEXT = "rototoon_next"
-"""What the artist decided of a stroke and the next key: the number of the pair that it is in, -1 that it has no counterpart
-there, 0 nothing."""
+"""The artist's decision on a stroke's counterpart on the next key: the number of the pair; -1 for no counterpart; 0 if there is no
+decision."""
 BEFORE = "rototoon_before"
-"""The same of the key before: a pair is a stroke whose `NEXT` is the `BEFORE` of one on the next key."""
+"""The same for the key before. Two strokes are a pair if the `NEXT` of one is the `BEFORE` of the other on the next key."""
 
 TYPES = {
     KEY_POINT: ("INT", "CURVE"),
@@ -87,13 +87,13 @@ TYPES = {
     "knots_mode": ("INT8", "CURVE"),
     "resolution": ("INT", "CURVE"),
 }
-"""Data type and domain of each attribute that is ever created here."""
+"""Data type and domain of each attribute that the add-on creates."""
 
 DEFAULTS = {"radius": 0.01, "opacity": 1.0, "fill_opacity": 1.0, CONFIDENCE: 1.0, "nurbs_order": 4, "resolution": 12}
-"""What a missing attribute means to Blender, where it is not 0."""
+"""The value that Blender uses if the attribute is missing, where it is not 0."""
 
 FILL_BY_ID = bpy.app.version >= (5, 1, 0)
-"""Since Blender 5.1 a stroke is filled if its `fill_id` is not 0; before, if its material shows a fill."""
+"""Whether a stroke is filled by its `fill_id` (Blender 5.1 and later: not 0). Before, it is filled if its material shows a fill."""
 
 # Property name, NumPy type and width of an attribute's data, by data type.
 _LAYOUT = {
@@ -121,12 +121,12 @@ def is_drawing(ob: bpy.types.Object | None) -> bool:
 
 
 def layers(ob: bpy.types.Object, name: str) -> list[bpy.types.bpy_struct]:
-    """The layers called `name`, or `name` followed by a dot or a space and more, lowest first."""
+    """The layers called `name`, or whose name begins with `name` and a dot or space; the lowest first."""
     return [layer for layer in ob.data.layers if layer.name == name or layer.name.startswith((name + ".", name + " "))]
 
 
 def layer(ob: bpy.types.Object, name: str) -> bpy.types.bpy_struct:
-    """The layer called `name`, made on top if there is none; unlit, since in a scene without lamps ink would be black."""
+    """The layer called `name`. If there is none, it is made on top, without lights: in a scene without lamps, lit ink is black."""
     found = ob.data.layers.get(name)
     if found is None:
         found = ob.data.layers.new(name)
@@ -145,7 +145,7 @@ def every_layer(ob: bpy.types.Object) -> list[bpy.types.bpy_struct]:
 
 
 def frame_numbers(layer: bpy.types.bpy_struct, selected: bool = False) -> list[int]:
-    """Frames of a layer in time order; with `selected`, those that are selected."""
+    """Frame numbers of a layer in time order; with `selected`, only those of selected frames."""
     return [frame.frame_number for frame in layer.frames if frame.select or not selected]
 
 
@@ -163,7 +163,7 @@ def set_keyframe_type(layer: bpy.types.bpy_struct, types: Mapping[int, str]) -> 
 
 
 def make_frames(layer: bpy.types.bpy_struct, numbers: Iterable[int], kind: str) -> None:
-    """Makes empty frames of a keyframe type where there is none yet."""
+    """Makes empty frames of a keyframe type on the numbers that have no frame."""
     have = {frame.frame_number for frame in layer.frames}
     for number in numbers:
         if number not in have:
@@ -182,10 +182,10 @@ def copy_frame(layer: bpy.types.bpy_struct, source: int, number: int) -> None:
 
 
 def offsets(drawing: bpy.types.bpy_struct) -> np.ndarray:
-    """Where each stroke's points begin, and the number of points at the end: int32 (strokes + 1)."""
+    """Index of each stroke's first point, then the number of points: int32 (strokes + 1)."""
     position = drawing.attributes.get("position")
     if position is None or not len(position.data):
-        # Of an empty drawing Blender claims one offset and refuses to hand it out.
+        # For an empty drawing Blender reports one offset, but reading it fails.
         return np.zeros(1, np.int32)
     found = np.empty(len(drawing.curve_offsets), np.int32)
     drawing.curve_offsets.foreach_get("value", found)
@@ -198,7 +198,7 @@ def has(drawing: bpy.types.bpy_struct, name: str) -> bool:
 
 
 def get(drawing: bpy.types.bpy_struct, name: str, count: int) -> np.ndarray | None:
-    """The values of an attribute, `count` rows; `None` where the drawing has no such attribute (of that length)."""
+    """The values of an attribute, `count` rows. `None` if the drawing has no such attribute of that length."""
     attribute = drawing.attributes.get(name)
     if attribute is None or attribute.data_type not in _LAYOUT or len(attribute.data) != count:
         return None
@@ -209,13 +209,13 @@ def get(drawing: bpy.types.bpy_struct, name: str, count: int) -> np.ndarray | No
 
 
 def value(drawing: bpy.types.bpy_struct, name: str, count: int) -> np.ndarray:
-    """As `get`, with what a missing attribute means in its place."""
+    """The values of an attribute, `count` rows. A missing attribute has its default values."""
     found = get(drawing, name, count)
     return blank(name, count) if found is None else found
 
 
 def blank(name: str, count: int) -> np.ndarray:
-    """`count` rows of what a missing attribute means."""
+    """`count` rows of an attribute's default value."""
     _, kind, width = _LAYOUT[TYPES[name][0]]
     return np.full(count if width == 1 else (count, width), DEFAULTS.get(name, 0), kind)
 
@@ -224,13 +224,13 @@ def make(drawing: bpy.types.bpy_struct, name: str, kind: str, where: str) -> bpy
     """A new attribute of a drawing."""
     if name != "nurbs_order":
         return drawing.attributes.new(name, kind, where)
-    # Blender 4.5 writes beyond its end when it makes this one by its name; renaming is safe.
+    # Blender 4.5 writes beyond the attribute's end if it makes it under this name. Renaming it is safe.
     drawing.attributes.new("rototoon_order", kind, where).name = name
     return drawing.attributes[name]
 
 
 def put(drawing: bpy.types.bpy_struct, name: str, values: np.ndarray) -> None:
-    """Sets all values of an attribute, which is made if need be."""
+    """Sets all values of an attribute. A missing attribute is made."""
     attribute = drawing.attributes.get(name)
     if attribute is None:
         attribute = make(drawing, name, *TYPES[name])
@@ -256,16 +256,16 @@ def domain(drawing: bpy.types.bpy_struct, name: str) -> str:
 
 @dataclass
 class Rows:
-    """Strokes to write into one drawing: their sizes and the attributes by name, rows in the order of the strokes."""
+    """Strokes to write into one drawing: their sizes, and their attributes by name."""
 
     sizes: np.ndarray
     values: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 def replace_made(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
-    """Puts `rows` in the place of all generated strokes; the artist's strokes stay as they are, below them.
+    """Replaces all generated strokes by `rows`. The artist's strokes stay as they are, below them.
 
-    A drawing that holds just these rows already is not touched.
+    A drawing whose generated strokes equal `rows` is not touched.
     """
     starts = offsets(drawing)
     strokes, count = len(starts) - 1, len(rows.sizes)
@@ -283,7 +283,7 @@ def replace_made(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
 
 
 def _holds(drawing: bpy.types.bpy_struct, rows: Rows, first: int, starts: np.ndarray) -> bool:
-    """Whether the strokes from `first` on have the values of `rows`."""
+    """Whether the strokes from `first` on equal `rows`."""
     for name, values in rows.values.items():
         curve = name != "position" and domain(drawing, name) == "CURVE"
         found = get(drawing, name, len(starts) - 1 if curve else int(starts[-1]))
@@ -296,14 +296,14 @@ def _holds(drawing: bpy.types.bpy_struct, rows: Rows, first: int, starts: np.nda
 
 
 def append(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
-    """Adds strokes behind those that are there."""
+    """Adds strokes after the existing ones."""
     if len(rows.sizes):
         drawing.add_strokes(rows.sizes.tolist())
     _write_tail(drawing, rows)
 
 
 def _write_tail(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
-    """Sets the attributes of the drawing's last strokes, and defaults where the new strokes have no value."""
+    """Sets the attributes of the drawing's last strokes. Attributes that `rows` lacks get their defaults."""
     starts = offsets(drawing)
     strokes, points = len(starts) - 1, int(starts[-1])
     if not len(rows.sizes):
@@ -330,7 +330,7 @@ def remove_strokes(drawing: bpy.types.bpy_struct, indices: list[int]) -> None:
 
 
 def copy_strokes(source: bpy.types.bpy_struct, indices: list[int], target: bpy.types.bpy_struct) -> None:
-    """Adds the strokes `indices` of a drawing to another one, with all attributes that both can hold."""
+    """Adds the strokes `indices` of a drawing to another drawing, with all attributes that can be copied."""
     starts = offsets(source)
     sizes = np.diff(starts)[indices]
     points = np.concatenate([np.arange(starts[i], starts[i + 1]) for i in indices])
@@ -350,7 +350,7 @@ def copy_strokes(source: bpy.types.bpy_struct, indices: list[int], target: bpy.t
 
 
 def selected_points(drawing: bpy.types.bpy_struct) -> np.ndarray:
-    """Which points are selected in edit mode; all where Blender has no selection stored, as it does itself."""
+    """Which points are selected in edit mode. Without a stored selection all are, as in Blender itself."""
     starts = offsets(drawing)
     attribute = drawing.attributes.get(".selection")
     if attribute is None:
@@ -361,7 +361,7 @@ def selected_points(drawing: bpy.types.bpy_struct) -> np.ndarray:
 
 
 def selected_strokes(drawing: bpy.types.bpy_struct) -> np.ndarray:
-    """Which strokes have a selected point in edit mode; none where Blender has no selection stored."""
+    """Which strokes have a selected point in edit mode. Without a stored selection none has."""
     starts = offsets(drawing)
     attribute = drawing.attributes.get(".selection")
     if attribute is None:
@@ -374,7 +374,7 @@ def selected_strokes(drawing: bpy.types.bpy_struct) -> np.ndarray:
 
 
 def new_object(name: str, collection: bpy.types.Collection) -> bpy.types.Object:
-    """A Grease Pencil object with a black ink material, linked to `collection`."""
+    """A new Grease Pencil object with the material Rototoon Ink, linked to `collection`."""
     data = datablocks().new(name)
     ob = bpy.data.objects.new(name, data)
     collection.objects.link(ob)

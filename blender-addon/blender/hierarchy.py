@@ -1,6 +1,6 @@
-"""Where layers are: what carries them, their groups, and a second layer in the same place.
+"""Parents of layers: objects and bones that carry them, their groups, and a second layer in the same place.
 
-A layer that hangs on an object or a bone, or whose own place is animated, is carried by Blender.
+Blender carries a layer if the layer has a parent object or bone, or if its own transform is animated.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from . import camera as cameras
 
 
 def carrier(ob, layer) -> tuple[str, str] | None:
-    """What carries a layer: an object and its bone, or its own animated place; nothing where it lies still in the object."""
+    """The carrier of a layer: an object and its bone, or the layer's animated transform. `None` if the layer is still in its object."""
     if _is_animated(ob, layer.name):
         return "own", layer.name
     if layer.parent is None:
@@ -23,7 +23,7 @@ def carrier(ob, layer) -> tuple[str, str] | None:
 
 
 def _is_animated(ob, name: str) -> bool:
-    """Whether a layer's own place is animated."""
+    """Whether a layer's own transform is animated."""
     data = ob.data.animation_data
     if data is None:
         return False
@@ -36,13 +36,13 @@ def _is_animated(ob, name: str) -> bool:
 
 
 def in_carrier(layer) -> np.ndarray:
-    """4×4: a layer's points to the space of what carries it."""
+    """4×4: a layer's points to the space of its carrier."""
     local = np.array(layer.matrix_local, np.float64)
     return np.array(layer.matrix_parent_inverse, np.float64) @ local if layer.parent is not None else local
 
 
 def groups_of(layer) -> list[str]:
-    """Names of the groups in which a layer lies, the outermost first."""
+    """Names of the groups that contain a layer, the outermost first."""
     names = []
     group = layer.parent_group
     while group is not None:
@@ -52,7 +52,7 @@ def groups_of(layer) -> list[str]:
 
 
 def beside(ob, layer, name: str):
-    """The layer called `name`; if there is none, a new one in the place of `layer` and carried by the same thing."""
+    """The layer called `name`. If there is none, a new layer with the same place and the same carrier as `layer`."""
     found = ob.data.layers.get(name)
     if found is not None:
         return found
@@ -62,7 +62,7 @@ def beside(ob, layer, name: str):
         found.translation, found.rotation, found.scale = layer.translation, layer.rotation, layer.scale
         return found
     found.parent, found.parent_bone = layer.parent, layer.parent_bone
-    # What Blender keeps of the place of the parent at that moment cannot be set: the layer's own place makes up for it.
+    # Blender sets the inverse matrix of the parent, and scripts cannot. The layer's own transform makes up for it.
     own = np.linalg.inv(cameras.layer_to_world(ob, found)) @ cameras.layer_to_world(ob, layer)
     place, turn, size = Matrix((np.array(found.matrix_local) @ own).tolist()).decompose()
     found.translation, found.rotation, found.scale = place, turn.to_euler(), size

@@ -1,9 +1,9 @@
 """Contours as a Blender mask: a layer for each part, a shape key for each frame.
 
-Mask coordinates go from 0 to 1 along the longer side of the picture, y up, the shorter side in the middle. Python
-cannot make shape keys of masks; the operator `mask.shape_key_insert` can, from an editor in mask mode, for layers that have a
-selected point. It keys what the points are, so that nothing may evaluate the mask between setting and keying: points
-are set in whole arrays, which tags nothing.
+Mask coordinates go from 0 to 1 along the longer side of the picture, with y up and the shorter side in the middle. Python
+cannot make shape keys of masks. The operator `mask.shape_key_insert` can: it needs an editor in mask mode, and keys layers that
+have a selected point. It keys the current points. So the mask must not be evaluated between setting the points and keying them.
+Setting points as complete arrays does not tag the mask for evaluation.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from .errors import Problem
 
 @dataclass(frozen=True)
 class Outline:
-    """A part's contour on its frames, with one number of points."""
+    """A part's contour on its frames, with the same number of points on each."""
 
     name: str
     closed: bool
     frames: dict[int, np.ndarray]
-    """(N, 2) pixels by scene frame, ascending."""
+    """Pixels (N, 2) by scene frame, in time order."""
 
 
 def to_mask(pixels: np.ndarray, width: int, height: int) -> np.ndarray:
@@ -34,7 +34,7 @@ def to_mask(pixels: np.ndarray, width: int, height: int) -> np.ndarray:
 
 
 def write(context, name: str, parts: list[Outline], width: int, height: int) -> bpy.types.Mask:
-    """Makes the mask `name`, or makes the one that has this name anew."""
+    """Makes the mask `name`. A mask of this name is replaced."""
     mask = bpy.data.masks.get(name) or bpy.data.masks.new(name)
     mask.layers.clear()
     mask.animation_data_clear()
@@ -57,7 +57,7 @@ def write(context, name: str, parts: list[Outline], width: int, height: int) -> 
 def _layer(mask: bpy.types.Mask, part: Outline) -> None:
     layer = mask.layers.new(name=part.name)
     spline = layer.splines.new()
-    # A new spline has a point already.
+    # A new spline has one point.
     count = len(next(iter(part.frames.values())))
     if count > 1:
         spline.points.add(count - 1)
@@ -81,7 +81,7 @@ def _key(scene, mask, parts: list[Outline], frame: int, size: tuple[int, int]) -
 
 
 def _lifetime(layer, first: int, last: int, begin: int, end: int) -> None:
-    """Shows a layer from its first to its last frame, of those that the mask has."""
+    """Shows a layer from frame `first` to `last` only; `begin` and `end` are the mask's frames."""
     if (first, last) == (begin, end):
         return
     for frame, alpha in ((first - 1, 0.0), (first, 1.0), (last, 1.0), (last + 1, 0.0)):
@@ -91,12 +91,12 @@ def _lifetime(layer, first: int, last: int, begin: int, end: int) -> None:
 
 @contextmanager
 def _mask_editor(context, mask) -> Iterator[None]:
-    """An image editor in mask mode as the context; an editor of another type lends its place for so long."""
+    """Makes an image editor in mask mode the context. If there is none, another editor becomes one meanwhile."""
     windows = [context.window] if context.window else list(context.window_manager.windows)
     areas = [(window, area) for window in windows for area in window.screen.areas]
     if not areas:
-        raise Problem("Masks are keyed in an editor, but Blender has no window")
-    # The editor that the button stands in is the last choice.
+        raise Problem("Blender has no window, but keying a mask needs an editor")
+    # The editor with the button is the last choice.
     window, area = min(areas, key=lambda each: (each[1].type != "IMAGE_EDITOR", each[1] == context.area))
     kind = area.ui_type
     area.type = "IMAGE_EDITOR"

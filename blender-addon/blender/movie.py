@@ -1,8 +1,8 @@
-"""Movies as picture sequences: every frame once, as PNG, in a cache of limited size.
+"""Movies as picture sequences: every frame as a PNG file, in a cache of limited size.
 
-Blender decodes (a strip in a scene of its own, rendered without any change of colour), so whatever it plays can be
-tracked. A finished movie is a folder named after its path, size and date; while it is being made the folder has another
-name, so what was broken off is never taken for whole.
+Blender decodes the movie: it renders a strip in a temporary scene, without any change of colour. So every movie that Blender
+plays can be tracked. A movie's folder is named after the movie's path, size and date. While the frames are being made, the folder
+has another name, so an incomplete one is never used.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ class Movie:
 
 
 def key(path: str) -> str:
-    """Name of a movie's folder in the cache; another one once the file has changed."""
+    """Name of a movie's folder in the cache. It changes when the file changes."""
     stat = os.stat(path)
     text = f"{os.path.realpath(path)}\0{stat.st_size}\0{stat.st_mtime_ns}"
     return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()[:24]
 
 
 def cached(path: str, cache: str) -> Movie | None:
-    """The movie's frames if they are in the cache; marks them as used."""
+    """The movie's frames if they are in the cache. Marks them as used."""
     folder = os.path.join(cache, key(path))
     try:
         with open(os.path.join(folder, "movie.txt"), encoding="utf-8") as file:
@@ -51,7 +51,7 @@ def cached(path: str, cache: str) -> Movie | None:
 
 
 def extract(path: str, cache: str) -> Iterator[float]:
-    """Makes the movie's frames, one a step; yields the share that is done. Close it early to leave nothing behind."""
+    """Makes the movie's frames, one per step, and yields the finished share. Closing it early leaves no files."""
     if not os.path.isfile(path):
         raise Problem(f"No file {path}: it was moved or renamed")
     folder = os.path.join(cache, key(path))
@@ -88,7 +88,7 @@ def _prepare(scene, path: str) -> tuple[int, float]:
     count = getattr(strip, "duration", 0) if bpy.app.version >= (5, 2, 0) else strip.frame_final_duration
     element = strip.elements[0] if len(strip.elements) else None
     if not count or element is None or element.orig_width == 0:
-        raise Problem(f"Cannot read the movie {path}: no frames found in it")
+        raise Problem(f"Cannot read the movie {path}: it has no frames")
     render = scene.render
     render.resolution_x, render.resolution_y = element.orig_width, element.orig_height
     render.resolution_percentage = 100
@@ -102,16 +102,16 @@ def _prepare(scene, path: str) -> tuple[int, float]:
 
 
 def _render(scene, number: int, path: str) -> None:
-    # An animation of one frame: single pictures rendered from a strip all show its first frame.
+    # Rendered as an animation of one frame: a still render of a strip always shows the strip's first frame.
     scene.frame_start = scene.frame_end = number
     scene.render.filepath = path
     bpy.ops.render.render(animation=True, scene=scene.name)
 
 
 def shrink(cache: str, limit: int, keep: set[str]) -> int:
-    """Removes the movies used longest ago until the cache is within `limit` bytes; `keep` names folders in use.
+    """Removes the least recently used movies until the cache is within `limit` bytes. `keep` names folders in use.
 
-    Returns how many were removed.
+    Returns the number of removed movies.
     """
     entries = []
     for entry in _folders(cache):

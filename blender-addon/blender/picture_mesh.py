@@ -1,7 +1,7 @@
-"""A picture that follows a clip: one mesh of all parts' pieces, with a shape on each frame.
+"""A picture that follows a clip: one mesh of all parts' pieces, with a shape key for each frame.
 
-Shapes are absolute shape keys, one a frame, run through by the key's evaluation time; between frames they blend, for motion blur and
-other frame rates. Nearer parts lie a hair nearer to the viewer, on each frame by its own depths.
+The shape keys are absolute. The evaluation time runs through them, one per frame, and blends between frames for motion blur and
+other frame rates. Nearer parts are a little nearer to the viewer, by the depths of each frame.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from . import actions, picture_source
 from .picture_source import Source
 
 GAP = 0.0005
-"""Distance from one part to the next, in sizes of the picture."""
+"""Distance from one part to the next, as a share of the picture's size."""
 
 
 @dataclass
@@ -26,13 +26,13 @@ class Piece:
 
     part: str
     points: np.ndarray
-    """Pixels (N, 2); the contour's own points come first."""
+    """Pixels (N, 2). The contour's points come first."""
     triangles: np.ndarray
-    """(T, 3)."""
+    """Indices of points (T, 3)."""
 
 
 def write(ob, source: Source, pieces: list[Piece], made, frame: int, name: str) -> bpy.types.Object:
-    """Makes the mesh; the drawing is at rest on `frame`, the motion begins after it."""
+    """Makes the mesh. The drawing is at rest on `frame`, and the motion begins on the frame after it."""
     project = made.document
     first, count = project["footage"]["first"], len(next(iter(made.points.values())))
     rest = _coordinates(source, pieces, [piece.points for piece in pieces], _ranks(pieces, project, first))
@@ -57,7 +57,7 @@ def write(ob, source: Source, pieces: list[Piece], made, frame: int, name: str) 
 
 
 def _ranks(pieces: list[Piece], project, frame: int) -> np.ndarray:
-    """By piece how many parts lie behind it on a frame."""
+    """For each piece the number of parts behind it on a frame."""
     entries = {part["name"]: part for part in project["parts"]}
 
     def depth(piece: Piece) -> float:

@@ -1,4 +1,4 @@
-"""Where the picture of a drawing is in the scene: an image empty, a plane with an image texture, or the drawing's own footage."""
+"""The picture of a drawing and its place in the scene: an image empty, a plane with an image texture, or the drawing's footage."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class Source:
     """A picture in the scene."""
 
     matrix: np.ndarray
-    """4×4, the picture's space to the world."""
+    """4×4: the picture's space to the world."""
     mapping: cameras.Mapping
-    """Pixels of the footage to the picture's space."""
+    """Footage pixels ↔ points in the picture's space."""
     uv: np.ndarray
     """4×2: (x, y, z, 1) in the picture's space to texture coordinates."""
     material: bpy.types.Material | None
@@ -29,13 +29,13 @@ class Source:
 
     @property
     def towards(self) -> np.ndarray:
-        """The picture's normal on the viewer's side."""
+        """The picture's normal, towards the viewer."""
         normal = self.mapping.normal / np.linalg.norm(self.mapping.normal)
         return normal * (np.sign(normal @ self.mapping.from_view[:3, 2]) or 1.0)
 
 
 def of(ob, picture: bpy.types.Object | None, frame: int) -> Source:
-    """The picture of a drawing on a frame: that of an object, or the footage."""
+    """The picture of a drawing on a frame: that of the object `picture`, or the footage."""
     if picture is None:
         return _of_footage(ob, frame)
     if picture.type == "EMPTY" and picture.empty_display_type == "IMAGE" and picture.data is not None:
@@ -58,7 +58,7 @@ def _of_footage(ob, frame: int) -> Source:
 
 
 def _still(path: str) -> bpy.types.Image:
-    """One picture of the footage; the footage itself, as Blender shows it, runs on with the frames."""
+    """One picture of the footage as an image of its own. The footage's image changes with the scene's frame."""
     for image in bpy.data.images:
         if image.source == "FILE" and image.filepath and bpy.path.abspath(image.filepath) == path:
             return image
@@ -102,7 +102,7 @@ def _seen(ob, picture, plane, uv, material, image) -> Source:
 
 
 def _fitted(points: np.ndarray, uv: np.ndarray) -> np.ndarray:
-    """The affine map from places to texture coordinates."""
+    """The affine map from points to texture coordinates."""
     return np.linalg.lstsq(np.column_stack([points, np.ones(len(points))]), uv.astype(np.float64), rcond=None)[0]
 
 
@@ -116,7 +116,7 @@ def _texture(mesh):
 
 
 def shadeless(image: bpy.types.Image) -> bpy.types.Material:
-    """A material that shows an image in its own colours, clear where the image is."""
+    """A material that shows an image in its own colours, without shading, and transparent where the image is."""
     material = bpy.data.materials.new(image.name)
     if not material.node_tree:
         material.use_nodes = True

@@ -1,7 +1,6 @@
-"""From an object's settings to the mapping between pixels and layer points, frame by frame.
+"""The mapping between pixels and layer points on each frame, from an object's settings.
 
-A camera or object that stands still has one mapping for all frames; where one of them moves, the scene is set to each
-frame in turn and set back.
+If the camera and the object do not move, one mapping serves all frames. Otherwise the scene is set to each frame and back.
 """
 
 from __future__ import annotations
@@ -19,10 +18,10 @@ from .frames import kept
 
 
 class Mapper:
-    """Mappings of an object's contour layers (or one other layer) on the frames of its footage."""
+    """Mappings of an object's layers on some frames."""
 
     def __init__(self, ob: bpy.types.Object, frames: Iterable[int], points: dict[int, np.ndarray], names: list[str]):
-        """`points`: the artist's points by layer index, which show on what plane was drawn; `names`: the layers."""
+        """`names` are the layers. `points` are the artist's points by layer index; they show the plane on which the artist drew."""
         self._mappings: dict[tuple[int, int | None], cameras.Mapping] = {}
         self._moves = _moves(ob)
         self._points = points
@@ -57,7 +56,7 @@ class Mapper:
 
 
 def view_of(ob: bpy.types.Object) -> cameras.View:
-    """The view that the object's settings name, on the current frame."""
+    """The view of an object's footage on the current frame."""
     settings = ob.rototoon
     width, height = settings.width, settings.height
     if not width or not height:
@@ -79,7 +78,7 @@ def camera_of(ob: bpy.types.Object) -> bpy.types.Object | None:
 
 
 def placement_in(camera: bpy.types.Object, ob: bpy.types.Object) -> cameras.Placement:
-    """How the camera's background image with the object's footage lies in the frame; fitted if there is none."""
+    """The placement of the camera's background image if it shows the object's footage; otherwise the default, which fits."""
     try:
         source, entry = footage.background_source(camera)
     except Problem:
@@ -106,7 +105,7 @@ def _shows(source: footage.Source, settings) -> bool:
 
 
 def _moves(ob: bpy.types.Object) -> bool:
-    """Whether the object, the layers' parents or what shows the footage can differ from frame to frame."""
+    """Whether the object, a layer's parent, or the camera or reference image can move."""
     settings = ob.rototoon
     objects = [ob, settings.reference if settings.plane == "REFERENCE" else camera_of(ob)]
     objects += [layer.parent for layer in gp.layers(ob, settings.contours_layer)]
@@ -114,7 +113,7 @@ def _moves(ob: bpy.types.Object) -> bool:
 
 
 def is_animated(ob: bpy.types.Object | None) -> bool:
-    """Whether an object, or one that it hangs on, can differ from frame to frame."""
+    """Whether an object or one of its parents can move."""
     while ob is not None:
         owners = [ob] + ([ob.data] if ob.type in {"CAMERA", "EMPTY"} and ob.data is not None else [])
         if any(_has_motion(owner) for owner in owners) or len(ob.constraints):

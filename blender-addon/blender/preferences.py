@@ -1,4 +1,4 @@
-"""The extension's settings, and the folders that they name."""
+"""The extension's settings in Blender's preferences."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 import bpy
 
 EXTENSION = __package__.rpartition(".")[0]
-"""Name of the extension's package, by which Blender knows its settings."""
+"""Name of the extension's package. Blender finds the settings by this name."""
 
 
 def preferences() -> bpy.types.AddonPreferences:
@@ -16,12 +16,12 @@ def preferences() -> bpy.types.AddonPreferences:
 
 
 def threads() -> int:
-    """Threads to use; 0 for one a core."""
+    """Number of threads; 0 for one per core."""
     return preferences().threads
 
 
 def cache_folder() -> str:
-    """The cache's folder, made if need be."""
+    """The folder of the cache. It is made if it does not exist."""
     chosen = preferences().cache_folder
     if not chosen:
         return bpy.utils.extension_path_user(EXTENSION, path="movies", create=True)

@@ -1,4 +1,4 @@
-"""How an object's layers are seen on the current frame, with or without footage."""
+"""Layer points to pixels on the current frame, with or without footage."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from . import camera as cameras
 from . import placement
 
 FRONT_SCALE = 100.0
-"""Pixels a unit where nothing shows the drawing but Blender's front view."""
+"""Pixels per unit if there is neither footage nor a camera."""
 
 
 class Projection:
-    """From layer points to pixels.
+    """Maps layer points to pixels.
 
-    Those of the footage where the object has some, else of the scene's camera, else of the front view.
+    These are pixels of the object's footage if it has some, otherwise of the scene's camera, otherwise of the front view.
     """
 
     def __init__(self, ob: bpy.types.Object):
@@ -23,25 +23,25 @@ class Projection:
         self._view = _view(ob)
 
     def pixels(self, layer, points: np.ndarray) -> np.ndarray:
-        """Points (N, 3) of a layer to pixels (N, 2)."""
+        """Pixels (N, 2) of points (N, 3) of a layer."""
         return cameras.Mapping(self._view, cameras.layer_to_world(self._ob, layer)).to_pixels(points)
 
     def scale(self, layer, points: np.ndarray) -> float:
-        """Pixels a unit of the layer, at the middle of some points."""
+        """Pixels per unit of the layer, at the mean of some points."""
         middle = np.asarray(points, np.float64).mean(0)
-        # Seen from ahead, one of the three axes is foreshortened to nothing at worst; the longest is seen best.
+        # The view may foreshorten one of the three axes to nothing. The longest one is the best measure.
         corners = middle + 1e-3 * np.vstack([np.zeros(3), np.eye(3)])
         seen = self.pixels(layer, corners)
         return float(np.linalg.norm(seen[1:] - seen[0], axis=1).max() / 1e-3)
 
 
 def world_scale(ob: bpy.types.Object, layer) -> float:
-    """World units a unit of the layer."""
+    """World units per unit of the layer."""
     return float(np.linalg.norm(cameras.layer_to_world(ob, layer)[:3, :3], axis=0).max())
 
 
 def frame_of(ob: bpy.types.Object) -> tuple[cameras.View, tuple[int, int]] | None:
-    """The view and its picture's size: the object's footage, else the scene's camera; nothing without either."""
+    """The view and the size of its picture: those of the object's footage, otherwise of the scene's camera, otherwise `None`."""
     settings, scene = ob.rototoon, bpy.context.scene
     if settings.width and settings.height:
         return placement.view_of(ob), (settings.width, settings.height)

@@ -1,4 +1,4 @@
-"""A scene to begin in: camera or reference image with the footage, and a Grease Pencil object that faces it."""
+"""Objects to begin with: a camera or reference image that shows the footage, and a Grease Pencil object that faces it."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from . import footage
 from . import grease_pencil as gp
 
 WIDTH = 10.0
-"""Width of a new camera's frame or reference image in scene units: Blender's brushes are made for such sizes."""
+"""Width of a new camera's frame or reference image in scene units. Blender's brushes suit this size."""
 DISTANCE = 10.0
-"""How far a new camera stands off."""
+"""Distance of a new camera from the drawing plane."""
 
 
 @dataclass(frozen=True)
 class Shot:
-    """A picture sequence, and when the scene shows it."""
+    """A picture sequence and its timing."""
 
     pattern: str
     first: int
@@ -45,7 +45,7 @@ def assign(ob, shot: Shot) -> None:
 
 
 def build(context, shot: Shot, plane: str, name: str, match_scene: bool) -> bpy.types.Object:
-    """Camera background or reference image, and a Grease Pencil object with its footage, made active."""
+    """Makes a camera background or a reference image, and a Grease Pencil object with the footage, which becomes active."""
     scene = context.scene
     if match_scene:
         scene.render.resolution_x, scene.render.resolution_y = shot.width, shot.height
@@ -81,7 +81,7 @@ def _camera(context):
 
 
 def load_sequence(shot: Shot):
-    """The footage as an image datablock."""
+    """The footage as an image data-block."""
     image = bpy.data.images.load(footage.picture(shot.pattern, shot.first), check_existing=True)
     image.source = "SEQUENCE"
     image.name = os.path.basename(shot.pattern)
@@ -112,14 +112,14 @@ def _reference(context, shot: Shot, name: str):
     _time(empty.image_user, shot)
     empty.empty_display_size = WIDTH
     empty.empty_image_offset = (-0.5, -0.5)
-    # A hair behind the drawing plane, so that strokes are seen.
+    # A little behind the drawing plane, so that strokes are visible.
     empty.matrix_world = Matrix.Translation((0, 0.001, 0)) @ Matrix.Rotation(math.pi / 2, 4, "X")
     (context.collection or context.scene.collection).objects.link(empty)
     return empty
 
 
 def _facing(scene, camera) -> Matrix:
-    """Where an object's front (XZ) plane fills the camera's frame `WIDTH` wide, in the middle of the view."""
+    """The matrix of an object whose front (XZ) plane faces the camera, where the camera's frame is `WIDTH` wide."""
     bpy.context.view_layer.update()
     left, bottom, width, height = cameras.camera_frame(scene.render, camera.data)
     centre = (left + width / 2, bottom + height / 2)
@@ -127,7 +127,7 @@ def _facing(scene, camera) -> Matrix:
     distance = DISTANCE if camera.data.type == "ORTHO" else WIDTH / width
     reach = 1.0 if camera.data.type == "ORTHO" else distance
     place = Matrix.Translation((centre[0] * reach, centre[1] * reach, -distance))
-    # The object's Y runs away from the viewer, its Z up.
+    # The object's Y axis points away from the viewer, its Z axis up.
     return matrix @ place @ Matrix.Rotation(-math.pi / 2, 4, "X")
 
 

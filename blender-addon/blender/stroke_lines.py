@@ -1,4 +1,4 @@
-"""Strokes as the lines that Blender draws, whatever their curve type: for showing them and for finding what was clicked."""
+"""The lines that Blender draws for strokes of every curve type. They serve to show strokes and to find the clicked one."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import numpy as np
 from . import strokes as st
 
 STEPS = 6
-"""Steps in which a piece of a curve is drawn."""
+"""Number of steps per piece of a curve."""
 
 
 def lines(content: st.Content) -> list[np.ndarray]:
-    """Of each stroke the points of its line (N, 3), in the layer's space; closed strokes end where they begin."""
+    """For each stroke the points of its line (N, 3) in layer space. The line of a closed stroke ends where it begins."""
     points = np.asarray(content.point["position"], np.float64) if len(content.sizes) else np.zeros((0, 3))
     closed = content.strokes("cyclic")
     order, knots = content.strokes("nurbs_order"), content.strokes("knots_mode")
@@ -32,7 +32,7 @@ def lines(content: st.Content) -> list[np.ndarray]:
 
 
 def _nurbs(guides: np.ndarray, order: int, knots: int, closed: bool) -> np.ndarray:
-    """By de Boor's algorithm, all places at once; weights are left out."""
+    """Points on a NURBS by de Boor's algorithm, all at once. Weights are ignored."""
     degree = min(order, len(guides)) - 1
     if closed:
         guides = np.vstack([guides, guides[:degree]])

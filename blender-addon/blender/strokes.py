@@ -1,7 +1,7 @@
-"""Whole drawings as arrays: everything that Blender knows of their strokes, out and in again.
+"""Complete drawings as arrays: reading and writing everything that Blender knows of their strokes.
 
-A drawing that is written with other numbers of strokes and points keeps its attributes; only vertex groups, which
-Blender keeps elsewhere, stay with the points of the same number.
+A drawing keeps its attributes when it is written with other numbers of strokes and points. Vertex groups are an exception: Blender
+keeps them elsewhere, and they stay with the same point indices.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from . import grease_pencil as gp
 CATMULL_ROM, POLY, BEZIER, NURBS = range(4)
 _TYPE_NAMES = ("CATMULL_ROM", "POLY", "BEZIER", "NURBS")
 ENDPOINT, ENDPOINT_BEZIER = 1, 3
-"""Knots of a curve from its first to its last control point, and of a chain of Bézier curves."""
+"""Knot modes: of a curve from its first to its last control point, and of a chain of Bézier curves."""
 
 
 @dataclass
@@ -25,11 +25,11 @@ class Content:
     """The strokes of a drawing."""
 
     sizes: np.ndarray
-    """Points of each stroke."""
+    """Number of points of each stroke."""
     types: np.ndarray
     """Curve type of each stroke."""
     point: dict[str, np.ndarray] = field(default_factory=dict)
-    """Attributes of the points by name, the positions among them."""
+    """Attributes of the points by name, with the positions."""
     curve: dict[str, np.ndarray] = field(default_factory=dict)
     """Attributes of the strokes by name."""
     kinds: dict[str, str] = field(default_factory=dict)
@@ -37,28 +37,28 @@ class Content:
 
     @property
     def starts(self) -> np.ndarray:
-        """Where the points of each stroke begin, and the number of points at the end."""
+        """Index of each stroke's first point, then the number of points."""
         return np.concatenate([[0], np.cumsum(self.sizes)]).astype(np.int32)
 
     def strokes(self, name: str) -> np.ndarray:
-        """An attribute of the strokes, or what it means that it is missing."""
+        """An attribute of the strokes, or its default values if it is missing."""
         found = self.curve.get(name)
         return gp.blank(name, len(self.sizes)) if found is None else found
 
     def set_strokes(self, name: str, values: np.ndarray) -> None:
-        """Sets an attribute of the strokes, which is made if need be."""
+        """Sets an attribute of the strokes. A missing attribute is made."""
         self.kinds.setdefault(name, gp.TYPES[name][0])
         self.curve[name] = values
 
     def finite(self) -> np.ndarray:
-        """Which strokes have points, and only such as are places."""
+        """Which strokes have points, all of them finite."""
         fine = np.isfinite(self.point["position"]).all(1) if len(self.sizes) else np.zeros(0, bool)
         bad = np.zeros(len(self.sizes), bool)
         bad[np.repeat(np.arange(len(self.sizes)), self.sizes)[~fine]] = True
         return ~bad & (self.sizes > 0)
 
     def equals(self, other: Content) -> bool:
-        """Whether both have the same strokes with the same attributes."""
+        """Whether both have the same strokes and attributes."""
         if not (np.array_equal(self.sizes, other.sizes) and np.array_equal(self.types, other.types)):
             return False
         mine, theirs = self.point | self.curve, other.point | other.curve
@@ -70,7 +70,7 @@ def _same(a: np.ndarray, b: np.ndarray) -> bool:
 
 
 def read(drawing) -> Content:
-    """Everything that a drawing holds, but for selections and vertex groups."""
+    """The content of a drawing, without selections and vertex groups."""
     starts = gp.offsets(drawing)
     strokes, points = len(starts) - 1, int(starts[-1])
     content = Content(np.diff(starts), np.zeros(strokes, np.int8))
@@ -89,7 +89,7 @@ def read(drawing) -> Content:
 
 
 def write(drawing, content: Content) -> None:
-    """Makes a drawing hold these strokes and no others."""
+    """Replaces the content of a drawing."""
     count, have = len(content.sizes), len(gp.offsets(drawing)) - 1
     if count > have:
         drawing.add_strokes([1] * (count - have))
@@ -118,7 +118,7 @@ def _set_types(drawing, types: np.ndarray) -> None:
 
 
 def joined(one: Content, other: Content) -> Content:
-    """The strokes of both, each with the attributes of either."""
+    """The strokes of both contents. Each gets the attributes of both."""
     result = Content(np.concatenate([one.sizes, other.sizes]), np.concatenate([one.types, other.types]))
     result.kinds = one.kinds | other.kinds
     for side in ("point", "curve"):
@@ -138,22 +138,22 @@ def _or_blank(name: str, values: dict, count: int, *known: dict) -> np.ndarray:
 
 
 def ranges(starts: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """The numbers `starts[i]` to `starts[i] + sizes[i]` for all i, one after the other."""
+    """The numbers from `starts[i]` up to `starts[i] + sizes[i]` for all i, one range after the other."""
     ends = np.cumsum(sizes)
     total = int(ends[-1]) if len(ends) else 0
     return np.repeat(np.asarray(starts, np.int64) - (ends - sizes), sizes) + np.arange(total)
 
 
 def shown_frame(layer, frame: int) -> int | None:
-    """The frame whose drawing a layer shows on `frame`."""
+    """The frame of the drawing that a layer shows on `frame`; `None` if it shows none."""
     numbers = [each.frame_number for each in layer.frames if each.frame_number <= frame]
     return max(numbers, default=None)
 
 
 def editable_layers(ob, active: bool) -> list:
-    """The layers whose strokes may be made anew, lowest first; only the active one if asked.
+    """The layers whose strokes may be replaced, the lowest first. With `active`, only the active layer.
 
-    Locked ones are not, nor those with contours: tracking knows their points by number.
+    Locked layers are left out, and so are layers with contours, since tracking knows their points by index.
     """
     layers = [ob.data.layers.active] if active else list(ob.data.layers)
     contours = {layer.name for layer in gp.layers(ob, ob.rototoon.contours_layer)}
@@ -161,7 +161,7 @@ def editable_layers(ob, active: bool) -> list:
 
 
 def filled(ob, content: Content) -> np.ndarray:
-    """For each stroke the number of its fill, 0 where it has none; strokes that are filled together share a number."""
+    """For each stroke the number of its fill; 0 for no fill. Strokes with one common fill have the same number."""
     if gp.FILL_BY_ID:
         return content.strokes("fill_id")
     index = content.strokes("material_index")
@@ -177,7 +177,7 @@ def _shows_fill(material) -> bool:
 
 
 def line_material(ob, index: int) -> int:
-    """Index of the material that draws the line of another one, without its fill; made if there is none yet."""
+    """Index of the material that draws only the line of material `index`, without its fill. It is made if it does not exist."""
     materials = ob.data.materials
     material = materials[min(index, len(materials) - 1)]
     name = f"{material.name} Line"
@@ -192,5 +192,5 @@ def line_material(ob, index: int) -> int:
 
 
 def unique_numbers(used: Iterable[int], count: int) -> np.ndarray:
-    """`count` numbers above all that are used."""
+    """`count` numbers that are larger than all used ones."""
     return np.arange(count, dtype=np.int32) + 1 + max(used, default=0)
