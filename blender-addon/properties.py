@@ -1,4 +1,4 @@
-"""The settings of an object and of the window, put together from the rooms that they belong to."""
+"""The properties of objects and of the window. Each room defines its own; this file puts them together."""
 
 import bpy
 
@@ -9,7 +9,7 @@ from .style.properties import ClipSettings, RototoonBrowser, RototoonClip
 
 
 class RototoonSettings(BoneSettings, ClipSettings, CaptureSettings, bpy.types.PropertyGroup):
-    """What a file keeps of an object beside its strokes."""
+    """Everything that a file keeps of an object beside its strokes."""
 
     extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")
 
@@ -18,13 +18,13 @@ CLASSES = (RototoonPart, RototoonBone, RototoonSettings, RototoonClip, RototoonB
 
 
 def attach() -> None:
-    """Gives every object its settings, and the window manager its list of clips; after registering the classes."""
+    """Adds the property `rototoon` to objects, and the list of clips to the window manager. The classes must be registered."""
     bpy.types.Object.rototoon = bpy.props.PointerProperty(type=RototoonSettings)
     bpy.types.WindowManager.rototoon_clips = bpy.props.PointerProperty(type=RototoonBrowser)
 
 
 def detach() -> None:
-    """Takes them away again; before unregistering the classes."""
+    """Removes both. The classes must still be registered."""
     clip_browser.close()
     del bpy.types.WindowManager.rototoon_clips
     del bpy.types.Object.rototoon

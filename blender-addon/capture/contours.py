@@ -1,9 +1,9 @@
-"""The strokes of the contour layers as parts with keys and generated contours; read only.
+"""Reads the strokes of the contour layers as parts with keys and generated contours. Changes nothing.
 
-A stroke is generated if tracking wrote it; all others are the artist's keys. Two gestures turn a generated stroke into
-a key: setting its frame's keyframe type to another than "Generated", and changing its number of points. Keys are
-therefore a matter of strokes: parts may have different keys, and a frame may hold keys of some and generated strokes of
-others.
+A stroke is generated if tracking wrote it. All other strokes are the artist's keys. Two actions of the artist turn a generated
+stroke into a key: setting its frame's keyframe type to anything but "Generated", and changing its number of points. So each
+stroke is a key or not: parts may have keys on different frames, and a frame may have keys of some parts and generated strokes
+of others.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from . import correspondence
 
 @dataclass
 class Stroke:
-    """One stroke of a drawing, as it was read."""
+    """One stroke of a drawing."""
 
     layer: int
-    """Index among the contour layers, lowest first."""
+    """Index among the contour layers; the lowest layer is 0."""
     frame: int
     """Scene frame."""
     index: int
@@ -32,23 +32,23 @@ class Stroke:
     part: int
     """Number of its part; 0 if it has none."""
     made: bool
-    """Generated, by the rules above."""
+    """Whether it is generated, by the rules above."""
     cyclic: bool
     points: np.ndarray
-    """(N, 3), layer space, float32."""
+    """(N, 3) in layer space, float32."""
     control: np.ndarray
-    """(N,), see `correspondence`."""
+    """Control numbers (N,), see `correspondence`."""
     where: np.ndarray | None = None
-    """Fractional indices of the control points; `None` while the stroke is not identified."""
+    """Fractional indices of the control points; `None` until the stroke is identified."""
 
     def control_points(self, closed: bool) -> np.ndarray:
-        """(count, 3) in layer space."""
+        """The control points (count, 3) in layer space."""
         return correspondence.sample(self.points, self.where, closed)
 
 
 @dataclass
 class Drawing:
-    """One drawing's arrays, kept for styles and corrections."""
+    """The arrays of one drawing."""
 
     starts: np.ndarray
     points: np.ndarray
@@ -58,7 +58,7 @@ class Drawing:
     _values: dict[str, np.ndarray] = field(default_factory=dict)
 
     def value(self, name: str) -> np.ndarray:
-        """An attribute as it was when first asked for, defaults where it is missing; not to be changed."""
+        """An attribute, or its defaults if it is missing. It is read once, and must not be changed."""
         if name not in self._values:
             count = len(self.points) if gp.TYPES[name][1] == "POINT" else len(self.starts) - 1
             self._values[name] = gp.value(self.handle, name, count)
@@ -83,23 +83,23 @@ class Part:
 
 @dataclass
 class Contours:
-    """All that the contour layers of an object hold."""
+    """The content of an object's contour layers."""
 
     drawings: dict[tuple[int, int], Drawing]
     """By layer index and scene frame."""
     parts: list[Part]
-    """In the order of the object's list."""
+    """Parts in the order of the object's list."""
     loose: list[Stroke]
-    """Strokes of the artist that belong to no part yet, by frame, layer and drawing order."""
+    """The artist's strokes without a part, sorted by frame, layer and drawing order."""
     layer_names: list[str]
 
     def part(self, number: int) -> Part | None:
-        """The part of a number."""
+        """The part with a number."""
         return next((part for part in self.parts if part.number == number), None)
 
 
 def read(ob) -> Contours:
-    """Reads the contour layers of a Grease Pencil object; changes nothing."""
+    """Reads the contour layers of a Grease Pencil object."""
     settings = ob.rototoon
     layers = gp.layers(ob, settings.contours_layer)
     parts = [Part(p.number, p.name, p.closed, p.depth, p.count, p.extra) for p in settings.parts]
@@ -132,7 +132,7 @@ def read_drawing(handle, kind: str, layer: int, frame: int) -> Drawing:
 
 
 def _file(found: Contours, stroke: Stroke, part: Part | None) -> None:
-    """Gives a stroke to its part, if it is the first of the part on its frame."""
+    """Adds a stroke to its part, if it is the part's first stroke on the frame."""
     if part is None or len(stroke.points) == 0:
         if not stroke.made and len(stroke.points):
             stroke.part = 0
@@ -154,7 +154,7 @@ def _file(found: Contours, stroke: Stroke, part: Part | None) -> None:
 
 
 def where_of(stroke: Stroke, part: Part) -> np.ndarray | None:
-    """Where the part's control points lie on a stroke that carries the part's number; `None` if it does not say."""
+    """Fractional indices of the part's control points on a stroke of the part; `None` if the stroke's control numbers do not give them."""
     if correspondence.is_identity(stroke.control, part.count):
         return np.arange(part.count, dtype=np.float64)
     where = correspondence.invert(stroke.control, part.count, part.closed)
@@ -164,5 +164,5 @@ def where_of(stroke: Stroke, part: Part) -> np.ndarray | None:
 
 
 def keyed_parts(found: Contours) -> Iterator[Part]:
-    """Parts that have a key."""
+    """Parts with at least one key."""
     return (part for part in found.parts if part.keys)

@@ -1,9 +1,9 @@
-"""What the artist corrected on generated strokes: pins and centres.
+"""The artist's corrections of generated strokes: pins and centres.
 
-Tracking notes where it put each point. A point that lies elsewhere now was moved by the artist and becomes a pin; if all
-points moved alike the artist moved the part as a whole, which corrects its centre. Earlier pins and centres stay until
-they are released. Positions of pins are kept bit for bit, so that a correction which was not touched is equal from run
-to run, and its span need not be solved again.
+Tracking stores where it put each point. If a point is elsewhere now, the artist moved it, and it becomes a pin. If all points
+moved in the same way, the artist moved the complete part, and this corrects its centre. Pins and centres stay until they are
+released. Positions of pins are kept bit for bit. So an unchanged correction is equal in every run, and its span is not solved
+again.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from ..blender.placement import Mapper
 from .contours import Contours, Part
 
 MOVED = 0.05
-"""Pixels: less than this is no movement; far above single precision, far below what a hand can mean."""
+"""Pixels. A smaller shift is no movement. This is far above the error of single precision, and far below what a hand does on purpose."""
 ALIKE = 0.1
-"""Points moved alike if their shifts differ from the mean shift by less than this share of it…"""
+"""Points moved in the same way if their shifts differ from the mean shift by less than this share of it …"""
 ALIKE_FLOOR = 0.25
-"""…or by less than this many pixels."""
+"""… or by less than this number of pixels."""
 
 
 @dataclass
@@ -29,15 +29,15 @@ class Corrections:
     """Corrections of one part by scene frame."""
 
     pins: dict[int, dict[int, np.ndarray]] = field(default_factory=dict)
-    """Pixels by frame and control point."""
+    """Pixels by frame and index of the control point."""
     centers: dict[int, np.ndarray] = field(default_factory=dict)
     """Pixels by frame."""
     held: dict[int, np.ndarray] = field(default_factory=dict)
-    """By frame, the stroke's points in layer space as the artist left them."""
+    """By frame the stroke's points in layer space, as the artist left them."""
 
 
 def detect(found: Contours, mapper: Mapper) -> dict[int, Corrections]:
-    """Corrections by part number, for frames strictly between keys of the part, or beside its only key."""
+    """Corrections by part number, on frames strictly between two keys of the part, or beside its only key."""
     return {part.number: _of_part(part, found, mapper) for part in found.parts}
 
 
@@ -71,14 +71,14 @@ def _of_part(part: Part, found: Contours, mapper: Mapper) -> Corrections:
 
 
 def correctable(keys, frame: int) -> bool:
-    """Whether a correction on a frame has an effect: it lies between two keys, or beside the only one."""
+    """Whether a correction on a frame has an effect: the frame is between two keys, or beside the only key."""
     if not keys or frame in keys:
         return False
     return len(keys) == 1 or min(keys) < frame < max(keys)
 
 
 def compare(before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, bool]:
-    """Which points moved, and whether all of them moved alike; pixels (N, 2)."""
+    """Which points (N, 2) in pixels moved, and whether all of them moved in the same way."""
     shift = after - before
     moved = np.linalg.norm(shift, axis=1) > MOVED
     if len(shift) < 2 or not moved.all():
@@ -89,14 +89,15 @@ def compare(before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, bool]:
 
 
 def _single(values: np.ndarray) -> np.ndarray:
-    """Rounded to what the file can hold, so that it is read back equal."""
+    """Values rounded to single precision, as in the file, so that they are read back equal."""
     return values.astype(np.float32).astype(np.float64)
 
 
 def release(drawing, points: np.ndarray | None) -> int:
-    """Releases pins (all, or where the mask `points` says) and centres of a drawing's generated strokes.
+    """Releases pins and centres of a drawing's generated strokes; with the mask `points`, only there.
 
-    Where a released point lies now counts as tracked, so that it is not taken for moved again. Returns how many.
+    The current place of a released point counts as tracked, so that the point does not count as moved again. Returns the number
+    of released pins and centres.
     """
     starts = gp.offsets(drawing)
     total, strokes = int(starts[-1]), len(starts) - 1

@@ -1,13 +1,12 @@
-"""Which control point lies where on a drawn stroke.
+"""Places of control points on a drawn stroke.
 
-The parts of a document have the same number of control points on every key; an artist's strokes need not. So a stroke
-keeps, for each of its drawn points, the control point that it stands for: a number that grows (or falls, if drawn the
-other way round) along the stroke, with fractions between control points. Where it crosses an integer, there lies that
-control point, always on the drawn line. The numbers live in a point attribute, so they move, are copied, saved and
-undone with the stroke, and subdividing or dissolving points changes them sensibly. The artist's points themselves are
-never touched.
+A part of a document has the same number of control points on every key. The artist's strokes may have any number of points. So
+each drawn point carries a control number. The numbers rise along the stroke, or fall if it was drawn the other way round, with
+fractions between control points. Where they cross the integer `i`, control point `i` is on the drawn line. The numbers are a
+point attribute: Blender moves, copies, saves and undoes them with the stroke, and blends them when points are subdivided or
+dissolved. The artist's points are never changed.
 
-Plain NumPy; nothing of Blender.
+Plain NumPy.
 """
 
 from __future__ import annotations
@@ -26,10 +25,10 @@ def is_identity(control: np.ndarray, count: int) -> bool:
 
 
 def invert(values: np.ndarray, period: int, closed: bool) -> np.ndarray | None:
-    """Where `values` cross 0, 1, …, `period` - 1: fractional indices into `values`; `None` where they are no order.
+    """Fractional indices at which `values` cross 0, 1, …, `period` - 1; `None` if the values neither rise nor fall.
 
-    Open: values run from 0 to `period` - 1 or back. Closed: values run once round modulo `period`, in either direction,
-    and the indices run once round modulo `len(values)`.
+    Open: values run from 0 to `period` - 1 or back. Closed: values run once around modulo `period`, in either direction, and the
+    indices run once around modulo `len(values)`.
     """
     values = np.asarray(values, np.float64)
     size = len(values)
@@ -68,7 +67,7 @@ def _invert_closed(values: np.ndarray, period: int) -> np.ndarray | None:
 
 
 def sample(rows: np.ndarray, where: np.ndarray, closed: bool) -> np.ndarray:
-    """Rows (positions, radii, colours, …) of a stroke at fractional indices, linear in between."""
+    """Values of a stroke (positions, radii, colours, …) at fractional indices, interpolated linearly."""
     rows = np.asarray(rows)
     size = len(rows)
     low = np.clip(np.floor(where).astype(int), 0, size - 1)
@@ -80,7 +79,7 @@ def sample(rows: np.ndarray, where: np.ndarray, closed: bool) -> np.ndarray:
 
 
 def locate(polyline: np.ndarray, points: np.ndarray, closed: bool) -> np.ndarray:
-    """Fractional indices of the places on a polyline (N, 2) nearest to `points` (M, 2)."""
+    """Fractional indices of the points on a polyline (N, 2) that are nearest to `points` (M, 2)."""
     ends = np.roll(polyline, -1, 0) if closed else polyline[1:]
     starts = polyline if closed else polyline[:-1]
     if not len(starts):

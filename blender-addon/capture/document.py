@@ -1,7 +1,7 @@
-"""Blender's scene as a project document, and a project document as strokes.
+"""An object's contours as a project document.
 
-Document frames are picture numbers: the scene's frame minus the object's frame offset. Fields that are not known here
-are kept as JSON on the object and its parts, and written back on export.
+Frames of the document are picture numbers: the scene's frame minus the object's frame offset. The object and its parts keep unknown
+fields of an imported document as JSON, and they are in the document again.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ VERSION = 1
 
 @dataclass
 class Reading:
-    """An object's contours, all that was decided about them, and the document that they make."""
+    """An object's contours, the decisions about new strokes, and the document."""
 
     found: contours.Contours
     mapper: Mapper
@@ -35,7 +35,7 @@ class Reading:
 
 
 def read(ob, results: bool = False) -> Reading:
-    """Reads an object; changes nothing. With `results`, tracks, confidence and snapped curves are in the document."""
+    """Reads an object. Changes nothing. With `results`, the document has tracks, confidence and snapped curves."""
     settings = ob.rototoon
     pattern = footage.pattern_of(ob)
     found = contours.read(ob)
@@ -135,7 +135,7 @@ def _add_results(ob, document: dict[str, Any], found: contours.Contours, mapper:
 
 
 def _around(part: contours.Part, key: int) -> tuple[int, int]:
-    """First and last of the frames around a part's only key that have its contour without a gap."""
+    """First and last frame around a part's only key, up to the first frame without its contour."""
     first, last = key, key
     while first - 1 in part.made:
         first -= 1
@@ -145,6 +145,6 @@ def _around(part: contours.Part, key: int) -> tuple[int, int]:
 
 
 def _wanted(ob, part: contours.Part) -> list[int]:
-    """Pictures on which a part was lost."""
+    """Picture numbers on which a part was lost."""
     item = next((item for item in ob.rototoon.parts if item.number == part.number), None)
     return ends.wanted(item) if item is not None else []

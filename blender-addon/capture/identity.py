@@ -1,6 +1,6 @@
-"""Which stroke is which part: strokes drawn afresh are matched to the parts, or become parts of their own.
+"""Parts of strokes: newly drawn strokes are matched to parts, or become new parts.
 
-Decided in memory first; `write` puts the decisions into the file once the work they belong to has succeeded.
+`decide` works in memory. `write` stores the decisions in the file, after the work that needed them has succeeded.
 """
 
 from __future__ import annotations
@@ -16,22 +16,22 @@ from . import correspondence, sessions
 from .contours import Contours, Part, Stroke
 
 CLOSING_GAP = 0.03
-"""A stroke whose ends are nearer than this share of its length counts as closed even if it is not cyclic."""
+"""A stroke also counts as closed if the distance of its ends is less than this share of its length."""
 
 
 @dataclass
 class Decisions:
-    """What was decided and is not yet in the file."""
+    """Decisions that are not yet in the file."""
 
     strokes: list[tuple[Stroke, Part, np.ndarray]] = field(default_factory=list)
-    """Stroke, its part, and the control numbers of its drawn points."""
+    """A stroke, its part, and the control numbers of its drawn points."""
     created: list[Part] = field(default_factory=list)
     matched: int = 0
-    """How many strokes were recognised as parts that had been there before."""
+    """Number of strokes that were matched to existing parts."""
 
 
 def decide(found: Contours, mapper: Mapper, next_number: int) -> Decisions:
-    """Files every loose stroke of `found`, in memory."""
+    """Gives every stroke without a part a part, in memory."""
     decisions = Decisions()
     for part in found.parts:
         _recount(part, decisions)
@@ -51,7 +51,7 @@ def decide(found: Contours, mapper: Mapper, next_number: int) -> Decisions:
 
 
 def _recount(part: Part, decisions: Decisions) -> None:
-    """A part with one key has as many control points as the artist drew there."""
+    """Sets the number of control points of a part with one key to the number of points that the artist drew there."""
     if len(part.keys) != 1:
         return
     stroke = next(iter(part.keys.values()))
@@ -65,7 +65,7 @@ def _recount(part: Part, decisions: Decisions) -> None:
 def _recognise(
     found: Contours, drawn: list[Stroke], frame: int, mapper: Mapper, decisions: Decisions
 ) -> list[Stroke]:
-    """Matches drawn strokes to parts that have no key on this frame; returns those that are none of them."""
+    """Matches drawn strokes to parts that have no key on this frame. Returns the strokes without a match."""
     candidates = [part for part in found.parts if frame not in part.keys and (part.keys or part.made)]
     if not candidates:
         return drawn
@@ -88,7 +88,7 @@ def _recognise(
 
 
 def _reference(part: Part, frame: int, mapper: Mapper) -> np.ndarray:
-    """The part's contour in pixels where it is best known for `frame`: tracked there, else on the nearest key."""
+    """The part's contour in pixels: the tracked one on `frame` if there is one, otherwise that of the nearest key."""
     if frame in part.made:
         stroke = part.made[frame]
     else:
@@ -100,7 +100,7 @@ def _reference(part: Part, frame: int, mapper: Mapper) -> np.ndarray:
 def match(
     references: list[tuple[bool, np.ndarray]], drawn: list[tuple[bool, np.ndarray]]
 ) -> list[tuple[int, int, np.ndarray]]:
-    """Which drawn contour is which reference: (reference, drawn, the reference's points on the drawn line)."""
+    """Matches of drawn contours: (index of the reference, index of the drawn contour, the reference's points on the drawn line)."""
 
     def plain(contours):
         return [{"closed": bool(closed), "points": points.tolist()} for closed, points in contours]
@@ -130,7 +130,7 @@ def _new_part(found: Contours, stroke: Stroke, mapper: Mapper, number: int) -> P
 
 
 def _depth(found: Contours, layer: int) -> float:
-    """Nearer than all parts of the same and lower layers, farther than those of higher ones."""
+    """A depth nearer than all parts of the same and lower layers, and farther than the parts of higher layers."""
     below = [part.depth for part in found.parts if part.layer <= layer]
     above = [part.depth for part in found.parts if part.layer > layer]
     low = max(below, default=None)
@@ -158,12 +158,12 @@ def _check_names(found: Contours) -> None:
 
 
 def write(ob, found: Contours, decisions: Decisions) -> None:
-    """Puts decisions into strokes and the object's list of parts; parts without a stroke leave the list."""
+    """Writes decisions into strokes and the object's list of parts. Parts without a stroke are removed from the list."""
     touched: dict[tuple[int, int], list[tuple[Stroke, Part, np.ndarray]]] = {}
     for entry in decisions.strokes:
         touched.setdefault((entry[0].layer, entry[0].frame), []).append(entry)
     for part in found.parts:
-        # A generated stroke that became a key.
+        # This generated stroke became a key.
         for stroke in part.keys.values():
             if found.drawings[stroke.layer, stroke.frame].value(gp.MADE)[stroke.index]:
                 touched.setdefault((stroke.layer, stroke.frame), [])
@@ -192,7 +192,7 @@ def _write_drawing(found: Contours, place: tuple[int, int], entries: list) -> No
 
 
 def write_parts(ob, found: Contours) -> None:
-    """The object's list of parts as `found` has it."""
+    """Makes the object's list of parts equal to that of `found`."""
     settings = ob.rototoon
     kept = [part for part in found.parts if part.keys or part.made]
     numbers = {part.number for part in kept}

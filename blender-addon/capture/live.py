@@ -1,21 +1,19 @@
-"""Live: while an object's toggle is on, each edit of its keys, pins and centres is tracked without pressing Track.
+"""Live: while an object's toggle is on, each edit of its keys, pins and centres is tracked by itself.
 
-Blender's handlers only note that an object may have changed (`changed`, `undone`, the properties' callbacks). A timer,
-which exists only while something is due, calls `step`: once the artist has been still for `DELAY` seconds, it reads the
-object and compares the document with the one last tracked. Only where they differ is a run begun, in the session's
-thread; the session knows all spans that the edit did not touch, so these are not solved again. An edit that comes
-meanwhile cancels the run. The result is written from the timer, in the main thread, and only into drawings in which it
-differs from what they hold.
+Blender's handlers only note that an object may have changed (`changed`, `undone`, the callbacks of properties). A timer calls
+`step`; it exists only while an object is due. When the artist has not changed anything for `DELAY` seconds, `step` reads the object
+and compares its document with the one that was tracked last. If they differ, a run begins in a thread. The session knows all
+spans that the edit did not touch, and does not solve them again. A new edit cancels the run. The timer writes the result in the
+main thread, and only into drawings that it changes.
 
-**Undo.** A result belongs to the edit that it follows from, and no undo step is pushed for it: one undo takes back the
-edit and its result, and redo is never cut off. Blender's steps therefore may hold an edit without its result; so after
-undo and redo the object is read again, and the result is worked out again (from spans that the session mostly knows)
-and written where it is missing. Writing pushes nothing, so this cannot go round in circles.
+**Undo.** A result belongs to the edit that caused it. It gets no undo step of its own: one undo takes back the edit and its
+result, and redo still works. So a step of Blender may contain an edit without its result. After undo and redo, the object is
+read and tracked again (the session knows most spans), and missing results are written. Writing adds no undo step, so this ends.
 
-**When not.** During rendering, playback, and while any tool of Blender or of ours runs (a drag, a brush stroke): they
-hold on to what would be written. Then what is due waits. In background Blender runs no timers; scripts call `step`.
+**Pauses.** Live waits during rendering and playback, and while a tool of Blender or of this add-on runs (a drag, a brush stroke),
+since these use the strokes. Blender runs no timers in background; scripts call `step`.
 
-After a file is opened nothing is tracked before the first edit: what the file holds counts as known.
+After a file is opened, nothing is tracked before the first edit. The content of the file counts as tracked.
 """
 
 from __future__ import annotations
@@ -39,22 +37,22 @@ from ..rototoon import Cancelled, RototoonError
 from . import document, sessions, tracking
 
 DELAY = 0.2
-"""Seconds without a change before an edit counts as finished: longer than between two events of one gesture."""
+"""Seconds without a change after which an edit counts as finished. Two events of one gesture are closer than this."""
 POLL = 0.05
-"""Seconds between two looks at what runs; a twentieth is not felt as waiting."""
+"""Seconds between two calls of `step` during a run. Nobody notices a wait of this length."""
 BLOCKED = 0.2
-"""Seconds between two looks while a tool, playback or a render holds us off."""
+"""Seconds between two calls of `step` during a pause."""
 
 
 class Why(enum.IntEnum):
-    """What is due; the greater wins where several come together."""
+    """Why an object is due. Of several reasons the greatest counts."""
 
     CHANGED = 0
     """Track if the document differs from what was tracked last."""
     OPENED = 1
-    """Take the document as known."""
+    """Count the document as tracked."""
     AGAIN = 2
-    """Track and write even if the document is the same: the strokes may have lost their result."""
+    """Track and write even if the document has not changed: the strokes may have lost their result."""
 
 
 @dataclass
@@ -66,17 +64,17 @@ class _Due:
 _due: dict[int, _Due] = {}
 _run: tracking.Run | None = None
 _known: dict[int, tuple[dict, str]] = {}
-"""Document and method that were found when a file was opened or that cannot be tracked; by object."""
+"""By object: document and method that were found when the file was opened, or that cannot be tracked."""
 _messages: dict[int, str] = {}
 _quiet = False
-"""Whether what Blender reports comes from us."""
+"""Whether the changes that Blender reports are the add-on's own."""
 
 
 # -- noting -------------------------------------------------------------------------------------------------------
 
 
 def note(ob: bpy.types.Object, why: Why = Why.CHANGED) -> None:
-    """Notes that an object is to be looked at."""
+    """Notes that an object may have changed."""
     if _quiet:
         return
     before = _due.get(ob.session_uid)
@@ -91,7 +89,7 @@ def _wake() -> None:
 
 @contextlib.contextmanager
 def _quietly() -> Iterator[None]:
-    """What Blender reports meanwhile is not taken for an edit."""
+    """Changes that Blender reports meanwhile do not count as edits."""
     global _quiet
     _quiet = True
     try:
@@ -106,30 +104,30 @@ def _is_live(ob: bpy.types.Object) -> bool:
 
 @persistent
 def changed(_scene=None, depsgraph=None) -> None:
-    """After each update of the scene: notes live objects whose strokes or placement are new. Writes nothing."""
+    """Called after each update of the scene. Notes live objects whose strokes or transforms changed."""
     if _quiet or depsgraph is None:
         return
     for update in depsgraph.updates:
-        # The object is listed too where only its strokes changed.
+        # Blender lists the object too if only its strokes changed.
         if isinstance(update.id, bpy.types.Object) and _is_live(update.id.original):
             note(update.id.original)
 
 
 @persistent
 def undone(*_args) -> None:
-    """After undo and redo."""
+    """Called after undo and redo."""
     _note_all(Why.AGAIN)
 
 
 @persistent
 def opened(*_args) -> None:
-    """After a file was opened."""
+    """Called after a file was opened."""
     _note_all(Why.OPENED)
 
 
 @persistent
 def closing(*_args) -> None:
-    """Before another file is opened."""
+    """Called before another file is opened."""
     reset()
 
 
@@ -140,7 +138,7 @@ def _note_all(why: Why) -> None:
 
 
 def setting_changed(owner, _context) -> None:
-    """Callback of the properties that bear on tracking."""
+    """Callback of the properties that affect tracking."""
     if _is_live(owner.id_data):
         note(owner.id_data)
 
@@ -162,7 +160,7 @@ def toggled(settings, _context) -> None:
 
 
 def step(now: float | None = None) -> float | None:
-    """Does what is due at `now` (seconds of `time.monotonic`); returns when to call again, `None` if all is done."""
+    """Does the work that is due at `now` (seconds of `time.monotonic`). Returns the seconds until the next call, or `None` if all is done."""
     if _run is None and not _due:
         return None
     if _held_off():
@@ -177,7 +175,7 @@ def step(now: float | None = None) -> float | None:
 
 
 def status(ob: bpy.types.Object) -> tuple[str, str]:
-    """A line for the panel, and its icon."""
+    """A line of text for the panel, and its icon."""
     message = _messages.get(ob.session_uid)
     if message:
         return message, "ERROR"
@@ -187,7 +185,7 @@ def status(ob: bpy.types.Object) -> tuple[str, str]:
 
 
 def give_way() -> None:
-    """Ends the run at once, as another operator wants the session; it is taken up again afterwards."""
+    """Ends the run at once, since an operator needs the session. The object stays due."""
     if _run is not None:
         _due[_run.uid] = _Due(time.monotonic(), Why.AGAIN)
         interrupt()
@@ -222,7 +220,7 @@ def _tick() -> float | None:
 
 
 def _held_off() -> bool:
-    """Whether something runs that must not find the strokes changed."""
+    """Whether something runs that uses the strokes."""
     if bpy.app.is_job_running("RENDER"):
         return True
     for window in bpy.context.window_manager.windows:
@@ -234,13 +232,13 @@ def _held_off() -> bool:
 
 
 def _minds(name: str) -> bool:
-    """Whether a modal operator is a tool of Blender's or ours; other add-ons have some that run for hours."""
+    """Whether a modal operator belongs to Blender or to this add-on. Operators of other add-ons may run for hours."""
     python = bpy.types.Operator.bl_rna_get_subclass_py(name)
     return python is None or python.__module__.startswith(EXTENSION)
 
 
 def _object(uid: int) -> bpy.types.Object | None:
-    """The live object of the scene with this `session_uid`: undo exchanges objects, so they are looked up each time."""
+    """The live object of the scene with this `session_uid`. It is looked up each time, since undo replaces objects."""
     return next((ob for ob in bpy.context.scene.objects if ob.session_uid == uid and _is_live(ob)), None)
 
 
@@ -249,7 +247,7 @@ def _settled(uid: int, now: float) -> bool:
 
 
 def _attend(now: float) -> None:
-    """Cancels a run that no longer fits, and writes the result of one that has ended."""
+    """Cancels the run if the object has changed, and writes the result if the run has ended."""
     global _run
     run, ob = _run, _object(_run.uid)
     if ob is None:
@@ -257,7 +255,7 @@ def _attend(now: float) -> None:
     elif not run.worker.cancelled and _settled(run.uid, now):
         reading = _read(ob)
         if reading is not None and reading.document == run.inputs and ob.rototoon.preset == run.preset:
-            # Undone and come back to the same: the run's own writing puts the result there.
+            # The edit was undone and redone. The run writes its result as planned.
             del _due[run.uid]
         else:
             run.worker.cancel()
@@ -285,10 +283,10 @@ def _end(ob: bpy.types.Object, run: tracking.Run) -> None:
 
 
 def _write(ob: bpy.types.Object, run: tracking.Run) -> bool:
-    """Writes a result."""
+    """Writes a result. Returns whether the object still fits it."""
     with _quietly():
         fits = tracking.finish(ob, run) is not None
-        # Blender reports changes when it updates, so that is done here and not left to the window.
+        # Blender reports changes at its next update. It must come now, while changes do not count as edits.
         bpy.context.view_layer.update()
     if fits:
         _known.pop(run.uid, None)
@@ -297,7 +295,7 @@ def _write(ob: bpy.types.Object, run: tracking.Run) -> bool:
 
 
 def _begin_next(now: float) -> None:
-    """Begins a run for the first object that needs one."""
+    """Begins a run for the first due object that needs one."""
     for uid in [uid for uid in _due if _settled(uid, now)]:
         why = _due.pop(uid).why
         ob = _object(uid)
@@ -340,7 +338,7 @@ def _tracked(ob: bpy.types.Object) -> tuple | None:
 
 
 def _read(ob: bpy.types.Object) -> document.Reading | None:
-    """The object, or `None` and a message where it does not make a document."""
+    """The object's reading. If it cannot be read: `None`, and a message for the panel."""
     try:
         with _quietly():
             return document.read(ob)
@@ -350,7 +348,7 @@ def _read(ob: bpy.types.Object) -> document.Reading | None:
 
 
 def _forget(uid: int) -> None:
-    """An object is gone or no longer live."""
+    """Forgets an object that is gone or no longer live."""
     for memory in (_due, _known, _messages):
         memory.pop(uid, None)
     if not any(ob.session_uid == uid for ob in bpy.data.objects):

@@ -1,7 +1,7 @@
-"""One tracking session for each Grease Pencil object, kept as long as the file is open.
+"""One tracking session for each Grease Pencil object, while the file is open.
 
-A session remembers pictures and solved spans, which is what makes the second Track fast. What it knows is never needed:
-everything that the artist did is in the file.
+A session remembers pictures and solved spans, so the second Track is fast. Nothing is lost with a session: the file has
+everything that the artist did.
 """
 
 from __future__ import annotations
@@ -10,41 +10,31 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ..rototoon import Session, match_contours
+
 
 @dataclass
 class Entry:
-    """A session and the document without results that it was last given."""
+    """A session, and the document without results that it got last."""
 
     session: Any
     folder: str
     inputs: Mapping[str, Any] | None = None
     preset: str = ""
-    """The method that the panel showed when `inputs` was tracked."""
+    """The method in the panel when `inputs` was tracked."""
 
 
 _entries: dict[int, Entry] = {}
 
 
-def _real(document: Mapping[str, Any], folder: str) -> Any:
-    from ..rototoon import Session
-
-    return Session.from_document(document, folder)
-
-
-def _real_matcher(request: Mapping[str, Any]) -> Any:
-    from ..rototoon import match_contours
-
-    return match_contours(request)
-
-
-make: Callable[[Mapping[str, Any], str], Any] = _real
-"""Makes a session of a document and its folder; tests put their own here."""
-matcher: Callable[[Mapping[str, Any]], Any] = _real_matcher
-"""Finds which contour is which; tests put their own here."""
+make: Callable[[Mapping[str, Any], str], Any] = Session.from_document
+"""Makes a session from a document and its folder. Tests replace it."""
+matcher: Callable[[Mapping[str, Any]], Any] = match_contours
+"""Matches contours. Tests replace it."""
 
 
 def get(ob, document: Mapping[str, Any], folder: str) -> Entry:
-    """The object's session, holding `document`."""
+    """The object's session, with `document` as its document."""
     entry = _entries.get(ob.session_uid)
     if entry is None or entry.folder != folder:
         entry = Entry(make(document, folder), folder)

@@ -1,7 +1,7 @@
-"""Ink-following lines as strokes on a layer of their own.
+"""Snapped lines, which follow the ink, as strokes on a layer of their own.
 
-A snapped stroke is the paths of a part's segments, joined; each of its points remembers its segment, so the paths can
-be read back. Frames of that layer which the artist made (keyframe type other than "Generated") are left alone.
+A snapped stroke joins the paths of a part's segments. Each of its points carries the index of its segment, so the paths can be
+read back. Frames of this layer that the artist made (with another keyframe type than "Generated") are not changed.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .contours import Contours, Part, read_drawing
 
 
 def join(segments: list[np.ndarray], closed: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points (M, 2) of the joined paths, each point's segment, and its place between control points (0, 1, 2, …)."""
+    """Points (M, 2) of the joined paths, the segment of each point, and its fractional index between control points (0, 1, 2, …)."""
     points, owner, place = [], [], []
     for index, path in enumerate(segments):
         path = np.asarray(path, np.float64).reshape(-1, 2)
@@ -30,7 +30,7 @@ def join(segments: list[np.ndarray], closed: bool) -> tuple[np.ndarray, np.ndarr
 
 
 def split(points: np.ndarray, owner: np.ndarray, closed: bool) -> list[np.ndarray]:
-    """The paths of a joined stroke."""
+    """Splits a joined stroke into its paths."""
     count = int(owner.max()) + 1
     paths = []
     for index in range(count):
@@ -44,13 +44,13 @@ def split(points: np.ndarray, owner: np.ndarray, closed: bool) -> list[np.ndarra
 
 
 def _arc(path: np.ndarray) -> np.ndarray:
-    """Share of the path's length at each of its points."""
+    """The arc length up to each point of a path, as a share of the path's length."""
     steps = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
     return steps / steps[-1] if steps[-1] > 0 else np.linspace(0, 1, len(path)) if len(path) > 1 else steps
 
 
 def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, mapper: Mapper) -> int:
-    """Writes snapped paths, by part number and scene frame, in pixels; returns the number of strokes."""
+    """Writes snapped paths. `curves` are pixels by part number and scene frame. Returns the number of strokes."""
     layer = gp.layer(ob, ob.rototoon.snapped_layer)
     own = {frame for frame, (_, kind) in gp.drawings(layer).items() if kind != gp.GENERATED}
     old = {frame for frame in gp.drawings(layer) if frame not in own}
@@ -74,7 +74,7 @@ def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, 
 
 
 def _plane_points(ob, found: Contours) -> dict[int, np.ndarray]:
-    """Points that show the drawing plane, for the snapped layer."""
+    """The artist's points, which show the drawing plane of the snapped layer."""
     rows = [s.points for d in found.drawings.values() for s in d.strokes if not s.made]
     return {0: np.concatenate(rows)} if rows else {}
 

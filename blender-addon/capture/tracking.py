@@ -1,6 +1,6 @@
-"""One run of tracking: an object read, its session set to work in a thread, and the result written into strokes.
+"""One run of tracking: it reads an object, tracks in a thread, and writes the result into strokes.
 
-The button Track and the live mode both do just this. Nothing in the file changes before `finish`.
+The button Track and live tracking both use it. Nothing in the file changes before `finish`.
 """
 
 from __future__ import annotations
@@ -17,31 +17,31 @@ from ..common import jobs
 from . import document, ends, identity, sessions, writing
 
 OUTWARD = "rototoon"
-"""The method that follows a part with one key outward from it."""
+"""The method that tracks a part with one key outward from that key."""
 
 
 @dataclass
 class Run:
-    """Tracking under way. It holds nothing of Blender's, so it outlives undo and deleted objects."""
+    """A running track. It has no references to Blender's data, so it survives undo and deleted objects."""
 
     uid: int
     """The object's `session_uid`."""
     inputs: dict[str, Any]
-    """The document that is tracked."""
+    """The document that it tracks."""
     preset: str
-    """The method that the panel showed at the beginning."""
+    """The method in the panel at the beginning."""
     entry: sessions.Entry
     worker: jobs.Worker
 
 
 def can_track(reading: document.Reading, preset: str) -> bool:
-    """Whether any part has two keys, or one and a method that follows it from there."""
+    """Whether any part has enough keys: two, or one if the method tracks outward from a single key."""
     least = 1 if preset == OUTWARD else 2
     return any(len(part.keys) >= least for part in reading.found.parts)
 
 
 def begin(ob, reading: document.Reading, preset: str) -> Run:
-    """A run whose worker is still to be started."""
+    """Makes a run. The caller starts its worker."""
     entry = sessions.get(ob, reading.document, reading.folder)
     entry.inputs = None
     threads = preferences.threads()
@@ -50,9 +50,9 @@ def begin(ob, reading: document.Reading, preset: str) -> Run:
 
 
 def finish(ob, run: Run) -> int | None:
-    """Writes what was tracked; returns the number of strokes.
+    """Writes the result of a run. Returns the number of strokes.
 
-    `None`, and nothing is written, where the object no longer makes the document that was tracked.
+    If the object's document has changed since the run began, it writes nothing and returns `None`.
     """
     reading = document.read(ob)
     if reading.document != run.inputs:
@@ -66,7 +66,7 @@ def finish(ob, run: Run) -> int | None:
 
 
 def write_tracks(ob, reading: document.Reading, session) -> int:
-    """Writes what a session tracked into the object's contour layers; returns the number of strokes."""
+    """Writes a session's tracks into the object's contour layers. Returns the number of strokes."""
     offset = ob.rototoon.frame_offset
     tracks = {}
     for part in reading.found.parts:
@@ -89,7 +89,7 @@ def write_tracks(ob, reading: document.Reading, session) -> int:
 
 
 def note_ends(ob, reading: document.Reading, found) -> None:
-    """Keeps with the parts where their tracks end, for the panel."""
+    """Stores the ends of tracks with the parts, for the panel."""
     numbers = {part.name: part.number for part in reading.found.parts}
     by_number: dict[int, list[tuple[int, str]]] = {}
     for end in found:
@@ -99,13 +99,13 @@ def note_ends(ob, reading: document.Reading, found) -> None:
 
 
 def wanted_keys(summary) -> str:
-    """What to say of parts that were lost; empty if there are none."""
+    """A message about parts that were lost; empty if there are none."""
     lost = sorted({end.part for end in summary.ends if end.reason == ends.LOST})
     if not lost:
         return ""
-    return f"{len(lost)} parts want a key" if len(lost) > 1 else f'"{lost[0]}" wants a key'
+    return f"{len(lost)} parts need a key" if len(lost) > 1 else f'"{lost[0]}" needs a key'
 
 
 def nothing_to_track() -> Problem:
-    """What to say where `can_track` is false."""
+    """The error for an object that `can_track` refuses."""
     return Problem("Nothing to track: go to another frame, press New Key Here and fit the contours there")

@@ -1,7 +1,7 @@
-"""Tracked contours as strokes: generated frames beside the artist's keys.
+"""Tracked contours as strokes on generated frames beside the artist's keys.
 
-All frames of a layer are laid out as a few large arrays first, then each drawing is written with one `add_strokes` and
-one `foreach_set` an attribute. Radius, opacity, colours, material and fill follow the key strokes, blended in time.
+All frames of a layer are laid out in a few large arrays. Then each drawing gets all its strokes with one call, and each attribute
+with one more. Radius, opacity, colours, material and fill come from the key strokes, blended in time.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .corrections import Corrections
 POINT_STYLE = ("radius", "opacity", "rotation", "vertex_color")
 CURVE_STYLE = ("cyclic", "material_index", "fill_color", "softness", "fill_id")
 FILL_BASE = 1_000_000
-"""Added to a part's number for its `fill_id`: no stroke that the artist filled shares it."""
+"""Added to a part's number for its `fill_id`, so that it differs from those of strokes that the artist filled."""
 
 
 @dataclass
@@ -28,16 +28,16 @@ class Track:
     """A part's tracked contour."""
 
     frames: np.ndarray
-    """Scene frames, (F,)."""
+    """Scene frames (F,)."""
     points: np.ndarray
-    """Pixels, (F, N, 2)."""
+    """Pixels (F, N, 2)."""
     confidence: np.ndarray
     """(F, N)."""
 
 
 @dataclass
 class Block:
-    """The generated strokes of a layer on all its frames: part `p` owns the columns `columns[p]`."""
+    """The generated strokes of a layer on all its frames. Part `p` has the columns `columns[p]`."""
 
     frames: np.ndarray
     sizes: np.ndarray
@@ -45,17 +45,17 @@ class Block:
     """(F, P): whether the part has a generated stroke on the frame."""
     columns: list[slice]
     point: dict[str, np.ndarray] = field(default_factory=dict)
-    """(F, points) or (F, points, k) by attribute."""
+    """By attribute: (F, points) or (F, points, k)."""
     curve: dict[str, np.ndarray] = field(default_factory=dict)
-    """(F, P) or (F, P, k) by attribute."""
+    """By attribute: (F, P) or (F, P, k)."""
     order: np.ndarray | None = None
-    """(F, P): on each frame the columns from behind to the front, where that is not their own order."""
+    """(F, P): the parts from back to front on each frame; `None` if they are in that order."""
 
 
 def styles(part: Part, found: Contours) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], list[int]]:
-    """Point styles (K, N[, k]) and curve styles (K[, k]) of a part's K keys, and the keys' frames.
+    """Point styles (K, N[, k]) and curve styles (K[, k]) of a part's K keys, and the frames of the keys.
 
-    Only attributes that a key stroke really has.
+    Only attributes that a key drawing has, or that have a default.
     """
     frames = sorted(part.keys)
     point, curve = {}, {}
@@ -77,7 +77,7 @@ def _point_style(part: Part, stroke: Stroke, drawing: Drawing, name: str) -> np.
 
 
 def blend(values: np.ndarray, frames: list[int], wanted: np.ndarray) -> np.ndarray:
-    """Styles (K, …) of key frames, blended linearly at `wanted`."""
+    """Styles (K, …) of key frames, blended linearly on the frames `wanted`."""
     if (values == values[0]).all():
         return np.broadcast_to(values[0], (len(wanted), *values.shape[1:]))
     after = np.clip(np.searchsorted(frames, wanted, side="right"), 1, max(len(frames) - 1, 1))
@@ -90,14 +90,14 @@ def blend(values: np.ndarray, frames: list[int], wanted: np.ndarray) -> np.ndarr
 
 
 def held(values: np.ndarray, frames: list[int], wanted: np.ndarray) -> np.ndarray:
-    """Styles (K, …) of the key at or before each of `wanted`."""
+    """Styles (K, …) of the key at or before each of the frames `wanted`."""
     return values[np.clip(np.searchsorted(frames, wanted, side="right") - 1, 0, len(frames) - 1)]
 
 
 def lay_out(
     layer: int, parts: list[Part], tracks: dict[int, Track], found: Contours, mapper: Mapper, fixed: dict
 ) -> Block:
-    """The block of a layer; `fixed` are `Corrections` by part number."""
+    """The block of a layer. `fixed` are `Corrections` by part number."""
     parts = sorted((p for p in parts if p.number in tracks and p.layer == layer), key=lambda p: p.depth)
     frames = np.unique(np.concatenate([tracks[p.number].frames for p in parts] or [np.zeros(0, int)]))
     sizes = np.array([p.count for p in parts], np.int32)
@@ -126,7 +126,7 @@ def _fill_part(block: Block, index: int, part: Part, track: Track, mapper: Mappe
         points = np.stack(each).astype(np.float32)
     pins = block.point[gp.PIN]
     row_of = {int(frame): row for row, frame in enumerate(track.frames)}
-    # A method that does not go beyond a single key has no stroke for what is corrected there.
+    # A method that does not track beyond a single key makes no stroke for corrections there.
     for frame, pinned in fixed.pins.items():
         if frame not in row_of:
             continue
@@ -160,7 +160,7 @@ def _fill_style(block: Block, index: int, part: Part, found: Contours) -> None:
 
 
 def write(layer, block: Block, before: Iterable[int]) -> int:
-    """Writes a block into a layer; generated strokes on other frames go (`before`: all frames of the layer).
+    """Writes a block into a layer, and removes generated strokes from the other frames of `before`.
 
     Returns the number of strokes written.
     """
@@ -174,7 +174,7 @@ def write(layer, block: Block, before: Iterable[int]) -> int:
 
 
 def rows_of(block: Block, row: int) -> gp.Rows:
-    """The strokes of one frame."""
+    """The strokes of one row of a block, which is a frame."""
     present = block.present[row]
     if block.order is not None:
         return _ordered(block, row)
@@ -199,9 +199,9 @@ def _ordered(block: Block, row: int) -> gp.Rows:
 
 
 def clear(layer, frames: Iterable[int], keep_corrected: bool = False) -> int:
-    """Removes generated strokes from frames, and frames of the generated type that are left empty.
+    """Removes generated strokes from frames, and generated frames that are empty then.
 
-    With `keep_corrected`, drawings with corrections stay. Returns how many drawings were cleared.
+    With `keep_corrected`, drawings with corrections stay. Returns the number of cleared drawings.
     """
     drawings = gp.drawings(layer)
     gone, cleared = [], 0
@@ -226,7 +226,7 @@ def clear(layer, frames: Iterable[int], keep_corrected: bool = False) -> int:
 
 
 def is_corrected(handle) -> bool:
-    """Whether a drawing's generated strokes carry a pin, a corrected centre, or points that were moved."""
+    """Whether a drawing's generated strokes have a pin, a corrected centre, or moved points."""
     starts = gp.offsets(handle)
     total, strokes = int(starts[-1]), len(starts) - 1
     made = gp.value(handle, gp.MADE, strokes)

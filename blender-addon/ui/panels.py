@@ -73,7 +73,7 @@ class ROTOTOON_PT_parts(_DrawingPanel, bpy.types.Panel):
 
 
 ENDS = {
-    ends.LOST: ("wants a key on frame {}", "KEY_HLT"),
+    ends.LOST: ("needs a key on frame {}", "KEY_HLT"),
     ends.CUT: ("ends before the cut on frame {}", "INFO"),
     ends.LEFT: ("left the picture on frame {}", "INFO"),
 }

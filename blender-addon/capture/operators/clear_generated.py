@@ -1,4 +1,4 @@
-"""Generated frames removed."""
+"""Clear Generated: removes generated frames."""
 
 import bpy
 
@@ -10,7 +10,7 @@ from .. import writing
 class ROTOTOON_OT_clear_generated(Guarded, OnDrawing, bpy.types.Operator):
     bl_idname = "rototoon.clear_generated"
     bl_label = "Clear Generated"
-    bl_description = "Remove what tracking and snapping wrote; your keys stay"
+    bl_description = "Remove the results of Track and Snap to Ink. Your keys stay"
     bl_options = {"REGISTER", "UNDO"}
 
     frames: bpy.props.EnumProperty(

@@ -1,4 +1,4 @@
-"""From a picture file, movie, image or clip to an object's footage; movies go through the cache."""
+"""Base of the operators that set an object's footage. Frames of movies are put into the cache first."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ...common.operators import Long
 
 
 class FootageOperator(Long):
-    """`source(context)` says what is shown; `apply(context, shot)` uses it and returns a message."""
+    """`source(context)` returns the source of the footage. `apply(context, shot)` uses the footage and returns a message."""
 
     def begin(self, context):
-        """Checks the source; movies not yet in the cache are what takes long."""
+        """Checks the source. Only a movie that is not in the cache takes long."""
         self._source = self.source(context)
         if not self._source.movie:
             self._sequence = footage.sequence_around(self._source.path)
@@ -32,7 +32,7 @@ class FootageOperator(Long):
             yield from movie.extract(self._source.path, self._cache)
 
     def finish(self, context, _work) -> str:
-        """Measures the pictures and hands them on."""
+        """Reads the size of the pictures, and applies them."""
         shot, note = self._movie_shot(context) if self._source.movie else self._sequence_shot(context)
         return self.apply(context, shot) + note
 
@@ -47,7 +47,7 @@ class FootageOperator(Long):
         shot = stage.Shot(
             frames.pattern, frames.first, frames.last, width, height, frames.fps, start, self._source.path
         )
-        return shot, f"; {removed} older movies left the cache" if removed else ""
+        return shot, f"; {removed} older movies were removed from the cache" if removed else ""
 
     def _sequence_shot(self, context) -> tuple[stage.Shot, str]:
         sequence, scene = self._sequence, context.scene
@@ -55,23 +55,23 @@ class FootageOperator(Long):
         start = footage.first_frame(self._source, sequence, scene.frame_start)
         fps = scene.render.fps / scene.render.fps_base
         shot = stage.Shot(sequence.pattern, sequence.first, sequence.last, width, height, fps, start)
-        return shot, f"; {sequence.missing} pictures beyond a gap left out" if sequence.missing else ""
+        return shot, f"; {sequence.missing} pictures beyond a gap are left out" if sequence.missing else ""
 
 
 def used_folders() -> set[str]:
-    """Folders of the cache that objects of this file use."""
+    """Folders of the cache that the objects of this file use."""
     patterns = [ob.rototoon.pattern for ob in bpy.data.objects if ob.rototoon.movie]
     return {os.path.basename(os.path.dirname(bpy.path.abspath(pattern))) for pattern in patterns}
 
 
 def described(shot: stage.Shot) -> str:
-    """What the artist is told about footage that was taken."""
+    """A message about new footage."""
     count = shot.last - shot.first + 1
     name = os.path.basename(shot.movie or shot.pattern)
     return f"{name}: {count} pictures of {shot.width}x{shot.height}, the first on frame {shot.frame_of_first}"
 
 
 def assign_to_active(context, shot: stage.Shot) -> str:
-    """Gives the active object the footage."""
+    """Sets the footage of the active object. Returns a message."""
     stage.assign(context.object, shot)
     return described(shot)

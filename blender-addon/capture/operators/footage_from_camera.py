@@ -1,4 +1,4 @@
-"""Footage from the camera's background."""
+"""Footage from Camera."""
 
 import bpy
 
@@ -11,7 +11,7 @@ from .footage_base import FootageOperator, assign_to_active
 class ROTOTOON_OT_footage_from_camera(FootageOperator, OnDrawing, bpy.types.Operator):
     bl_idname = "rototoon.footage_from_camera"
     bl_label = "Footage from Camera"
-    bl_description = "Take the image sequence, movie or clip in the camera's background, with its timing"
+    bl_description = "Use the image sequence, movie or clip in the camera's background, with its timing"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Footage chosen by file."""
+"""Footage from File."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ FILTER = "*.png;*.jpg;*.jpeg;*.tif;*.tiff;*.bmp;*.webp;*.exr;" + ";".join("*" + 
 
 
 class FilePicker:
-    """A file to choose, and when its first picture is shown."""
+    """A file, and the frame of its first picture."""
 
     filepath: bpy.props.StringProperty(
         name="File", description="Any picture of the sequence, or a movie", subtype="FILE_PATH"
@@ -23,7 +23,7 @@ class FilePicker:
         name="Begin at Scene Start", description="Show the first picture on the scene's first frame", default=True
     )
     frame: bpy.props.IntProperty(
-        name="Begin at Frame", description="Frame that shows the first picture, if not the scene's first", default=1
+        name="Begin at Frame", description="Frame that shows the first picture, if it is not the scene's first frame", default=1
     )
 
     def invoke(self, context, _event):
@@ -33,18 +33,18 @@ class FilePicker:
         return {"RUNNING_MODAL"}
 
     def source(self, context) -> footage.Source:
-        """What was picked."""
+        """The chosen file."""
         if not self.filepath:
             raise Problem("No file chosen")
         path = bpy.path.abspath(self.filepath)
         return footage.Source(path, footage.is_movie(path))
 
     def timed(self, context, shot):
-        """The footage, beginning where the artist said."""
+        """The footage with the chosen first frame."""
         return replace(shot, frame_of_first=context.scene.frame_start if self.at_scene_start else self.frame)
 
     def draw(self, _context) -> None:
-        """Called by Blender: the redo panel and the file browser's side."""
+        """Called by Blender for the redo panel and the file browser's sidebar."""
         self.layout.prop(self, "at_scene_start")
         row = self.layout.row()
         row.active = not self.at_scene_start
@@ -54,7 +54,7 @@ class FilePicker:
 class ROTOTOON_OT_footage_from_file(FilePicker, FootageOperator, OnDrawing, bpy.types.Operator):
     bl_idname = "rototoon.footage_from_file"
     bl_label = "Footage from File"
-    bl_description = "Choose the footage by one of its pictures; the sequence around it is found. Movies work too"
+    bl_description = "Choose one picture of the footage, and the sequence around it is found. Movies work too"
     bl_options = {"REGISTER", "UNDO"}
 
     def apply(self, context, shot):

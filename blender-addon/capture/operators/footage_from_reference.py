@@ -1,4 +1,4 @@
-"""Footage from a reference image."""
+"""Footage from Reference Image."""
 
 import bpy
 
@@ -9,7 +9,7 @@ from .footage_base import FootageOperator, assign_to_active
 
 
 def _reference(context):
-    """The selected image empty, else the one that is set already."""
+    """The selected image empty, otherwise the one in the settings."""
     for ob in context.selected_objects:
         if ob.type == "EMPTY" and ob.empty_display_type == "IMAGE":
             return ob
@@ -19,7 +19,7 @@ def _reference(context):
 class ROTOTOON_OT_footage_from_reference(FootageOperator, OnDrawing, bpy.types.Operator):
     bl_idname = "rototoon.footage_from_reference"
     bl_label = "Footage from Reference Image"
-    bl_description = "Take the image of the selected reference image (an empty that shows an image), with its timing"
+    bl_description = "Use the image of the selected reference image (an empty that shows an image), with its timing"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod

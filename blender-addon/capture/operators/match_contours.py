@@ -1,4 +1,4 @@
-"""Strokes drawn afresh, recognised."""
+"""Match Contours: finds the parts of new strokes."""
 
 import bpy
 
@@ -10,8 +10,8 @@ class ROTOTOON_OT_match_contours(Guarded, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.match_contours"
     bl_label = "Match Contours"
     bl_description = (
-        "Find which part each new stroke is, whatever the order, direction, starting point and number of points; "
-        "strokes that are none become new parts. Track does this too"
+        "Find the part of each new stroke. Order, direction, starting point and number of points may differ. "
+        "Strokes without a match become new parts. Track does this too"
     )
     bl_options = {"REGISTER", "UNDO"}
 

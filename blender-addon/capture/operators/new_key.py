@@ -1,4 +1,4 @@
-"""The contours of this frame as the artist's key."""
+"""New Key Here: copies contours to the current frame as a key."""
 
 import bpy
 
@@ -11,7 +11,7 @@ from .. import contours, document, identity
 class ROTOTOON_OT_new_key(Guarded, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.new_key"
     bl_label = "New Key Here"
-    bl_description = "Copy the contours to this frame as your own key: the tracked ones if there are, else the last key's"
+    bl_description = "Copy the contours to this frame as your key: the tracked contours if there are any, otherwise those of the last key"
     bl_options = {"REGISTER", "UNDO"}
 
     parts: bpy.props.EnumProperty(
@@ -23,7 +23,7 @@ class ROTOTOON_OT_new_key(Guarded, OnContours, bpy.types.Operator):
     def run(self, context) -> str:
         ob, frame = context.object, context.scene.frame_current
         found = contours.read(ob)
-        # Copies must know which part they are, so strokes drawn since the last time are identified first.
+        # Copies need a part, so new strokes are identified first.
         decisions = identity.decide(found, document.mapper_of(ob, found), ob.rototoon.next_number)
         wanted = self._wanted(ob, found)
         if not wanted:
@@ -51,7 +51,7 @@ class ROTOTOON_OT_new_key(Guarded, OnContours, bpy.types.Operator):
 
 
 def _source(part: contours.Part, frame: int) -> contours.Stroke:
-    """The part's tracked contour on this frame, else its last key before, else its first after."""
+    """The part's tracked contour on this frame, otherwise its last key before, otherwise its first key after."""
     if frame in part.made:
         return part.made[frame]
     strokes = part.keys or part.made
@@ -60,13 +60,13 @@ def _source(part: contours.Part, frame: int) -> contours.Stroke:
 
 
 def _make_key(layer, sources: dict[int, list[contours.Stroke]], frame: int) -> int:
-    """Copies strokes by source frame to `frame`, or makes those that are there the artist's; returns how many."""
+    """Copies strokes to `frame`, by source frame. Strokes that are on `frame` already become keys. Returns the number of strokes."""
     strokes = sum(len(group) for group in sources.values())
     if not strokes:
         return 0
     others = {number: group for number, group in sources.items() if number != frame}
     if frame not in gp.drawings(layer) and others:
-        # Copying a whole frame keeps all that Blender knows of its strokes.
+        # A copy of the frame keeps everything that Blender knows of its strokes.
         most = max(others, key=lambda number: len(others[number]))
         gp.copy_frame(layer, most, frame)
         copy = gp.drawings(layer)[frame][0]
@@ -88,7 +88,7 @@ def _make_key(layer, sources: dict[int, list[contours.Stroke]], frame: int) -> i
 
 
 def _own(drawing, indices: list[int] | None) -> None:
-    """Marks strokes (all by default) as the artist's: nothing about tracking stays on them but who they are."""
+    """Marks strokes (all by default) as the artist's. Of the marks of tracking only the part's number stays."""
     starts = gp.offsets(drawing)
     strokes, total = len(starts) - 1, int(starts[-1])
     for name in (gp.MADE, gp.CENTER, gp.PIN):

@@ -1,4 +1,4 @@
-"""Corrections let go."""
+"""Release Pins: removes corrections."""
 
 import bpy
 
@@ -10,7 +10,7 @@ from .. import corrections
 class ROTOTOON_OT_release_pins(Guarded, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.release_pins"
     bl_label = "Release Pins"
-    bl_description = "Let points and parts that you fixed on generated frames be tracked again"
+    bl_description = "Release points and parts that you fixed on generated frames, so that Track moves them again"
     bl_options = {"REGISTER", "UNDO"}
 
     which: bpy.props.EnumProperty(

@@ -1,4 +1,4 @@
-"""Everything an artist needs to begin, from one file."""
+"""Set Up: footage, a camera or reference image that shows it, and an object to draw on."""
 
 import os
 
@@ -14,7 +14,7 @@ from .footage_from_file import FilePicker
 class ROTOTOON_OT_setup(FilePicker, FootageOperator, InObjectMode, bpy.types.Operator):
     bl_idname = "rototoon.setup"
     bl_label = "Set Up"
-    bl_description = "Choose footage and get a camera or reference image that shows it, and an object to draw on"
+    bl_description = "Choose footage. You get a camera or reference image that shows it, and an object to draw on"
     bl_options = {"REGISTER", "UNDO"}
 
     plane: bpy.props.EnumProperty(name="Show In", description="What shows the footage", items=properties.PLANES)
@@ -34,7 +34,7 @@ class ROTOTOON_OT_setup(FilePicker, FootageOperator, InObjectMode, bpy.types.Ope
 
 
 def _name(shot: stage.Shot) -> str:
-    """Of the movie, or of the sequence without its number."""
+    """The name of the movie, or of the sequence without its number."""
     stem = os.path.splitext(os.path.basename(shot.movie or shot.pattern))[0]
     return stem.split("%")[0].rstrip("_-. ") or os.path.basename(os.path.dirname(shot.pattern)) or "Contours"
 

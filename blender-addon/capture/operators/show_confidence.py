@@ -1,4 +1,4 @@
-"""Confidence as colour."""
+"""Show Confidence: colours tracked points."""
 
 import bpy
 
@@ -8,7 +8,7 @@ from ...common.operators import Guarded, OnDrawing
 class ROTOTOON_OT_show_confidence(Guarded, OnDrawing, bpy.types.Operator):
     bl_idname = "rototoon.show_confidence"
     bl_label = "Show Confidence"
-    bl_description = "Colour the tracked points by how sure they are: green is sure, red is doubtful. Again hides it"
+    bl_description = "Colour the tracked points by confidence: green is high, red is low. Press again to hide the colours"
     bl_options = {"REGISTER", "UNDO"}
 
     def run(self, context) -> None:

@@ -1,4 +1,4 @@
-"""Contours onto the drawn ink."""
+"""Snap to Ink: lays contours along the drawn lines."""
 
 import bpy
 import numpy as np
@@ -14,8 +14,8 @@ class ROTOTOON_OT_snap(Long, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.snap"
     bl_label = "Snap to Ink"
     bl_description = (
-        "Lay the tracked contours along the drawn lines, as strokes on a layer of their own; "
-        "thickness, fill and material follow your keys"
+        "Lay the tracked contours along the drawn lines, as strokes on a layer of their own. "
+        "Thickness, fill and material follow your keys"
     )
     bl_options = {"REGISTER", "UNDO"}
 

@@ -1,4 +1,4 @@
-"""Contours from keys to every frame."""
+"""Track: follows contours from key to key."""
 
 import bpy
 
@@ -11,14 +11,14 @@ class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.track"
     bl_label = "Track"
     bl_description = (
-        "Follow the contours from key to key, and from a single key as far as they can be trusted. Points and parts that you moved on generated frames are kept; "
-        "only what you touched since the last time is tracked again"
+        "Follow the contours from key to key, and from a single key as far as they can be trusted. Points and parts that you "
+        "moved on generated frames stay where you put them. Only what you changed since the last time is tracked again"
     )
     bl_options = {"REGISTER", "UNDO"}
 
     method: bpy.props.EnumProperty(
         name="Method",
-        description="How contours are followed",
+        description="Method of tracking",
         items=(("SETTINGS", "As in the Panel", "The method chosen in the panel"), *properties.PRESETS),
     )
 

@@ -1,4 +1,4 @@
-"""To the frame where the next key helps most."""
+"""Go to Weakest Frame: where the next key helps most."""
 
 import bpy
 import numpy as np
@@ -12,7 +12,7 @@ from .. import contours
 class ROTOTOON_OT_weakest_frame(Guarded, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.weakest_frame"
     bl_label = "Go to Weakest Frame"
-    bl_description = "Go to the frame that tracking is least sure of: the next key helps most there"
+    bl_description = "Go to the frame with the least confidence. The next key helps most there"
     bl_options = {"REGISTER", "UNDO"}
 
     def run(self, context) -> str:
@@ -22,9 +22,10 @@ class ROTOTOON_OT_weakest_frame(Guarded, OnContours, bpy.types.Operator):
 
 
 def weakest(found: contours.Contours) -> tuple[int, float]:
-    """Scene frame and its doubt: per part the mean of 1 - confidence, summed over parts, smoothed over three frames.
+    """The scene frame with the most doubt, and its doubt.
 
-    Frames beside a key are taken only if there are no others.
+    The doubt of a frame is the mean of 1 - confidence over a part's points, summed over parts. It is smoothed over three frames
+    for the choice. Frames beside a key are chosen only if there are no others. The returned doubt is the mean over parts.
     """
     doubts: dict[int, float] = {}
     for part in found.parts:
