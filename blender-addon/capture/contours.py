@@ -8,7 +8,6 @@ of others.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -161,8 +160,3 @@ def where_of(stroke: Stroke, part: Part) -> np.ndarray | None:
     if where is None and len(stroke.points) == part.count:
         return np.arange(part.count, dtype=np.float64)
     return where
-
-
-def keyed_parts(found: Contours) -> Iterator[Part]:
-    """Parts with at least one key."""
-    return (part for part in found.parts if part.keys)

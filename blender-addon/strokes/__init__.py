@@ -1,4 +1,4 @@
-"""Strokes: tools for any drawing. `fitting` makes light curves, `hidden` cuts lines where other strokes cover them.
+"""Strokes: tools for any drawing. `fitting` is Fit Strokes, `hidden` is Remove Hidden Lines.
 
 May import: `rototoon`, `blender`, `common`.
 """

@@ -1,9 +1,8 @@
-"""Strokes as light curves: quadratic B-splines with few guiding points, in the place of many points.
+"""Fit Strokes: replaces strokes by quadratic B-splines with few guiding points.
 
-Blender draws such a curve as a NURBS of order 3. It is fitted in the plane of the drawing; what points have beside
-their place in it (the distance from it, radius, opacity, colour, attributes of the artist's own) is blended along the
-curve by the same weights as the guiding points, so Blender's blend of it runs as it did along the stroke. Numbers that
-cannot be blended are taken from the nearest point.
+Blender draws such a curve as a NURBS of order 3. The curve is fitted in the plane of the drawing. Other values of the points
+(distance from the plane, radius, opacity, colour, the artist's attributes) are fitted with the same weights as the guiding points,
+so Blender blends them along the curve as they ran along the stroke. Values that cannot be blended come from the nearest point.
 """
 
 from __future__ import annotations
@@ -21,25 +20,25 @@ _BLENDED = {"FLOAT", "FLOAT_VECTOR", "FLOAT2", "FLOAT_COLOR", "BYTE_COLOR"}
 ORDER = 3
 MOST_STEPS, FEWEST_STEPS = 64, 12
 SMOOTH = 0.1
-"""Share of the tolerance by which Blender's polyline may be off the curve that it draws."""
+"""Blender draws a curve as a polyline. This share of the tolerance is the allowed distance between the two."""
 
 
 @dataclass
 class Fitted:
-    """A drawing with light strokes."""
+    """A drawing with fitted strokes."""
 
     content: st.Content
     fitted: int
-    """Strokes that became curves."""
+    """Number of strokes that became curves."""
     skipped: int
-    """Strokes that were wanted and cannot be fitted: curves already, or with points that are no places."""
+    """Number of chosen strokes that cannot be fitted: they are curves already, or have points that are not finite."""
     before: int
     after: int
-    """Points of the strokes that became curves."""
+    """Numbers of points of these strokes, before and after."""
 
 
 def fit(content: st.Content, wanted: np.ndarray, scale: float, tolerance: float) -> Fitted | None:
-    """Fits the strokes `wanted` (mask) within `tolerance` pixels, `scale` of them a unit; `None` where none changes."""
+    """Fits the strokes of the mask `wanted` within `tolerance` pixels, at `scale` pixels per unit. `None` if no stroke changes."""
     poly = (content.types == st.POLY) & content.finite()
     chosen = np.flatnonzero(wanted & poly & (content.sizes > 2))
     skipped = int((wanted & ~poly).sum())
@@ -51,10 +50,10 @@ def fit(content: st.Content, wanted: np.ndarray, scale: float, tolerance: float)
     offsets = np.concatenate([[0], np.cumsum(content.sizes[chosen])]).astype(np.int32)
     closed = content.strokes("cyclic")[chosen].astype(np.uint8)
     if flat.size and np.abs(flat).max() > 1e9:
-        raise Problem("The tolerance is too small for coordinates as large as these")
+        raise Problem("The tolerance is too small for coordinates of this size")
     found = fit_strokes(Strokes(offsets, flat, closed), tolerance, carried, carried.shape[1])
     counts = np.diff(np.asarray(found.offsets))
-    # A stroke that needs as many guides as it has points is as light as it gets; so is a closed curve of two.
+    # A stroke is kept if it needs as many guiding points as it has points, or if it would become a closed curve of two.
     lighter = (counts < content.sizes[chosen]) & ((closed == 0) | (counts >= ORDER))
     if not lighter.any():
         return None
@@ -65,7 +64,7 @@ def fit(content: st.Content, wanted: np.ndarray, scale: float, tolerance: float)
 
 
 class _Guides:
-    """The guides of the strokes that become lighter, as arrays."""
+    """The guiding points of the strokes that become curves, as arrays."""
 
     def __init__(self, found, counts, lighter, channels, offsets):
         rows = st.ranges(np.asarray(found.offsets)[:-1][lighter], counts[lighter])
@@ -78,7 +77,7 @@ class _Guides:
 
 
 def _flattened(content: st.Content, old: np.ndarray, scale: float):
-    """Pixels (N, 2) in the drawing's plane, all that is blended as columns, and where each attribute's columns are."""
+    """Pixels (N, 2) in the drawing's plane, the values to blend as columns, and the columns of each attribute."""
     points = content.point["position"][old].astype(np.float64)
     origin, normal = cameras.plane_of(points, np.array([0.0, 1.0, 0.0]))
     aside = np.eye(3)[np.abs(normal).argmin()]
@@ -99,7 +98,7 @@ def _flattened(content: st.Content, old: np.ndarray, scale: float):
 
 
 def _assembled(content, taken, guides: _Guides, old, layout, scale, tolerance) -> st.Content:
-    """The content with the guides of the strokes `taken` in the place of their points."""
+    """The content, where the strokes `taken` have their guiding points instead of their points."""
     sizes = content.sizes.copy()
     sizes[taken] = guides.counts
     result = st.Content(sizes, content.types.copy(), kinds=dict(content.kinds))
@@ -125,7 +124,7 @@ def _assembled(content, taken, guides: _Guides, old, layout, scale, tolerance) -
 
 
 def _within(given: np.ndarray, guides: _Guides, values: np.ndarray) -> np.ndarray:
-    """Blended values, none beyond those that its stroke had."""
+    """Blended values, limited to the range of the stroke's values."""
     each = given.reshape(len(given), -1)
     low = np.minimum.reduceat(each, guides.given[:-1])[guides.source]
     high = np.maximum.reduceat(each, guides.given[:-1])[guides.source]
@@ -133,7 +132,7 @@ def _within(given: np.ndarray, guides: _Guides, values: np.ndarray) -> np.ndarra
 
 
 def _make_curves(result: st.Content, taken, guides: _Guides, tolerance: float) -> None:
-    """Says that the strokes `taken` are quadratic B-splines; those of one or two points stay what they are."""
+    """Makes the strokes `taken` quadratic B-splines. Strokes with one or two points stay polylines."""
     curved = guides.counts >= ORDER
     which = taken[curved]
     result.types[which] = st.NURBS
@@ -147,8 +146,8 @@ def _make_curves(result: st.Content, taken, guides: _Guides, tolerance: float) -
 
 
 def _steps(guides: _Guides, tolerance: float) -> np.ndarray:
-    """Steps a piece with which the polyline that Blender draws is within a share of the tolerance of the curve."""
-    # Half the second difference of neighbouring guides at most; at clamped ends a piece bends up to twice as much.
+    """Number of steps per piece, so that Blender's polyline is within `SMOOTH` of the tolerance."""
+    # A piece bends by at most half the second difference of its guiding points; at clamped ends by up to twice that.
     bend = np.zeros(len(guides.points))
     bend[1:-1] = np.linalg.norm(guides.points[2:] - 2 * guides.points[1:-1] + guides.points[:-2], axis=1)
     ends = np.concatenate([[0], np.cumsum(guides.counts)])

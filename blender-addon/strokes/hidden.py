@@ -1,8 +1,8 @@
-"""Lines without what filled strokes in front of them cover.
+"""Remove Hidden Lines: cuts lines where filled strokes in front cover them.
 
-A stroke that is partly hidden is cut: its visible parts take its place, each with all that the stroke had, and with the
-number of the stroke (`rototoon_stroke`) and the interval of it (`rototoon_interval`). A filled stroke must keep its
-outline for the fill; it stays in its place with a line that is not drawn, and the parts lie over it without a fill.
+The visible parts of a cut stroke replace it. Each part has all attributes of the stroke, the stroke's number (`rototoon_stroke`)
+and its interval of the stroke (`rototoon_interval`). A filled stroke must keep its outline for the fill. It stays with a transparent
+line, and its visible parts are added above it without a fill.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from ..blender.projection import Projection
 from ..rototoon import Pieces, Strokes, hidden_lines
 
 SUFFIX = " Hidden"
-"""What is added to the name of a layer for that of its hidden lines."""
+"""Suffix of the name of a layer with hidden lines."""
 _POLYLINE, _SPLINE, _CHAIN = range(3)
 
 
 @dataclass(frozen=True)
 class Choices:
-    """What covers, and what becomes of what is covered."""
+    """Which strokes cover others."""
 
     closed: bool
-    """All closed strokes cover, not only filled ones."""
+    """Whether all closed strokes cover, not only filled ones."""
     by_stroke: bool
-    """Within a layer, later strokes cover earlier ones; otherwise layers cover layers."""
+    """Whether later strokes of a layer cover earlier ones. Otherwise only layers cover layers."""
 
 
 @dataclass
@@ -47,16 +47,16 @@ class Cut:
     changed: bool
     """Whether anything was hidden."""
     pieces: int
-    """Hidden parts."""
+    """Number of hidden parts."""
 
 
 def is_output(layer) -> bool:
-    """Whether a layer holds hidden lines."""
+    """Whether a layer is for hidden lines."""
     return layer.name.endswith(SUFFIX)
 
 
 def frames_between(ob, first: int, last: int) -> list[int]:
-    """The frames of a range on which anything can change: those of all drawings, or every one if the view moves."""
+    """The frames of a range on which something can change: the frames of all drawings, or all frames if the view moves."""
     shows = placement.camera_of(ob)
     movers = [ob, shows, *(layer.parent for layer in gp.every_layer(ob))]
     if any(placement.is_animated(each) for each in movers):
@@ -66,7 +66,7 @@ def frames_between(ob, first: int, last: int) -> list[int]:
 
 
 def cut_frame(ob, frame: int, choices: Choices) -> Iterator[Cut]:
-    """The drawings that show on the current frame, which is `frame`, without what is hidden."""
+    """The drawings of the current frame `frame`, without hidden lines."""
     scene = _Scene(ob, frame, choices)
     found = hidden_lines(scene.strokes(), scene.forms, scene.depths, scene.fills)
     pieces = _Pieces(found)
@@ -78,7 +78,7 @@ def cut_frame(ob, frame: int, choices: Choices) -> Iterator[Cut]:
 
 @dataclass
 class _Entry:
-    """A drawing among all that show."""
+    """A visible drawing."""
 
     layer: Any
     source: int
@@ -87,11 +87,11 @@ class _Entry:
     first_point: int
     fills: np.ndarray
     fine: np.ndarray
-    """Strokes that are drawn, and whose points are places: others neither cover nor are cut."""
+    """Strokes with a known curve type and finite points. Others neither cover nor are cut."""
 
 
 class _Scene:
-    """The strokes of all layers that show, as the library takes them."""
+    """The strokes of all visible layers, as the library takes them."""
 
     def __init__(self, ob, frame: int, choices: Choices):
         view = Projection(ob)
@@ -128,12 +128,12 @@ class _Scene:
         self.fills = joined["fills"].astype(np.int32)
 
     def strokes(self) -> Strokes:
-        """The arrays."""
+        """The strokes of all layers."""
         return Strokes(self._offsets, self._points, self._closed)
 
 
 def _forms(content: st.Content) -> np.ndarray:
-    """What the points of each stroke mean to the library; -1 where it has no such curves."""
+    """The library's form of each stroke; -1 for curves that the library does not have."""
     order, knots = content.strokes("nurbs_order"), content.strokes("knots_mode")
     quadratic = (content.types == st.NURBS) & (order == 3) & (content.sizes > 2)
     uniform = quadratic & (np.where(content.strokes("cyclic"), 0, st.ENDPOINT) == knots)
@@ -151,7 +151,7 @@ def _pixels(view: Projection, layer, content: st.Content, fine: np.ndarray) -> n
 
 
 class _Pieces:
-    """What the library found, as arrays."""
+    """The visible and hidden parts, as arrays."""
 
     def __init__(self, found: Pieces):
         self.strokes, self.hidden = np.asarray(found.strokes), np.asarray(found.hidden) != 0
@@ -164,7 +164,7 @@ class _Pieces:
 
 def _cut(ob, frame: int, entry: _Entry, pieces: _Pieces) -> Cut:
     content, count = entry.content, len(entry.content.sizes)
-    # Lines that are not drawn stay: they carry fills.
+    # Transparent lines stay, since they carry fills.
     carriers = _undrawn(content)
     mine = np.flatnonzero((pieces.strokes >= entry.first_stroke) & (pieces.strokes < entry.first_stroke + count))
     stroke = pieces.strokes[mine] - entry.first_stroke
@@ -197,7 +197,7 @@ def _undrawn(content: st.Content) -> np.ndarray:
 
 
 def _numbered(content: st.Content, touched: np.ndarray) -> st.Content:
-    """The content, the strokes that are cut having numbers."""
+    """The content, with numbers for the strokes that are cut."""
     if not touched.any():
         return content
     content = st.Content(content.sizes, content.types, dict(content.point), dict(content.curve), dict(content.kinds))
@@ -210,7 +210,7 @@ def _numbered(content: st.Content, touched: np.ndarray) -> st.Content:
 
 
 def _built(ob, entry: _Entry, content: st.Content, kept, parts, pieces: _Pieces, touched) -> st.Content:
-    """The strokes `kept` and the `parts` of strokes, parts right above the stroke that they are of."""
+    """The strokes `kept`, and `parts` of strokes directly above their stroke."""
     owner = pieces.strokes[parts] - entry.first_stroke
     source = np.concatenate([kept, owner])
     order = np.argsort(source, kind="stable")
@@ -231,7 +231,7 @@ def _built(ob, entry: _Entry, content: st.Content, kept, parts, pieces: _Pieces,
 
 
 def _blends(entry, content, pieces, source, part, cut, result):
-    """Indices (N, 3) of the points of the drawing of which each point of the result is the sum, and their weights."""
+    """For each point of the result three points of the drawing (N, 3) and their weights, of which it is the sum."""
     total = int(result.starts[-1])
     indices, weights = np.zeros((total, 3), np.int64), np.zeros((total, 3))
     weights[:, 0] = 1
@@ -249,13 +249,13 @@ def _blended(values: np.ndarray, indices: np.ndarray, weights: np.ndarray) -> np
     if values.dtype.kind != "f":
         nearest = weights.argmax(1) if len(weights) else np.zeros(0, int)
         return values[indices[np.arange(len(indices)), nearest]]
-    # Points without weight have no say, not even if they are no number.
+    # Points of weight 0 do not count, even if they are not finite.
     shaped = weights.reshape(*weights.shape, *(1,) * (values.ndim - 1))
     return np.where(shaped != 0, values[indices] * shaped, 0).sum(1).astype(values.dtype)
 
 
 def _mark_parts(result: st.Content, pieces: _Pieces, part: np.ndarray, cut: np.ndarray) -> None:
-    """Says what part of which stroke the parts are, and that they are open."""
+    """Stores the interval of each part, and makes the parts open."""
     if not cut.any():
         return
     which = part[cut]
@@ -268,13 +268,13 @@ def _mark_parts(result: st.Content, pieces: _Pieces, part: np.ndarray, cut: np.n
     curves = cut & (result.types == st.NURBS)
     if curves.any():
         knots = result.strokes("knots_mode").copy()
-        # Of a single curve Blender wants the ordinary knots, which are the same.
+        # For a single piece Blender needs the mode of ordinary knots. The knots are the same.
         knots[curves] = np.where(result.sizes[curves] > 3, st.ENDPOINT_BEZIER, st.ENDPOINT)
         result.set_strokes("knots_mode", knots)
 
 
 def _part_fills_from_lines(ob, result: st.Content, part, fills, touched) -> None:
-    """Strokes that stay for their fill draw no line, and parts of filled strokes have no fill."""
+    """Makes the lines of strokes that stay for their fill transparent, and removes the fill of their parts."""
     carrier = (part < 0) & touched
     if carrier.any():
         opacity = result.point.get("opacity")
@@ -297,10 +297,10 @@ def _part_fills_from_lines(ob, result: st.Content, part, fills, touched) -> None
 
 
 def write(ob, cuts: list[Cut], move: bool, in_place: bool) -> tuple[int, int]:
-    """Writes cut drawings; returns how many drawings changed and how many parts were hidden.
+    """Writes cut drawings. Returns the number of changed drawings and of hidden parts.
 
-    With `move`, hidden parts go to layers of their own. With `in_place` the drawings that show are cut; otherwise a
-    drawing that shows on several frames is written anew on those where it looks another way.
+    With `move`, hidden parts move to layers of their own. With `in_place`, the visible drawings are cut. Otherwise a drawing that
+    shows on several frames gets a new frame where its hidden lines change.
     """
     changed = parts = 0
     by_layer: dict[str, list[Cut]] = {}
@@ -328,7 +328,7 @@ def write(ob, cuts: list[Cut], move: bool, in_place: bool) -> tuple[int, int]:
 
 
 def _put_aside(layer, number: int, hidden: st.Content) -> None:
-    """Adds hidden lines to those of a frame; what an earlier frame hid does not show on it."""
+    """Adds hidden lines to a frame. The hidden lines of an earlier frame do not show on it."""
     known = gp.drawings(layer).get(number)
     if known is not None:
         hidden = st.joined(st.read(known[0]), hidden)
@@ -338,7 +338,7 @@ def _put_aside(layer, number: int, hidden: st.Content) -> None:
 
 
 def _put(layer, number: int, source: int | None, content: st.Content) -> None:
-    """Writes a drawing on a frame; a new frame is a generated one, and a copy of `source` for what is not written."""
+    """Writes a drawing on a frame. A new frame is a generated one. It begins as a copy of `source`, for what is not written."""
     if number not in gp.drawings(layer):
         if source is None:
             gp.make_frames(layer, [number], gp.GENERATED)

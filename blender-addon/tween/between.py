@@ -1,8 +1,8 @@
-"""In-betweens as strokes: what the library drew, with everything that the keys' strokes carry, in frames of their own.
+"""In-betweens as strokes: the library's points, with all attributes of the keys' strokes, on generated frames.
 
-All drawings of a span have the same strokes. The first is a copy of the earlier key (or is laid out anew where strokes
-appear, vanish or fall into pieces), the others are copies of it, which costs nothing in Blender while they are equal; then
-each gets its points, and what else differs from frame to frame. Numbers that cannot be blended stay those of the earlier key.
+All drawings of a span have the same strokes. The first drawing is a copy of the earlier key; if strokes appear, vanish or split, it
+gets a new layout. The other drawings are copies of the first, which costs nothing in Blender as long as they are equal. Then each
+drawing gets its points and the attributes that differ. Values that cannot be blended stay those of the earlier key.
 """
 
 from __future__ import annotations
@@ -33,22 +33,22 @@ class Block:
     content: st.Content
     """The strokes of all frames."""
     alike: bool
-    """Whether they lie as those of the earlier key do."""
+    """Whether their layout is that of the earlier key."""
     stands: np.ndarray
-    """(S, 2): the stroke of either key, -1 where it has none."""
+    """(S, 2): the stroke of the earlier and of the later key, -1 for none."""
     parts: np.ndarray
-    """(S,): whether a stroke is only a part of the earlier key's."""
+    """(S,): whether a stroke is only a part of the earlier key's stroke."""
     shares: np.ndarray
     positions: np.ndarray
     """(F, N, 3)."""
     ends: dict[str, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
-    """What is blended from one value to another, by attribute."""
+    """By attribute: first and last values, which are blended over the frames."""
     changing: dict[str, np.ndarray] = field(default_factory=dict)
-    """What else differs from frame to frame, (F, ...)."""
+    """By attribute: values (F, ...) that differ from frame to frame in another way."""
 
 
 class _Side:
-    """A span's strokes as one of its keys has them."""
+    """A span's strokes with the values of one of its keys."""
 
     def __init__(self, sheet: Sheet, laid: Laid, span: int, side: int, layer: int, strokes, sizes, indices, weights):
         self.own = sheet.contents[span + side][layer]
@@ -92,13 +92,13 @@ class _Side:
         return first + (values[rows[:, 1]] - first) * weights
 
     def flat(self, values: np.ndarray) -> np.ndarray:
-        """Values of all points of the sheet at the strokes' points."""
+        """Values at the strokes' points, from values of all points of the sheet."""
         weights = self.weights.reshape(-1, *(1,) * (values.ndim - 1))
         return values[self.all[:, 0]] * (1 - weights) + values[self.all[:, 1]] * weights
 
 
 def _values(content: st.Content, domain: str, name: str, like: st.Content) -> np.ndarray:
-    """An attribute, or what it means that it is missing."""
+    """An attribute, or its default values if it is missing."""
     found = getattr(content, domain).get(name)
     if found is not None:
         return found
@@ -108,7 +108,7 @@ def _values(content: st.Content, domain: str, name: str, like: st.Content) -> np
 
 
 def blocks(sheet: Sheet, laid: Laid, spans: list[int], drawn: tween.InBetweens) -> list[Block]:
-    """What is to be written of the spans of a sheet."""
+    """The blocks to write for the spans of a sheet."""
     frames, offsets = np.asarray(drawn.frame_offsets), np.asarray(drawn.stroke_offsets)
     bounds, strokes = np.asarray(drawn.point_offsets), np.asarray(drawn.strokes).reshape(-1, 3)
     indices, weights = np.asarray(drawn.indices).reshape(-1, 4), np.asarray(drawn.weights).reshape(-1, 2)
@@ -141,7 +141,7 @@ class _Span:
         self.points, self.opacities = points, opacities
 
     def _of_layer(self, layer: int) -> np.ndarray:
-        """Which strokes lie on a layer, and have points."""
+        """Which strokes are on a layer and have points."""
         mask = np.zeros(len(self.strokes), bool)
         for side in (0, 1):
             first = self.laid.first_stroke[self.span + side, layer]
@@ -150,7 +150,7 @@ class _Span:
         return mask & (self.sizes > 0)
 
     def block(self, layer: int, shares: np.ndarray) -> Block | None:
-        """What is to be written on a layer."""
+        """The block of a layer."""
         sheet = self.sheet
         mask = self._of_layer(layer)
         if not mask.any():
@@ -222,7 +222,7 @@ def _carry(block: Block, sides, closed: np.ndarray) -> None:
 
 
 def _fills(before: _Side, after: _Side) -> np.ndarray:
-    """Numbers of fills: those of the earlier key, and of strokes that appear what the fill is there, or one of their own."""
+    """Numbers of fills: those of the earlier key. Strokes that appear get the number of their fill there, or a new one."""
     fills, later = before.of_strokes("fill_id").copy(), after.of_strokes("fill_id")
     there = before.there & after.there & (fills != 0)
     known = {int(j): int(i) for i, j in zip(fills[there][::-1], later[there][::-1]) if j != 0}
@@ -233,7 +233,7 @@ def _fills(before: _Side, after: _Side) -> np.ndarray:
 
 
 def _fade(block: Block, opacities: np.ndarray, sides) -> None:
-    """Strokes that fade, lines and fills."""
+    """Sets the opacity of the lines and fills of strokes that fade."""
     if (opacities >= 1).all():
         return
     content = block.content
@@ -249,7 +249,7 @@ def _fade(block: Block, opacities: np.ndarray, sides) -> None:
 
 
 def _turn_handles(block: Block, sides, sheet: Sheet, laid: Laid, layer: int, pixels: np.ndarray) -> None:
-    """Handles of Bézier curves, which keep their direction against the line's."""
+    """Handles of Bézier curves. They keep their direction relative to the line."""
     sizes = block.content.sizes
     given = np.asarray(laid.drawings.strokes.points).reshape(-1, 2)
     ways = [_tangents(side.flat(given)[None], sizes)[0] for side in sides]
@@ -273,7 +273,7 @@ def _turn_handles(block: Block, sides, sheet: Sheet, laid: Laid, layer: int, pix
 
 
 def _tangents(points: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Directions (F, N) of lines at their points (F, N, 2), complex numbers of length 1."""
+    """Directions (F, N) of lines at their points (F, N, 2), as complex numbers of length 1."""
     ends = np.cumsum(sizes)
     index = np.arange(ends[-1])
     before, after = index - 1, index + 1
@@ -285,7 +285,7 @@ def _tangents(points: np.ndarray, sizes: np.ndarray) -> np.ndarray:
 
 
 def write(ob, block: Block, tracks: np.ndarray) -> dict[int, int]:
-    """Writes a block; returns the checksums of its drawings. No frame lies in its place but generated ones of before."""
+    """Writes a block. Returns the checksums of its drawings. Earlier generated frames in its place are replaced."""
     layer = gp.find_layer(ob, block.layer)
     wanted = set(block.frames)
     made = [
@@ -317,7 +317,7 @@ def write(ob, block: Block, tracks: np.ndarray) -> dict[int, int]:
 
 
 def _begin(handle, block: Block, tracks: np.ndarray) -> None:
-    """The first drawing of a span, from a copy of the earlier key."""
+    """Makes the first drawing of a span from a copy of the earlier key."""
     count = len(block.content.sizes)
     if not block.alike:
         st.write(handle, block.content)

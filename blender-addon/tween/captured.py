@@ -1,15 +1,14 @@
-"""The captured contours that in-betweens follow: an object's tracked parts, laid on the sheets that are drawn.
+"""Captured contours that in-betweens follow: an object's tracked parts, on the sheets that are drawn.
 
-How far something has come between two keys, and whether it swings out and back on its way, the drawings on the keys do not tell;
-tracked footage between them does. A part counts for a span if it has a contour, a key or a generated one, on every frame from
-the one key to the other. Which of them a stroke follows, the library decides: the one on which it lies on both keys.
+The drawings on two keys do not show how far a movement has come between them, or whether it swings out and back. Tracked footage
+does. A part counts for a span if it has a contour, drawn or generated, on every frame from one key to the other. The library
+decides which contour a stroke follows: the one on which the stroke lies on both keys.
 
-Contours are taken where they lie among the object's layers, not in pixels of the footage: in-betweens are drawn without any
-footage, and so nothing is asked of the camera. What is handed on is rounded, so that a span's digest tells just what it was
-drawn from.
+Contours are taken in the space of the object's layers, not in pixels of the footage. In-betweens need no footage, so the camera does
+not matter. The points are rounded, so that a span's digest describes exactly the points from which it was drawn.
 
-Limits: contours and strokes must be carried by the same thing, or both by nothing but the object, and strokes must be drawn on
-the plane of the contours; seen from aside, those of another plane lie elsewhere.
+Limits: contours and strokes must have the same carrier (see `blender.hierarchy`), and strokes must be drawn on the plane of the
+contours. Seen from aside, contours of another plane are elsewhere.
 """
 
 from __future__ import annotations
@@ -24,9 +23,9 @@ from ..capture import contours
 from .sheets import Contour, Sheet
 
 DECIMALS = 3
-"""Of pixels of the sheet, which is about a thousand large: finer than the strokes are stored."""
+"""Decimals of pixels of the sheet. The sheet is about a thousand pixels large, so this is finer than the stored strokes."""
 FARTHEST = 1e9
-"""Pixels from the origin beyond which the library takes no point."""
+"""Largest distance from the origin that the library accepts, in pixels."""
 
 
 @dataclass
@@ -35,19 +34,19 @@ class Part:
 
     closed: bool
     frames: dict[int, tuple[str, np.ndarray]] = field(default_factory=dict)
-    """By scene frame the layer and the control points (count, 3) in its space."""
+    """By scene frame the layer, and the control points (count, 3) in its space."""
 
     def knows(self, first: int, last: int) -> bool:
-        """Whether it has a contour on every frame from one to another."""
+        """Whether it has a contour on every frame from `first` to `last`."""
         return all(frame in self.frames for frame in range(first, last + 1))
 
 
 def read(ob) -> list[Part]:
-    """The parts of an object that have a contour; changes nothing."""
+    """The parts of an object that have a contour."""
     found = contours.read(ob)
     parts = []
     for part in found.parts:
-        # A key is what the artist drew, and comes before what is generated.
+        # The artist's key wins over a generated contour.
         strokes = part.made | part.keys
         frames = {frame: (found.layer_names[s.layer], s.control_points(part.closed)) for frame, s in strokes.items()}
         if frames and part.count:
@@ -56,7 +55,7 @@ def read(ob) -> list[Part]:
 
 
 def put_on(ob, sheet: Sheet, parts: list[Part]) -> None:
-    """Gives a sheet the contours that each of its spans may follow."""
+    """Adds to a sheet the contours that each of its spans may follow."""
     spans = [span for span, choices in sheet.wanted.items() if choices.follow and _is_free(sheet, span)]
     if not parts or not spans:
         return
@@ -68,13 +67,13 @@ def put_on(ob, sheet: Sheet, parts: list[Part]) -> None:
 
 
 def _is_free(sheet: Sheet, span: int) -> bool:
-    """Whether any layer has no peg of its own; what hangs on a peg goes with that."""
+    """Whether any layer has no peg. Strokes on a peg follow the peg instead."""
     pegs = sheet.pegs_of(span)
     return not pegs or not all(pegs)
 
 
 def _to_sheet(ob, sheet: Sheet, names: set[str]) -> dict[str, np.ndarray]:
-    """By contour layer 4×4 to the space of a sheet; those that something else carries move against it, and have none."""
+    """By contour layer 4×4 to the space of a sheet. Layers with another carrier move against it, and are left out."""
     base = gp.find_layer(ob, sheet.layers[0])
     carrier = hierarchy.carrier(ob, base)
     inverse = np.linalg.inv(hierarchy.in_carrier(base))
@@ -87,12 +86,12 @@ def _to_sheet(ob, sheet: Sheet, names: set[str]) -> dict[str, np.ndarray]:
 
 
 def _contour(part: Part, first: int, last: int, sheet: Sheet, to_sheet: dict[str, np.ndarray]) -> Contour | None:
-    """A part on the frames of a span; `None` where it lies in another space, or where a point is no place."""
+    """A part on the frames of a span. `None` if it is in another space, or has a point that is not finite."""
     places = [part.frames[frame] for frame in range(first, last + 1)]
     if not all(name in to_sheet for name, _ in places):
         return None
     flat = np.stack([sheet.plane.laid(points, to_sheet[name])[0] for name, points in places])
     if not (np.abs(flat) <= FARTHEST).all():
         return None
-    # Adding 0 makes the two zeros one.
+    # Adding 0 turns -0 into 0.
     return Contour(part.closed, first, np.round(flat, DECIMALS) + 0.0)

@@ -1,4 +1,4 @@
-"""How far the drawings between two keys have come: choices of the artist, and what the library is told of them."""
+"""The artist's choices for in-betweens, and the options of the library that follow from them."""
 
 from __future__ import annotations
 
@@ -8,35 +8,35 @@ from typing import Any
 from ..blender.errors import Problem
 
 SPACINGS = (
-    ("SMOOTH", "Smooth", "Through several keys with one velocity, and into rest at the first, the last, and where it turns back"),
-    ("LINEAR", "Linear", "Evenly"),
-    ("EASE_IN", "Ease In", "From rest, faster and faster"),
-    ("EASE_OUT", "Ease Out", "Slower and slower, into rest"),
-    ("EASE_IN_OUT", "Ease In and Out", "From rest into rest"),
-    ("COSINE", "Cosine", "From rest into rest, a little softer"),
-    ("BOUNCE", "Bounce", "Falls like a ball, and bounces before it rests"),
-    ("CHART", "Chart", "By your own list of percentages, one for each drawing between"),
-    ("CURVE", "Curve", "By a curve that you draw in the panel Tween"),
+    ("SMOOTH", "Smooth", "One velocity through several keys, and at rest at the first key, the last key, and where the movement turns back"),
+    ("LINEAR", "Linear", "Constant speed"),
+    ("EASE_IN", "Ease In", "Starts at rest and speeds up"),
+    ("EASE_OUT", "Ease Out", "Slows down and ends at rest"),
+    ("EASE_IN_OUT", "Ease In and Out", "Starts and ends at rest"),
+    ("COSINE", "Cosine", "Starts and ends at rest, a little softer"),
+    ("BOUNCE", "Bounce", "Falls like a ball, and bounces before it comes to rest"),
+    ("CHART", "Chart", "Your list of percentages, one for each in-between"),
+    ("CURVE", "Curve", "The curve that you draw in the panel Tween"),
 )
 LEAVING = (
-    ("GROW", "Grow and Shrink", "They grow out of their middle and shrink into it"),
+    ("GROW", "Grow and Shrink", "They grow from their middle and shrink into it"),
     ("FADE", "Fade", "They fade in and out"),
-    ("LEAVE", "Leave the Picture", "They come in from outside the picture and leave it, away from its middle"),
+    ("LEAVE", "Leave the Picture", "They come in from outside the picture and leave it, away from the picture's middle"),
 )
 PEGS = (
-    ("FOUND", "Found", "Strokes that move as one are found, and the joints at which they hang together"),
-    ("GROUPS", "Layer Groups", "The layers of a group move as one, groups within groups hang on these"),
+    ("FOUND", "Found", "Find the strokes that move as one, and their joints"),
+    ("GROUPS", "Layer Groups", "The layers of a group move as one. A group inside another group hangs on that group"),
     ("LAYERS", "Layers", "Each layer moves as one, and hangs on its group"),
 )
 
 
 @dataclass(frozen=True)
 class Choices:
-    """How in-betweens are made."""
+    """The choices for a span."""
 
     spacing: str = "SMOOTH"
     chart: str = ""
-    """Percentages, for the spacing CHART."""
+    """Percentages of the spacing CHART."""
     bounces: int = 3
     arcs: float = 0.5
     rigid: bool = True
@@ -45,18 +45,18 @@ class Choices:
     rest: bool = True
     step: int = 1
     curve: tuple[tuple[float, float], ...] = ()
-    """Times and shares, for the spacing CURVE."""
+    """Times and shares of the spacing CURVE."""
     pegs: str = "FOUND"
     follow: bool = False
-    """Whether strokes go with the captured contours on which they lie. Not so in files of before, which say nothing of it."""
+    """Whether strokes follow the captured contours on which they lie. It is false in older files, which do not have this choice."""
 
     def kept(self) -> dict[str, Any]:
-        """As it is kept in the file."""
+        """The form in the file."""
         return asdict(self)
 
     @classmethod
     def of(cls, kept: dict[str, Any]) -> Choices:
-        """From a file; what this version does not know is left out."""
+        """The choices from a file. Unknown fields are left out."""
         names = {field.name for field in fields(cls)}
         known = {name: value for name, value in kept.items() if name in names}
         if "curve" in known:
@@ -68,7 +68,7 @@ class Choices:
         return list(range(first + self.step, last, self.step))
 
     def written(self, first: int, last: int) -> Any:
-        """The spacing from one key to the next as the library takes it."""
+        """The spacing from one key to the next, as the library takes it."""
         if self.spacing == "BOUNCE":
             return {"bounce": self.bounces}
         if self.spacing == "CURVE":
@@ -84,7 +84,7 @@ class Choices:
         return {"curve": [[time, share] for time, share in zip(times, shares)]}
 
     def shared(self) -> dict[str, Any]:
-        """The options of the library that hold for all spans. To leave the picture, it must be known: see `Sheet.leaving`."""
+        """The options of the library that all spans of a call have in common. Leaving the picture also needs its size: see `Sheet.leaving`."""
         return {
             "arcs": self.arcs,
             "rigid": self.rigid,
@@ -115,7 +115,7 @@ def percentages(text: str) -> list[float]:
     """Shares of a list such as "10, 25 50 90"."""
     words = text.replace(",", " ").replace("%", " ").replace(";", " ").split()
     if not words:
-        raise Problem("The chart is empty: write one percentage for each drawing between, such as 10, 30, 70, 90")
+        raise Problem("The chart is empty: write one percentage for each in-between, such as 10, 30, 70, 90")
     shares = []
     for word in words:
         try:

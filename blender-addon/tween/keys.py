@@ -1,4 +1,4 @@
-"""The drawings of a layer: the artist's, which are keys, and those that were drawn between them."""
+"""The drawings of a layer: the artist's keys, and the in-betweens."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..blender import strokes as st
 from . import records
 
 OURS = {gp.TRACK, gp.TWEENED, gp.NEXT, gp.BEFORE}
-"""Attributes that say nothing of how a stroke looks."""
+"""Attributes that do not affect the look of a stroke."""
 
 
 @dataclass
@@ -21,17 +21,17 @@ class Frames:
     """The frames of a layer."""
 
     keys: list[int]
-    """The artist's, rising."""
+    """The artist's frames, in time order."""
     made: list[int]
-    """Those drawn between keys."""
+    """Frames of in-betweens, in time order."""
     edited: list[int] = field(default_factory=list)
-    """Keys that had been drawn between others, and that the artist has changed since."""
+    """Keys that were in-betweens until the artist changed them."""
     blank: set[int] = field(default_factory=set)
     """Keys without strokes."""
 
 
 def is_tweened(handle, kind: str) -> bool:
-    """Whether a drawing was drawn between keys, and holds nothing else."""
+    """Whether a drawing is an in-between, and has no strokes of the artist."""
     if kind != gp.GENERATED:
         return False
     if not gp.has(handle, gp.TWEENED):
@@ -41,7 +41,7 @@ def is_tweened(handle, kind: str) -> bool:
 
 
 def frames_of(layer, record: records.Layer) -> Frames:
-    """Tells the frames of a layer apart."""
+    """Sorts the frames of a layer into keys and in-betweens."""
     found = Frames([], [])
     sums = {frame: total for span in record.spans.values() for frame, total in span.sums.items()}
     for number, (handle, kind) in gp.drawings(layer).items():
@@ -65,7 +65,7 @@ def _sum(handle) -> int:
 
 
 def digest(content: st.Content) -> bytes:
-    """Of all that a drawing shows."""
+    """Digest of everything that a drawing shows."""
     summed = hashlib.blake2b(digest_size=16)
     summed.update(content.sizes.tobytes() + content.types.tobytes())
     for side in (content.point, content.curve):
@@ -77,12 +77,12 @@ def digest(content: st.Content) -> bytes:
 
 
 def around(frames: Iterable[int], current: int) -> tuple[int, int] | None:
-    """The two keys around a frame; on a key that and the next one, on the last the one before and that."""
+    """The two keys around a frame. On a key: this key and the next one. On the last key: the one before and this key."""
     rising = sorted(frames)
     if len(rising) < 2 or current < rising[0]:
         return None
     k = max(index for index, frame in enumerate(rising) if frame <= current)
     if k == len(rising) - 1:
-        # Behind the last key nothing is between.
+        # After the last key there are no in-betweens.
         return (rising[k - 1], rising[k]) if current == rising[k] else None
     return rising[k], rising[k + 1]

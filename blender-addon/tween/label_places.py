@@ -1,22 +1,22 @@
-"""Places for numbers beside lines on the screen, so that none covers another, and lines as little as can be."""
+"""Places for numbers beside lines on the screen. No number covers another, and numbers cover as little of the lines as possible."""
 
 from __future__ import annotations
 
 import numpy as np
 
 SHARES = (0.5, 0.35, 0.65, 0.2, 0.8, 0.05, 0.95)
-"""Where along a line its number may stand, best first."""
+"""Places along a line where its number may be, the best first."""
 GAPS = (5.0, 24.0, 44.0)
-"""Pixels between a line and its number: beside it, or further off, to be joined to it by a line."""
+"""Pixels between a line and its number: beside the line, or farther away with a stem between them."""
 _FURTHER = 3
-"""So many cells of lines may be covered rather than that a number stands further off."""
+"""A number covers up to this number of cells of lines before it moves farther away."""
 _CELL = 4
-"""Pixels of the screen that are one where it is counted what a number would cover."""
+"""Side of a cell in pixels. Covered lines are counted in cells."""
 _MOST_POINTS = 100_000
 
 
 def anchors(lines: list[np.ndarray]) -> np.ndarray:
-    """Of each line (N, 3) the points around each share of its points: (lines, shares, 3, 3), before, there, after."""
+    """For each line (N, 3) and each share of its points the points before, at and after it: (lines, shares, 3, 3)."""
     found = np.full((len(lines), len(SHARES), 3, 3), np.nan)
     for line, row in zip(lines, found):
         if len(line):
@@ -26,7 +26,7 @@ def anchors(lines: list[np.ndarray]) -> np.ndarray:
 
 
 def drawn(lines: list[np.ndarray]) -> np.ndarray:
-    """Points (N, 3) close to each other along all lines, for `Covered`."""
+    """Dense points (N, 3) along all lines, for `Covered`."""
     if not lines:
         return np.zeros((0, 3))
     points = np.vstack(lines)
@@ -43,10 +43,10 @@ def drawn(lines: list[np.ndarray]) -> np.ndarray:
 
 
 class Covered:
-    """Counts the cells of the screen with lines that a box covers."""
+    """Counts the cells with lines that a box covers."""
 
     def __init__(self, points: np.ndarray, size: tuple[float, float]):
-        """`points` (N, 2) along the lines, in pixels."""
+        """`points` (N, 2) are points along the lines in pixels."""
         self._shape = np.array([int(side) // _CELL + 1 for side in size])
         cells = np.floor(points[((points >= 0) & (points < size)).all(1)] / _CELL).astype(int)
         grid = np.zeros(self._shape, np.int32)
@@ -54,7 +54,7 @@ class Covered:
         self._sums = np.pad(grid.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
 
     def __call__(self, middles: np.ndarray, extents: np.ndarray) -> np.ndarray:
-        """Of boxes around `middles` (..., 2), `extents` being half their width and height."""
+        """The counts of boxes around `middles` (..., 2). `extents` are half their width and height."""
         low = np.clip(np.floor((middles - extents) / _CELL).astype(int), 0, self._shape)
         high = np.clip(np.floor((middles + extents) / _CELL).astype(int) + 1, 0, self._shape)
         sums = self._sums
@@ -63,9 +63,11 @@ class Covered:
 
 
 def arrange(around: np.ndarray, extents: np.ndarray, covered: Covered, size: tuple, scale: float) -> list[tuple | None]:
-    """Of each line the middle of its number and the point of the line that it belongs to, in pixels, or `None` where none is
-    free. `around` (lines, shares, 3, 2) is `anchors` on the screen, `extents` (lines, 2) half the width and height of each
-    number, `size` the region. Those that come first are served first."""
+    """For each line the middle of its number and the point of the line to which it belongs, in pixels; `None` if no place is free.
+
+    `around` (lines, shares, 3, 2) is `anchors` on the screen. `extents` (lines, 2) are half the width and height of each number.
+    `size` is the size of the region. Earlier lines choose first.
+    """
     middles, on_line = _candidates(around, extents, scale)
     costs = covered(middles, extents[:, None]) + _FURTHER * np.repeat(range(len(GAPS)), len(SHARES) * 2)
     inside = ((middles >= extents[:, None]) & (middles <= np.array(size) - extents[:, None])).all(-1)
@@ -85,7 +87,7 @@ def arrange(around: np.ndarray, extents: np.ndarray, covered: Covered, size: tup
 
 
 def _candidates(around: np.ndarray, extents: np.ndarray, scale: float) -> tuple[np.ndarray, np.ndarray]:
-    """Of each line middles of its number, best first, and their points on the line, both (lines, places, 2)."""
+    """For each line the possible middles of its number, the best first, and their points on the line, both (lines, places, 2)."""
     along = around[:, :, 2] - around[:, :, 0]
     length = np.linalg.norm(along, axis=-1, keepdims=True)
     across = np.where(length > 1e-6, along[..., ::-1] * [-1, 1] / np.maximum(length, 1e-6), [0.0, 1.0])

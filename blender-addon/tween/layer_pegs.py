@@ -1,10 +1,9 @@
-"""Pegs of Blender's layers: each layer group (and, by choice, each layer) moves as one between two keys.
+"""Pegs from Blender's layers: each layer group, and by choice each layer, moves as one between two keys.
 
-Pegs hang on each other as the groups lie in each other. How a peg moves from key to key is the similarity that fits the matched
-strokes of its own layers best; a group without layers of its own goes with the one around it. Where each layer is a peg, the layer
-with the longest strokes leads its group: were the group to go with the mean of them, no layer would move as it is drawn. The pivot
-is the point that stays nearest to its place against the parent: the joint. What strokes do beyond that, they do in the peg's frame.
-Plain NumPy, nothing of Blender but the layers' names.
+Pegs have the hierarchy of the groups. A peg's movement from key to key is the similarity that fits the matched strokes of its own
+layers best. A group without layers of its own moves with its parent. If each layer is a peg, the layer with the longest strokes
+leads its group: if the group followed the mean of its layers, no layer would move as it is drawn. A peg's pivot is its joint, the
+point that moves least relative to the parent. Strokes change their shape in the peg's frame.
 """
 
 from __future__ import annotations
@@ -21,48 +20,48 @@ from ..rototoon import tween
 from .sheets import Laid, Sheet
 
 SAMPLES = 24
-"""Points of a stroke that are compared."""
+"""Number of points per stroke that are compared."""
 SCALES = (0.05, 20.0)
 """Least and greatest scale from one key to the next."""
 FAR = 4.0
-"""How many times a group's size its pivot may be away from its middle."""
+"""Largest distance of a group's pivot from its middle, in sizes of the group."""
 STIFF = 1e-4
-"""Weight that draws a pivot to the middle where nothing turns."""
+"""Weight that pulls a pivot to the middle if nothing turns."""
 
 Path = tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Similarity:
-    """z ↦ factor · z + shift on complex numbers, and the turn that `factor` is, which may be more than half a one."""
+    """The map z ↦ factor · z + shift on complex numbers. `turn` is the angle of `factor` and may exceed half a turn."""
 
     factor: complex = 1.0
     shift: complex = 0.0
     turn: float = 0.0
 
     def after(self, other: Similarity) -> Similarity:
-        """This one applied to the result of another one."""
+        """The map that applies `other` first and then this one."""
         shift = self.factor * other.shift + self.shift
         return Similarity(self.factor * other.factor, shift, self.turn + other.turn)
 
     def inverse(self) -> Similarity:
-        """The way back."""
+        """The inverse map."""
         return Similarity(1 / self.factor, -self.shift / self.factor, -self.turn)
 
 
 @dataclass
 class Peg:
-    """A peg's own movement, without its parents'."""
+    """A peg's movement relative to its parent."""
 
     name: str
     parent: str | None
     pivot: complex
     poses: dict[int, tuple[float, float, complex]]
-    """By key the turn in radians, the scale and the shift of the pivot."""
+    """By key: turn in radians, scale, and shift of the pivot."""
 
 
 def paths_of(ob, layers: list[str], which: str) -> list[Path]:
-    """By layer the names of its pegs, the outermost first."""
+    """For each layer the names of its pegs, the outermost first."""
     found = []
     for name in layers:
         path = [f"group {group}" for group in hierarchy.groups_of(gp.find_layer(ob, name))]
@@ -71,7 +70,7 @@ def paths_of(ob, layers: list[str], which: str) -> list[Path]:
 
 
 def options(sheet: Sheet, laid: Laid, span: int, progress: tween.Progress | None, threads: int) -> dict[str, Any]:
-    """`pegs` and `hung` of the library for one span of a sheet."""
+    """The options `pegs` and `hung` of the library for one span of a sheet."""
     matches = tween.match_strokes(laid.drawings, progress, threads=threads)
     made = pegs(sheet, laid, span, np.asarray(matches.offsets), _rows(matches), np.asarray(matches.values).reshape(-1, 2))
     paths = sheet.pegs_of(span)
@@ -93,7 +92,7 @@ def _name(path: Path) -> str:
 
 
 def pegs(sheet: Sheet, laid: Laid, span: int, offsets, rows, values) -> list[Peg]:
-    """The pegs of a sheet's layers about a span, parents before children; everything is at rest on the span's first key."""
+    """The pegs of a sheet's layers around a span, parents before children. They are at rest on the span's first key."""
     paths = sheet.pegs_of(span)
     every = sorted({path[:k] for path in paths for k in range(1, len(path) + 1)}, key=lambda path: (len(path), path))
     around = sheet.around(span)
@@ -115,7 +114,7 @@ def pegs(sheet: Sheet, laid: Laid, span: int, offsets, rows, values) -> list[Peg
         if abs(pivot - middle) > FAR * size:
             pivot = middle
         if len(path) == 1:
-            # A drawing seldom shows the pivot of what hangs on nothing: as with pegs that are found, go there in part.
+            # A drawing seldom shows the pivot of a peg without a parent. So go only part of the way, as with pegs that are found.
             pivot = middle + sheet.choices[span].arcs * (pivot - middle)
         poses = {key: (each.turn, abs(each.factor), each.factor * pivot + each.shift - pivot) for key, each in local.items()}
         made.append(Peg(_name(path), _name(path[:-1]) or None, pivot, poses))
@@ -123,7 +122,7 @@ def pegs(sheet: Sheet, laid: Laid, span: int, offsets, rows, values) -> list[Peg
 
 
 def _own(path: Path, paths: list[Path], sheet: Sheet, laid: Laid, key: int) -> list[int]:
-    """The layers that tell how a peg moves."""
+    """The layers that determine a peg's movement."""
     own = [k for k, each in enumerate(paths) if each == path]
     direct = [k for k, each in enumerate(paths) if each[:-1] == path]
     if own or not direct or sheet.choices[key].pegs != "LAYERS":
@@ -132,7 +131,7 @@ def _own(path: Path, paths: list[Path], sheet: Sheet, laid: Laid, key: int) -> l
 
 
 def _length(sheet: Sheet, laid: Laid, key: int, layer: int) -> float:
-    """Of all strokes of a layer on a key."""
+    """Length of all strokes of a layer on a key."""
     strokes = laid.drawings.strokes
     offsets, points = np.asarray(strokes.offsets), np.asarray(strokes.points).reshape(-1, 2)
     first = laid.first_stroke[key, layer]
@@ -142,7 +141,7 @@ def _length(sheet: Sheet, laid: Laid, key: int, layer: int) -> float:
 
 
 def _points(sheet: Sheet, laid: Laid, key: int, layers: list[int], rows, values) -> tuple[np.ndarray, np.ndarray]:
-    """Places of the matched strokes of some layers on a key and the next one, as complex numbers."""
+    """Points of the matched strokes of some layers on a key and on the next one, as complex numbers."""
     offsets = np.asarray(laid.drawings.strokes.offsets)
     points = np.asarray(laid.drawings.strokes.points).reshape(-1, 2) @ [1, 1j]
     closed = np.asarray(laid.drawings.strokes.closed)
@@ -175,7 +174,7 @@ def _at(points: np.ndarray, closed: bool, shares: np.ndarray) -> np.ndarray:
 
 
 def _step(before: np.ndarray, after: np.ndarray) -> Similarity | None:
-    """The similarity that takes places to others best; nothing where there are too few."""
+    """The similarity that fits points to other points best; `None` if there are too few."""
     if len(before) < 2:
         return None
     a, b = before - before.mean(), after - after.mean()
@@ -187,7 +186,7 @@ def _step(before: np.ndarray, after: np.ndarray) -> Similarity | None:
 
 
 def _chained(steps: dict[int, Similarity], span: int, around: range) -> dict[int, Similarity]:
-    """From the span's first key to each other one."""
+    """The maps from the span's first key to each other key."""
     world = {span: Similarity()}
     for key in range(span, around[-1]):
         world[key + 1] = steps[key].after(world[key])
@@ -197,7 +196,7 @@ def _chained(steps: dict[int, Similarity], span: int, around: range) -> dict[int
 
 
 def _middle(sheet: Sheet, laid: Laid, key: int, layers: list[int]) -> tuple[complex, float]:
-    """Middle and size of what some layers hold on a key."""
+    """Middle and size of the drawing of some layers on a key."""
     offsets = np.asarray(laid.drawings.strokes.offsets)
     points = np.asarray(laid.drawings.strokes.points).reshape(-1, 2) @ [1, 1j]
     found = [np.zeros(0, complex)]
@@ -209,13 +208,13 @@ def _middle(sheet: Sheet, laid: Laid, key: int, layers: list[int]) -> tuple[comp
 
 
 def _pivot(local: Similarity, middle: complex) -> complex:
-    """The point that stays nearest to its place; the middle where nothing turns."""
+    """The point that moves least; the middle if nothing turns."""
     change = local.factor - 1
     return (-np.conj(change) * local.shift + STIFF * middle) / (abs(change) ** 2 + STIFF)
 
 
 def _written(peg: Peg, sheet: Sheet, span: int) -> dict[str, Any]:
-    """As documents hold it."""
+    """The peg in the form of documents."""
     first, last = sheet.frames[span], sheet.frames[span + 1]
     choices = sheet.choices[span]
     if choices.spacing == "SMOOTH":
@@ -239,7 +238,7 @@ def _key(frame: int, turn: float, growth: float, x: float, y: float, timing: Any
 
 
 def _smooth(peg: Peg, sheet: Sheet, span: int, times: np.ndarray) -> np.ndarray:
-    """Rows of a peg at some times of a span: with one velocity through the keys, and into rest where a movement turns back."""
+    """Rows of a peg at some times of a span. The velocity is continuous at keys, and zero where a movement turns back."""
     at = {key: float(sheet.frames[key]) for key in peg.poses}
     rows = {key: np.array(_row(pose)) for key, pose in peg.poses.items()}
     secant = {k: (rows[k + 1] - rows[k]) / (at[k + 1] - at[k]) for k in rows if k + 1 in rows}

@@ -1,7 +1,6 @@
-"""Which stroke is which on all keys of a layer: numbers that stay when a span is drawn again.
+"""Numbers of strokes that stay the same on all keys of a layer, and when a span is drawn again.
 
-A stroke hands its number on to its counterpart on the next key. Where a span was not matched anew, equal numbers say what
-its pairs were.
+A stroke passes its number to its counterpart on the next key. If a span was not matched again, equal numbers are its pairs.
 """
 
 from __future__ import annotations
@@ -14,10 +13,10 @@ Pairs = Iterable[tuple[int, int]]
 
 
 def numbered(known: list[np.ndarray], matched: dict[int, Pairs], fresh: int) -> tuple[list[np.ndarray], int]:
-    """The numbers of the strokes of all keys, and the next one that is free.
+    """The numbers of the strokes of all keys, and the next free number.
 
-    `known` are those that they carry, 0 for none; `matched` by span the pairs of strokes that were found; `fresh` is a number
-    that was never given.
+    `known` are the current numbers, 0 for none. `matched` are the matched pairs of strokes by span. `fresh` is a number that was
+    never used.
     """
     fresh = max([fresh, *(int(each.max()) + 1 for each in known if len(each))])
     result: list[np.ndarray] = []

@@ -1,8 +1,7 @@
-"""Pairs of strokes on the screen: lines in the colours of the pairs, with numbers on plates beside them. Drawn while Match
-Strokes runs.
+"""The overlay of Match Strokes: lines in the colours of the pairs, and numbers on plates beside them.
 
-Lines of the earlier key are wide and their plates have the pair's colour; those of the later key are narrow and their plates
-black. Numbers that find no place of their own are left out until there is more room: zoom in.
+Lines of the earlier key are wide, and their plates have the pair's colour. Lines of the later key are narrow, and their plates are
+black. Numbers without a free place are left out until the artist zooms in.
 """
 
 from __future__ import annotations
@@ -15,15 +14,15 @@ from . import label_places
 from .pairing import Mark, Pairing, on_screen
 
 _SIDES = ((1.0, 3.5), (0.9, 1.75))
-"""Opacity and width of the lines of the earlier and of the later key."""
+"""Opacity and width of the lines: of the earlier key, of the later key."""
 _FONT, _PADDING = 13, (5.0, 4.0)
 _MOST = 400
-"""Numbers on the screen at once."""
+"""Largest count of numbers on the screen."""
 _INK = (0.04, 0.04, 0.04)
 
 
 class PairOverlay:
-    """Draws the marks of a pairing in every 3D view, until it is closed."""
+    """Draws the marks of a pairing in every 3D view until it is closed."""
 
     def __init__(self, pairing: Pairing):
         self._pairing = pairing
@@ -44,7 +43,7 @@ class PairOverlay:
         self._handles = []
 
     def refresh(self) -> None:
-        """Shows the pairs as they are now."""
+        """Shows the current pairs."""
         self._marks = [mark for mark in self._pairing.marks() if np.isfinite(mark.points).all() and len(mark.points)]
         lines = [mark.points for mark in self._marks]
         self._anchors, self._drawn = label_places.anchors(lines), label_places.drawn(lines)
@@ -52,7 +51,7 @@ class PairOverlay:
         windows.redraw_views()
 
     def _laid(self, shader) -> list:
-        """The lines of each side, the narrow ones over the wide ones."""
+        """Batches of the lines of each key; the narrow lines are drawn over the wide ones."""
         from gpu_extras.batch import batch_for_shader
 
         laid = []
@@ -90,7 +89,7 @@ class PairOverlay:
         places = on_screen(self._anchors.reshape(-1, 3), matrix, size).reshape(self._anchors.shape[:-1] + (2,))
         seen = ((places[:, :, 1] >= 0) & (places[:, :, 1] < size)).all(-1).any(-1)
         lengths = np.ptp(places[:, :, 1], axis=1).sum(-1)
-        # What was decided by hand comes first, then short lines, which have the fewest places.
+        # Pairs made by hand come first, then short lines, which have the fewest places.
         order = sorted(np.flatnonzero(seen), key=lambda i: (not self._marks[i].by_hand, lengths[i]))[:_MOST]
         if order:
             covered = label_places.Covered(on_screen(self._drawn, matrix, size), size)
@@ -114,7 +113,7 @@ class PairOverlay:
 
 
 def _draw_plates(plates: list[tuple], scale: float) -> None:
-    """Plates under numbers, with a line to what they name."""
+    """Draws plates under the numbers, with stems to their lines."""
     import gpu
     from gpu_extras.batch import batch_for_shader
 
@@ -125,7 +124,7 @@ def _draw_plates(plates: list[tuple], scale: float) -> None:
     for mark, extent, middle, on_line in plates:
         stems.extend((middle, on_line))
         colour = (*mark.colour, 1.0)
-        # A rim in the colour of the pair around the later key's black plate, a black one around the earlier key's.
+        # The later key's black plate gets a rim in the colour of the pair, the earlier key's coloured plate a black rim.
         for grown, fill in ((scale, _INK if mark.side == 0 else mark.colour), (0, mark.colour if mark.side == 0 else _INK)):
             boxes.append(np.array(middle) + corners * (extent + grown))
             fills.append(np.tile((*fill, 1.0), (len(corners), 1)))

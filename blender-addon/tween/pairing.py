@@ -1,7 +1,6 @@
-"""Which stroke of a key is which of the next one, to be looked at and decided by hand.
+"""Match Strokes without its overlay: the strokes of two keys on each layer, their pairs, clicks, and the marks to show.
 
-Everything but drawing on the screen: the strokes of both keys on each layer, the pairs that the library finds, what a click
-does, and what is to be shown. Decisions go into the strokes at once (see `pairs`); `undo` takes back the last one.
+The library finds the pairs. The artist's decisions are stored in the strokes at once (see `pairs`). `undo` takes back the last one.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from . import pairs, records, sheets, tweening
 from .charts import Choices
 
 REACH = 14.0
-"""Pixels of the screen within which a click finds a stroke."""
+"""Largest distance of a click from a stroke, in pixels of the screen."""
 ALONE = (0.6, 0.6, 0.6)
 PICKED = (1.0, 1.0, 1.0)
 COLOURS = (
@@ -37,8 +36,8 @@ COLOURS = (
     (0.55, 0.75, 0.15),
     (0.85, 0.65, 1.00),
 )
-"""Far from each other, from white and from greys to the eye (the least distance in OKLab made as large as can be), each far
-from the four before it."""
+"""Colours of pairs. They differ as much as possible from each other, from white and from greys: the least distance in OKLab is as
+large as possible. Each differs much from the four before it."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +52,7 @@ class Item:
 
 @dataclass
 class Pair:
-    """A row of what was found, strokes by index; -1 for none."""
+    """A row of the matches. Strokes are indices; -1 for none."""
 
     layer: int
     kind: int
@@ -65,10 +64,10 @@ class Pair:
 
 @dataclass
 class Mark:
-    """A stroke as it is shown."""
+    """A stroke to show."""
 
     points: np.ndarray
-    """(N, 3), in the world."""
+    """Points (N, 3) of its line in the world."""
     colour: tuple[float, float, float]
     side: int
     label: str
@@ -82,7 +81,7 @@ class _Layer:
     handles: tuple
     call: tweening.Call
     world: tuple[list[np.ndarray], list[np.ndarray]]
-    """By side the line of each stroke."""
+    """For both keys the line of each stroke."""
 
 
 class Pairing:
@@ -119,15 +118,15 @@ class Pairing:
 
     @property
     def spans(self) -> list[tuple[str, int, int]]:
-        """Layer and keys that are matched."""
+        """The matched keys of each layer: (layer, earlier frame, later frame)."""
         return [(layer.name, *layer.frames) for layer in self._layers]
 
     def match(self, progress: tween.Progress | None = None) -> list[tween.Matches]:
-        """Has the library find the pairs; touches nothing of Blender's."""
+        """Matches the strokes. It does not use Blender, so it may run in a thread."""
         return [tween.match_strokes(layer.call.laid.drawings, progress) for layer in self._layers]
 
     def take(self, found: list[tween.Matches]) -> None:
-        """Puts what was found in place."""
+        """Takes over the result of `match`."""
         self.pairs = []
         for number, (layer, matches) in enumerate(zip(self._layers, found)):
             layer.call.matches = matches
@@ -144,7 +143,7 @@ class Pairing:
         return (earlier >= 0 and to[earlier] == pairs.NONE) or (later >= 0 and of[later] == pairs.NONE)
 
     def store(self) -> None:
-        """Gives the strokes of both keys, and of the others, their numbers."""
+        """Stores the numbers of the strokes of all keys."""
         plan = tweening.Plan(records=records.read(self._ob.data))
         for layer in self._layers:
             record = plan.records.setdefault(layer.name, records.Layer())
@@ -158,14 +157,14 @@ class Pairing:
     # -- by hand -----------------------------------------------------------------------------------------------------
 
     def row_of(self, item: Item) -> Pair | None:
-        """The row in which a stroke stands; of a stroke in pieces the first."""
+        """The row of a stroke; the first row of a stroke in pieces."""
         for row in self.pairs:
             if row.layer == item.layer and item.index == (row.later if item.side else row.earlier):
                 return row
         return None
 
     def click(self, item: Item | None) -> bool:
-        """Picks a stroke, or pairs it with the one picked before; whether the pairs must be found anew."""
+        """Picks a stroke, or pairs it with the picked one. Returns whether the strokes must be matched again."""
         first, self.picked = self.picked, None
         if item is None or item == first:
             return False
@@ -178,7 +177,7 @@ class Pairing:
         return True
 
     def free(self, item: Item | None) -> bool:
-        """Takes back what was decided of a stroke; if nothing was, decides that it has no counterpart."""
+        """Takes back the decision on a stroke. Without a decision, the stroke gets no counterpart. Returns as `click`."""
         self.picked = None
         if item is None:
             return False
@@ -191,7 +190,7 @@ class Pairing:
         return True
 
     def undo(self) -> bool:
-        """Takes back the last decision; whether there was one."""
+        """Takes back the last decision. Returns whether there was one."""
         if not self._undo:
             return False
         number, values = self._undo.pop()
@@ -201,14 +200,14 @@ class Pairing:
 
     @property
     def changed(self) -> bool:
-        """Whether anything was decided."""
+        """Whether the artist has decided anything."""
         return bool(self._undo)
 
     def _change(self, number: int):
         return _Change(self, number)
 
     def _reread(self, number: int) -> None:
-        """The library is told what is decided now."""
+        """Reads the decisions again for the next `match`."""
         layer = self._layers[number]
         for contents, handle, name in zip(layer.call.sheet.contents.values(), layer.handles, (gp.NEXT, gp.BEFORE)):
             contents[0].set_strokes(name, gp.value(handle, name, len(contents[0].sizes)))
@@ -217,9 +216,9 @@ class Pairing:
     # -- on the screen -----------------------------------------------------------------------------------------------
 
     def pick(self, place: tuple[float, float], matrix: np.ndarray, size: tuple[float, float]) -> Item | None:
-        """The stroke under a place of a view, pixels from its lower left corner; `matrix` (4×4) takes the world to it.
+        """The stroke at a place of a view, in pixels from its lower left corner. `matrix` (4×4) is the view's perspective matrix.
 
-        Once a stroke is picked, those of the other key that lie there come first.
+        When a stroke is picked, strokes of the other key are preferred.
         """
         best: dict[int, tuple[float, Item]] = {}
         for number, layer in enumerate(self._layers):
@@ -236,9 +235,9 @@ class Pairing:
         return min(best.values(), key=lambda each: each[0])[1]
 
     def marks(self) -> list[Mark]:
-        """What is to be shown: every stroke once, pairs in the same colour with the same number.
+        """The marks to show: every stroke once. The strokes of a pair have the same colour and number.
 
-        The number is that of the earlier key's stroke, so that it stays what it is whatever is decided of others.
+        The number is that of the earlier key's stroke, so decisions on other strokes do not change it.
         """
         marks: list[Mark] = []
         seen: set[Item] = set()
@@ -249,7 +248,7 @@ class Pairing:
             if row.kind in (tween.VANISHED, tween.APPEARED):
                 label, colour = "–", ALONE
             else:
-                # Pieces of one stroke share its number.
+                # All pieces of a stroke have the stroke's number.
                 own = int(before[row.layer]) + row.earlier + 1
                 number = next((whole[each] for each in items if each in whole), own)
                 whole.update(dict.fromkeys(items, number))
@@ -264,12 +263,12 @@ class Pairing:
         return marks
 
     def keys(self) -> str:
-        """The keys that are matched, in words."""
+        """The matched keys in words."""
         spans = sorted({layer.frames for layer in self._layers})
         return "Frames " + ", ".join(f"{first} to {last}" for first, last in spans)
 
     def summary(self) -> str:
-        """What was found, in words."""
+        """The pairs in words."""
         paired = sum(row.kind == tween.PAIR for row in self.pairs)
         hand = sum(row.by_hand for row in self.pairs)
         pieces = sum(row.kind in (tween.SPLIT, tween.JOINED) for row in self.pairs)
@@ -283,7 +282,7 @@ class Pairing:
 
 
 class _Change:
-    """Notes what was there before a decision."""
+    """A decision. It remembers the state before, for `undo`."""
 
     def __init__(self, pairing: Pairing, number: int):
         self._pairing, self._number = pairing, number
@@ -299,12 +298,12 @@ class _Change:
 
 
 def colour_of(number: int) -> tuple[float, float, float]:
-    """The colour of a pair; those of neighbouring numbers differ much."""
+    """The colour of a pair. Colours of neighbouring numbers differ much."""
     return COLOURS[(number - 1) % len(COLOURS)]
 
 
 def on_screen(points: np.ndarray, matrix: np.ndarray, size: tuple[float, float]) -> np.ndarray:
-    """Pixels of a view (N, 2); those behind it far away."""
+    """Pixels (N, 2) of points in a view. Points behind the view get pixels far away."""
     clip = np.c_[points, np.ones(len(points))] @ np.asarray(matrix, float).T
     ahead = clip[:, 3] > 1e-9
     unit = clip[:, :2] / np.where(ahead, clip[:, 3], 1.0)[:, None]

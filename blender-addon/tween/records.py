@@ -1,8 +1,8 @@
-"""What a file keeps of its in-betweens: from what each span was made, so that only what changed is made again.
+"""Records of in-betweens in the file, so that only changed spans are drawn again.
 
-One text on the Grease Pencil data: by layer the number of the next stroke, and by span (frame of its earlier key) the last
-frame, a digest of all that it was made from, the artist's choices, and a checksum of each drawing, which tells whether
-the artist has changed it since.
+The records are one JSON text on the Grease Pencil data. For each layer it has the next free number of a stroke, and its spans by the
+frame of the earlier key. A span has its last frame, a digest of everything from which it was drawn, the artist's choices, and a
+checksum of each drawing. The checksum shows whether the artist has changed the drawing since.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ class Span:
     digest: str
     choices: Choices
     sums: dict[int, int] = field(default_factory=dict)
-    """Checksum of each drawing by frame."""
+    """Checksums of the drawings by frame."""
 
 
 @dataclass
 class Layer:
-    """What is known of a layer."""
+    """The records of a layer."""
 
     next_track: int = 1
     spans: dict[int, Span] = field(default_factory=dict)
 
     def holding(self, first: int, last: int) -> Span | None:
-        """The span in which another one lies."""
+        """The recorded span that contains a span."""
         for start, span in self.spans.items():
             if start <= first and last <= span.last:
                 return span
@@ -46,7 +46,7 @@ class Layer:
 
 
 def read(data) -> dict[str, Layer]:
-    """The records of a data-block by layer; none where the text is not understood."""
+    """The records of a data-block by layer; none if the text cannot be read."""
     try:
         kept = json.loads(data.get(PROPERTY, "{}"))
         return {name: _layer(each) for name, each in kept.items()}
@@ -68,7 +68,7 @@ def _layer(kept: dict[str, Any]) -> Layer:
 
 
 def write(data, records: dict[str, Layer]) -> None:
-    """Puts the records into a data-block; without any, nothing is left there."""
+    """Writes the records into a data-block. Without records, the text is removed."""
     kept = {name: _kept(layer) for name, layer in records.items() if layer.spans or layer.next_track > 1}
     if kept:
         data[PROPERTY] = json.dumps(kept, separators=(",", ":"))
@@ -85,5 +85,5 @@ def _kept(layer: Layer) -> dict[str, Any]:
 
 
 def checksum(positions: np.ndarray) -> int:
-    """Of the points of a drawing, float32 (N, 3)."""
+    """Checksum of the points of a drawing, float32 (N, 3)."""
     return zlib.crc32(np.ascontiguousarray(positions, np.float32))

@@ -1,8 +1,8 @@
-"""Drawings of layers laid out for the library: keys that follow each other, with all that bears on what is between them.
+"""Sheets: drawings of consecutive keys, laid out for the library.
 
-Layers with the same keys are drawn together, so that lines and their colours on a layer below move as one. A blank key ends
-what is before it. Points are taken in the plane of the first drawing, enlarged so that it is about a thousand pixels large;
-the distance from the plane is blended. Neither depends on the view.
+Layers with the same keys share a sheet, so that lines and the colours on a layer below them move as one. A blank key ends a sheet.
+Points are in the plane of the first drawing, at a scale that makes it about a thousand pixels large. The distance from the plane is
+blended. So the view does not matter.
 """
 
 from __future__ import annotations
@@ -25,26 +25,26 @@ from . import pairs
 from .charts import Choices
 
 SIZE = 1000.0
-"""Pixels of a drawing's larger side, within a factor of √2."""
+"""Length of a drawing's larger side in pixels, within a factor of √2."""
 VERSION = 1
-"""Changes when the same drawings give other in-betweens."""
+"""It changes when the same drawings give other in-betweens."""
 
 
 @dataclass
 class Plane:
-    """Where points of layers lie on the sheet."""
+    """The plane of a sheet, and the mapping of layer points to it."""
 
     axes: np.ndarray
-    """(3, 3): right, down, and away from the plane."""
+    """(3, 3): the directions right, down, and away from the plane."""
     scale: float
     to_sheet: list[np.ndarray]
-    """By layer 4×4, to the space of the sheet."""
+    """For each layer 4×4, to the space of the sheet."""
     corner: np.ndarray = field(default_factory=lambda: np.zeros(2))
-    """What lies at the origin."""
+    """The sheet's origin, in pixels of the plane."""
 
     @classmethod
     def of(cls, points: np.ndarray, to_sheet: list[np.ndarray]) -> Plane:
-        """The plane of some points, coarse, so that it stays where a point is moved."""
+        """The plane of some points. It is rounded, so that it stays the same when a point is moved."""
         front = np.array([0.0, 1.0, 0.0])
         _, normal = cameras.plane_of(points, front)
         normal = np.round(normal * 32)
@@ -57,11 +57,11 @@ class Plane:
         return cls(np.stack([across, np.cross(normal, across), normal]), scale, to_sheet)
 
     def flat(self, points: np.ndarray, layer: int) -> tuple[np.ndarray, np.ndarray]:
-        """Pixels (N, 2) of layer points and their distances from the plane (N,)."""
+        """Pixels (N, 2) of layer points, and their distances (N,) from the plane."""
         return self.laid(points, self.to_sheet[layer])
 
     def laid(self, points: np.ndarray, to: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The same of points in any space, `to` being 4×4 to the space of the sheet."""
+        """The same for points in any space. `to` is 4×4, to the space of the sheet."""
         local = (points.astype(np.float64) @ to[:3, :3].T + to[:3, 3]) @ self.axes.T
         return local[:, :2] * self.scale - self.corner, local[:, 2]
 
@@ -77,7 +77,7 @@ class Plane:
         return points
 
     def text(self) -> bytes:
-        """All that it is."""
+        """Everything that a digest must contain of it."""
         corner = [self.corner] if self.corner.any() else []
         every = (self.axes, np.array(self.scale), *self.to_sheet, *corner)
         return b"".join(np.round(each, 6).tobytes() for each in every)
@@ -85,44 +85,44 @@ class Plane:
 
 @dataclass
 class Contour:
-    """A captured contour on the sheet, for strokes to follow."""
+    """A captured contour on the sheet that strokes may follow."""
 
     closed: bool
     first: int
-    """The frame of the first of its rows."""
+    """The frame of its first row."""
     points: np.ndarray
-    """(frames, N, 2): pixels, on each frame from the first on."""
+    """Pixels (frames, N, 2), from the first frame on."""
 
     def written(self) -> dict[str, Any]:
-        """As the library takes it."""
+        """The contour as the library takes it."""
         return {"closed": self.closed, "first": self.first, "contours": self.points.tolist()}
 
     def text(self) -> bytes:
-        """All that it is."""
+        """Everything that a digest must contain of it."""
         return repr((self.closed, self.first, self.points.shape)).encode() + self.points.tobytes()
 
 
 @dataclass
 class Sheet:
-    """Keys that follow each other on one or more layers."""
+    """Consecutive keys of one or more layers."""
 
     layers: list[str]
     frames: list[int]
     plane: Plane
     wanted: dict[int, Choices]
-    """Spans that are drawn, by the number of their earlier key."""
+    """The choices of the spans to draw, by the index of the earlier key."""
     choices: list[Choices]
-    """Of all spans."""
+    """The choices of all spans."""
     contents: dict[int, list[st.Content]] = field(default_factory=dict)
-    """By key and layer, where they are needed."""
+    """By key and layer, as far as needed."""
     digests: dict[int, str] = field(default_factory=dict)
-    """Of all that a span depends on."""
+    """By span the digest of everything on which it depends."""
     pegs: dict[str, list[tuple[str, ...]]] = field(default_factory=dict)
-    """By choice and layer the names of the layer's pegs, the outermost first."""
+    """By choice, for each layer the names of its pegs, the outermost first."""
     size: tuple[float, float] | None = None
-    """Width and height of the picture, where strokes leave it. Its corner is the sheet's origin."""
+    """Width and height of the picture, if strokes leave it. Its corner is the sheet's origin."""
     captured: dict[int, list[Contour]] = field(default_factory=dict)
-    """By span the contours that its strokes may follow, on its frames."""
+    """By span the contours that its strokes may follow."""
 
     def around(self, span: int) -> range:
         """The keys on which a span depends."""
@@ -130,24 +130,24 @@ class Sheet:
         return range(max(span - smooth, 0), min(span + 1 + smooth, len(self.frames) - 1) + 1)
 
     def spacing(self, span: int):
-        """The spacing of a span as the library takes it."""
+        """The spacing of a span, as the library takes it."""
         return self.choices[span].written(self.frames[span], self.frames[span + 1])
 
     def pegs_of(self, span: int) -> list[tuple[str, ...]]:
-        """By layer the names of its pegs; nothing where they are found."""
+        """For each layer the names of its pegs; an empty list if pegs are found."""
         return self.pegs.get(self.choices[span].pegs, [])
 
     def leaving(self, span: int):
-        """What strokes do that only one key has, as the library takes it."""
+        """The library's option `leaving` of a span."""
         found = self.choices[span].leaving
         return {"leave": list(self.size)} if found == "LEAVE" else found.lower()
 
     def by_hand(self, span: int) -> list[list[tuple[int, int]]]:
-        """By layer the pairs made by hand."""
+        """For each layer the artist's pairs."""
         return [pairs.between(a, b) for a, b in zip(self.contents[span], self.contents[span + 1])]
 
     def read(self, ob) -> None:
-        """Reads the drawings that the wanted spans need, and sums up what each depends on."""
+        """Reads the drawings for the wanted spans, and makes the digest of each span."""
         drawings = [gp.drawings(gp.find_layer(ob, name)) for name in self.layers]
         for key in sorted({key for span in self.wanted for key in self.around(span)}):
             self.contents[key] = [st.read(each[self.frames[key]][0]) for each in drawings]
@@ -161,7 +161,7 @@ class Sheet:
             told = [VERSION, self.layers, [self.frames[key] for key in around], choices.shared()]
             told += [self.spacing(key) for key in around[:-1]] + [self.by_hand(key) for key in around[:-1]]
             told.append(choices.frames(self.frames[span], self.frames[span + 1]))
-            # What earlier versions knew nothing of is told where it matters, so that what they drew stays as it is.
+            # Newer choices are added only where they matter, so that digests of earlier versions stay valid.
             told += [self.pegs_of(span)] if self.pegs_of(span) else []
             told += [self.size] if choices.leaving == "LEAVE" else []
             summed.update(json.dumps(told).encode())
@@ -172,19 +172,19 @@ class Sheet:
 
 @dataclass
 class Laid:
-    """A sheet as the library takes it."""
+    """The arrays of a sheet, as the library takes them."""
 
     drawings: tween.Drawings
     first_stroke: dict[tuple[int, int], int]
-    """By key and layer the number of the first stroke."""
+    """By key and layer the index of the first stroke."""
     away: np.ndarray
-    """By point the distance from the plane."""
+    """For each point the distance from the plane."""
     rows: np.ndarray
-    """By point its number in its own drawing."""
+    """For each point its index in its drawing."""
 
 
 def lay_out(ob, sheet: Sheet) -> Laid:
-    """The arrays of a sheet; strokes with points that are no places have none there."""
+    """The arrays of a sheet. Strokes with points that are not finite get no points."""
     columns = {name: [] for name in ("sizes", "points", "closed", "colours", "labels", "away", "rows")}
     first, bounds, strokes = {}, [0], 0
     materials = colours.palette(ob)

@@ -1,4 +1,4 @@
-"""The spacing curve that the artist draws: Blender has curves to draw only in nodes, so one node in a group of its own holds it."""
+"""The spacing curve that the artist draws. Blender offers such curves only in nodes, so a node in a group of its own has it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import bpy
 
 NAME = "Rototoon Spacing"
 STEPS = 32
-"""Parts into which the curve is cut for the library."""
+"""Number of parts of the curve for the library."""
 
 
 def node():
@@ -18,7 +18,7 @@ def node():
 
 
 def ensure():
-    """The node with the curve, made if need be: from rest into rest."""
+    """The node with the curve. A new curve starts and ends at rest."""
     found = node()
     if found is not None:
         return found
@@ -33,7 +33,7 @@ def ensure():
 
 
 def sampled() -> tuple[tuple[float, float], ...]:
-    """Times and shares along the curve."""
+    """Times and shares of the curve."""
     mapping = ensure().mapping
     mapping.initialize()
     times = [step / STEPS for step in range(STEPS + 1)]

@@ -1,4 +1,4 @@
-"""What bears on a sheet beside its drawings: the pegs of its layers, and the picture that strokes leave."""
+"""Data of a sheet beside its drawings: the pegs of its layers, and the picture that strokes may leave."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from . import layer_pegs, sheets
 
 
 def prepare(ob, sheet: sheets.Sheet, points: np.ndarray) -> None:
-    """Gives a sheet the pegs of its layers and the picture, where these are asked for."""
+    """Adds the pegs of its layers and the picture to a sheet, if its choices need them."""
     for which in {choices.pegs for choices in sheet.wanted.values()} - {"FOUND"}:
         sheet.pegs[which] = layer_pegs.paths_of(ob, sheet.layers, which)
     if any(choices.leaving == "LEAVE" for choices in sheet.choices):
@@ -21,7 +21,7 @@ def prepare(ob, sheet: sheets.Sheet, points: np.ndarray) -> None:
 
 
 def _picture(ob, sheet: sheets.Sheet, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Corners of the picture on the sheet: what the camera shows on the current frame, else about the drawing."""
+    """Two corners of the picture on the sheet: of the camera's picture on the current frame, otherwise of a box around the drawing."""
     seen = projection.frame_of(ob)
     if seen is not None:
         view, (width, height) = seen
@@ -32,7 +32,7 @@ def _picture(ob, sheet: sheets.Sheet, points: np.ndarray) -> tuple[np.ndarray, n
             flat, _ = sheet.plane.flat(mapping.to_layer(corners), 0)
             return flat.min(0), flat.max(0)
         except Problem:
-            # Seen edge-on: no picture to leave.
+            # The plane is seen edge-on, so there is no picture to leave.
             pass
     flat, _ = sheet.plane.flat(points, 0) if len(points) else (np.zeros((1, 2)), None)
     size = np.ptp(flat, axis=0).max()

@@ -1,7 +1,7 @@
-"""In-betweens of an object: what is to be drawn, drawn, and written, where anything has changed.
+"""In-betweens of an object, drawn where something has changed.
 
-`plan` reads, `draw` works without Blender (in a thread), `finish` writes. A span whose keys, pairs and choices are those
-from which it was drawn is left alone.
+`plan` reads, `draw` works without Blender in a thread, `finish` writes. A span is left alone if its keys, pairs and choices are
+those from which it was drawn.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from . import numbers as tween_numbers
 from .charts import Choices
 
 Choose = Callable[[str, ks.Frames, records.Layer], dict[tuple[int, int], Choices]]
-"""Which spans between neighbouring keys of a layer are wanted, and how."""
+"""Chooses the spans of a layer to draw, between neighbouring keys, and their choices."""
 
 
 @dataclass
@@ -37,19 +37,19 @@ class Call:
 
 @dataclass
 class Plan:
-    """All that is to be drawn."""
+    """Everything that will be drawn."""
 
     calls: list[Call] = field(default_factory=list)
     records: dict[str, records.Layer] = field(default_factory=dict)
     frames: dict[str, ks.Frames] = field(default_factory=dict)
     current: int = 0
-    """Spans that are as they should be."""
+    """Number of spans that are up to date."""
     blank: int = 0
-    """Spans that were wanted and have a blank key."""
+    """Number of chosen spans with a blank key."""
 
 
 def plan(ob, layers: Iterable, choose: Choose) -> Plan:
-    """What is to be drawn on some layers."""
+    """The plan for some layers."""
     result = Plan(records=records.read(ob.data))
     groups: dict[tuple, list[str]] = {}
     spans: dict[str, dict[tuple[int, int], Choices]] = {}
@@ -58,7 +58,7 @@ def plan(ob, layers: Iterable, choose: Choose) -> Plan:
         record = result.records.setdefault(name, records.Layer())
         found = result.frames[name] = ks.frames_of(layer, record)
         spans[name] = choose(name, found, record)
-        # What is carried by something of its own is drawn on a sheet of its own, in the space that is carried.
+        # Layers with another carrier get another sheet, in the space of their carrier.
         carrier = hierarchy.carrier(ob, layer)
         wanted = tuple(sorted((span, choices) for span, choices in spans[name].items()) if spans[name] else ())
         key = (tuple(found.keys), tuple(sorted(found.blank)), tuple(map(repr, wanted)), carrier)
@@ -99,7 +99,7 @@ def _plan_group(
 
 
 def _runs(found: ks.Frames) -> list[list[int]]:
-    """Keys that follow each other without a blank one."""
+    """Runs of consecutive keys without a blank key."""
     runs: list[list[int]] = [[]]
     for frame in found.keys:
         if frame in found.blank:
@@ -115,7 +115,7 @@ def _kept(record: records.Layer, first: int, last: int) -> Choices | None:
 
 
 def _is_current(sheet: sheets.Sheet, k: int, result: Plan) -> bool:
-    """Whether a span is drawn already, on all layers, from just what it would be drawn from."""
+    """Whether a span is up to date on all layers."""
     frames = set(sheet.wanted[k].frames(sheet.frames[k], sheet.frames[k + 1]))
     for name in sheet.layers:
         span = result.records[name].spans.get(sheet.frames[k])
@@ -129,7 +129,7 @@ def _is_current(sheet: sheets.Sheet, k: int, result: Plan) -> bool:
 def _add_calls(ob, sheet: sheets.Sheet, result: Plan) -> None:
     by_choices: dict[tuple[str, int], list[int]] = {}
     for k in sorted(sheet.wanted):
-        # Pegs of layers rest on the span's own first key, so these spans are drawn one by one.
+        # Pegs of layers are at rest on the first key of their span, so these spans are drawn one by one.
         alone = k if any(sheet.pegs_of(k)) else -1
         by_choices.setdefault((repr(sheet.wanted[k].shared()), alone), []).append(k)
     if by_choices:
@@ -140,7 +140,7 @@ def _add_calls(ob, sheet: sheets.Sheet, result: Plan) -> None:
 
 
 def draw(plan: Plan, progress: tween.Progress, threads: int = 0) -> None:
-    """Has the library draw everything; touches nothing of Blender's."""
+    """Draws everything of a plan. It does not use Blender, so it may run in a thread."""
     for number, call in enumerate(plan.calls):
         sheet = call.sheet
 
@@ -152,7 +152,7 @@ def draw(plan: Plan, progress: tween.Progress, threads: int = 0) -> None:
         spacing = [sheet.spacing(k) if k in needed else "smooth" for k in range(len(sheet.frames) - 1)]
         first = call.spans[0]
         options = {**sheet.wanted[first].shared(), "leaving": sheet.leaving(first)}
-        # Each span's own frames: a contour of one span is none of another, which may not want it.
+        # Contours are given span by span, since another span may not follow them.
         options["captured"] = [each.written() for k in call.spans for each in sheet.captured.get(k, ())]
         if any(sheet.pegs_of(first)):
             options |= layer_pegs.options(sheet, call.laid, first, None, threads)
@@ -163,16 +163,16 @@ def draw(plan: Plan, progress: tween.Progress, threads: int = 0) -> None:
 
 @dataclass
 class Done:
-    """What was written."""
+    """What `finish` has written."""
 
     spans: int = 0
     drawings: int = 0
     keys: int = 0
-    """Drawings that became the artist's."""
+    """Number of in-betweens that became keys."""
 
 
 def finish(ob, plan: Plan) -> Done:
-    """Writes what was drawn."""
+    """Writes a drawn plan."""
     done = Done()
     for name, found in plan.frames.items():
         done.keys += len(found.edited)
@@ -194,7 +194,7 @@ def finish(ob, plan: Plan) -> Done:
 
 
 def adopt(layer, frames: Iterable[int]) -> None:
-    """Makes generated drawings the artist's own: breakdowns."""
+    """Makes in-betweens the artist's keys, as breakdowns."""
     drawings = gp.drawings(layer)
     for frame in frames:
         handle = drawings[frame][0]
@@ -209,14 +209,14 @@ def _note(record: records.Layer, block: between.Block, sheet: sheets.Sheet, span
         if first == block.first or not kept:
             del record.spans[first]
         else:
-            # A key now lies within; what is left of the span is drawn when its turn comes.
+            # A key now divides this span. The rest of the span is drawn again at the next update.
             known.sums = kept
             known.digest = ""
     record.spans[block.first] = records.Span(block.last, sheet.digests[span], sheet.wanted[span], sums)
 
 
 def collect_pairs(call: Call, into: dict[str, dict[int, list[tuple[int, int]]]]) -> None:
-    """By layer and frame of the earlier key the pairs of strokes by index."""
+    """Adds the pairs of strokes by index, by layer and frame of the earlier key."""
     sheet, first = call.sheet, call.laid.first_stroke
     offsets, rows = np.asarray(call.matches.offsets), np.asarray(call.matches.rows).reshape(-1, 4)
     for name in sheet.layers:
@@ -231,7 +231,7 @@ def collect_pairs(call: Call, into: dict[str, dict[int, list[tuple[int, int]]]])
 
 
 def number_keys(ob, name: str, plan: Plan, pairs: dict[int, list[tuple[int, int]]]) -> dict[int, np.ndarray]:
-    """Gives the strokes of all keys their numbers, and those in between whose keys' numbers change. By frame."""
+    """Numbers the strokes of all keys, and of in-betweens whose keys get other numbers. Returns the keys' numbers by frame."""
     layer = gp.find_layer(ob, name)
     record, found = plan.records[name], plan.frames[name]
     drawings = gp.drawings(layer)
@@ -258,7 +258,7 @@ def _rename(handle, renamed: dict[int, int]) -> None:
 
 
 def _tracks(block: between.Block, numbers: dict[int, np.ndarray]) -> np.ndarray:
-    """The numbers of a block's strokes: the earlier key's, those of pieces the later one's."""
+    """The numbers of a block's strokes: those of the earlier key. Pieces have the numbers of the later key."""
     earlier, later = numbers[block.first], numbers[block.last]
     from_later = (block.stands[:, 0] < 0) | (block.parts & (block.stands[:, 1] >= 0))
     stroke = np.where(from_later, block.stands[:, 1], block.stands[:, 0])
@@ -266,7 +266,7 @@ def _tracks(block: between.Block, numbers: dict[int, np.ndarray]) -> np.ndarray:
 
 
 def clear(ob, layers: Iterable, first: int | None = None, last: int | None = None) -> int:
-    """Removes drawings between keys, and what is known of them; all, or those from a frame to another."""
+    """Removes in-betweens and their records: all, or those from frame `first` to `last`. Returns their number."""
     kept = records.read(ob.data)
     removed = 0
     for layer in layers:
@@ -288,7 +288,7 @@ def clear(ob, layers: Iterable, first: int | None = None, last: int | None = Non
 
 
 def nothing_to_draw(result: Plan) -> Problem:
-    """What to say where no span was wanted."""
+    """The error for a plan without spans."""
     if result.blank:
         return Problem("The drawing at one end is blank, so there is nothing to draw between")
     return Problem("No frames between two keys here: go between two keys that lie apart, or choose other frames or layers")

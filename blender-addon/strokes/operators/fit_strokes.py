@@ -1,4 +1,4 @@
-"""Strokes of many points as light curves."""
+"""Fit Strokes."""
 
 import bpy
 import numpy as np
@@ -16,8 +16,8 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
     bl_idname = "rototoon.fit_strokes"
     bl_label = "Fit Strokes"
     bl_description = (
-        "Turn strokes into light, smooth curves with few points that stay within the tolerance; "
-        "radius, opacity, colours and other attributes are carried over"
+        "Turn strokes into smooth curves with few points, within the tolerance. "
+        "Radius, opacity, colours and other attributes are carried over"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -31,9 +31,9 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
     )
     unit: bpy.props.EnumProperty(
         name="Unit",
-        description="What the tolerance is measured in",
+        description="Unit of the tolerance",
         items=(
-            ("PIXELS", "Pixels", "Pixels of the footage, or of the camera's picture where there is none"),
+            ("PIXELS", "Pixels", "Pixels of the footage. Without footage, of the camera's picture"),
             ("WORLD", "World", "Units of the scene"),
         ),
     )
@@ -48,7 +48,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
     )
     layers: bpy.props.EnumProperty(
         name="Layers",
-        description="On which layers; locked ones are left alone",
+        description="Layers to fit. Locked layers are not changed",
         items=(("ACTIVE", "Active", "The active layer"), ("ALL", "All", "All layers")),
         default="ALL",
     )
@@ -66,7 +66,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
         if not self._drawings:
             raise Problem(
                 "No drawings to fit on these frames: choose other frames or layers, or unlock the layers. "
-                "Contours are left alone"
+                "Contours are not changed"
             )
         self._done = []
         return jobs.Stepper(self._steps(), "Fitting")
@@ -95,9 +95,9 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
         return (some > 0) & (content.sizes > 0)
 
     def _scale(self, layer, content: st.Content) -> tuple[float, float]:
-        """Pixels a unit of the layer, and the tolerance in them."""
+        """Pixels per unit of the layer, and the tolerance in pixels."""
         if self.unit == "WORLD":
-            # In units of the tolerance, so that what it is measured in does not matter.
+            # The pixel is the tolerance, so the units of the scene do not matter.
             return max(projection.world_scale(self._ob, layer), 1e-12) / self.tolerance, 1.0
         points = content.point["position"]
         points = points[np.isfinite(points).all(1)]
@@ -117,7 +117,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
             return "No stroke became lighter"
         before, after = (sum(getattr(f, side) for *_, f in self._done) for side in ("before", "after"))
         skipped = sum(fitted.skipped for *_, fitted in self._done)
-        return f"{strokes} strokes fitted: {before} points became {after}" + (f", {skipped} left" if skipped else "")
+        return f"{strokes} strokes fitted: {before} points became {after}" + (f", {skipped} not changed" if skipped else "")
 
 
 CLASSES = (ROTOTOON_OT_fit_strokes,)

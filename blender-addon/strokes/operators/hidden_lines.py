@@ -1,4 +1,4 @@
-"""Lines without what is covered."""
+"""Remove Hidden Lines."""
 
 import bpy
 
@@ -14,15 +14,15 @@ from .. import hidden
 class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
     bl_idname = "rototoon.hidden_lines"
     bl_label = "Remove Hidden Lines"
-    bl_description = "Cut the lines where filled strokes in front cover them, exactly, on the frames that you choose"
+    bl_description = "Cut lines exactly where filled strokes in front cover them, on the frames that you choose"
     bl_options = {"REGISTER", "UNDO"}
 
     order: bpy.props.EnumProperty(
         name="In Front",
         description="What covers what",
         items=(
-            ("STROKES", "Layers and Strokes", "Higher layers cover lower ones; in a layer, later strokes earlier ones"),
-            ("LAYERS", "Layers", "Higher layers cover lower ones; strokes of a layer do not cover each other"),
+            ("STROKES", "Layers and Strokes", "Higher layers cover lower ones. In a layer, later strokes cover earlier ones"),
+            ("LAYERS", "Layers", "Higher layers cover lower ones. Strokes of one layer do not cover each other"),
         ),
     )
     covers: bpy.props.EnumProperty(
@@ -35,18 +35,18 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
     )
     action: bpy.props.EnumProperty(
         name="Hidden Lines",
-        description="What becomes of them",
+        description="What to do with hidden lines",
         items=(
-            ("REMOVE", "Remove", "They are gone"),
-            ("MOVE", "Move to Layer", "They go to a layer of their own"),
+            ("REMOVE", "Remove", "Delete them"),
+            ("MOVE", "Move to Layer", "Move them to a layer of their own"),
         ),
     )
     frames: bpy.props.EnumProperty(
         name="Frames",
-        description="Which frames are done",
+        description="Frames to cut",
         items=(
             ("CURRENT", "Current", "The drawings that show on the current frame"),
-            ("RANGE", "Scene Range", "All frames of the scene; a held drawing gets a new frame where it looks another way"),
+            ("RANGE", "Scene Range", "All frames of the scene. A held drawing gets a new frame where its hidden lines change"),
         ),
     )
 
@@ -56,9 +56,9 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         if self.frames == "RANGE":
             self._frames = hidden.frames_between(self._ob, scene.frame_start, scene.frame_end)
         if not any(not layer.hide and gp.frame_numbers(layer) for layer in gp.every_layer(self._ob)):
-            raise Problem("No drawings to look at: draw something, or show a layer")
+            raise Problem("No visible drawings: draw something, or show a layer")
         if not st.editable_layers(self._ob, active=False):
-            raise Problem("No layer may be cut: unlock one. Contours are left alone, since tracking goes by their points")
+            raise Problem("No layer can be cut: unlock one. Contours are not changed, since tracking needs their points")
         self._cuts = []
         return jobs.Stepper(self._steps(scene), "Looking at frames")
 

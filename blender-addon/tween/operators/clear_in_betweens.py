@@ -1,4 +1,4 @@
-"""Drawings between keys, removed."""
+"""Clear In-betweens."""
 
 import bpy
 
@@ -13,7 +13,7 @@ from .tweening_base import LAYERS
 class ROTOTOON_OT_clear_in_betweens(Guarded, OnDrawing, bpy.types.Operator):
     bl_idname = "rototoon.clear_in_betweens"
     bl_label = "Clear In-betweens"
-    bl_description = "Remove the drawings that were made between keys; your own stay"
+    bl_description = "Remove the in-betweens. Your own drawings stay"
     bl_options = {"REGISTER", "UNDO"}
 
     frames: bpy.props.EnumProperty(
@@ -21,7 +21,7 @@ class ROTOTOON_OT_clear_in_betweens(Guarded, OnDrawing, bpy.types.Operator):
         description="Where",
         items=(
             ("ALL", "All", "All frames"),
-            ("CURRENT", "Around the Playhead", "Those between the two keys around the current frame"),
+            ("CURRENT", "Around the Playhead", "In-betweens between the two keys around the current frame"),
         ),
     )
     layers: bpy.props.EnumProperty(name="Layers", description="On which layers", items=LAYERS, default="ALL")

@@ -1,4 +1,4 @@
-"""Drawings between keys."""
+"""In-between: draws the frames between keys."""
 
 import bpy
 
@@ -14,8 +14,8 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
     bl_idname = "rototoon.in_between"
     bl_label = "In-between"
     bl_description = (
-        "Draw between keys: strokes find each other whatever their order and direction, what moves together swings along "
-        "arcs, and nothing that turns shrinks. Your keys are never changed; only what you touched is drawn again"
+        "Draw the frames between keys. Strokes are matched in any order and direction. Groups of strokes swing along arcs, and "
+        "turning strokes do not shrink. Your keys are never changed, and only what you changed is drawn again"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -31,52 +31,52 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
     )
     layers: bpy.props.EnumProperty(name="Layers", description="On which layers", items=LAYERS, default="ALL")
     spacing: bpy.props.EnumProperty(
-        name="Spacing", description="How far the drawings between have come", items=charts.SPACINGS
+        name="Spacing", description="How far the movement has come on each in-between", items=charts.SPACINGS
     )
     chart: bpy.props.StringProperty(
         name="Chart",
-        description="How far each drawing between has come, in percent: 0 is the earlier key, 100 the later one, and you may "
+        description="How far the movement has come on each in-between, in percent: 0 is the earlier key, 100 the later one. Values may "
         "go beyond",
         default="10, 30, 70, 90",
     )
     curve: bpy.props.StringProperty(
         name="Curve",
-        description="Times and shares of a spacing curve, such as 0 0, 0.3 0.8, 1 1; empty takes the one drawn in the panel",
+        description="Times and shares of a spacing curve, such as 0 0, 0.3 0.8, 1 1. If empty, the curve in the panel",
         default="",
     )
-    bounces: bpy.props.IntProperty(name="Bounces", description="How often it bounces", default=3, min=0, max=10)
+    bounces: bpy.props.IntProperty(name="Bounces", description="Number of bounces", default=3, min=0, max=10)
     arcs: bpy.props.FloatProperty(
         name="Arcs",
-        description="How much what turns moves along arcs: 0 is straight, 1 goes all the way round the turn's middle",
+        description="How much turning strokes move along arcs: 0 is straight, 1 is a full arc around the middle of the turn",
         default=0.5,
         min=0.0,
         max=1.0,
     )
     step: bpy.props.IntProperty(
         name="Frames Each",
-        description="Frames that a drawing stays: 1 is on ones, 2 on twos",
+        description="Number of frames that a drawing stays: 1 is on ones, 2 on twos",
         default=1,
         min=1,
         soft_max=4,
     )
     rigid: bpy.props.BoolProperty(
-        name="Keep Shapes", description="Shapes bend and turn instead of shrinking through their middle", default=True
+        name="Keep Shapes", description="Shapes bend and turn instead of shrinking", default=True
     )
     contacts: bpy.props.BoolProperty(
-        name="Keep Contacts", description="Strokes that touch on both keys go on touching", default=True
+        name="Keep Contacts", description="Strokes that touch on both keys stay in touch", default=True
     )
     leaving: bpy.props.EnumProperty(
-        name="New and Lost", description="What strokes do that only one of two keys has", items=charts.LEAVING
+        name="New and Lost", description="Movement of strokes that only one of two keys has", items=charts.LEAVING
     )
-    pegs: bpy.props.EnumProperty(name="Moves as One", description="What moves as one", items=charts.PEGS)
+    pegs: bpy.props.EnumProperty(name="Moves as One", description="Which strokes move as one", items=charts.PEGS)
     follow: bpy.props.BoolProperty(
         name="Follow Captured",
-        description="Strokes that lie on a captured contour move as it was tracked in the footage",
+        description="Strokes that lie on a captured contour move with it, as it was tracked in the footage",
         default=True,
     )
     rest: bpy.props.BoolProperty(
         name="Rest at the Ends",
-        description="A smooth movement begins and ends at rest; otherwise it moves on with constant speed",
+        description="A smooth movement begins and ends at rest. Otherwise it keeps its speed there",
         default=True,
     )
 
@@ -139,7 +139,7 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
         spans = list(zip(found.keys, found.keys[1:]))
         if self.frames == "CURRENT":
             around = ks.around(found.keys, self._now)
-            # A drawing between that was changed is a key: what was around it is drawn again on both its sides.
+            # An in-between that the artist changed is a key now. The spans on both its sides are drawn again.
             held = record.holding(*around) if around is not None else None
             touched = held is not None and bool(found.edited)
             spans = [span for span in spans if span == around or (touched and record.holding(*span) is held)]

@@ -1,4 +1,4 @@
-"""Which stroke of a key is which of the next one."""
+"""Match Strokes: shows which strokes are pairs, and lets the artist change it."""
 
 import bpy
 import numpy as np
@@ -11,17 +11,17 @@ from ...common.operators import NAVIGATION, OnDrawing, Reporting
 from .. import pair_overlay, pairing
 from .tweening_base import LAYERS
 
-HELP = "Click two strokes to pair them, Alt-click frees one, Ctrl Z takes back, Esc leaves"
+HELP = "Click two strokes to pair them, Alt-click one to free it, Ctrl Z to undo, Esc to leave"
 
 
 class ROTOTOON_OT_match_strokes(OnDrawing, Reporting, bpy.types.Operator):
     bl_idname = "rototoon.match_strokes"
     bl_label = "Match Strokes"
     bl_description = (
-        "Find which stroke is which on the two keys around the current frame, and show it: click two strokes to pair them, "
-        "Alt-click one to free it. What you decide is kept with the strokes, and in-betweens go by it"
+        "Find and show the pairs of strokes on the two keys around the current frame. Click two strokes to pair them, "
+        "Alt-click one to free it. Your decisions are kept with the strokes, and In-between uses them"
     )
-    # Not REGISTER: to do it anew with other settings would take back what was decided by hand.
+    # Without REGISTER: repeating the operator with other settings would undo the artist's decisions.
     bl_options = {"UNDO"}
 
     layers: bpy.props.EnumProperty(
@@ -38,7 +38,7 @@ class ROTOTOON_OT_match_strokes(OnDrawing, Reporting, bpy.types.Operator):
     _again = False
 
     def execute(self, context):
-        """Called by Blender: matches and stores."""
+        """Called by Blender: matches, and stores the numbers."""
         jobs.clear_the_way()
         return self.attempt(lambda: self._match_and_store(context))
 
@@ -75,7 +75,7 @@ class ROTOTOON_OT_match_strokes(OnDrawing, Reporting, bpy.types.Operator):
         """Called by Blender."""
         if self._undone.happened:
             self._close(context)
-            self.report({"WARNING"}, "Match Strokes ends, since something was undone meanwhile")
+            self.report({"WARNING"}, "Match Strokes ends, since something was undone")
             return {"CANCELLED"}
         if event.type == "TIMER":
             return self._tick(context)
@@ -83,7 +83,7 @@ class ROTOTOON_OT_match_strokes(OnDrawing, Reporting, bpy.types.Operator):
             return self._leave(context)
         if event.type == "LEFTMOUSE":
             view = _view_at(context, event)
-            # Buttons and menus would change the drawings underneath.
+            # Buttons and menus get no clicks: they could change the drawings.
             if view is not None and event.value == "PRESS":
                 self._clicked(context, event, *view)
             return {"RUNNING_MODAL"}
@@ -103,7 +103,7 @@ class ROTOTOON_OT_match_strokes(OnDrawing, Reporting, bpy.types.Operator):
         self._overlay.refresh()
 
     def _start(self) -> None:
-        """Finds the pairs anew, after those that are being found."""
+        """Matches again. A running match is cancelled first."""
         if self._work is not None:
             self._work.cancel()
             self._again = True
@@ -139,7 +139,7 @@ class ROTOTOON_OT_match_strokes(OnDrawing, Reporting, bpy.types.Operator):
         return self.done(self._pairing.summary())
 
     def cancel(self, context):
-        """Called by Blender when a file is loaded or the program ends meanwhile."""
+        """Called by Blender when it loads a file or quits meanwhile."""
         self._close(context)
 
     def _close(self, context) -> None:
@@ -163,7 +163,7 @@ class ROTOTOON_OT_match_strokes(OnDrawing, Reporting, bpy.types.Operator):
 
 
 class Undone:
-    """Notes whether anything is undone, in another window say: the drawings that were looked at are gone then."""
+    """Notes whether anything is undone, for example in another window. The shown drawings do not exist any more then."""
 
     def __init__(self):
         self.happened = False
@@ -171,7 +171,7 @@ class Undone:
             hooks.append(self._note)
 
     def stop(self) -> None:
-        """Stops listening."""
+        """Removes the handlers."""
         for hooks in self._hooks():
             if self._note in hooks:
                 hooks.remove(self._note)

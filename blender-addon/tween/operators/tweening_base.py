@@ -1,4 +1,4 @@
-"""What the operators that draw between keys share."""
+"""Bases of the operators that draw in-betweens."""
 
 
 from ...blender import grease_pencil as gp
@@ -14,7 +14,7 @@ LAYERS = (("ACTIVE", "Active", "The active layer"), ("ALL", "All", "All layers t
 
 
 class OnKeys(OnDrawing):
-    """Needs a Grease Pencil object with keys."""
+    """An operator that needs a Grease Pencil object with at least two frames on a layer."""
 
     @classmethod
     def poll(cls, context) -> bool:
@@ -28,14 +28,14 @@ class OnKeys(OnDrawing):
 
 
 class Tweening(OnKeys, Long):
-    """Reads, has the library draw in a thread, and writes."""
+    """Reads the keys, draws in a thread, and writes the in-betweens."""
 
     def choose(self, name: str, found: ks.Frames, record) -> dict[tuple[int, int], Choices]:
-        """The spans of a layer that are wanted."""
+        """The spans of a layer to draw, with their choices."""
         raise NotImplementedError
 
     def chosen_layers(self, context) -> list:
-        """The layers that are worked on."""
+        """The layers on which to draw."""
         return st.editable_layers(context.object, active=False)
 
     def begin(self, context):
@@ -52,9 +52,9 @@ class Tweening(OnKeys, Long):
         spans = "1 span" if done.spans == 1 else f"{done.spans} spans"
         said = f"{done.drawings} in-betweens in {spans}" if done.spans else "Nothing had changed"
         if done.spans and self._plan.current:
-            said += f", {self._plan.current} spans were as they should be"
+            said += f", {self._plan.current} spans were up to date"
         if done.keys:
             said += f", {done.keys} drawings that you had changed are keys now"
         if self._plan.blank:
-            said += f", {self._plan.blank} spans with a blank key left"
+            said += f", {self._plan.blank} spans with a blank key were left out"
         return said

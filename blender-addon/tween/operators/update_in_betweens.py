@@ -1,4 +1,4 @@
-"""Drawings between keys, drawn again where something has changed."""
+"""Update In-betweens: draws spans again where something has changed."""
 
 import bpy
 
@@ -9,8 +9,8 @@ class ROTOTOON_OT_update_in_betweens(Tweening, bpy.types.Operator):
     bl_idname = "rototoon.update_in_betweens"
     bl_label = "Update In-betweens"
     bl_description = (
-        "Draw again what your changes of keys and pairs touch, each span as you chose it; all else stays as it is. A drawing "
-        "between that you changed becomes a key"
+        "Draw the spans again that your changes of keys and pairs affect, each with its own choices. Everything else stays. An "
+        "in-between that you changed becomes a key"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -21,7 +21,7 @@ class ROTOTOON_OT_update_in_betweens(Tweening, bpy.types.Operator):
 
 
 def _swallowed(record, span: tuple[int, int]):
-    """The first of the spans that lie in another one, where a key between them is gone."""
+    """The first recorded span inside a span, where a key between them was removed."""
     inside = [start for start, known in record.spans.items() if span[0] <= start and known.last <= span[1]]
     return record.spans[min(inside)] if inside else None
 
