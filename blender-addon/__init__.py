@@ -1,10 +1,10 @@
-"""Rototoon: contours of drawn characters, followed through a film. The extension of Blender.
+"""Rototoon: follows the contours of drawn characters through a film. The Blender extension.
 
-This file only registers. The rooms, each with a word on what belongs there in its `__init__.py`:
+This file only registers. The code is in rooms. The `__init__.py` of each room says what belongs there and what it may import:
 
 ====================  ==============================================================================
-`rototoon`            the Python package, which needs no Blender
-`blender`             everything that knows Blender's data
+`rototoon`            the Python package; it needs no Blender
+`blender`             Blender's data
 `common`              what operators of all rooms share
 `capture`             contours: footage, keys, tracking, live, snapping
 `strokes`             light curves and hidden lines, for any drawing
@@ -15,7 +15,7 @@ This file only registers. The rooms, each with a word on what belongs there in i
 `ui`                  panels, lists, overlays, preferences
 ====================  ==============================================================================
 
-`properties` puts together what a file keeps, `handlers` is what happens when files are opened, saved and changed.
+`properties` puts the properties of the rooms together. `handlers` runs when files are opened, saved and changed.
 """
 
 

@@ -1,10 +1,8 @@
-"""Bones that follow a clip: each limb's direction in the picture becomes the direction of its bones in the view's plane.
+"""Drive Bones: the direction of each limb in the picture becomes the direction of its bones in the view's plane.
 
-A bone is first swung into the plane the shortest way, once; then it turns about the view's axis as the limb of the clip does. So a
-bone keeps its roll, and turns evenly. Where a limb is several bones, all take one turn. Bones that no limb moves stay as they are
-posed; they go with their parents. The pelvis moves in the plane, in the armature's own size.
-
-Keys go into a new action with a slot of its own. The action before it stays in the file, untouched.
+A bone first swings into the plane, once, the shortest way. Then it turns about the view's axis by the angle of the clip's limb. So a
+bone keeps its roll and turns evenly. If a limb has several bones, all make the same turn. Bones without a limb keep their pose and
+move with their parents. The pelvis moves in the plane, at the armature's size.
 """
 
 from __future__ import annotations
@@ -26,9 +24,9 @@ LIMBS = (
     ("l_shoulder", "l_elbow"), ("l_elbow", "l_wrist"), ("r_shoulder", "r_elbow"), ("r_elbow", "r_wrist"),
     ("l_hip", "l_knee"), ("l_knee", "l_ankle"), ("r_hip", "r_knee"), ("r_knee", "r_ankle"),
 )  # fmt: skip
-"""Limbs whose bones are turned; collar bones and hips keep what they have."""
+"""Limbs whose bones turn. Collar bones and hips keep their pose."""
 FLAT = 0.2
-"""Share of a limb's length at rest that must lie in the plane to tell its direction there."""
+"""If a smaller share of a limb's rest length is in the plane, its rest direction there is not used."""
 _PATHS = {"QUATERNION": ("rotation_quaternion", 4), "AXIS_ANGLE": ("rotation_axis_angle", 4)}
 
 
@@ -38,9 +36,9 @@ class Turn:
 
     bones: list[str]
     swing: Quaternion
-    """From rest into the plane."""
+    """The rotation from rest into the plane."""
     angles: np.ndarray
-    """By posture, about the view's axis."""
+    """Angle about the view's axis for each posture."""
 
 
 @dataclass
@@ -59,12 +57,12 @@ class Plane:
         return cls(*(Vector(turned[k]).normalized() for k in range(3)))
 
     def on(self, angle: float) -> Vector:
-        """The direction of an angle."""
+        """The direction at an angle in the plane."""
         return self.right * float(np.cos(angle)) + self.up * float(np.sin(angle))
 
 
 def turns(ob, postures: np.ndarray, plane: Plane) -> list[Turn]:
-    """How the bones of an armature turn by a clip's postures (F, 17, 2)."""
+    """The turns of an armature's bones for the postures (F, 17, 2) of a clip."""
     bones = armatures.bones_of(ob)
     table = key_points.table_of(ob)
     carrying = _carrying_legs(table, bones)
@@ -72,7 +70,7 @@ def turns(ob, postures: np.ndarray, plane: Plane) -> list[Turn]:
     for start, end in LIMBS:
         chain = _chain(table[start], table[end], bones)
         if len(chain) > 1:
-            # Legs hang on the pelvis: it does not lean with the body.
+            # The legs hang on the pelvis, so it does not lean with the body.
             chain = [name for name in chain if name not in carrying] or chain
         rest = Vector(_place(table[end], bones) - _place(table[start], bones))
         if not chain or rest.length < 1e-9:
@@ -99,14 +97,14 @@ def _chain(start: tuple[str, float], end: tuple[str, float], bones) -> list[str]
     """The bones between two key points."""
     last = end[0] if end[1] > 0 else bones[end[0]].parent
     if start[1] >= 1 and start[0] != last:
-        # The start is a bone's tail: the next one begins there.
+        # The start is at a bone's tail, where the next bone begins.
         after = bone_names.path(start[0], last, bones)
         return after[1:]
     return bone_names.path(start[0], last, bones)
 
 
 def _carrying_legs(table: bone_names.Table, bones) -> set[str]:
-    """Bones that the thighs hang on."""
+    """The ancestors of the thigh bones."""
     found = set()
     for point in ("l_hip", "r_hip"):
         name = bones[table[point][0]].parent
@@ -117,7 +115,7 @@ def _carrying_legs(table: bone_names.Table, bones) -> set[str]:
 
 
 def poses(ob, postures: np.ndarray, plane: Plane, move: bool) -> Iterator[dict[str, Matrix]]:
-    """By posture the matrix of each driven bone against its parent and its rest, as its channels tell it."""
+    """For each posture the basis matrices of the driven bones, relative to parent and rest, as their channels have them."""
     driven = {name: turn for turn in turns(ob, postures, plane) for name in turn.bones}
     pelvis = key_points.table_of(ob)["pelvis"][0]
     shifts = _shifts(ob, postures, plane) if move and not ob.data.bones[pelvis].use_connect else None
@@ -142,7 +140,7 @@ def poses(ob, postures: np.ndarray, plane: Plane, move: bool) -> Iterator[dict[s
 
 
 def _shifts(ob, postures: np.ndarray, plane: Plane) -> list[Vector]:
-    """Where the pelvis goes from the first posture on, in the armature's size."""
+    """Shifts of the pelvis since the first posture, at the armature's size."""
     bones, table = armatures.bones_of(ob), key_points.table_of(ob)
     places = [_place(table[point], bones) for point in ("pelvis", "chest", "neck")]
     own = sum(float(np.linalg.norm(b - a)) for a, b in zip(places, places[1:]))
@@ -153,7 +151,7 @@ def _shifts(ob, postures: np.ndarray, plane: Plane) -> list[Vector]:
 
 
 def channels(ob, found: list[dict[str, Matrix]], move: bool) -> dict[tuple[str, int], np.ndarray]:
-    """By data path and index the values of the driven bones."""
+    """Values of the driven bones' channels by data path and index."""
     curves: dict[tuple[str, int], np.ndarray] = {}
     for name in found[0]:
         bone = ob.pose.bones[name]

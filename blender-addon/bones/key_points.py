@@ -1,6 +1,6 @@
-"""Armatures as skeletons: the key points on their bones, seen from a side, as clips of the library.
+"""Key points of armatures: their bones, and their places from a side as clips of the library.
 
-Which bones tell the key points follows from their names (`names`); the artist may choose others, kept with the object.
+The names of bones show which bone has which key point (`names`). The artist may choose others, and the object keeps the choice.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from . import names as bone_names
 
 
 def guess(ob) -> bone_names.Table:
-    """Puts what the names of an armature's bones tell into its table; choices of the artist that still hold are kept."""
+    """Fills an armature's table from the names of its bones. The artist's choices stay if their bones exist."""
     found = bone_names.guess(armatures.bones_of(ob))
     kept = chosen(ob)
     ob.rototoon.bones.clear()
@@ -32,13 +32,13 @@ def guess(ob) -> bone_names.Table:
 
 
 def chosen(ob) -> bone_names.Table:
-    """The table of an armature as it is kept, without bones that are not there."""
+    """The stored table of an armature, without bones that do not exist."""
     names = ob.data.bones
     return {item.name: (item.bone, item.along) for item in ob.rototoon.bones if item.bone in names}
 
 
 def table_of(ob, needed: tuple[str, ...] = KEY_POINTS) -> bone_names.Table:
-    """The table of an armature: its own, and what the names of its bones tell."""
+    """The table of an armature: stored choices, otherwise guesses. Raises a `Problem` if a needed key point is missing."""
     table = {**bone_names.guess(armatures.bones_of(ob)), **chosen(ob)}
     missing = [point for point in needed if point not in table]
     if missing:
@@ -48,14 +48,14 @@ def table_of(ob, needed: tuple[str, ...] = KEY_POINTS) -> bone_names.Table:
 
 
 def key_points(ob, table: bone_names.Table) -> np.ndarray:
-    """Places in the world (17, 3) of the key points on the current frame."""
+    """Places (17, 3) of the key points in the world, on the current frame."""
     bones = ob.pose.bones
     local = [bones[name].head.lerp(bones[name].tail, along) for name, along in (table[point] for point in KEY_POINTS)]
     return np.array([ob.matrix_world @ point for point in local], np.float64)
 
 
 def sample(ob, frames: range, which: str, into: list[np.ndarray]) -> Iterator[float]:
-    """Puts a posture (17, 2) for each frame into a list, a frame at each step; the scene ends where it began."""
+    """Adds a posture (17, 2) for each frame to a list, one frame per step. At the end the scene is on its frame again."""
     scene = bpy.context.scene
     table = table_of(ob)
     with kept(scene):

@@ -1,8 +1,8 @@
-"""Which bones of an armature tell the key points of the skeleton, by their names. Plain Python.
+"""Guesses the bones of the skeleton's key points from the names of bones.
 
-Bones are called after the limb that they move (upper arm, thigh) or the joint at their head (elbow, knee), with a side before or
-behind, by the habits of Rigify, Mixamo, motion capture files, game engines and others. A key point lies on a bone: 0 at its head, 1
-at its tail.
+Bones are named after the limb that they move (upper arm, thigh) or after the joint at their head (elbow, knee), with the side before
+or after. The names of Rigify, Mixamo, motion capture files, game engines and others are known. A key point is at a place along a
+bone: 0 is the head, 1 the tail.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from ..blender.armatures import Bone
 
 Table = dict[str, tuple[str, float]]
-"""By key point a bone's name, and how far along the bone the point lies."""
+"""By key point the name of a bone, and the place along it."""
 
 SIDES = {"l": "l", "left": "l", "r": "r", "right": "r"}
 LIMBS = {
@@ -26,27 +26,27 @@ LIMBS = {
     "knee": ("shin", "calf", "lowerleg", "lowleg", "leg", "knee", "tibia"),
     "ankle": ("foot", "ankle"),
 }
-"""By key point names of the bone whose head it is, the surest first."""
+"""By key point the names of the bone whose head it is, the most certain first."""
 MIDDLE = {
     "pelvis": ("hips", "pelvis", "hip", "spine", "spine00", "spine1"),
     "neck": ("neck", "neck1", "neck01", "neck001", "spine004"),
     "head": ("head", "spine006", "spine005"),
 }
 BEFORE = {"wrist": "elbow", "ankle": "knee"}
-"""Where no bone begins at a key point, the bone before it ends there."""
+"""If no bone begins at a key point, it is the tail of the bone of this key point."""
 LOW_HEAD = 0.3
-"""How far up the head its key point lies where the neck is its root."""
+"""Place of the head's key point along the head bone, if that bone begins at the neck."""
 
 
 def plain(name: str) -> tuple[str, str]:
-    """Side ("l", "r" or "") and name without side, prefixes and separators: ("l", "upperarm") for "DEF-upper_arm.L"."""
+    """The side ("l", "r" or "") and the name without side, prefixes and separators: ("l", "upperarm") for "DEF-upper_arm.L"."""
     name = name.rsplit(":", 1)[-1]
     name = re.sub(r"^(DEF|ORG)[-_.]", "", name)
     name = re.sub(r"^(mixamorig\d*|bip\d*|b|jt)[-_. ]+", "", name, flags=re.IGNORECASE)
     words = [word for word in re.split(r"[-_. ]+|(?<=[a-z])(?=[A-Z])", name) if word]
     words = [word.lower() for word in words]
     if len(words) == 1:
-        # "leftarm": a side that nothing sets apart.
+        # "leftarm": a side without a separator.
         found = re.match(r"(left|right)(.+)", words[0])
         words = list(found.groups()) if found else words
     side = next((SIDES[word] for word in words if word in SIDES), "")
@@ -54,7 +54,7 @@ def plain(name: str) -> tuple[str, str]:
 
 
 def guess(bones: Mapping[str, Bone]) -> Table:
-    """The key points that the names of some bones tell."""
+    """The key points that can be guessed from the names of bones."""
     known: dict[tuple[str, str], str] = {}
     for name in sorted(bones, key=_rank):
         if not re.match(r"(MCH|VIS|WGT)[-_.]", name):
@@ -77,12 +77,12 @@ def guess(bones: Mapping[str, Bone]) -> Table:
 
 
 def _rank(name: str) -> tuple[int, str]:
-    """Plain names before those of deforming bones, and these before those of originals."""
+    """Sort key: plain names, then deforming bones, then original bones."""
     return (name.startswith("DEF") + 2 * name.startswith("ORG"), name)
 
 
 def _finish(table: Table, bones: Mapping[str, Bone]) -> None:
-    """What follows from other key points: the top of the head, a neck that has no bone, the chest between neck and pelvis."""
+    """Adds key points that follow from others: the top of the head, a neck without a bone, the chest between neck and pelvis."""
     if "head" in table:
         head = table["head"][0]
         table["head_top"] = (head, 1.0)
@@ -95,7 +95,7 @@ def _finish(table: Table, bones: Mapping[str, Bone]) -> None:
 
 
 def _chest(pelvis: str, neck: str, bones: Mapping[str, Bone]) -> tuple[str, float] | None:
-    """The joint of the spine that is nearest to its middle."""
+    """The joint of the spine that is nearest to the middle between pelvis and neck."""
     spine = path(pelvis, bones[neck].parent, bones)
     if not spine:
         return None
@@ -106,7 +106,7 @@ def _chest(pelvis: str, neck: str, bones: Mapping[str, Bone]) -> tuple[str, floa
 
 
 def path(first: str, last: str, bones: Mapping[str, Bone]) -> list[str]:
-    """The bones from one to another that hangs on it, both included; none where it does not hang on it."""
+    """The chain of bones from `first` to its descendant `last`, with both; empty if `last` is no descendant."""
     found = []
     while last in bones:
         found.append(last)

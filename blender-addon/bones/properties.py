@@ -1,4 +1,4 @@
-"""What a file keeps of an armature's key points."""
+"""Properties that a file keeps of an armature's key points."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import bpy
 
 
 class RototoonBone(bpy.types.PropertyGroup):
-    """Where on an armature a key point lies; `name` is the key point's."""
+    """The place of a key point on an armature. `name` is the name of the key point."""
 
-    bone: bpy.props.StringProperty(name="Bone", description="The bone that tells the key point")
+    bone: bpy.props.StringProperty(name="Bone", description="The bone of the key point")
     along: bpy.props.FloatProperty(
         name="Along",
-        description="How far along the bone the key point lies: 0 at its head, 1 at its tail",
+        description="Place of the key point along the bone: 0 is the head, 1 the tail",
         default=0.0,
         min=0.0,
         max=1.0,
@@ -19,6 +19,6 @@ class RototoonBone(bpy.types.PropertyGroup):
 
 
 class BoneSettings:
-    """The bones of key points; a part of `rototoon` of every object."""
+    """The bones of key points, in the property `rototoon` of every object."""
 
     bones: bpy.props.CollectionProperty(type=RototoonBone)

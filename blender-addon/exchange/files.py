@@ -1,4 +1,4 @@
-"""Project documents as files: read and checked, written, and the fields that the add-on does not know."""
+"""Project documents as files: reading and checking, writing, and fields that the add-on does not know."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _TOP = {"rototoon", "footage", "parts"}
 
 
 def load(path: str) -> dict[str, Any]:
-    """A document from a file, its form checked as far as strokes are made of it."""
+    """Reads a document from a file, and checks all fields from which strokes are made."""
     try:
         with open(path, encoding="utf-8") as file:
             document = json.load(file)
@@ -34,7 +34,7 @@ def load(path: str) -> dict[str, Any]:
 
 
 def check(document: Any) -> None:
-    """A `Problem` that names the field unless `document` has the form of a project document."""
+    """Raises a `Problem` that names the field if `document` does not have the form of a project document."""
     version = document.get("rototoon") if isinstance(document, dict) else None
     if not isinstance(version, int):
         raise Problem('not a project document: no field "rototoon" with a version number')
@@ -93,7 +93,7 @@ def _points(place: str, points: Any) -> np.ndarray:
 
 
 def unknown(entry: Mapping[str, Any], known: set[str]) -> str:
-    """The fields that are not known here, as JSON; empty if there are none."""
+    """The fields that are not in `known`, as JSON; empty if there are none."""
     rest = {name: value for name, value in entry.items() if name not in known}
     return json.dumps(rest) if rest else ""
 
@@ -113,7 +113,10 @@ def unknown_of_part(entry: Mapping[str, Any]) -> str:
 
 
 def save(path: str, document: dict[str, Any]) -> None:
-    """Writes a document, its footage relative to its folder where that is near; the file appears whole or not at all."""
+    """Writes a document. The file is complete, or it does not appear.
+
+    If the footage is at most three folders up from the file's folder, its path is relative.
+    """
     folder = os.path.dirname(os.path.abspath(path))
     shot = dict(document["footage"])
     near = os.path.relpath(shot["pattern"], folder)

@@ -14,7 +14,7 @@ from . import files
 
 
 def apply(ob, project: dict[str, Any], material: int = 0) -> None:
-    """Replaces an object's contours by those of a checked document; its footage must be set before."""
+    """Replaces an object's contours by those of a checked document. The object's footage must be set before."""
     settings = ob.rototoon
     _empty(ob)
     settings.extra = files.unknown_of_document(project)
@@ -56,7 +56,7 @@ def _add_part(settings, number: int, entry: dict[str, Any]) -> None:
 
 
 def _write_keys(ob, layer, project: dict[str, Any], material: int) -> None:
-    """The artist's strokes, farther parts first so that nearer ones are drawn over them."""
+    """Writes the artist's strokes. Farther parts come first, so that nearer ones are drawn over them."""
     offset = ob.rototoon.frame_offset
     drawn: dict[int, list[tuple[float, int, bool, np.ndarray]]] = {}
     for number, entry in enumerate(project.get("parts", []), 1):
@@ -83,7 +83,7 @@ def _write_keys(ob, layer, project: dict[str, Any], material: int) -> None:
 
 
 def _results(part: contours.Part, entry: dict[str, Any], mapper, offset: int):
-    """The part's track and corrections; frames with a correction and no track get the blended keys."""
+    """The part's track and corrections. Frames with a correction and without a track get the blended keys."""
     pins, centers = by_frame(entry.get("pins")), by_frame(entry.get("centers"))
     points = {f: np.asarray(p, np.float64) for f, p in by_frame(entry.get("tracks")).items()}
     sure = by_frame(entry.get("confidence"))

@@ -1,4 +1,4 @@
-"""A document's contours as outlines for a mask: one number of points for each part, on all its frames."""
+"""A document's contours as outlines for a mask. A part's outline has the same number of points on all frames."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from ..rototoon.documents import by_frame
 SPACING = 4.0
 """Distance between the points of snapped lines, in pixels of the picture."""
 MOST_POINTS = 200
-"""Most points of one segment."""
+"""Largest number of points of one segment."""
 
 
 def outlines(document: dict, offset: int, snapped: bool) -> list[Outline]:
-    """The parts of a document, the nearest first, as masks list their layers; `offset` is added to its frames."""
+    """The outlines of a document's parts, the nearest first, as masks list their layers. `offset` is added to its frames."""
     found = []
     for part in sorted(document["parts"], key=lambda part: -part["depth"]):
         points = by_frame(part["keys"]) | by_frame(part.get("tracks"))
@@ -31,7 +31,7 @@ def outlines(document: dict, offset: int, snapped: bool) -> list[Outline]:
 
 
 def _counts(curves: dict[int, list]) -> np.ndarray:
-    """How many points each segment has, its end left out; empty without snapped lines."""
+    """Number of points of each segment, without its end; empty without snapped lines."""
     lengths = [[np.linalg.norm(np.diff(path, axis=0), axis=1).sum() for path in paths] for paths in curves.values()]
     if not lengths:
         return np.zeros(0, int)
@@ -47,7 +47,7 @@ def _line(points: np.ndarray, paths: list | None, counts: np.ndarray, closed: bo
 
 
 def _resample(path: np.ndarray, count: int) -> np.ndarray:
-    """`count` points at equal distances along a line, its end left out."""
+    """`count` points at equal distances along a line, without its end."""
     along = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))))
     wanted = np.linspace(0.0, along[-1], count, endpoint=False)
     return np.stack([np.interp(wanted, along, path[:, axis]) for axis in (0, 1)], axis=1)

@@ -1,7 +1,7 @@
-"""The list of a library's clips in the window: what it shows, which one is chosen.
+"""The list of a library's clips in the window, and the chosen clip.
 
-A folder is no part of a Blender file, so the list is kept with the window, not with the file, and undo leaves it alone. It is read
-when a library is chosen or added to, when a file is opened, and by Refresh.
+A folder is not part of a Blender file. So the window manager keeps the list, not the file, and undo does not affect it. The list is
+read when a library is chosen, when a clip is added, when a file is opened, and by Refresh.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ _shelf: clip_library.Shelf | None = None
 
 
 def browser() -> bpy.types.PropertyGroup:
-    """The list of this window manager."""
+    """The window manager's list."""
     return bpy.context.window_manager.rototoon_clips
 
 
 def shelf() -> clip_library.Shelf | None:
-    """The library that is listed."""
+    """The listed library; `None` if there is none."""
     return _shelf if _shelf is not None and browser().folder == _shelf.folder else None
 
 
 def refresh(folder: str) -> clip_library.Shelf:
-    """Reads a library and lists it; the chosen clip stays chosen."""
+    """Reads a library and lists it. The chosen clip stays chosen."""
     global _shelf
     listed = browser()
     before = chosen()
@@ -46,7 +46,7 @@ def refresh(folder: str) -> clip_library.Shelf:
 
 
 def refresh_for(ob) -> None:
-    """Lists the library of an object, if it has one that can be read; used where nobody waits for an answer."""
+    """Lists an object's library. If it cannot be read, lists nothing and reports no error."""
     try:
         refresh(clip_library.folder_of(ob))
     except (Problem, RototoonError):
@@ -63,13 +63,13 @@ def forget() -> None:
 
 
 def close() -> None:
-    """Forgets the library, where the window's list goes too."""
+    """Forgets the library, without a change of the window's list."""
     global _shelf
     _shelf = None
 
 
 def is_listed(ob) -> bool:
-    """Whether the list is that of an object's library."""
+    """Whether the listed library is that of an object."""
     try:
         folder = clip_library.folder_of(ob)
         return shelf() is not None and shelf().folder == folder
@@ -78,7 +78,7 @@ def is_listed(ob) -> bool:
 
 
 def chosen() -> clip_library.Row | None:
-    """The chosen clip, if it can be used."""
+    """The chosen clip; `None` if it cannot be used."""
     listed, found = browser(), shelf()
     if found is None or not 0 <= listed.active < len(found.rows):
         return None
@@ -87,7 +87,7 @@ def chosen() -> clip_library.Row | None:
 
 
 def fits(item, character: str, motion: str) -> bool:
-    """Whether a row is shown while the list is filtered."""
+    """Whether a row passes the list's filter."""
     return character.lower() in item.character.lower() and motion.lower() in item.motion.lower()
 
 
@@ -104,5 +104,5 @@ def motions(character: str = "") -> list[str]:
 
 
 def offered(names: list[str], text: str) -> list[str]:
-    """The names to offer after what was typed."""
+    """The names that contain the typed text."""
     return [name for name in names if text.lower() in name.lower()]

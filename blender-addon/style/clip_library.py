@@ -1,4 +1,4 @@
-"""A library of skeleton clips as the add-on uses it: where it is, what it holds, what of it is damaged."""
+"""A library of skeleton clips: its folder, its clips, its damaged files."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from ..blender.preferences import preferences
 from ..rototoon.style import read_library
 
 ENDING = ".clip.json"
-"""How names of clip files end."""
+"""Ending of the names of clip files."""
 
 
 @dataclass
 class Row:
-    """A clip of a library, or a file that should be one."""
+    """A clip of a library, or a damaged file."""
 
     character: str
     motion: str
@@ -28,9 +28,9 @@ class Row:
     source: str = ""
     file: str = ""
     trouble: str = ""
-    """Why it cannot be used; empty where it can."""
+    """Why the clip cannot be used; empty if it can."""
     postures: np.ndarray = field(default_factory=lambda: np.zeros((0, 17, 2)))
-    """(frames, 17, 2)."""
+    """Key points (frames, 17, 2)."""
 
 
 @dataclass
@@ -40,24 +40,24 @@ class Shelf:
     folder: str
     rows: list[Row]
     troubles: list[str]
-    """What is wrong beside the clips, such as a damaged index."""
+    """Other damage, such as a damaged index."""
 
     def find(self, character: str, motion: str) -> Row | None:
-        """The clip of a character and a motion."""
+        """The clip with a character and a motion."""
         good = (row for row in self.rows if not row.trouble)
         return next((row for row in good if (row.character, row.motion) == (character, motion)), None)
 
     def motions(self, character: str = "") -> list[str]:
-        """Motions, of one character where it is given."""
+        """The motions, or those of one character."""
         return sorted({row.motion for row in self.rows if not row.trouble and character in ("", row.character)})
 
     def characters(self, motion: str = "") -> list[str]:
-        """Characters, those with a motion where it is given."""
+        """The characters, or those with one motion."""
         return sorted({row.character for row in self.rows if not row.trouble and motion in ("", row.motion)})
 
 
 def folder_of(ob, chosen: str = "") -> str:
-    """The library's folder: the one chosen, or that of the object, or that of the preferences."""
+    """The library's folder: `chosen` if it is given, otherwise the object's, otherwise that of the preferences."""
     folder = chosen or (ob.rototoon.clips_folder if ob is not None else "") or preferences().clips_folder
     if not folder:
         raise Problem("No library chosen: choose its folder in the panel Style")
@@ -67,7 +67,7 @@ def folder_of(ob, chosen: str = "") -> str:
 
 
 def read(folder: str) -> Shelf:
-    """Reads a library; what is damaged takes nothing else with it."""
+    """Reads a library. Damaged files do not affect other files."""
     found = read_library(folder)
     clips = {(clip["character"], clip["motion"]): clip["points"] for clip in (found.clips or {}).get("clips", [])}
     troubles = list(found.troubles)
@@ -97,7 +97,7 @@ def _row(entry: dict[str, Any], clips: dict[tuple[str, str], Any], troubles: lis
 
 
 def _file_of(folder: str, trouble: str) -> str:
-    """The clip file of the folder that a trouble names."""
+    """The clip file in the folder that a message names; "" if it names none."""
     try:
         files = sorted(os.listdir(folder), key=len, reverse=True)
     except OSError:
@@ -106,8 +106,8 @@ def _file_of(folder: str, trouble: str) -> str:
 
 
 def clips_of(folder: str) -> dict[str, Any]:
-    """All clips of a library as a file of clips; there must be some."""
+    """All clips of a library as a file of clips. Raises a `Problem` if there are none."""
     found = read_library(folder)
     if not found.entries:
-        raise Problem(f"The library {folder} holds no clips: save one first")
+        raise Problem(f"The library {folder} has no clips: save one first")
     return found.clips

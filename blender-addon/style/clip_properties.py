@@ -1,4 +1,4 @@
-"""Properties that several operators have: a clip of the library, in whose manner it is re-made, and which library."""
+"""Properties of several operators: a clip of the library, the style in which it is re-made, and the library."""
 
 from collections.abc import Callable
 from typing import Any
@@ -33,29 +33,29 @@ def _any_motion(_self):
 _SHARED = {
     "character": (
         bpy.props.StringProperty,
-        {"name": "Character", "description": "Whose clip", "names": _who_shows_it},
+        {"name": "Character", "description": "The character of the clip", "names": _who_shows_it},
     ),
     "motion": (
         bpy.props.StringProperty,
-        {"name": "Motion", "description": "Which motion", "default": "walk", "names": _any_motion},
+        {"name": "Motion", "description": "The motion of the clip", "default": "walk", "names": _any_motion},
     ),
     "style": (
         bpy.props.StringProperty,
         {
             "name": "Style",
-            "description": "The character in whose manner; empty takes the clip as it is",
+            "description": "The character whose style the clip gets. If empty, the clip as it is",
             "names": _any_character,
         },
     ),
     "preset": (
         bpy.props.EnumProperty,
-        {"name": "Method", "description": "How it is re-made", "items": PRESETS},
+        {"name": "Method", "description": "Method that gives the clip the style", "items": PRESETS},
     ),
     "strength": (
         bpy.props.FloatProperty,
         {
             "name": "Strength",
-            "description": "How thick the manner is laid on; 1 is the most probable",
+            "description": "Strength of the style. 1 is the most probable",
             "default": 1.1,
             "min": 0,
             "max": 3,
@@ -63,15 +63,15 @@ _SHARED = {
     ),
     "folder": (
         bpy.props.StringProperty,
-        {"name": "Library", "description": "Another folder than the panel's", "subtype": "DIR_PATH"},
+        {"name": "Library", "description": "A library instead of the one in the panel", "subtype": "DIR_PATH"},
     ),
     "performer": (
         bpy.props.StringProperty,
-        {"name": "Character", "description": "Who moves; empty takes the object's name"},
+        {"name": "Character", "description": "The character who moves. If empty, the object's name"},
     ),
     "performed": (
         bpy.props.StringProperty,
-        {"name": "Motion", "description": "What is done", "default": "walk"},
+        {"name": "Motion", "description": "Name of the motion", "default": "walk"},
     ),
     "first": (
         bpy.props.IntProperty,
@@ -82,12 +82,11 @@ _SHARED = {
         {"name": "Last", "description": "Last frame of the scene", "default": 0},
     ),
 }
-"""By what it is: which property, and how it is made."""
+"""By name: the kind of property, and its arguments."""
 
 
 def shared(what: str, **other):
-    """A property that several operators have; `other` is what one of them has otherwise. Among `names(operator)` a text may be
-    chosen."""
+    """The property called `what`. `other` are arguments that differ. An argument `names(operator)` gives texts to choose from."""
     make, usual = _SHARED[what]
     how = {**usual, **other}
     if names := how.pop("names", None):
@@ -97,7 +96,7 @@ def shared(what: str, **other):
 
 
 class Performance:
-    """Who does what in a clip that is saved, and from which frame on."""
+    """Properties of a clip that is saved."""
 
     character: shared("performer")
     motion: shared("performed")
@@ -105,9 +104,9 @@ class Performance:
 
 
 class Manner:
-    """In whose manner a clip is re-made, and how.
+    """The style in which a clip is re-made, and the method.
 
-    Blender lists the properties of the base classes from the last to the first. So name this one first.
+    Blender lists the properties of base classes from the last to the first. Put this one first among them.
     """
 
     style: shared("style")
@@ -115,9 +114,9 @@ class Manner:
     strength: shared("strength")
 
     def remake(self, folder: str, motion: str, content: str) -> Callable[[Progress, int], dict[str, Any]]:
-        """A function of a progress callback and a number of threads that re-makes the motion of `content` in the manner of `style`.
+        """A function of a progress callback and a number of threads. It re-makes the motion of `content` in the style of `style`.
 
-        It may run in a thread: it has all that the operator says.
+        It may run in a thread, since it does not use the operator any more.
         """
         said = {"style": self.style, "motion": motion, "content": content, "preset": self.preset, "strength": self.strength}
         return lambda progress, threads: translate_clip(clips_of(folder), progress=progress, threads=threads, **said)

@@ -1,10 +1,11 @@
-"""Limbs of a character, told by short lines that the artist draws across its contours.
+"""Limbs of a character, from short lines that the artist draws across its contours.
 
-Each line on the limb layer marks one key point: its ends lie near the two sides of a limb, the key point lies between them. Limbs
-lead from each key point that has a line to the nearest one above it that has one. A key point may be drawn on several frames: its ends slide along the
-contour between these. Lines carry the number of their key point in a stroke attribute, so they may be moved and copied.
+Each line on the limb layer marks one key point. Its ends are near the two sides of a limb, and the key point is between them. A limb
+connects a key point that has a line with the nearest ancestor that has one. A key point may be drawn on several frames; between
+these, the ends of its line slide along the contour. Lines carry the number of their key point in a stroke attribute, so they may be
+moved and copied.
 
-The limbs are kept with the object's document, as its fields `limbs`.
+The limbs are kept in the field `limbs` of the object's document.
 """
 
 from __future__ import annotations
@@ -21,20 +22,20 @@ from ..capture import document
 from ..rototoon.style import KEY_POINTS, PARENTS
 
 LAYER = "Limbs"
-"""Name of the layer on which limbs are drawn."""
+"""Name of the layer with the lines."""
 JOINTS = {"l_shoulder", "r_shoulder", "l_hip", "r_hip"}
-"""Key points whose limb from the body carries the body alone: arms and legs hang on it, they do not bend with it."""
+"""Key points at the end of limbs that carry only the body. Arms and legs hang on these limbs and do not bend with them."""
 
 
 POINTS = tuple(
-    (name, name.replace("_", " ").title().replace("L ", "Left ").replace("R ", "Right "), f"The line tells the {name}")
+    (name, name.replace("_", " ").title().replace("L ", "Left ").replace("R ", "Right "), f"The line marks the {name}")
     for name in KEY_POINTS
 )
-"""Items of a menu of key points: name, label, tooltip."""
+"""Key points as items of a menu: name, label, tooltip."""
 
 
 def name_lines(ob, frame: int, point: str) -> int:
-    """Gives a key point to the selected lines of a frame of the limb layer, or to the last one without; how many it were."""
+    """Gives a key point to the selected line of the limb layer, otherwise to the last line without one. Returns the number of lines."""
     handle = _drawing(ob, frame)
     strokes = len(gp.offsets(handle)) - 1
     numbers = gp.value(handle, gp.KEY_POINT, strokes)
@@ -44,9 +45,9 @@ def name_lines(ob, frame: int, point: str) -> int:
     if len(chosen) == 0:
         raise Problem(f'Draw a short line across the limb on the layer "{LAYER}" first, or select one')
     if len(chosen) > 1:
-        raise Problem(f"{len(chosen)} lines are selected; a key point is told by one: select one of them")
+        raise Problem(f"{len(chosen)} lines are selected, but a key point has one line: select one of them")
     number = KEY_POINTS.index(point) + 1
-    # A key point drawn anew takes the place of the older line.
+    # The new line replaces an older line of the key point.
     numbers[numbers == number] = 0
     numbers[chosen] = number
     gp.put(handle, gp.KEY_POINT, numbers)
@@ -64,7 +65,7 @@ def _drawing(ob, frame: int):
 
 
 def define(ob, reading: document.Reading) -> list[dict[str, Any]]:
-    """Makes the object's limbs of the lines on the limb layer, keeps them with its document, and returns them."""
+    """Makes the object's limbs from the lines on the limb layer, stores them with its document, and returns them."""
     lines = _lines(ob)
     if not lines:
         raise Problem(f'No line on the layer "{LAYER}" has a key point yet: choose one in Define Limbs')
@@ -79,7 +80,7 @@ def define(ob, reading: document.Reading) -> list[dict[str, Any]]:
 
 
 def _ancestor(child: int, ends) -> int | None:
-    """The nearest key point above one that has a line."""
+    """The nearest ancestor of a key point that has a line; `None` if there is none."""
     while child:
         child = PARENTS[child]
         if child in ends:
@@ -88,24 +89,24 @@ def _ancestor(child: int, ends) -> int | None:
 
 
 def count_lines(ob) -> int:
-    """How many key points have lines."""
+    """Number of key points with a line."""
     return len(_lines(ob))
 
 
 def keep(ob, made: list[dict[str, Any]]) -> None:
-    """Puts limbs into the object's document."""
+    """Stores limbs in the object's document."""
     extra = _extra(ob)
     extra["limbs"] = made
     ob.rototoon.extra = json.dumps(extra)
 
 
 def marks(ob) -> list[dict[str, Any]]:
-    """The object's marks "in front" and "behind"."""
+    """The object's marks of what is in front of what."""
     return _extra(ob).get("depth_marks", [])
 
 
 def add_mark(ob, mark: dict[str, Any]) -> None:
-    """Adds a mark to the object's document; an opposite one on the same frames goes."""
+    """Adds a mark to the object's document. It replaces an opposite one on the same frames."""
     extra = _extra(ob)
     opposite = {**mark, "front": mark["behind"], "behind": mark["front"]}
     kept = [known for known in extra.get("depth_marks", []) if known not in (mark, opposite)]
@@ -123,13 +124,13 @@ def defined(ob) -> list[dict[str, Any]]:
 
 
 def needed(ob) -> None:
-    """A `Problem` where an object has no limbs."""
+    """Raises a `Problem` if an object has no limbs."""
     if not defined(ob):
         raise Problem(f'"{ob.name}" has no limbs: draw lines across them on the layer "{LAYER}", then Define Limbs')
 
 
 def _lines(ob) -> dict[int, dict[int, np.ndarray]]:
-    """By key point and frame the two ends of its line, in pixels."""
+    """By key point and frame the two ends of its line in pixels."""
     layer = gp.find_layer(ob, LAYER)
     if layer is None:
         raise Problem(f'"{ob.name}" has no layer "{LAYER}": add one and draw short lines across the limbs there')
@@ -150,14 +151,14 @@ def _lines(ob) -> dict[int, dict[int, np.ndarray]]:
 
 
 def _end(point: int, drawn: dict[int, np.ndarray], project: dict[str, Any]) -> dict[str, Any]:
-    """A limb's end as documents hold it."""
+    """A limb's end in the form of documents."""
     part = _part_of(KEY_POINTS[point], drawn, project)
     ends = ({str(frame): line[side].tolist() for frame, line in drawn.items()} for side in (0, 1))
     return {"points": [{"part": part, "drawn": points} for points in ends], "share": 0.5}
 
 
 def _part_of(name: str, drawn: dict[int, np.ndarray], project: dict[str, Any]) -> str:
-    """The part whose contour is nearest to both ends of the line on all its frames."""
+    """The part whose contour is nearest to the ends of the line, over all its frames."""
     best = (np.inf, "")
     for part in project["parts"]:
         contours = {int(f): np.asarray(p) for f, p in {**part.get("keys", {}), **part.get("tracks", {})}.items()}

@@ -1,6 +1,6 @@
 """Pieces of a picture that follow parts: a triangle mesh inside each closed contour.
 
-Triangles are Delaunay's of the contour and a grid inside, coarse enough to move fast and fine enough to bend.
+It is the Delaunay triangulation of the contour and of a grid inside. The grid is coarse enough to be fast and fine enough to bend.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from ..blender.picture_mesh import Piece
 from ..rototoon.documents import by_frame
 
 CELLS = 12
-"""Cells of the grid along a part's longer side."""
+"""Number of cells of the grid along a part's longer side."""
 INSIDE = 1
-"""Blender's word for triangles inside the given faces."""
+"""Blender's number for triangles inside the given faces."""
 
 
 def pieces(project: dict[str, Any], border: float) -> list[Piece]:
@@ -34,7 +34,7 @@ def pieces(project: dict[str, Any], border: float) -> list[Piece]:
 
 
 def widened(ring: np.ndarray, border: float) -> np.ndarray:
-    """A closed line moved outward."""
+    """Moves a closed line outward by `border`."""
     if not border:
         return ring
     way = np.roll(ring, -1, 0) - np.roll(ring, 1, 0)
@@ -57,7 +57,7 @@ def triangulated(name: str, ring: np.ndarray) -> Piece:
     given = np.concatenate([ring, inner])
     made = delaunay_2d_cdt([Vector(p) for p in given], [], [list(range(len(ring)))], INSIDE, 1e-6 * step)
     points, _, faces, origins = made[:4]
-    # Blender may order and add points; ours come first, in their order.
+    # Blender may reorder points and add some. The given points come first, in their order.
     order = {}
     for number, sources in enumerate(origins):
         for source in sources:
@@ -70,7 +70,7 @@ def triangulated(name: str, ring: np.ndarray) -> Piece:
 
 
 def _well_inside(points: np.ndarray, ring: np.ndarray, least: float) -> np.ndarray:
-    """Which points lie inside a closed line and at least so far from it."""
+    """Which points are inside a closed line, and at least a distance from it."""
     x, y = points.T
     inside, apart = np.zeros(len(points), bool), np.full(len(points), np.inf)
     for a, b in zip(ring, np.roll(ring, -1, 0)):

@@ -1,4 +1,4 @@
-"""What a file keeps of the library that an object uses, and what the window keeps of the list of clips."""
+"""Properties: the library of an object, kept in the file, and the list of clips, kept in the window manager."""
 
 from __future__ import annotations
 
@@ -21,37 +21,37 @@ def _in_view_changed(_self, _context) -> None:
 
 
 class RototoonClip(bpy.types.PropertyGroup):
-    """A row of the list; `name` is what it is found by."""
+    """A row of the list."""
 
-    character: bpy.props.StringProperty(name="Character", description="Who moves")
-    motion: bpy.props.StringProperty(name="Motion", description="What is done")
+    character: bpy.props.StringProperty(name="Character", description="The character who moves")
+    motion: bpy.props.StringProperty(name="Motion", description="Name of the motion")
     frames: bpy.props.IntProperty(name="Frames", description="Number of postures")
     trouble: bpy.props.StringProperty(name="Trouble", description="Why the file cannot be used")
 
 
 class RototoonBrowser(bpy.types.PropertyGroup):
-    """The list."""
+    """The list of clips, its filter and the chosen clip."""
 
-    folder: bpy.props.StringProperty(description="The library that is listed")
+    folder: bpy.props.StringProperty(description="The listed library")
     clips: bpy.props.CollectionProperty(type=RototoonClip)
     active: bpy.props.IntProperty(name="Chosen Clip", default=0)
     character: bpy.props.StringProperty(
         name="Character",
-        description="Show clips of characters whose name holds this",
+        description="Show clips of characters whose name contains this text",
         search=_offered_characters,
         search_options={"SUGGESTION"},
         options={"TEXTEDIT_UPDATE"},
     )
     motion: bpy.props.StringProperty(
         name="Motion",
-        description="Show clips of motions whose name holds this",
+        description="Show clips of motions whose name contains this text",
         search=_offered_motions,
         search_options={"SUGGESTION"},
         options={"TEXTEDIT_UPDATE"},
     )
     in_view: bpy.props.BoolProperty(
         name="Show Beside Drawing",
-        description="Let the chosen clip play beside the drawing, in the 3D view, with the scene's frames",
+        description="Play the chosen clip beside the drawing in the 3D view, with the scene's frames",
         default=False,
         update=_in_view_changed,
     )
@@ -62,11 +62,11 @@ def _clips_folder_changed(self, _context) -> None:
 
 
 class ClipSettings:
-    """The library of an object; a part of `rototoon` of every object."""
+    """The library, in the property `rototoon` of every object."""
 
     clips_folder: bpy.props.StringProperty(
         name="Library",
-        description="Folder of the library of skeleton clips; empty takes that of the preferences",
+        description="Folder of the library of skeleton clips. If empty, the one in the preferences",
         subtype="DIR_PATH",
         default="",
         options={"ANIMATABLE", "PATH_SUPPORTS_BLEND_RELATIVE"},

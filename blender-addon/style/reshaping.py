@@ -1,7 +1,7 @@
-"""A drawing's contours on every frame of a clip, as generated strokes after the drawing's own key.
+"""A drawing's contours on every frame of a clip, as generated strokes after the drawing's key.
 
-The drawing stays as it is: the motion begins on the frame after it, on generated frames that Clear Generated takes away. Strokes keep
-the radius, colours, material and fill of the drawing.
+The drawing does not change. The motion begins on the frame after it, on generated frames, which Clear Generated removes. Strokes
+keep the radius, colours, material and fill of the drawing.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from . import limbs
 
 @dataclass
 class Drawing:
-    """What is reshaped."""
+    """The drawing that is reshaped."""
 
     uid: int
     inputs: dict[str, Any]
-    """The object's document, to see whether it is still the same in the end."""
+    """The object's document at the beginning. It must be the same at the end."""
     project: dict[str, Any]
-    """The drawing alone: its contours on one frame, with limbs."""
+    """The document of the drawing: its contours on one frame, with limbs."""
     frame: int
-    """The scene's frame of the drawing."""
+    """The drawing's frame in the scene."""
 
 
 def begin(ob, frame: int) -> Drawing:
-    """The drawing at a frame: every part's key there, or its last one before."""
+    """The drawing at a frame: the last frame up to it on which every part has a key."""
     reading = document.read(ob)
     limbs.needed(ob)
     offset = ob.rototoon.frame_offset
@@ -42,7 +42,7 @@ def begin(ob, frame: int) -> Drawing:
     known = {number for frames in keys for number in frames}
     before = [number for number in known if number <= frame and all(number in frames for frames in keys)]
     if not before:
-        raise Problem(f"No frame up to {frame} has a key of every part: go to the drawing that is to be reshaped")
+        raise Problem(f"No frame up to {frame} has a key of every part: go to the drawing that you want to reshape")
     rest = max(before)
     if max(known) > rest:
         raise Problem(f"Frame {max(known)} has a key after the drawing on frame {rest}: reshape a drawing without later keys")
@@ -55,7 +55,7 @@ def begin(ob, frame: int) -> Drawing:
 
 
 def finish(ob, drawing: Drawing, made) -> int:
-    """Writes what was made; the number of frames."""
+    """Writes the result. Returns the number of frames."""
     reading = document.read(ob)
     if reading.document != drawing.inputs:
         raise Problem("The drawing changed while it was reshaped, so the result was dropped: do it again")
@@ -68,7 +68,7 @@ def finish(ob, drawing: Drawing, made) -> int:
         reading.mapper = placement.Mapper(ob, [drawing.frame, *frames], points, names)
     by_number = {part.number: copy.copy(part) for part in reading.found.parts}
     for part in by_number.values():
-        # The drawing alone is what styles come from.
+        # Styles come from the drawing only.
         part.keys = {drawing.frame: part.keys[drawing.frame]} if drawing.frame in part.keys else {}
         part.layer = part.keys[drawing.frame].layer if part.keys else part.layer
     parts = [part for part in by_number.values() if part.keys]
@@ -82,7 +82,7 @@ def finish(ob, drawing: Drawing, made) -> int:
 
 
 def _order(block: writing.Block, layer: int, parts, tracks, project: dict[str, Any]) -> np.ndarray:
-    """On each frame the block's columns from behind to the front."""
+    """The block's parts from back to front on each frame."""
     columns = sorted((p for p in parts if p.number in tracks and p.layer == layer), key=lambda p: p.depth)
     first = project["footage"]["first"]
     entries = {part["name"]: part for part in project["parts"]}

@@ -1,4 +1,4 @@
-"""What the artist sees: panels and lists in the tab "Rototoon" of the 3D view's sidebar, overlays, previews, and preferences.
+"""The user interface: panels and lists in the tab "Rototoon" of the 3D view's sidebar, overlays, previews, and preferences.
 
 Only the extension's own `__init__.py` imports this room.
 

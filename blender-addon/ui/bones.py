@@ -1,4 +1,4 @@
-"""The panel of an armature: its key points, its motion as clips, and clips for its bones."""
+"""The panel of armatures: key points, saving clips, driving bones."""
 
 import bpy
 

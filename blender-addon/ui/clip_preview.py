@@ -1,7 +1,6 @@
-"""Pictures of clips: icons in the list, the chosen clip's figure in the panel and beside the drawing, playing with the scene.
+"""Pictures of clips: icons in the list, and the chosen clip's figure in the panel and beside the drawing, which plays with the scene.
 
-`figure` and `gather` are plain data and run anywhere; icons need a window to be seen, and `register` touches the graphics card only
-where there is one.
+`figure` and `gather` also work in background. Only drawing needs the graphics card, and `register` starts it only in a window.
 """
 
 from __future__ import annotations
@@ -20,9 +19,9 @@ from . import stick_figure
 from .overlay import Marks
 
 ICON, LARGE = 32, 160
-"""Sides of pictures in pixels."""
+"""Side lengths of pictures in pixels."""
 STRIDE = 0.4
-"""Half of a figure's width in its heights, at a stride."""
+"""Half the width of a striding figure, as a share of its height."""
 _icons = None
 _keys: dict[str, int] = {}
 _playing = ""
@@ -37,7 +36,7 @@ def figure(row: Row, scene) -> int:
     """The icon of a clip's figure on the scene's frame."""
     global _playing
     if _playing != _name(row):
-        # Only the chosen clip's pictures are kept.
+        # Only pictures of the chosen clip are kept.
         for key in [key for key in _keys if key.startswith("frame ")]:
             _drop(key)
         _playing = _name(row)
@@ -46,13 +45,13 @@ def figure(row: Row, scene) -> int:
 
 
 def posture_of(row: Row, scene) -> int:
-    """Which posture of a clip shows on the scene's frame."""
+    """Index of a clip's posture on the scene's frame."""
     fps = scene.render.fps / scene.render.fps_base
     return stick_figure.moment(scene.frame_current, scene.frame_start, fps, row.fps, len(row.postures))
 
 
 def pixels(row: Row, index: int, size: int) -> np.ndarray:
-    """The picture of a posture, (size, size, 4), its bottom row first."""
+    """The picture of a posture (size, size, 4), the bottom row first."""
     return stick_figure.picture(stick_figure.fitted(row.postures, stick_figure.box(size))[index], size)
 
 
@@ -97,7 +96,7 @@ def clear() -> None:
 
 
 def gather(ob, row: Row, scene) -> list[Marks]:
-    """The figure's lines in the world, beside the drawing and as high as it is."""
+    """The figure's lines in the world, beside the drawing and of its height."""
     layers = gp.layers(ob, ob.rototoon.contours_layer)
     if not layers or not len(row.postures):
         return []
@@ -113,7 +112,7 @@ def gather(ob, row: Row, scene) -> list[Marks]:
 
 
 def _box(ob, layer, mapping, scene) -> np.ndarray:
-    """A box beside the drawing on the frame, or in the middle of the picture where there is none."""
+    """A box beside the drawing on the frame; without a drawing, in the middle of the picture."""
     size = np.array([ob.rototoon.width, ob.rototoon.height], np.float64)
     shown = [frame for frame in gp.drawings(layer) if frame <= scene.frame_current]
     handle = gp.drawings(layer)[max(shown)][0] if shown else None
@@ -124,7 +123,7 @@ def _box(ob, layer, mapping, scene) -> np.ndarray:
     low, high = points.min(0), points.max(0)
     aside = STRIDE * (high[1] - low[1])
     middle = high[0] + aside if high[0] + 2 * aside <= size[0] or low[0] < 2 * aside else low[0] - aside
-    # Wider than any figure: its height is the drawing's.
+    # The box is wider than any figure, so its height decides the size.
     return np.array([[middle - 9 * aside, low[1]], [middle + 9 * aside, high[1]]])
 
 
@@ -158,8 +157,8 @@ def _draw() -> None:
 
 @persistent
 def _moved(*_args) -> None:
-    """The figure in the sidebar goes on with the scene's frames."""
-    # A render runs through the frames in a thread of its own, where windows are not to be touched.
+    """Redraws the figure in the sidebar when the scene's frame changes."""
+    # A render changes frames in a thread of its own, which must not touch windows.
     if not bpy.app.is_job_running("RENDER") and clip_browser.chosen() is not None:
         windows.redraw_views()
 
@@ -168,7 +167,7 @@ _handle = None
 
 
 def register() -> None:
-    """Starts drawing, where there is a window."""
+    """Starts drawing, unless in background."""
     global _handle
     if not bpy.app.background:
         _handle = bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW")

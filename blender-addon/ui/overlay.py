@@ -1,6 +1,6 @@
-"""What is drawn over the view: pins, corrected centres, and confidence as colour.
+"""The overlay of the 3D view: pins, corrected centres, and confidence as colour.
 
-`gather` is plain data and runs anywhere; only `register` touches the graphics card, and not in background.
+`gather` also works in background. Only drawing needs the graphics card, and `register` starts it only in a window.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ CENTER_COLOUR = np.array([0.85, 0.35, 1.0, 1.0], np.float32)
 
 @dataclass
 class Marks:
-    """Points in the world with their colours, (N, 3) and (N, 4)."""
+    """Points (N, 3) in the world, and their colours (N, 4)."""
 
     points: np.ndarray
     colours: np.ndarray
@@ -31,7 +31,7 @@ class Marks:
 
 
 def colours(confidence: np.ndarray) -> np.ndarray:
-    """Red, yellow, green for 0, a half, 1: (N, 4)."""
+    """Colours (N, 4) of confidence: 0 is red, 0.5 yellow, 1 green."""
     share = np.clip(confidence, 0, 1)[:, None]
     low = DOUBTFUL + (UNSURE - DOUBTFUL) * (2 * share)
     high = UNSURE + (SURE - UNSURE) * (2 * share - 1)
@@ -106,7 +106,7 @@ _handle = None
 
 
 def register() -> None:
-    """Starts drawing, where there is a window."""
+    """Starts drawing, unless in background."""
     global _handle
     if not bpy.app.background:
         _handle = bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW")

@@ -1,4 +1,4 @@
-"""The panels, in the order of the work: footage, parts, track, snap, strokes, tween, style, document."""
+"""The panels in the order of the work: footage, parts, track, snap, strokes, tween, style, document."""
 
 import bpy
 
@@ -77,11 +77,11 @@ ENDS = {
     ends.CUT: ("ends before the cut on frame {}", "INFO"),
     ends.LEFT: ("left the picture on frame {}", "INFO"),
 }
-"""What is said of the end of a track from a single key, by its reason."""
+"""Text and icon for the end of a track from a single key, by its reason."""
 
 
 def said_of_ends(settings) -> list[tuple[str, str]]:
-    """Text and icon for each end of a track that goes outward from a single key."""
+    """Text and icon for each end of a track from a single key."""
     said = []
     for part in settings.parts:
         for frame, reason in ends.of(part):
@@ -150,7 +150,7 @@ SPACINGS = (
     (("EASE_IN_OUT", "In and Out"), ("BOUNCE", "Bounce")),
     (("CHART", "Chart"), ("CURVE", "Curve")),
 )
-"""Rows of buttons that draw in-betweens with a spacing at once."""
+"""Rows of buttons that draw in-betweens with a certain spacing."""
 
 
 class ROTOTOON_PT_tween(_DrawingPanel, bpy.types.Panel):

@@ -1,4 +1,4 @@
-"""What holds for all files: threads, and the cache of movie frames."""
+"""The extension's settings in Blender's preferences."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ from ..blender.preferences import EXTENSION
 
 
 class RototoonPreferences(bpy.types.AddonPreferences):
-    """Settings of the extension."""
+    """Settings for all files."""
 
     bl_idname = EXTENSION
 
     threads: bpy.props.IntProperty(
-        name="Threads", description="Threads that track and snap; 0 takes one for each core", min=0, max=256, default=0
+        name="Threads", description="Number of threads for tracking and snapping. 0 is one per core", min=0, max=256, default=0
     )
     cache_folder: bpy.props.StringProperty(
         name="Cache Folder",
-        description="Where the frames of movies are kept; empty takes the extension's own folder",
+        description="Folder for the frames of movies. If empty, the extension's folder",
         subtype="DIR_PATH",
         default="",
     )
     cache_limit: bpy.props.IntProperty(
         name="Cache Limit",
-        description="Size in megabytes above which the movies used longest ago are removed from the cache",
+        description="Size in megabytes. Above it, the least recently used movies are removed from the cache",
         min=10,
         soft_max=1_000_000,
         default=4096,
     )
     clips_folder: bpy.props.StringProperty(
         name="Clip Library",
-        description="Folder of the library of skeleton clips where an object names none",
+        description="Folder of the library of skeleton clips, for objects without a library of their own",
         subtype="DIR_PATH",
         default="",
     )

@@ -1,6 +1,6 @@
-"""Stick figures of skeleton clips: what to draw, and small pictures of them. Plain NumPy, nothing of Blender.
+"""Stick figures of skeleton clips: their lines, and small pictures. Plain NumPy.
 
-The figure's left is drawn in one colour, its right in another, the middle in a third, so that it is seen which leg is in front.
+The left side, the right side and the middle have different colours, so that it is clear which leg is in front.
 """
 
 from __future__ import annotations
@@ -13,20 +13,20 @@ from ..rototoon.style import KEY_POINTS, PARENTS
 
 HEAD, HEAD_TOP = KEY_POINTS.index("head"), KEY_POINTS.index("head_top")
 LIMBS = tuple((PARENTS[point], point) for point in range(1, len(PARENTS)))
-"""Key points that lines join. The head is a ring about the last but one."""
+"""Pairs of key points that lines connect. The head is drawn as a ring."""
 LEFT, RIGHT, MIDDLE = (0.36, 0.68, 1.0), (1.0, 0.62, 0.25), (0.92, 0.92, 0.92)
 MARGIN = 0.08
-"""Share of a picture's side that stays free."""
+"""Margin of a picture, as a share of its side."""
 
 
 def colour(point: int) -> tuple[float, float, float]:
-    """Of the line that ends in a key point."""
+    """Colour of the line that ends at a key point."""
     name = KEY_POINTS[point]
     return LEFT if name.startswith("l_") else RIGHT if name.startswith("r_") else MIDDLE
 
 
 def lines(posture: np.ndarray, ring: int = 16) -> list[tuple[int, np.ndarray]]:
-    """Lines (N, 2) of a posture (17, 2), each with the key point that it ends in; right ones are last, so in front."""
+    """Lines (N, 2) of a posture (17, 2), each with the key point at its end. Right ones come last, so they are in front."""
     found = [(child, posture[[parent, child]]) for parent, child in LIMBS if child != HEAD_TOP]
     found.sort(key=lambda line: (KEY_POINTS[line[0]].startswith("r_"), not KEY_POINTS[line[0]].startswith("l_")))
     middle, top = posture[HEAD], posture[HEAD_TOP]
@@ -37,8 +37,8 @@ def lines(posture: np.ndarray, ring: int = 16) -> list[tuple[int, np.ndarray]]:
 
 
 def fitted(postures: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Postures (F, 17, 2) of a clip in a box ((left, top), (right, bottom)): all of one size, on one spot, standing on its bottom."""
-    # A figure that walked along would be too small to see.
+    """Postures (F, 17, 2) of a clip in a box ((left, top), (right, bottom)): all at one scale and place, on the bottom of the box."""
+    # The figure stays in its place: with room for a walk it would be too small.
     postures = postures - postures[:, :1] * [1.0, 0.0]
     low, high = postures.min((0, 1)), postures.max((0, 1))
     size = np.maximum(high - low, 1e-9)
@@ -48,11 +48,11 @@ def fitted(postures: np.ndarray, box: np.ndarray) -> np.ndarray:
 
 
 def picture(posture: np.ndarray, size: int, thickness: float | None = None) -> np.ndarray:
-    """Float RGBA (size, size, 4) of a posture in pixels, x right, y down; the picture's row 0 is the bottom one."""
+    """Float RGBA (size, size, 4) of a posture in pixels, x right, y down. Row 0 of the picture is its bottom row."""
     half = max(size / 40, 0.6) if thickness is None else thickness / 2
     result = np.zeros((size, size, 4), np.float32)
     for point, line in lines(posture):
-        # Only the pixels about the line.
+        # Only pixels near the line.
         reach = half + 1
         (left, top), (right, bottom) = line.min(0) - reach, line.max(0) + reach
         columns = slice(*np.clip([int(left), int(right) + 1], 0, size))
@@ -75,10 +75,10 @@ def _distance(x: np.ndarray, y: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.
 
 
 def box(size: int) -> np.ndarray:
-    """The part of a square picture that a figure fills."""
+    """The box of a figure in a square picture."""
     return np.array([[MARGIN, MARGIN], [1 - MARGIN, 1 - MARGIN]]) * size
 
 
 def moment(frame: int, start: int, fps: float, own_fps: float, count: int) -> int:
-    """Which posture shows on a frame of the scene: the clip runs from the scene's first frame on, over and over."""
+    """Index of the posture on a frame of the scene. The clip starts on the scene's first frame and repeats."""
     return math.floor((frame - start) * own_fps / fps + 1e-6) % max(count, 1)

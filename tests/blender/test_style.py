@@ -173,7 +173,7 @@ def test_stopped_and_wrong_use_change_nothing(addon, tmp_path):
     for name in LINES:
         limb_line(addon, ob, 1, name, figure())
     before = shots.snapshot(ob)
-    with pytest.raises(RuntimeError, match="holds no clips"):
+    with pytest.raises(RuntimeError, match="has no clips"):
         bpy.ops.rototoon.apply_motion(motion="walk", content="plain", style="old", folder=str(tmp_path / "none"))
     with pytest.raises(RuntimeError, match='found "nobody"'):
         bpy.ops.rototoon.apply_motion(motion="walk", content="plain", style="nobody", folder=shelf)

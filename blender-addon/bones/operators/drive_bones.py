@@ -1,4 +1,4 @@
-"""Bones that follow a clip of the library."""
+"""Drive Bones: bones follow a clip of the library."""
 
 import bpy
 import numpy as np
@@ -13,7 +13,7 @@ from .. import driving, key_points
 
 
 class _Content:
-    """Which clip the bones follow. It is a class of its own so that the dialog lists it before the manner."""
+    """The clip that the bones follow. It is a class of its own, so that the dialog lists it before the style."""
 
     content: shared("character")
     motion: shared("motion")
@@ -23,14 +23,14 @@ class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Oper
     bl_idname = "rototoon.drive_bones"
     bl_label = "Drive Bones"
     bl_description = (
-        "Let the armature's bones follow a clip of the library in the view's plane, as it is or in another character's manner. "
-        "Keys go into a new action; the one before stays in the file"
+        "Make the armature's bones follow a clip of the library in the view's plane, as it is or in another character's style. "
+        "The keys are in a new action. The action before stays in the file"
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    view: bpy.props.EnumProperty(name="Plane", description="In which plane the limbs move", items=armatures.VIEWS)
+    view: bpy.props.EnumProperty(name="Plane", description="The plane in which the limbs move", items=armatures.VIEWS)
     start: bpy.props.IntProperty(name="Start", description="Frame of the first posture", default=1)
-    move: bpy.props.BoolProperty(name="Move", description="The pelvis goes where the clip's goes", default=True)
+    move: bpy.props.BoolProperty(name="Move", description="The pelvis moves as in the clip", default=True)
     folder: shared("folder")
 
     def invoke(self, context, _event):
@@ -64,7 +64,7 @@ class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Oper
         before = actions.give(ob, "OBJECT", f"{ob.name} {self.motion}{manner}", frames, curves)
         said = f"{len(found[0])} bones on frames {frames[0]:g} to {frames[-1]:g}"
         held = [name for name in found[0] if any(not c.mute for c in ob.pose.bones[name].constraints)]
-        said += f"; their constraints hold {', '.join(held)}" if held else ""
+        said += f"; constraints also move {', '.join(held)}" if held else ""
         return said + (f'; the action "{before}" is kept' if before else "")
 
 
@@ -72,7 +72,7 @@ def _only(clips, character: str, motion: str):
     found = [c for c in clips["clips"] if c["motion"] == motion and character in ("", c["character"])]
     if len(found) != 1:
         names = ", ".join(f"{c['character']} {c['motion']}" for c in clips["clips"])
-        raise Problem(f'Found {len(found)} clips "{motion}" by "{character}", expected one; the library holds {names}')
+        raise Problem(f'Found {len(found)} clips "{motion}" by "{character}", expected one; the library has {names}')
     return found[0]
 
 

@@ -1,4 +1,4 @@
-"""Bones found by their names."""
+"""Guess Bones: finds key points by the names of bones."""
 
 import bpy
 
@@ -10,7 +10,7 @@ from .. import key_points
 class ROTOTOON_OT_guess_bones(Guarded, OnArmature, bpy.types.Operator):
     bl_idname = "rototoon.guess_bones"
     bl_label = "Guess Bones"
-    bl_description = "Find by their names the bones that tell the key points; what you chose stays"
+    bl_description = "Find the bones of the key points by their names. Your choices stay"
     bl_options = {"REGISTER", "UNDO"}
 
     def run(self, context) -> str:

@@ -1,4 +1,4 @@
-"""An armature's motion as a clip of the library."""
+"""Save Clip from Armature: adds the motion of bones to the library."""
 
 import bpy
 
@@ -15,13 +15,13 @@ from .. import key_points
 class ROTOTOON_OT_save_clip_from_armature(Long, Performance, OnArmature, bpy.types.Operator):
     bl_idname = "rototoon.save_clip_from_armature"
     bl_label = "Save Clip from Armature"
-    bl_description = "Keep the motion of the armature's bones, seen from a side, as a skeleton clip in the library"
+    bl_description = "Save the motion of the armature's bones, seen from a side, as a skeleton clip in the library"
     bl_options = {"REGISTER"}
 
     last: shared(
-        "last", description="Last frame; where it is not after the first, the action's frames are taken"
+        "last", description="Last frame. If it is not after the first frame, the frames of the action"
     )
-    view: bpy.props.EnumProperty(name="Seen From", description="On which plane it is seen", items=armatures.VIEWS)
+    view: bpy.props.EnumProperty(name="Seen From", description="Side from which the bones are seen", items=armatures.VIEWS)
     folder: shared("folder")
 
     def invoke(self, context, _event):

@@ -1,4 +1,4 @@
-"""Captured contours as an animated mask."""
+"""Contours to Mask: makes an animated mask of the contours."""
 
 import bpy
 
@@ -12,16 +12,16 @@ from .. import outlines
 class ROTOTOON_OT_contours_to_mask(Guarded, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.contours_to_mask"
     bl_label = "Contours to Mask"
-    bl_description = "Make a mask of the contours, with a layer for each part and its shape on every frame"
+    bl_description = "Make a mask of the contours, with a layer for each part and a shape key for every frame"
     bl_options = {"REGISTER", "UNDO"}
 
     name: bpy.props.StringProperty(
         name="Mask",
-        description="Name of the mask, that of the object if empty; a mask of this name is made anew",
+        description="Name of the mask. If empty, the object's name. A mask of this name is replaced",
     )
     use_snapped: bpy.props.BoolProperty(
         name="Snapped Lines",
-        description="Follow the snapped lines where there are some, not only the control points",
+        description="Follow the snapped lines where there are any, otherwise the control points",
         default=True,
     )
 

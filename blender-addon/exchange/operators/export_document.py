@@ -1,4 +1,4 @@
-"""Blender's contours as a project document."""
+"""Export Document."""
 
 import os
 
@@ -16,7 +16,7 @@ class ROTOTOON_OT_export_document(Guarded, OnContours, bpy.types.Operator):
     bl_description = "Write keys, corrections, tracks and snapped lines as a Rototoon project document"
     bl_options = {"REGISTER"}
 
-    filepath: bpy.props.StringProperty(name="File", description="Where to write it", subtype="FILE_PATH")
+    filepath: bpy.props.StringProperty(name="File", description="The file to write", subtype="FILE_PATH")
     filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
     check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 

@@ -1,4 +1,4 @@
-"""A project document into Blender."""
+"""Import Document."""
 
 import os
 
@@ -14,17 +14,17 @@ from .. import files, importing
 class ROTOTOON_OT_import_document(Guarded, InObjectMode, bpy.types.Operator):
     bl_idname = "rototoon.import_document"
     bl_label = "Import Document"
-    bl_description = "Make strokes of a Rototoon project document: keys, corrections, tracks and snapped lines"
+    bl_description = "Make strokes from a Rototoon project document: keys, corrections, tracks and snapped lines"
     bl_options = {"REGISTER", "UNDO"}
 
     filepath: bpy.props.StringProperty(name="File", description="The project document", subtype="FILE_PATH")
     filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
     into: bpy.props.EnumProperty(
         name="Into",
-        description="Which object gets the contours",
+        description="The object that gets the contours",
         items=(
             ("NEW", "New Object", "A new Grease Pencil object, with a camera if the scene has none"),
-            ("ACTIVE", "Active Object", "The active Grease Pencil object; its contours are replaced"),
+            ("ACTIVE", "Active Object", "The active Grease Pencil object. Its contours are replaced"),
         ),
     )
     keep_numbers: bpy.props.BoolProperty(
@@ -59,7 +59,7 @@ class ROTOTOON_OT_import_document(Guarded, InObjectMode, bpy.types.Operator):
         pattern = os.path.normpath(os.path.join(folder, shot["pattern"]))
         first = footage.picture(pattern, shot["first"])
         if not os.path.isfile(first):
-            raise Problem(f"No picture {first}: the document's footage is not there")
+            raise Problem(f"No picture {first}: the document's footage is missing")
         start = shot["first"] if self.keep_numbers else context.scene.frame_start
         fps = float(shot.get("fps", 24.0))
         return stage.Shot(pattern, shot["first"], shot["last"], shot["width"], shot["height"], fps, start)

@@ -74,7 +74,7 @@ def _check(path: Path, functions: ctypes.CDLL) -> None:
     if abi_version() != _bindings.ROTOTOON_ABI_VERSION:
         expected = _bindings.ROTOTOON_ABI_VERSION
         found = abi_version()
-        raise LibraryError(f"{path} has ABI version {found}, this package expects {expected}; install both anew")
+        raise LibraryError(f"{path} has ABI version {found}, this package expects {expected}; install both again")
     if header_hash() != _bindings.HEADER_HASH:
         built, ours = f"{header_hash():016x}", f"{_bindings.HEADER_HASH:016x}"
-        raise LibraryError(f"{path} was built with header {built}, this package expects {ours}; install both anew")
+        raise LibraryError(f"{path} was built with header {built}, this package expects {ours}; install both again")

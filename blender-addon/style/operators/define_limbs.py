@@ -1,4 +1,4 @@
-"""Limbs of a character from lines across its contours."""
+"""Define Limbs: makes limbs from lines across contours."""
 
 import bpy
 
@@ -11,17 +11,17 @@ class ROTOTOON_OT_define_limbs(Guarded, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.define_limbs"
     bl_label = "Define Limbs"
     bl_description = (
-        f'Say which key point the selected line on the layer "{limbs.LAYER}" tells (else the last one drawn): a short line across '
-        "the limb, from one side of it to the other. Neighbouring key points make limbs, and go with the contours"
+        f'Choose the key point that the selected line on the layer "{limbs.LAYER}" marks, or the last line that you drew. It is a short '
+        "line across the limb, from one side to the other. Neighbouring key points make limbs, which move with the contours"
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    point: bpy.props.EnumProperty(name="Key Point", description="What the line tells", items=limbs.POINTS)
+    point: bpy.props.EnumProperty(name="Key Point", description="The key point that the line marks", items=limbs.POINTS)
 
     def run(self, context) -> str:
         ob = context.object
         limbs.name_lines(ob, context.scene.frame_current, self.point)
-        # Strokes get their parts here if they have none yet: limbs are bound to parts by name.
+        # New strokes get their parts here, since limbs refer to parts by name.
         reading = document.read(ob)
         identity.write(ob, reading.found, reading.decisions)
         lines = limbs.count_lines(ob)

@@ -1,4 +1,4 @@
-"""Which part of a drawing is in front, for reshaping."""
+"""In Front / Behind: the depth of parts in reshaped drawings."""
 
 import bpy
 
@@ -10,7 +10,7 @@ from .. import limbs
 class ROTOTOON_OT_depth_mark(Guarded, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.depth_mark"
     bl_label = "In Front / Behind"
-    bl_description = "Say that one part is in front of another when the drawing is reshaped; the rest follows from a few of these"
+    bl_description = "Put one part in front of another when the drawing is reshaped. A few such marks are enough for all parts"
     bl_options = {"REGISTER", "UNDO"}
 
     front: bpy.props.StringProperty(name="In Front", description="Name of the part in front")

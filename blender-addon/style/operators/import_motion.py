@@ -1,4 +1,4 @@
-"""Motion capture files as clips of the library."""
+"""Import Motion Capture: adds BVH files to the library."""
 
 import os
 
@@ -13,32 +13,32 @@ from ..clip_library import folder_of
 from ..clip_properties import shared
 
 VIEWS = (
-    ("auto", "Where Most Is Seen", "From the side on which most of the motion is seen"),
+    ("auto", "Where Most Is Seen", "From the side that shows most of the motion"),
     ("front", "Front", "The figure faces the picture"),
-    ("side", "Side", "The figure looks to a side of the picture"),
+    ("side", "Side", "The figure faces a side of the picture"),
     ("three-quarter", "Three Quarters", "Half-way between front and side"),
-    ("angle", "Angle", "From any angle about the vertical"),
+    ("angle", "Angle", "From an angle about the vertical axis"),
 )
 
 
 class ROTOTOON_OT_import_motion(Guarded, bpy.types.Operator):
     bl_idname = "rototoon.import_motion"
     bl_label = "Import Motion Capture"
-    bl_description = "Put motion capture files (BVH), seen from one side, into the library as skeleton clips"
+    bl_description = "Add motion capture files (BVH), seen from one side, to the library as skeleton clips"
     bl_options = {"REGISTER"}
 
     filepath: bpy.props.StringProperty(name="File", description="A BVH file", subtype="FILE_PATH")
     directory: bpy.props.StringProperty(subtype="DIR_PATH", options={"HIDDEN"})
     files: bpy.props.CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
     filter_glob: bpy.props.StringProperty(default="*.bvh", options={"HIDDEN"})
-    character: bpy.props.StringProperty(name="Character", description="Who moves; empty takes the name of the file's folder")
+    character: bpy.props.StringProperty(name="Character", description="The character who moves. If empty, the name of the file's folder")
     motion: bpy.props.StringProperty(
-        name="Motion", description="What is done; empty takes the file's name. Of several files each takes its own"
+        name="Motion", description="Name of the motion. If empty, the file's name. Several files always get their own names"
     )
-    view: bpy.props.EnumProperty(name="Seen From", description="From which side it is seen", items=VIEWS)
-    angle: bpy.props.FloatProperty(name="Angle", description="About the vertical: 0 is the front, 90 the side", min=-360, max=360)
+    view: bpy.props.EnumProperty(name="Seen From", description="Side from which the figure is seen", items=VIEWS)
+    angle: bpy.props.FloatProperty(name="Angle", description="Angle about the vertical axis: 0 is the front, 90 the side", min=-360, max=360)
     way: bpy.props.BoolProperty(
-        name="Go Its Way", description="The pelvis goes through the picture, so that feet can stand; else it stays", default=True
+        name="Go Its Way", description="The pelvis travels through the picture, so that feet can stand still. Otherwise it stays in its place", default=True
     )
     folder: shared("folder")
 
@@ -47,7 +47,7 @@ class ROTOTOON_OT_import_motion(Guarded, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def draw(self, _context) -> None:
-        """Called by Blender: the file browser's side and the redo panel."""
+        """Called by Blender for the file browser's sidebar and the redo panel."""
         for name in ("character", "motion", "view"):
             self.layout.prop(self, name)
         row = self.layout.row()
@@ -58,7 +58,7 @@ class ROTOTOON_OT_import_motion(Guarded, bpy.types.Operator):
     def run(self, context) -> str:
         folder = folder_of(context.object if hasattr(context.object, "rototoon") else None, self.folder)
         paths = self._paths()
-        # All are read before one is kept: a file that cannot be read leaves the library as it was.
+        # All files are read before any is added. So an error leaves the library as it was.
         made = [(path, self._clip(path, len(paths) == 1)) for path in paths]
         for path, clips in made:
             add_to_library(folder, clips, os.path.basename(path))

@@ -1,4 +1,4 @@
-"""The list of a library's clips, read anew."""
+"""Refresh Clips: reads the library again."""
 
 import bpy
 

@@ -1,4 +1,4 @@
-"""A drawing that follows a clip of the library."""
+"""Reshape Drawing: a drawing follows a clip of the library."""
 
 import bpy
 
@@ -11,7 +11,7 @@ from .reshaping_base import Reshaping
 class ROTOTOON_OT_reshape_drawing(Reshaping, bpy.types.Operator):
     bl_idname = "rototoon.reshape_drawing"
     bl_label = "Reshape Drawing"
-    bl_description = "Make the drawing at the playhead follow a clip of the library, on generated frames after it"
+    bl_description = "Make the drawing at the playhead follow a clip of the library, on generated frames after the drawing"
     bl_options = {"REGISTER", "UNDO"}
 
     character: shared("character", names=lambda _self: clip_browser.characters())

@@ -1,4 +1,4 @@
-"""A picture cut along a drawing's contours, which follows a clip of the library."""
+"""Reshape Picture: a picture, cut along contours, follows a clip of the library."""
 
 import bpy
 
@@ -15,17 +15,17 @@ class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
     bl_label = "Reshape Picture"
     bl_description = (
         "Cut a picture along the contours of the drawing at the playhead, and make the pieces follow a clip of the library, as it is or "
-        "in another character's manner: a mesh with a shape on each frame. Picture and drawing stay"
+        "in another character's style. The result is a mesh with a shape key for each frame. Picture and drawing stay"
     )
     bl_options = {"REGISTER", "UNDO"}
 
     picture: bpy.props.StringProperty(
-        name="Picture", description="An image empty, or a plane with an image texture; empty takes the footage"
+        name="Picture", description="An image empty, or a plane with an image texture. If empty, the footage"
     )
     character: shared("character")
     motion: shared("motion")
     border: bpy.props.FloatProperty(
-        name="Border", description="How far beyond the contours the picture is cut, in its pixels", default=2.0, min=0, soft_max=20
+        name="Border", description="Distance of the cut from the contours, in pixels of the picture", default=2.0, min=0, soft_max=20
     )
     hide: bpy.props.BoolProperty(name="Hide Picture", description="Hide the picture that was cut", default=True)
 
@@ -56,7 +56,7 @@ class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
         return {"points": {piece.part: piece.points.tolist() for piece in self._pieces}}
 
     def finish(self, context, work) -> str:
-        """Called in the end."""
+        """Makes the mesh."""
         name = f"{self._ob.name} {self.motion}"
         made = picture_mesh.write(self._ob, self._source, self._pieces, work.result, self._drawing.frame, name)
         if self.hide and self._source.ob is not None:

@@ -1,4 +1,4 @@
-"""What the operators that make a drawing follow a clip share."""
+"""Base of the operators that make a drawing follow a clip."""
 
 import bpy
 
@@ -11,10 +11,10 @@ from ..clip_properties import shared
 
 
 class Reshaping(OnContours, Long):
-    """Reads the drawing, works in a thread, writes generated frames after it."""
+    """Reads the drawing, works in a thread, and writes generated frames after the drawing."""
 
     sub_keys: bpy.props.IntProperty(
-        name="Sub-key Points", description="Points of each limb that hold its shape", default=5, min=0, max=100
+        name="Sub-key Points", description="Number of points of each limb that keep its shape", default=5, min=0, max=100
     )
     folder: shared("folder")
 
@@ -22,9 +22,10 @@ class Reshaping(OnContours, Long):
         return context.window_manager.invoke_props_dialog(self)
 
     def work(self, context, clips, before=0.0, more=None):
-        """The worker that reshapes the active drawing by what `clips(progress, threads)` gives: clips, and options.
+        """The worker that reshapes the active drawing.
 
-        `before` is the share of the work that `clips` does. `more(drawing)` gives further options.
+        `clips(progress, threads)` returns clips and options of `reshape`. `before` is its share of the work. `more(drawing)` returns
+        further options.
         """
         self._ob = context.object
         self._drawing = drawing = reshaping.begin(self._ob, context.scene.frame_current)
@@ -39,7 +40,7 @@ class Reshaping(OnContours, Long):
         return jobs.Worker(run)
 
     def finish(self, context, work) -> str:
-        """Called in the end."""
+        """Writes the frames."""
         frames = reshaping.finish(self._ob, self._drawing, work.result)
         given = ", ".join(f"{entry['part']} ({entry['from']} to {entry['to']})" for entry in work.result.given)
-        return f"{frames} frames after frame {self._drawing.frame}" + (f"; by the nearest limb: {given}" if given else "")
+        return f"{frames} frames after frame {self._drawing.frame}" + (f"; carried by the nearest limb: {given}" if given else "")

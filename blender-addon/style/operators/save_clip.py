@@ -1,4 +1,4 @@
-"""A skeleton clip of the contours into the library."""
+"""Save Clip: adds the motion of contours to the library."""
 
 import bpy
 
@@ -13,7 +13,7 @@ from ..clip_properties import Performance, shared
 class ROTOTOON_OT_save_clip(Guarded, Performance, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.save_clip"
     bl_label = "Save Clip"
-    bl_description = "Keep the motion of the tracked contours as a skeleton clip in the library, by the limbs"
+    bl_description = "Save the motion of the tracked contours and their limbs as a skeleton clip in the library"
     bl_options = {"REGISTER"}
 
     last: shared("last")
