@@ -93,7 +93,7 @@ def test_import_into_the_active_object(addon, tmp_path):
         (lambda d: d["parts"][1]["keys"].update({"x": [[1, 2]]}), "not a frame number"),
         (lambda d: d["parts"][1].update(name="box"), "name of another part"),
         (lambda d: d["parts"][1]["keys"]["2"].append(["a", None]), r"parts\[1\].keys\[2\]"),
-        (lambda d: d["footage"].update(pattern="gone/f_%d.png"), "footage is not there"),
+        (lambda d: d["footage"].update(pattern="gone/f_%d.png"), "footage is missing"),
     ],
 )
 def test_bad_documents_are_named(addon, tmp_path, change, message):

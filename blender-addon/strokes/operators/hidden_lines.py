@@ -56,7 +56,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         if self.frames == "RANGE":
             self._frames = hidden.frames_between(self._ob, scene.frame_start, scene.frame_end)
         if not any(not layer.hide and gp.frame_numbers(layer) for layer in gp.every_layer(self._ob)):
-            raise Problem("No visible drawings: draw something, or show a layer")
+            raise Problem("No drawings are visible: draw something, or show a layer")
         if not st.editable_layers(self._ob, active=False):
             raise Problem("No layer can be cut: unlock one. Contours are not changed, since tracking needs their points")
         self._cuts = []
