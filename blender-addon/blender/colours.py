@@ -17,7 +17,8 @@ def palette(ob) -> np.ndarray:
 
 
 def of_strokes(ob, content: st.Content, materials: np.ndarray) -> np.ndarray:
-    """The colour by which each stroke is recognised, sRGB (S, 3): the fill's colour of a filled stroke, the line's colour otherwise."""
+    """The colour by which each stroke is recognised, sRGB (S, 3): the fill's colour of a filled stroke, the line's colour
+    otherwise."""
     count = len(content.sizes)
     if not count:
         return np.zeros((0, 3))

@@ -93,7 +93,8 @@ DEFAULTS = {"radius": 0.01, "opacity": 1.0, "fill_opacity": 1.0, CONFIDENCE: 1.0
 """The value that Blender uses if the attribute is missing, where it is not 0."""
 
 FILL_BY_ID = bpy.app.version >= (5, 1, 0)
-"""Whether a stroke is filled by its `fill_id` (Blender 5.1 and later: not 0). Before, it is filled if its material shows a fill."""
+"""Whether a stroke is filled by its `fill_id` (Blender 5.1 and later: not 0). Before, it is filled if its material shows a
+fill."""
 
 # Property name, NumPy type and width of an attribute's data, by data type.
 _LAYOUT = {
@@ -126,7 +127,8 @@ def layers(ob: bpy.types.Object, name: str) -> list[bpy.types.bpy_struct]:
 
 
 def layer(ob: bpy.types.Object, name: str) -> bpy.types.bpy_struct:
-    """The layer called `name`. If there is none, it is made on top, without lights: in a scene without lamps, lit ink is black."""
+    """The layer called `name`. If there is none, it is made on top, without lights: in a scene without lamps, lit ink is
+    black."""
     found = ob.data.layers.get(name)
     if found is None:
         found = ob.data.layers.new(name)

@@ -14,7 +14,8 @@ from . import camera as cameras
 
 
 def carrier(ob, layer) -> tuple[str, str] | None:
-    """The carrier of a layer: an object and its bone, or the layer's animated transform. `None` if the layer is still in its object."""
+    """The carrier of a layer: an object and its bone, or the layer's animated transform. `None` if the layer is still in its
+    object."""
     if _is_animated(ob, layer.name):
         return "own", layer.name
     if layer.parent is None:

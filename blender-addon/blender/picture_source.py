@@ -1,4 +1,5 @@
-"""The picture of a drawing and its place in the scene: an image empty, a plane with an image texture, or the drawing's footage."""
+"""The picture of a drawing and its place in the scene: an image empty, a plane with an image texture, or the drawing's
+footage."""
 
 from __future__ import annotations
 

@@ -21,7 +21,8 @@ class Mapper:
     """Mappings of an object's layers on some frames."""
 
     def __init__(self, ob: bpy.types.Object, frames: Iterable[int], points: dict[int, np.ndarray], names: list[str]):
-        """`names` are the layers. `points` are the artist's points by layer index; they show the plane on which the artist drew."""
+        """`names` are the layers. `points` are the artist's points by layer index; they show the plane on which the artist
+        drew."""
         self._mappings: dict[tuple[int, int | None], cameras.Mapping] = {}
         self._moves = _moves(ob)
         self._points = points

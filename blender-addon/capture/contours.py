@@ -153,7 +153,8 @@ def _file(found: Contours, stroke: Stroke, part: Part | None) -> None:
 
 
 def where_of(stroke: Stroke, part: Part) -> np.ndarray | None:
-    """Fractional indices of the part's control points on a stroke of the part; `None` if the stroke's control numbers do not give them."""
+    """Fractional indices of the part's control points on a stroke of the part; `None` if the stroke's control numbers do not
+    give them."""
     if correspondence.is_identity(stroke.control, part.count):
         return np.arange(part.count, dtype=np.float64)
     where = correspondence.invert(stroke.control, part.count, part.closed)

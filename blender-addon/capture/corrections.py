@@ -17,7 +17,8 @@ from ..blender.placement import Mapper
 from .contours import Contours, Part
 
 MOVED = 0.05
-"""Pixels. A smaller shift is no movement. This is far above the error of single precision, and far below what a hand does on purpose."""
+"""Pixels. A smaller shift is no movement. This is far above the error of single precision, and far below what a hand does on
+purpose."""
 ALIKE = 0.1
 """Points moved in the same way if their shifts differ from the mean shift by less than this share of it …"""
 ALIKE_FLOOR = 0.25

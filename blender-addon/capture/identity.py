@@ -100,7 +100,8 @@ def _reference(part: Part, frame: int, mapper: Mapper) -> np.ndarray:
 def match(
     references: list[tuple[bool, np.ndarray]], drawn: list[tuple[bool, np.ndarray]]
 ) -> list[tuple[int, int, np.ndarray]]:
-    """Matches of drawn contours: (index of the reference, index of the drawn contour, the reference's points on the drawn line)."""
+    """Matches of drawn contours: (index of the reference, index of the drawn contour, the reference's points on the drawn
+    line)."""
 
     def plain(contours):
         return [{"closed": bool(closed), "points": points.tolist()} for closed, points in contours]

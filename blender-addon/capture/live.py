@@ -160,7 +160,8 @@ def toggled(settings, _context) -> None:
 
 
 def step(now: float | None = None) -> float | None:
-    """Does the work that is due at `now` (seconds of `time.monotonic`). Returns the seconds until the next call, or `None` if all is done."""
+    """Does the work that is due at `now` (seconds of `time.monotonic`). Returns the seconds until the next call, or `None`
+    if all is done."""
     if _run is None and not _due:
         return None
     if _held_off():

@@ -15,7 +15,8 @@ from .contours import Contours, Part, read_drawing
 
 
 def join(segments: list[np.ndarray], closed: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points (M, 2) of the joined paths, the segment of each point, and its fractional index between control points (0, 1, 2, …)."""
+    """Points (M, 2) of the joined paths, the segment of each point, and its fractional index between control points (0, 1,
+    2, …)."""
     points, owner, place = [], [], []
     for index, path in enumerate(segments):
         path = np.asarray(path, np.float64).reshape(-1, 2)

@@ -155,7 +155,8 @@ class Session:
         return paths
 
     def weakest_frame(self) -> WeakestFrame | None:
-        """The frame where the next key helps most. It is no key of any part and not beside one. `None` if there is no such frame."""
+        """The frame where the next key helps most. It is no key of any part and not beside one. `None` if there is no such
+        frame."""
         found = json.loads(self._handle.give(handles.Text, "rototoon_session_weakest_frame"))
         return None if found is None else WeakestFrame(found["frame"], found["score"])
 

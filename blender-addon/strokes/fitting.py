@@ -38,7 +38,8 @@ class Fitted:
 
 
 def fit(content: st.Content, wanted: np.ndarray, scale: float, tolerance: float) -> Fitted | None:
-    """Fits the strokes of the mask `wanted` within `tolerance` pixels, at `scale` pixels per unit. `None` if no stroke changes."""
+    """Fits the strokes of the mask `wanted` within `tolerance` pixels, at `scale` pixels per unit. `None` if no stroke
+    changes."""
     poly = (content.types == st.POLY) & content.finite()
     chosen = np.flatnonzero(wanted & poly & (content.sizes > 2))
     skipped = int((wanted & ~poly).sum())

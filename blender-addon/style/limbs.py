@@ -35,7 +35,8 @@ POINTS = tuple(
 
 
 def name_lines(ob, frame: int, point: str) -> int:
-    """Gives a key point to the selected line of the limb layer, otherwise to the last line without one. Returns the number of lines."""
+    """Gives a key point to the selected line of the limb layer, otherwise to the last line without one. Returns the number
+    of lines."""
     handle = _drawing(ob, frame)
     strokes = len(gp.offsets(handle)) - 1
     numbers = gp.value(handle, gp.KEY_POINT, strokes)

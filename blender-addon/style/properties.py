@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import bpy
 
 from ..blender import windows
 from . import clip_browser
 
 
-def _offered_characters(_self, _context, text: str) -> list[str]:
-    return clip_browser.offered(clip_browser.characters(), text)
-
-
-def _offered_motions(_self, _context, text: str) -> list[str]:
-    return clip_browser.offered(clip_browser.motions(), text)
+def _filter(name: str, names: Callable[[], list[str]]):
+    """A filter of the list that offers the names of the listed library."""
+    return bpy.props.StringProperty(
+        name=name,
+        description=f"Show clips of {name.lower()}s whose name contains this text",
+        search=lambda _self, _context, text: clip_browser.offered(names(), text),
+        search_options={"SUGGESTION"},
+        options={"TEXTEDIT_UPDATE"},
+    )
 
 
 def _in_view_changed(_self, _context) -> None:
@@ -35,20 +40,8 @@ class RototoonBrowser(bpy.types.PropertyGroup):
     folder: bpy.props.StringProperty(description="The listed library")
     clips: bpy.props.CollectionProperty(type=RototoonClip)
     active: bpy.props.IntProperty(name="Chosen Clip", default=0)
-    character: bpy.props.StringProperty(
-        name="Character",
-        description="Show clips of characters whose name contains this text",
-        search=_offered_characters,
-        search_options={"SUGGESTION"},
-        options={"TEXTEDIT_UPDATE"},
-    )
-    motion: bpy.props.StringProperty(
-        name="Motion",
-        description="Show clips of motions whose name contains this text",
-        search=_offered_motions,
-        search_options={"SUGGESTION"},
-        options={"TEXTEDIT_UPDATE"},
-    )
+    character: _filter("Character", clip_browser.characters)
+    motion: _filter("Motion", clip_browser.motions)
     in_view: bpy.props.BoolProperty(
         name="Show Beside Drawing",
         description="Play the chosen clip beside the drawing in the 3D view, with the scene's frames",

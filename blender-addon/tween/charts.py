@@ -8,7 +8,11 @@ from typing import Any
 from ..blender.errors import Problem
 
 SPACINGS = (
-    ("SMOOTH", "Smooth", "One velocity through several keys, and at rest at the first key, the last key, and where the movement turns back"),
+    (
+        "SMOOTH",
+        "Smooth",
+        "One velocity through several keys, and at rest at the first key, the last key, and where the movement turns back",
+    ),
     ("LINEAR", "Linear", "Constant speed"),
     ("EASE_IN", "Ease In", "Starts at rest and speeds up"),
     ("EASE_OUT", "Ease Out", "Slows down and ends at rest"),
@@ -48,7 +52,8 @@ class Choices:
     """Times and shares of the spacing CURVE."""
     pegs: str = "FOUND"
     follow: bool = False
-    """Whether strokes follow the captured contours on which they lie. It is false in older files, which do not have this choice."""
+    """Whether strokes follow the captured contours on which they lie. It is false in older files, which do not have this
+    choice."""
 
     def kept(self) -> dict[str, Any]:
         """The form in the file."""
@@ -84,7 +89,8 @@ class Choices:
         return {"curve": [[time, share] for time, share in zip(times, shares)]}
 
     def shared(self) -> dict[str, Any]:
-        """The options of the library that all spans of a call have in common. Leaving the picture also needs its size: see `Sheet.leaving`."""
+        """The options of the library that all spans of a call have in common. Leaving the picture also needs its size: see
+        `Sheet.leaving`."""
         return {
             "arcs": self.arcs,
             "rigid": self.rigid,

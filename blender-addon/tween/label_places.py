@@ -1,4 +1,5 @@
-"""Places for numbers beside lines on the screen. No number covers another, and numbers cover as little of the lines as possible."""
+"""Places for numbers beside lines on the screen. No number covers another, and numbers cover as little of the lines as
+possible."""
 
 from __future__ import annotations
 

@@ -69,7 +69,8 @@ class Plane:
         """Layer points (..., N, 3) of pixels (..., N, 2) and distances (..., N) or 0."""
         inverse = np.linalg.inv(self.to_sheet[layer])
         axes = self.axes @ inverse[:3, :3].T
-        points = (pixels + self.corner if self.corner.any() else pixels).astype(np.float32) @ (axes[:2] / self.scale).astype(np.float32)
+        placed = (pixels + self.corner if self.corner.any() else pixels).astype(np.float32)
+        points = placed @ (axes[:2] / self.scale).astype(np.float32)
         if np.any(away):
             points += np.asarray(away, np.float32)[..., None] * axes[2].astype(np.float32)
         if inverse[:3, 3].any():
@@ -208,12 +209,7 @@ def lay_out(ob, sheet: Sheet) -> Laid:
     joined = {
         name: np.concatenate(each) if each else np.zeros(empty.get(name, 0)) for name, each in columns.items()
     }
-    by_hand = []
-    for span in range(len(sheet.frames) - 1):
-        if span in sheet.contents and span + 1 in sheet.contents:
-            for layer, found in enumerate(sheet.by_hand(span)):
-                starts = first[span, layer], first[span + 1, layer]
-                by_hand += [[i if i < 0 else i + starts[0], j if j < 0 else j + starts[1]] for i, j in found]
+    by_hand = _by_hand(sheet, first)
     drawings = tween.Drawings(
         Strokes(
             np.concatenate([[0], np.cumsum(joined["sizes"])]).astype(np.int32),
@@ -227,3 +223,14 @@ def lay_out(ob, sheet: Sheet) -> Laid:
         np.array(by_hand, np.int32).reshape(-1, 2),
     )
     return Laid(drawings, first, joined["away"], joined["rows"].astype(np.int64))
+
+
+def _by_hand(sheet: Sheet, first: dict[tuple[int, int], int]) -> list[list[int]]:
+    """The artist's pairs of all spans, by the strokes' indices in the sheet."""
+    by_hand = []
+    for span in range(len(sheet.frames) - 1):
+        if span in sheet.contents and span + 1 in sheet.contents:
+            for layer, found in enumerate(sheet.by_hand(span)):
+                starts = first[span, layer], first[span + 1, layer]
+                by_hand += [[i if i < 0 else i + starts[0], j if j < 0 else j + starts[1]] for i, j in found]
+    return by_hand

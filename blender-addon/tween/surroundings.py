@@ -21,7 +21,8 @@ def prepare(ob, sheet: sheets.Sheet, points: np.ndarray) -> None:
 
 
 def _picture(ob, sheet: sheets.Sheet, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Two corners of the picture on the sheet: of the camera's picture on the current frame, otherwise of a box around the drawing."""
+    """Two corners of the picture on the sheet: of the camera's picture on the current frame, otherwise of a box around the
+    drawing."""
     seen = projection.frame_of(ob)
     if seen is not None:
         view, (width, height) = seen

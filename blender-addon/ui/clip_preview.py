@@ -1,4 +1,4 @@
-"""Pictures of clips: icons in the list, and the chosen clip's figure in the panel and beside the drawing, which plays with the scene.
+"""Pictures of clips: icons in the list, and the chosen clip's figure, which plays in the panel and beside the drawing.
 
 `figure` and `gather` also work in background. Only drawing needs the graphics card, and `register` starts it only in a window.
 """

@@ -37,7 +37,8 @@ def lines(posture: np.ndarray, ring: int = 16) -> list[tuple[int, np.ndarray]]:
 
 
 def fitted(postures: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Postures (F, 17, 2) of a clip in a box ((left, top), (right, bottom)): all at one scale and place, on the bottom of the box."""
+    """Postures (F, 17, 2) of a clip in a box ((left, top), (right, bottom)): all at one scale and place, on the bottom of
+    the box."""
     # The figure stays in its place: with room for a walk it would be too small.
     postures = postures - postures[:, :1] * [1.0, 0.0]
     low, high = postures.min((0, 1)), postures.max((0, 1))

@@ -11,7 +11,9 @@ from .. import contours, document, identity
 class ROTOTOON_OT_new_key(Guarded, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.new_key"
     bl_label = "New Key Here"
-    bl_description = "Copy the contours to this frame as your key: the tracked contours if there are any, otherwise those of the last key"
+    bl_description = (
+        "Copy the contours to this frame as your key: the tracked contours if there are any, otherwise those of the last key"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     parts: bpy.props.EnumProperty(
@@ -60,7 +62,8 @@ def _source(part: contours.Part, frame: int) -> contours.Stroke:
 
 
 def _make_key(layer, sources: dict[int, list[contours.Stroke]], frame: int) -> int:
-    """Copies strokes to `frame`, by source frame. Strokes that are on `frame` already become keys. Returns the number of strokes."""
+    """Copies strokes to `frame`, by source frame. Strokes that are on `frame` already become keys. Returns the number of
+    strokes."""
     strokes = sum(len(group) for group in sources.values())
     if not strokes:
         return 0

@@ -11,8 +11,8 @@ class ROTOTOON_OT_define_limbs(Guarded, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.define_limbs"
     bl_label = "Define Limbs"
     bl_description = (
-        f'Choose the key point that the selected line on the layer "{limbs.LAYER}" marks, or the last line that you drew. It is a short '
-        "line across the limb, from one side to the other. Neighbouring key points make limbs, which move with the contours"
+        f'Choose the key point that the selected line on the layer "{limbs.LAYER}" marks, or the last line that you drew. It is '
+        "a short line across the limb, from one side to the other. Neighbouring key points make limbs, which move with the contours"
     )
     bl_options = {"REGISTER", "UNDO"}
 

@@ -31,14 +31,20 @@ class ROTOTOON_OT_import_motion(Guarded, bpy.types.Operator):
     directory: bpy.props.StringProperty(subtype="DIR_PATH", options={"HIDDEN"})
     files: bpy.props.CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
     filter_glob: bpy.props.StringProperty(default="*.bvh", options={"HIDDEN"})
-    character: bpy.props.StringProperty(name="Character", description="The character who moves. If empty, the name of the file's folder")
+    character: bpy.props.StringProperty(
+        name="Character", description="The character who moves. If empty, the name of the file's folder"
+    )
     motion: bpy.props.StringProperty(
         name="Motion", description="Name of the motion. If empty, the file's name. Several files always get their own names"
     )
     view: bpy.props.EnumProperty(name="Seen From", description="Side from which the figure is seen", items=VIEWS)
-    angle: bpy.props.FloatProperty(name="Angle", description="Angle about the vertical axis: 0 is the front, 90 the side", min=-360, max=360)
+    angle: bpy.props.FloatProperty(
+        name="Angle", description="Angle about the vertical axis: 0 is the front, 90 the side", min=-360, max=360
+    )
     way: bpy.props.BoolProperty(
-        name="Go Its Way", description="The pelvis travels through the picture, so that feet can stand still. Otherwise it stays in its place", default=True
+        name="Go Its Way",
+        description="The pelvis travels through the picture, so that feet can stand still. Otherwise it stays in its place",
+        default=True,
     )
     folder: shared("folder")
 

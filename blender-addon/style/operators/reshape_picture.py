@@ -14,8 +14,8 @@ class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
     bl_idname = "rototoon.reshape_picture"
     bl_label = "Reshape Picture"
     bl_description = (
-        "Cut a picture along the contours of the drawing at the playhead, and make the pieces follow a clip of the library, as it is or "
-        "in another character's style. The result is a mesh with a shape key for each frame. Picture and drawing stay"
+        "Cut a picture along the contours of the drawing at the playhead, and make the pieces follow a clip of the library, as it "
+        "is or in another character's style. The result is a mesh with a shape key for each frame. Picture and drawing stay"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -25,7 +25,11 @@ class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
     character: shared("character")
     motion: shared("motion")
     border: bpy.props.FloatProperty(
-        name="Border", description="Distance of the cut from the contours, in pixels of the picture", default=2.0, min=0, soft_max=20
+        name="Border",
+        description="Distance of the cut from the contours, in pixels of the picture",
+        default=2.0,
+        min=0,
+        soft_max=20,
     )
     hide: bpy.props.BoolProperty(name="Hide Picture", description="Hide the picture that was cut", default=True)
 

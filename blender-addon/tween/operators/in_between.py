@@ -35,8 +35,8 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
     )
     chart: bpy.props.StringProperty(
         name="Chart",
-        description="How far the movement has come on each in-between, in percent: 0 is the earlier key, 100 the later one. Values may "
-        "go beyond",
+        description="How far the movement has come on each in-between, in percent: 0 is the earlier key, 100 the later one. "
+        "Values may go beyond",
         default="10, 30, 70, 90",
     )
     curve: bpy.props.StringProperty(
