@@ -35,9 +35,14 @@ fn compiled_again(all: &BTreeMap<String, BTreeSet<String>>, selection: &[&str]) 
 fn no_dependency_is_compiled_again_for_the_commands_or_the_host() {
     let all = features(&["--workspace", "--exclude", "rototoon-ofx-host", "--edges", "normal,build,dev"]);
     assert!(all.len() > 100, "{} dependencies", all.len());
-    for selection in [["--package", "xtask"], ["--package", "rototoon-ofx-host"]] {
-        let edges = if selection[1] == "xtask" { "normal,build" } else { "normal,build,dev" };
-        let again = compiled_again(&all, &[&selection[..], &["--edges", edges]].concat());
+    let (programs, tests) = ("normal,build", "normal,build,dev");
+    let others: [(&[&str], &str); 3] = [
+        (&["--package", "xtask"], programs),
+        (&["--workspace", "--exclude", "rototoon-ofx-host"], programs),
+        (&["--package", "rototoon-ofx-host"], tests),
+    ];
+    for (selection, edges) in others {
+        let again = compiled_again(&all, &[selection, &["--edges", edges]].concat());
         assert!(again.is_empty(), "add to tests/features/Cargo.toml, for {selection:?}: {again:#?}");
     }
 }

@@ -9,10 +9,12 @@ use anyhow::{Context, Result, bail, ensure};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use xtask_shell::python;
-use xtask_shell::shell::{capture, command, copy_folder, empty_folder, root, run, target};
+use xtask_shell::shell::{capture, cargo, command, copy_folder, empty_folder, root, run, target};
 
 /// The newest glibc the library may need: that of the systems Blender's own builds support (VFX platform CY2023 on).
 pub const GLIBC: (u32, u32) = (2, 28);
+/// The packages that are tested together, as arguments of cargo: all but the OpenFX host, which compiles C++.
+pub const TESTED: [&str; 3] = ["--workspace", "--exclude", "rototoon-ofx-host"];
 const TRIPLE: &str = "x86_64-unknown-linux-gnu";
 const LIBRARY: &str = "librototoon_capi.so";
 const PLUGIN: &str = "librototoon_ofx.so";
@@ -28,23 +30,26 @@ pub struct Bundle {
     pub cli: PathBuf,
     /// The OpenFX bundle, built with it.
     pub ofx: PathBuf,
-    /// The development commands that need the core; built with [`Programs::WithMeasure`] only.
+    /// The development commands that need the core; built with [`Build::WithMeasure`] only.
     pub measure: PathBuf,
 }
 
-/// What is built beside the library and the OpenFX plugin.
+/// Which build of the library, the command line and the OpenFX plugin is packed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Programs {
-    /// What artists install.
+pub enum Build {
+    /// What artists install: optimised, without line tables, for every Linux with [`GLIBC`].
     Installed,
-    /// Also the development commands that need the core, so that the core is compiled once for both.
+    /// The same, and with it the development commands that need the core, so that the core is compiled once for both.
     WithMeasure,
+    /// What the Rust tests are built from: little optimised, and only for systems like this one. Nothing is compiled for it
+    /// once the tests are built.
+    Tested,
 }
 
 impl Bundle {
-    /// Where the last one is.
-    pub fn last() -> Self {
-        let built = target().join(TRIPLE).join("release");
+    /// Where a build leaves it.
+    pub fn of(build: Build) -> Self {
+        let built = if build == Build::Tested { target().join("debug") } else { target().join(TRIPLE).join("release") };
         let zip = target().join(format!("rototoon-{}-linux_x64.zip", env!("CARGO_PKG_VERSION")));
         Self {
             zip,
@@ -66,10 +71,19 @@ pub enum Packager {
 }
 
 /// Builds, packs and validates.
-pub fn bundle(packager: &Packager, programs: Programs) -> Result<Bundle> {
-    let bundle = Bundle::last();
-    build(&bundle, programs)?;
-    ofx::lay_out(&bundle.library.with_file_name(PLUGIN))?;
+pub fn bundle(packager: &Packager, build: Build) -> Result<Bundle> {
+    ensure!(cfg!(all(target_os = "linux", target_arch = "x86_64")), "the bundle is built on Linux x86-64 only");
+    let bundle = Bundle::of(build);
+    let plugin = bundle.library.with_file_name(PLUGIN);
+    if build == Build::Tested {
+        compile_tested()?;
+    } else {
+        compile_installed(build)?;
+        for file in [&bundle.library, &bundle.cli, &plugin] {
+            elf::assert_glibc(file, GLIBC)?;
+        }
+    }
+    ofx::lay_out(&plugin)?;
     pack(packager, &stage(&bundle.library)?, &bundle.zip)?;
     println!("bundle: {}", bundle.zip.display());
     Ok(bundle)
@@ -80,9 +94,13 @@ pub fn tools() -> Result<PathBuf> {
     python::venv("venv-build", &python::find_any()?, &["cargo-zigbuild", "ziglang"])
 }
 
-/// Builds library, command line and OpenFX plugin; all need only [`GLIBC`].
-fn build(bundle: &Bundle, programs: Programs) -> Result<()> {
-    ensure!(cfg!(all(target_os = "linux", target_arch = "x86_64")), "the bundle is built on Linux x86-64 only");
+/// Everything that the Rust tests use, in the same selection of packages: another one would compile dependencies again.
+pub fn compile_tested() -> Result<()> {
+    run(cargo().args(["build", "--quiet"]).args(TESTED))
+}
+
+/// Library, command line and OpenFX plugin as artists install them.
+fn compile_installed(build: Build) -> Result<()> {
     let tools = tools()?;
     let bin = tools.parent().context("an interpreter lies in a folder")?;
     let path = std::env::var_os("PATH").unwrap_or_default();
@@ -95,13 +113,11 @@ fn build(bundle: &Bundle, programs: Programs) -> Result<()> {
     run(command(bin.join("cargo-zigbuild"))
         .args(["zigbuild", "--quiet", "--release", "--target", &versioned])
         .args(["-p", "rototoon-capi", "-p", "rototoon-cli", "-p", "rototoon-ofx"])
-        .args(if programs == Programs::WithMeasure { &["-p", "xtask-measure"][..] } else { &[] })
+        .args(if build == Build::WithMeasure { &["-p", "xtask-measure"][..] } else { &[] })
         .env("PATH", path)
         // The zip is downloaded by artists: no line tables.
         .env("CARGO_PROFILE_RELEASE_DEBUG", "none")
-        .env("CARGO_PROFILE_RELEASE_STRIP", "symbols"))?;
-    elf::assert_glibc(&bundle.library, GLIBC)?;
-    elf::assert_glibc(&bundle.cli, GLIBC)
+        .env("CARGO_PROFILE_RELEASE_STRIP", "symbols"))
 }
 
 /// The extension's folder as it is packed: the add-on's files, the library, the licence.

@@ -1,6 +1,6 @@
 //! `demo`: the main job from end to end in real Blender, on the sample cartoon or on any project document.
 
-use crate::bundle::{Bundle, Packager, Programs, bundle};
+use crate::bundle::{Build, Bundle, Packager, bundle};
 use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -19,7 +19,7 @@ pub fn demo(project: Option<PathBuf>, blender: Option<PathBuf>) -> Result<()> {
         Some(binary) => Packager::Blender(binary),
         None => Packager::from_wheel()?,
     };
-    let bundle = bundle(&packager, Programs::WithMeasure)?;
+    let bundle = bundle(&packager, Build::WithMeasure)?;
     let out = target().join("demo");
     empty_folder(&out)?;
     let project = match project {

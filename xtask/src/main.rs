@@ -36,6 +36,9 @@ enum Command {
         /// Also run the OpenFX plugin under valgrind.
         #[arg(long)]
         valgrind: bool,
+        /// Test the extension and the OpenFX bundle as artists install them, not as the Rust tests build them. Takes longer.
+        #[arg(long)]
+        release: bool,
         /// Run one step only, on what those before it left.
         #[arg(long, value_name = "NAME")]
         step: Option<String>,
@@ -69,9 +72,9 @@ enum Command {
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Demo { project, blender } => demo::demo(project, blender),
-        Command::Test { step: Some(step), .. } => test::step(&step),
-        Command::Test { valgrind, step: None } => test::test(valgrind),
-        Command::Bundle => bundle::bundle(&bundle::Packager::from_wheel()?, bundle::Programs::Installed).map(|_| ()),
+        Command::Test { step: Some(step), release, .. } => test::step(&step, build(release)),
+        Command::Test { valgrind, release, step: None } => test::test(valgrind, build(release)),
+        Command::Bundle => bundle::bundle(&bundle::Packager::from_wheel()?, bundle::Build::Installed).map(|_| ()),
         Command::Generate { check } => generate::generate(check),
         Command::BenchFit(rest) => measure::run("bench-fit", &rest),
         Command::BenchStyle(rest) => measure::run("bench-style", &rest),
@@ -80,4 +83,8 @@ fn main() -> anyhow::Result<()> {
         Command::Bless => measure::run("bless", &measure::Rest::default()),
         Command::Photograph => photograph::photograph(),
     }
+}
+
+fn build(release: bool) -> bundle::Build {
+    if release { bundle::Build::Installed } else { bundle::Build::Tested }
 }

@@ -2,7 +2,6 @@
 
 use anyhow::Result;
 use std::ffi::OsString;
-use std::process::Command;
 use xtask_shell::shell::{self, cargo};
 
 /// The package that has these commands.
@@ -14,13 +13,6 @@ pub struct Rest {
     /// Options of the command; `--help` lists them.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
     arguments: Vec<OsString>,
-}
-
-/// The package's program, built as the tests are.
-pub fn program() -> Command {
-    let mut command = cargo();
-    command.args(["run", "--quiet", "--package", PACKAGE, "--"]);
-    command
 }
 
 /// Runs one of its commands.

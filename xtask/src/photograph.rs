@@ -4,7 +4,7 @@
 //! (debootstrap), started there under a virtual screen (Xvfb) and photographed. Sid moves, and the job needs root: where it
 //! cannot be done, that is said and nothing fails.
 
-use crate::bundle::{Packager, Programs, bundle};
+use crate::bundle::{Build, Packager, bundle};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -56,7 +56,7 @@ pub fn photograph() -> Result<()> {
         println!("photograph: not done: {reason}");
         return Ok(());
     }
-    let bundle = bundle(&Packager::from_wheel()?, Programs::WithMeasure)?;
+    let bundle = bundle(&Packager::from_wheel()?, Build::WithMeasure)?;
     let folder = target().join("photograph");
     let system = folder.join("debian");
     if let Err(reason) = install(&system) {

@@ -87,20 +87,21 @@ fn file(step: &str, kind: &str) -> Result<PathBuf> {
 }
 
 /// Runs a step as `xtask test --step NAME`, and prints what it printed.
-pub fn in_own_process(step: &str) -> Outcome {
-    child(step).unwrap_or_else(|error| {
+pub fn in_own_process(step: &str, more: &[&str]) -> Outcome {
+    child(step, more).unwrap_or_else(|error| {
         eprintln!("{error:#}");
         Outcome::Failed(format!("{error:#}"))
     })
 }
 
-fn child(step: &str) -> Result<Outcome> {
+fn child(step: &str, more: &[&str]) -> Result<Outcome> {
     let (log, outcome) = (file(step, "log")?, file(step, "outcome")?);
     let _ = fs::remove_file(&outcome);
     let output = File::create(&log).with_context(|| format!("cannot write {log:?}"))?;
     let program = std::env::current_exe().context("this program has no place")?;
     let status = command(program)
         .args(["test", "--step", step])
+        .args(more)
         .stdin(std::process::Stdio::null())
         .stdout(output.try_clone().with_context(|| format!("cannot write {log:?}"))?)
         .stderr(output)

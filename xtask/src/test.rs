@@ -1,8 +1,7 @@
 //! `test`: everything that is checked, each step to its end ([`crate::steps`]).
 
-use crate::bundle::{self, Bundle, Packager, Programs, bundle};
+use crate::bundle::{self, Build, Bundle, Packager, TESTED, bundle};
 use crate::generate::generate;
-use crate::measure;
 use crate::steps::{Step, in_own_process, run_all};
 use anyhow::{Result, bail};
 use std::path::PathBuf;
@@ -15,25 +14,27 @@ const OFX_HOST: &str = "rototoon-ofx-host";
 const AT_ONCE: usize = 2;
 /// Names of the steps that others wait for.
 const ENVIRONMENTS: &str = "Python environments";
+const RUST_BUILD: &str = "Rust build";
 const BUNDLE: &str = "extension bundle";
 const FILES: &str = "sample cartoon";
 
-/// Runs all checks. Fails where one fails; what could not be run is said, and fails nothing.
-pub fn test(valgrind: bool) -> Result<()> {
+/// Runs all checks on one build of the extension. Fails where one fails; what could not be run is said, and fails nothing.
+pub fn test(valgrind: bool, build: Build) -> Result<()> {
     if !works("cc", &["--version"]) {
         bail!("no C compiler (cc) was found; install one, for example: apt-get install gcc");
     }
-    let steps = steps(valgrind);
+    let steps = steps(valgrind, build);
+    let release: &[&str] = if build == Build::Tested { &[] } else { &["--release"] };
     let run = |name: &str| {
         println!("started: {name}");
-        in_own_process(name)
+        in_own_process(name, release)
     };
     run_all(&steps, AT_ONCE, &run).finish()
 }
 
 /// Runs one of the checks, as a part of [`test()`].
-pub fn step(name: &str) -> Result<()> {
-    let steps = steps(true);
+pub fn step(name: &str, build: Build) -> Result<()> {
+    let steps = steps(true, build);
     let Some(step) = steps.iter().find(|step| step.name == name) else {
         let names: Vec<&str> = steps.iter().map(|step| &step.name[..]).collect();
         bail!("--step: there is none called {name:?}, expected one of {names:?}");
@@ -41,30 +42,37 @@ pub fn step(name: &str) -> Result<()> {
     step.run_here()
 }
 
-/// All checks, those that others wait for first.
-fn steps(valgrind: bool) -> Vec<Step> {
+/// All checks, in an order that starts those first that others need.
+///
+/// Everything is compiled once: the build that the Rust tests need also makes the extension, the command line and the OpenFX
+/// plugin that the other steps test. With [`Build::Installed`] those three are compiled as artists get them.
+fn steps(valgrind: bool, build: Build) -> Vec<Step> {
+    let bundled = if build == Build::Tested { RUST_BUILD } else { ENVIRONMENTS };
     let mut steps = vec![
         Step::new("format", || component("fmt", "rustfmt", &["fmt", "--all", "--check"])),
         Step::new(ENVIRONMENTS, || environments().map(|()| None)),
         Step::new("clippy", clippy).builds(),
-        Step::new(BUNDLE, || bundle(&Packager::from_wheel()?, Programs::Installed).map(|_| None)).after(ENVIRONMENTS),
-        Step::new("Rust tests", rust_tests).builds().after("clippy"),
-        Step::new("generated files are current", || generate(true).map(|()| None)),
-        Step::new(FILES, || sample_files().map(|()| None)).builds().after("Rust tests"),
-        Step::new("Python tests", python_tests).needs(BUNDLE),
-        Step::new("OpenFX host", ofx_tests).builds().needs(BUNDLE),
+        Step::new(RUST_BUILD, rust_build).builds().after("clippy"),
+        Step::new(BUNDLE, move || bundle(&Packager::from_wheel()?, build).map(|_| None))
+            .after(ENVIRONMENTS)
+            .after(bundled),
+        Step::new(FILES, || sample_files().map(|()| None)).needs(RUST_BUILD).after(BUNDLE),
+        Step::new("OpenFX host", move || ofx_tests(build)).builds().needs(BUNDLE),
+        Step::new("Rust tests", rust_tests).needs(RUST_BUILD),
     ];
     for wheel in WHEELS {
         let name = format!("Blender {}", wheel.blender);
-        steps.push(Step::new(&name, move || blender_tests(wheel)).needs(BUNDLE).needs(FILES));
+        steps.push(Step::new(&name, move || blender_tests(wheel, build)).needs(BUNDLE).needs(FILES));
     }
+    steps.push(Step::new("Python tests", move || python_tests(build)).needs(BUNDLE));
+    steps.push(Step::new("generated files are current", || generate(true).map(|()| None)));
     if valgrind {
         steps.push(Step::new("OpenFX host under valgrind", valgrind_tests).after("OpenFX host"));
     }
     steps
 }
 
-/// The environments of all steps, made before they are wanted: downloads leave the processors to the compiler.
+/// The Python environments of all steps, made early: downloads leave the processors to the compiler.
 fn environments() -> Result<()> {
     bundle::tools()?;
     python_environment()?;
@@ -75,12 +83,17 @@ fn environments() -> Result<()> {
 }
 
 fn clippy() -> Result<Option<String>> {
-    let arguments = ["clippy", "--quiet", "--workspace", "--exclude", OFX_HOST, "--all-targets"];
-    component("clippy", "clippy", &[&arguments[..], &["--", "-D", "warnings"]].concat())
+    let arguments = [&["clippy", "--quiet"], &TESTED[..], &["--all-targets", "--", "-D", "warnings"]].concat();
+    component("clippy", "clippy", &arguments)
+}
+
+/// Compiles what the Rust tests and the extension need, and runs nothing.
+fn rust_build() -> Result<Option<String>> {
+    run(cargo().args(["test", "--quiet", "--no-run"]).args(TESTED)).map(|()| None)
 }
 
 fn rust_tests() -> Result<Option<String>> {
-    run(cargo().args(["test", "--quiet", "--no-fail-fast", "--workspace", "--exclude", OFX_HOST])).map(|()| None)
+    run(cargo().args(["test", "--quiet", "--no-fail-fast"]).args(TESTED)).map(|()| None)
 }
 
 /// A cargo subcommand that comes as a component of the toolchain; added by rustup where it is missing.
@@ -96,12 +109,12 @@ fn component(subcommand: &str, name: &str, arguments: &[&str]) -> Result<Option<
 }
 
 /// The plugin in the official host library, which is compiled for it.
-fn ofx_tests() -> Result<Option<String>> {
+fn ofx_tests(build: Build) -> Result<Option<String>> {
     if let Some(reason) = missing_package("c++", "g++") {
         return Ok(Some(reason));
     }
     run(cargo().args(["clippy", "--quiet", "-p", OFX_HOST, "--all-targets", "--", "-D", "warnings"]))?;
-    run(cargo().args(["test", "--quiet", "-p", OFX_HOST]).env("ROTOTOON_OFX_BUNDLE", Bundle::last().ofx))?;
+    run(cargo().args(["test", "--quiet", "-p", OFX_HOST]).env("ROTOTOON_OFX_BUNDLE", Bundle::of(build).ofx))?;
     Ok(None)
 }
 
@@ -128,8 +141,8 @@ fn missing_package(program: &str, package: &str) -> Option<String> {
 }
 
 /// pytest without Blender, on the packed library.
-fn python_tests() -> Result<Option<String>> {
-    let built = Bundle::last();
+fn python_tests(build: Build) -> Result<Option<String>> {
+    let built = Bundle::of(build);
     run(command(python_environment()?)
         .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/python"])
         .env("ROTOTOON_LIBRARY", &built.library)
@@ -148,12 +161,13 @@ fn files() -> PathBuf {
 
 /// The sample cartoon and the doll, which tests in Blender track and reshape.
 fn sample_files() -> Result<()> {
-    run(measure::program().arg("sample").arg(files()))
+    bundle::compile_tested()?;
+    run(command(&Bundle::of(Build::Tested).measure).arg("sample").arg(files()))
 }
 
 /// pytest inside one Blender, with the zip installed in a configuration of its own.
-fn blender_tests(wheel: Wheel) -> Result<Option<String>> {
-    let built = Bundle::last();
+fn blender_tests(wheel: Wheel, build: Build) -> Result<Option<String>> {
+    let built = Bundle::of(build);
     let Some(python) = python::blender_venv(wheel)? else {
         return Ok(Some(format!("it needs Python {}, which was not found", wheel.python)));
     };
