@@ -7,6 +7,7 @@ mod bench_tween;
 mod bless;
 mod bundle;
 mod demo;
+mod docs;
 mod elf;
 mod generate;
 mod ofx;
@@ -62,9 +63,15 @@ enum Command {
     BenchTracking(bench_tracking::Arguments),
     /// Measure matching and in-betweens on sets with known truth, with sheets in target/bench-tween.
     BenchTween(bench_tween::Arguments),
-    /// Accept the golden pictures that the tests last drew.
+    /// Accept the golden pictures and the generated pages that the tests last wrote.
     Bless,
-    /// Photograph the panel in a real Blender window (Debian sid in a chroot; needs root and debootstrap).
+    /// Build the documentation into target/book.
+    Docs {
+        /// Also fail where a link, an anchor or a picture is missing.
+        #[arg(long)]
+        check: bool,
+    },
+    /// Photograph every panel and Match Strokes in a real Blender window (Debian sid in a chroot; needs root and debootstrap).
     Photograph,
 }
 
@@ -80,6 +87,7 @@ fn main() -> anyhow::Result<()> {
         Command::BenchTracking(arguments) => bench_tracking::bench_tracking(&arguments),
         Command::BenchTween(arguments) => bench_tween::bench_tween(&arguments),
         Command::Bless => bless::bless(),
+        Command::Docs { check } => docs::docs(check),
         Command::Photograph => photograph::photograph(),
     }
 }

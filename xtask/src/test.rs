@@ -1,6 +1,7 @@
 //! `test`: everything that is checked, each step to its end ([`crate::steps`]).
 
 use crate::bundle::{self, Bundle, Packager, bundle};
+use crate::docs::docs;
 use crate::generate::generate;
 use crate::python::{self, WHEELS, Wheel};
 use crate::shell::{capture, cargo, command, empty_folder, root, run, target, works};
@@ -50,6 +51,7 @@ fn steps(valgrind: bool) -> Vec<Step> {
         Step::new(BUNDLE, || bundle(&Packager::from_wheel()?).map(|_| None)).after(ENVIRONMENTS),
         Step::new("Rust tests", rust_tests).builds().after("clippy"),
         Step::new("generated files are current", || generate(true).map(|()| None)),
+        Step::new("documentation", || docs(true).map(|()| None)).after(ENVIRONMENTS),
         Step::new(FILES, || sample_files().map(|()| None)),
         Step::new("Python tests", python_tests).needs(BUNDLE),
         Step::new("OpenFX host", ofx_tests).builds().needs(BUNDLE),
