@@ -8,6 +8,7 @@ A panel is photographed alone: the other panels of the tab are unregistered mean
 
 import math
 import random
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -23,6 +24,8 @@ TABS_WIDTH = 22
 """Pixels of the tabs beside the panels, at a scale of 1."""
 SCALE = 1.3
 """Of the window's texts and buttons."""
+EDGE = 8
+"""Pixels of a region's lower border."""
 PATIENCE = 120
 """Seconds until the tab must be there."""
 CLIPS = OUT / "clips"
@@ -138,14 +141,28 @@ def drawn(angle=0.25, right=1.2) -> bpy.types.Object:
     return ob
 
 
-def tweened() -> None:
-    """In-betweens of two drawings, all of them shown at once."""
+def tweened() -> bpy.types.Object:
+    """Two drawings with in-betweens."""
     ob = drawn(0.8, 5.0)
-    finished(bpy.ops.rototoon.in_between, frames="CURRENT", spacing="EASE_IN_OUT", step=3)
-    ob.data.onion_mode = "ABSOLUTE"
-    ob.data.ghost_before_range = ob.data.ghost_after_range = 12
-    ob.data.onion_keyframe_type = "ALL"
-    ob.data.use_onion_fade = False
+    finished(bpy.ops.rototoon.in_between, frames="CURRENT", spacing="CURVE", step=3)
+    return ob
+
+
+def shown_together(ob: bpy.types.Object) -> None:
+    """An object with the strokes of all frames of another one; those of its keys are thick."""
+    data = getattr(bpy.data, "grease_pencils_v3", bpy.data.grease_pencils).new("All")
+    shown = bpy.data.objects.new("All", data)
+    bpy.context.collection.objects.link(shown)
+    target = data.layers.new("Lines").frames.new(1).drawing
+    for frame in ob.data.layers[0].frames:
+        key = frame.keyframe_type == "KEYFRAME"
+        for stroke in list(frame.drawing.strokes):
+            target.add_strokes([len(stroke.points)])
+            copy = target.strokes[-1]
+            copy.cyclic = stroke.cyclic
+            for point, source in zip(copy.points, stroke.points):
+                point.position, point.radius = source.position, 0.02 if key else 0.008
+    ob.hide_set(True)
 
 
 def armature() -> None:
@@ -181,10 +198,9 @@ def in_view():
 
 
 def screenshot() -> np.ndarray:
-    """The window's pixels (height, width, 4), the top row first."""
-    path = OUT / "window.tmp.png"
-    with in_view():
-        bpy.ops.screen.screenshot(filepath=str(path))
+    """The screen's pixels (height, width, 4), the top row first. Blender's own screenshots are black without a graphics card."""
+    path = OUT / "screen.tmp.png"
+    subprocess.run(["import", "-window", "root", str(path)], check=True)
     image = bpy.data.images.load(str(path))
     width, height = image.size
     values = np.empty(width * height * 4, np.float32)
@@ -212,9 +228,10 @@ def of_region(pixels: np.ndarray, region) -> np.ndarray:
 
 def of_panel(pixels: np.ndarray, sidebar) -> np.ndarray:
     """The sidebar without its tabs and without the empty space below its panels."""
-    found = of_region(pixels, sidebar)[:, : -round(TABS_WIDTH * SCALE)]
+    # The last rows are the region's border.
+    found = of_region(pixels, sidebar)[:-EDGE, : -round(TABS_WIDTH * SCALE)]
     ground = found[-1, found.shape[1] // 2]
-    rows = np.flatnonzero((np.abs(found - ground) > 0.02).any(2).mean(1) > 0.02)
+    rows = np.flatnonzero((np.abs(found - ground) > 0.02).any(2).mean(1) > 0.2)
     return found[: rows[-1] + 6] if len(rows) else found
 
 
@@ -273,22 +290,33 @@ def panels_photographed(panels: list, names: list[str]):
     only(panels, None)
 
 
-def view_photographed(name: str, whole: bool = False):
-    """A picture of the view, or of the window."""
+def view_photographed(name: str, box=(0.0, 1.0, 0.0, 1.0)):
+    """A picture of a part of the view: shares of its height and of its width, first to last."""
     area, region, _ = view()
     area.tag_redraw()
     yield 2.0
-    pixels = screenshot()
-    save(name, pixels if whole else of_region(pixels, region))
+    pixels = of_region(screenshot(), region)
+    top, bottom = (round(share * pixels.shape[0]) for share in box[:2])
+    left, right = (round(share * pixels.shape[1]) for share in box[2:])
+    save(name, pixels[top:bottom, left:right])
 
 
 def looked_through_camera() -> None:
-    """The view shows what the camera shows, as large as it fits."""
-    area, _, _ = view()
-    area.spaces.active.shading.type = "SOLID"
-    area.spaces.active.region_3d.view_perspective = "CAMERA"
+    """The view shows what the camera shows, as large as it fits, without outlines and axes."""
+    space = view()[0].spaces.active
+    space.shading.type = "SOLID"
+    space.region_3d.view_perspective = "CAMERA"
+    overlay = space.overlay
+    overlay.show_outline_selected = overlay.show_cursor = overlay.show_object_origins = False
+    overlay.show_axis_x = overlay.show_axis_y = False
     with in_view():
         bpy.ops.view3d.view_center_camera()
+
+
+def looked_closely() -> None:
+    """The camera's picture is larger than the view, the figure in its middle."""
+    region = view()[0].spaces.active.region_3d
+    region.view_camera_zoom, region.view_camera_offset = 45.0, (0.0, 0.0)
 
 
 def looked_from_front() -> None:
@@ -304,19 +332,23 @@ def capture(panels: list):
     looked_through_camera()
     yield from sidebar_shown()
     looked_through_camera()
-    yield from view_photographed("window", whole=True)
+    yield 2.0
+    save("window", screenshot())
     yield from panels_photographed(panels, ["footage", "parts", "track", "snap", "strokes", "document", "style"])
     bpy.context.object.rototoon.show_confidence = True
-    yield from view_photographed("confidence")
+    bpy.context.object.data.layers["Snapped"].hide = True
+    looked_closely()
+    yield from view_photographed("confidence", (0.2, 0.87, 0.25, 0.75))
 
 
 def between(panels: list):
     """Pictures of in-betweens and of pairs."""
     cleared()
-    tweened()
-    looked_from_front()
+    ob = tweened()
     yield from panels_photographed(panels, ["tween"])
-    yield from view_photographed("in_betweens")
+    shown_together(ob)
+    looked_from_front()
+    yield from view_photographed("in_betweens", (0.25, 0.75, 0.08, 0.92))
     cleared()
     drawn()
     yield from sidebar_shown()
@@ -324,7 +356,7 @@ def between(panels: list):
     with in_view():
         bpy.ops.rototoon.match_strokes("INVOKE_DEFAULT")
     yield 5.0
-    yield from view_photographed("pairs")
+    yield from view_photographed("pairs", (0.1, 0.9, 0.15, 0.88))
 
 
 def session():
