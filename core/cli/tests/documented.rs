@@ -5,7 +5,8 @@ use std::process::Command;
 use std::{env, fs};
 
 const PAGE: &str = "docs/src/generated/command-line.md";
-const HEAD: &str = "<!-- Generated from the program's own help. Change that, run the tests, then `cargo xtask bless`. -->
+const HEAD: &str =
+    "<!-- Generated from the program's own help. Change that, run the tests, then `cargo xtask bless`. -->
 
 # All commands and options
 

@@ -221,7 +221,8 @@ mod tests {
             <a href="https://example.org/none">x</a><img src="there.png" alt="x"><a href="deep/three.html">x</a>
             <a href="gone.html">x</a><a href="two.html#nowhere">x</a><a href="#missing">x</a><img alt="" src="gone.png">"##;
         let three = r#"<a href="../one.html#top">x</a><a href="../../outside.html">x</a>"#;
-        let pages = [("one.html", one), ("two.html", r#"<h2 id="part two">"#), ("there.png", ""), ("deep/three.html", three)];
+        let pages =
+            [("one.html", one), ("two.html", r#"<h2 id="part two">"#), ("there.png", ""), ("deep/three.html", three)];
         let problems = check_book(&folder("book", &pages)).unwrap();
         let expected = [
             "deep/three.html: ../../outside.html: there is no such file",
