@@ -17,7 +17,7 @@ from pathlib import Path
 from PIL import Image
 
 FRAME = "0"
-WHOLE = (120, 30, 480, 450)
+WHOLE = (120, 60, 480, 510)
 """The figure on the frame: left, top, right, bottom."""
 ARM = (320, 270, 450, 365)
 
