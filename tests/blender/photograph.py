@@ -1,43 +1,88 @@
-"""In a Blender with a window: install the zip, show what is to be seen, say when it is drawn.
+"""In a Blender with a window: install the zip and photograph every panel, the window, and Match Strokes at work.
 
-Started by `cargo xtask photograph` as `blender --python photograph.py -- ZIP PROJECT READY WHAT`, where WHAT is `panel` (the
-project tracked and snapped, with the tab beside it) or `pairs` (Match Strokes at work on two drawings).
+Started by `cargo xtask photograph` as `blender --python photograph.py -- ZIP SAMPLE OUT READY`. SAMPLE is the folder of the
+sample cartoon, OUT the folder of the pictures. READY is written when all pictures are there, or with what went wrong.
+
+A panel is photographed alone: the other panels of the tab are unregistered meanwhile, and what is below it is cut off.
 """
 
 import math
 import random
+import subprocess
 import sys
 import time
 from pathlib import Path
 
 import addon_utils
 import bpy
+import numpy as np
 
-ZIP, PROJECT, READY = (Path(word).absolute() for word in sys.argv[sys.argv.index("--") + 1 :][:3])
-WHAT = sys.argv[sys.argv.index("--") + 4]
+ZIP, SAMPLE, OUT, READY = (Path(word).absolute() for word in sys.argv[sys.argv.index("--") + 1 :][:4])
 MODULE = "bl_ext.user_default.rototoon"
 TAB = "Rototoon"
-_started = time.monotonic()
+TABS_WIDTH = 22
+"""Pixels of the tabs beside the panels, at a scale of 1."""
+SCALE = 1.3
+"""Of the window's texts and buttons."""
+EDGE = 8
+"""Pixels of a region's lower border."""
+PATIENCE = 120
+"""Seconds until the tab must be there."""
+CLIPS = OUT / "clips"
+BONES = {
+    "hips": ("", (0, 0, 1.0), (0, 0, 1.15)),
+    "spine": ("hips", (0, 0, 1.15), (0, 0, 1.3)),
+    "chest": ("spine", (0, 0, 1.3), (0, 0, 1.5)),
+    "neck": ("chest", (0, 0, 1.5), (0, 0, 1.6)),
+    "head": ("neck", (0, 0, 1.6), (0, 0, 1.85)),
+}
+for _side, _way in (("L", 1), ("R", -1)):
+    BONES |= {
+        f"upper_arm.{_side}": ("chest", (0.18 * _way, 0, 1.45), (0.45 * _way, 0, 1.45)),
+        f"forearm.{_side}": (f"upper_arm.{_side}", (0.45 * _way, 0, 1.45), (0.7 * _way, 0, 1.45)),
+        f"thigh.{_side}": ("hips", (0.1 * _way, 0, 1.0), (0.1 * _way, 0, 0.55)),
+        f"shin.{_side}": (f"thigh.{_side}", (0.1 * _way, 0, 0.55), (0.1 * _way, 0, 0.1)),
+    }
+
+
+# -- scenes ------------------------------------------------------------------------------------------------------
 
 
 def prepare() -> None:
-    """Everything that needs no drawn window."""
+    """Installs the extension and makes the window plain."""
     addon_utils.enable("bl_pkg")
     bpy.ops.extensions.package_install_files(filepath=str(ZIP), repo="user_default", enable_on_install=True)
     if MODULE not in bpy.context.preferences.addons:
         raise RuntimeError(f"{ZIP} was not installed and enabled")
+    preferences = bpy.context.preferences
+    preferences.view.ui_scale = SCALE
+    # Otherwise the view shines through below the panels.
+    preferences.system.use_region_overlap = False
+    OUT.mkdir(exist_ok=True)
+
+
+def finished(operator, **properties) -> None:
+    """Calls an operator; anything but FINISHED ends the session."""
+    if operator(**properties) != {"FINISHED"}:
+        raise RuntimeError(f"{operator} did not finish")
+
+
+def cleared() -> None:
+    """Takes all objects away."""
     for ob in list(bpy.data.objects):
         bpy.data.objects.remove(ob)
-    SCENES[WHAT]()
 
 
 def tracked() -> None:
-    """The project with its tracks and paths."""
-    bpy.ops.rototoon.import_document(filepath=str(PROJECT), keep_numbers=True)
-    for operator in (bpy.ops.rototoon.track, bpy.ops.rototoon.snap):
-        if operator("EXEC_DEFAULT") != {"FINISHED"}:
-            raise RuntimeError(f"{operator} did not finish")
-    bpy.context.scene.frame_set((bpy.context.scene.frame_start + bpy.context.scene.frame_end) // 3)
+    """The sample with its tracks and snapped lines, and its motions in a library."""
+    finished(bpy.ops.rototoon.import_document, filepath=str(SAMPLE / "project.json"), keep_numbers=True)
+    finished(bpy.ops.rototoon.track)
+    finished(bpy.ops.rototoon.snap)
+    for motion, first, last in (("walk", 0, 11), ("jump", 12, 23)):
+        clip = {"character": "boy", "motion": motion, "first": first, "last": last, "folder": str(CLIPS)}
+        finished(bpy.ops.rototoon.save_clip, **clip)
+    bpy.context.object.rototoon.clips_folder = str(CLIPS)
+    bpy.context.scene.frame_set(8)
 
 
 def ellipse(x, y, across, up, first=0.0, last=math.tau, steps=40):
@@ -66,25 +111,25 @@ def figure() -> list:
     return strokes + [(line, False) for line in lines]
 
 
-def turned() -> list:
+def turned(angle=0.25, right=1.2) -> list:
     """The figure drawn again further on: without its belt, in another order, every other stroke the other way round."""
-    cosine, sine = math.cos(0.25), math.sin(0.25)
+    cosine, sine = math.cos(angle), math.sin(angle)
     strokes = []
     for k, (points, closed) in enumerate(figure()):
-        moved = [(cosine * x - sine * y + 1.2, sine * x + cosine * y + 0.15) for x, y in points]
+        moved = [(cosine * x - sine * y + right, sine * x + cosine * y + 0.15) for x, y in points]
         if k != 14:
             strokes.append((moved[::-1] if k % 2 else moved, closed))
     random.Random(3).shuffle(strokes)
     return strokes
 
 
-def drawn() -> None:
+def drawn(angle=0.25, right=1.2) -> bpy.types.Object:
     """Two drawings of a figure."""
     data = getattr(bpy.data, "grease_pencils_v3", bpy.data.grease_pencils).new("Figure")
     ob = bpy.data.objects.new("Figure", data)
     bpy.context.collection.objects.link(ob)
     layer = data.layers.new("Lines")
-    for frame, strokes in ((1, figure()), (13, turned())):
+    for frame, strokes in ((1, figure()), (13, turned(angle, right))):
         drawing = layer.frames.new(frame).drawing
         drawing.add_strokes([len(points) for points, _ in strokes])
         for stroke, (points, closed) in zip(drawing.strokes, strokes):
@@ -93,63 +138,256 @@ def drawn() -> None:
                 point.position, point.radius = (x, 0, y), 0.012
     bpy.context.view_layer.objects.active = ob
     bpy.context.scene.frame_set(6)
+    return ob
 
 
-SCENES = {"panel": tracked, "pairs": drawn}
+def tweened() -> bpy.types.Object:
+    """Two drawings with in-betweens."""
+    ob = drawn(0.8, 5.0)
+    finished(bpy.ops.rototoon.in_between, frames="CURRENT", spacing="CURVE", step=3)
+    return ob
 
 
-def view() -> tuple[bpy.types.Area, bpy.types.Region]:
-    """The 3D view and its sidebar."""
+def shown_together(ob: bpy.types.Object) -> None:
+    """An object with the strokes of all frames of another one; those of its keys are thick."""
+    data = getattr(bpy.data, "grease_pencils_v3", bpy.data.grease_pencils).new("All")
+    shown = bpy.data.objects.new("All", data)
+    bpy.context.collection.objects.link(shown)
+    target = data.layers.new("Lines").frames.new(1).drawing
+    for frame in ob.data.layers[0].frames:
+        key = frame.keyframe_type == "KEYFRAME"
+        for stroke in list(frame.drawing.strokes):
+            target.add_strokes([len(stroke.points)])
+            copy = target.strokes[-1]
+            copy.cyclic = stroke.cyclic
+            for point, source in zip(copy.points, stroke.points):
+                point.position, point.radius = source.position, 0.02 if key else 0.008
+    ob.hide_set(True)
+
+
+def armature() -> None:
+    """A figure of bones with its arms spread."""
+    data = bpy.data.armatures.new("Rig")
+    ob = bpy.data.objects.new("Rig", data)
+    bpy.context.scene.collection.objects.link(ob)
+    bpy.context.view_layer.objects.active = ob
+    bpy.ops.object.mode_set(mode="EDIT")
+    for bone, (parent, head, tail) in BONES.items():
+        made = data.edit_bones.new(bone)
+        made.head, made.tail = head, tail
+        made.parent = data.edit_bones.get(parent)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    ob.rototoon.clips_folder = str(CLIPS)
+    finished(bpy.ops.rototoon.guess_bones)
+
+
+# -- pictures ----------------------------------------------------------------------------------------------------
+
+
+def view() -> tuple[bpy.types.Area, bpy.types.Region, bpy.types.Region]:
+    """The 3D view, its drawing region and its sidebar."""
     area = next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == "VIEW_3D")
-    return area, next(region for region in area.regions if region.type == "UI")
+    regions = {region.type: region for region in area.regions}
+    return area, regions["WINDOW"], regions["UI"]
 
 
 def in_view():
     """The context of the 3D view."""
-    area, _ = view()
-    region = next(region for region in area.regions if region.type == "WINDOW")
+    area, region, _ = view()
     return bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area, region=region)
 
 
-def show() -> float | None:
-    """Called by the timer until the tab is on screen."""
-    area, sidebar = view()
-    space = area.spaces.active
-    if not space.show_region_ui or (WHAT == "panel" and space.region_3d.view_perspective != "CAMERA"):
-        space.show_region_ui = True
-        space.shading.type = "SOLID"
-        if WHAT == "panel":
-            space.region_3d.view_perspective = "CAMERA"
+def screenshot() -> np.ndarray:
+    """The screen's pixels (height, width, 4), the top row first. Blender's own screenshots are black without a graphics card."""
+    path = OUT / "screen.tmp.png"
+    subprocess.run(["import", "-window", "root", str(path)], check=True)
+    image = bpy.data.images.load(str(path))
+    width, height = image.size
+    values = np.empty(width * height * 4, np.float32)
+    image.pixels.foreach_get(values)
+    bpy.data.images.remove(image)
+    path.unlink()
+    return values.reshape(height, width, 4)[::-1]
+
+
+def save(name: str, pixels: np.ndarray) -> None:
+    """Writes `OUT/name.png`."""
+    height, width = pixels.shape[:2]
+    image = bpy.data.images.new(name, width, height)
+    image.pixels.foreach_set(np.ascontiguousarray(pixels[::-1], np.float32).ravel())
+    image.filepath_raw, image.file_format = str(OUT / f"{name}.png"), "PNG"
+    image.save()
+    bpy.data.images.remove(image)
+
+
+def of_region(pixels: np.ndarray, region) -> np.ndarray:
+    """The part of the window that a region takes."""
+    bottom = pixels.shape[0] - region.y
+    return pixels[bottom - region.height : bottom, region.x : region.x + region.width]
+
+
+def of_panel(pixels: np.ndarray, sidebar) -> np.ndarray:
+    """The sidebar without its tabs and without the empty space below its panels."""
+    # The last rows are the region's border.
+    found = of_region(pixels, sidebar)[:-EDGE, : -round(TABS_WIDTH * SCALE)]
+    ground = found[-1, found.shape[1] // 2]
+    rows = np.flatnonzero((np.abs(found - ground) > 0.02).any(2).mean(1) > 0.2)
+    return found[: rows[-1] + 6] if len(rows) else found
+
+
+def tab_panels() -> list:
+    """The classes of the tab's panels."""
+    known = [cls for cls in bpy.types.Panel.__subclasses__() if cls.__module__.startswith(MODULE)]
+    deep = [cls for base in known for cls in base.__subclasses__()]
+    return [cls for cls in {*known, *deep} if getattr(cls, "bl_category", "") == TAB and hasattr(cls, "bl_idname")]
+
+
+def registered(cls) -> bool:
+    """Whether Blender shows a panel's class."""
+    return getattr(bpy.types, cls.bl_idname, None) is not None
+
+
+def only(panels: list, name: str | None) -> None:
+    """Leaves the panel `name` alone in the tab, or all panels in their order."""
+    for cls in panels:
+        if registered(cls):
+            bpy.utils.unregister_class(cls)
+    for cls in panels:
+        if name is None or cls.bl_idname == name:
+            bpy.utils.register_class(cls)
+
+
+# -- the session: yields the seconds until it goes on -------------------------------------------------------------
+
+
+def sidebar_shown():
+    """Opens the sidebar at the tab, which exists only once the region has been drawn."""
+    started = time.monotonic()
+    while True:
+        area, _, sidebar = view()
+        area.spaces.active.show_region_ui = True
         area.tag_redraw()
-        return 1.0
+        yield 1.0
+        try:
+            if sidebar.active_panel_category != TAB:
+                sidebar.active_panel_category = TAB
+                area.tag_redraw()
+                yield 1.0
+            return
+        except (AttributeError, TypeError):
+            if time.monotonic() - started > PATIENCE:
+                raise
+
+
+def panels_photographed(panels: list, names: list[str]):
+    """A picture of each panel alone."""
+    for name in names:
+        only(panels, f"ROTOTOON_PT_{name}")
+        yield from sidebar_shown()
+        yield 2.0
+        _, _, sidebar = view()
+        save(f"panel_{name}", of_panel(screenshot(), sidebar))
+    only(panels, None)
+
+
+def view_photographed(name: str, box=(0.0, 1.0, 0.0, 1.0)):
+    """A picture of a part of the view: shares of its height and of its width, first to last."""
+    area, region, _ = view()
+    area.tag_redraw()
+    yield 2.0
+    pixels = of_region(screenshot(), region)
+    top, bottom = (round(share * pixels.shape[0]) for share in box[:2])
+    left, right = (round(share * pixels.shape[1]) for share in box[2:])
+    save(name, pixels[top:bottom, left:right])
+
+
+def looked_through_camera() -> None:
+    """The view shows what the camera shows, as large as it fits, without outlines and axes."""
+    space = view()[0].spaces.active
+    space.shading.type = "SOLID"
+    space.region_3d.view_perspective = "CAMERA"
+    overlay = space.overlay
+    overlay.show_outline_selected = overlay.show_cursor = overlay.show_object_origins = False
+    overlay.show_axis_x = overlay.show_axis_y = False
+    with in_view():
+        bpy.ops.view3d.view_center_camera()
+
+
+def looked_closely() -> None:
+    """The camera's picture is larger than the view, the figure in its middle."""
+    region = view()[0].spaces.active.region_3d
+    region.view_camera_zoom, region.view_camera_offset = 45.0, (0.0, 0.0)
+
+
+def looked_from_front() -> None:
+    """The view shows all strokes from the front."""
+    with in_view():
+        bpy.ops.view3d.view_axis(type="FRONT")
+        bpy.ops.view3d.view_all()
+
+
+def capture(panels: list):
+    """Pictures of the tracked sample."""
+    tracked()
+    looked_through_camera()
+    yield from sidebar_shown()
+    looked_through_camera()
+    yield 2.0
+    save("window", screenshot())
+    yield from panels_photographed(panels, ["footage", "parts", "track", "snap", "strokes", "document", "style"])
+    bpy.context.object.rototoon.show_confidence = True
+    bpy.context.object.data.layers["Snapped"].hide = True
+    looked_closely()
+    yield from view_photographed("confidence", (0.2, 0.87, 0.25, 0.75))
+
+
+def between(panels: list):
+    """Pictures of in-betweens and of pairs."""
+    cleared()
+    ob = tweened()
+    yield from panels_photographed(panels, ["tween"])
+    shown_together(ob)
+    looked_from_front()
+    yield from view_photographed("in_betweens", (0.25, 0.75, 0.08, 0.92))
+    cleared()
+    drawn()
+    yield from sidebar_shown()
+    looked_from_front()
+    with in_view():
+        bpy.ops.rototoon.match_strokes("INVOKE_DEFAULT")
+    yield 5.0
+    yield from view_photographed("pairs", (0.1, 0.9, 0.15, 0.88))
+
+
+def session():
+    """Everything, in order. Match Strokes stays at work, so it is last."""
+    yield 1.0
+    prepare()
+    cleared()
+    panels = sorted(tab_panels(), key=lambda cls: cls.bl_idname)
+    order = {name: place for place, name in enumerate("footage parts track snap strokes tween style document bones".split())}
+    panels.sort(key=lambda cls: order.get(cls.bl_idname.removeprefix("ROTOTOON_PT_"), len(order)))
+    yield 1.0
+    yield from capture(panels)
+    cleared()
+    armature()
+    yield from panels_photographed(panels, ["bones"])
+    yield from between(panels)
+
+
+_steps = session()
+
+
+def step() -> float | None:
+    """Called by the timer: goes on, and reports the end or what went wrong to the waiting program."""
     try:
-        # The tabs exist only once the region has been drawn.
-        if sidebar.active_panel_category != TAB:
-            sidebar.active_panel_category = TAB
-            area.tag_redraw()
-            return 1.0
-    except (AttributeError, TypeError) as error:
-        if time.monotonic() - _started < 120:
-            return 1.0
+        return next(_steps)
+    except StopIteration:
+        READY.write_text("ready", encoding="utf-8")
+    except Exception as error:
         READY.write_text(f"failed: {error}", encoding="utf-8")
-        return None
-    if WHAT == "pairs":
-        with in_view():
-            bpy.ops.view3d.view_axis(type="FRONT")
-            bpy.ops.view3d.view_all()
-            bpy.ops.rototoon.match_strokes("INVOKE_DEFAULT")
-    bpy.app.timers.register(lambda: READY.write_text("ready", encoding="utf-8") and None, first_interval=5.0)
+        raise
     return None
 
 
-def start() -> None:
-    """Reports what went wrong to whoever waits."""
-    try:
-        prepare()
-    except Exception as error:  # told to the waiting program, which has no other way to know
-        READY.write_text(f"failed: {error}", encoding="utf-8")
-        raise
-    bpy.app.timers.register(show, first_interval=1.0)
-
-
-bpy.app.timers.register(start, first_interval=1.0)
+bpy.app.timers.register(step, first_interval=1.0)

@@ -9,6 +9,8 @@ use tiny_skia::Pixmap;
 
 /// Where the accepted pictures are, below the workspace's folder.
 pub const FOLDER: &str = "tests/golden";
+/// Where the generated pages of the documentation are, below the workspace's folder.
+pub const PAGES: &str = "docs/src/generated";
 /// A channel may differ by so much of 255: mathematical functions of two systems may differ in their last bit.
 const STEP: u8 = 2;
 /// The share of pixels that may differ by more than [`STEP`].
@@ -18,6 +20,19 @@ const SHARE: f64 = 1e-4;
 pub fn compare(name: &str, picture: &Pixmap) -> Result<()> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().context("the tests lie in the workspace")?;
     compare_in(&root.join(FOLDER), &current_folder(root), name, picture)
+}
+
+/// Fails where `text` is not the page `name` of the documentation. Writes it to `target/golden/<name>.md` for
+/// `cargo xtask bless`.
+pub fn compare_page(name: &str, text: &str) -> Result<()> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().context("the tests lie in the workspace")?;
+    let file = format!("{name}.md");
+    let (kept, drawn) = (root.join(PAGES).join(&file), current_folder(root).join(&file));
+    std::fs::create_dir_all(drawn.parent().context("a file lies in a folder")?)?;
+    std::fs::write(&drawn, text).with_context(|| format!("cannot write {drawn:?}"))?;
+    let current = std::fs::read_to_string(&kept).is_ok_and(|page| page == text);
+    ensure!(current, "{kept:?} is stale: look at {drawn:?}; `cargo xtask bless` accepts it");
+    Ok(())
 }
 
 fn current_folder(root: &Path) -> PathBuf {

@@ -10,4 +10,5 @@ mod architecture;
 mod bench_tracking;
 mod documents;
 mod features;
+mod pages;
 mod style;

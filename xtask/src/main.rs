@@ -2,6 +2,7 @@
 
 mod bundle;
 mod demo;
+mod docs;
 mod elf;
 mod generate;
 mod measure;
@@ -63,9 +64,15 @@ enum Command {
     /// Measure matching and in-betweens on sets with known truth, with sheets in target/bench-tween.
     #[command(disable_help_flag = true)]
     BenchTween(measure::Rest),
-    /// Accept the golden pictures that the tests last drew.
+    /// Accept the golden pictures and the generated pages that the tests last wrote.
     Bless,
-    /// Photograph the panel in a real Blender window (Debian sid in a chroot; needs root and debootstrap).
+    /// Build the documentation into target/book.
+    Docs {
+        /// Also fail where a link, an anchor or a picture is missing.
+        #[arg(long)]
+        check: bool,
+    },
+    /// Photograph every panel and Match Strokes in a real Blender window (Debian sid in a chroot; needs root and debootstrap).
     Photograph,
 }
 
@@ -81,6 +88,7 @@ fn main() -> anyhow::Result<()> {
         Command::BenchTracking(rest) => measure::run("bench-tracking", &rest),
         Command::BenchTween(rest) => measure::run("bench-tween", &rest),
         Command::Bless => measure::run("bless", &measure::Rest::default()),
+        Command::Docs { check } => docs::docs(check),
         Command::Photograph => photograph::photograph(),
     }
 }

@@ -1,4 +1,4 @@
-//! `photograph`: pictures of the panel and of Match Strokes in a real Blender window.
+//! `photograph`: the documentation's pictures of every panel and of Match Strokes, taken in a real Blender window.
 //!
 //! The `bpy` wheels have no windows. Debian sid packages a current Blender: it is unpacked into a folder of its own
 //! (debootstrap), started there under a virtual screen (Xvfb) and photographed. Sid moves, and the job needs root: where it
@@ -10,7 +10,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use xtask_shell::shell::{capture, command, root, run, target, works};
 
-/// What the picture needs from Debian.
+/// Where the documentation's pictures are, below the workspace's folder.
+const PICTURES: &str = "docs/src/pictures";
+/// What the pictures need from Debian.
 const PACKAGES: [&str; 9] = [
     "blender",
     "xvfb",
@@ -23,42 +25,38 @@ const PACKAGES: [&str; 9] = [
     "ca-certificates",
 ];
 
-/// What is photographed: see `tests/blender/photograph.py`.
-const PICTURES: [&str; 2] = ["panel", "pairs"];
-
-/// Starts Blender under Xvfb for `$1`, waits until the script says that it is drawn, and takes the picture.
+/// Starts Blender under Xvfb, waits until the script says that all pictures are taken, and makes them small.
 const SESSION: &str = r#"
 set -u
 cd /photograph
 export DISPLAY=:77 LIBGL_ALWAYS_SOFTWARE=1 HOME=/photograph BLENDER_USER_RESOURCES=/photograph/resources
-rm -rf ready "$1.png" resources
+rm -rf ready pictures resources
 # Without saved preferences the first start asks for a quick set-up in front of everything.
 blender --background --python-expr "import bpy; bpy.context.preferences.view.show_splash = False; bpy.ops.wm.save_userpref()" \
   >blender.log 2>&1
-Xvfb :77 -screen 0 1600x900x24 >xvfb.log 2>&1 &
+Xvfb :77 -screen 0 1600x1280x24 >xvfb.log 2>&1 &
 screen=$!
 sleep 2
-blender --window-geometry 0 0 1600 900 --python photograph.py -- rototoon.zip sample/project.json ready "$1" >>blender.log 2>&1 &
+blender --window-geometry 0 0 1600 1280 --python photograph.py -- rototoon.zip sample pictures ready >>blender.log 2>&1 &
 blender=$!
-for second in $(seq 600); do
+for second in $(seq 900); do
   [ -f ready ] && break
   kill -0 "$blender" 2>/dev/null || break
   sleep 1
 done
-[ -f ready ] && import -window root "$1.png"
 kill "$blender" "$screen" 2>/dev/null
+mogrify -resize "1200x>" -strip +dither -colors 256 -define png:compression-level=9 pictures/*.png
 cat ready 2>/dev/null || { echo "Blender ended early:"; tail -n 20 blender.log; }
 "#;
 
-/// Leaves `panel.png` and `pairs.png` in `target/photograph`, or says why it can't.
+/// Writes the pictures of the documentation, or says why it can't.
 pub fn photograph() -> Result<()> {
     if let Some(reason) = cannot() {
         println!("photograph: not done: {reason}");
         return Ok(());
     }
     let bundle = bundle(&Packager::from_wheel()?, Build::WithMeasure)?;
-    let folder = target().join("photograph");
-    let system = folder.join("debian");
+    let system = target().join("photograph/debian");
     if let Err(reason) = install(&system) {
         println!("photograph: not done: {reason:#}");
         return Ok(());
@@ -68,17 +66,26 @@ pub fn photograph() -> Result<()> {
     std::fs::copy(&bundle.zip, stage.join("rototoon.zip"))?;
     std::fs::copy(root().join("tests/blender/photograph.py"), stage.join("photograph.py"))?;
     run(command(&bundle.measure).arg("sample").arg(&stage))?;
-    for what in PICTURES {
-        let said = {
-            let _proc = Mount::proc(&system)?;
-            capture(chroot(&system).args(["sh", "-c", SESSION, "sh", what]))?
-        };
-        let picture = stage.join(format!("{what}.png"));
-        if said.trim() != "ready" || !picture.exists() {
-            bail!("no picture of {what} was taken: {said}");
+    let said = {
+        let _proc = Mount::proc(&system)?;
+        capture(chroot(&system).args(["sh", "-c", SESSION]))?
+    };
+    if said.trim() != "ready" {
+        bail!("the pictures were not taken: {said}");
+    }
+    accept(&stage.join("pictures"), &root().join(PICTURES))
+}
+
+/// Copies the pictures into the documentation. They are looked at before they are committed.
+fn accept(taken: &Path, kept: &Path) -> Result<()> {
+    std::fs::create_dir_all(kept)?;
+    for entry in std::fs::read_dir(taken).with_context(|| format!("cannot read {taken:?}"))? {
+        let path = entry?.path();
+        if path.extension().is_none_or(|extension| extension != "png") {
+            continue;
         }
-        let place = folder.join(format!("{what}.png"));
-        std::fs::copy(&picture, &place)?;
+        let place = kept.join(path.file_name().context("a picture has a name")?);
+        std::fs::copy(&path, &place).with_context(|| format!("cannot write {place:?}"))?;
         println!("photograph: {}", place.display());
     }
     Ok(())

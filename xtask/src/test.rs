@@ -1,6 +1,7 @@
 //! `test`: everything that is checked, each step to its end ([`crate::steps`]).
 
 use crate::bundle::{self, Build, Bundle, Packager, TESTED, bundle};
+use crate::docs::docs;
 use crate::generate::generate;
 use crate::steps::{Step, in_own_process, run_all};
 use anyhow::{Result, bail};
@@ -66,6 +67,7 @@ fn steps(valgrind: bool, build: Build) -> Vec<Step> {
     }
     steps.push(Step::new("Python tests", move || python_tests(build)).needs(BUNDLE));
     steps.push(Step::new("generated files are current", || generate(true).map(|()| None)));
+    steps.push(Step::new("documentation", || docs(true).map(|()| None)).after(ENVIRONMENTS));
     if valgrind {
         steps.push(Step::new("OpenFX host under valgrind", valgrind_tests).after("OpenFX host"));
     }

@@ -29,7 +29,7 @@ enum Command {
     BenchTracking(bench_tracking::Arguments),
     /// Measure matching and in-betweens on sets with known truth, with sheets in target/bench-tween.
     BenchTween(bench_tween::Arguments),
-    /// Accept the golden pictures that the tests last drew.
+    /// Accept the golden pictures and the generated pages that the tests last wrote.
     Bless,
     /// Write the contact sheet and the table of the demo.
     Report {
