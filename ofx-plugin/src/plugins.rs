@@ -2,7 +2,7 @@
 #![allow(unsafe_code, reason = "the host looks the functions up by name and calls them with raw pointers")]
 #![allow(non_snake_case, reason = "the names are those that OpenFX looks up")]
 
-use crate::ofx::{entry, host, interact};
+use crate::ofx::{entry, host};
 use crate::{lines, roto};
 use openfx::sys::generic::core::{OfxHost, OfxPlugin, OfxPropertySetHandle, OfxStatus};
 use openfx::sys::image_effect_v1::image_effect::kOfxImageEffectPluginApi;
@@ -50,32 +50,6 @@ unsafe extern "C" fn lines_main(
 ) -> OfxStatus {
     // SAFETY: the host's own call.
     unsafe { entry::entry(action, handle, input, output, lines::perform) }
-}
-
-/// The entry point of the overlay of `org.rototoon.Roto`, drawn by the DrawSuite or by OpenGL.
-pub fn roto_overlay(draw_suite: bool) -> *mut c_void {
-    let entry: Main = if draw_suite { roto_overlay_main_v2 } else { roto_overlay_main_v1 };
-    entry as *mut c_void
-}
-
-unsafe extern "C" fn roto_overlay_main_v1(
-    action: *const c_char,
-    handle: *const c_void,
-    input: OfxPropertySetHandle,
-    _output: OfxPropertySetHandle,
-) -> OfxStatus {
-    // SAFETY: the host's own call.
-    unsafe { interact::entry(action, handle, input, false, roto::overlay::perform) }
-}
-
-unsafe extern "C" fn roto_overlay_main_v2(
-    action: *const c_char,
-    handle: *const c_void,
-    input: OfxPropertySetHandle,
-    _output: OfxPropertySetHandle,
-) -> OfxStatus {
-    // SAFETY: the host's own call.
-    unsafe { interact::entry(action, handle, input, true, roto::overlay::perform) }
 }
 
 /// How many effects there are.

@@ -1,148 +1,112 @@
-//! Holds the direction of dependencies in the core:
+//! Which module may use which, and that no files import each other in a ring.
 //!
-//! `numeric ← geometry ← curve ← fit` and
-//! `numeric ← geometry ← scene ← {image, track, snap, tween, style, reshape, render, export, import, project} ← pipeline`,
-//! where track, snap, tween and render may use image, tween curves and their fitting too, and track, snap, tween and
-//! style never import each other.
+//! Cargo holds the arrows between the crates. Within a crate this test holds them:
+//!
+//! - `core/base`: `numeric ← geometry ← {curve, scene}`.
+//! - `core/track`: `contract ← shared ← {zhou2011, rotoscope, rototoon} ← tracker`. The presets do not use each other.
+//! - In every crate: files of different folders make no ring, and no more than two files of one folder do.
+//!
+//! [`imports`] reads the imports, and says which of them count between a `mod.rs` and its files.
 
-use std::collections::{BTreeMap, BTreeSet};
+mod imports;
+mod rings;
+mod tokens;
+
+use imports::{Arrows, Sources};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Each module of the core with the modules that it may use.
-const ALLOWED: [(&str, &[&str]); 16] = [
+/// The modules at the top of a crate, each with those that it may use.
+type Layers<'a> = [(&'a str, &'a [&'a str])];
+
+const BASE: [(&str, &[&str]); 4] = [
     ("numeric", &[]),
     ("geometry", &["numeric"]),
     ("curve", &["numeric", "geometry"]),
-    ("fit", &["numeric", "geometry", "curve"]),
     ("scene", &["numeric", "geometry"]),
-    ("image", &["numeric", "geometry", "scene"]),
-    ("track", &["numeric", "geometry", "scene", "image"]),
-    ("snap", &["numeric", "geometry", "scene", "image"]),
-    ("tween", &["numeric", "geometry", "curve", "fit", "scene", "image"]),
-    ("style", &["numeric", "geometry", "scene"]),
-    ("reshape", &["numeric", "geometry", "curve", "scene"]),
-    ("render", &["numeric", "geometry", "scene", "image"]),
-    ("export", &["numeric", "geometry", "scene"]),
-    ("import", &["numeric", "geometry", "scene"]),
-    ("project", &["numeric", "geometry", "scene"]),
-    (
-        "pipeline",
-        &[
-            "numeric", "geometry", "curve", "fit", "scene", "image", "track", "snap", "tween", "style", "reshape",
-            "render", "export", "import", "project",
-        ],
-    ),
 ];
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            sources(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            found.push(path);
-        }
-    }
+const TRACK: [(&str, &[&str]); 6] = [
+    ("contract", &[]),
+    ("shared", &["contract"]),
+    ("zhou2011", &["contract", "shared"]),
+    ("rotoscope", &["contract", "shared"]),
+    ("rototoon", &["contract", "shared"]),
+    ("tracker", &["contract", "shared", "zhou2011", "rotoscope", "rototoon"]),
+];
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The core's modules that the source of a file names, by `crate::` or by `super::` beyond its own module.
-///
-/// `module` is the file's own path of modules (`["track", "job"]`). Comments are left out.
-fn used_modules(source: &str, module: &[String]) -> BTreeSet<String> {
-    let code: String = source.lines().map(|line| line.split("//").next().unwrap_or("").to_owned() + "\n").collect();
-    let mut used = BTreeSet::new();
-    for (at, _) in code.match_indices("crate::") {
-        used.extend(first_names(&code[at + "crate::".len()..]));
-    }
-    let mut rest = code.as_str();
-    while let Some(at) = rest.find("super::") {
-        rest = &rest[at..];
-        let mut levels = 0;
-        while let Some(next) = rest.strip_prefix("super::") {
-            levels += 1;
-            rest = next;
-        }
-        // In the file of a module itself one level leads to its parent; in the inline tests it leads to the file.
-        if levels >= module.len() {
-            used.extend(first_names(rest));
-        }
-    }
-    used
+/// The folders `src` of all crates that ship or build what ships.
+fn crates() -> Vec<PathBuf> {
+    let root = repository();
+    let core = fs::read_dir(root.join("core")).unwrap().map(|entry| entry.unwrap().path());
+    let mut found: Vec<PathBuf> = core.chain(["core", "ofx-plugin", "xtask"].map(|name| root.join(name))).collect();
+    found.retain(|path| path.join("Cargo.toml").is_file());
+    found.sort();
+    found.into_iter().map(|path| path.join("src")).collect()
 }
 
-/// The names right after a path: one, or those of a braced group at its outermost level.
-fn first_names(rest: &str) -> Vec<String> {
-    let name = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
-    let Some(group) = rest.strip_prefix('{') else { return vec![name(rest)] };
-    let mut names = Vec::new();
-    let (mut depth, mut start) = (0, true);
-    for (at, c) in group.char_indices() {
-        match c {
-            '{' => depth += 1,
-            '}' if depth == 0 => break,
-            '}' => depth -= 1,
-            ',' if depth == 0 => start = true,
-            c if start && !c.is_whitespace() => {
-                names.push(name(&group[at..]));
-                start = false;
-            }
-            _ => {}
+/// The arrows that layers do not allow, and the modules that are in none.
+fn faults(sources: &Sources, arrows: &Arrows, layers: &Layers) -> Vec<String> {
+    let layer = |file: usize| sources.files[file].module.first().map(String::as_str);
+    let may_use = |name: &str| layers.iter().find(|(layer, _)| *layer == name).map(|(_, used)| *used);
+    let homeless = sources.files.iter().filter(|file| file.module.first().is_some_and(|name| may_use(name).is_none()));
+    let mut found: Vec<String> =
+        homeless.map(|file| format!("{}: the module is in no layer", file.path.display())).collect();
+    for (&(from, to), names) in arrows {
+        let (Some(user), Some(used)) = (layer(from), layer(to)) else { continue };
+        if user != used && !may_use(user).is_some_and(|allowed| allowed.contains(&used)) {
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let path = sources.files[from].path.display();
+            found.push(format!("{path}: {user} may not use {used}, but takes {}", names.join(", ")));
         }
     }
-    names
+    found
 }
 
-fn module_path(root: &Path, file: &Path) -> Vec<String> {
-    let mut path: Vec<_> = file
-        .strip_prefix(root)
-        .unwrap()
-        .with_extension("")
-        .iter()
-        .map(|name| name.to_str().unwrap().to_owned())
-        .collect();
-    if path.last().is_some_and(|name| name == "mod") {
-        path.pop();
-    }
-    path
+fn holds(src: &str, layers: &Layers) {
+    let sources = Sources::read(&repository().join(src));
+    let arrows = sources.arrows();
+    let faults = faults(&sources, &arrows, layers);
+    assert!(faults.is_empty(), "{src}:\n{}", faults.join("\n"));
+    assert!(arrows.len() > sources.files.len(), "{src}: found only {} arrows", arrows.len());
 }
 
 #[test]
-fn dependencies_point_one_way() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/src");
-    let allowed: BTreeMap<_, _> = ALLOWED.into_iter().collect();
-    let mut files = Vec::new();
-    sources(&root, &mut files);
-    files.sort();
-    let mut wrong = Vec::new();
-    let mut checked = 0;
-    for file in &files {
-        let module = module_path(&root, file);
-        if module == ["lib"] {
-            continue;
-        }
-        let Some(may_use) = allowed.get(module[0].as_str()) else {
-            wrong.push(format!("{}: module {} has no place in the picture", file.display(), module[0]));
-            continue;
-        };
-        for used in used_modules(&fs::read_to_string(file).unwrap(), &module) {
-            checked += 1;
-            if allowed.contains_key(used.as_str()) && used != module[0] && !may_use.contains(&used.as_str()) {
-                wrong.push(format!("{}: {} may not use {used}", file.display(), module[0]));
-            }
-        }
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(checked > files.len(), "found only {checked} uses in {} files", files.len());
+fn the_modules_of_base_point_one_way() {
+    holds("core/base/src", &BASE);
 }
 
 #[test]
-fn uses_are_found_however_they_are_written() {
-    let module = ["track".to_owned(), "job".to_owned()];
-    let used = |source: &str| used_modules(source, &module).into_iter().collect::<Vec<_>>();
-    assert_eq!(used("use crate::snap;"), ["snap"]);
-    assert_eq!(used("use crate::{\n    geometry::{Point, polygon},\n    snap::x,\n};"), ["geometry", "snap"]);
-    assert_eq!(used("let x = super::super::snap::cost();"), ["snap"]);
-    assert_eq!(used("use super::tracker; // crate::snap"), Vec::<String>::new());
-    assert_eq!(used_modules("use super::snap;", &["track".to_owned()]).into_iter().collect::<Vec<_>>(), ["snap"]);
+fn the_folders_of_track_point_one_way() {
+    holds("core/track/src", &TRACK);
+}
+
+#[test]
+fn no_files_import_each_other_in_a_ring() {
+    let (mut wrong, mut read) = (String::new(), 0);
+    for src in crates() {
+        let sources = Sources::read(&src);
+        let arrows = sources.arrows();
+        read += arrows.len();
+        for ring in rings::rings(&sources, &arrows).iter().filter(|ring| !rings::allowed(&sources, ring)) {
+            wrong += &format!("{}:\n{}", src.display(), rings::described(&sources, &arrows, ring));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+    assert!(read > 500, "found only {read} arrows");
+}
+
+#[test]
+fn an_arrow_against_the_layers_is_found() {
+    let faults = |text: &str| {
+        let texts = [("lib.rs", "mod low; mod high;"), ("low.rs", text), ("high.rs", "pub struct High;")];
+        let sources = Sources::of(texts.map(|(path, text)| (path.into(), text.into())));
+        faults(&sources, &sources.arrows(), &[("low", &[]), ("high", &["low"])])
+    };
+    assert_eq!(faults("use crate::high::High;"), ["low.rs: low may not use high, but takes crate::high::High"]);
+    assert_eq!(faults("fn f() {}"), [""; 0]);
 }

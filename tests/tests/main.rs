@@ -1,7 +1,7 @@
 //! The cross-crate tests, one module a topic.
 //!
 //! - `documents`: reading and writing project documents, good and bad
-//! - `architecture`: which module may use which
+//! - `architecture`: which module may use which, and no ring of imports
 //! - `features`: nothing that packages share is compiled twice
 //! - `style`: from the sample cartoon's contours to another character's drawing in another manner
 //! - `bench_tracking`: the benchmark of tracking on a small scene

@@ -1,8 +1,8 @@
 //! The one way in: every exported function runs its body through [`entry`], and reads its arguments with the checked
 //! readers below.
 
-use crate::handles::RototoonText;
 use crate::status::{Failure, RototoonStatus};
+use crate::text::RototoonText;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

@@ -1,9 +1,9 @@
 //! Functions that need no session.
 
 use crate::entry::{clear, entry, give, text};
-use crate::handles::RototoonText;
 use crate::matching::answer;
 use crate::status::RototoonStatus;
+use crate::text::RototoonText;
 use rototoon::scene::parameters;
 
 /// Rises with every change that an old caller would not survive.

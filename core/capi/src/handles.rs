@@ -2,11 +2,9 @@
 
 use crate::entry::{clear, entry, free, handle};
 use crate::status::RototoonStatus;
+use crate::text::RototoonText;
 use rototoon::geometry::Point;
 use rototoon::scene::Part;
-
-/// UTF-8 text: an error message or a JSON document.
-pub struct RototoonText(String);
 
 /// The track of a part: frame numbers, points, confidence.
 pub struct RototoonTrack {
@@ -20,13 +18,6 @@ pub struct RototoonTrack {
 pub struct RototoonCurves {
     offsets: Vec<i32>,
     points: Vec<f64>,
-}
-
-impl RototoonText {
-    /// A text.
-    pub fn new(text: impl Into<String>) -> Self {
-        Self(text.into())
-    }
 }
 
 impl RototoonTrack {

@@ -51,6 +51,7 @@ pub mod strokes;
 pub mod strokes_abi;
 pub mod style;
 pub mod style_abi;
+pub mod text;
 pub mod tween_abi;
 pub mod work;
 

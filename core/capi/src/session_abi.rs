@@ -3,9 +3,10 @@
 use crate::callback::{RototoonProgress, with_progress};
 use crate::edit;
 use crate::entry::{clear, entry, free, give, handle, slice, text};
-use crate::handles::{RototoonCurves, RototoonText, RototoonTrack};
+use crate::handles::{RototoonCurves, RototoonTrack};
 use crate::session::Session;
 use crate::status::{Failure, RototoonStatus};
+use crate::text::RototoonText;
 use crate::work::GoOn;
 use rototoon::geometry::Point;
 use std::ffi::c_void;

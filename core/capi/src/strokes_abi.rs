@@ -1,9 +1,9 @@
 //! Strokes of drawings: fitting and hidden lines.
 
 use crate::entry::{MAX_BYTES, clear, entry, free, give, handle, slice};
-use crate::handles::RototoonText;
 use crate::status::{Failure, RototoonStatus};
 use crate::strokes::{Placing, RototoonGuides, RototoonPieces, Strokes, fitted, pieces};
+use crate::text::RototoonText;
 use rototoon::tween::hidden;
 
 /// The strokes of three arrays.

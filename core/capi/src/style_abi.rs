@@ -2,9 +2,9 @@
 
 use crate::callback::{RototoonProgress, with_progress};
 use crate::entry::{clear, entry, give, text};
-use crate::handles::RototoonText;
 use crate::status::RototoonStatus;
 use crate::style;
+use crate::text::RototoonText;
 use std::ffi::c_void;
 use std::ptr::null_mut;
 

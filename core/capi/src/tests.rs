@@ -5,8 +5,8 @@ use crate::edit;
 use crate::entry::{MAX_BYTES, entry};
 use crate::functions::{rototoon_abi_version, rototoon_header_hash, rototoon_version};
 use crate::handles::{
-    RototoonText, rototoon_curves_free, rototoon_curves_read, rototoon_text_free, rototoon_text_read,
-    rototoon_track_free, rototoon_track_read,
+    rototoon_curves_free, rototoon_curves_read, rototoon_text_free, rototoon_text_read, rototoon_track_free,
+    rototoon_track_read,
 };
 use crate::session_abi::{
     RototoonSession, rototoon_session_add_part, rototoon_session_curves_of, rototoon_session_document,
@@ -15,6 +15,7 @@ use crate::session_abi::{
     rototoon_session_track_of,
 };
 use crate::status::RototoonStatus::{self, BadArgument, Busy, Cancelled, Error, Ok as Fine, Panic};
+use crate::text::RototoonText;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 

@@ -2,10 +2,10 @@
 
 use crate::callback::{RototoonProgress, with_progress};
 use crate::entry::{MAX_BYTES, clear, entry, free, give, handle, slice, text};
-use crate::handles::RototoonText;
 use crate::sheet::{Drawings, RototoonInBetweens, RototoonMatches, in_betweens, matches};
 use crate::status::{Failure, RototoonStatus};
 use crate::strokes_abi::strokes;
+use crate::text::RototoonText;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 

@@ -17,7 +17,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Version of the form.
-pub const VERSION: u64 = 1;
+pub const VERSION: u64 = plain::VERSION;
 
 /// What is wrong with a file of clips or of a key pose.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -81,7 +81,7 @@ impl Clips {
     /// what is wrong and where.
     pub fn parse(text: &str, origin: &str) -> Result<Self, ClipsError> {
         match plain::read(text) {
-            Some(clips) => Ok(clips),
+            Some((clips, fps)) => Ok(Self { clips, fps }),
             None => Self::parse_by_value(text, origin),
         }
     }
@@ -117,7 +117,7 @@ impl Clips {
 
     /// The file's text.
     pub fn text(&self) -> String {
-        plain::written(self) + "\n"
+        plain::written(&self.clips, self.fps) + "\n"
     }
 
     /// Writes a file, whole or not at all.
@@ -336,6 +336,7 @@ mod tests {
             good.replace("rototoon_clips\": 1", "rototoon_clips\": 0"),
         ] {
             if let Some(quick) = plain::read(&text) {
+                let quick = Clips { clips: quick.0, fps: quick.1 };
                 assert_eq!(Ok(quick), Clips::parse_by_value(&text, "f"), "{text}");
             }
         }

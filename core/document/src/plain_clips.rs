@@ -4,12 +4,14 @@
 //! ([`super::clips`]) are read directly; anything unexpected makes the whole text unreadable this way, and nothing is said about
 //! it: that is the slow way's business.
 
-use super::clips::{Clips, VERSION};
 use rototoon_base::scene::Clip;
 use rototoon_base::scene::skeleton::{COUNT, NAMES, Posture};
 use serde::{Deserialize, Serialize, Serializer};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
+
+/// Version of the form.
+pub(super) const VERSION: u64 = 1;
 
 #[derive(Deserialize)]
 struct File<'a> {
@@ -36,8 +38,8 @@ fn usual_rate() -> f64 {
     25.0
 }
 
-/// The clips of a text; none where anything is not as it must be.
-pub(super) fn read(text: &str) -> Option<Clips> {
+/// The clips of a text and their frames a second; none where anything is not as it must be.
+pub(super) fn read(text: &str) -> Option<(Vec<Clip>, f64)> {
     let file: File = serde_json::from_str(text).ok()?;
     let named = match &file.keypoints {
         Some(names) => names.iter().eq(NAMES.iter()),
@@ -52,7 +54,7 @@ pub(super) fn read(text: &str) -> Option<Clips> {
         return None;
     }
     let clips = file.clips.into_iter().map(|clip| Clip::new(clip.character, clip.motion, clip.points)).collect();
-    Some(Clips { clips, fps: file.fps })
+    Some((clips, file.fps))
 }
 
 #[derive(Serialize)]
@@ -84,16 +86,16 @@ impl Serialize for Rounded {
 }
 
 /// The text of clips.
-pub(super) fn written(clips: &Clips) -> String {
+pub(super) fn written(clips: &[Clip], fps: f64) -> String {
     let of = |clip: &'_ Clip| -> (Vec<[[Rounded; 2]; COUNT]>, Vec<[Rounded; COUNT]>) {
         let points = clip.postures.iter().map(|posture| posture.map(|p| [Rounded(p.x), Rounded(p.y)])).collect();
         (points, clip.deviation.iter().map(|frame| frame.map(Rounded)).collect())
     };
-    let list = clips.clips.iter().map(|clip| {
+    let list = clips.iter().map(|clip| {
         let (points, deviation) = of(clip);
         WrittenClip { character: &clip.character, motion: &clip.motion, points, deviation }
     });
-    let file = Written { rototoon_clips: VERSION, fps: Rounded(clips.fps), keypoints: NAMES, clips: list.collect() };
+    let file = Written { rototoon_clips: VERSION, fps: Rounded(fps), keypoints: NAMES, clips: list.collect() };
     // Numbers, names and lists always have a text.
     serde_json::to_string(&file).unwrap_or_default()
 }

@@ -1,7 +1,7 @@
 //! Style: a motion re-made in another character's manner, as skeleton clips.
 //!
 //! - [`align`]: clips of one motion brought together in time
-//! - [`gaussian`]: what a character adds to a motion, predicted from what it adds to others
+//! - [`gaussian`]: what a character adds to a motion, predicted from what it adds to others; `cells`: the clips as numbers
 //! - [`bilinear`]: style and content matrices (Tenenbaum & Freeman 2000)
 //! - [`factorisation`]: non-negative style factorisation (Liang et al. 2012)
 //! - [`liang2012`]: translation with it
@@ -18,6 +18,7 @@
 pub mod align;
 mod basis;
 pub mod bilinear;
+mod cells;
 pub mod factorisation;
 pub mod finish;
 pub mod gaussian;

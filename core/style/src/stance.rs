@@ -22,7 +22,7 @@
 //!
 //! Limits: two motions say too little of likeness, and are left to `gaussian`. Cost grows with the cube of the clips.
 
-use super::gaussian::Cells;
+use super::cells::Cells;
 use super::kernels::Kernels;
 use rototoon_base::numeric::dense::DenseCholesky;
 

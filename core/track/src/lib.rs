@@ -3,79 +3,30 @@
 //! The work is cut into **jobs**: one part over one span between two of its keys. A preset decides how jobs are solved, one
 //! by one or together; its solver keeps what it computed, so that after an edit only what the edit touches is solved again.
 //!
-//! - [`job`]: what a solver is given and what it returns
-//! - [`tracker`]: what is asked, and who answers
-//! - [`part_by_part`]: order and memory of jobs that are solved singly
-//! - [`weakest`]: where the next key helps most
+//! - [`contract`]: what every preset is given, and what it answers
+//! - [`shared`]: what belongs to no single preset: features of pictures, jobs solved one by one, the weakest frame
+//! - [`rototoon`]: the default preset
+//! - [`zhou2011`]: the preset of Zhou & Xiao 2011
+//! - [`rotoscope`]: the presets of Agarwala et al. 2004 and Liang et al. 2012
+//! - [`tracker`]: the tracker that other crates call; it chooses the preset
 //!
-//! The default preset:
-//! - [`rototoon`]: its pieces joined
-//! - [`features`], [`store`]: what is computed once from pictures, and kept
-//! - [`drawings`]: held frames are worked on once
-//! - [`lattice`]: a part's look at a key on a lattice that bends
-//! - [`stage`]: what a job is solved with
-//! - [`propagate`]: motion from a neighbour
-//! - [`search`]: motion from nowhere, by comparing everywhere
-//! - [`pool`]: the hypotheses of both
-//! - `corrected`: what the artist's corrections add to them
-//! - [`select`]: which hypothesis a part alone follows
-//! - [`joint`]: which hypotheses all parts follow together
-//! - `mend`: what that choice adds to the pools
-//! - `finish`: the chosen poses made into tracks, with [`refine`]: contours brought onto the drawing by its colours
-//! - [`confidence`]: how sure a point is
-//! - [`outward`]: parts with one key, followed until they are lost
-//! - [`mechanisms`]: what can be switched off to measure it
-//! - [`cuts`]: where the footage goes over to another shot
-//!
-//! The preset of Zhou & Xiao 2011:
-//! - [`zhou2011`]: its pieces joined
-//! - [`edge_maps`]: edges of frames and distances to them, kept
-//! - [`region`]: where a part's centre lies between keys
-//! - [`energy`]: the space-time energy, a file a term
-//!
-//! The presets of Agarwala et al. 2004 and Liang et al. 2012:
-//! - [`agarwala2004`], [`liang2012`]: what each chooses
-//! - [`rotoscope`]: the space-time energy of both, a file a term, and its solution
+//! `contract` uses none of the others. `shared` uses `contract`. A preset uses both, but no other preset. `tracker` uses all.
 
 #![forbid(unsafe_code)]
 
-pub mod agarwala2004;
-pub mod confidence;
-mod corrected;
-pub mod cuts;
-pub mod drawings;
-pub mod edge_maps;
-pub mod energy;
-pub mod features;
-mod finish;
-pub mod job;
-pub mod joint;
-pub mod lattice;
-pub mod liang2012;
-pub mod mechanisms;
-mod mend;
-pub mod outward;
-pub mod part_by_part;
-pub mod pool;
-pub mod propagate;
-pub mod refine;
-pub mod region;
+pub mod contract;
 pub mod rotoscope;
 pub mod rototoon;
-pub mod search;
-pub mod select;
-pub mod stage;
-pub mod store;
-mod tasks;
+pub mod shared;
 pub mod tracker;
-pub mod weakest;
 pub mod zhou2011;
 
-pub use job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
-pub use mechanisms::{Mechanism, Mechanisms};
-pub use outward::{Ending, TrackEnd};
-pub use tracker::{JobReport, PartTrack, Preset, SceneSolver, TrackError, TrackOptions, Tracker, Tracking};
-pub use weakest::{WeakestFrame, weakest_frame};
+pub use contract::error::TrackError;
+pub use contract::job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
+pub use contract::tracking::{Ending, JobReport, PartTrack, SceneSolver, TrackEnd, Tracking};
+pub use rototoon::mechanisms::{Mechanism, Mechanisms};
+pub use shared::weakest::{WeakestFrame, weakest_frame};
+pub use tracker::{Preset, TrackOptions, Tracker};
 
 #[cfg(test)]
 mod tests;

@@ -1,19 +1,19 @@
-//! What is asked of a tracker, and who answers: the preset's solver.
+//! The tracker: it chooses the preset's solver, checks the scene, and keeps the solver from one run to the next.
 //!
 //! A solver keeps what it computed, so that after an edit only what the edit touches is solved again. A result depends on
 //! nothing but the scene and the pictures, whatever was solved before and whatever the number of threads.
 
-use super::agarwala2004::Agarwala2004;
-use super::job::{SpanSolver, SpanSummary};
-use super::liang2012::Liang2012;
-use super::mechanisms::Mechanisms;
-use super::outward::{Ending, TrackEnd};
-use super::part_by_part::PartByPart;
-use super::rototoon::Rototoon;
-use super::zhou2011::Zhou2011;
+use crate::contract::error::TrackError;
+use crate::contract::job::SpanSolver;
+use crate::contract::tracking::{SceneSolver, Tracking};
+use crate::rotoscope::agarwala2004::Agarwala2004;
+use crate::rotoscope::liang2012::Liang2012;
+use crate::rototoon::Rototoon;
+use crate::rototoon::mechanisms::Mechanisms;
+use crate::shared::part_by_part::PartByPart;
+use crate::zhou2011::Zhou2011;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Cancelled, Footage, FrameError, FrameNumber, FrameSource, Part, Progress, Scene, Span};
-use std::collections::BTreeMap;
+use rototoon_base::scene::{Footage, FrameNumber, FrameSource, Part, Progress, Scene};
 
 /// Which method tracks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,120 +60,6 @@ pub struct TrackOptions {
     pub preset: Preset,
     /// What the default preset uses; the others do not listen.
     pub mechanisms: Mechanisms,
-}
-
-/// Why tracking failed. Nothing was changed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum TrackError {
-    /// A picture could not be had.
-    #[error(transparent)]
-    Frame(#[from] FrameError),
-    /// The caller asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// Keys of one part differ in their number of points.
-    #[error("part {part:?}: the key on frame {frame} has {found} points, but the first key has {expected}")]
-    UnequalKeys {
-        /// Name of the part.
-        part: String,
-        /// Frame of the differing key.
-        frame: FrameNumber,
-        /// Its number of points.
-        found: usize,
-        /// The number on the first key.
-        expected: usize,
-    },
-    /// A coordinate is no number, or far from any picture.
-    #[error("part {part:?}, frame {frame}: found the point {found}, expected pixel coordinates within ±{limit}")]
-    OutOfRange {
-        /// Name of the part.
-        part: String,
-        /// Frame of the key, pin or centre.
-        frame: FrameNumber,
-        /// The point.
-        found: Point,
-        /// The largest coordinate allowed.
-        limit: f64,
-    },
-    /// A pin names a control point that the part does not have.
-    #[error("part {part:?}, frame {frame}: pin of point {index}, but the part has {count} points")]
-    NoSuchPoint {
-        /// Name of the part.
-        part: String,
-        /// Frame of the pin.
-        frame: FrameNumber,
-        /// Index of the point, from 0.
-        index: usize,
-        /// Number of points of the part.
-        count: usize,
-    },
-    /// Pictures of a shape that no scene has: scaled to the lines that the tracker works on they would fill the memory.
-    #[error("footage: found pictures of {width}x{height} pixels, expected at most {limit} times as wide as high")]
-    TooWide {
-        /// Width of the footage.
-        width: usize,
-        /// Height of the footage.
-        height: usize,
-        /// The largest quotient of both.
-        limit: usize,
-    },
-}
-
-/// What tracking found, in the order of the scene's parts.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tracking {
-    /// One entry a part.
-    pub parts: Vec<PartTrack>,
-    /// One entry a job, in the order of parts, then spans.
-    pub jobs: Vec<JobReport>,
-}
-
-/// How one part fared over one span.
-#[derive(Clone, Debug, PartialEq)]
-pub struct JobReport {
-    /// Index of the part in the scene.
-    pub part: usize,
-    /// The frames, keys included.
-    pub span: Span,
-    /// What the solver says.
-    pub summary: SpanSummary,
-    /// Whether it was solved in this run, not remembered from one before.
-    pub solved: bool,
-}
-
-/// The track of one part.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct PartTrack {
-    /// Control points by frame, from the first key to the last; of a part with one key, as far as it is trusted.
-    pub tracks: BTreeMap<FrameNumber, Vec<Point>>,
-    /// Confidence by frame and point, 0 to 1.
-    pub confidence: BTreeMap<FrameNumber, Vec<f64>>,
-    /// Where the track of a part with one key ends before the footage does, backwards first.
-    pub ends: Vec<TrackEnd>,
-}
-
-impl PartTrack {
-    /// Frames on which the part wants a key, since it was lost there.
-    pub fn wants_key(&self) -> Vec<FrameNumber> {
-        self.ends.iter().filter(|end| end.reason == Ending::Lost).map(|end| end.frame).collect()
-    }
-}
-
-/// Tracks all parts of a scene, and may keep what it computed for the next time.
-pub trait SceneSolver: Send {
-    /// Tracks every part between its first and its last key.
-    ///
-    /// The scene was checked; its footage is that of the last call, or the solver was told to forget. After an error the
-    /// solver still knows what it knew before.
-    fn track(
-        &mut self,
-        scene: &Scene,
-        frames: &dyn FrameSource,
-        progress: &dyn Progress,
-    ) -> Result<Tracking, TrackError>;
-
-    /// Forgets all results and pictures.
-    fn forget(&mut self);
 }
 
 /// Tracks scenes, and remembers what it solved from one run to the next.

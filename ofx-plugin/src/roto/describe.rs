@@ -1,10 +1,10 @@
 //! Clips and parameters of the effect.
 
+use super::overlay_entry;
 use crate::description::{self, About};
 use crate::ofx::entry::Action;
 use crate::ofx::{Failure, host};
 use crate::parameters;
-use crate::plugins;
 use openfx::sys::image_effect_v1::image_effect::{
     kOfxImageEffectPluginPropOverlayInteractV1, kOfxImageEffectPluginPropOverlayInteractV2,
     kOfxImageEffectPropSupportsOverlays,
@@ -23,10 +23,10 @@ pub fn describe(action: &Action) -> Result<(), Failure> {
     let properties = action.effect.properties()?;
     // A host without overlays may have no place for them.
     if host::properties()?.int(kOfxImageEffectPropSupportsOverlays, 0).is_ok_and(|supported| supported != 0) {
-        let _ = properties.set_pointer(kOfxImageEffectPluginPropOverlayInteractV1, 0, plugins::roto_overlay(false));
+        let _ = properties.set_pointer(kOfxImageEffectPluginPropOverlayInteractV1, 0, overlay_entry::of_host(false));
     }
     if host::draws() {
-        let _ = properties.set_pointer(kOfxImageEffectPluginPropOverlayInteractV2, 0, plugins::roto_overlay(true));
+        let _ = properties.set_pointer(kOfxImageEffectPluginPropOverlayInteractV2, 0, overlay_entry::of_host(true));
     }
     Ok(())
 }

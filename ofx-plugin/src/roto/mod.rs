@@ -9,7 +9,7 @@
 //! - [`picture`]: what is drawn
 //! - [`regions`]: where something is drawn, and what of the source that needs
 //! - [`render`]: the pixels of a window
-//! - [`overlay`]: contours over the viewer, control points that can be dragged
+//! - [`overlay`]: contours over the viewer, control points that can be dragged; [`overlay_entry`]: how the host calls it
 //! - [`buttons`]: load, save, track
 //! - [`track`]: core's tracker on the source's frames
 
@@ -17,6 +17,7 @@ pub mod buttons;
 pub mod describe;
 pub mod instance;
 pub mod overlay;
+pub mod overlay_entry;
 pub mod parts;
 pub mod picture;
 pub mod placement;

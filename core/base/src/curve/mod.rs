@@ -8,7 +8,7 @@
 //! - [`quadratic`]: a piece; evaluation, splitting, box, area
 //! - [`length`]: arc length and its inverse
 //! - [`nearest`]: the nearest point, a cubic
-//! - [`intersect`]: where two pieces meet, a quartic; `straight`: straight ones
+//! - [`intersect`]: where two pieces meet, a quartic; `straight`: straight ones; `meeting`: how they meet
 //! - [`spline`]: the whole curve
 //! - [`convert`]: to and from Bézier curves
 //!
@@ -18,14 +18,15 @@
 pub mod convert;
 pub mod intersect;
 pub mod length;
+mod meeting;
 pub mod nearest;
 pub mod quadratic;
 pub mod spline;
 mod straight;
 
 pub use convert::{Cubic, NotUniform};
-pub use intersect::Meeting;
 pub use length::ArcLengths;
+pub use meeting::Meeting;
 pub use nearest::Nearest;
 pub use quadratic::Quadratic;
 pub use spline::{Spline, SplineError};

@@ -6,7 +6,7 @@
 //! - Pieces that are points: met where the other passes through.
 
 use super::Quadratic;
-use super::intersect::{MERGE, Meeting, SAME};
+use super::meeting::{MERGE, Meeting, SAME};
 use crate::geometry::Point;
 use crate::numeric::roots::roots_in;
 

@@ -25,61 +25,65 @@ fn on_or_off(id: &'static str, help: &'static str) -> Arg {
 
 /// The subcommand.
 pub fn command() -> Command {
+    Command::new("translate")
+        .about("Re-makes a motion in another character's manner")
+        .args(of_task())
+        .args(of_method())
+        .arg(on_or_off("limb-lengths", "Whether limbs keep within the lengths of the style's own clips"))
+        .arg(on_or_off("contacts", "Whether feet that stand in the content's clip stay where they stand"))
+        .arg(arguments::output("OUT", "The file to write: one clip, with the standard deviation of each key point"))
+        .args(arguments::of_stage(Stage::Run))
+}
+
+/// What is translated.
+fn of_task() -> [Arg; 5] {
+    [
+        Arg::new("clips")
+            .value_name("CLIPS")
+            .help("The clips to learn from: a file of clips, or the folder of a library")
+            .required(true)
+            .value_parser(value_parser!(PathBuf)),
+        name("style", "The character in whose manner"),
+        name("motion", "The motion to make; a clip of it by that character is left out of account"),
+        name("content", "The character whose motion it was: gives length, timing and the way"),
+        Arg::new("key_pose")
+            .long("key-pose")
+            .value_name("FILE")
+            .help("Postures drawn for the result: one for its first frame, or a list of {\"frame\", \"points\"}")
+            .value_parser(value_parser!(PathBuf)),
+    ]
+}
+
+/// How it is translated.
+fn of_method() -> [Arg; 4] {
     let presets = Preset::ALL.iter().map(|(id, help, _)| PossibleValue::new(*id).help(*help));
     let paces = PossibleValuesParser::new([
         PossibleValue::new("content").help("That of the content's clip, frame by frame"),
         PossibleValue::new("style").help("Slower or faster, as the style's other clips are beside the content's"),
     ]);
-    Command::new("translate")
-        .about("Re-makes a motion in another character's manner")
-        .arg(
-            Arg::new("clips")
-                .value_name("CLIPS")
-                .help("The clips to learn from: a file of clips, or the folder of a library")
-                .required(true)
-                .value_parser(value_parser!(PathBuf)),
-        )
-        .arg(name("style", "The character in whose manner"))
-        .arg(name("motion", "The motion to make; a clip of it by that character is left out of account"))
-        .arg(name("content", "The character whose motion it was: gives length, timing and the way"))
-        .arg(
-            Arg::new("key_pose")
-                .long("key-pose")
-                .value_name("FILE")
-                .help("Postures drawn for the result: one for its first frame, or a list of {\"frame\", \"points\"}")
-                .value_parser(value_parser!(PathBuf)),
-        )
-        .arg(
-            Arg::new("style_preset")
-                .long("preset")
-                .help("The method that translates")
-                .default_value("rototoon")
-                .value_parser(PossibleValuesParser::new(presets)),
-        )
-        .arg(Arg::new("timing").long("timing").help("Whose timing").default_value("content").value_parser(paces))
-        .arg(
-            Arg::new("strength")
-                .long("strength")
-                .value_name("NUMBER")
-                .help("Factor on what the style adds to the motion, 0 to 3 (default preset)")
-                .default_value("1.1")
-                .allow_negative_numbers(true)
-                .value_parser(|text: &str| match text.parse::<f64>() {
-                    Ok(value) if (0.0..=3.0).contains(&value) => Ok(value),
-                    _ => Err("expected a number from 0 to 3"),
-                }),
-        )
-        .arg(
-            Arg::new("rank")
-                .long("rank")
-                .value_name("N")
-                .help("Components of the bilinear and liang2012 presets; else their own")
-                .value_parser(value_parser!(u16).range(1..=1000)),
-        )
-        .arg(on_or_off("limb-lengths", "Whether limbs keep within the lengths of the style's own clips"))
-        .arg(on_or_off("contacts", "Whether feet that stand in the content's clip stay where they stand"))
-        .arg(arguments::output("OUT", "The file to write: one clip, with the standard deviation of each key point"))
-        .args(arguments::of_stage(Stage::Run))
+    [
+        Arg::new("style_preset")
+            .long("preset")
+            .help("The method that translates")
+            .default_value("rototoon")
+            .value_parser(PossibleValuesParser::new(presets)),
+        Arg::new("timing").long("timing").help("Whose timing").default_value("content").value_parser(paces),
+        Arg::new("strength")
+            .long("strength")
+            .value_name("NUMBER")
+            .help("Factor on what the style adds to the motion, 0 to 3 (default preset)")
+            .default_value("1.1")
+            .allow_negative_numbers(true)
+            .value_parser(|text: &str| match text.parse::<f64>() {
+                Ok(value) if (0.0..=3.0).contains(&value) => Ok(value),
+                _ => Err("expected a number from 0 to 3"),
+            }),
+        Arg::new("rank")
+            .long("rank")
+            .value_name("N")
+            .help("Components of the bilinear and liang2012 presets; else their own")
+            .value_parser(value_parser!(u16).range(1..=1000)),
+    ]
 }
 
 /// Runs it.

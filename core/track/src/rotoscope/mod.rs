@@ -8,6 +8,8 @@
 //! Transactions on Graphics 23 (3), 2004. F is the number of steps from frame to frame; a mean is over a term's samples, those
 //! that are hidden included. Lengths are working pixels, colours 8-bit levels: the weights of the authors' system presume both.
 //!
+//! The presets are [`agarwala2004`] and [`liang2012`]. The terms:
+//!
 //! - [`length`]: change of the samples' distances, E_L
 //! - [`curvature`]: change of the second differences, E_C
 //! - [`velocity`]: way of the samples, E_V
@@ -31,6 +33,7 @@
 //! The Jacobian itself is never kept: a ribbon has millions of entries, but all rows of a sample share the same eight
 //! numbers, so JᵀJ is summed in those and spread to the control points once a sample.
 
+pub mod agarwala2004;
 pub mod appearance;
 pub mod blocks;
 pub mod colours;
@@ -39,6 +42,7 @@ pub mod curve;
 pub mod edge;
 pub mod energy;
 pub mod length;
+pub mod liang2012;
 pub mod pose;
 pub mod profile;
 pub mod ribbon;

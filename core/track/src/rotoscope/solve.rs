@@ -16,8 +16,8 @@ use super::curve::Curve;
 use super::energy::{Energy, Fixed, Method, Weights};
 use super::sureness::confidence;
 use super::views::{Scenery, Views, working_scale};
-use crate::job::{Job, SpanSummary, SpanTrack, Termination};
-use crate::tracker::TrackError;
+use crate::contract::error::TrackError;
+use crate::contract::job::{Job, SpanSummary, SpanTrack, Termination};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
 use rototoon_base::numeric::trust_region::{Objective, TrustOptions, TrustSummary, TrustTermination, minimise};
@@ -51,7 +51,7 @@ pub fn solve(
 ) -> Result<SpanTrack, TrackError> {
     let count = job.span.len();
     if count < 3 || job.keys[0].is_empty() {
-        return Ok(keys_only(job));
+        return Ok(job.keys_only());
     }
     let scale = working_scale(job.size.1);
     let scenery = scenery(views, job, frames, progress, scale)?;
@@ -172,16 +172,6 @@ fn fixed(job: &Job) -> Fixed {
     };
     let center = |index: usize| job.corrections.get(&index).is_some_and(|correction| correction.center.is_some());
     Fixed { points: (0..=last).map(points).collect(), centers: (0..=last).map(center).collect() }
-}
-
-/// The track of a job that has nothing to solve.
-fn keys_only(job: &Job) -> SpanTrack {
-    let mut points: Vec<Vec<Point>> = (0..job.span.len()).map(|index| job.interpolated(index)).collect();
-    points.iter_mut().enumerate().for_each(|(index, curve)| job.enforce(index, curve));
-    let confidence = points.iter().map(|curve| vec![1.0; curve.len()]).collect();
-    let summary =
-        SpanSummary { termination: Termination::NothingToSolve, iterations: 0, initial_cost: 0.0, final_cost: 0.0 };
-    SpanTrack { points, confidence, summary }
 }
 
 fn termination(of_solver: TrustTermination) -> Termination {

@@ -9,7 +9,7 @@ use super::curve::Curve;
 use super::pose::Pose;
 use super::profile::Profile;
 use super::views::Scenery;
-use crate::job::Job;
+use crate::contract::job::Job;
 use rototoon_base::geometry::Point;
 use rototoon_image::sample::read;
 

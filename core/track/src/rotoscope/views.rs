@@ -13,7 +13,7 @@
 //!
 //! Colours and G are in 8-bit levels, 0 to 255, the unit of the weights.
 
-use crate::TrackError;
+use crate::contract::error::TrackError;
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{Colour, FrameNumber, FrameSource, Raster};
 use rototoon_image::gaussian::{Border, blur};

@@ -1,6 +1,5 @@
 //! Which jobs are solved, in which order, and what is told meanwhile.
 
-use crate::rototoon::keys_only;
 use crate::{Job, SpanSolver, SpanTrack, TrackError, Tracker};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{
@@ -17,7 +16,7 @@ impl SpanSolver for Recorder {
     fn solve(&self, job: &Job, _: &dyn FrameSource, progress: &dyn Progress) -> Result<SpanTrack, TrackError> {
         progress.report("Recording", 0.5)?;
         self.0.lock().unwrap().push(job.clone());
-        Ok(keys_only(job))
+        Ok(job.keys_only())
     }
 
     fn forget_pictures(&self) {}

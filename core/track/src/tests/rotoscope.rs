@@ -1,9 +1,9 @@
 //! The presets `agarwala2004` and `liang2012` on an easy sequence, and at the edges of what they may be given.
 
-use crate::agarwala2004::Agarwala2004;
-use crate::job::{Correction, Job, SpanSolver, SpanTrack, Termination};
-use crate::liang2012::Liang2012;
-use crate::tracker::TrackError;
+use crate::contract::error::TrackError;
+use crate::contract::job::{Correction, Job, SpanSolver, SpanTrack, Termination};
+use crate::rotoscope::agarwala2004::Agarwala2004;
+use crate::rotoscope::liang2012::Liang2012;
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{Cancelled, Colour, FrameError, FrameNumber, FrameSource, Progress, Raster, Silent, Span};
 use std::collections::BTreeMap;

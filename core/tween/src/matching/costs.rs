@@ -2,8 +2,8 @@
 
 use super::super::grid::Grid;
 use super::super::stroke::Stroke;
-use super::movement::Movement;
 use super::outline::{Outline, Way, likely, wrap};
+use super::similarity::Movement;
 use super::{Fixed, Options};
 use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::similarity::Similarity;

@@ -23,14 +23,15 @@ mod movement;
 mod outline;
 mod pieces;
 mod relaxation;
+mod similarity;
 mod start;
 
 use super::stroke::{BadPoint, Stroke, checked};
 use costs::{Figure, Rows, Ways};
-use movement::Movement;
 use outline::Way;
 use relaxation::Chosen;
 use rototoon_base::scene::{Cancelled, Progress};
+use similarity::Movement;
 
 /// Rounds of matching and fitting of the movement around each stroke.
 const ROUNDS: usize = 3;

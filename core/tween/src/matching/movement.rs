@@ -3,6 +3,7 @@
 use super::super::grid::Grid;
 use super::costs::{Figure, Rows, Ways, bound};
 use super::relaxation::{self, Chosen, Neighbours};
+use super::similarity::Movement;
 use super::{Fixed, Options};
 use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
@@ -30,21 +31,6 @@ const RESTING: f64 = 0.02;
 const NEIGHBOURHOOD: f64 = 0.4;
 /// Neighbours from which the movement around a stroke is fitted, at most.
 const NEIGHBOURS: usize = 24;
-
-/// p ↦ scale · rotate(p − source) + target.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Movement {
-    pub turn: f64,
-    pub scale: f64,
-    pub source: Point,
-    pub target: Point,
-}
-
-impl Movement {
-    pub fn apply(&self, p: Point) -> Point {
-        (Point::from_angle(self.turn) * self.scale).rotate(p - self.source) + self.target
-    }
-}
 
 /// The movement of the whole drawing, and what matching under it found.
 pub(super) struct Whole {

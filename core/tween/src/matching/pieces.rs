@@ -7,8 +7,8 @@
 
 use super::super::grid::Grid;
 use super::super::stroke::Stroke;
-use super::movement::Movement;
 use super::outline::Outline;
+use super::similarity::Movement;
 use super::{Fixed, InPieces, Matching};
 use rototoon_base::geometry::Point;
 use std::collections::{BTreeMap, BTreeSet};

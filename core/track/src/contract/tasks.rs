@@ -1,0 +1,132 @@
+//! The work of a scene: each part over each of its spans; what is told of it meanwhile, and its results put together.
+
+use super::job::{Correction, Job, SpanTrack};
+use crate::contract::tracking::{JobReport, PartTrack, Tracking};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Cancelled, FrameNumber, Part, Progress, Scene, Span};
+use std::sync::Mutex;
+
+/// A part over a span, before its occluders are known.
+#[derive(Clone, Copy)]
+pub(crate) struct Task {
+    pub part: usize,
+    pub span: Span,
+    pub depth: f64,
+}
+
+/// All tasks of a scene, in the order of parts, then spans.
+pub(crate) fn tasks(scene: &Scene) -> Vec<Task> {
+    let of_part = |(part, p): (usize, &Part)| {
+        let depth = p.depth;
+        p.spans().into_iter().map(move |span| Task { part, span, depth }).collect::<Vec<_>>()
+    };
+    scene.parts.iter().enumerate().flat_map(of_part).collect()
+}
+
+/// The tasks to do next, or none when all are done: of those that wait for no other, the ones that share frames with the
+/// earliest. `waits(t, o)` tells whether task t needs the open task o first; it must be for the nearer part's only, so
+/// that there is always one that is ready.
+pub(crate) fn next_wave(
+    tasks: &[Task],
+    is_done: impl Fn(usize) -> bool,
+    waits: impl Fn(&Task, &Task) -> bool,
+) -> Option<Vec<usize>> {
+    let open: Vec<usize> = (0..tasks.len()).filter(|&t| !is_done(t)).collect();
+    let nearer = |t: usize, o: usize| tasks[o].depth > tasks[t].depth;
+    let held_up = |t: usize| open.iter().any(|&o| nearer(t, o) && waits(&tasks[t], &tasks[o]));
+    let ready: Vec<usize> = open.iter().copied().filter(|&t| !held_up(t)).collect();
+    let &earliest = ready.iter().min_by_key(|&&t| tasks[t].span)?;
+    Some(ready.into_iter().filter(|&t| overlap(tasks[t].span, tasks[earliest].span)).collect())
+}
+
+/// The closed contours nearer than `depth` on a frame: as keyed, else as `tracked` knows them of the task whose span the
+/// frame lies in.
+pub(crate) fn nearer_contours(
+    scene: &Scene,
+    tasks: &[Task],
+    (depth, frame): (f64, FrameNumber),
+    tracked: impl Fn(usize) -> Option<Vec<Point>>,
+) -> Vec<Vec<Point>> {
+    let nearer = scene.parts.iter().enumerate().filter(|(_, p)| p.closed && p.depth > depth && p.point_count() > 2);
+    let contour = |(index, p): (usize, &Part)| {
+        let holds = |t: &Task| t.part == index && t.span.first < frame && frame < t.span.last;
+        p.keys.get(&frame).cloned().or_else(|| tracked(tasks.iter().position(holds)?))
+    };
+    nearer.filter_map(contour).collect()
+}
+
+/// Whether two spans share frames.
+pub(crate) fn overlap(a: Span, b: Span) -> bool {
+    a.first <= b.last && b.first <= a.last
+}
+
+/// The job of a task; `occluders` as in [`Job`].
+pub(crate) fn job(scene: &Scene, task: Task, occluders: Vec<Vec<Vec<Point>>>) -> Job {
+    let Task { part, span, .. } = task;
+    let subject = &scene.parts[part];
+    let corrections = (1..span.len() - 1).filter_map(|index| {
+        let frame = span.first + index as FrameNumber;
+        let pins = subject.pins.get(&frame).cloned().unwrap_or_default();
+        let center = subject.centers.get(&frame).copied();
+        (!pins.is_empty() || center.is_some()).then_some((index, Correction { pins, center }))
+    });
+    Job {
+        name: subject.name.clone(),
+        closed: subject.closed,
+        span,
+        keys: [subject.keys[&span.first].clone(), subject.keys[&span.last].clone()],
+        corrections: corrections.collect(),
+        occluders,
+        size: (scene.footage.width, scene.footage.height),
+    }
+}
+
+/// The tracks of all parts, from those of their spans.
+pub(crate) fn assemble(scene: &Scene, tasks: &[Task], done: Vec<Option<(SpanTrack, bool)>>) -> Tracking {
+    let mut tracking = Tracking { parts: vec![PartTrack::default(); scene.parts.len()], jobs: Vec::new() };
+    for (task, result) in tasks.iter().zip(done) {
+        let Some((track, solved)) = result else { continue };
+        let part = &mut tracking.parts[task.part];
+        part.tracks.extend(task.span.frames().zip(track.points));
+        part.confidence.extend(task.span.frames().zip(track.confidence));
+        tracking.jobs.push(JobReport { part: task.part, span: task.span, summary: track.summary, solved });
+    }
+    tracking
+}
+
+/// Sums the progress of jobs that run side by side; a job weighs as much as it has points and frames.
+pub(crate) struct SharedProgress<'a> {
+    listener: &'a dyn Progress,
+    weights: Vec<f64>,
+    done: Mutex<Vec<f64>>,
+}
+
+impl<'a> SharedProgress<'a> {
+    pub fn new(listener: &'a dyn Progress, scene: &Scene, tasks: &[Task]) -> Self {
+        let weight = |t: &Task| ((t.span.len() - 1) * (scene.parts[t.part].point_count() + 8)) as f64;
+        let weights: Vec<f64> = tasks.iter().map(weight).collect();
+        let total: f64 = weights.iter().sum();
+        let weights = weights.into_iter().map(|w| w / total).collect();
+        Self { listener, weights, done: Mutex::new(vec![0.0; tasks.len()]) }
+    }
+
+    pub fn of(&self, task: usize) -> JobProgress<'_> {
+        JobProgress { shared: self, task }
+    }
+}
+
+/// The progress of one job among all.
+pub(crate) struct JobProgress<'a> {
+    shared: &'a SharedProgress<'a>,
+    task: usize,
+}
+
+impl Progress for JobProgress<'_> {
+    fn report(&self, step: &str, done: f64) -> Result<(), Cancelled> {
+        // The listener is told under the lock, so that it never sees the share fall.
+        let mut all = self.shared.done.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        all[self.task] = all[self.task].max(done.clamp(0.0, 1.0));
+        let share: f64 = all.iter().zip(&self.shared.weights).map(|(d, w)| d * w).sum();
+        self.shared.listener.report(step, share.min(1.0))
+    }
+}

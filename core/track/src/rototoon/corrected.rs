@@ -1,0 +1,157 @@
+//! What the artist's corrections add to the pool of hypotheses.
+//!
+//! Without corrections a pool depends on the keys and the pictures alone, so it is kept when the artist pins a point.
+//! Then, on each corrected drawing, every hypothesis is brought to the corrections and aligned again with them as
+//! constraints; one pin alone leaves the turn open, so turned starts are tried too. The best are carried from there to
+//! the drawings on both sides, while they find something that the pools there do not hold: that is how one pin mends its
+//! neighbours.
+
+use super::pool::{Hypothesis, Pools, hypothesis, is_new};
+use super::pooled::Pooled;
+use super::propagate::Pose;
+use super::stage::Stage;
+use crate::contract::error::TrackError;
+use crate::shared::drawings::Drawing;
+use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rototoon_base::geometry::{Point, polygon};
+
+/// Turns tried about the corrections' centre, in degrees.
+const TURNS: [f64; 8] = [-90.0, -60.0, -40.0, -20.0, 20.0, 40.0, 60.0, 90.0];
+/// Hypotheses of each model that are kept on a corrected drawing.
+const KEPT: usize = 4;
+/// Hypotheses of a corrected drawing that are carried on.
+const CARRIED: usize = 2;
+
+/// A part may come to lie this far from where its centre was put, in sizes of the part, if it was moved by twice as much.
+const CENTER_REACH: f64 = 0.15;
+
+/// By drawing of a stage: how far the part may lie from where the artist put its centre, in working pixels. Who moves a
+/// part a little means it to the pixel; who moves it far says where to look. `plain` is what is known without corrections.
+pub(super) fn center_reach(stage: &Stage, plain: &Pooled) -> Vec<f64> {
+    let reach = CENTER_REACH * stage.models[0].texture.mesh.size;
+    let of_drawing = |d: usize| {
+        let Some(center) = stage.correction(d).and_then(|c| c.center) else { return 0.0 };
+        let before = plain.own_points(stage.drawings[d].first);
+        let far = polygon::center(&before).distance(center) > 2.0 * reach * stage.scale;
+        if far { reach } else { 0.0 }
+    };
+    (0..stage.drawings.len()).map(of_drawing).collect()
+}
+
+/// The pools of a stage with corrections, from those without; `plain` are the drawings of the latter.
+pub(super) fn extend(stage: &Stage, plain: &[Drawing], pools: &Pools) -> Result<Pools, TrackError> {
+    let of = |d: &Drawing| plain.iter().position(|p| p.first <= d.first && d.first <= p.last).unwrap_or(0);
+    let last = stage.drawings.len() - 1;
+    let mut extended: Pools = (0..=last)
+        .into_par_iter()
+        .map(|d| {
+            // The keys' drawings come first and last in both groupings.
+            let source = if d == last { plain.len() - 1 } else { of(&stage.drawings[d]) };
+            let mut pool: Vec<Hypothesis> = pools[source].iter().map(Hypothesis::without_origin).collect();
+            if stage.corrected(d) {
+                pool = constrained(stage, d, &pool)?;
+            }
+            Ok(pool)
+        })
+        .collect::<Result<_, TrackError>>()?;
+    let sources = (1..last).filter(|&d| stage.corrected(d));
+    let ways: Vec<(usize, isize)> = sources.flat_map(|d| [(d, -1), (d, 1)]).collect();
+    let carried = |&(source, step): &(usize, isize)| carried_on(stage, &extended, source, step);
+    let more: Vec<Vec<(usize, Hypothesis)>> = ways.par_iter().map(carried).collect::<Result<_, TrackError>>()?;
+    for (d, new) in more.into_iter().flatten() {
+        if is_new(&extended[d], &new) {
+            extended[d].push(new);
+        }
+    }
+    Ok(extended)
+}
+
+/// The hypotheses of a corrected drawing, made to obey.
+fn constrained(stage: &Stage, d: usize, pool: &[Hypothesis]) -> Result<Vec<Hypothesis>, TrackError> {
+    stage.kit.progress.report("Tracking", 0.0)?;
+    let by_model: Vec<Vec<Hypothesis>> = [0, 1].par_iter().map(|&model| obeying(stage, d, model, pool)).collect();
+    let mut found: Vec<Hypothesis> = Vec::new();
+    for new in by_model.into_iter().flatten() {
+        if is_new(&found, &new) {
+            found.push(new);
+        }
+    }
+    Ok(found)
+}
+
+/// Those of one model, the best few starts aligned.
+fn obeying(stage: &Stage, d: usize, model: usize, pool: &[Hypothesis]) -> Vec<Hypothesis> {
+    let scenery = stage.scenery(model, d);
+    let settler = stage.models[model].settler(&scenery);
+    let own: Vec<&Hypothesis> = pool.iter().filter(|h| h.model == model).collect();
+    let from = |h: &&Hypothesis| {
+        let turned = TURNS.iter().map(|degrees| scenery.anchors.turned(&h.pose.nodes, degrees.to_radians()));
+        let settled = std::iter::once(h.pose.nodes.clone())
+            .chain(turned)
+            .map(|start| stage.models[model].measured(&scenery, settler.settle(&start)));
+        std::iter::once(stage.models[model].drawn(&scenery, &h.pose.nodes, &h.differences))
+            .chain(settled)
+            .collect::<Vec<Pose>>()
+    };
+    let mut starts: Vec<Pose> = own.par_iter().flat_map_iter(from).collect();
+    starts.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+    let mut kept: Vec<Hypothesis> = Vec::new();
+    for start in starts {
+        let start = hypothesis(stage, d, model, start, None);
+        if kept.iter().all(|h| h.distance(&start) > 4.0) {
+            kept.push(start);
+        }
+        if kept.len() == KEPT {
+            break;
+        }
+    }
+    let aligned = |start: &Hypothesis| {
+        let pose = stage.models[model].realigned(&scenery, &start.pose.nodes);
+        let free = (stage.center_reach[d] > 0.0).then(|| freed(stage, d, model, &pose.nodes)).flatten();
+        if let Some(free) = free.filter(|free| free.pose.energy < pose.energy) {
+            return free;
+        }
+        hypothesis(stage, d, model, pose, None)
+    };
+    kept.par_iter().map(aligned).collect()
+}
+
+/// A pose aligned to what is seen, with pins alone. None where that takes the part further from its centre than
+/// [`center_reach`] lets it.
+pub(super) fn freed(stage: &Stage, d: usize, model: usize, nodes: &[Point]) -> Option<Hypothesis> {
+    let pose = stage.models[model].seen(&stage.released(model, d), nodes);
+    Some(hypothesis(stage, d, model, pose, None)).filter(|free| stage.near_center(d, &free.points))
+}
+
+/// What the best hypotheses of a corrected drawing become on the drawings to one side of it.
+fn carried_on(
+    stage: &Stage,
+    pools: &Pools,
+    source: usize,
+    step: isize,
+) -> Result<Vec<(usize, Hypothesis)>, TrackError> {
+    let mut order: Vec<&Hypothesis> = pools[source].iter().collect();
+    order.sort_by(|a, b| a.pose.energy.total_cmp(&b.pose.energy));
+    let last = pools.len() - 1;
+    let mut found: Vec<(usize, Hypothesis)> = Vec::new();
+    for start in order.into_iter().take(CARRIED) {
+        let (mut from, mut nodes) = (source, start.pose.nodes.clone());
+        let mut moved: Option<Vec<Point>> = None;
+        loop {
+            let to = from.wrapping_add_signed(step);
+            if to == 0 || to >= last || stage.corrected(to) {
+                break;
+            }
+            let pose = stage.carry(start.model, &nodes, moved.as_deref(), from, to)?;
+            let new = hypothesis(stage, to, start.model, pose, None);
+            let known = |d: usize, h: &Hypothesis| d == to && h.model == new.model && h.distance(&new) <= 1.0;
+            if !is_new(&pools[to], &new) || found.iter().any(|(d, h)| known(*d, h)) {
+                break;
+            }
+            moved = Some(new.pose.nodes.iter().zip(&nodes).map(|(a, b)| *a - *b).collect());
+            (from, nodes) = (to, new.pose.nodes.clone());
+            found.push((to, new));
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,245 @@
+//! The chosen poses made into tracks: aligned where the part is seen, blended with the other key's model, refined by the
+//! contour's own templates where those fit better after it, made to obey the artist's corrections.
+
+use super::confidence;
+use super::corrected::freed;
+use super::lattice::texture::Cover;
+use super::mechanisms::Mechanism;
+use super::pool::{Hypothesis, hypothesis};
+use super::pooled::Pooled;
+use super::refine::{Frame, Key, Refiner};
+use super::stage::{Kit, Stage};
+use crate::contract::error::TrackError;
+use crate::contract::job::{Correction, SpanSummary, SpanTrack, Termination};
+use crate::contract::tasks::Task;
+use crate::shared::drawings::Drawing;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+use rototoon_base::geometry::{Point, polygon};
+use rototoon_base::scene::Scene;
+use std::sync::{Arc, OnceLock};
+
+/// Distance in working pixels at which the other key's model is no longer taken to mean the same place.
+const AGREEMENT: f64 = 4.0;
+/// Nearer contours further away than this from a part (working pixels) do not matter to it.
+const REACH: f64 = 24.0;
+
+/// What a part's track is made from, apart from its pools and the pictures.
+#[derive(Clone, PartialEq)]
+pub(super) struct Finish {
+    /// The chosen hypothesis of each drawing.
+    chosen: Vec<usize>,
+    /// By drawing: contours of nearer parts that reach the part, in working pixels.
+    occluders: Vec<Vec<Vec<Point>>>,
+}
+
+impl Finish {
+    /// The plan of member `m` of a stretch, whose paths are chosen; `hiding` is whether nearer parts hide it.
+    pub fn of(
+        scene: &Scene,
+        tasks: &[Task],
+        stretch: &[usize],
+        members: &[&Pooled],
+        paths: &[Vec<usize>],
+        (m, hiding): (usize, bool),
+    ) -> Self {
+        let own = members[m];
+        let chosen = |k: usize, d: usize| &members[k].pools[d][paths[k][d]];
+        let scale = crate::shared::features::working_scale(own.job.size.1);
+        let around = |d: usize| {
+            let first = own.job.span.first + own.drawings[d].first as i32;
+            let (low, high) = polygon::bounds(&chosen(m, d).points).unwrap_or_default();
+            let near = |contour: &Vec<Point>| {
+                let (a, b) = polygon::bounds(contour).unwrap_or_default();
+                a.x < high.x + REACH && a.y < high.y + REACH && b.x > low.x - REACH && b.y > low.y - REACH
+            };
+            let of_member = |k: usize| {
+                let (task, part) = (tasks[stretch[k]], &scene.parts[tasks[stretch[k]].part]);
+                if !hiding || task.depth <= tasks[stretch[m]].depth || !part.closed || part.point_count() <= 2 {
+                    return None;
+                }
+                let span = members[k].job.span;
+                if first < span.first || first > span.last {
+                    return None;
+                }
+                if let Some(key) = part.keys.get(&first) {
+                    return Some(key.iter().map(|&p| p / scale).collect());
+                }
+                let index = (first - span.first) as usize;
+                let drawing = members[k].drawings.iter().position(|x| x.first <= index && index <= x.last)?;
+                Some(chosen(k, drawing).points.clone())
+            };
+            (0..members.len()).filter_map(of_member).filter(near).collect()
+        };
+        let free = own.models.is_some();
+        let drawings = if free { own.drawings.len() } else { 0 };
+        let occluders = (0..drawings).map(around).collect();
+        Self { chosen: paths[m].clone(), occluders }
+    }
+}
+
+/// A track, what it was made from, and what is worth keeping for the next one: beside the chosen poses the whole pool
+/// counts, whose other hypotheses are blended in and weigh in the confidence.
+pub(super) struct Finished {
+    pub source: Arc<Pooled>,
+    pub plan: Finish,
+    settled: Vec<Settled>,
+    pub track: SpanTrack,
+}
+
+/// A drawing's chosen pose as it is seen under what hides it, where that changes it, its control points, and how sure they
+/// are.
+#[derive(Clone)]
+struct Settled {
+    seen: Option<Hypothesis>,
+    points: Vec<Point>,
+    confidence: Vec<f64>,
+}
+
+impl Finished {
+    /// What became of a drawing, if all that it was made from is the same again.
+    fn of(&self, source: &Pooled, plan: &Finish, d: usize) -> Option<&Settled> {
+        let old = &self.source;
+        let same_models = old.models.as_ref().zip(source.models.as_ref()).is_some_and(|(a, b)| Arc::ptr_eq(a, b));
+        let e = old.drawings.iter().position(|drawing| *drawing == source.drawings[d]).filter(|_| same_models)?;
+        let corrections = |pooled: &Pooled, at: &Drawing| -> Vec<Option<Correction>> {
+            (at.first..=at.last).map(|i| pooled.job.corrections.get(&i).cloned()).collect()
+        };
+        let same = self.plan.chosen[e] == plan.chosen[d]
+            && self.plan.occluders[e] == plan.occluders[d]
+            && corrections(old, &old.drawings[e]) == corrections(source, &source.drawings[d])
+            && old.pools[e] == source.pools[d];
+        same.then(|| &self.settled[e])
+    }
+}
+
+/// The track of a part whose path is chosen; `before` is what was made of the part last.
+pub(super) fn finish(
+    kit: Kit,
+    pooled: &Arc<Pooled>,
+    plan: Finish,
+    before: Option<&Finished>,
+) -> Result<Finished, TrackError> {
+    if pooled.models.is_none() {
+        let track = pooled.job.keys_only();
+        return Ok(Finished { source: pooled.clone(), plan, settled: Vec::new(), track });
+    }
+    let mut stage = Stage::set(kit, &pooled.job, pooled.models.clone())?;
+    stage.center_reach = pooled.center_reach.clone();
+    let width = stage.width();
+    stage.covers = plan.occluders.iter().map(|contours| Cover::new(contours, width)).collect();
+    let stage = &stage;
+    let refiner = OnceLock::new();
+    let settled: Vec<Settled> = (0..stage.drawings.len())
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|d| {
+            kit.progress.report("Tracking", 0.9)?;
+            let known = before.and_then(|before| before.of(pooled, &plan, d));
+            Ok(known.cloned().unwrap_or_else(|| settle(stage, pooled, &plan, &refiner, d)))
+        })
+        .collect::<Result<_, TrackError>>()?;
+    let track = track(stage, pooled, &settled, &plan.chosen);
+    Ok(Finished { source: pooled.clone(), plan, settled, track })
+}
+
+fn settle(stage: &Stage, pooled: &Pooled, plan: &Finish, refiner: &OnceLock<Option<Refiner>>, d: usize) -> Settled {
+    let (pool, chosen) = (&pooled.pools[d], plan.chosen[d]);
+    let between = d != 0 && d != stage.drawings.len() - 1;
+    let seen = (between && !plan.occluders[d].is_empty()).then(|| {
+        let chosen = &pool[chosen];
+        freed(stage, d, chosen.model, &chosen.pose.nodes).unwrap_or_else(|| {
+            let pose = stage.models[chosen.model].seen(&stage.scenery(chosen.model, d), &chosen.pose.nodes);
+            hypothesis(stage, d, chosen.model, pose, None)
+        })
+    });
+    let share = stage.drawings[d].first as f64 / (stage.job.span.len() - 1) as f64;
+    let own = seen.as_ref().unwrap_or(&pool[chosen]);
+    let mixes = stage.kit.mechanisms.has(Mechanism::Blending);
+    let rough = if mixes { blended(pool, own, share) } else { own.points.clone() };
+    let points = match refiner.get_or_init(|| self::refiner(stage)) {
+        Some(refiner) if between && stage.kit.mechanisms.has(Mechanism::Refinement) => {
+            refined(stage, refiner, d, share, rough)
+        }
+        _ => rough,
+    };
+    let confidence = confidence(stage, d, pool, chosen, seen.as_ref());
+    Settled { seen, points, confidence }
+}
+
+/// How sure each control point of a drawing is, the chosen pose being as it is seen.
+fn confidence(stage: &Stage, d: usize, pool: &[Hypothesis], chosen: usize, seen: Option<&Hypothesis>) -> Vec<f64> {
+    let replaced = seen.map(|seen| {
+        let mut pool = pool.to_vec();
+        pool[chosen] = seen.clone();
+        pool
+    });
+    let pool = replaced.as_deref().unwrap_or(pool);
+    confidence::of_drawing(&stage.models, &stage.features[d], &stage.covers[d], pool, chosen)
+}
+
+/// The contour's own templates, where it has a shape.
+fn refiner(stage: &Stage) -> Option<Refiner> {
+    let points = [0, 1].map(|k: usize| stage.job.keys[k].iter().map(|&p| p / stage.scale).collect::<Vec<_>>());
+    let key = |k: usize| Key {
+        points: &points[k],
+        picture: &stage.features[k * (stage.features.len() - 1)],
+        cover: &stage.models[k].cover,
+    };
+    let mut refiner = Refiner::new([key(0), key(1)], stage.job.closed)?;
+    if !stage.kit.mechanisms.has(Mechanism::FigureAndGround) {
+        refiner.forget_figure();
+    }
+    Some(refiner)
+}
+
+/// Refined control points of a drawing, or the rough ones where the templates fit those no worse.
+fn refined(stage: &Stage, refiner: &Refiner, d: usize, share: f64, rough: Vec<Point>) -> Vec<Point> {
+    let pins = stage.correction(d).map(|c| c.pins.iter().map(|(&j, &p)| (j, p / stage.scale)).collect());
+    let frame = Frame { picture: &stage.features[d], cover: &stage.covers[d], share, pins: pins.unwrap_or_default() };
+    refiner.improved(&frame, rough)
+}
+
+/// The chosen control points of a drawing: those of the other model are blended in where they agree, by how near
+/// its key is.
+fn blended(pool: &[Hypothesis], own: &Hypothesis, share: f64) -> Vec<Point> {
+    let others = pool.iter().filter(|h| h.model != own.model);
+    let Some(other) = others.min_by(|a, b| a.distance(own).total_cmp(&b.distance(own))) else {
+        return own.points.clone();
+    };
+    if other.pose.energy >= 1.5 * own.pose.energy + 0.005 {
+        return own.points.clone();
+    }
+    let nearness = if other.model == 1 { share } else { 1.0 - share };
+    let blend = |(a, b): (&Point, &Point)| {
+        let apart = a.distance(*b) / AGREEMENT;
+        a.lerp(*b, nearness * (-apart * apart).exp())
+    };
+    own.points.iter().zip(&other.points).map(blend).collect()
+}
+
+fn track(stage: &Stage, pooled: &Pooled, settled: &[Settled], path: &[usize]) -> SpanTrack {
+    let last = stage.job.span.len() - 1;
+    let (mut points, mut sure) = (Vec::new(), Vec::new());
+    for (d, drawing) in stage.drawings.iter().enumerate() {
+        let Settled { points: found, confidence, .. } = &settled[d];
+        for index in drawing.first..=drawing.last {
+            let mut on_frame = stage.key_of(d).unwrap_or_else(|| found.iter().map(|&p| p * stage.scale).collect());
+            stage.job.enforce_within(stage.center_reach[d] * stage.scale, index, &mut on_frame);
+            points.push(on_frame);
+            sure.push(if index == 0 || index == last { vec![1.0; found.len()] } else { confidence.clone() });
+        }
+    }
+    for (&index, correction) in &stage.job.corrections {
+        correction.pins.keys().for_each(|&j| sure[index][j] = 1.0);
+    }
+    let mean = |of: &dyn Fn(usize) -> f64| (0..settled.len()).map(of).sum::<f64>() / settled.len() as f64;
+    let first = |d: usize| pooled.pools[d][0].pose.energy;
+    let last_seen = |d: usize| settled[d].seen.as_ref().unwrap_or(&pooled.pools[d][path[d]]).pose.energy;
+    let summary = SpanSummary {
+        termination: Termination::PathChosen,
+        iterations: pooled.steps,
+        initial_cost: mean(&first),
+        final_cost: mean(&last_seen),
+    };
+    SpanTrack { points, confidence: sure, summary }
+}

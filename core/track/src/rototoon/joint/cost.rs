@@ -1,0 +1,111 @@
+//! What a choice of hypotheses costs: looks, given who hides whom, and torn joints.
+
+use super::contender::{Contender, Paths, State};
+use super::shadow::Shadows;
+use super::tie::Tie;
+use crate::rototoon::select::Smoothness;
+use rototoon_base::geometry::Point;
+
+/// The parts, who hides whom, and who hangs on whom.
+pub struct Scene<'a> {
+    /// The parts with their hypotheses.
+    pub contenders: &'a [Contender<'a>],
+    /// Who hides whom.
+    pub shadows: &'a Shadows,
+    /// Who hangs on whom.
+    pub ties: &'a [Tie],
+}
+
+impl Scene<'_> {
+    /// √U of a state of contender `c`, given the choices of the others; `instead` replaces one of those.
+    pub fn look(&self, c: usize, (d, h): State, paths: &Paths, instead: Option<(usize, usize)>) -> f64 {
+        let frame = self.contenders[c].frame_of(d);
+        let mut hidden = vec![0u64; self.shadows.words(c, d, h)];
+        for n in self.shadows.in_front_of(c) {
+            let replaced = instead.filter(|(who, _)| who == n).map(|(_, choice)| choice);
+            let chosen = || self.contenders[*n].drawing_at(frame).map(|near| paths[*n][near]);
+            let Some(choice) = replaced.or_else(chosen) else { continue };
+            if let Some(mask) = self.shadows.mask((c, *n), (d, h), choice) {
+                hidden.iter_mut().zip(mask).for_each(|(all, one)| *all |= one);
+            }
+        }
+        self.shadows.cost(c, (d, h), &hidden)
+    }
+
+    /// What the parts behind `c` cost if it is in a state; `but` is left out.
+    pub fn look_behind(&self, c: usize, (d, h): State, paths: &Paths, but: Option<usize>) -> f64 {
+        let mut sum = 0.0;
+        for &far in self.shadows.behind(c).iter().filter(|&&far| Some(far) != but) {
+            for e in 0..self.contenders[far].drawings.len() {
+                if self.contenders[c].drawing_at(self.contenders[far].frame_of(e)) == Some(d) {
+                    sum += self.look(far, (e, paths[far][e]), paths, Some((c, h)));
+                }
+            }
+        }
+        sum
+    }
+
+    /// What the joints of `c` cost if it is in a state; those with `but` are left out.
+    pub fn joints(&self, c: usize, state: State, paths: &Paths, but: Option<usize>) -> f64 {
+        let cost = |tie: &Tie| {
+            let other = tie.other(c).filter(|&(other, _)| Some(other) != but)?.0;
+            let near = self.contenders[other].drawing_at(self.contenders[c].frame_of(state.0))?;
+            Some(self.joint(tie, (c, state), (other, (near, paths[other][near]))))
+        };
+        self.ties.iter().filter_map(cost).sum()
+    }
+
+    /// What one joint costs between two contenders in their states.
+    pub fn joint(&self, tie: &Tie, (a, state_a): (usize, State), (b, state_b): (usize, State)) -> f64 {
+        let place = |c: usize, (d, h): State| {
+            let hypothesis = &self.contenders[c].pools[d][h];
+            tie.place(c, hypothesis.model, &hypothesis.pose.nodes)
+        };
+        match (place(a, state_a), place(b, state_b)) {
+            (Some(p), Some(q)) => Tie::cost(p, q),
+            _ => 0.0,
+        }
+    }
+
+    /// The joint between two contenders.
+    pub fn tie_of(&self, a: usize, b: usize) -> Option<&Tie> {
+        self.ties.iter().find(|tie| tie.other(a).is_some_and(|(other, _)| other == b))
+    }
+
+    /// The cost of motion of a contender.
+    pub fn smoothness(&self, c: usize) -> Smoothness {
+        Smoothness::new(self.contenders[c].models[0].texture.mesh.size)
+    }
+
+    /// The part of the joint energy that the choices of the contenders in `who` touch.
+    pub fn energy(&self, who: &[usize], paths: &Paths) -> f64 {
+        let mut seen: Vec<usize> = who.to_vec();
+        who.iter().for_each(|&c| seen.extend(self.shadows.behind(c)));
+        seen.sort_unstable();
+        seen.dedup();
+        let looks = |&c: &usize| {
+            let states = paths[c].iter().copied().enumerate();
+            states.map(|state| self.look(c, state, paths, None)).sum::<f64>()
+        };
+        let smooth = |&c: &usize| {
+            let pools = paths[c].iter().zip(&**self.contenders[c].pools);
+            let points: Vec<&[Point]> = pools.map(|(&h, pool)| &pool[h].points[..]).collect();
+            self.smoothness(c).of_path(&points)
+        };
+        seen.iter().map(looks).sum::<f64>() + who.iter().map(smooth).sum::<f64>() + self.torn(who, paths)
+    }
+
+    /// What the joints of some contenders cost; a joint between two of them counts once.
+    fn torn(&self, who: &[usize], paths: &Paths) -> f64 {
+        let touched = self.ties.iter().filter(|tie| who.iter().any(|&c| tie.other(c).is_some()));
+        let cost = |tie: &Tie| {
+            let [a, b] = tie.parts;
+            let on = |(d, &h): (usize, &usize)| {
+                let near = self.contenders[b].drawing_at(self.contenders[a].frame_of(d))?;
+                Some(self.joint(tie, (a, (d, h)), (b, (near, paths[b][near]))))
+            };
+            paths[a].iter().enumerate().filter_map(on).sum::<f64>()
+        };
+        touched.map(cost).sum()
+    }
+}

@@ -1,0 +1,124 @@
+//! Moves that lower the joint energy: the whole path of one part, or of two parts at once.
+//!
+//! With the other parts held, the energy of one part's path is a sum over drawings and over pairs and triples of
+//! neighbouring drawings, so that its best path is found exactly ([`best_path`]). Of two parts the state of a drawing is
+//! a pair of hypotheses; its motion cost is the sum of both parts' ([`pairs`](super::pairs)).
+
+use super::contender::{Paths, State};
+use super::cost::Scene;
+use super::pairs::{PairProblem, best_pair};
+use crate::rototoon::select::{Candidate, best_path};
+
+/// Hypotheses of each part that a move of two weighs on a drawing.
+const STATES: usize = 6;
+/// A smaller gain is rounding.
+const LEAST_GAIN: f64 = 1e-9;
+
+impl Scene<'_> {
+    /// New paths of one contender, or of a far and a near one of the same drawings, the others held; none where they
+    /// gain nothing.
+    pub fn proposal(&self, who: &[usize], paths: &Paths) -> Option<Vec<(usize, Vec<usize>)>> {
+        let new = match *who {
+            [c] => self.single(c, paths),
+            [far, near] => self.pair(far, near, paths),
+            _ => return None,
+        };
+        self.gains(&new, paths).then_some(new)
+    }
+
+    /// The contenders whose choices a move of some depends on: those that hide them, that they hide, that hide what they
+    /// hide, and that they hang on.
+    pub fn seen_by(&self, who: &[usize]) -> Vec<usize> {
+        let mut seen: Vec<usize> = who.to_vec();
+        for &c in who {
+            seen.extend(self.shadows.in_front_of(c));
+            for &far in self.shadows.behind(c) {
+                seen.push(far);
+                seen.extend(self.shadows.in_front_of(far));
+            }
+            seen.extend(self.ties.iter().filter_map(|tie| Some(tie.other(c)?.0)));
+        }
+        seen.sort_unstable();
+        seen.dedup();
+        seen
+    }
+
+    /// The best path of one contender, the others held.
+    fn single(&self, c: usize, paths: &Paths) -> Vec<(usize, Vec<usize>)> {
+        let pools = self.contenders[c].pools;
+        let candidates: Vec<Vec<Candidate>> = (0..pools.len())
+            .map(|d| {
+                let of = |h: usize| Candidate { cost: self.alone(c, (d, h), paths, None), points: &pools[d][h].points };
+                (0..pools[d].len()).map(of).collect()
+            })
+            .collect();
+        vec![(c, best_path(&candidates, self.smoothness(c)))]
+    }
+
+    /// The best paths of a far and a near contender of the same drawings, the others held.
+    fn pair(&self, far: usize, near: usize, paths: &Paths) -> Vec<(usize, Vec<usize>)> {
+        let drawings = self.contenders[far].pools.len();
+        let states = |c: usize| -> Vec<Vec<usize>> { (0..drawings).map(|d| self.states(c, d, paths)).collect() };
+        let states = [states(far), states(near)];
+        let costs = (0..drawings).map(|d| self.pair_costs([far, near], d, &states, paths)).collect();
+        let points = [far, near].map(|c| self.contenders[c].pools);
+        let problem = PairProblem {
+            costs,
+            points: std::array::from_fn(|which| {
+                let of = |(d, states): (usize, &Vec<usize>)| {
+                    states.iter().map(|&h| &points[which][d][h].points[..]).collect()
+                };
+                states[which].iter().enumerate().map(of).collect()
+            }),
+            smoothness: [self.smoothness(far), self.smoothness(near)],
+        };
+        let best = best_pair(&problem);
+        let path = |which: usize| best.iter().enumerate().map(|(d, pair)| states[which][d][pair[which]]).collect();
+        vec![(far, path(0)), (near, path(1))]
+    }
+
+    /// Costs of all pairs of states of a far and a near contender on a drawing, the near one's states innermost.
+    fn pair_costs(&self, [far, near]: [usize; 2], d: usize, states: &[Vec<Vec<usize>>; 2], paths: &Paths) -> Vec<f64> {
+        // What hides the far one depends on the pair, so that its own look is left to the table.
+        let far_alone =
+            |&f: &usize| self.look_behind(far, (d, f), paths, Some(near)) + self.joints(far, (d, f), paths, Some(near));
+        let far_costs: Vec<f64> = states[0][d].iter().map(far_alone).collect();
+        let near_costs: Vec<f64> = states[1][d].iter().map(|&n| self.alone(near, (d, n), paths, Some(far))).collect();
+        let tie = self.tie_of(far, near);
+        let mut table = Vec::new();
+        for (&f, far_cost) in states[0][d].iter().zip(&far_costs) {
+            for (&n, near_cost) in states[1][d].iter().zip(&near_costs) {
+                let look = self.look(far, (d, f), paths, Some((near, n)));
+                let torn = tie.map_or(0.0, |tie| self.joint(tie, (far, (d, f)), (near, (d, n))));
+                table.push(look + torn + far_cost + near_cost);
+            }
+        }
+        table
+    }
+
+    /// What a state costs, but for motion; nothing of `but` is counted.
+    fn alone(&self, c: usize, state: State, paths: &Paths, but: Option<usize>) -> f64 {
+        self.look(c, state, paths, None) + self.look_behind(c, state, paths, but) + self.joints(c, state, paths, but)
+    }
+
+    /// The hypotheses of a drawing that a move of two weighs: those of least energy and the present one.
+    fn states(&self, c: usize, d: usize, paths: &Paths) -> Vec<usize> {
+        let pool = &self.contenders[c].pools[d];
+        let mut order: Vec<usize> = (0..pool.len()).filter(|&h| h != paths[c][d]).collect();
+        order.sort_by(|&a, &b| pool[a].pose.energy.total_cmp(&pool[b].pose.energy));
+        order.truncate(STATES - 1);
+        order.push(paths[c][d]);
+        order
+    }
+
+    /// Whether the energy falls with new paths.
+    fn gains(&self, new: &[(usize, Vec<usize>)], paths: &Paths) -> bool {
+        if new.iter().all(|(c, path)| paths[*c] == *path) {
+            return false;
+        }
+        let who: Vec<usize> = new.iter().map(|(c, _)| *c).collect();
+        let mut changed = paths.to_vec();
+        new.iter().for_each(|(c, path)| changed[*c].clone_from(path));
+        self.energy(&who, &changed) < self.energy(&who, paths) - LEAST_GAIN
+    }
+}

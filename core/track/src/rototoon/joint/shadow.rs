@@ -1,0 +1,259 @@
+//! What of each hypothesis the hypotheses of nearer parts hide.
+
+use super::contender::{Contender, State};
+use crate::rototoon::lattice::texture::UNSEEN;
+use crate::rototoon::pool::{Hypothesis, Pools};
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rototoon_base::geometry::{Point, polygon};
+use rototoon_base::scene::Raster;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Cost of a sample that a nearer part hides, as a squared colour difference.
+pub const HIDDEN: f32 = UNSEEN;
+
+/// Side of the pixels that shadows are drawn in, in working pixels.
+const PIXEL: f64 = 3.0;
+
+/// Samples of a hypothesis under one of a nearer part: a bit each, none where no sample is.
+pub type Mask = Option<Box<[u64]>>;
+
+/// Masks on a contender by a nearer one: by far drawing, far hypothesis, near hypothesis.
+type Masks = Vec<Vec<Vec<Mask>>>;
+
+/// What the samples of a contender's hypotheses cost, by drawing and hypothesis.
+type Costs = Vec<Vec<SampleCosts>>;
+
+/// Which samples are hidden, by (far contender, near contender).
+pub struct Shadows {
+    masks: BTreeMap<(usize, usize), Arc<Masks>>,
+    costs: Vec<Arc<Costs>>,
+    in_front: Vec<Vec<usize>>,
+    behind: Vec<Vec<usize>>,
+}
+
+/// What the samples of a hypothesis cost, seen and hidden.
+struct SampleCosts {
+    seen: f64,
+    /// What hiding a sample adds.
+    hiding: Vec<f32>,
+    bending: f64,
+}
+
+/// The inside of a contour in its bounding box.
+struct Silhouette {
+    corner: Point,
+    pixels: Raster<bool>,
+}
+
+impl Silhouette {
+    fn new(contour: &[Point]) -> Option<Self> {
+        let (low, high) = polygon::bounds(contour)?;
+        let corner = (low / PIXEL).floor();
+        let extent = (high / PIXEL).ceil() - corner;
+        if !(extent.x * extent.y <= 1e6 && extent.min_element() >= 1.0) {
+            return None;
+        }
+        let mut pixels = Raster::new(extent.x as usize, extent.y as usize, false);
+        let moved: Vec<Point> = contour.iter().map(|&p| p / PIXEL - corner).collect();
+        let (width, height) = (pixels.width(), pixels.height());
+        polygon::for_each_span(&moved, width, height, |y, x0, x1| pixels.row_mut(y)[x0..x1].fill(true));
+        Some(Self { corner, pixels })
+    }
+
+    fn covers(&self, p: Point) -> bool {
+        let at = p / PIXEL - self.corner;
+        at.x >= 0.0
+            && at.y >= 0.0
+            && at.x < self.pixels.width() as f64
+            && at.y < self.pixels.height() as f64
+            && self.pixels.row(at.y as usize)[at.x as usize]
+    }
+
+    fn mask(&self, places: &[Point], (low, high): (Point, Point)) -> Mask {
+        let extent = Point::new(self.pixels.width() as f64, self.pixels.height() as f64);
+        let (own_low, own_high) = (self.corner * PIXEL, (self.corner + extent) * PIXEL);
+        if high.x < own_low.x || high.y < own_low.y || low.x > own_high.x || low.y > own_high.y {
+            return None;
+        }
+        let mut words = vec![0u64; places.len().div_ceil(64)];
+        for (i, &p) in places.iter().enumerate() {
+            words[i / 64] |= u64::from(self.covers(p)) << (i % 64);
+        }
+        words.iter().any(|&w| w != 0).then(|| words.into_boxed_slice())
+    }
+}
+
+/// Shadows cast before: those between pools that are the same still need not be cast again.
+#[derive(Default)]
+pub struct Memory {
+    before: Casts,
+    now: Casts,
+}
+
+/// What was cast, by the addresses of the pools, which are kept so that the addresses stay theirs.
+#[derive(Default)]
+struct Casts {
+    masks: BTreeMap<(usize, usize), PairCast>,
+    costs: BTreeMap<usize, (Arc<Pools>, Arc<Costs>)>,
+}
+
+/// A far and a near contender, and the masks, where there are any.
+type Fresh = ((usize, usize), Option<Arc<Masks>>);
+
+/// A far and a near contender's pools, and the masks, where there are any.
+type PairCast = ([Arc<Pools>; 2], Option<Arc<Masks>>);
+
+impl Memory {
+    /// Forgets what was not asked for since the last call of this.
+    pub fn turn(&mut self) {
+        self.before = std::mem::take(&mut self.now);
+    }
+}
+
+fn address(pools: &Arc<Pools>) -> usize {
+    Arc::as_ptr(pools).addr()
+}
+
+impl Shadows {
+    /// Casts the shadows of all hypotheses on all farther ones.
+    pub fn cast(contenders: &[Contender], memory: &mut Memory) -> Self {
+        let index: Vec<usize> = (0..contenders.len()).collect();
+        let pair = |&(f, n): &(usize, usize)| (address(contenders[f].pools), address(contenders[n].pools));
+        let pairs: Vec<(usize, usize)> = index
+            .iter()
+            .flat_map(|&f| index.iter().map(move |&n| (f, n)))
+            .filter(|&p| may_hide(contenders, p))
+            .collect();
+        let known = &memory.before;
+        let unknown: Vec<(usize, usize)> =
+            pairs.iter().copied().filter(|p| !known.masks.contains_key(&pair(p))).collect();
+        let silhouettes: Vec<Silhouettes> = index
+            .par_iter()
+            .with_max_len(1)
+            .map(|&n| if unknown.iter().any(|u| u.1 == n) { silhouettes(&contenders[n]) } else { Vec::new() })
+            .collect();
+        let fresh: Vec<Vec<Fresh>> =
+            index.par_iter().with_max_len(1).map(|&f| masks_on(contenders, &silhouettes, &unknown, f)).collect();
+        let costs: Vec<Arc<Costs>> = contenders
+            .par_iter()
+            .map(|c| known.costs.get(&address(c.pools)).map_or_else(|| Arc::new(sample_costs(c)), |(_, k)| k.clone()))
+            .collect();
+        let mut fresh: BTreeMap<_, _> = fresh.into_iter().flatten().collect();
+        let mut masks = BTreeMap::new();
+        for parts in pairs {
+            let found = known.masks.get(&pair(&parts)).map(|(_, masks)| masks.clone());
+            let found = found.or_else(|| fresh.remove(&parts)).flatten();
+            let pools = [parts.0, parts.1].map(|c| contenders[c].pools.clone());
+            memory.now.masks.insert(pair(&parts), (pools, found.clone()));
+            masks.extend(found.map(|found| (parts, found)));
+        }
+        for (c, costs) in contenders.iter().zip(&costs) {
+            memory.now.costs.insert(address(c.pools), (c.pools.clone(), costs.clone()));
+        }
+        let (mut in_front, mut behind) = (vec![Vec::new(); contenders.len()], vec![Vec::new(); contenders.len()]);
+        for &(far, near) in masks.keys() {
+            in_front[far].push(near);
+            behind[near].push(far);
+        }
+        Self { masks, costs, in_front, behind }
+    }
+
+    /// Whether nothing hides anything.
+    pub fn none(&self) -> bool {
+        self.masks.is_empty()
+    }
+
+    /// The pairs (far, near) of contenders of which one may hide the other.
+    pub fn pairs(&self) -> Vec<(usize, usize)> {
+        self.masks.keys().copied().collect()
+    }
+
+    /// The samples of a far hypothesis that a near one hides.
+    pub fn mask(&self, parts: (usize, usize), (drawing, hypothesis): State, near_hypothesis: usize) -> Option<&[u64]> {
+        self.masks.get(&parts)?[drawing][hypothesis].get(near_hypothesis)?.as_deref()
+    }
+
+    /// The contenders that may hide one.
+    pub fn in_front_of(&self, contender: usize) -> &[usize] {
+        &self.in_front[contender]
+    }
+
+    /// The contenders that one may hide.
+    pub fn behind(&self, contender: usize) -> &[usize] {
+        &self.behind[contender]
+    }
+
+    /// Number of words of a mask.
+    pub fn words(&self, contender: usize, drawing: usize, hypothesis: usize) -> usize {
+        self.costs[contender][drawing][hypothesis].hiding.len().div_ceil(64)
+    }
+
+    /// √U of a hypothesis of which the samples in `hidden` are unseen.
+    pub fn cost(&self, contender: usize, (drawing, hypothesis): State, hidden: &[u64]) -> f64 {
+        let costs = &self.costs[contender][drawing][hypothesis];
+        let mut sum = costs.seen;
+        for (w, &word) in hidden.iter().enumerate() {
+            let mut rest = word;
+            while rest != 0 {
+                sum += f64::from(costs.hiding[w * 64 + rest.trailing_zeros() as usize]);
+                rest &= rest - 1;
+            }
+        }
+        (sum + costs.bending).max(0.0).sqrt()
+    }
+}
+
+/// By drawing and hypothesis.
+type Silhouettes = Vec<Vec<Option<Silhouette>>>;
+
+fn silhouettes(c: &Contender) -> Silhouettes {
+    let of_pool = |pool: &Vec<Hypothesis>| pool.iter().map(|h| Silhouette::new(&h.points)).collect();
+    c.pools.iter().map(of_pool).collect()
+}
+
+/// Whether the second contender lies before the first one.
+fn may_hide(contenders: &[Contender], (far, near): (usize, usize)) -> bool {
+    let (far, near) = (&contenders[far], &contenders[near]);
+    near.hides && near.depth > far.depth && near.span.first < far.span.last && far.span.first < near.span.last
+}
+
+/// The masks on one contender by the nearer ones of the pairs it is the far one of.
+fn masks_on(contenders: &[Contender], silhouettes: &[Silhouettes], pairs: &[(usize, usize)], f: usize) -> Vec<Fresh> {
+    let far = &contenders[f];
+    let nearer: Vec<usize> = pairs.iter().filter(|pair| pair.0 == f).map(|pair| pair.1).collect();
+    if nearer.is_empty() {
+        return Vec::new();
+    }
+    let mut found: Vec<Masks> = nearer.iter().map(|_| Vec::new()).collect();
+    for (d, pool) in far.pools.iter().enumerate() {
+        found.iter_mut().for_each(|by| by.push(vec![Vec::new(); pool.len()]));
+        for (h, hypothesis) in pool.iter().enumerate() {
+            let measured = far.models[hypothesis.model].texture.measured();
+            let places: Vec<Point> = measured.iter().map(|t| t.binding.at(&hypothesis.pose.nodes)).collect();
+            let Some(bounds) = polygon::bounds(&places) else { continue };
+            for (by, &n) in found.iter_mut().zip(&nearer) {
+                let Some(near_drawing) = contenders[n].drawing_at(far.frame_of(d)) else { continue };
+                by[d][h] = silhouettes[n][near_drawing]
+                    .iter()
+                    .map(|s| s.as_ref().and_then(|s| s.mask(&places, bounds)))
+                    .collect();
+            }
+        }
+    }
+    let touching = |by: Masks| by.iter().flatten().flatten().any(Option::is_some).then(|| Arc::new(by));
+    nearer.into_iter().zip(found).map(|(n, by)| ((f, n), touching(by))).collect()
+}
+
+fn sample_costs(c: &Contender) -> Costs {
+    let of = |h: &Hypothesis| {
+        let texture = &c.models[h.model].texture;
+        let total: f32 = texture.measured().iter().map(|t| t.weight).sum();
+        let share = 1.0 / total.max(1e-6);
+        let hiding =
+            texture.measured().iter().zip(&h.differences).map(|(t, d)| t.weight * share * (HIDDEN - d)).collect();
+        let bending = texture.bending(&h.pose.nodes);
+        SampleCosts { seen: h.pose.energy - bending, hiding, bending }
+    };
+    c.pools.iter().map(|pool| pool.iter().map(of).collect()).collect()
+}

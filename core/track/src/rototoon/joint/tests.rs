@@ -1,0 +1,108 @@
+//! The joint choice on made-up hypotheses.
+
+use super::shadow::Memory;
+use super::{Contender, choose, tie};
+use crate::rototoon::lattice::align::Aligner;
+use crate::rototoon::lattice::mesh::Mesh;
+use crate::rototoon::lattice::texture::{Cover, Texture};
+use crate::rototoon::pool::{Hypothesis, Pools};
+use crate::rototoon::propagate::{Model, Pose};
+use crate::shared::drawings::Drawing;
+use crate::shared::features::Features;
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Raster, Span};
+use std::sync::Arc;
+
+/// A bar of 20 × 80 working pixels whose upper end's middle is the origin.
+fn bar() -> Vec<Point> {
+    [(-10.0, 0.0), (10.0, 0.0), (10.0, 80.0), (-10.0, 80.0)].map(|(x, y)| Point::new(x, y)).to_vec()
+}
+
+fn turned(shape: &[Point], degrees: f64, to: Point) -> Vec<Point> {
+    let turn = Point::from_angle(f64::to_radians(degrees));
+    shape.iter().map(|&p| turn.rotate(p) + to).collect()
+}
+
+/// A model of a shape on plain paper, that is at `there` at the other key.
+fn model(shape: &[Point], there: (f64, Point)) -> Model {
+    let paper = Features::new(&Raster::new(540, 540, [0.5f32; 3]));
+    let mesh = Mesh::new(shape, true);
+    let rest = mesh.rest.clone();
+    let cover = Cover::none(540.0);
+    let texture = Texture::new(mesh, &paper, &cover, 540.0);
+    let there = turned(&rest, there.0, there.1);
+    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent: rest }
+}
+
+fn hypothesis(model: &Model, degrees: f64, to: Point, look: f32) -> Hypothesis {
+    let nodes = turned(&model.texture.mesh.rest, degrees, to);
+    let points = model.texture.mesh.control_points(&nodes);
+    let differences = vec![look; model.texture.measured().len()];
+    Hypothesis::new(0, Pose { nodes, energy: f64::from(look) }, points, differences)
+}
+
+fn three_drawings() -> Vec<Drawing> {
+    (0..3).map(|i| Drawing { first: i, last: i }).collect()
+}
+
+#[test]
+fn two_parts_do_not_stand_in_one_place() {
+    let at = |x: f64| turned(&bar(), 0.0, Point::new(x, 200.0));
+    let still = (0.0, Point::ZERO);
+    let far_models = [model(&at(240.0), still), model(&at(240.0), still)];
+    let near_models = [model(&at(200.0), still), model(&at(200.0), still)];
+    let drawings = three_drawings();
+    let key = |models: &[Model; 2]| vec![hypothesis(&models[0], 0.0, Point::ZERO, 0.0)];
+    // On the middle drawing the far part fits the near one's place so well that alone it would go there.
+    let aside = hypothesis(&far_models[0], 0.0, Point::new(-40.0, 0.0), 0.0005);
+    let home = hypothesis(&far_models[0], 0.0, Point::ZERO, 0.02);
+    let far: Arc<Pools> = Arc::new(vec![key(&far_models), vec![aside, home], key(&far_models)]);
+    let near: Arc<Pools> = Arc::new(vec![key(&near_models), key(&near_models), key(&near_models)]);
+    let span = Span { first: 0, last: 2 };
+    let mut memory = Memory::default();
+    let chosen = |depth: f64, memory: &mut Memory| {
+        let contender =
+            |pools, models, depth| Contender { span, depth, hides: true, drawings: &drawings, pools, models };
+        let both = [contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)];
+        choose(&both, &tie::find(&both), vec![vec![0, 0, 0]; 2], memory)
+    };
+    // Parts of one depth hide nothing of each other.
+    assert_eq!(chosen(0.0, &mut memory), [[0, 0, 0], [0, 0, 0]]);
+    assert_eq!(chosen(1.0, &mut memory), [[0, 1, 0], [0, 0, 0]]);
+    // Shadows that are remembered are the ones that were cast, and depths may change.
+    memory.turn();
+    assert_eq!(chosen(1.0, &mut memory), [[0, 1, 0], [0, 0, 0]]);
+    assert_eq!(chosen(-1.0, &mut memory), [[0, 1, 0], [0, 0, 0]]);
+}
+
+#[test]
+fn the_hinge_of_a_swinging_limb_is_its_pivot() {
+    let pivot = Point::new(250.0, 150.0);
+    let body: Vec<Point> =
+        [(-60.0, -80.0), (60.0, -80.0), (60.0, 25.0), (-60.0, 25.0)].map(|(x, y)| Point::new(x, y) + pivot).to_vec();
+    let limb = turned(&bar(), 0.0, pivot - Point::new(0.0, 8.0));
+    // The limb swings by 50° about the pivot, the body stays.
+    let swing = Point::from_angle(f64::to_radians(50.0));
+    let swung = |shape: &[Point]| -> Vec<Point> { shape.iter().map(|&p| swing.rotate(p - pivot) + pivot).collect() };
+    let to = pivot - swing.rotate(pivot);
+    let limb_models = [
+        model(&limb, (50.0, to)),
+        model(&swung(&limb), (-50.0, pivot - Point::from_angle(f64::to_radians(-50.0)).rotate(pivot))),
+    ];
+    let body_models = [model(&body, (0.0, Point::ZERO)), model(&body, (0.0, Point::ZERO))];
+    let drawings = three_drawings();
+    let pools = |models: &[Model; 2]| -> Arc<Pools> {
+        let still = |m: usize| vec![hypothesis(&models[m], 0.0, Point::ZERO, 0.0)];
+        Arc::new(vec![still(0), still(0), still(1)])
+    };
+    let (limb_pools, body_pools) = (pools(&limb_models), pools(&body_models));
+    let span = Span { first: 0, last: 2 };
+    let contenders = [
+        Contender { span, depth: 0.0, hides: true, drawings: &drawings, pools: &limb_pools, models: &limb_models },
+        Contender { span, depth: 1.0, hides: true, drawings: &drawings, pools: &body_pools, models: &body_models },
+    ];
+    let ties = tie::find(&contenders);
+    assert_eq!(ties.len(), 1);
+    let place = ties[0].place(0, 0, &limb_models[0].texture.mesh.rest).unwrap();
+    assert!(place.distance(pivot) < 8.0, "{place}");
+}

@@ -1,0 +1,84 @@
+//! More hypotheses, once all parts have chosen together.
+//!
+//! What the joint choice found on one drawing is worth trying on its neighbours, as in [`super::pool`]. And where a part
+//! is in doubt, but the part that it hangs on is not, its joint is known: the part is tried in all directions about it.
+//! That finds limbs that swung too far or bent too much for the chains, in places that the search over the whole picture
+//! finds too poor.
+
+use super::joint::tie::Lead;
+use super::pool::{Hypothesis, Pools, hypothesis, is_new, swept};
+use super::pooled::Pooled;
+use super::propagate::{Pose, mean_distance};
+use super::stage::Stage;
+use crate::contract::error::TrackError;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+use rototoon_base::geometry::Point;
+
+/// Step of the turns tried about a joint, in degrees.
+const TURN_STEP: usize = 15;
+/// Hypotheses kept of each model and joint.
+const KEPT: usize = 3;
+/// Mean distance (working pixels) of two starts that are one.
+const SAME_PLACE: f64 = 6.0;
+
+/// The pools of a source with what is added by its chosen path and by the parts it hangs on.
+pub(super) fn mend(stage: &Stage, source: &Pooled, path: &[usize], leads: &[Lead]) -> Result<Pools, TrackError> {
+    let pools = &source.pools;
+    let last = pools.len() - 1;
+    let mut extended = Pools::clone(pools);
+    let (swept, _) = swept(stage, pools, path, true, &source.carried)?;
+    for hypotheses in [swept, led(stage, pools, last, leads)?] {
+        for (pool, more) in extended.iter_mut().zip(hypotheses) {
+            for new in more {
+                if is_new(pool, &new) {
+                    pool.push(new);
+                }
+            }
+        }
+    }
+    Ok(extended)
+}
+
+/// Hypotheses about the joints with surer parts.
+fn led(stage: &Stage, pools: &Pools, last: usize, leads: &[Lead]) -> Result<Pools, TrackError> {
+    (0..last + 1)
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|d| {
+            let mut found = Vec::new();
+            for lead in leads.iter().filter(|_| d != 0 && d != last && !stage.corrected(d)) {
+                let Some(place) = lead.places[d] else { continue };
+                stage.kit.progress.report("Tracking", 0.85)?;
+                for model in 0..2 {
+                    found.extend(about(stage, d, model, lead, place).into_iter().filter(|h| is_new(&pools[d], h)));
+                }
+            }
+            Ok(found)
+        })
+        .collect()
+}
+
+/// A model turned about its joint, where it fits best.
+fn about(stage: &Stage, d: usize, model: usize, lead: &Lead, place: Point) -> Vec<Hypothesis> {
+    let (own, scenery) = (&stage.models[model], stage.scenery(model, d));
+    let mut starts: Vec<Pose> = Vec::new();
+    for shape in [&own.texture.mesh.rest, &own.bent] {
+        let pivot = lead.bindings[model].at(shape);
+        for degrees in (0..360).step_by(TURN_STEP) {
+            let turn = Point::from_angle((degrees as f64).to_radians());
+            let nodes = shape.iter().map(|&q| turn.rotate(q - pivot) + place).collect();
+            starts.push(own.ranked(&scenery, nodes));
+        }
+    }
+    starts.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+    let mut kept: Vec<Pose> = Vec::new();
+    for start in starts {
+        if kept.iter().all(|k| mean_distance(&k.nodes, &start.nodes) > SAME_PLACE) {
+            kept.push(start);
+        }
+        if kept.len() == KEPT {
+            break;
+        }
+    }
+    kept.into_iter().map(|start| hypothesis(stage, d, model, own.realigned(&scenery, &start.nodes), None)).collect()
+}

@@ -1,0 +1,477 @@
+//! The default tracker: deformable texture lattices, carried from both keys, chosen for all parts together.
+//!
+//! 1. **Pools.** Each key gives a [`Model`](propagate::Model): the part's colours on a lattice that bends. Both are
+//!    carried drawing by drawing through the span, one forwards and one backwards, each always compared with its own key;
+//!    where they disagree they are searched for in the whole picture ([`pool`]). The artist's
+//!    corrections add to the pools (`corrected`).
+//! 2. **Choice.** All parts of a stretch of time choose their paths through the pools together ([`joint`]): nearer parts
+//!    hide farther ones, parts that hang together stay together. The choice adds to the pools, and is made again
+//!    (`mend`).
+//! 3. **Finish.** The chosen poses are aligned once more where nearer parts leave them to be seen, and their contours
+//!    refined (`finish`).
+//! 4. **Outward.** Parts with one key are followed from it, once the others are known ([`outward`]).
+//!
+//! Why: cartoons have flat colours and hard lines, so that a part's look at a key says nearly everything about it; a
+//! chain that compares with the key cannot drift; going both ways covers what appears or is hidden on one side.
+//!
+//! Work is handed to threads piece by piece (`with_max_len`): who is handed several would be waited for at the end.
+//!
+//! # Files
+//!
+//! - [`mechanisms`]: what can be switched off to measure it
+//! - [`lattice`]: a part's look at a key on a lattice that bends
+//! - [`stage`]: what a job is solved with
+//! - [`propagate`]: motion from a neighbour
+//! - [`search`]: motion from nowhere, by comparing everywhere
+//! - [`pool`]: the hypotheses of both, drawing by drawing
+//! - `pooled`: the hypotheses of a job, and what they were made from
+//! - `corrected`: what the artist's corrections add to the pools
+//! - [`select`]: which hypothesis a part alone follows
+//! - [`joint`]: which hypotheses all parts follow together
+//! - `mend`: what that choice adds to the pools
+//! - `finish`: the chosen poses made into tracks, with [`refine`]: contours brought onto the drawing by its colours
+//! - [`confidence`]: how sure a point is
+//! - [`outward`]: parts with one key, followed until they are lost
+//!
+//! # Memory
+//!
+//! Each step is a pure function of what it is given, and the last result of each is kept: a pin on one part leaves the
+//! pools of all others, and all that the choice does not change.
+
+pub mod confidence;
+mod corrected;
+mod finish;
+pub mod joint;
+pub mod lattice;
+pub mod mechanisms;
+mod mend;
+pub mod outward;
+pub mod pool;
+mod pooled;
+pub mod propagate;
+pub mod refine;
+pub mod search;
+pub mod select;
+pub mod stage;
+
+use crate::contract::error::TrackError;
+use crate::contract::job::{Job, SpanTrack};
+use crate::contract::tasks::{SharedProgress, Task, assemble, job, nearer_contours, next_wave, tasks};
+use crate::contract::tracking::{SceneSolver, Tracking};
+use crate::shared::drawings::Drawing;
+use crate::shared::store::Store;
+use finish::{Finish, Finished, finish};
+use joint::Contender;
+use joint::shadow::Memory;
+use joint::tie::{self, Lead, Tie, leads};
+use mechanisms::{Mechanism, Mechanisms};
+use mend::mend;
+use outward::plan::Portion;
+use pooled::Pooled;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Footage, FrameNumber, FrameSource, Progress, Scene, Span};
+use stage::{Kit, Stage};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// How many times as wide as high pictures may be: they are worked on with [540 lines](crate::shared::features), so that a strip of
+/// few lines would be enlarged to hundreds of millions of pixels.
+pub const WIDEST: usize = 32;
+
+/// The default preset's solver.
+#[derive(Default)]
+pub struct Rototoon {
+    store: Store,
+    plain: BTreeMap<(String, Span), Arc<Pooled>>,
+    corrected: BTreeMap<(String, Span), Arc<Pooled>>,
+    mended: BTreeMap<(String, Span), Mended>,
+    finished: BTreeMap<(String, Span), Finished>,
+    shadows: Memory,
+    outward: outward::plan::Memory,
+    mechanisms: Mechanisms,
+}
+
+/// The pools of a job without and with its corrections, and whether anything was made now.
+type FoundPools = (Arc<Pooled>, Arc<Pooled>, bool);
+
+/// Pools with what a joint choice added, and what they were made from.
+#[derive(Clone)]
+struct Mended {
+    source: Arc<Pooled>,
+    path: Vec<usize>,
+    leads: Vec<Lead>,
+    result: Arc<Pooled>,
+}
+
+impl SceneSolver for Rototoon {
+    fn track(
+        &mut self,
+        scene: &Scene,
+        frames: &dyn FrameSource,
+        progress: &dyn Progress,
+    ) -> Result<Tracking, TrackError> {
+        if too_wide(&scene.footage) {
+            let Footage { width, height, .. } = scene.footage;
+            return Err(TrackError::TooWide { width, height, limit: WIDEST });
+        }
+        let tasks = tasks(scene);
+        let single = outward::plan::subjects(scene).len();
+        let between = tasks.len() as f64 / (tasks.len() + single).max(1) as f64;
+        let first = Portion { listener: progress, range: [0.0, between] };
+        let mut tracking = self.track_between(scene, &tasks, frames, &first)?;
+        if single > 0 {
+            let rest = Portion { listener: progress, range: [between, 1.0] };
+            self.outward.run(&self.store, scene, frames, &rest, &mut tracking)?;
+        }
+        Ok(tracking)
+    }
+
+    fn forget(&mut self) {
+        *self = Self::new(self.mechanisms);
+    }
+}
+
+/// Whether footage is more than [`WIDEST`] times as wide as high.
+pub fn too_wide(footage: &Footage) -> bool {
+    footage.width > WIDEST * footage.height
+}
+
+impl Rototoon {
+    /// A solver that knows nothing yet and uses these mechanisms.
+    pub fn new(mechanisms: Mechanisms) -> Self {
+        Self { mechanisms, ..Self::default() }
+    }
+
+    /// Tracks the parts between their keys.
+    fn track_between(
+        &mut self,
+        scene: &Scene,
+        tasks: &[Task],
+        frames: &dyn FrameSource,
+        progress: &dyn Progress,
+    ) -> Result<Tracking, TrackError> {
+        let shared = SharedProgress::new(progress, scene, tasks);
+        self.read(scene, tasks, frames, progress)?;
+        let (pooled, fresh) = self.pool_all(scene, tasks, frames, &shared)?;
+        let mut done: Vec<Option<(SpanTrack, bool)>> = vec![None; tasks.len()];
+        for stretch in stretches(tasks) {
+            let members: Vec<&Pooled> = stretch.iter().map(|&t| &*pooled[t]).collect();
+            let start = members.iter().map(|m| m.path.clone()).collect();
+            let mut joints = None;
+            let (paths, leads) = self.chosen((scene, tasks, &stretch), &members, start, &mut joints);
+            let mended = self.mend_all(&stretch, &pooled, &paths, &leads, frames, &shared)?;
+            let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
+            let (paths, _) = self.chosen((scene, tasks, &stretch), &members, paths, &mut joints);
+            let hiding = self.mechanisms.has(Mechanism::Hiding);
+            let plan = |m: usize| Finish::of(scene, tasks, &stretch, &members, &paths, (m, hiding));
+            let plans = (0..members.len()).map(plan).collect();
+            let tracks = self.finish_all(&stretch, &mended, plans, frames, &shared)?;
+            for (&t, (track, new)) in stretch.iter().zip(tracks) {
+                shared.of(t).report("Tracking", 1.0)?;
+                done[t] = Some((track, new || fresh[t]));
+            }
+        }
+        self.shadows.turn();
+        self.keep_only(&pooled);
+        Ok(assemble(scene, tasks, done))
+    }
+
+    /// Makes what many tasks need of the pictures before the tasks are shared out to threads, which would wait for it.
+    fn read(
+        &self,
+        scene: &Scene,
+        tasks: &[Task],
+        frames: &dyn FrameSource,
+        progress: &dyn Progress,
+    ) -> Result<(), TrackError> {
+        let new = tasks.iter().filter(|t| !self.plain.contains_key(&(scene.parts[t.part].name.clone(), t.span)));
+        let spans: BTreeSet<Span> = new.map(|task| task.span).collect();
+        let numbers: BTreeSet<FrameNumber> = spans.iter().flat_map(Span::frames).collect();
+        self.store.read(frames, &Vec::from_iter(numbers), progress)?;
+        let mut pairs = BTreeSet::new();
+        for span in spans {
+            let held = |&frame: &FrameNumber| {
+                progress.report("Reading frames", 0.0)?;
+                self.store.held(frames, frame)
+            };
+            let until: Vec<FrameNumber> = (span.first..span.last).collect();
+            let held: Vec<bool> = until.par_iter().map(held).collect::<Result<_, TrackError>>()?;
+            let mut before = span.first;
+            for (frame, held) in (span.first + 1..=span.last).zip(held) {
+                if !held {
+                    pairs.extend([(before, frame), (frame, before)]);
+                    before = frame;
+                }
+            }
+        }
+        Vec::from_iter(pairs).par_iter().with_max_len(1).try_for_each(|&(from, to)| {
+            progress.report("Reading frames", 0.0)?;
+            self.store.flow(frames, from, to).map(|_| ())
+        })
+    }
+
+    /// Forgets the spans that are no more, since keys were set or taken away.
+    fn keep_only(&mut self, pooled: &[Arc<Pooled>]) {
+        let present: BTreeSet<(String, Span)> = pooled.iter().map(|p| p.key()).collect();
+        self.plain.retain(|key, _| present.contains(key));
+        self.corrected.retain(|key, _| present.contains(key));
+        self.mended.retain(|key, _| present.contains(key));
+        self.finished.retain(|key, _| present.contains(key));
+    }
+
+    /// The pools of all tasks, and whether they were made now.
+    fn pool_all(
+        &mut self,
+        scene: &Scene,
+        tasks: &[Task],
+        frames: &dyn FrameSource,
+        shared: &SharedProgress,
+    ) -> Result<(Vec<Arc<Pooled>>, Vec<bool>), TrackError> {
+        let mut done: Vec<Option<(Arc<Pooled>, bool)>> = vec![None; tasks.len()];
+        // What nearer parts hide on a task's keys must be known, also where they are in the middle of a span there.
+        let within = |o: &Task, frame: FrameNumber| o.span.first < frame && frame < o.span.last;
+        let waits = |task: &Task, other: &Task| {
+            scene.parts[other.part].closed && (within(other, task.span.first) || within(other, task.span.last))
+        };
+        while let Some(wave) = next_wave(tasks, |t| done[t].is_some(), waits) {
+            let jobs: Vec<Job> =
+                wave.iter().map(|&t| job(scene, tasks[t], occluders(scene, tasks, &done, t))).collect();
+            let results: Vec<Result<FoundPools, TrackError>> = wave
+                .par_iter()
+                .with_max_len(1)
+                .zip(&jobs)
+                .map(|(&t, job)| {
+                    let kit = Kit { store: &self.store, frames, progress: &shared.of(t), mechanisms: self.mechanisms };
+                    let result = self.pool(kit, job)?;
+                    kit.progress.report("Tracking", 0.8)?;
+                    Ok(result)
+                })
+                .collect();
+            for (t, result) in wave.into_iter().zip(results) {
+                let (plain, with_corrections, solved) = result?;
+                let key = plain.key();
+                self.plain.insert(key.clone(), plain);
+                self.corrected.insert(key, with_corrections.clone());
+                done[t] = Some((with_corrections, solved));
+            }
+        }
+        Ok(done.into_iter().flatten().unzip())
+    }
+
+    /// The paths of the members of a stretch, chosen together from the ones given, and what leads each member. `ties` are
+    /// found where none are given: they lie in the keys, and are the same for every choice of a stretch.
+    fn chosen(
+        &mut self,
+        (scene, tasks, stretch): (&Scene, &[Task], &[usize]),
+        members: &[&Pooled],
+        start: Vec<Vec<usize>>,
+        ties: &mut Option<Vec<Tie>>,
+    ) -> (Vec<Vec<usize>>, Vec<Vec<Lead>>) {
+        if !self.mechanisms.has(Mechanism::JointChoice) {
+            return (start, vec![Vec::new(); members.len()]);
+        }
+        let free: Vec<usize> = (0..members.len()).filter(|&m| members[m].models.is_some()).collect();
+        let contender = |&m: &usize| {
+            let (task, pooled) = (tasks[stretch[m]], members[m]);
+            let part = &scene.parts[task.part];
+            Some(Contender {
+                span: task.span,
+                depth: task.depth,
+                hides: part.closed && part.point_count() > 2,
+                drawings: &pooled.drawings,
+                pools: &pooled.pools,
+                models: pooled.models.as_deref()?,
+            })
+        };
+        let mut contenders: Vec<Contender> = free.iter().filter_map(contender).collect();
+        let hang = self.mechanisms.has(Mechanism::Joints);
+        let ties = ties.get_or_insert_with(|| if hang { tie::find(&contenders) } else { Vec::new() });
+        if !self.mechanisms.has(Mechanism::Hiding) {
+            contenders.iter_mut().for_each(|contender| contender.hides = false);
+        }
+        let start = free.iter().map(|&m| start[m].clone()).collect();
+        let found = joint::choose(&contenders, ties, start, &mut self.shadows);
+        let led = leads(&contenders, ties, &found);
+        let (mut paths, mut all_leads) = (vec![Vec::new(); members.len()], vec![Vec::new(); members.len()]);
+        for ((&m, path), lead) in free.iter().zip(found).zip(led) {
+            (paths[m], all_leads[m]) = (path, lead);
+        }
+        (paths, all_leads)
+    }
+
+    /// The pools of a stretch's members with what their joint choice adds.
+    fn mend_all(
+        &mut self,
+        stretch: &[usize],
+        pooled: &[Arc<Pooled>],
+        paths: &[Vec<usize>],
+        leads: &[Vec<Lead>],
+        frames: &dyn FrameSource,
+        shared: &SharedProgress,
+    ) -> Result<Vec<Arc<Pooled>>, TrackError> {
+        let members: Vec<usize> = (0..stretch.len()).collect();
+        let mended: Vec<Result<Mended, TrackError>> = members
+            .par_iter()
+            .with_max_len(1)
+            .map(|&m| {
+                let source = &pooled[stretch[m]];
+                let key = source.key();
+                let same = |known: &&Mended| {
+                    Arc::ptr_eq(&known.source, source) && known.path == paths[m] && known.leads == leads[m]
+                };
+                if let Some(known) = self.mended.get(&key).filter(same) {
+                    return Ok(known.clone());
+                }
+                let kit =
+                    Kit { store: &self.store, frames, progress: &shared.of(stretch[m]), mechanisms: self.mechanisms };
+                let result = Arc::new(mended_pools(kit, source, &paths[m], &leads[m])?);
+                Ok(Mended { source: source.clone(), path: paths[m].clone(), leads: leads[m].clone(), result })
+            })
+            .collect();
+        let mut results = Vec::new();
+        for mended in mended {
+            let mended = mended?;
+            results.push(mended.result.clone());
+            self.mended.insert(mended.source.key(), mended);
+        }
+        Ok(results)
+    }
+
+    /// The tracks of a stretch's members on their chosen paths, and whether they were solved now: what was solved before
+    /// from the same pools by the same plan is taken as it was.
+    fn finish_all(
+        &mut self,
+        stretch: &[usize],
+        mended: &[Arc<Pooled>],
+        plans: Vec<Finish>,
+        frames: &dyn FrameSource,
+        shared: &SharedProgress,
+    ) -> Result<Vec<(SpanTrack, bool)>, TrackError> {
+        let results: Vec<Result<(SpanTrack, Option<Finished>), TrackError>> = stretch
+            .par_iter()
+            .with_max_len(1)
+            .zip(plans)
+            .zip(mended)
+            .map(|((&t, plan), source)| {
+                let before = self.finished.get(&source.key());
+                if let Some(known) = before.filter(|known| Arc::ptr_eq(&known.source, source) && known.plan == plan) {
+                    return Ok((known.track.clone(), None));
+                }
+                let kit = Kit { store: &self.store, frames, progress: &shared.of(t), mechanisms: self.mechanisms };
+                let new = finish(kit, source, plan, before)?;
+                Ok((new.track.clone(), Some(new)))
+            })
+            .collect();
+        let mut tracks = Vec::with_capacity(results.len());
+        for result in results {
+            let (track, new) = result?;
+            tracks.push((track, new.is_some()));
+            if let Some(new) = new {
+                self.finished.insert(new.source.key(), new);
+            }
+        }
+        Ok(tracks)
+    }
+
+    /// The pools of a job without and with its corrections, and whether anything was made.
+    fn pool(&self, kit: Kit, job: &Job) -> Result<FoundPools, TrackError> {
+        let key = (job.name.clone(), job.span);
+        let bare = Job { corrections: BTreeMap::new(), ..job.clone() };
+        let (plain, mut solved) = match self.plain.get(&key) {
+            Some(known) if known.job == bare => (known.clone(), false),
+            _ => (Arc::new(plain_pools(kit, bare)?), true),
+        };
+        if job.corrections.is_empty() || plain.models.is_none() {
+            return Ok((plain.clone(), plain, solved));
+        }
+        let with_corrections = match self.corrected.get(&key) {
+            Some(known) if known.job == *job => known.clone(),
+            _ => {
+                solved = true;
+                Arc::new(corrected_pools(kit, job, &plain)?)
+            }
+        };
+        Ok((plain, with_corrections, solved))
+    }
+}
+
+fn plain_pools(kit: Kit, job: Job) -> Result<Pooled, TrackError> {
+    if job.span.len() == 2 || job.keys[0].is_empty() {
+        let drawings = (0..job.span.len()).map(|i| Drawing { first: i, last: i }).collect();
+        return Ok(Pooled {
+            job,
+            drawings,
+            models: None,
+            pools: Arc::default(),
+            carried: Arc::default(),
+            path: Vec::new(),
+            steps: 0,
+            center_reach: Vec::new(),
+        });
+    }
+    let stage = Stage::set(kit, &job, None)?;
+    let (pools, path, carried) = pool::fill(&stage)?;
+    let (drawings, models) = (stage.drawings.clone(), Some(stage.models.clone()));
+    let (pools, steps) = (Arc::new(pools), stage.steps_done.into_inner());
+    let center_reach = vec![0.0; drawings.len()];
+    Ok(Pooled { job, drawings, models, pools, carried: Arc::new(carried), path, steps, center_reach })
+}
+
+fn corrected_pools(kit: Kit, job: &Job, plain: &Pooled) -> Result<Pooled, TrackError> {
+    let mut stage = Stage::set(kit, job, plain.models.clone())?;
+    stage.center_reach = corrected::center_reach(&stage, plain);
+    let pools = corrected::extend(&stage, &plain.drawings, &plain.pools)?;
+    let path = pool::choose(&stage, &pools);
+    let (drawings, models) = (stage.drawings.clone(), Some(stage.models.clone()));
+    let (pools, steps) = (Arc::new(pools), stage.steps_done.into_inner());
+    let center_reach = stage.center_reach;
+    let (job, carried) = (job.clone(), Arc::default());
+    Ok(Pooled { job, drawings, models, pools, carried, path, steps, center_reach })
+}
+
+fn mended_pools(kit: Kit, source: &Pooled, path: &[usize], leads: &[Lead]) -> Result<Pooled, TrackError> {
+    let (drawings, models) = (source.drawings.clone(), source.models.clone());
+    let pools = if models.is_some() {
+        Arc::new(mend(&Stage::set(kit, &source.job, models.clone())?, source, path, leads)?)
+    } else {
+        source.pools.clone()
+    };
+    let Pooled { job, steps, center_reach, .. } = source;
+    let (job, path, center_reach) = (job.clone(), path.to_vec(), center_reach.clone());
+    let carried = Arc::default();
+    Ok(Pooled { job, drawings, models, pools, carried, path, steps: *steps, center_reach })
+}
+
+/// Tasks that share frames between their keys, directly or by others, in the order of time.
+fn stretches(tasks: &[Task]) -> Vec<Vec<usize>> {
+    let mut order: Vec<usize> = (0..tasks.len()).collect();
+    order.sort_by_key(|&t| (tasks[t].span, t));
+    let mut stretches: Vec<(FrameNumber, Vec<usize>)> = Vec::new();
+    for t in order {
+        let span = tasks[t].span;
+        match stretches.last_mut() {
+            Some((end, members)) if span.first < *end => {
+                *end = (*end).max(span.last);
+                members.push(t);
+            }
+            _ => stretches.push((span.last, vec![t])),
+        }
+    }
+    stretches.into_iter().map(|(_, members)| members).collect()
+}
+
+/// What hides a task's part on its keys; parts between keys of their own are where they track by themselves.
+fn occluders(scene: &Scene, tasks: &[Task], done: &[Option<(Arc<Pooled>, bool)>], t: usize) -> Vec<Vec<Vec<Point>>> {
+    let Task { span, depth, .. } = tasks[t];
+    let on = |frame: FrameNumber| {
+        nearer_contours(scene, tasks, (depth, frame), |o| {
+            let (pooled, _) = done[o].as_ref()?;
+            Some(pooled.own_points((frame - tasks[o].span.first) as usize))
+        })
+    };
+    let mut occluders = vec![Vec::new(); span.len()];
+    occluders[0] = on(span.first);
+    occluders[span.len() - 1] = on(span.last);
+    occluders
+}

@@ -1,0 +1,394 @@
+//! One direction from a single key: the drawings one after the other, and hypotheses on each.
+//!
+//! 1. The pose that the path holds on the drawing before is carried on, with what it moved last, and the best of the other
+//!    hypotheses there too: two chains are more than one, at twice the price.
+//! 2. Where all that fits much worse than it used to, or the part is not trusted, the key's look is searched for in the
+//!    whole picture.
+//! 3. Where the artist corrected the drawing, every hypothesis is brought to the corrections.
+//! 4. The path of least cost is chosen afresh over the last drawings; it tells whether the part is still trusted.
+//!
+//! When the end is reached, what was found late is carried back: each drawing's chosen pose to the drawing before, while
+//! it finds something new that fits better. That closes the gap between the loss of a part and where the search found it
+//! again, and lets one pin mend its neighbours.
+
+use super::OutwardJob;
+use super::trust::{LEAST_INSIDE, PATIENCE, Sureness};
+use crate::contract::error::TrackError;
+use crate::contract::job::Correction;
+use crate::contract::tracking::Ending;
+use crate::rototoon::lattice::anchors::Anchors;
+use crate::rototoon::lattice::texture::{Cover, in_picture};
+use crate::rototoon::pool::{Hypothesis, is_new};
+use crate::rototoon::propagate::{Model, Pose, Scenery};
+use crate::rototoon::search::Templates;
+use crate::rototoon::select::{Candidate, Smoothness, best_path};
+use crate::rototoon::stage::Kit;
+use crate::shared::cuts::is_cut;
+use crate::shared::drawings::same_drawing;
+use crate::shared::features::Features;
+use crate::shared::sought::Sought;
+use rototoon_base::geometry::{Point, polygon};
+use rototoon_base::scene::FrameNumber;
+use std::sync::Arc;
+
+/// Drawings over which the path is chosen while the arm grows.
+const WINDOW: usize = 10;
+/// The search begins where the least energy is this many times the usual one, and this much more.
+const WORSE: (f64, f64) = (2.0, 0.004);
+/// What a pose found by searching costs more than one that was carried (√E): a jump must be worth it.
+const JUMP: f64 = 0.02;
+/// Share of the energy of the key's nearest rival below which a pose found by searching is taken for the part.
+const RIVALLED: f64 = 0.7;
+/// Energy that a part is thought to have while nothing is known but the key.
+const ORDINARY: f64 = 0.006;
+/// Share of the samples below which a part is also thought to move on as it did.
+const HARDLY_SEEN: f64 = 0.5;
+/// Turns tried about the corrections' centre, in degrees.
+const TURNS: [f64; 8] = [-90.0, -60.0, -40.0, -20.0, 20.0, 40.0, 60.0, 90.0];
+/// Starts that are aligned on a corrected drawing, and their least distance in working pixels.
+const STARTS: (usize, f64) = (5, 4.0);
+
+/// A drawing, and where the part may be on it.
+pub struct Seen {
+    /// The frame nearest to the key that shows it.
+    pub near: FrameNumber,
+    /// The frame farthest from the key that shows it.
+    pub far: FrameNumber,
+    /// Its picture.
+    pub features: Arc<Features>,
+    /// What hides the part.
+    pub cover: Cover,
+    /// What the artist corrected.
+    pub correction: Option<Correction>,
+    /// The hypotheses; on the key one.
+    pub pool: Vec<Hypothesis>,
+    /// What each costs beside its look.
+    dear: Vec<f64>,
+    anchors: Anchors,
+}
+
+/// What an arm needs beside its direction.
+pub(super) struct Ground<'a> {
+    pub kit: Kit<'a>,
+    pub job: &'a OutwardJob,
+    pub model: &'a Model,
+    /// Control points of the key, in working pixels.
+    pub key: &'a [Point],
+    pub scale: f64,
+    pub width: f64,
+    /// The key's look, ready to be searched for.
+    pub templates: Option<&'a Templates>,
+    /// See [`rival`].
+    pub rival: f64,
+}
+
+/// The least energy of the key's model anywhere in the key's own picture but where the part is: how well a wrong place
+/// can fit. Infinite where no other place was found.
+pub(super) fn rival(model: &Model, templates: Option<&Templates>, key: &[Point], picture: &Features) -> f64 {
+    let Some(templates) = templates else { return f64::INFINITY };
+    let (anchors, mesh) = (Anchors::default(), &model.texture.mesh);
+    let scenery = Scenery { features: picture, cover: &model.cover, weighed: true, anchors: &anchors };
+    // A round part turned about itself is no other place.
+    let center = polygon::center(key);
+    let apart = |nodes: &[Point]| polygon::center(&mesh.control_points(nodes)).distance(center);
+    let sought = Sought::new(picture.level(templates.level()));
+    let found = templates.find(picture, &sought, model, key).into_iter().map(|start| model.polished(&scenery, &start));
+    let others = found.filter(|pose| apart(&pose.nodes) > 0.4 * mesh.size);
+    others.map(|pose| pose.energy).fold(f64::INFINITY, f64::min)
+}
+
+/// A grown arm.
+pub(super) struct Arm {
+    pub drawings: Vec<Seen>,
+    /// The chosen hypothesis of each drawing.
+    pub path: Vec<usize>,
+    pub sure: Vec<Sureness>,
+    /// The first frame beyond the drawings, and why it is beyond; none at the end of the footage.
+    pub beyond: Option<(FrameNumber, Ending)>,
+    pub steps: usize,
+}
+
+struct Growing<'a> {
+    ground: &'a Ground<'a>,
+    step: FrameNumber,
+    drawings: Vec<Seen>,
+    path: Vec<usize>,
+    sure: Vec<Sureness>,
+    pending: Option<(FrameNumber, Arc<Features>)>,
+    steps: usize,
+}
+
+impl Arm {
+    /// Follows the part from the key; `step` is 1 forwards and −1 backwards.
+    pub fn grow(ground: &Ground, step: FrameNumber) -> Result<Self, TrackError> {
+        let mut growing =
+            Growing { ground, step, drawings: Vec::new(), path: Vec::new(), sure: Vec::new(), pending: None, steps: 0 };
+        growing.pending = growing.read(ground.job.frame)?;
+        let mut beyond = None;
+        let mut doubtful = 0;
+        while let Some(mut seen) = growing.next_drawing()? {
+            let must = growing.corrected_from(seen.near);
+            if let Some(before) = growing.drawings.last()
+                && !must
+                && is_cut(&before.features, &seen.features)
+            {
+                beyond = Some((seen.near, Ending::Cut));
+                break;
+            }
+            (seen.pool, seen.dear) = growing.proposed(&seen, doubtful > 0)?.into_iter().unzip();
+            growing.drawings.push(seen);
+            let now = growing.judge();
+            let left = now.inside < LEAST_INSIDE && doubtful == 0 && growing.was_leaving();
+            doubtful = if now.trusted() { 0 } else { doubtful + 1 };
+            if !must && (left || doubtful >= PATIENCE) {
+                let near = growing.drawings.last().map_or(ground.job.frame, |seen| seen.near);
+                beyond = Some((near, if left { Ending::Left } else { Ending::Lost }));
+                break;
+            }
+        }
+        growing.carry_back()?;
+        growing.path = growing.best(0);
+        growing.sure = (0..growing.drawings.len()).map(|d| growing.sureness(d)).collect();
+        let Growing { drawings, path, sure, steps, .. } = growing;
+        Ok(Self { drawings, path, sure, beyond, steps })
+    }
+}
+
+impl Growing<'_> {
+    fn read(&self, frame: FrameNumber) -> Result<Option<(FrameNumber, Arc<Features>)>, TrackError> {
+        let [first, last] = self.ground.job.footage;
+        if frame < first || frame > last {
+            return Ok(None);
+        }
+        let kit = self.ground.kit;
+        kit.progress.report("Tracking", 0.0)?;
+        Ok(Some((frame, kit.store.features(kit.frames, frame)?)))
+    }
+
+    /// Whether the artist corrected a frame at or beyond one.
+    fn corrected_from(&self, frame: FrameNumber) -> bool {
+        self.ground.job.corrections.keys().any(|&f| (f - frame) * self.step >= 0)
+    }
+
+    /// The next drawing with all frames that are held from it, without hypotheses.
+    fn next_drawing(&mut self) -> Result<Option<Seen>, TrackError> {
+        let Some((near, features)) = self.pending.take() else { return Ok(None) };
+        let job = self.ground.job;
+        let is_key = near == job.frame;
+        let mut correction = job.corrections.get(&near);
+        let mut far = near;
+        loop {
+            self.pending = self.read(far + self.step)?;
+            let Some((frame, next)) = &self.pending else { break };
+            let own = job.corrections.get(frame);
+            let contradicts = own.is_some() && (is_key || correction.is_some_and(|known| Some(known) != own));
+            if contradicts || !same_drawing(&features, next) {
+                break;
+            }
+            correction = correction.or(own);
+            far = *frame;
+        }
+        let contours = job.occluders.get(&near).map_or(&[][..], Vec::as_slice);
+        let working: Vec<Vec<Point>> =
+            contours.iter().map(|c| c.iter().map(|&p| p / self.ground.scale).collect()).collect();
+        let mesh = &self.ground.model.texture.mesh;
+        let anchors = correction.map_or_else(Anchors::default, |c| Anchors::new(mesh, c, self.ground.scale));
+        let cover = Cover::new(&working, self.ground.width);
+        Ok(Some(Seen {
+            near,
+            far,
+            features,
+            cover,
+            correction: correction.cloned(),
+            pool: Vec::new(),
+            dear: Vec::new(),
+            anchors,
+        }))
+    }
+
+    fn hypothesis(&self, seen: &Seen, pose: Pose) -> Hypothesis {
+        let model = self.ground.model;
+        let points = model.texture.mesh.control_points(&pose.nodes);
+        let differences = model.differences(&seen.scenery(), &pose.nodes);
+        Hypothesis::new(0, pose, points, differences)
+    }
+
+    /// The hypotheses of the drawing after those known.
+    fn proposed(&mut self, seen: &Seen, doubtful: bool) -> Result<Vec<(Hypothesis, f64)>, TrackError> {
+        let model = self.ground.model;
+        if self.drawings.is_empty() {
+            let pose = model.measured(&seen.scenery(), model.texture.mesh.rest.clone());
+            return Ok(vec![(self.hypothesis(seen, pose), 0.0)]);
+        }
+        let mut pool = self.carried(seen)?;
+        let carried = pool.len();
+        let least = pool.iter().map(|h| h.pose.energy).fold(f64::INFINITY, f64::min);
+        if doubtful || least > WORSE.0 * self.usual_energy() + WORSE.1 {
+            for start in self.searched(seen)? {
+                let pose = model.polished(&seen.scenery(), &start);
+                let new = self.hypothesis(seen, pose);
+                if new.pose.energy < RIVALLED * self.ground.rival && is_new(&pool, &new) {
+                    pool.push(new);
+                }
+            }
+        }
+        if seen.correction.is_some() {
+            return Ok(self.constrained(seen, &pool).into_iter().map(|h| (h, 0.0)).collect());
+        }
+        let price = |i: usize| if i < carried { 0.0 } else { JUMP };
+        Ok(pool.into_iter().enumerate().map(|(i, h)| (h, price(i))).collect())
+    }
+
+    /// What comes of the hypotheses of the drawing before.
+    fn carried(&mut self, seen: &Seen) -> Result<Vec<Hypothesis>, TrackError> {
+        let last = self.drawings.len() - 1;
+        let before = &self.drawings[last];
+        let chosen = &before.pool[self.path[last]];
+        let moved: Option<Vec<Point>> = (last > 0).then(|| {
+            let earlier = &self.drawings[last - 1].pool[self.path[last - 1]];
+            chosen.pose.nodes.iter().zip(&earlier.pose.nodes).map(|(a, b)| *a - *b).collect()
+        });
+        let other = (before.pool.iter().enumerate().filter(|(h, _)| *h != self.path[last]))
+            .min_by(|(_, a), (_, b)| a.pose.energy.total_cmp(&b.pose.energy));
+        let mut pool = vec![self.hypothesis(seen, self.carry(chosen, moved.as_deref(), before, seen)?)];
+        self.steps += 1;
+        if let Some((_, other)) = other {
+            let new = self.hypothesis(seen, self.carry(other, None, before, seen)?);
+            self.steps += 1;
+            if is_new(&pool, &new) {
+                pool.push(new);
+            }
+        }
+        if self.sure[last].seen < HARDLY_SEEN
+            && let Some(moved) = moved
+        {
+            let on = chosen.pose.nodes.iter().zip(&moved).map(|(a, b)| *a + *b).collect();
+            let new = self.hypothesis(seen, self.ground.model.measured(&seen.scenery(), on));
+            if is_new(&pool, &new) {
+                pool.push(new);
+            }
+        }
+        Ok(pool)
+    }
+
+    fn carry(&self, from: &Hypothesis, moved: Option<&[Point]>, at: &Seen, to: &Seen) -> Result<Pose, TrackError> {
+        let kit = self.ground.kit;
+        let flow = kit.store.flow(kit.frames, at.near, to.near)?;
+        Ok(self.ground.model.carry(&from.pose.nodes, Some(&flow), moved, &to.scenery()))
+    }
+
+    /// Median energy of the chosen hypotheses of the last drawings.
+    fn usual_energy(&self) -> f64 {
+        let mut known: Vec<f64> = (self.drawings.iter().zip(&self.path).rev().take(5))
+            .map(|(seen, &h)| if seen.near == self.ground.job.frame { ORDINARY } else { seen.pool[h].pose.energy })
+            .collect();
+        known.sort_by(f64::total_cmp);
+        known.get(known.len() / 2).copied().unwrap_or(0.0)
+    }
+
+    fn searched(&self, seen: &Seen) -> Result<Vec<Vec<Point>>, TrackError> {
+        let Ground { kit, model, key, templates, .. } = *self.ground;
+        kit.progress.report("Searching", 0.0)?;
+        let Some(templates) = templates else { return Ok(Vec::new()) };
+        let sought = kit.store.sought(kit.frames, seen.near, templates.level())?;
+        Ok(templates.find(&seen.features, &sought, model, key))
+    }
+
+    /// The hypotheses of a corrected drawing, made to obey.
+    fn constrained(&self, seen: &Seen, pool: &[Hypothesis]) -> Vec<Hypothesis> {
+        let (model, scenery) = (self.ground.model, seen.scenery());
+        let settler = model.settler(&scenery);
+        let settled = |nodes: &[Point]| model.measured(&scenery, settler.settle(nodes));
+        let mut starts: Vec<Pose> = Vec::new();
+        for h in pool {
+            starts.push(model.drawn(&scenery, &h.pose.nodes, &h.differences));
+            starts.push(settled(&h.pose.nodes));
+            let turned = TURNS.iter().map(|degrees| seen.anchors.turned(&h.pose.nodes, degrees.to_radians()));
+            starts.extend(turned.map(|nodes| settled(&nodes)));
+        }
+        starts.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+        let mut kept: Vec<Hypothesis> = Vec::new();
+        for start in starts {
+            let start = self.hypothesis(seen, start);
+            if kept.len() < STARTS.0 && kept.iter().all(|h| h.distance(&start) > STARTS.1) {
+                kept.push(start);
+            }
+        }
+        let mut found: Vec<Hypothesis> = Vec::new();
+        for start in kept {
+            let new = self.hypothesis(seen, model.realigned(&scenery, &start.pose.nodes));
+            if is_new(&found, &new) {
+                found.push(new);
+            }
+        }
+        found
+    }
+
+    /// Chooses the path over the last drawings, and says how sure the last one is.
+    fn judge(&mut self) -> Sureness {
+        let from = self.drawings.len().saturating_sub(WINDOW);
+        let path = self.best(from);
+        self.path.truncate(from);
+        self.path.extend(path);
+        let last = self.sureness(self.drawings.len() - 1);
+        self.sure.push(last.clone());
+        last
+    }
+
+    /// Whether the part reached over the picture's edge on the drawing before the last, or would have after moving once
+    /// more as it did. Else it was not on its way out, and a pose outside only hides that it is lost.
+    fn was_leaving(&self) -> bool {
+        let Some(before) = self.drawings.len().checked_sub(2) else { return false };
+        let points = |d: usize| &self.drawings[d].pool[self.path[d]].points;
+        let earlier = points(before.saturating_sub(1));
+        let moved = points(before).iter().zip(earlier).map(|(p, q)| *p * 2.0 - *q);
+        points(before).iter().copied().chain(moved).any(|p| !in_picture(p, self.ground.width))
+    }
+
+    fn best(&self, from: usize) -> Vec<usize> {
+        let candidates: Vec<Vec<Candidate>> = self.drawings[from..].iter().map(Seen::candidates).collect();
+        best_path(&candidates, Smoothness::new(self.ground.model.texture.mesh.size))
+    }
+
+    fn sureness(&self, d: usize) -> Sureness {
+        let seen = &self.drawings[d];
+        Sureness::of(self.ground.model, self.ground.rival, &seen.scenery(), &seen.pool[self.path[d]])
+    }
+
+    /// Carries what was chosen late back towards the key.
+    fn carry_back(&mut self) -> Result<(), TrackError> {
+        self.path = self.best(0);
+        let mut fresh: Option<Hypothesis> = None;
+        for d in (2..self.drawings.len()).rev() {
+            let (to, from) = (&self.drawings[d - 1], &self.drawings[d]);
+            let source = fresh.take().unwrap_or_else(|| from.pool[self.path[d]].clone());
+            let known = &to.pool[self.path[d - 1]];
+            // Where the path is smooth and fits on both sides there is nothing to mend.
+            let smooth = known.distance(&source) < 0.5 * self.ground.model.texture.mesh.size
+                && known.pose.energy < WORSE.0 * source.pose.energy + WORSE.1;
+            if to.correction.is_some() || (smooth && from.correction.is_none()) {
+                continue;
+            }
+            let new = self.hypothesis(to, self.carry(&source, None, from, to)?);
+            self.steps += 1;
+            if is_new(&to.pool, &new) {
+                fresh = (new.pose.energy < known.pose.energy).then(|| new.clone());
+                self.drawings[d - 1].pool.push(new);
+                self.drawings[d - 1].dear.push(0.0);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Seen {
+    fn candidates(&self) -> Vec<Candidate<'_>> {
+        let priced = self.pool.iter().zip(&self.dear);
+        priced.map(|(h, dear)| Candidate { cost: h.pose.energy.max(0.0).sqrt() + dear, points: &h.points }).collect()
+    }
+
+    /// The drawing as the key's model sees it.
+    pub fn scenery(&self) -> Scenery<'_> {
+        Scenery { features: &self.features, cover: &self.cover, weighed: true, anchors: &self.anchors }
+    }
+}

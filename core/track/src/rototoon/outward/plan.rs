@@ -1,0 +1,166 @@
+//! Which parts are followed outward, in which order, and what is remembered of them.
+//!
+//! A part's result depends on its key, its corrections, the pictures, and where nearer parts are. So parts go from the
+//! nearest to the farthest, those of one depth side by side, and a result is taken again where its job is the same.
+
+use super::finish::track;
+use super::{OutwardJob, OutwardTrack};
+use crate::contract::error::TrackError;
+use crate::contract::job::{Correction, SpanSummary, Termination};
+use crate::contract::tracking::{JobReport, PartTrack, Tracking};
+use crate::rototoon::mechanisms::Mechanisms;
+use crate::rototoon::stage::Kit;
+use crate::shared::store::Store;
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Cancelled, FrameNumber, FrameSource, Part, Progress, Scene, Span};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Mutex;
+
+/// What was found for the parts with one key, by name.
+#[derive(Default)]
+pub struct Memory {
+    known: BTreeMap<String, (OutwardJob, OutwardTrack)>,
+}
+
+/// Indices of the parts with one key that can be followed.
+pub fn subjects(scene: &Scene) -> Vec<usize> {
+    let single = |part: &Part| part.keys.len() == 1 && part.point_count() > 0;
+    (0..scene.parts.len()).filter(|&p| single(&scene.parts[p])).collect()
+}
+
+impl Memory {
+    /// Follows all parts with one key, and adds them to what was tracked between keys.
+    pub(crate) fn run(
+        &mut self,
+        store: &Store,
+        scene: &Scene,
+        frames: &dyn FrameSource,
+        progress: &dyn Progress,
+        tracking: &mut Tracking,
+    ) -> Result<(), TrackError> {
+        let subjects = subjects(scene);
+        let names: BTreeSet<&str> = subjects.iter().map(|&p| scene.parts[p].name.as_str()).collect();
+        self.known.retain(|name, _| names.contains(name.as_str()));
+        let counter = Counter { listener: progress, done: Mutex::new(0), all: subjects.len() };
+        for wave in waves(scene, &subjects) {
+            let jobs: Vec<(usize, OutwardJob)> = wave.iter().map(|&p| (p, job(scene, tracking, p))).collect();
+            let results: Vec<Result<(OutwardTrack, bool), TrackError>> = jobs
+                .par_iter()
+                .map(|(_, job)| {
+                    let result = match self.known.get(&job.name) {
+                        Some((known, result)) if known == job => (result.clone(), false),
+                        _ => (
+                            track(Kit { store, frames, progress: &counter, mechanisms: Mechanisms::default() }, job)?,
+                            true,
+                        ),
+                    };
+                    counter.finished()?;
+                    Ok(result)
+                })
+                .collect();
+            for ((p, job), result) in jobs.into_iter().zip(results) {
+                let (result, solved) = result?;
+                put(tracking, p, &result, solved);
+                self.known.insert(job.name.clone(), (job, result));
+            }
+        }
+        tracking.jobs.sort_by_key(|job| (job.part, job.span));
+        Ok(())
+    }
+}
+
+/// Parts of one depth together, the nearest first.
+fn waves(scene: &Scene, subjects: &[usize]) -> Vec<Vec<usize>> {
+    let depth = |p: usize| scene.parts[p].depth;
+    let mut order = subjects.to_vec();
+    order.sort_by(|&a, &b| depth(b).total_cmp(&depth(a)).then(a.cmp(&b)));
+    order.chunk_by(|&a, &b| depth(a) == depth(b)).map(<[usize]>::to_vec).collect()
+}
+
+fn job(scene: &Scene, tracking: &Tracking, p: usize) -> OutwardJob {
+    let (part, footage) = (&scene.parts[p], &scene.footage);
+    let (frame, key) = part.keys.first_key_value().map(|(&f, k)| (f, k.clone())).unwrap_or_default();
+    let corrected: BTreeSet<FrameNumber> = part.pins.keys().chain(part.centers.keys()).copied().collect();
+    let correction = |&f: &FrameNumber| {
+        let (pins, center) = (part.pins.get(&f).cloned().unwrap_or_default(), part.centers.get(&f).copied());
+        let acts = f != frame && (footage.first..=footage.last).contains(&f) && (!pins.is_empty() || center.is_some());
+        acts.then_some((f, Correction { pins, center }))
+    };
+    let nearer: Vec<usize> = (0..scene.parts.len())
+        .filter(|&o| {
+            let other = &scene.parts[o];
+            other.closed && other.depth > part.depth && other.point_count() > 2
+        })
+        .collect();
+    let contours = |f: FrameNumber| -> Vec<Vec<Point>> {
+        let on = |&o: &usize| tracking.parts[o].tracks.get(&f).or_else(|| scene.parts[o].keys.get(&f)).cloned();
+        nearer.iter().filter_map(on).collect()
+    };
+    let hidden = (footage.first..=footage.last).map(|f| (f, contours(f))).filter(|(_, c)| !c.is_empty());
+    OutwardJob {
+        name: part.name.clone(),
+        closed: part.closed,
+        frame,
+        key,
+        footage: [footage.first, footage.last],
+        corrections: corrected.iter().filter_map(correction).collect(),
+        occluders: if nearer.is_empty() { BTreeMap::new() } else { hidden.collect() },
+        size: (footage.width, footage.height),
+    }
+}
+
+fn put(tracking: &mut Tracking, part: usize, found: &OutwardTrack, solved: bool) {
+    let frames: Vec<FrameNumber> = found.tracks.keys().copied().collect();
+    let (Some(&first), Some(&last)) = (frames.first(), frames.last()) else { return };
+    tracking.parts[part] =
+        PartTrack { tracks: found.tracks.clone(), confidence: found.confidence.clone(), ends: found.ends.clone() };
+    let summary = SpanSummary {
+        termination: Termination::PathChosen,
+        iterations: found.steps,
+        initial_cost: found.cost,
+        final_cost: found.cost,
+    };
+    tracking.jobs.push(JobReport { part, span: Span { first, last }, summary, solved });
+}
+
+/// Counts parts: how far one comes is not known before.
+struct Counter<'a> {
+    listener: &'a dyn Progress,
+    done: Mutex<usize>,
+    all: usize,
+}
+
+impl Counter<'_> {
+    fn finished(&self) -> Result<(), Cancelled> {
+        self.tell("Tracking", 1)
+    }
+
+    fn tell(&self, step: &str, more: usize) -> Result<(), Cancelled> {
+        // The listener is told under the lock, so that it never sees the share fall.
+        let mut done = self.done.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        *done += more;
+        self.listener.report(step, *done as f64 / self.all.max(1) as f64)
+    }
+}
+
+impl Progress for Counter<'_> {
+    fn report(&self, step: &str, _done: f64) -> Result<(), Cancelled> {
+        self.tell(step, 0)
+    }
+}
+
+/// A stretch of a longer work.
+pub(crate) struct Portion<'a> {
+    /// Who is told of the whole.
+    pub listener: &'a dyn Progress,
+    /// Shares of the whole at the stretch's beginning and end.
+    pub range: [f64; 2],
+}
+
+impl Progress for Portion<'_> {
+    fn report(&self, step: &str, done: f64) -> Result<(), Cancelled> {
+        let [from, to] = self.range;
+        self.listener.report(step, from + (to - from) * done)
+    }
+}

@@ -1,0 +1,42 @@
+//! The hypotheses of a job, and what they were made from.
+
+use super::pool::{Carried, Pools};
+use super::propagate::Model;
+use crate::contract::job::Job;
+use crate::shared::drawings::Drawing;
+use crate::shared::features::working_scale;
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::Span;
+use std::sync::Arc;
+
+/// The hypotheses of a job.
+pub(super) struct Pooled {
+    pub job: Job,
+    pub drawings: Vec<Drawing>,
+    pub models: Option<Arc<[Model; 2]>>,
+    pub pools: Arc<Pools>,
+    /// What was carried from drawing to drawing when the pools were made.
+    pub carried: Arc<Carried>,
+    /// The part's own choice, before others are heard.
+    pub path: Vec<usize>,
+    pub steps: usize,
+    /// By drawing: how far the part may lie from where the artist put its centre, in working pixels.
+    pub center_reach: Vec<f64>,
+}
+
+impl Pooled {
+    /// By what its job is remembered.
+    pub fn key(&self) -> (String, Span) {
+        (self.job.name.clone(), self.job.span)
+    }
+
+    /// Where the part alone would put its control points on a frame of the span, in pixels of the picture.
+    pub fn own_points(&self, index: usize) -> Vec<Point> {
+        let drawing = self.drawings.iter().position(|d| d.first <= index && index <= d.last);
+        let scale = working_scale(self.job.size.1);
+        match drawing.filter(|_| !self.pools.is_empty()) {
+            Some(d) => self.pools[d][self.path[d]].points.iter().map(|&p| p * scale).collect(),
+            None => self.job.interpolated(index),
+        }
+    }
+}

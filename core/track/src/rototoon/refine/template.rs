@@ -1,0 +1,110 @@
+//! The colours around each sample at a key, in the frame of the contour there.
+
+use super::samples::Samples;
+use super::view::Key;
+use crate::rototoon::lattice::texture::CONTRAST;
+use crate::shared::features::{Padded, difference};
+use rototoon_base::geometry::{Point, polygon, polyline};
+use rototoon_base::scene::Colour;
+
+/// Half sizes along tangent and normal, in working pixels.
+pub const HALF: [i32; 2] = [4, 6];
+/// Steps along either.
+const STEP: [i32; 2] = [2, 1];
+/// Weight of what lies outside the part: it may be another thing on other frames.
+const OUTSIDE: f32 = 0.5;
+/// Weight of what lies outside and under a nearer part.
+const OUTSIDE_HIDDEN: f32 = 0.1;
+/// The part reaches this far beyond its contour, in working pixels.
+const REACH: f64 = 2.0;
+/// Level (index in `LEVELS`) whose colours are taken.
+pub const LEVEL: usize = 2;
+
+/// What a template has at one offset.
+#[derive(Clone)]
+pub struct Cell {
+    /// Colour at the key.
+    pub colour: Colour,
+    /// How much it counts.
+    pub weight: f32,
+    /// The part's colour across the contour, for an offset outside that differs from it.
+    pub own: Option<Colour>,
+}
+
+/// The template of one sample at one key.
+#[derive(Clone)]
+pub struct Template {
+    /// Its cells, those along the normal innermost.
+    pub cells: Vec<Cell>,
+    /// Sum of the weights.
+    pub weight: f32,
+    /// Share of the inside that no nearer part hides.
+    pub shown: f64,
+}
+
+/// The templates of both keys.
+pub struct Templates {
+    of_key: [Vec<Template>; 2],
+}
+
+/// Offsets of a template along one axis.
+pub fn offsets(axis: usize) -> impl Iterator<Item = i32> + Clone {
+    (-HALF[axis]..=HALF[axis]).step_by(STEP[axis] as usize)
+}
+
+impl Templates {
+    /// Cuts the templates of all samples.
+    pub fn new(keys: &[Key; 2], samples: &Samples, closed: bool) -> Self {
+        Self { of_key: [0, 1].map(|k: usize| of_key(&keys[k], samples, closed)) }
+    }
+
+    /// Forgets what tells the part from its ground: every wrong colour is just wrong.
+    pub fn forget_figure(&mut self) {
+        self.of_key.iter_mut().flatten().flat_map(|template| &mut template.cells).for_each(|cell| cell.own = None);
+    }
+
+    /// The templates of a sample.
+    pub fn of(&self, s: usize) -> [&Template; 2] {
+        [&self.of_key[0][s], &self.of_key[1][s]]
+    }
+}
+
+/// The three values of a colour.
+fn bare(colour: Padded) -> Colour {
+    colour.truncate().to_array()
+}
+
+fn of_key(key: &Key, samples: &Samples, closed: bool) -> Vec<Template> {
+    let (places, tangents) = samples.frames(key.points);
+    let level = key.picture.level(LEVEL);
+    let within = |p: Point| polygon::contains(key.points, p);
+    let inside = |p: Point| !closed || within(p) || polyline::distance(p, key.points, true) <= REACH;
+    let cut = |(place, tangent): (&Point, &Point)| {
+        let mut template = Template { cells: Vec::new(), weight: 0.0, shown: 0.0 };
+        let (mut own_cells, mut seen) = (0.0, 0.0);
+        for u in offsets(0) {
+            for v in offsets(1) {
+                let at = |v: i32| *place + tangent.rotate(Point::new(f64::from(u), f64::from(v)));
+                let (p, across) = (at(v), at(-v));
+                let (inside, hidden) = (inside(p), key.cover.hides(p));
+                let colour = level.colour(p);
+                let own = if inside || !within(across) { None } else { Some(level.colour(across)) };
+                let own = own.filter(|own| difference(*own, colour) > CONTRAST).map(bare);
+                let colour = bare(colour);
+                let weight = match (inside, hidden) {
+                    (true, false) => 1.0,
+                    (true, true) => 0.0,
+                    (false, false) => OUTSIDE,
+                    (false, true) => OUTSIDE_HIDDEN,
+                };
+                own_cells += f64::from(u8::from(inside));
+                seen += f64::from(u8::from(inside && !hidden));
+                template.weight += weight;
+                template.cells.push(Cell { colour, weight, own });
+            }
+        }
+        template.shown = seen / f64::max(own_cells, 1.0);
+        template
+    };
+    places.iter().zip(&tangents).map(cut).collect()
+}

@@ -1,0 +1,28 @@
+//! What the refiner sees: the keys, and the frame to refine on.
+
+use crate::rototoon::lattice::texture::Cover;
+use crate::shared::features::Features;
+use rototoon_base::geometry::Point;
+use std::collections::BTreeMap;
+
+/// One key as the refiner sees it.
+pub struct Key<'a> {
+    /// Control points in working pixels.
+    pub points: &'a [Point],
+    /// The key's picture.
+    pub picture: &'a Features,
+    /// What hides the part at the key.
+    pub cover: &'a Cover,
+}
+
+/// A frame to refine on.
+pub struct Frame<'a> {
+    /// Its picture.
+    pub picture: &'a Features,
+    /// What hides the part.
+    pub cover: &'a Cover,
+    /// Share of the time from the first key to the second.
+    pub share: f64,
+    /// Control points that the artist fixed.
+    pub pins: BTreeMap<usize, Point>,
+}

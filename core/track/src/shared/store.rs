@@ -1,0 +1,231 @@
+//! What was computed from pictures, kept for the next job within a budget of bytes.
+//!
+//! Features and flows are pure functions of the pictures, so it is no matter for the result whether they are kept or
+//! made again. Values are made without holding the lock. Features are made by many threads together, so two callers may
+//! make the same ones; [`Store::read`] makes those of a whole scene before anything asks for them.
+
+use super::drawings::same_drawing;
+use super::features::Features;
+use super::sought::Sought;
+use crate::contract::error::TrackError;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rototoon_base::scene::{FrameNumber, FrameSource, Progress};
+use rototoon_image::flow::{Flow, Pyramid, dense_flow};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+
+/// Bytes of features and flows kept at the most: a hundred frames of 16:9.
+const BUDGET: usize = 400 << 20;
+
+/// Index in `LEVELS` of the level whose luma the flow is computed on, and with it the flow's resolution.
+pub const FLOW_LEVEL: usize = 1;
+
+/// Features by frame, flows by pair of frames.
+#[derive(Default)]
+pub struct Store {
+    kept: Mutex<Kept>,
+    made: Condvar,
+}
+
+#[derive(Default)]
+struct Kept {
+    clock: u64,
+    bytes: usize,
+    entries: BTreeMap<Key, Entry>,
+    making: BTreeSet<Key>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Key {
+    Features(FrameNumber),
+    Pyramid(FrameNumber),
+    Flow(FrameNumber, FrameNumber),
+    Sought(FrameNumber, usize),
+    Held(FrameNumber),
+}
+
+#[derive(Clone)]
+enum Value {
+    Features(Arc<Features>),
+    Pyramid(Arc<Pyramid>),
+    Flow(Arc<Flow>),
+    Sought(Arc<Sought>),
+    Held(bool),
+}
+
+struct Entry {
+    used: u64,
+    bytes: usize,
+    value: Value,
+}
+
+/// A value being made; when it is done, or given up by a panic, those who wait for it look again.
+struct Making<'a> {
+    store: &'a Store,
+    key: Key,
+}
+
+impl Drop for Making<'_> {
+    fn drop(&mut self) {
+        self.store.lock().making.remove(&self.key);
+        self.store.made.notify_all();
+    }
+}
+
+impl Kept {
+    fn get(&mut self, key: Key) -> Option<Value> {
+        self.clock += 1;
+        let entry = self.entries.get_mut(&key)?;
+        entry.used = self.clock;
+        Some(entry.value.clone())
+    }
+}
+
+impl Store {
+    /// The features of a frame.
+    pub fn features(&self, frames: &dyn FrameSource, frame: FrameNumber) -> Result<Arc<Features>, TrackError> {
+        let key = Key::Features(frame);
+        if let Some(Value::Features(known)) = self.get(key) {
+            return Ok(known);
+        }
+        let made = Arc::new(Features::new(&*frames.picture(frame)?));
+        self.put(key, made.bytes(), Value::Features(made.clone()));
+        Ok(made)
+    }
+
+    /// Makes the features of frames, each once, as far as they can be kept together.
+    pub fn read(
+        &self,
+        frames: &dyn FrameSource,
+        numbers: &[FrameNumber],
+        progress: &dyn Progress,
+    ) -> Result<(), TrackError> {
+        let Some((first, rest)) = numbers.split_first() else { return Ok(()) };
+        let one = self.features(frames, *first)?.bytes();
+        let most = BUDGET / 2 / one.max(1);
+        rest[..rest.len().min(most)].par_iter().with_max_len(1).try_for_each(|&frame| {
+            progress.report("Reading frames", 0.0)?;
+            self.features(frames, frame).map(|_| ())
+        })
+    }
+
+    /// The flow from the drawing of one frame to that of another, in pixels of the level [`FLOW_LEVEL`].
+    pub fn flow(&self, frames: &dyn FrameSource, from: FrameNumber, to: FrameNumber) -> Result<Arc<Flow>, TrackError> {
+        let key = Key::Flow(from, to);
+        if let Some(Value::Flow(known)) = self.get(key) {
+            return Ok(known);
+        }
+        let (first, second) = (self.pyramid(frames, from)?, self.pyramid(frames, to)?);
+        let make = || {
+            let flow = dense_flow(&first, &second);
+            (size_of_val(flow.data()), Value::Flow(Arc::new(flow)))
+        };
+        match self.once(key, make) {
+            Value::Flow(flow) => Ok(flow),
+            _ => unreachable!("a flow is kept under the key of a flow"),
+        }
+    }
+
+    /// The picture of a frame, to compute flow on.
+    fn pyramid(&self, frames: &dyn FrameSource, frame: FrameNumber) -> Result<Arc<Pyramid>, TrackError> {
+        let key = Key::Pyramid(frame);
+        if let Some(Value::Pyramid(known)) = self.get(key) {
+            return Ok(known);
+        }
+        let features = self.features(frames, frame)?;
+        let make = || {
+            let pyramid = Pyramid::new(&features.level(FLOW_LEVEL).luma());
+            (pyramid.bytes(), Value::Pyramid(Arc::new(pyramid)))
+        };
+        match self.once(key, make) {
+            Value::Pyramid(pyramid) => Ok(pyramid),
+            _ => unreachable!("a pyramid is kept under the key of one"),
+        }
+    }
+
+    /// The picture of a frame, to be searched on a level (index in `LEVELS`).
+    pub fn sought(
+        &self,
+        frames: &dyn FrameSource,
+        frame: FrameNumber,
+        level: usize,
+    ) -> Result<Arc<Sought>, TrackError> {
+        let key = Key::Sought(frame, level);
+        if let Some(Value::Sought(known)) = self.get(key) {
+            return Ok(known);
+        }
+        let features = self.features(frames, frame)?;
+        let make = || {
+            let sought = Sought::new(features.level(level));
+            (sought.bytes(), Value::Sought(Arc::new(sought)))
+        };
+        match self.once(key, make) {
+            Value::Sought(sought) => Ok(sought),
+            _ => unreachable!("a picture to search is kept under the key of one"),
+        }
+    }
+
+    /// Whether the frame after this one shows the same drawing.
+    pub fn held(&self, frames: &dyn FrameSource, frame: FrameNumber) -> Result<bool, TrackError> {
+        let key = Key::Held(frame);
+        if let Some(Value::Held(known)) = self.get(key) {
+            return Ok(known);
+        }
+        let held = same_drawing(&*self.features(frames, frame)?, &*self.features(frames, frame + 1)?);
+        self.put(key, size_of::<Entry>(), Value::Held(held));
+        Ok(held)
+    }
+
+    /// Forgets everything.
+    pub fn clear(&self) {
+        let mut kept = self.lock();
+        let making = std::mem::take(&mut kept.making);
+        *kept = Kept { making, ..Kept::default() };
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Kept> {
+        // The map is only touched between complete states, so a panic elsewhere cannot have left it half changed.
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The value of a key, made now if it is not kept and no other thread is making it; then this one waits for that.
+    ///
+    /// `make` must not hand work to other threads: a waiting thread does none.
+    fn once(&self, key: Key, make: impl FnOnce() -> (usize, Value)) -> Value {
+        let mut kept = self.lock();
+        loop {
+            if let Some(known) = kept.get(key) {
+                return known;
+            }
+            if kept.making.insert(key) {
+                break;
+            }
+            kept = self.made.wait(kept).unwrap_or_else(PoisonError::into_inner);
+        }
+        drop(kept);
+        let _making = Making { store: self, key };
+        let (bytes, value) = make();
+        self.put(key, bytes, value.clone());
+        value
+    }
+
+    fn get(&self, key: Key) -> Option<Value> {
+        self.lock().get(key)
+    }
+
+    fn put(&self, key: Key, bytes: usize, value: Value) {
+        let mut kept = self.lock();
+        kept.clock += 1;
+        let entry = Entry { used: kept.clock, bytes, value };
+        kept.bytes += bytes;
+        if let Some(old) = kept.entries.insert(key, entry) {
+            kept.bytes -= old.bytes;
+        }
+        while kept.bytes > BUDGET {
+            let Some((&oldest, _)) = kept.entries.iter().min_by_key(|(_, entry)| entry.used) else { break };
+            if let Some(entry) = kept.entries.remove(&oldest) {
+                kept.bytes -= entry.bytes;
+            }
+        }
+    }
+}

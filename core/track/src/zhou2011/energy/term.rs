@@ -1,0 +1,89 @@
+//! What a term of the energy reads, and where its residuals go.
+
+use rototoon_base::geometry::Point;
+
+/// Where control points lie in the list of all coordinates: frame by frame, point by point, x before y.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Frames of the span, keys included.
+    pub frames: usize,
+    /// Control points a frame.
+    pub points: usize,
+    /// Whether the last point joins the first. Fewer than three points are never closed here: the way back would be the
+    /// way there.
+    pub closed: bool,
+}
+
+impl Layout {
+    /// A layout; `closed` counts from three points on.
+    pub fn new(frames: usize, points: usize, closed: bool) -> Self {
+        Self { frames, points, closed: closed && points > 2 }
+    }
+
+    /// Index of the x coordinate; y follows.
+    pub fn coordinate(&self, frame: usize, point: usize) -> usize {
+        2 * (frame * self.points + point)
+    }
+
+    /// Number of coordinates.
+    pub fn coordinates(&self) -> usize {
+        2 * self.frames * self.points
+    }
+
+    /// Pairs of neighbouring points.
+    pub fn segments(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let n = self.points;
+        (0..self.segment_count()).map(move |j| (j, (j + 1) % n))
+    }
+
+    /// Number of segments.
+    pub fn segment_count(&self) -> usize {
+        if self.closed { self.points } else { self.points.saturating_sub(1) }
+    }
+
+    /// Points that have two neighbours, as (previous, point, next).
+    pub fn neighbours(&self) -> impl Iterator<Item = (usize, usize, usize)> + use<> {
+        let n = self.points;
+        let inner = if self.closed { 0..n } else { 1..n.saturating_sub(1).max(1) };
+        inner.map(move |j| ((j + n - 1) % n, j, (j + 1) % n))
+    }
+}
+
+/// The control points of all frames, as the terms read them.
+#[derive(Clone, Copy, Debug)]
+pub struct Curves<'a> {
+    /// Where a point lies in `points`.
+    pub layout: Layout,
+    /// All points, frame by frame.
+    pub points: &'a [Point],
+}
+
+impl Curves<'_> {
+    /// A control point.
+    pub fn at(&self, frame: usize, point: usize) -> Point {
+        self.points[frame * self.layout.points + point]
+    }
+
+    /// The control points of a frame.
+    pub fn frame(&self, frame: usize) -> &[Point] {
+        &self.points[frame * self.layout.points..(frame + 1) * self.layout.points]
+    }
+}
+
+/// Takes the residuals of a term in order.
+pub trait Sink {
+    /// A residual and its derivatives by coordinate (index of the layout). A term names the same coordinates in the same
+    /// order whatever the points; a coordinate may be named more than once, the derivatives then add up.
+    fn residual(&mut self, value: f64, derivatives: impl IntoIterator<Item = (usize, f64)>);
+}
+
+/// A sum of squares over the curves.
+pub trait Term {
+    /// Hands every residual to the sink.
+    fn walk(&self, curves: Curves<'_>, sink: &mut impl Sink);
+}
+
+/// The derivative by a point as two coordinates.
+pub(super) fn by_point(coordinate: usize, derivative: Point) -> [(usize, f64); 2] {
+    [(coordinate, derivative.x), (coordinate + 1, derivative.y)]
+}
