@@ -1,21 +1,42 @@
-"""Rototoon: contours of drawn characters, followed through a film.
+"""Rototoon: follows the contours of drawn characters through a film. The Blender extension.
 
-This file only registers. What needs Blender is imported when it does so, so that `session` and `native` can be used
-without Blender.
+This file only registers. The code is in rooms. The `__init__.py` of each room says what belongs there and what it may import:
+
+====================  ==============================================================================
+`rototoon`            the Python package; it needs no Blender
+`blender`             Blender's data
+`common`              what operators of all rooms share
+`capture`             contours: footage, keys, tracking, live, snapping
+`strokes`             light curves and hidden lines, for any drawing
+`tween`               drawings between keys
+`style`               a character's motion given to another drawing
+`bones`               armatures
+`exchange`            documents and masks
+`ui`                  panels, lists, overlays, preferences
+====================  ==============================================================================
+
+`properties` puts the properties of the rooms together. `handlers` runs when files are opened, saved and changed.
 """
 
 
 def _classes():
-    from . import operators, preferences, properties, ui
+    from . import properties, ui
+    from .bones.operators import CLASSES as bones
+    from .capture.operators import CLASSES as capture
+    from .exchange.operators import CLASSES as exchange
+    from .strokes.operators import CLASSES as strokes
+    from .style.operators import CLASSES as style
+    from .tween.operators import CLASSES as tween
 
-    return preferences.CLASSES + properties.CLASSES + operators.CLASSES + ui.CLASSES
+    return properties.CLASSES + capture + strokes + tween + style + bones + exchange + ui.CLASSES
 
 
 def register():
     """Called by Blender."""
     import bpy
 
-    from . import clip_preview, handlers, overlay, properties
+    from . import handlers, properties
+    from .ui import clip_preview, overlay
 
     for cls in _classes():
         bpy.utils.register_class(cls)
@@ -29,7 +50,8 @@ def unregister():
     """Called by Blender."""
     import bpy
 
-    from . import clip_preview, handlers, overlay, properties
+    from . import handlers, properties
+    from .ui import clip_preview, overlay
 
     clip_preview.unregister()
     overlay.unregister()

@@ -1,4 +1,4 @@
-"""What happens when files are opened, saved and changed: sessions are forgotten, footage paths stay true, live tracks."""
+"""Handlers for opening, saving and changing files: they close sessions, keep footage paths right, and start live tracking."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ import os
 import bpy
 from bpy.app.handlers import persistent
 
-from . import clip_browser, footage, live, sessions
+from .blender import footage
+from .capture import live, sessions
+from .style import clip_browser
 
 _FIELDS = ("pattern", "movie")
 
@@ -19,14 +21,14 @@ def _loaded(*_args) -> None:
 
 @persistent
 def _saving(path: str = "", *_args) -> None:
-    """Footage paths become relative to where the file is going, as Blender does with its own."""
+    """Makes footage paths relative to the new place of the file, as Blender does with its own paths."""
     if path and bpy.context.preferences.filepaths.use_relative_paths:
         _rebase(bpy.data.filepath, path)
 
 
 @persistent
 def _saved(path: str = "", *_args) -> None:
-    """After saving a copy, the open file is still the old one."""
+    """Sets footage paths back after a copy was saved: the open file is still the old one."""
     if path and bpy.data.filepath and os.path.abspath(path) != os.path.abspath(bpy.data.filepath):
         _rebase(path, bpy.data.filepath)
 
@@ -64,13 +66,13 @@ _HOOKS = (
 
 
 def register() -> None:
-    """Starts listening."""
+    """Adds the handlers."""
     for name, hook in _HOOKS:
         getattr(bpy.app.handlers, name).append(hook)
 
 
 def unregister() -> None:
-    """Stops listening, and forgets the sessions."""
+    """Removes the handlers, and closes the sessions."""
     for name, hook in _HOOKS:
         hooks = getattr(bpy.app.handlers, name)
         if hook in hooks:

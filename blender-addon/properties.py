@@ -1,146 +1,30 @@
-"""What a file keeps about a tracked Grease Pencil object, beside the strokes themselves."""
-
-from __future__ import annotations
+"""The properties of objects and of the window. Each room defines its own; this file puts them together."""
 
 import bpy
 
-from . import clip_browser, live
-
-PRESETS = (
-    ("rototoon", "Rototoon", "Textured lattices that follow each part from both keys: the best that Rototoon knows"),
-    ("zhou2011", "Zhou & Xiao 2011", "Space-time energy of contours, edges and regions, as published"),
-    ("agarwala2004", "Agarwala et al. 2004", "Space-time energy of shape, image and edges: key-frame based rotoscoping"),
-    ("liang2012", "Liang et al. 2012", "The same with a two-sided ribbon and a colour penalty"),
-)
-PLANES = (
-    ("CAMERA", "Camera", "The footage is what the scene's camera shows in its background"),
-    ("REFERENCE", "Reference Image", "The footage lies on a reference image (an empty that shows an image)"),
-)
+from .bones.properties import BoneSettings, RototoonBone
+from .capture.properties import CaptureSettings, RototoonPart
+from .style import clip_browser
+from .style.properties import ClipSettings, RototoonBrowser, RototoonClip
 
 
-def _is_image_empty(_self, ob) -> bool:
-    return ob.type == "EMPTY" and ob.empty_display_type == "IMAGE"
+class RototoonSettings(BoneSettings, ClipSettings, CaptureSettings, bpy.types.PropertyGroup):
+    """Everything that a file keeps of an object beside its strokes."""
 
-
-def _is_camera(_self, ob) -> bool:
-    return ob.type == "CAMERA"
-
-
-def _clips_folder_changed(self, _context) -> None:
-    clip_browser.refresh_for(self.id_data)
-
-
-class RototoonPart(bpy.types.PropertyGroup):
-    """A contour that is followed; its strokes carry its number."""
-
-    # `name` is a property of every PropertyGroup.
-    number: bpy.props.IntProperty(name="Number", description="What the part's strokes are marked with")
-    depth: bpy.props.FloatProperty(
-        name="Depth",
-        description="Larger is nearer to the viewer; nearer parts hide others",
-        default=0.0,
-        update=live.setting_changed,
-    )
-    closed: bpy.props.BoolProperty(name="Closed", description="The last point joins the first", default=False)
-    count: bpy.props.IntProperty(name="Control Points", description="Number of control points on each frame", min=0)
-    extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")
-    ends: bpy.props.StringProperty(
-        description="Where the track of a part with one key ends before the footage does: [[picture, reason], ...]"
-    )
-
-
-class RototoonBone(bpy.types.PropertyGroup):
-    """Where on an armature a key point lies; `name` is the key point's."""
-
-    bone: bpy.props.StringProperty(name="Bone", description="The bone that tells the key point")
-    along: bpy.props.FloatProperty(
-        name="Along",
-        description="How far along the bone the key point lies: 0 at its head, 1 at its tail",
-        default=0.0,
-        min=0.0,
-        max=1.0,
-    )
-
-
-class RototoonSettings(bpy.types.PropertyGroup):
-    """Footage, parts and choices of one Grease Pencil object."""
-
-    pattern: bpy.props.StringProperty(
-        name="Footage",
-        description="Files of the picture sequence, with %d or %0Nd in the place of the number",
-        default="",
-    )
-    first: bpy.props.IntProperty(name="First", description="Number of the first picture", default=0)
-    last: bpy.props.IntProperty(name="Last", description="Number of the last picture", default=0)
-    width: bpy.props.IntProperty(name="Width", description="Width of the pictures in pixels", min=0)
-    height: bpy.props.IntProperty(name="Height", description="Height of the pictures in pixels", min=0)
-    fps: bpy.props.FloatProperty(name="Frame Rate", description="Pictures a second", default=24.0, min=0.01)
-    frame_offset: bpy.props.IntProperty(
-        name="Frame Offset", description="The scene shows picture n on frame n + offset", default=0
-    )
-    movie: bpy.props.StringProperty(name="Movie", description="The movie whose frames the pictures are", default="")
-    plane: bpy.props.EnumProperty(name="Seen Through", description="How pixels lie in the scene", items=PLANES)
-    camera: bpy.props.PointerProperty(
-        name="Camera",
-        description="Camera that shows the footage; empty takes the scene's camera",
-        type=bpy.types.Object,
-        poll=_is_camera,
-    )
-    reference: bpy.props.PointerProperty(
-        name="Reference Image",
-        description="Empty that shows the footage",
-        type=bpy.types.Object,
-        poll=_is_image_empty,
-    )
-    contours_layer: bpy.props.StringProperty(
-        name="Contours",
-        description="Layer with the contours. Layers whose name begins so and goes on with a dot or space count too",
-        default="Contours",
-    )
-    snapped_layer: bpy.props.StringProperty(
-        name="Snapped", description="Layer that snapping writes to", default="Snapped"
-    )
-    preset: bpy.props.EnumProperty(
-        name="Method", description="How contours are followed", items=PRESETS, update=live.setting_changed
-    )
-    live: bpy.props.BoolProperty(
-        name="Live",
-        description="Track by itself whenever you move a point or a part, or set, change or remove a key. "
-        "Only what you touched is tracked again; undo takes back your edit and what followed from it",
-        default=False,
-        update=live.toggled,
-    )
-    show_confidence: bpy.props.BoolProperty(
-        name="Show Confidence", description="Colour the tracked points: green is sure, red is doubtful", default=False
-    )
-    show_pins: bpy.props.BoolProperty(
-        name="Show Pins", description="Mark the points and centres that the artist fixed", default=True
-    )
-    parts: bpy.props.CollectionProperty(type=RototoonPart)
-    active_part: bpy.props.IntProperty(name="Active Part", default=0)
-    next_number: bpy.props.IntProperty(default=1)
-    clips_folder: bpy.props.StringProperty(
-        name="Library",
-        description="Folder of the library of skeleton clips; empty takes that of the preferences",
-        subtype="DIR_PATH",
-        default="",
-        options={"ANIMATABLE", "PATH_SUPPORTS_BLEND_RELATIVE"},
-        update=_clips_folder_changed,
-    )
-    bones: bpy.props.CollectionProperty(type=RototoonBone)
     extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")
 
 
-CLASSES = (RototoonPart, RototoonBone, RototoonSettings, *clip_browser.CLASSES)
+CLASSES = (RototoonPart, RototoonBone, RototoonSettings, RototoonClip, RototoonBrowser)
 
 
 def attach() -> None:
-    """Gives every object its settings; after registering the classes."""
+    """Adds the property `rototoon` to objects, and the list of clips to the window manager. The classes must be registered."""
     bpy.types.Object.rototoon = bpy.props.PointerProperty(type=RototoonSettings)
-    clip_browser.attach()
+    bpy.types.WindowManager.rototoon_clips = bpy.props.PointerProperty(type=RototoonBrowser)
 
 
 def detach() -> None:
-    """Takes them away again; before unregistering the classes."""
-    clip_browser.detach()
+    """Removes both. The classes must still be registered."""
+    clip_browser.close()
+    del bpy.types.WindowManager.rototoon_clips
     del bpy.types.Object.rototoon

@@ -1,5 +1,10 @@
-"""The tab "Rototoon" of the 3D view's sidebar, and the menu entries."""
+"""The user interface: panels and lists in the tab "Rototoon" of the 3D view's sidebar, overlays, previews, and preferences.
 
-from . import bones, clips, lists, panels
+Only the extension's own `__init__.py` imports this room.
 
-CLASSES = lists.CLASSES + clips.CLASSES + panels.CLASSES + bones.CLASSES
+May import: every room.
+"""
+
+from . import bones, clips, lists, panels, preferences
+
+CLASSES = preferences.CLASSES + lists.CLASSES + clips.CLASSES + panels.CLASSES + bones.CLASSES

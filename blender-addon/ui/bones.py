@@ -1,9 +1,9 @@
-"""The panel of an armature: its key points, its motion as clips, and clips for its bones."""
+"""The panel of armatures: key points, saving clips, driving bones."""
 
 import bpy
 
-from .. import clip_browser
-from ..operators.define_limbs import POINTS
+from ..style import clip_browser
+from ..style.limbs import POINTS
 from .clips import draw_browser
 
 NAMES = {name: label for name, label, _ in POINTS}

@@ -1,15 +1,16 @@
-"""The browser of a library's clips, in the panel Style."""
+"""The list of a library's clips, in the panels Style and Bones."""
 
 from __future__ import annotations
 
 import bpy
 
-from .. import clip_browser, clip_preview
-from .. import grease_pencil as gp
+from ..blender import grease_pencil as gp
+from ..style import clip_browser
+from . import clip_preview
 
 
 class ROTOTOON_UL_clips(bpy.types.UIList):
-    """Character, motion and number of frames of each clip; files that cannot be used come last."""
+    """Character, motion and number of frames of each clip. Files that cannot be used come last."""
 
     def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_property, _index=0, _flag=0):
         """Called by Blender."""
@@ -27,7 +28,7 @@ class ROTOTOON_UL_clips(bpy.types.UIList):
         split.label(text=str(item.frames))
 
     def draw_filter(self, _context, _layout):
-        """Called by Blender: what filters stands above the list, where it is seen."""
+        """Called by Blender. Draws nothing, since the filter is above the list."""
 
     def filter_items(self, _context, data, name):
         """Called by Blender."""
@@ -78,7 +79,7 @@ _asked = ""
 
 
 def _read_soon(ob) -> None:
-    """Panels may not change anything while they are drawn; so the library is read a moment later."""
+    """Reads the library a moment later, since panels must not change data while they are drawn."""
     global _asked
     if bpy.app.background or _asked == ob.name:
         return

@@ -4,7 +4,7 @@ import bpy
 
 
 class ROTOTOON_UL_parts(bpy.types.UIList):
-    """Name, closed or open, and depth of each part."""
+    """Name, closedness and depth of each part."""
 
     def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_property, _index=0, _flag=0):
         """Called by Blender."""

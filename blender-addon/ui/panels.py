@@ -1,9 +1,11 @@
-"""The panels, in the order of the work: footage, parts, track, snap, strokes, tween, style, document."""
+"""The panels in the order of the work: footage, parts, track, snap, strokes, tween, style, document."""
 
 import bpy
 
-from .. import grease_pencil as gp
-from .. import clip_browser, ends, limbs, live, spacing_curve
+from ..blender import grease_pencil as gp
+from ..capture import ends, live
+from ..style import clip_browser, limbs
+from ..tween import spacing_curve
 from .clips import draw_browser
 
 
@@ -11,6 +13,14 @@ class _Panel:
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "Rototoon"
+
+
+class _DrawingPanel(_Panel):
+    """A panel of Grease Pencil objects."""
+
+    @classmethod
+    def poll(cls, context):
+        return _settings(context) is not None
 
 
 def _settings(context):
@@ -46,13 +56,9 @@ class ROTOTOON_PT_footage(_Panel, bpy.types.Panel):
         layout.label(text=f"{settings.width} x {settings.height} pixels")
 
 
-class ROTOTOON_PT_parts(_Panel, bpy.types.Panel):
+class ROTOTOON_PT_parts(_DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_parts"
     bl_label = "Parts"
-
-    @classmethod
-    def poll(cls, context):
-        return _settings(context) is not None
 
     def draw(self, context):
         layout, settings = self.layout, _settings(context)
@@ -67,15 +73,15 @@ class ROTOTOON_PT_parts(_Panel, bpy.types.Panel):
 
 
 ENDS = {
-    ends.LOST: ("wants a key on frame {}", "KEY_HLT"),
+    ends.LOST: ("needs a key on frame {}", "KEY_HLT"),
     ends.CUT: ("ends before the cut on frame {}", "INFO"),
     ends.LEFT: ("left the picture on frame {}", "INFO"),
 }
-"""What is said of the end of a track from a single key, by its reason."""
+"""Text and icon for the end of a track from a single key, by its reason."""
 
 
 def said_of_ends(settings) -> list[tuple[str, str]]:
-    """Text and icon for each end of a track that goes outward from a single key."""
+    """Text and icon for each end of a track from a single key."""
     said = []
     for part in settings.parts:
         for frame, reason in ends.of(part):
@@ -92,13 +98,9 @@ def _draw_ends(layout, settings) -> None:
             column.label(text=text, icon=icon)
 
 
-class ROTOTOON_PT_track(_Panel, bpy.types.Panel):
+class ROTOTOON_PT_track(_DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_track"
     bl_label = "Track"
-
-    @classmethod
-    def poll(cls, context):
-        return _settings(context) is not None
 
     def draw(self, context):
         layout, settings = self.layout, _settings(context)
@@ -123,13 +125,9 @@ class ROTOTOON_PT_track(_Panel, bpy.types.Panel):
         layout.operator("rototoon.clear_generated", icon="TRASH")
 
 
-class ROTOTOON_PT_snap(_Panel, bpy.types.Panel):
+class ROTOTOON_PT_snap(_DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_snap"
     bl_label = "Snap"
-
-    @classmethod
-    def poll(cls, context):
-        return _settings(context) is not None
 
     def draw(self, context):
         settings = _settings(context)
@@ -137,13 +135,9 @@ class ROTOTOON_PT_snap(_Panel, bpy.types.Panel):
         self.layout.prop(settings, "snapped_layer", text="Layer")
 
 
-class ROTOTOON_PT_strokes(_Panel, bpy.types.Panel):
+class ROTOTOON_PT_strokes(_DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_strokes"
     bl_label = "Strokes"
-
-    @classmethod
-    def poll(cls, context):
-        return _settings(context) is not None
 
     def draw(self, _context):
         column = self.layout.column(align=True)
@@ -156,16 +150,12 @@ SPACINGS = (
     (("EASE_IN_OUT", "In and Out"), ("BOUNCE", "Bounce")),
     (("CHART", "Chart"), ("CURVE", "Curve")),
 )
-"""Rows of buttons that draw in-betweens with a spacing at once."""
+"""Rows of buttons that draw in-betweens with a certain spacing."""
 
 
-class ROTOTOON_PT_tween(_Panel, bpy.types.Panel):
+class ROTOTOON_PT_tween(_DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_tween"
     bl_label = "Tween"
-
-    @classmethod
-    def poll(cls, context):
-        return _settings(context) is not None
 
     def draw(self, context):
         layout = self.layout
@@ -193,13 +183,9 @@ class ROTOTOON_PT_tween(_Panel, bpy.types.Panel):
         layout.operator("rototoon.clear_in_betweens", icon="TRASH")
 
 
-class ROTOTOON_PT_style(_Panel, bpy.types.Panel):
+class ROTOTOON_PT_style(_DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_style"
     bl_label = "Style"
-
-    @classmethod
-    def poll(cls, context):
-        return _settings(context) is not None
 
     def draw(self, context):
         layout, settings = self.layout, _settings(context)

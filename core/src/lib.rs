@@ -20,6 +20,54 @@
 //!
 //! Pixels, x right, y down. The origin is the outer top-left corner of the picture, so the centre of a pixel lies at +0.5.
 //! Hosts convert at their border.
+//!
+//! # Examples
+//!
+//! Track a document. A red square moves through a tiny cartoon. The artist has set a key on the first and on the last frame.
+//! Tracking finds the square on the frames between.
+//!
+//! ```
+//! use rototoon::geometry::Point;
+//! use rototoon::render::{Format, encode};
+//! use rototoon::scene::{Footage, Part, Raster, Scene, Silent};
+//! use rototoon::{pipeline, project::Document, track::TrackOptions};
+//!
+//! // The top left corner of the square, which flies in a bow.
+//! let corner = |frame: i32| Point::new(f64::from(10 + 5 * frame), f64::from(40 - 2 * frame * (8 - frame)));
+//! let folder = tempfile::tempdir()?;
+//! for frame in 0..=8 {
+//!     let inside = |p: Point| p.min_element() >= 0.0 && p.max_element() < 16.0;
+//!     let colour = |p: Point| if inside(p - corner(frame)) { [0.8, 0.2, 0.1] } else { [0.9, 0.9, 0.8] };
+//!     let picture = Raster::from_fn(96, 72, |x, y| colour(Point::new(x as f64, y as f64)));
+//!     std::fs::write(folder.path().join(format!("{frame:02}.png")), encode::colours(&picture, Format::Png)?)?;
+//! }
+//!
+//! let footage = Footage { pattern: "%02d.png".into(), first: 0, last: 8, fps: 12.0, width: 96, height: 72 };
+//! let corners = [(0.0, 0.0), (16.0, 0.0), (16.0, 16.0), (0.0, 16.0)];
+//! let square = |frame| corners.map(|(x, y)| corner(frame) + Point::new(x, y));
+//! let keys = [0, 8].map(|frame| (frame, square(frame).to_vec())).into();
+//! let part = Part { name: "square".into(), closed: true, keys, ..Part::default() };
+//! let mut document = Document::new(Scene { footage, parts: vec![part] });
+//!
+//! pipeline::track(&mut document, folder.path(), &TrackOptions::default(), &Silent)?;
+//! let found = document.scene.parts[0].tracks[&4][0];
+//! assert!(found.distance(corner(4)) < 2.0, "the keys alone would put it 32 px too low");
+//! document.save(&folder.path().join("shot.json"))?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Fit a line. The points of a circle become a closed spline with few guiding points that stays within the tolerance.
+//!
+//! ```
+//! use rototoon::fit::{Options, fit};
+//! use rototoon::geometry::Point;
+//!
+//! let circle: Vec<Point> = (0..360).map(|degree| 100.0 * Point::from_angle(f64::from(degree).to_radians())).collect();
+//! let fitted = fit(&circle, true, &Options::new(0.5))?;
+//! assert!(fitted.spline.guides().len() <= 10, "360 points became {}", fitted.spline.guides().len());
+//! assert!(circle.iter().all(|&p| fitted.spline.nearest(p).distance <= 0.5));
+//! # Ok::<(), rototoon::fit::FitError>(())
+//! ```
 
 #![forbid(unsafe_code)]
 

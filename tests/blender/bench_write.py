@@ -55,15 +55,15 @@ def main():
         return
     import stand_in
 
-    sessions = addon("sessions")
+    sessions = addon("capture.sessions")
     sessions.make = stand_in.Session.from_document
     # Strokes are drawn in the same order on both keys.
     sessions.matcher = lambda request: {
         "matches": [{"reference": i, "drawn": i, "points": r["points"]} for i, r in enumerate(request["drawn"])]
     }
     ob = scene(addon)
-    gp, writing, document = addon("grease_pencil"), addon("writing"), addon("document")
-    tracking = addon("tracking")
+    gp, writing, document = addon("blender.grease_pencil"), addon("capture.writing"), addon("capture.document")
+    tracking = addon("capture.tracking")
     bpy.ops.rototoon.track()
     reading = document.read(ob)
     session = sessions.known(ob).session
@@ -87,7 +87,7 @@ def main():
     print(f"  lay out (plane, style)      {best(lambda: writing.lay_out(*arguments)):7.1f} ms")
     print(f"  write, new frames           {min(fresh.times):7.1f} ms")
     print(f"  write, frames there already {best(lambda: writing.write(layer, block, list(gp.drawings(layer)))):7.1f} ms")
-    print(f"  read strokes                {best(lambda: addon('contours').read(ob)):7.1f} ms")
+    print(f"  read strokes                {best(lambda: addon('capture.contours').read(ob)):7.1f} ms")
     print(f"  read as document            {best(lambda: document.read(ob)):7.1f} ms")
     print(f"  track and write, session's own time apart: {best(lambda: tracking.write_tracks(ob, reading, session)):7.1f} ms")
     beside_blender(addon)
@@ -107,7 +107,7 @@ def clocks(rivals, runs=10):
 
 def two_keys(addon):
     """An object with 50 circles on the first and last of 102 frames."""
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     ob = gp.new_object("Two Keys", bpy.context.collection)
     bpy.context.view_layer.objects.active = ob
     layer = ob.data.layers.new("Lines")
@@ -129,7 +129,7 @@ def two_keys(addon):
 
 def written(addon):
     """In-betweens as many as tracked contours are laid out."""
-    gp, writing = addon("grease_pencil"), addon("writing")
+    gp, writing = addon("blender.grease_pencil"), addon("capture.writing")
     total = PARTS * POINTS
     columns = [slice(i * POINTS, (i + 1) * POINTS) for i in range(PARTS)]
     present = np.ones((FRAMES, PARTS), bool)
@@ -145,9 +145,9 @@ def written(addon):
 
 def beside_blender(addon):
     """Blender's in-betweens, ours, each the whole operator; and as many strokes written as tracking writes them."""
-    gp, writing = addon("grease_pencil"), addon("writing")
+    gp, writing = addon("blender.grease_pencil"), addon("capture.writing")
     ob, layer = two_keys(addon)
-    kept = addon("tween_records").PROPERTY
+    kept = addon("tween.records").PROPERTY
 
     def clear(mode="OBJECT"):
         bpy.ops.object.mode_set(mode=mode)
@@ -174,7 +174,7 @@ def beside_blender(addon):
 
 def steps(addon, ob, layer, clear):
     """Median times of the steps of In-between, in words."""
-    tweening, charts = addon("tweening"), addon("charts")
+    tweening, charts = addon("tween.tweening"), addon("tween.charts")
     choose = lambda name, found, record: {(0, FRAMES + 1): charts.Choices()}  # noqa: E731
     times = {"read": [], "compute": [], "write": []}
     for _ in range(10):

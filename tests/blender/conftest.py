@@ -81,7 +81,7 @@ def addon():
 def empty_file():
     """An empty file before each test; `read_factory_settings` would disable the add-on."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    sessions = module("sessions")
+    sessions = module("capture.sessions")
     make, matcher = sessions.make, sessions.matcher
     yield
     sessions.clear()
@@ -93,7 +93,7 @@ def fake(addon):
     """Puts a session into the add-on that blends the keys, and counts what it solves."""
     import stand_in
 
-    sessions = addon("sessions")
+    sessions = addon("capture.sessions")
     sessions.make = stand_in.Session.from_document
     sessions.matcher = stand_in.match_contours
     return stand_in
@@ -103,6 +103,6 @@ def fake(addon):
 def library(addon):
     """Skips where the installed extension has no native library."""
     try:
-        addon("session").version()
+        addon("rototoon").version()
     except Exception as error:  # noqa: BLE001 - the reason is told
         pytest.skip(f"no native library in the extension: {error}")

@@ -68,13 +68,13 @@ def set_up(folder, **options):
 
 def mapping(addon, ob, frame=1):
     """The mapping of the object's contours layer."""
-    placement = addon("placement")
+    placement = addon("blender.placement")
     return placement.Mapper(ob, [frame], {}, [ob.rototoon.contours_layer]).at(0, frame)
 
 
 def draw(addon, ob, frame, shapes, cyclic=True):
     """Strokes through pixels on a frame of the contours layer, as an artist's: no attribute of the add-on is set."""
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     layer = ob.data.layers[ob.rototoon.contours_layer]
     if frame not in gp.drawings(layer):
         layer.frames.new(frame)
@@ -98,7 +98,7 @@ def layer_of(ob):
 
 def pixels(addon, ob, frame):
     """Pixels of each stroke on a frame, by part number, in drawing order."""
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     handle, _ = gp.drawings(layer_of(ob))[frame]
     starts = gp.offsets(handle)
     numbers = gp.value(handle, gp.PART, len(starts) - 1)
@@ -108,7 +108,7 @@ def pixels(addon, ob, frame):
 
 def move(addon, ob, frame, part, shift, which=None):
     """Moves points of a part's stroke by pixels, as an artist does in edit mode."""
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     handle, _ = gp.drawings(layer_of(ob))[frame]
     starts = gp.offsets(handle)
     index = list(gp.value(handle, gp.PART, len(starts) - 1)).index(part)
@@ -128,7 +128,7 @@ def two_keys(addon, folder):
     bpy.context.scene.frame_set(9)
     bpy.ops.rototoon.new_key()
     shapes = [diamond(8), square(8)]
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     handle, _ = gp.drawings(layer_of(ob))[9]
     points = mapping(addon, ob, 9).to_layer(np.concatenate(shapes))
     gp.put(handle, "position", points.astype(np.float32))

@@ -102,7 +102,7 @@ def stop():
     """The add-on's own `Cancelled`."""
     from conftest import module
 
-    return module("native.errors").Cancelled("stopped")
+    return module("rototoon").Cancelled("stopped")
 
 
 def spans(part):

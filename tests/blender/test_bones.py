@@ -49,7 +49,7 @@ def armature(rig=RIG, name="Rig"):
 
 def walk(addon, count=8):
     """A clip's postures (count, 17, 2) in pixels: a figure that swings its limbs and goes to the right."""
-    names = addon("style").KEY_POINTS
+    names = addon("rototoon.style").KEY_POINTS
     made = np.zeros((count, 17, 2))
     for frame in range(count):
         phase = math.sin(2 * math.pi * frame / count)
@@ -71,7 +71,7 @@ def walk(addon, count=8):
 
 
 def put(addon, folder, postures, character="boy", motion="walk", fps=24):
-    style = addon("style")
+    style = addon("rototoon.style")
     entry = {"character": character, "motion": motion, "points": np.asarray(postures).tolist()}
     file = {"rototoon_clips": 1, "fps": fps, "keypoints": list(style.KEY_POINTS), "clips": [entry]}
     style.add_to_library(str(folder), file)
@@ -79,7 +79,7 @@ def put(addon, folder, postures, character="boy", motion="walk", fps=24):
 
 def angles(addon, points):
     """By driven limb the directions in the picture, y up."""
-    names, limbs = addon("style").KEY_POINTS, addon("bone_driving").LIMBS
+    names, limbs = addon("rototoon.style").KEY_POINTS, addon("bones.driving").LIMBS
     ends = [(names.index(a), names.index(b)) for a, b in limbs]
     along = np.stack([points[..., b, :] - points[..., a, :] for a, b in ends], -2)
     return np.arctan2(-along[..., 1], along[..., 0])
@@ -91,7 +91,7 @@ def apart(a, b):
 
 
 def saved(addon, folder, character, motion="walk"):
-    found = addon("style").read_library(str(folder), character, motion).clips["clips"]
+    found = addon("rototoon.style").read_library(str(folder), character, motion).clips["clips"]
     return np.array(found[0]["points"])
 
 
@@ -119,7 +119,7 @@ def saved(addon, folder, character, motion="walk"):
     ],
 )
 def test_bones_are_told_by_name(addon, names, missing):
-    bone_names = addon("bone_names")
+    bone_names = addon("bones.names")
     bones, parents = {}, {}
     spine = ""
     for number, name in enumerate(names.split()):
@@ -135,7 +135,7 @@ def test_bones_are_told_by_name(addon, names, missing):
     if missing:
         assert table == {}
         return
-    assert set(table) == set(addon("style").KEY_POINTS), set(addon("style").KEY_POINTS) - set(table)
+    assert set(table) == set(addon("rototoon.style").KEY_POINTS), set(addon("rototoon.style").KEY_POINTS) - set(table)
     assert len(set(table.values())) == len(table), "no two key points on one spot"
     assert bone_names.plain(table["l_elbow"][0])[0] == "l"
 
@@ -155,7 +155,7 @@ def test_a_clip_of_an_armature(addon, tmp_path):
     assert scene.frame_current == 5
     points = saved(addon, tmp_path, "rig", "wave")
     assert points.shape == (11, 17, 2)
-    names = addon("style").KEY_POINTS
+    names = addon("rototoon.style").KEY_POINTS
     at = lambda frame, point: points[frame, names.index(point)]  # noqa: E731
     assert np.allclose(at(0, "pelvis"), (300, -300)) and np.allclose(at(0, "head_top"), (300, -470), atol=1e-3)
     assert np.allclose(at(0, "l_wrist"), (300 + 140, -100 - 290), atol=0.1), "x right, y down, the object's size"
@@ -163,7 +163,7 @@ def test_a_clip_of_an_armature(addon, tmp_path):
     bpy.context.view_layer.update()
     tail = ob.matrix_world @ ob.pose.bones["forearm.L"].tail
     assert np.allclose(at(7, "l_wrist"), (100 * tail.x, -100 * tail.z), atol=0.01)
-    assert [item.motion for item in addon("clip_browser").browser().clips] == ["wave"]
+    assert [item.motion for item in addon("style.clip_browser").browser().clips] == ["wave"]
 
 
 def test_bones_follow_a_clip_and_give_it_back(addon, tmp_path):
@@ -221,7 +221,7 @@ def test_existing_keys_are_not_touched(addon, tmp_path):
 
 
 def test_in_another_character_s_manner(addon, tmp_path):
-    style = addon("style")
+    style = addon("rototoon.style")
     lean = [k for k, name in enumerate(style.KEY_POINTS) if k < 11]
     plain, wave = walk(addon, 12), walk(addon, 12)[:, :, :] * (1.0, 1.0)
     wave[:, 6:8, 1] -= 25
@@ -249,14 +249,14 @@ def test_chosen_bones_and_wrong_use(addon, tmp_path):
         bpy.ops.rototoon.drive_bones(content="boy", motion="walk", folder=str(tmp_path))
     assert bpy.ops.rototoon.guess_bones() == {"FINISHED"}
     layouts.draw(bpy.types.ROTOTOON_PT_bones)
-    told = addon("bone_names").guess(
-        {name: addon("bone_names").Bone(p, np.array(a), np.array(b)) for name, (p, a, b) in RIG.items()}
+    told = addon("bones.names").guess(
+        {name: addon("bones.names").Bone(p, np.array(a), np.array(b)) for name, (p, a, b) in RIG.items()}
     )
     for item in ob.rototoon.bones:
         name, item.along = told[item.name]
         item.bone = f"x{list(RIG).index(name)}"
     bpy.ops.rototoon.guess_bones()
-    assert addon("armatures").chosen(ob)["l_knee"] == (f"x{list(RIG).index('shin.L')}", 0.0)
+    assert addon("bones.key_points").chosen(ob)["l_knee"] == (f"x{list(RIG).index('shin.L')}", 0.0)
     assert bpy.ops.rototoon.drive_bones(content="boy", motion="walk", folder=str(tmp_path)) == {"FINISHED"}
     with pytest.raises(RuntimeError, match='Found 0 clips "run" by "boy"'):
         bpy.ops.rototoon.drive_bones(content="boy", motion="run", folder=str(tmp_path))

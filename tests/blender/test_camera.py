@@ -39,7 +39,7 @@ CASES = [
 
 @pytest.mark.parametrize(("kind", "shift", "fit", "aspect", "size"), CASES)
 def test_agrees_with_blender_and_returns(addon, kind, shift, fit, aspect, size):
-    cameras = addon("camera")
+    cameras = addon("blender.camera")
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.pixel_aspect_x, scene.render.pixel_aspect_y = aspect
@@ -60,7 +60,7 @@ def test_agrees_with_blender_and_returns(addon, kind, shift, fit, aspect, size):
 
 
 def test_background_placement_keeps_shape(addon):
-    cameras = addon("camera")
+    cameras = addon("blender.camera")
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y = 1000, 500
     ob = camera("ORTHO")
@@ -86,7 +86,7 @@ def test_background_placement_keeps_shape(addon):
 
 
 def test_reference_image(addon, tmp_path):
-    cameras = addon("camera")
+    cameras = addon("blender.camera")
     image = bpy.data.images.new("picture", 200, 100)
     empty = bpy.data.objects.new("reference", None)
     bpy.context.scene.collection.objects.link(empty)
@@ -102,7 +102,7 @@ def test_reference_image(addon, tmp_path):
 
 
 def test_plane_of_what_was_drawn(addon):
-    plane_of = addon("camera").plane_of
+    plane_of = addon("blender.camera").plane_of
     view = np.array([0.0, -0.6, 0.8])
     rng = np.random.default_rng(3)
     flat = rng.normal(size=(40, 3)) * (1, 0, 1)
@@ -114,9 +114,9 @@ def test_plane_of_what_was_drawn(addon):
 
 
 def test_behind_the_camera_is_an_error(addon):
-    cameras = addon("camera")
+    cameras = addon("blender.camera")
     ob = camera()
     view = cameras.camera_view(bpy.context.scene, ob, WIDTH, HEIGHT, cameras.Placement())
     behind = np.array(ob.matrix_world.normalized() @ Vector((0, 0, 1)))
-    with pytest.raises(addon("errors").Problem, match="behind the camera"):
+    with pytest.raises(addon("blender.errors").Problem, match="behind the camera"):
         cameras.Mapping(view, np.eye(4)).to_pixels(behind[None])

@@ -23,7 +23,7 @@ def needs_library(library):
 
 def postures(addon, count=12, swing=20.0):
     """Arms that swing: (count, 17, 2)."""
-    names = addon("style").KEY_POINTS
+    names = addon("rototoon.style").KEY_POINTS
     rest = np.array([REST[name] for name in names], float)
     made = np.tile(rest, (count, 1, 1))
     for frame in range(count):
@@ -34,7 +34,7 @@ def postures(addon, count=12, swing=20.0):
 
 def fill(addon, folder, *clips):
     """Puts clips of (character, motion) into a library."""
-    style = addon("style")
+    style = addon("rototoon.style")
     for number, (character, motion) in enumerate(clips):
         points = postures(addon, 12, 10.0 + 5 * number).tolist()
         entry = {"character": character, "motion": motion, "points": points}
@@ -52,7 +52,7 @@ def test_clips_are_listed_and_filtered(addon, tmp_path):
     folder = shelf(addon, tmp_path)
     ob = shots.set_up(tmp_path)
     ob.rototoon.clips_folder = str(folder)
-    browser = addon("clip_browser").browser()
+    browser = addon("style.clip_browser").browser()
     listed = [(item.character, item.motion, item.frames) for item in browser.clips]
     assert listed == [("anna", "jump", 12), ("anna", "walk", 12), ("bert", "walk", 12)]
     row = SimpleNamespace(bitflag_filter_item=1 << 30)
@@ -71,7 +71,7 @@ def test_clips_are_listed_and_filtered(addon, tmp_path):
 def test_labels_are_offered(addon, tmp_path):
     ob = shots.set_up(tmp_path)
     ob.rototoon.clips_folder = str(shelf(addon, tmp_path))
-    clip_browser = addon("clip_browser")
+    clip_browser = addon("style.clip_browser")
     assert clip_browser.motions() == ["jump", "walk"] and clip_browser.motions("bert") == ["walk"]
     assert clip_browser.characters("jump") == ["anna"]
     assert clip_browser.offered(clip_browser.characters(), "E") == ["bert"]
@@ -84,7 +84,7 @@ def test_damaged_files_are_listed_as_such(addon, tmp_path):
     (folder / "stray.clip.json").write_text("no clip at all")
     ob = shots.set_up(tmp_path)
     ob.rototoon.clips_folder = str(folder)
-    clip_browser = addon("clip_browser")
+    clip_browser = addon("style.clip_browser")
     browser = clip_browser.browser()
     assert [(item.character, bool(item.trouble)) for item in browser.clips] == [
         ("anna", False),
@@ -107,7 +107,7 @@ def test_the_panel_hands_on_the_chosen_clip(addon, tmp_path):
     ob = shots.set_up(tmp_path)
     layouts.draw(bpy.types.ROTOTOON_PT_style)
     ob.rototoon.clips_folder = str(shelf(addon, tmp_path))
-    addon("clip_browser").browser().active = 1
+    addon("style.clip_browser").browser().active = 1
     said = layouts.draw(bpy.types.ROTOTOON_PT_style)
     made = {entry[1]: entry[2] for entry in said if entry[0] == "operator"}
     assert vars(made["rototoon.reshape_drawing"]) == {"character": "anna", "motion": "walk"}
@@ -123,7 +123,7 @@ def test_the_panel_hands_on_the_chosen_clip(addon, tmp_path):
 def test_a_library_that_is_not_there_or_unsaved(addon, tmp_path):
     ob = shots.set_up(tmp_path)
     ob.rototoon.clips_folder = str(tmp_path / "nowhere")
-    assert len(addon("clip_browser").browser().clips) == 0
+    assert len(addon("style.clip_browser").browser().clips) == 0
     layouts.draw(bpy.types.ROTOTOON_PT_style)
     ob.rototoon.clips_folder = "//clips"
     with pytest.raises(RuntimeError, match="not saved"):
@@ -133,11 +133,11 @@ def test_a_library_that_is_not_there_or_unsaved(addon, tmp_path):
 
 def test_the_preferences_name_a_library(addon, tmp_path):
     shots.set_up(tmp_path)
-    preferences = addon("preferences").preferences()
+    preferences = addon("blender.preferences").preferences()
     preferences.clips_folder = str(shelf(addon, tmp_path))
     try:
         assert bpy.ops.rototoon.refresh_clips() == {"FINISHED"}
-        assert len(addon("clip_browser").browser().clips) == 3
+        assert len(addon("style.clip_browser").browser().clips) == 3
     finally:
         preferences.clips_folder = ""
 
@@ -145,7 +145,7 @@ def test_the_preferences_name_a_library(addon, tmp_path):
 def test_the_figure_plays_with_the_scene(addon, tmp_path):
     ob = shots.set_up(tmp_path)
     ob.rototoon.clips_folder = str(shelf(addon, tmp_path))
-    clip_preview, clip_browser = addon("clip_preview"), addon("clip_browser")
+    clip_preview, clip_browser = addon("ui.clip_preview"), addon("style.clip_browser")
     row = clip_browser.chosen()
     scene = bpy.context.scene
     scene.render.fps, scene.frame_start = 24, 1
@@ -167,8 +167,8 @@ def test_the_figure_plays_with_the_scene(addon, tmp_path):
 def test_the_figure_stands_beside_the_drawing(addon, tmp_path):
     ob = shots.set_up(tmp_path)
     ob.rototoon.clips_folder = str(shelf(addon, tmp_path))
-    row = addon("clip_browser").chosen()
-    gather = addon("clip_preview").gather
+    row = addon("style.clip_browser").chosen()
+    gather = addon("ui.clip_preview").gather
     lines = np.concatenate([mark.points for mark in gather(ob, row, bpy.context.scene)])
     shots.draw(addon, ob, 1, [np.array([[20.0, 10], [60, 10], [60, 80], [20, 80]])])
     beside = np.concatenate([mark.points for mark in gather(ob, row, bpy.context.scene)])

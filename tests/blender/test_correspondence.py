@@ -7,7 +7,7 @@ import pytest
 @pytest.mark.parametrize("closed", [True, False])
 @pytest.mark.parametrize("backwards", [True, False])
 def test_there_and_back(addon, closed, backwards):
-    c = addon("correspondence")
+    c = addon("capture.correspondence")
     rng = np.random.default_rng(5)
     for size in (7, 12, 40):
         control = np.sort(rng.uniform(0, 6.99, size))
@@ -30,13 +30,13 @@ def test_there_and_back(addon, closed, backwards):
 
 
 def test_identity_is_exact(addon):
-    c = addon("correspondence")
+    c = addon("capture.correspondence")
     for closed in (True, False):
         assert np.array_equal(c.invert(c.identity(9), 9, closed), np.arange(9))
 
 
 def test_no_order_is_none(addon):
-    c = addon("correspondence")
+    c = addon("capture.correspondence")
     assert c.invert(np.zeros(5), 4, True) is None
     assert c.invert(np.zeros(5), 4, False) is None
     assert c.invert(np.array([0, 3, 1, 2.0]), 4, False) is None
@@ -44,7 +44,7 @@ def test_no_order_is_none(addon):
 
 
 def test_located_points_lie_on_the_line(addon):
-    c = addon("correspondence")
+    c = addon("capture.correspondence")
     line = np.array([[0.0, 0], [10, 0], [10, 10], [0, 10]])
     where = c.locate(line, np.array([[2.5, 0], [10, 10], [0, 5]]), True)
     assert where == pytest.approx([0.25, 2.0, 3.5])
@@ -52,7 +52,7 @@ def test_located_points_lie_on_the_line(addon):
 
 
 def test_moved_alike_or_not(addon):
-    compare = addon("corrections").compare
+    compare = addon("capture.corrections").compare
     before = np.array([[0.0, 0], [10, 0], [10, 10], [0, 10]])
     assert compare(before, before + 0.01)[1] is False and not compare(before, before + 0.01)[0].any()
     assert compare(before, before + (5, 2))[1] is True

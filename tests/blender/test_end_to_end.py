@@ -25,7 +25,7 @@ def test_keys_in_tracked_strokes_out(addon, tmp_path):
     assert bpy.ops.rototoon.track() == {"FINISHED"}
     assert len(shots.layer_of(ob).frames) == 9
     assert max(worst(addon, ob, frame) for frame in range(1, 10)) < 3
-    session = addon("sessions").known(ob).session
+    session = addon("capture.sessions").known(ob).session
     assert session.track().solved == 0
     shots.move(addon, ob, 5, 1, (3.0, 2.0), which=[0])
     pinned = dict(shots.pixels(addon, ob, 5))[1][0]
@@ -51,7 +51,7 @@ def test_snapped_line_lies_on_the_ink(addon, tmp_path):
     ob = shots.two_keys(addon, tmp_path)
     bpy.ops.rototoon.track()
     bpy.ops.rototoon.snap()
-    curves = addon("snapping").read(ob)
+    curves = addon("capture.snapping").read(ob)
     assert sorted(curves) == [(part, frame) for part in (1, 2) for frame in range(1, 10)]
     outline = shots.square(4)
     line = np.concatenate(curves[2, 5])
@@ -64,7 +64,7 @@ def test_snapped_line_lies_on_the_ink(addon, tmp_path):
 def test_stopped_in_the_library(addon, tmp_path):
     ob = shots.two_keys(addon, tmp_path)
     before = shots.snapshot(ob)
-    jobs = addon("jobs")
+    jobs = addon("common.jobs")
     start = jobs.Worker.start
     try:
         jobs.Worker.start = lambda self: (self.cancel(), start(self))
@@ -92,6 +92,6 @@ def test_snap_after_opening_the_file_again(addon, tmp_path):
     assert bpy.ops.rototoon.snap() == {"FINISHED"}
     assert len(bpy.context.object.data.layers["Snapped"].frames) == 9
     bpy.ops.rototoon.export_document(filepath=str(tmp_path / "out.json"))
-    with addon("session").Session.open(tmp_path / "out.json") as session:
+    with addon("rototoon").Session.open(tmp_path / "out.json") as session:
         assert session.parts() == ["Part 1", "Part 2"]
         assert len(session.curves("Part 2", 5)) == 4

@@ -93,7 +93,7 @@ def test_import_into_the_active_object(addon, tmp_path):
         (lambda d: d["parts"][1]["keys"].update({"x": [[1, 2]]}), "not a frame number"),
         (lambda d: d["parts"][1].update(name="box"), "name of another part"),
         (lambda d: d["parts"][1]["keys"]["2"].append(["a", None]), r"parts\[1\].keys\[2\]"),
-        (lambda d: d["footage"].update(pattern="gone/f_%d.png"), "footage is not there"),
+        (lambda d: d["footage"].update(pattern="gone/f_%d.png"), "footage is missing"),
     ],
 )
 def test_bad_documents_are_named(addon, tmp_path, change, message):
@@ -132,9 +132,9 @@ def test_save_move_and_open(addon, fake, tmp_path):
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "elsewhere/shot.blend"))
     ob = bpy.context.object
     assert shots.snapshot(ob) == before
-    assert addon("sessions").known(ob) is None
+    assert addon("capture.sessions").known(ob) is None
     bpy.ops.rototoon.track()
-    state = addon("sessions").known(ob).session.state
+    state = addon("capture.sessions").known(ob).session.state
     assert state["footage"]["pattern"] == str(tmp_path / "elsewhere/frames/shot_%03d.png")
     assert list(state["parts"][1]["pins"]) == ["4"]
     assert list(state["parts"][0]["centers"]) == ["6"]

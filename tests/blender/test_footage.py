@@ -14,7 +14,7 @@ def touch(folder, *names):
 
 
 def test_sequence_around_a_file(addon, tmp_path):
-    footage = addon("footage")
+    footage = addon("blender.footage")
     touch(tmp_path, "a_008.png", "a_009.png", "a_010.png", "a_011.png", "a_020.png", "b_010.png", "a_010.jpg", "a_10.png")
     found = footage.sequence_around(str(tmp_path / "a_010.png"))
     assert found.pattern == str(tmp_path / "a_%03d.png")
@@ -22,7 +22,7 @@ def test_sequence_around_a_file(addon, tmp_path):
 
 
 def test_sequence_without_padding(addon, tmp_path):
-    footage = addon("footage")
+    footage = addon("blender.footage")
     touch(tmp_path, *(f"s2_{n}.png" for n in range(7, 13)))
     found = footage.sequence_around(str(tmp_path / "s2_9.png"))
     assert found.pattern == str(tmp_path / "s2_%d.png")
@@ -30,14 +30,14 @@ def test_sequence_without_padding(addon, tmp_path):
 
 
 def test_numbers_that_outgrow_their_padding(addon, tmp_path):
-    footage = addon("footage")
+    footage = addon("blender.footage")
     touch(tmp_path, "f098.png", "f099.png", "f100.png", "f999.png", "f1000.png")
     found = footage.sequence_around(str(tmp_path / "f099.png"))
     assert (found.pattern, found.first, found.last) == (str(tmp_path / "f%03d.png"), 98, 100)
 
 
 def test_names_that_cannot_be(addon, tmp_path):
-    footage, problem = addon("footage"), addon("errors").Problem
+    footage, problem = addon("blender.footage"), addon("blender.errors").Problem
     touch(tmp_path, "still.png")
     with pytest.raises(problem, match="no number in its name"):
         footage.sequence_around(str(tmp_path / "still.png"))
@@ -144,7 +144,7 @@ def test_movie_becomes_a_sequence_in_the_cache(addon, tmp_path):
     frames = sorted(first.parent.iterdir())
     movie_path = tmp_path / "shot.mp4"
     make_movie(movie_path, frames)
-    addon("preferences").preferences().cache_folder = str(tmp_path / "cache")
+    addon("blender.preferences").preferences().cache_folder = str(tmp_path / "cache")
     shutil.rmtree(tmp_path / "cache", ignore_errors=True)
     scenes = len(bpy.data.scenes)
     bpy.ops.rototoon.setup(filepath=str(movie_path))
@@ -158,14 +158,14 @@ def test_movie_becomes_a_sequence_in_the_cache(addon, tmp_path):
     made = [path.stat().st_mtime_ns for path in (tmp_path / "cache").rglob("*.png")]
     bpy.ops.rototoon.footage_from_file(filepath=str(movie_path))
     assert made == [path.stat().st_mtime_ns for path in (tmp_path / "cache").rglob("*.png")]
-    addon("preferences").preferences().cache_folder = ""
+    addon("blender.preferences").preferences().cache_folder = ""
 
 
 def test_broken_off_movie_leaves_nothing(addon, tmp_path):
     first = shots.draw_sequence(tmp_path / "frames")
     movie_path = tmp_path / "shot.mp4"
     make_movie(movie_path, sorted(first.parent.iterdir()))
-    movie = addon("movie")
+    movie = addon("blender.movie")
     steps = movie.extract(str(movie_path), str(tmp_path / "cache"))
     next(steps)
     steps.close()
@@ -176,16 +176,16 @@ def test_broken_off_movie_leaves_nothing(addon, tmp_path):
 def test_not_a_movie(addon, tmp_path):
     bpy.ops.rototoon.setup(filepath=str(shots.draw_sequence(tmp_path / "frames")))
     (tmp_path / "broken.mp4").write_bytes(b"no movie")
-    addon("preferences").preferences().cache_folder = str(tmp_path / "cache")
+    addon("blender.preferences").preferences().cache_folder = str(tmp_path / "cache")
     with pytest.raises(RuntimeError, match="Cannot read the movie"):
         bpy.ops.rototoon.footage_from_file(filepath=str(tmp_path / "broken.mp4"))
-    addon("preferences").preferences().cache_folder = ""
+    addon("blender.preferences").preferences().cache_folder = ""
 
 
 def test_cache_keeps_its_limit(addon, tmp_path):
     import os
 
-    movie = addon("movie")
+    movie = addon("blender.movie")
     for age, name in enumerate(("new", "middle", "old", "used")):
         (tmp_path / name).mkdir()
         (tmp_path / name / "frame_000001.png").write_bytes(b"x" * 100)

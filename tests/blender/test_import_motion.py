@@ -45,7 +45,7 @@ def shot(tmp_path):
 
 
 def listed(addon):
-    return [(item.character, item.motion, item.frames) for item in addon("clip_browser").browser().clips]
+    return [(item.character, item.motion, item.frames) for item in addon("style.clip_browser").browser().clips]
 
 
 def test_a_file_is_named_after_its_folder_and_itself(addon, tmp_path):
@@ -53,15 +53,15 @@ def test_a_file_is_named_after_its_folder_and_itself(addon, tmp_path):
     file.write_text(motion())
     assert bpy.ops.rototoon.import_motion(filepath=str(file), view="front") == {"FINISHED"}
     assert listed(addon) == [("anna", "stroll", 4)]
-    clip = addon("clip_browser").shelf().find("anna", "stroll")
-    names = addon("style").KEY_POINTS
+    clip = addon("style.clip_browser").shelf().find("anna", "stroll")
+    names = addon("rototoon.style").KEY_POINTS
     pelvis, neck, hand = (clip.postures[:, names.index(name)] for name in ("pelvis", "neck", "l_wrist"))
     assert pelvis[:, 0] - pelvis[0, 0] == pytest.approx([0, 0.25, 0.5, 0.75], abs=1e-6), "torso lengths, as it goes"
     assert (neck - pelvis)[0] == pytest.approx([0, -1], abs=1e-6)
     assert (hand - pelvis)[0] == pytest.approx([1.5, -1], abs=1e-6)
     assert clip.fps == pytest.approx(25)
     bpy.ops.rototoon.import_motion(filepath=str(file), view="front", way=False, character="Bo", motion="still")
-    still = addon("clip_browser").shelf().find("Bo", "still").postures[:, 0]
+    still = addon("style.clip_browser").shelf().find("Bo", "still").postures[:, 0]
     assert still == pytest.approx(0, abs=1e-9)
 
 

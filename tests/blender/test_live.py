@@ -15,7 +15,7 @@ RESTING = ("Follows your edits", "CHECKMARK")
 @pytest.fixture
 def live(addon):
     """The module, left without anything due."""
-    found = addon("live")
+    found = addon("capture.live")
     yield found
     found.reset()
 
@@ -47,7 +47,7 @@ def switched_on(addon, live, folder):
 
 
 def session(addon, ob):
-    return addon("sessions").known(ob).session
+    return addon("capture.sessions").known(ob).session
 
 
 def drawings(ob):
@@ -57,7 +57,7 @@ def drawings(ob):
 
 def hold(addon, monkeypatch):
     """Makes tracking wait for the returned event."""
-    go, jobs = threading.Event(), addon("jobs")
+    go, jobs = threading.Event(), addon("common.jobs")
     work = jobs.Worker._work
     monkeypatch.setattr(jobs.Worker, "_work", lambda self: (go.wait(10), work(self)))
     return go
@@ -105,7 +105,7 @@ def test_moved_point_is_a_pin_and_only_its_span_is_solved(addon, fake, live, tmp
     assert [frame for frame in after if after[frame] != before[frame]] == [2, 3, 4]
     assert {after[f][0] for f in (2, 3, 4)} == {"GENERATED"}
     assert np.array_equal(dict(shots.pixels(addon, ob, 3))[2], moved)
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     handle = gp.drawings(shots.layer_of(ob))[3][0]
     assert list(np.flatnonzero(gp.value(handle, gp.PIN, 8))) == [5]
     # What was written is not taken for an edit.
@@ -114,7 +114,7 @@ def test_moved_point_is_a_pin_and_only_its_span_is_solved(addon, fake, live, tmp
 
 def test_own_writing_is_not_taken_for_an_edit(addon, fake, live, tmp_path, monkeypatch):
     ob = switched_on(addon, live, tmp_path)
-    document, reads = addon("document"), []
+    document, reads = addon("capture.document"), []
     read = document.read
     monkeypatch.setattr(document, "read", lambda *args, **options: (reads.append(1), read(*args, **options))[1])
     shots.move(addon, ob, 3, 2, (5.0, -3.0), which=[1])
@@ -194,7 +194,7 @@ def test_two_quick_edits_give_what_one_track_gives(addon, fake, live, tmp_path, 
     go.set()
     settle(live)
     found = shots.snapshot(ob)
-    addon("sessions").clear()
+    addon("capture.sessions").clear()
     ob.rototoon.live = False
     bpy.ops.rototoon.track()
     assert shots.snapshot(ob) == found
@@ -339,7 +339,7 @@ def test_object_deleted_while_tracking(addon, fake, live, tmp_path, monkeypatch)
     bpy.data.objects.remove(ob)
     go.set()
     settle(live)
-    assert live._run is None and uid not in addon("sessions")._entries
+    assert live._run is None and uid not in addon("capture.sessions")._entries
 
 
 def test_layer_deleted_while_tracking(addon, fake, live, tmp_path, monkeypatch):
@@ -358,7 +358,7 @@ def test_layer_deleted_while_tracking(addon, fake, live, tmp_path, monkeypatch):
 
 def test_failure_is_told_once_and_leaves_it_on(addon, fake, live, tmp_path, monkeypatch):
     ob = switched_on(addon, live, tmp_path)
-    error = addon("native.errors").RototoonError
+    error = addon("rototoon").RototoonError
     track = fake.Session.track
 
     def fail(*_args, **_options):
@@ -455,7 +455,7 @@ def test_native_result_is_that_of_track(addon, library, live, tmp_path):
     shots.move(addon, ob, 7, 1, (3.0, 2.0))
     settle(live)
     found = shots.snapshot(ob)
-    addon("sessions").clear()
+    addon("capture.sessions").clear()
     ob.rototoon.live = False
     bpy.ops.rototoon.track()
     assert shots.snapshot(ob) == found

@@ -17,7 +17,7 @@ def one_key(addon, tmp_path, frame=5):
 
 def made(addon, ob):
     """Frames with a generated contour, by part number."""
-    return {part.number: sorted(part.made) for part in addon("contours").read(ob).parts}
+    return {part.number: sorted(part.made) for part in addon("capture.contours").read(ob).parts}
 
 
 def test_generated_frames_go_outward_and_the_panel_says_where_a_key_is_wanted(addon, fake, tmp_path):
@@ -25,8 +25,8 @@ def test_generated_frames_go_outward_and_the_panel_says_where_a_key_is_wanted(ad
     assert bpy.ops.rototoon.track() == {"FINISHED"}
     assert made(addon, ob) == {1: [3, 4, 6, 7], 2: [3, 4, 6, 7]}
     said = addon("ui.panels").said_of_ends(ob.rototoon)
-    assert said[0] == ("Part 1 wants a key on frame 2", "KEY_HLT") and len(said) == 4
-    assert [text for text, _ in said if text.startswith("Part 2")][1] == "Part 2 wants a key on frame 8"
+    assert said[0] == ("Part 1 needs a key on frame 2", "KEY_HLT") and len(said) == 4
+    assert [text for text, _ in said if text.startswith("Part 2")][1] == "Part 2 needs a key on frame 8"
 
 
 def test_corrections_beside_a_single_key_are_kept(addon, fake, tmp_path):
@@ -35,7 +35,7 @@ def test_corrections_beside_a_single_key_are_kept(addon, fake, tmp_path):
     shots.move(addon, ob, 7, 2, (5.0, -3.0), which=[1])
     moved = dict(shots.pixels(addon, ob, 7))[2][1]
     bpy.ops.rototoon.track()
-    state = addon("sessions").known(ob).session.state
+    state = addon("capture.sessions").known(ob).session.state
     assert list(state["parts"][1]["pins"]) == ["7"]
     assert np.array_equal(dict(shots.pixels(addon, ob, 7))[2][1], moved)
     # Another method stays on the key.

@@ -5,7 +5,7 @@ import pytest
 
 
 def stroke(addon, kind, points, closed=False, **attributes):
-    module = addon("strokes")
+    module = addon("blender.strokes")
     content = module.Content(np.array([len(points)]), np.array([kind], np.int8))
     content.point["position"] = np.c_[points, np.zeros(len(points))]
     content.set_strokes("cyclic", np.array([closed]))
@@ -16,7 +16,7 @@ def stroke(addon, kind, points, closed=False, **attributes):
 
 def drawn(addon, kind, points, closed=False, **attributes):
     _, content = stroke(addon, kind, points, closed, **attributes)
-    (line,) = addon("stroke_lines").lines(content)
+    (line,) = addon("blender.stroke_lines").lines(content)
     assert not line[:, 2].any()
     return line[:, :2]
 
@@ -70,12 +70,12 @@ def test_catmull_rom_and_bezier_pass_their_points(addon):
     _, content = stroke(addon, 2, [(0, 0), (4, 0)])
     content.point["handle_left"] = np.array([(-1.0, 0, 0), (4, 2, 0)])
     content.point["handle_right"] = np.array([(0.0, 2, 0), (5, 0, 0)])
-    (line,) = addon("stroke_lines").lines(content)
+    (line,) = addon("blender.stroke_lines").lines(content)
     assert np.abs(line - (2, 1.5, 0)).sum(1).min() < 1e-12
 
 
 def arranged(addon, lines, extents, size=(400, 300), obstacles=()):
-    module = addon("label_places")
+    module = addon("tween.label_places")
     around = module.anchors(lines)[..., :2]
     covered = module.Covered(module.drawn([*lines, *obstacles])[:, :2], size)
     return module.arrange(around, np.array(extents, float), covered, size, 1.0)
@@ -108,7 +108,7 @@ def test_a_number_without_room_is_left_out(addon):
 
 
 def test_colours_of_neighbours_differ(addon):
-    colour = addon("pairing").colour_of
+    colour = addon("tween.pairing").colour_of
     colours = np.array([colour(k) for k in range(1, 30)])
     for apart in (1, 2, 3):
         assert np.linalg.norm(colours[apart:] - colours[:-apart], axis=1).min() > 0.3

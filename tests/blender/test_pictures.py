@@ -43,7 +43,7 @@ def shown(addon, ob, mesh, frame):
     local = np.array([vertex.co for vertex in found.data.vertices], np.float64)
     matrix = np.array(mesh.matrix_world)
     world = local @ matrix[:3, :3].T + matrix[:3, 3]
-    cameras, placement = addon("camera"), addon("placement")
+    cameras, placement = addon("blender.camera"), addon("blender.placement")
     parts = np.zeros(len(local), np.int32)
     mesh.data.attributes["rototoon_part"].data.foreach_get("value", parts)
     return cameras.Mapping(placement.view_of(ob), np.eye(4)).to_pixels(world), world, parts
@@ -182,7 +182,7 @@ def test_wrong_pictures_change_nothing(addon, tmp_path):
 
 
 def test_pieces_of_odd_contours(addon):
-    pieces = addon("picture_pieces")
+    pieces = addon("style.picture_pieces")
     ring = np.array([[0, 0], [40, 0], [40, 40], [20, 10], [0, 40]], float)
     made = pieces.triangulated("crown", ring)
     assert np.allclose(made.points[:5], ring) and made.triangles.max() < len(made.points)
@@ -192,7 +192,7 @@ def test_pieces_of_odd_contours(addon):
     wide = pieces.widened(np.array([[0, 0], [10, 0], [10, 10], [0, 10]], float), 2.0)
     assert wide.min() == pytest.approx(-math.sqrt(2)) and wide.max() == pytest.approx(10 + math.sqrt(2))
     assert pieces.widened(wide[::-1], 2.0).min() < wide.min(), "outward whichever way it is drawn"
-    with pytest.raises(addon("errors").Problem, match="single spot"):
+    with pytest.raises(addon("blender.errors").Problem, match="single spot"):
         pieces.triangulated("dot", np.ones((4, 2)))
 
 

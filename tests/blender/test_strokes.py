@@ -9,7 +9,7 @@ pytestmark = pytest.mark.usefixtures("library")
 
 def drawing_object(addon, layers=("Lines",), filled=False):
     """An object with empty layers and a material, seen from the front, 100 pixels a unit."""
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     ob = gp.new_object("Drawing", bpy.context.collection)
     bpy.context.view_layer.objects.active = ob
     if filled:
@@ -21,7 +21,7 @@ def drawing_object(addon, layers=("Lines",), filled=False):
 
 def add(addon, ob, layer, frame, shapes, cyclic=False, **attributes):
     """Strokes through points (x, z) on a frame of a layer; attributes as arrays by name."""
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     layer = ob.data.layers[layer]
     gp.make_frames(layer, [frame], gp.KEYFRAME)
     drawing = gp.drawings(layer)[frame][0]
@@ -46,11 +46,11 @@ def add(addon, ob, layer, frame, shapes, cyclic=False, **attributes):
 
 
 def drawing(addon, ob, layer, frame):
-    return addon("grease_pencil").drawings(ob.data.layers[layer])[frame][0]
+    return addon("blender.grease_pencil").drawings(ob.data.layers[layer])[frame][0]
 
 
 def content(addon, ob, layer, frame):
-    return addon("strokes").read(drawing(addon, ob, layer, frame))
+    return addon("blender.strokes").read(drawing(addon, ob, layer, frame))
 
 
 def wave(count=400, length=4.0):
@@ -114,7 +114,7 @@ def test_what_strokes_carry_stays(addon):
     count = 400
     ramp = np.linspace(0.01, 0.05, count).astype(np.float32)
     handle = add(addon, ob, "Lines", 1, [wave(count)], radius=ramp, opacity=np.linspace(1, 0.2, count))
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     gp.put(handle, "vertex_color", np.tile([0.2, 0.4, 0.6, 1.0], (count, 1)))
     gp.put(handle, gp.PART, np.array([7]))
     handle.attributes.new("mine", "INT", "POINT").data.foreach_set("value", np.arange(count, dtype=np.int32))
@@ -138,7 +138,7 @@ def test_strokes_that_cannot_be_fitted_stay(addon):
     shapes = [wave(50)[:1], wave(50)[:2], np.full((20, 2), 0.5), wave(200), wave(200) + 1]
     add(addon, ob, "Lines", 1, shapes)
     handle = drawing(addon, ob, "Lines", 1)
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     points = gp.positions(handle, 423)
     points[300] = np.nan
     gp.put(handle, "position", points)
@@ -158,7 +158,7 @@ def test_strokes_that_cannot_be_fitted_stay(addon):
 
 def test_frames_layers_and_locks_are_respected(addon):
     ob = drawing_object(addon, ("Low", "High"))
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     for layer in ("Low", "High"):
         for frame in (1, 5, 9):
             add(addon, ob, layer, frame, [wave()])
@@ -240,7 +240,7 @@ def test_empty_drawings_and_objects(addon):
 
 def fills(addon, ob, layer, frame, values):
     """Marks strokes as filled, as the version of Blender wants it."""
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     if gp.FILL_BY_ID:
         gp.put(drawing(addon, ob, layer, frame), "fill_id", np.array(values))
         return
@@ -262,7 +262,7 @@ def scene(addon, at=(2.0, 0.0)):
 
 def test_a_covered_line_is_cut_exactly(addon):
     ob = scene(addon)
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     gp.put(drawing(addon, ob, "Back", 1), gp.PART, np.array([3]))
     front = content(addon, ob, "Front", 1)
     assert bpy.ops.rototoon.hidden_lines() == {"FINISHED"}
@@ -324,7 +324,7 @@ def test_a_cut_stroke_keeps_its_fill(addon):
     carrier, line, front = range(3)
     assert len(found.sizes) == 3
     assert list(found.curve["cyclic"]) == [True, False, True]
-    assert list(addon("strokes").filled(ob, found) != 0) == [True, False, True]
+    assert list(addon("blender.strokes").filled(ob, found) != 0) == [True, False, True]
     starts = found.starts
     opacity = found.point["opacity"]
     assert (opacity[: starts[1]] == 0).all() and (opacity[starts[1] :] == 1).all()
@@ -359,7 +359,7 @@ def test_held_drawings_get_new_frames_where_they_look_another_way(addon):
     for frame, at in ((5, (10.0, 0.0)), (9, (3.0, 0.0))):
         add(addon, ob, "Front", frame, [circle(at, 1.0, 400)], cyclic=True)
         fills(addon, ob, "Front", frame, [1])
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     gp.set_keyframe_type(ob.data.layers["Back"], {1: "BREAKDOWN"})
     bpy.ops.rototoon.hidden_lines(frames="RANGE")
     kinds = {f: kind for f, (_, kind) in gp.drawings(ob.data.layers["Back"]).items()}
@@ -373,7 +373,7 @@ def test_held_drawings_get_new_frames_where_they_look_another_way(addon):
 
 def test_strokes_that_are_no_places_neither_cover_nor_go(addon):
     ob = scene(addon)
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     handle = add(addon, ob, "Back", 1, [[(2, 0.2)], [(1.8, 0.3), (2.2, 0.3)], [(1.9, 0.1), (2.1, 0.1), (2.0, 0.2)]])
     points = gp.positions(handle, 47)
     points[-1] = np.nan
@@ -447,5 +447,5 @@ def test_a_layer_under_a_parent_keeps_its_place(addon):
     bpy.context.view_layer.update()
     bpy.ops.rototoon.hidden_lines(action="MOVE")
     bpy.context.view_layer.update()
-    place = addon("camera").layer_to_world
+    place = addon("blender.camera").layer_to_world
     assert place(ob, ob.data.layers["Back Hidden"]) == pytest.approx(place(ob, back), abs=1e-5)

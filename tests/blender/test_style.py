@@ -56,7 +56,7 @@ def at(contour, place):
 
 def limb_line(addon, ob, frame, name, contours):
     """Draws a key point's line on the limb layer and says what it tells."""
-    gp, limbs, placement = addon("grease_pencil"), addon("limbs"), addon("placement")
+    gp, limbs, placement = addon("blender.grease_pencil"), addon("style.limbs"), addon("blender.placement")
     layer = ob.data.layers.get(limbs.LAYER) or ob.data.layers.new(limbs.LAYER)
     if frame not in gp.drawings(layer):
         layer.frames.new(frame)
@@ -87,7 +87,7 @@ def performer(addon, folder, swing=0.6, lean=0.0):
 
 def test_lines_across_limbs_make_limbs(addon, tmp_path):
     ob = performer(addon, tmp_path)
-    made = addon("limbs").defined(ob)
+    made = addon("style.limbs").defined(ob)
     assert [(limb["from"], limb["to"]) for limb in made] == [
         ("pelvis", "neck"),
         ("neck", "r_shoulder"),
@@ -173,11 +173,11 @@ def test_stopped_and_wrong_use_change_nothing(addon, tmp_path):
     for name in LINES:
         limb_line(addon, ob, 1, name, figure())
     before = shots.snapshot(ob)
-    with pytest.raises(RuntimeError, match="holds no clips"):
+    with pytest.raises(RuntimeError, match="has no clips"):
         bpy.ops.rototoon.apply_motion(motion="walk", content="plain", style="old", folder=str(tmp_path / "none"))
     with pytest.raises(RuntimeError, match='found "nobody"'):
         bpy.ops.rototoon.apply_motion(motion="walk", content="plain", style="nobody", folder=shelf)
-    jobs = addon("jobs")
+    jobs = addon("common.jobs")
     start = jobs.Worker.start
     try:
         jobs.Worker.start = lambda self: (self.cancel(), start(self))
@@ -194,6 +194,6 @@ def test_marks_are_kept_with_the_document(addon, tmp_path):
     names = [part.name for part in ob.rototoon.parts]
     assert bpy.ops.rototoon.depth_mark(front=names[2], behind=names[1]) == {"FINISHED"}
     assert bpy.ops.rototoon.depth_mark(front=names[1], behind=names[2]) == {"FINISHED"}
-    assert addon("limbs").marks(ob) == [{"front": names[1], "behind": names[2]}]
+    assert addon("style.limbs").marks(ob) == [{"front": names[1], "behind": names[2]}]
     with pytest.raises(RuntimeError, match="No part 'hat'"):
         bpy.ops.rototoon.depth_mark(front="hat", behind=names[1])

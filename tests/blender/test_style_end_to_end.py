@@ -44,7 +44,7 @@ def sample(tmp_path_factory):
 
 def aged(addon, clip):
     """An old man's version of a clip: bent forward from the hips."""
-    upper = [k for k, name in enumerate(addon("style").KEY_POINTS) if k < 11]
+    upper = [k for k, name in enumerate(addon("rototoon.style").KEY_POINTS) if k < 11]
     points = np.array(clip["points"])
     points[:, upper] = turned(points[:, upper], points[:, :1], LEAN)
     return {"character": "old", "motion": clip["motion"], "points": points.tolist()}
@@ -63,7 +63,7 @@ def capture(addon, sample, shelf):
     for motion, first, last in (("walk", 0, WALK[-1]), ("jump", WALK[-1] + 1, ob.rototoon.last)):
         clip = {"character": "boy", "motion": motion, "first": first, "last": last, "folder": shelf}
         assert bpy.ops.rototoon.save_clip(**clip) == {"FINISHED"}
-    style = addon("style")
+    style = addon("rototoon.style")
     found = style.read_library(shelf).clips
     jump = next(clip for clip in found["clips"] if clip["motion"] == "jump")
     style.add_to_library(shelf, {**found, "clips": [aged(addon, jump)]})
@@ -73,7 +73,7 @@ def capture(addon, sample, shelf):
 def coloured_doll(addon, sample):
     """The doll, each part filled with a colour of its own."""
     assert bpy.ops.rototoon.import_document(filepath=str(sample / "doll/doll.json"), keep_numbers=True) == {"FINISHED"}
-    ob, gp = bpy.context.object, addon("grease_pencil")
+    ob, gp = bpy.context.object, addon("blender.grease_pencil")
     handle = gp.drawings(shots.layer_of(ob))[0][0]
     strokes = len(gp.offsets(handle)) - 1
     numbers = gp.value(handle, gp.PART, strokes)
@@ -148,7 +148,7 @@ def test_the_walk_is_given_to_the_doll(addon, library, sample, tmp_path):
     capture(addon, sample, shelf)
     ob = coloured_doll(addon, sample)
     ob.rototoon.clips_folder = shelf
-    listed = [(item.character, item.motion) for item in addon("clip_browser").browser().clips]
+    listed = [(item.character, item.motion) for item in addon("style.clip_browser").browser().clips]
     assert listed == [("boy", "jump"), ("boy", "walk"), ("old", "jump")]
     bpy.context.scene.frame_set(0)
     motion = {"motion": "walk", "content": "boy", "style": "old", "strength": 2.5}
@@ -193,5 +193,5 @@ def compare(picture, wanted, sure, frame):
 def test_without_the_artist_s_marks_the_order_is_not_known(addon, library, sample):
     """The marks come into Blender with the document, and leave it with it."""
     bpy.ops.rototoon.import_document(filepath=str(sample / "doll/doll.json"), keep_numbers=True)
-    marks = addon("limbs").marks(bpy.context.object)
+    marks = addon("style.limbs").marks(bpy.context.object)
     assert marks == json.loads((sample / "doll/doll.json").read_text())["depth_marks"] and len(marks) == 9

@@ -35,7 +35,7 @@ def keyed(addon, frames=(1, 9), layers=("Lines",), **more):
 
 def frames(addon, ob, layer="Lines"):
     """Keyframe type by frame."""
-    return {n: kind for n, (_, kind) in addon("grease_pencil").drawings(ob.data.layers[layer]).items()}
+    return {n: kind for n, (_, kind) in addon("blender.grease_pencil").drawings(ob.data.layers[layer]).items()}
 
 
 def tracks(addon, ob, frame, layer="Lines"):
@@ -45,7 +45,7 @@ def tracks(addon, ob, frame, layer="Lines"):
 def looks(addon, ob, frame, layer="Lines"):
     """All that the artist's drawing holds, without our marks."""
     found = content(addon, ob, layer, frame)
-    ours = addon("keys").OURS
+    ours = addon("tween.keys").OURS
     found.point = {n: v for n, v in found.point.items() if n not in ours}
     found.curve = {n: v for n, v in found.curve.items() if n not in ours}
     return found
@@ -95,7 +95,7 @@ def test_strokes_keep_their_numbers(addon):
 
 def test_what_strokes_carry_follows(addon):
     ob = drawing_object(addon)
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     shapes, n = figure(), sum(map(len, figure()))
     for frame, size in ((1, 0.02), (11, 0.06)):
         ramp = np.linspace(size, 2 * size, n).astype(np.float32)
@@ -135,7 +135,7 @@ def drawn_again(addon, ob, layer="Lines"):
 
 
 def move(addon, ob, frame, index=3, by=0.05, layer="Lines"):
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     handle = drawing(addon, ob, layer, frame)
     moved = gp.positions(handle, int(gp.offsets(handle)[-1]))
     moved[index, 0] += by
@@ -205,7 +205,7 @@ def wave_at(x, count=20):
 def test_a_new_key_within_a_span_splits_it(addon):
     ob = keyed(addon, (1, 17))
     bpy.ops.rototoon.in_between(spacing="EASE_IN")
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     gp.remove_frames(ob.data.layers["Lines"], [9])
     add(addon, ob, "Lines", 9, figure(4, 0.1))
     kept = looks(addon, ob, 9)
@@ -238,7 +238,7 @@ def test_a_drawing_between_that_was_changed_becomes_a_key(addon):
 
 def test_only_what_was_drawn_between_is_cleared(addon):
     ob = keyed(addon, KEYS, ("Lines", "Colours"))
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     add(addon, ob, "Lines", 44, figure())
     gp.set_keyframe_type(ob.data.layers["Lines"], {44: "GENERATED"})
     bpy.ops.rototoon.in_between(frames="ALL")
@@ -267,7 +267,7 @@ def test_strokes_appear_vanish_and_fall_into_pieces(addon):
     extra = circle((0, 3), 0.5, 20)
     add(addon, ob, "Lines", 1, [figure()[1], whole])
     add(addon, ob, "Lines", 9, [whole[30:], extra, figure()[1], whole[:31]])
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     for frame, ids in ((1, [4, 0]), (9, [0, 4, 4, 0])):
         gp.put(drawing(addon, ob, "Lines", frame), "fill_id", np.array(ids))
     bpy.context.scene.frame_set(1)
@@ -295,7 +295,7 @@ def test_bad_input_is_told_or_left_alone(addon):
     dot = np.array([[0.5, 0.5]])
     for frame in (1, 9):
         add(addon, ob, "Lines", frame, [dot + 0.1 * frame, np.repeat(dot, 5, 0), figure()[0], figure()[2]])
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     handle = drawing(addon, ob, "Lines", 9)
     bad = gp.positions(handle, int(gp.offsets(handle)[-1]))
     bad[-1] = np.nan
@@ -325,7 +325,7 @@ def test_a_text_that_is_not_understood_counts_as_none(addon):
 
 def test_beziers_keep_their_handles(addon):
     ob = drawing_object(addon)
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     turned = lambda p, a: p @ np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]])  # noqa: E731
     line = wave_at(0, 6)
     for frame, angle in ((1, 0.0), (9, 1.0)):
@@ -350,7 +350,7 @@ def test_beziers_keep_their_handles(addon):
 
 
 def pairing_of(addon, ob, frame=1):
-    module = addon("pairing")
+    module = addon("tween.pairing")
     found = module.Pairing(ob, list(ob.data.layers), frame)
     found.take(found.match())
     return module, found
@@ -378,7 +378,7 @@ def test_pairs_made_by_hand_are_kept_through_a_file(addon, tmp_path):
     # The pair goes with the strokes, whatever their order.
     handle = drawing(addon, ob, "Lines", 9)
     handle.reorder_strokes([2, 1, 0]) if hasattr(handle, "reorder_strokes") else None
-    addon("grease_pencil").remove_frames(ob.data.layers["Lines"], range(2, 9))
+    addon("blender.grease_pencil").remove_frames(ob.data.layers["Lines"], range(2, 9))
     before = content(addon, ob, "Lines", 9).curve["rototoon_before"]
     bpy.ops.rototoon.in_between()
     assert tracks(addon, ob, 9)[int(np.flatnonzero(before)[0])] == numbers[0]

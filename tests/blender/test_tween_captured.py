@@ -24,7 +24,7 @@ def bar(frame, out=1.1):
 
 def capture(addon, ob, frames, keys, shape=bar, layer="Contours"):
     """A tracked part on the contour layer: the artist's strokes on the keys, generated ones on the other frames."""
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     found = ob.rototoon.parts.add()
     found.name, found.number, found.count = "Arm", len(ob.rototoon.parts), len(shape(keys[0]))
     for frame in frames:
@@ -145,7 +145,7 @@ def test_drawings_follow_what_was_tracked_anew(addon, fake, tmp_path):
     ob = shots.two_keys(addon, tmp_path)
     bpy.ops.rototoon.track()
     ob.data.layers.new("Lines").frames.new(1)
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     gp.make_frames(ob.data.layers["Lines"], [9], gp.KEYFRAME)
     for frame in (1, 9):
         source, target = (gp.drawings(layer)[frame][0] for layer in (shots.layer_of(ob), ob.data.layers["Lines"]))

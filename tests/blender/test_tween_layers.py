@@ -91,7 +91,7 @@ def test_pegs_of_layers_run_smoothly_through_keys(addon):
 
 def test_layers_of_one_parent_are_drawn_together(addon):
     ob = keyed(addon, layers=("Lines", "Colour"))
-    tween = addon("tween")
+    tween = addon("rototoon.tween")
     called, real = [], tween.draw_in_betweens
     empty = bpy.data.objects.new("Hand", None)
     bpy.context.scene.collection.objects.link(empty)
@@ -141,7 +141,7 @@ def test_a_spacing_curve(addon):
     layouts.draw(bpy.types.ROTOTOON_PT_tween)
     assert bpy.ops.rototoon.in_between(spacing="CURVE", arcs=0.0) == {"FINISHED"}
     assert ("curve", "mapping") in layouts.draw(bpy.types.ROTOTOON_PT_tween)
-    spacing_curve = addon("spacing_curve")
+    spacing_curve = addon("tween.spacing_curve")
     mapping = spacing_curve.node().mapping
     curve = mapping.curves[0]
     while len(curve.points) > 2:

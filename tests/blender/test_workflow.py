@@ -7,12 +7,12 @@ import shots
 
 
 def kinds(addon, ob, name=None):
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     return {f: kind for f, (_, kind) in gp.drawings(ob.data.layers[name or ob.rototoon.contours_layer]).items()}
 
 
 def solved(addon, ob):
-    return addon("sessions").known(ob).session.solved
+    return addon("capture.sessions").known(ob).session.solved
 
 
 def test_new_key_copies_and_keeps_who_is_who(addon, fake, tmp_path):
@@ -41,11 +41,11 @@ def test_key_for_one_part_only(addon, fake, tmp_path):
     bpy.context.scene.frame_set(4)
     ob.rototoon.active_part = 1
     bpy.ops.rototoon.new_key(parts="ACTIVE")
-    found = addon("contours").read(ob)
+    found = addon("capture.contours").read(ob)
     assert sorted(found.part(2).keys) == [1, 4, 9] and sorted(found.part(1).keys) == [1, 9]
     bpy.ops.rototoon.track()
     assert sorted(place[0] for place in solved(addon, ob)) == ["Part 2", "Part 2"]
-    found = addon("contours").read(ob)
+    found = addon("capture.contours").read(ob)
     assert 4 in found.part(1).made and 4 in found.part(2).keys
     assert kinds(addon, ob)[4] == "KEYFRAME"
     assert bpy.ops.rototoon.clear_generated() == {"FINISHED"}
@@ -69,7 +69,7 @@ def test_track_writes_generated_frames_and_leaves_keys(addon, fake, tmp_path):
 
 def test_style_follows_the_keys(addon, fake, tmp_path):
     ob = shots.two_keys(addon, tmp_path)
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     drawings = gp.drawings(shots.layer_of(ob))
     for frame, radius in ((1, 0.01), (9, 0.05)):
         handle = drawings[frame][0]
@@ -96,7 +96,7 @@ def test_moved_points_become_pins_and_only_their_span_is_solved(addon, fake, tmp
     moved = dict(shots.pixels(addon, ob, 4))[2][1]
     bpy.ops.rototoon.track()
     assert solved(addon, ob) == [("Part 2", 1, 9)]
-    state = addon("sessions").known(ob).session.state
+    state = addon("capture.sessions").known(ob).session.state
     pins = state["parts"][1]["pins"]
     assert list(pins) == ["4"] and list(pins["4"]) == ["1"]
     assert "pins" not in state["parts"][0]
@@ -105,7 +105,7 @@ def test_moved_points_become_pins_and_only_their_span_is_solved(addon, fake, tmp
     # The pin stays, and nothing is solved again for it.
     bpy.ops.rototoon.track()
     assert solved(addon, ob) == []
-    marks = addon("overlay").gather(ob, 4)
+    marks = addon("ui.overlay").gather(ob, 4)
     assert [len(mark.points) for mark in marks] == [1]
 
 
@@ -114,7 +114,7 @@ def test_part_moved_as_a_whole_becomes_a_centre(addon, fake, tmp_path):
     bpy.ops.rototoon.track()
     shots.move(addon, ob, 6, 1, (9.0, 4.0))
     bpy.ops.rototoon.track()
-    state = addon("sessions").known(ob).session.state
+    state = addon("capture.sessions").known(ob).session.state
     assert solved(addon, ob) == [("Part 1", 1, 9)]
     assert "pins" not in state["parts"][0]
     wanted = shots.diamond(5).mean(0) + (9, 4)
@@ -125,7 +125,7 @@ def test_part_moved_as_a_whole_becomes_a_centre(addon, fake, tmp_path):
     # A pin beside it, later: both hold.
     shots.move(addon, ob, 6, 1, (0.0, 6.0), which=[2])
     bpy.ops.rototoon.track()
-    state = addon("sessions").known(ob).session.state
+    state = addon("capture.sessions").known(ob).session.state
     assert state["parts"][0]["centers"]["6"] == pytest.approx(wanted, abs=1e-3)
     assert list(state["parts"][0]["pins"]["6"]) == ["2"]
 
@@ -152,7 +152,7 @@ def test_release_selected_points_only(addon, fake, tmp_path):
     shots.move(addon, ob, 4, 2, (5.0, -3.0), which=[1])
     shots.move(addon, ob, 4, 2, (5.0, -3.0), which=[2])
     bpy.ops.rototoon.track()
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     handle = gp.drawings(shots.layer_of(ob))[4][0]
     pinned = gp.value(handle, gp.PIN, 8)
     assert pinned.sum() == 2
@@ -178,14 +178,14 @@ def test_drawn_afresh_in_any_way_is_matched(addon, fake, tmp_path):
     bpy.ops.rototoon.track()
     for points, (_, same) in zip(drawn, shots.pixels(addon, ob, 9), strict=True):
         assert np.array_equal(points, same)
-    state = addon("sessions").known(ob).session.state
+    state = addon("capture.sessions").known(ob).session.state
     assert np.abs(np.array(state["parts"][1]["keys"]["9"]) - shots.square(8)).max() < 1e-3
     assert np.abs(np.array(state["parts"][0]["keys"]["9"]) - shots.diamond(8)).max() < 1e-3
     assert np.abs(dict(shots.pixels(addon, ob, 5))[2] - shots.square(4)).max() < 1e-3
     # What was matched stays matched: editing the drawn key moves the control points with it.
     shots.move(addon, ob, 9, 2, (3.0, 2.0))
     bpy.ops.rototoon.track()
-    state = addon("sessions").known(ob).session.state
+    state = addon("capture.sessions").known(ob).session.state
     assert np.abs(np.array(state["parts"][1]["keys"]["9"]) - shots.square(8) - (3, 2)).max() < 1e-3
 
 
@@ -206,7 +206,7 @@ def test_stroke_redrawn_on_a_generated_frame_is_a_key_and_stays(addon, fake, tmp
     drawn = shots.square(4)[::-1] + (6, 0)
     shots.draw(addon, ob, 5, [drawn])
     bpy.ops.rototoon.track()
-    found = addon("contours").read(ob)
+    found = addon("capture.contours").read(ob)
     assert sorted(found.part(2).keys) == [1, 5, 9] and 5 in found.part(1).made
     strokes = shots.pixels(addon, ob, 5)
     assert sorted(number for number, _ in strokes) == [1, 2]
@@ -216,10 +216,10 @@ def test_stroke_redrawn_on_a_generated_frame_is_a_key_and_stays(addon, fake, tmp
 def test_keyframe_type_set_by_the_artist_makes_a_key(addon, fake, tmp_path):
     ob = shots.two_keys(addon, tmp_path)
     bpy.ops.rototoon.track()
-    addon("grease_pencil").set_keyframe_type(shots.layer_of(ob), {5: "EXTREME"})
+    addon("blender.grease_pencil").set_keyframe_type(shots.layer_of(ob), {5: "EXTREME"})
     shots.move(addon, ob, 5, 2, (7.0, 0.0))
     bpy.ops.rototoon.track()
-    found = addon("contours").read(ob)
+    found = addon("capture.contours").read(ob)
     assert sorted(found.part(2).keys) == [1, 5, 9]
     assert kinds(addon, ob)[5] == "EXTREME"
 
@@ -230,7 +230,7 @@ def test_stopped_tracking_changes_nothing(addon, fake, tmp_path, monkeypatch):
     shots.move(addon, ob, 4, 2, (5.0, -3.0), which=[1])
     shots.draw(addon, ob, 6, [shots.diamond(5)])
     before = shots.snapshot(ob)
-    jobs = addon("jobs")
+    jobs = addon("common.jobs")
     monkeypatch.setattr(jobs.Worker, "start", lambda self: (self.cancel(), self._thread.start()))
     assert bpy.ops.rototoon.track() == {"CANCELLED"}
     assert shots.snapshot(ob) == before
@@ -239,12 +239,12 @@ def test_stopped_tracking_changes_nothing(addon, fake, tmp_path, monkeypatch):
 def test_failed_tracking_changes_nothing(addon, fake, tmp_path):
     ob = shots.two_keys(addon, tmp_path)
     before = shots.snapshot(ob)
-    error = addon("native.errors").RototoonError
+    error = addon("rototoon").RototoonError
 
     def fail(*_args, **_options):
         raise error("frame 3: no file")
 
-    addon("sessions").make = lambda document, folder: type("Broken", (), {"track": fail})()
+    addon("capture.sessions").make = lambda document, folder: type("Broken", (), {"track": fail})()
     with pytest.raises(RuntimeError, match="frame 3: no file"):
         bpy.ops.rototoon.track()
     assert shots.snapshot(ob) == before
@@ -261,7 +261,7 @@ def test_track_needs_two_keys(addon, fake, tmp_path):
 
 def test_snap_layer(addon, fake, tmp_path):
     ob = shots.two_keys(addon, tmp_path)
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     for frame in (1, 9):
         gp.put(gp.drawings(shots.layer_of(ob))[frame][0], "radius", np.linspace(0.01, 0.04, 8))
     bpy.ops.rototoon.track()
@@ -275,7 +275,7 @@ def test_snap_layer(addon, fake, tmp_path):
     assert radius[[0, 4, 8, 12]] == pytest.approx(np.linspace(0.01, 0.04, 8)[:4])
     assert radius[2] == pytest.approx((radius[0] + radius[4]) / 2)
     assert (gp.value(handle, "opacity", 32) == 1).all()
-    curves = addon("snapping").read(ob)
+    curves = addon("capture.snapping").read(ob)
     assert np.abs(curves[2, 5][1] - np.linspace(*shots.square(4)[1:3], 5)).max() < 1e-3
     # A frame of that layer which the artist took over stays.
     gp.set_keyframe_type(ob.data.layers["Snapped"], {5: "KEYFRAME"})
@@ -293,7 +293,7 @@ def test_clear_generated_keeps_keys_and_corrections(addon, fake, tmp_path):
     bpy.ops.rototoon.clear_generated()
     assert sorted(kinds(addon, ob)) == [1, 4, 9]
     bpy.ops.rototoon.track()
-    assert list(addon("sessions").known(ob).session.state["parts"][1]["pins"]) == ["4"]
+    assert list(addon("capture.sessions").known(ob).session.state["parts"][1]["pins"]) == ["4"]
     bpy.ops.rototoon.clear_generated(corrected=True)
     assert sorted(kinds(addon, ob)) == [1, 9] and kinds(addon, ob, "Snapped") == {}
     for frame, strokes in keys.items():
@@ -304,13 +304,13 @@ def test_clear_generated_keeps_keys_and_corrections(addon, fake, tmp_path):
 def test_weakest_frame_and_confidence(addon, fake, tmp_path):
     ob = shots.two_keys(addon, tmp_path)
     bpy.ops.rototoon.track()
-    gp = addon("grease_pencil")
+    gp = addon("blender.grease_pencil")
     gp.put(gp.drawings(shots.layer_of(ob))[6][0], gp.CONFIDENCE, np.full(8, 0.1))
     bpy.ops.rototoon.weakest_frame()
     assert bpy.context.scene.frame_current == 6
-    assert addon("overlay").gather(ob, 6) == []
+    assert addon("ui.overlay").gather(ob, 6) == []
     bpy.ops.rototoon.show_confidence()
-    (marks,) = addon("overlay").gather(ob, 6)
+    (marks,) = addon("ui.overlay").gather(ob, 6)
     assert len(marks.points) == 8 and (marks.colours[:, 0] > 0.9).all()
 
 
@@ -337,7 +337,7 @@ def test_contours_on_two_layers(addon, fake, tmp_path):
     shots.draw(addon, ob, 9, [shots.square(8)])
     ob.rototoon.contours_layer = "Contours"
     bpy.ops.rototoon.track()
-    parts = {part.number: part for part in addon("contours").read(ob).parts}
+    parts = {part.number: part for part in addon("capture.contours").read(ob).parts}
     assert [(parts[n].layer, parts[n].depth) for n in (1, 2)] == [(0, 0.0), (1, 1.0)]
     assert len(upper.frames) == 9 and len(ob.data.layers["Contours"].frames) == 9
     assert len(shots.pixels(addon, ob, 5)) == 1
@@ -354,6 +354,6 @@ def test_moving_camera(addon, fake, tmp_path):
     assert bpy.context.scene.frame_current == 3
     bpy.context.scene.frame_set(9)
     bpy.context.view_layer.update()
-    state = addon("sessions").known(ob).session.state
+    state = addon("capture.sessions").known(ob).session.state
     # The camera went 2 units right at 16 pixels a unit: the strokes went left in the picture.
     assert np.abs(np.array(state["parts"][0]["keys"]["9"]) - shots.diamond(8) + (32, 0)).max() < 1e-2

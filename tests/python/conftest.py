@@ -3,22 +3,15 @@
 import os
 import struct
 import sys
-import types
 import zlib
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGE = ROOT / "blender-addon"
+ADDON = ROOT / "blender-addon"
+PACKAGE = ADDON / "rototoon"
 WIDTH, HEIGHT, LAST = 80, 60, 12
-
-
-def _name_package() -> None:
-    """Makes the add-on's folder the package `rototoon`, without running its `__init__`, which is Blender's."""
-    package = types.ModuleType("rototoon")
-    package.__path__ = [str(PACKAGE)]
-    sys.modules.setdefault("rototoon", package)
 
 
 def _find_library() -> None:
@@ -32,7 +25,7 @@ def _find_library() -> None:
     os.environ["ROTOTOON_LIBRARY"] = str(max(built, key=lambda path: path.stat().st_mtime))
 
 
-_name_package()
+sys.path.insert(0, str(ADDON))
 _find_library()
 
 
@@ -102,7 +95,7 @@ def document() -> dict:
 
 @pytest.fixture
 def session(document, folder):
-    from rototoon.session import Session
+    from rototoon import Session
 
     with Session.from_document(document, folder) as session:
         yield session

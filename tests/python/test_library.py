@@ -7,16 +7,15 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import PACKAGE
+from conftest import ADDON, PACKAGE
+from rototoon import LibraryError
 from rototoon.native import _bindings, library
-from rototoon.native.errors import LibraryError
 
 
 def test_package_is_imported_by_name_without_blender(tmp_path):
-    (tmp_path / "rototoon").symlink_to(PACKAGE, target_is_directory=True)
-    code = "import sys; from rototoon.session import version; print(version(), 'bpy' in sys.modules)"
-    environment = os.environ | {"PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
-    run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False)
+    code = "import sys; from rototoon import version; print(version(), 'bpy' in sys.modules)"
+    environment = os.environ | {"PYTHONPATH": str(ADDON), "PYTHONDONTWRITEBYTECODE": "1"}
+    run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
     assert run.stdout.split()[1] == "False"
 

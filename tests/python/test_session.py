@@ -7,7 +7,7 @@ import threading
 
 import pytest
 from conftest import LAST, square
-from rototoon.session import Cancelled, RototoonError, Session, WeakestFrame, match_contours, parameters, version
+from rototoon import Cancelled, RototoonError, Session, WeakestFrame, match_contours, parameters, version
 
 FRAMES = list(range(LAST + 1))
 

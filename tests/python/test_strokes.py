@@ -4,7 +4,7 @@ import array
 import math
 
 import pytest
-from rototoon.session import RototoonError, Strokes, fit_strokes, hidden_lines
+from rototoon import RototoonError, Strokes, fit_strokes, hidden_lines
 
 
 def strokes(shapes, closed=()):

@@ -5,9 +5,7 @@ import json
 import math
 
 import pytest
-from rototoon import style
-from rototoon.native.errors import Cancelled
-from rototoon.session import RototoonError
+from rototoon import Cancelled, RototoonError, style
 
 FRAMES = 8
 

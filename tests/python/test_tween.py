@@ -4,9 +4,7 @@ import array
 import math
 
 import pytest
-from rototoon import tween
-from rototoon.native.errors import Cancelled
-from rototoon.session import RototoonError, Strokes
+from rototoon import Cancelled, RototoonError, Strokes, tween
 
 
 def line(x, count, reverse=False):

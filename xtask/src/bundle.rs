@@ -115,10 +115,10 @@ fn stage(library: &Path) -> Result<PathBuf> {
             && !name.ends_with(".so")
     };
     copy_folder(&root().join("blender-addon"), &staged, &keep)?;
-    std::fs::create_dir_all(staged.join("native"))?;
-    std::fs::copy(library, staged.join("native").join(LIBRARY)).with_context(|| format!("cannot copy {library:?}"))?;
+    let native = staged.join("rototoon/native");
+    std::fs::copy(library, native.join(LIBRARY)).with_context(|| format!("cannot copy {library:?}"))?;
     // The add-on's own licence is in its folder; the library's goes beside the library.
-    std::fs::copy(root().join("LICENSE"), staged.join("native").join("LICENSE"))?;
+    std::fs::copy(root().join("LICENSE"), native.join("LICENSE"))?;
     let manifest = std::fs::read_to_string(staged.join("blender_manifest.toml")).context("blender_manifest.toml")?;
     // Blender's validator accepts platform names that no Blender has.
     let platforms = manifest.lines().find(|line| line.starts_with("platforms")).unwrap_or_default();

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 const SOURCES: &str = "core/capi/src";
 const HEADER: &str = "core/capi/include/rototoon.h";
-const BINDINGS: &str = "blender-addon/native/_bindings.py";
+const BINDINGS: &str = "blender-addon/rototoon/native/_bindings.py";
 
 /// Writes the header and the bindings; with `check`, changes nothing and fails where one of them is stale.
 pub fn generate(check: bool) -> Result<()> {

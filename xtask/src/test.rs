@@ -31,7 +31,7 @@ pub fn test(valgrind: bool) -> Result<()> {
     run_all(&steps, AT_ONCE, &run).finish()
 }
 
-/// Runs one of the checks, as a part of [`test`].
+/// Runs one of the checks, as a part of [`test()`].
 pub fn step(name: &str) -> Result<()> {
     let steps = steps(true);
     let Some(step) = steps.iter().find(|step| step.name == name) else {

@@ -77,7 +77,7 @@ pub unsafe fn slice<'a, T>(data: *const T, length: usize, name: &str) -> Result<
 /// The UTF-8 text of `length` bytes at `data`.
 ///
 /// # Safety
-/// As [`slice`].
+/// As [`slice()`].
 pub unsafe fn text<'a>(data: *const u8, length: usize, name: &str) -> Result<&'a str, Failure> {
     // SAFETY: the same contract.
     let bytes = unsafe { slice(data, length, name) }?;

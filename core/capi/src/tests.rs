@@ -329,7 +329,7 @@ fn parts_are_added_checked_and_removed() {
 
 #[test]
 fn bindings_carry_the_hash_and_version_of_this_build() {
-    let bindings = include_str!("../../../blender-addon/native/_bindings.py");
+    let bindings = include_str!("../../../blender-addon/rototoon/native/_bindings.py");
     let hash = format!("HEADER_HASH = 0x{:016x}\n", rototoon_header_hash());
     assert!(bindings.contains(&hash), "run `cargo xtask generate`");
     assert!(bindings.contains(&format!("ROTOTOON_ABI_VERSION = {}\n", rototoon_abi_version())));

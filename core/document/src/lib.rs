@@ -1,8 +1,11 @@
 //! The project document: footage, parts, the artist's keys and corrections, and what was found.
 //!
+//! This crate reads, checks and writes Rototoon's own files: documents, files of curves, and the clip library. The stages
+//! compute the results. `rototoon-exchange` handles the files of other programs.
+//!
 //! - [`schema`]: names, order and limits of the fields
 //! - [`problem`]: what is wrong with a document, and where
-//! - [`shape`]: reading JSON that may hold anything
+//! - `shape`: reading JSON that may hold anything
 //! - [`library`]: a folder of skeleton clips with an index
 //! - [`load`], [`save`]: documents from and to files
 //! - [`validate`]: what a document must hold beyond being well-formed
@@ -13,6 +16,30 @@
 //! - [`output`]: files that appear whole or not at all
 //!
 //! Fields that this version does not know are kept where they stood. A document of a newer major version is refused.
+//!
+//! # Example
+//!
+//! A document that cannot be used is refused with all of its problems. What other tools noted in a document survives.
+//!
+//! ```
+//! use rototoon_document::{Document, LoadError};
+//!
+//! let footage = r#""footage": {"pattern": "%04d.png", "first": 1, "last": 9, "fps": 24, "width": 640, "height": 360}"#;
+//! let part = r#"{"name": "arm", "keys": {"1": [[10, 10], [40, 20]], "99": [[10, 10]]}}"#;
+//! let error = Document::parse(&format!(r#"{{"rototoon": 1, {footage}, "parts": [{part}]}}"#), "shot.json").unwrap_err();
+//! let LoadError::Invalid { problems, .. } = &error else { panic!("{error}") };
+//! assert_eq!(problems.error_count(), 2, "a frame outside the footage, and a key with another number of points");
+//! assert!(problems.errors().all(|problem| problem.place.starts_with(r#"parts[0] "arm".keys."99""#)), "{problems}");
+//!
+//! let text = format!(r#"{{"rototoon": 1, {footage}, "note": "retake", "parts": []}}"#);
+//! let document = Document::parse(&text, "shot.json")?;
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("shot.json");
+//! document.save(&path)?;
+//! assert_eq!(Document::load(&path)?, document);
+//! assert!(std::fs::read_to_string(&path)?.contains(r#""note": "retake""#));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 #![forbid(unsafe_code)]
 

@@ -1,7 +1,7 @@
 //! Names and order of the document's fields.
 //!
 //! A document may hold fields that this version does not know: another tool's notes, or a later minor version's
-//! results. They are kept as text, byte for byte, at the place where they stood ([`Layout`]), so that nothing is lost
+//! results. They are kept as text, byte for byte, at the place where they stood (`Layout`), so that nothing is lost
 //! when the document is saved.
 
 use std::collections::BTreeMap;

@@ -1,25 +1,28 @@
 //! From points to quadratic B-splines with few guiding points, within a tolerance that is a guarantee.
 //!
+//! This crate fits lines that are already points: strokes of a pen, traced outlines. It finds no lines in pictures;
+//! `rototoon-snap` does that.
+//!
 //! [`fit`] takes a drawn or traced line and gives a uniform quadratic B-spline ([`rototoon_base::curve::Spline`]). No point of
 //! the line is farther than the tolerance from the curve, and no place of the continuous curve is farther than the
-//! tolerance from the line; the largest distance is given back ([`bound`] says how it is known).
+//! tolerance from the line; the largest distance is given back (`bound` says how it is known).
 //!
 //! # The default
 //!
 //! The guiding points of a uniform spline are all that can be chosen: there are no knots to place. Where pieces end
 //! along the line follows from the guides, hence parameters are unknowns as well. With the parameters eliminated, the
-//! distances are a nonlinear least-squares problem in the guides ([`solve`]) whose Gauss–Newton steps are banded and
+//! distances are a nonlinear least-squares problem in the guides (`solve`) whose Gauss–Newton steps are banded and
 //! cheap; what remains is to find a good start and the least number of guides.
 //!
-//! 1. [`clean`]: repeated points go, long segments are filled.
-//! 2. [`corners`]: turning angle over a stretch of arc length, which a pixel staircase does not fool. Corners cut the
+//! 1. `clean`: repeated points go, long segments are filled.
+//! 2. `corners`: turning angle over a stretch of arc length, which a pixel staircase does not fool. Corners cut the
 //!    line into sections that are fitted by themselves.
-//! 3. [`profile`]: how long a parabola may be along the line.
-//! 4. [`trial`]: a fit with a given number of nodes: linear solve, least squares, then the *largest* error.
-//! 5. [`count`]: the fewest nodes for which that succeeds. [`long`]: the same in chunks, in linear time.
-//! 6. [`whole`]: sections put together and measured; [`polygon`] where nothing smooth fits.
+//! 3. `profile`: how long a parabola may be along the line.
+//! 4. `trial`: a fit with a given number of nodes: linear solve, least squares, then the *largest* error.
+//! 5. `count`: the fewest nodes for which that succeeds. `long`: the same in chunks, in linear time.
+//! 6. `whole`: sections put together and measured; `polygon` where nothing smooth fits.
 //!
-//! [`attributes`] carries pressure and the like over to the guides, [`together`] gives several curves equal numbers of
+//! `attributes` carries pressure and the like over to the guides, `together` gives several curves equal numbers of
 //! guides.
 //!
 //! # The preset `yang1986`
@@ -31,6 +34,29 @@
 //! The fewest guides *found*: the search is local and may miss the last one. Time grows linearly with the number of
 //! points; where noise is as large as the tolerance, straight lines between some of the points are what is left, with
 //! many guides.
+//!
+//! # Example
+//!
+//! A pen draws 60 px to the right, turns at a right angle and draws 60 px down, while its pressure rises from 0 to 1.
+//!
+//! ```
+//! use rototoon_base::geometry::Point;
+//! use rototoon_fit::{Options, fit};
+//!
+//! let right = (0..60).map(|x| Point::new(f64::from(x), 0.0));
+//! let down = (0..=60).map(|y| Point::new(60.0, f64::from(y)));
+//! let line: Vec<Point> = right.chain(down).collect();
+//! let fitted = fit(&line, false, &Options::new(0.5))?;
+//! assert!(fitted.max_error <= 0.5, "the tolerance is a guarantee");
+//! assert!(fitted.spline.guides().len() <= 6, "121 points became a handful of guides");
+//! assert_eq!(fitted.spline.corners().len(), 1, "the corner stayed sharp");
+//!
+//! let pressure: Vec<f64> = (0..=120).map(|i| f64::from(i) / 120.0).collect();
+//! let at_guides = fitted.attribute(&pressure)?;
+//! let at_corner = fitted.spline.blend(&at_guides, fitted.parameters[60]);
+//! assert!((at_corner - 0.5).abs() < 0.05, "half of the pressure at half of the way");
+//! # Ok::<(), rototoon_fit::FitError>(())
+//! ```
 
 #![forbid(unsafe_code)]
 

@@ -1,9 +1,12 @@
-//! Pictures from files and what is computed on them.
+//! Pictures from files, and the filters, edges and motion fields that are computed from them.
+//!
+//! This crate knows pixels only. It follows no contours (`rototoon-track`), and it draws and writes no pictures
+//! (`rototoon-render`).
 //!
 //! - [`canny`]: edges of the luma
 //! - [`colour`]: sRGB, luma and CIE Lab
 //! - [`correlation`]: correlation by the fast Fourier transform
-//! - [`decode`]: a picture from a file
+//! - [`decode`](mod@decode): a picture from a file
 //! - [`distance_transform`]: Manhattan distance to the nearest edge
 //! - [`flow`]: dense optical flow by inverse search
 //! - [`gaussian`]: separable blur
@@ -13,6 +16,26 @@
 //! - [`resize`]: area reduction and bilinear enlargement
 //! - [`sample`]: bilinear reading with derivatives
 //! - [`sequence`]: the pictures of a footage, decoded in parallel and kept for a while
+//!
+//! # Example
+//!
+//! ```
+//! use rototoon_base::scene::Raster;
+//! use rototoon_image::canny::{CannyOptions, canny};
+//! use rototoon_image::distance_transform::manhattan;
+//!
+//! // A black disc of radius 12 on white paper; pixel centres are at +0.5.
+//! let from_centre = |x: usize, y: usize| (x as f64 + 0.5 - 20.0).hypot(y as f64 + 0.5 - 20.0);
+//! let drawing = Raster::from_fn(40, 40, |x, y| if from_centre(x, y) < 12.0 { [0.0; 3] } else { [1.0; 3] });
+//!
+//! let edges = canny(&drawing, &CannyOptions::default());
+//! let found = (0..40).flat_map(|y| (0..40).map(move |x| (x, y))).filter(|&(x, y)| edges.get(x, y));
+//! let farthest = found.map(|(x, y)| (from_centre(x, y) - 12.0).abs()).fold(0.0, f64::max);
+//! assert!(farthest < 1.0, "all edges are on the outline");
+//!
+//! let distances = manhattan(&edges);
+//! assert!((11.0..=13.0).contains(&distances.get(20, 20)), "the centre is one radius away from the nearest edge");
+//! ```
 
 #![forbid(unsafe_code)]
 

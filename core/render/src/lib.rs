@@ -1,9 +1,11 @@
-//! Pictures of what was found.
+//! Pictures of what was found: mattes, cut-outs, overlays and id pictures of the parts of a scene.
 //!
-//! - [`overlay`]: contours, control points, keys and confidence over the footage
+//! This crate draws contours that are there already. It finds none, and it decodes no footage (`rototoon-image`).
+//!
+//! - [`overlay`](mod@overlay): contours, control points, keys and confidence over the footage
 //! - [`coverage`]: exact area coverage of unions of polygons
 //! - [`mask`]: parts at a time, blurred by motion, grown and feathered
-//! - [`matte`]: coverage of the closed parts, and what of the footage they cover
+//! - [`matte`](mod@matte): coverage of the closed parts, and what of the footage they cover
 //! - [`visible`]: how much of each pixel every part shows, nearer parts over farther ones
 //! - [`ids`]: the same as a colour for each part; mattes with a layer for each
 //! - [`cryptomatte`]: the same as ranked ids, for keyers
@@ -13,6 +15,28 @@
 //! - [`feather`]: soft borders
 //! - [`line`](mod@line): lines of a width
 //! - [`encode`]: pictures as bytes of a file
+//!
+//! # Example
+//!
+//! The matte of a rectangle whose borders cut through pixels. The value of a pixel is exactly the share of it that the
+//! rectangle covers.
+//!
+//! ```
+//! use rototoon_base::geometry::Point;
+//! use rototoon_base::scene::{Footage, Part, Scene};
+//! use rototoon_render::matte;
+//!
+//! let rectangle = [(1.5, 1.5), (4.25, 1.5), (4.25, 4.0), (1.5, 4.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+//! let footage = Footage { pattern: "%d.png".into(), first: 1, last: 1, fps: 24.0, width: 8, height: 6 };
+//! let part = Part { name: "card".into(), closed: true, keys: [(1, rectangle)].into(), ..Part::default() };
+//! let matte = matte(&Scene { footage, parts: vec![part] }, 1, None);
+//!
+//! assert_eq!(matte.get(2, 2), 1.0, "inside");
+//! assert_eq!(matte.get(1, 2), 0.5, "half of the pixel");
+//! assert_eq!(matte.get(4, 1), 0.125, "a quarter of its width times half of its height");
+//! assert_eq!(matte.get(5, 2), 0.0, "outside");
+//! assert_eq!(matte.data().iter().sum::<f32>(), 2.75 * 2.5, "together the area of the rectangle");
+//! ```
 
 #![forbid(unsafe_code)]
 

@@ -19,7 +19,7 @@
 //! Steps are repeated until the relative error changes by less than a tolerance over ten rounds, or to a limit. Starts are
 //! pseudo-random with a fixed seed.
 //!
-//! **Speed.** XVᵀ and UᵀX are matrix products of n·d·k; everything else is smaller. Postures are taken in pieces of [`ROWS`]
+//! **Speed.** XVᵀ and UᵀX are matrix products of n·d·k; everything else is smaller. Postures are taken in pieces of `ROWS`
 //! rows, which stay in a processor's cache, side by side on all threads; sums over the pieces are made in their order, so
 //! that the result is the same on any number of threads. Products go through faer's kernels; the objective is found
 //! from the products at hand, ‖X − UV‖² = ‖X‖² − 2⟨V, UᵀX⟩ + ⟨V, UᵀUV⟩, at no extra pass.

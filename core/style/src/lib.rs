@@ -1,5 +1,8 @@
 //! Style: a motion re-made in another character's manner, as skeleton clips.
 //!
+//! This crate works on key points of skeletons over time ([`Clip`]). It does not draw the result: `rototoon-reshape` lets a
+//! drawing follow a skeleton.
+//!
 //! - [`align`]: clips of one motion brought together in time
 //! - [`gaussian`]: what a character adds to a motion, predicted from what it adds to others; `cells`: the clips as numbers
 //! - [`bilinear`]: style and content matrices (Tenenbaum & Freeman 2000)
@@ -12,6 +15,45 @@
 //! Characters × motions form a grid of clips with holes; the hole (style, motion) is to be filled, the motion being known
 //! from other characters, the style from other motions. Everything happens with the pelvis at the origin and in torso
 //! lengths; the result gets the style's size and walks the content's way.
+//!
+//! # Example
+//!
+//! A figure of straight limbs walks and runs. Its manner is how far it leans. Its motion is how far arms and legs swing. No
+//! clip shows the old character running.
+//!
+//! ```
+//! use rototoon_base::geometry::Point;
+//! use rototoon_base::scene::skeleton::{COUNT, PARENTS, Posture};
+//! use rototoon_base::scene::{Clip, Silent};
+//! use rototoon_style::{Options, Request, translate};
+//! # use std::f64::consts::{PI, TAU};
+//!
+//! fn posture(lean: f64, swing: f64) -> Posture {
+//!     let mut p = [Point::ZERO; COUNT];
+//!     for k in 1..COUNT {
+//!         let (angle, length) = match k {
+//!             1..=4 => (PI - lean, 0.5),       // spine and head, upwards
+//!             5 | 8 | 11 | 14 => (0.0, 0.1),   // shoulders and hips
+//!             6 | 7 | 15 | 16 => (swing, 0.5), // the left arm and the right leg
+//!             _ => (-swing, 0.5),
+//!         };
+//!         p[k] = p[PARENTS[k]] + length * Point::new(f64::sin(angle), f64::cos(angle));
+//!     }
+//!     p
+//! }
+//! let wave: [f64; 16] = std::array::from_fn(|frame| f64::sin(TAU * frame as f64 / 16.0));
+//! let clip = |name, lean, motion, swing| Clip::new(name, motion, wave.map(|w| posture(lean, swing * w)).to_vec());
+//! let people = [("plain", 0.0), ("proud", -0.2), ("shy", 0.2), ("old", 0.4)];
+//! let mut clips: Vec<Clip> = people.map(|(name, lean)| clip(name, lean, "walk", 0.4)).into();
+//! clips.extend(people[..3].iter().map(|&(name, lean)| clip(name, lean, "run", 0.9)));
+//! let request = Request { style: "old", motion: "run", content: "plain", keys: &[] };
+//! let made = translate(&clips, &request, &Options::default(), &Silent)?;
+//! let (found, truth) = (made.postures[4], posture(0.4, 0.9));
+//! let [head, knee] = [4, 15].map(|k| (found[k] - found[0]).distance(truth[k]));
+//! assert!(head < 0.3, "it leans like the old one: the plain runner's head is 0.8 away");
+//! assert!(knee < 0.1, "it strides like a runner: the old walker's knee is 0.25 away");
+//! # Ok::<(), rototoon_style::StyleError>(())
+//! ```
 
 #![forbid(unsafe_code)]
 

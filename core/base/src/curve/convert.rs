@@ -11,7 +11,7 @@
 //! exactly in direction.
 //!
 //! **In.** A chain of quadratics is a uniform spline exactly where each joint is the midpoint of the middle control
-//! points around it ([`Spline::from_quadratics`]). Any other chain has to be fitted to a tolerance, see [`rototoon_fit`].
+//! points around it ([`Spline::from_quadratics`]). Any other chain has to be fitted to a tolerance, see `rototoon-fit`.
 
 use super::{Quadratic, Spline, SplineError};
 use crate::geometry::Point;

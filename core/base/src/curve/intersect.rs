@@ -12,7 +12,7 @@
 //! is made implicit, since D divides.
 //!
 //! **Degenerate cases.**
-//! - Straight pieces (D = 0 in proportion to the size): see [`super::straight`].
+//! - Straight pieces (D = 0 in proportion to the size): see `straight`.
 //! - The same parabola: the quartic vanishes. The shared stretch, between ends of the two, is reported as an overlap.
 //! - Tangents: a double root, reported once. What is apart by less than the rounding of the coefficients counts as
 //!   touching.

@@ -8,7 +8,7 @@
 //! This is the formula that Yang et al. 1986 give in Appendix F, whose print lost signs and powers.
 //!
 //! **The straight limit.** As the piece tends to even travel along a line, A → 0 and v → ∞: two large numbers are
-//! subtracted. For |v| > [`FAR`] the speed is so smooth (its nearest singularity is more than `FAR` piece lengths away)
+//! subtracted. For |v| > `FAR` the speed is so smooth (its nearest singularity is more than `FAR` piece lengths away)
 //! that five Gauss–Legendre nodes are exact to rounding: their error falls as ρ⁻¹⁰, ρ ≈ 4 `FAR`. Folded straight pieces
 //! (k = 0) are the other limit: k² asinh(v/k) → 0.
 //!

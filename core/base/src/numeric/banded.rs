@@ -4,8 +4,8 @@
 //! then a band matrix of n rows and half width b, factored in n b²/2 multiplications (dense: n³/6), without any symbolic
 //! work. The outer product form (Golub & Van Loan, *Matrix Computations*, §4.2.5 and §4.3.5) on the upper triangle: a
 //! finished row is taken from the rows below it, and runs along memory as they do, so that the processor's vectors are
-//! full. [`BLOCK`] rows are finished before the rows below them are touched, which then are read and written once instead
-//! of [`BLOCK`] times.
+//! full. `BLOCK` rows are finished before the rows below them are touched, which then are read and written once instead
+//! of `BLOCK` times.
 
 use super::vector::vectorised;
 use std::ops::Range;
@@ -16,7 +16,7 @@ const BLOCK: usize = 4;
 const LANES: usize = 4;
 
 /// Upper triangle of a symmetric band matrix: row `i` holds the columns `i ..= i + half`, and zeros behind them, so that
-/// the rows of a block may be read as if all were of one length, a multiple of [`LANES`].
+/// the rows of a block may be read as if all were of one length, a multiple of `LANES`.
 #[derive(Clone, Debug)]
 pub struct BandMatrix {
     size: usize,

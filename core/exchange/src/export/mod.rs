@@ -1,8 +1,8 @@
 //! What was found, for other programs.
 //!
-//! - [`svg`]: one animated path a part
-//! - [`nuke`]: a RotoPaint node
-//! - [`silhouette`]: Silhouette shapes
+//! - [`svg`](mod@svg): one animated path a part
+//! - [`nuke`](mod@nuke): a RotoPaint node
+//! - [`silhouette`](mod@silhouette): Silhouette shapes
 //! - [`outlines`]: contours with one number of points
 //! - [`xml`]: text in XML
 

@@ -6,7 +6,7 @@
 //! smooths the field where the pictures say little and keeps it where they say much.
 //!
 //! Source: Kroeger, Timofte, Dai & Van Gool, "Fast Optical Flow using Dense Inverse Search" (2016): patches §2.1,
-//! densification eq. 3, parameters of the second operating point; refinement in [`refine`].
+//! densification eq. 3, parameters of the second operating point; refinement in `refine`.
 //!
 //! Limits: luma only; movements of more than about twice a patch at the coarsest level are not found.
 

@@ -2,7 +2,7 @@
 //!
 //! For every control point: the root mean square colour difference, over the samples nearest to it and the offsets
 //! −4 to 4 px of the finest level, between the frame and each key; the smaller of the two counts. A place that is hidden
-//! costs as in the [image term](super::appearance). [`sureness`] turns it into a probability.
+//! costs as in the [image term](super::appearance). `sureness` turns it into a probability.
 
 use super::appearance::{HIDDEN, WINDOW};
 use super::curve::Curve;

@@ -14,7 +14,7 @@
 //! Long swings need more keys than the default preset does. What hides the part is not taken into account.
 //!
 //! The confidence of a point comes from what the method measures: the colour difference of the part at the centre found
-//! and the distance of the point's segments from the drawn edges ([`confidence`]).
+//! and the distance of the point's segments from the drawn edges (`confidence`).
 
 pub mod energy;
 pub mod region;

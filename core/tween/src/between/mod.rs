@@ -1,7 +1,7 @@
 //! In-betweens of drawings on key frames.
 //!
 //! 1. `tracks`: matched strokes are chained through all drawings, their places followed by proportional arc length
-//!    between corners ([`correspond`], `corners`).
+//!    between corners (`correspond`, `corners`).
 //! 2. [`super::peg::propose`]: strokes that move as one are groups, which hang on each other by hinges; `motion`
 //!    carries each group from key to key along arcs. Given pegs take their place.
 //! 3. `deform`: what of a stroke's change its group does not explain is a change of shape in the group's frame, as

@@ -14,7 +14,7 @@
 //! # How
 //!
 //! Meetings of the pieces are exact ([`rototoon_base::curve::intersect`]); between two of them the winding number decides
-//! ([`cover`], [`against`]). Trees of boxes ([`tree`]) find the pieces and shapes that are near each other, so that
+//! (`cover`, `against`). Trees of boxes (`tree`) find the pieces and shapes that are near each other, so that
 //! many strokes cost little more each than few.
 //!
 //! # Between frames

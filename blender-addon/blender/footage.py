@@ -1,0 +1,209 @@
+"""Picture files: sequences on disk, and the pictures that Blender's images and clips show on each frame.
+
+Footage is a file name pattern with `%d` or `%0Nd` for the number, and the numbers of the first and last picture. The scene
+shows picture `n` on frame `n + frame_offset`.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass, replace
+
+from .errors import Problem
+
+_NUMBER = re.compile(r"(\d+)(?!.*\d)")
+MOVIES = {".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm", ".mpg", ".mpeg", ".ogv", ".wmv", ".flv", ".mts", ".m2ts"}
+
+
+@dataclass(frozen=True)
+class Sequence:
+    """A sequence of picture files without a gap."""
+
+    pattern: str
+    first: int
+    last: int
+    picked: int
+    missing: int = 0
+    """Number of pictures of the same name beyond a gap. They are left out."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """The picture file or movie that a Blender image or clip shows, and its timing."""
+
+    path: str
+    movie: bool
+    frame_of_first: int | None = None
+    """Scene frame that shows the movie's first frame or the picked picture; `None` if there is no timing."""
+    timed_number: int | None = None
+    """Number of the picture on `frame_of_first`; `None` for the picked picture."""
+
+
+def is_movie(path: str) -> bool:
+    """Whether a file name has the ending of a movie."""
+    return os.path.splitext(path)[1].lower() in MOVIES
+
+
+def sequence_around(path: str) -> Sequence:
+    """The pictures around a picked file, up to the first gap. Their names differ only in the last number."""
+    folder, name = os.path.split(os.path.abspath(path))
+    if not os.path.isfile(path):
+        raise Problem(f"No file {path}: it was moved or renamed")
+    found = _NUMBER.search(name)
+    if found is None:
+        raise Problem(f"{name} has no number in its name: name the pictures like frame_001.png, frame_002.png, …")
+    head, digits, tail = name[: found.start()], found.group(1), name[found.end() :]
+    numbers = _numbers(folder, head, tail)
+    widths = {len(text) for text in numbers.values()}
+    padded = any(text.startswith("0") and len(text) > 1 for text in numbers.values())
+    if padded:
+        # A number with another count of digits belongs to another sequence (frame_01 beside frame_001), unless it is too large
+        # for the count.
+        numbers = {n: text for n, text in numbers.items() if text == f"{n:0{len(digits)}d}"}
+    elif len(widths) > 1:
+        numbers = {n: text for n, text in numbers.items() if text == str(n)}
+    token = f"%0{len(digits)}d" if padded else "%d"
+    picked = int(digits)
+    first = last = picked
+    while first - 1 in numbers:
+        first -= 1
+    while last + 1 in numbers:
+        last += 1
+    if "%" in head + tail or "%" in folder:
+        raise Problem(f"{folder}/{name}: a name with % in it cannot be used; rename it")
+    pattern = os.path.join(folder, head + token + tail)
+    return Sequence(pattern, first, last, picked, len(numbers) - (last - first + 1))
+
+
+def _numbers(folder: str, head: str, tail: str) -> dict[int, str]:
+    """The numbers of all files `head` + number + `tail`, with their text."""
+    found = {}
+    for entry in os.listdir(folder):
+        middle = entry[len(head) : len(entry) - len(tail)] if tail else entry[len(head) :]
+        if entry.startswith(head) and entry.endswith(tail) and middle.isascii() and middle.isdigit():
+            number = int(middle)
+            if number not in found or len(middle) > len(found[number]):
+                found[number] = middle
+    return found
+
+
+def picture(pattern: str, number: int) -> str:
+    """The file of a picture."""
+    return pattern % number
+
+
+def pattern_of(ob) -> str:
+    """The absolute pattern of an object's footage. Raises a `Problem` if the pictures are missing."""
+    import bpy
+
+    settings = ob.rototoon
+    if not settings.pattern:
+        raise Problem("No footage chosen: choose it in the panel Footage")
+    if settings.pattern.startswith("//") and not bpy.data.filepath:
+        raise Problem(f"The footage {settings.pattern} is relative to a file that is not saved: choose it again")
+    pattern = os.path.normpath(bpy.path.abspath(settings.pattern))
+    for number in (settings.first, settings.last):
+        path = picture(pattern, number)
+        if not os.path.isfile(path):
+            raise Problem(f"No picture {path}: the footage was moved or renamed; choose it again in the panel Footage")
+    return pattern
+
+
+def number_of(path: str) -> int | None:
+    """The last number in a file's name."""
+    found = _NUMBER.search(os.path.basename(path))
+    return int(found.group(1)) if found else None
+
+
+def size_of(path: str) -> tuple[int, int]:
+    """Width and height of a picture file, in pixels."""
+    import bpy
+
+    try:
+        image = bpy.data.images.load(path, check_existing=False)
+    except RuntimeError as error:
+        raise Problem(f"Cannot read {path}: {error}") from error
+    width, height = image.size
+    bpy.data.images.remove(image)
+    if width == 0 or height == 0:
+        raise Problem(f"Cannot read {path} as a picture")
+    return width, height
+
+
+def source_of_image(image, user) -> Source:
+    """The source of an image data-block with its image user."""
+    import bpy
+
+    if image is None:
+        raise Problem("There is no image in it: choose one first")
+    if image.packed_file is not None:
+        raise Problem(f'"{image.name}" is packed into the .blend: unpack it (File > External Data) so that it has files')
+    path = bpy.path.abspath(image.filepath, library=image.library)
+    if image.source == "GENERATED" or not path:
+        raise Problem(f'"{image.name}" has no file: take an image sequence or a movie')
+    if image.source == "MOVIE":
+        return Source(path, True, user.frame_start - user.frame_offset)
+    if image.source == "SEQUENCE":
+        # Blender shows picture 1 + frame_offset on frame_start.
+        return Source(path, False, user.frame_start, 1 + user.frame_offset)
+    return Source(path, False)
+
+
+def source_of_clip(clip) -> Source:
+    """The source of a movie clip. On `frame_start` it shows its file's picture, or its first frame, shifted by `frame_offset`."""
+    import bpy
+
+    if clip is None:
+        raise Problem("There is no movie clip in it: choose one first")
+    path = bpy.path.abspath(clip.filepath, library=clip.library)
+    if clip.source == "MOVIE":
+        return Source(path, True, clip.frame_start - clip.frame_offset)
+    number = number_of(path)
+    return Source(path, False, clip.frame_start, None if number is None else number + clip.frame_offset)
+
+
+def background_source(camera) -> tuple[Source, object]:
+    """The source of a camera's background, and its background image."""
+    shown = [entry for entry in camera.data.background_images if entry.show_background_image]
+    for entry in shown:
+        if entry.source == "IMAGE" and entry.image is not None:
+            return source_of_image(entry.image, entry.image_user), entry
+        if entry.source == "MOVIE_CLIP":
+            clip = bpy_scene_clip() if entry.use_camera_clip else entry.clip
+            if clip is not None:
+                return source_of_clip(clip), entry
+    raise Problem(f'Camera "{camera.name}" has no background image: add one in its properties, Background Images')
+
+
+def bpy_scene_clip():
+    """The active clip of the scene."""
+    import bpy
+
+    return bpy.context.scene.active_clip
+
+
+def first_frame(source: Source, sequence: Sequence, scene_start: int) -> int:
+    """The scene frame that shows the sequence's first picture."""
+    if source.frame_of_first is None:
+        return scene_start
+    if source.movie:
+        return source.frame_of_first
+    number = sequence.picked if source.timed_number is None else source.timed_number
+    return source.frame_of_first + sequence.first - number
+
+
+def trimmed(sequence: Sequence, limit: int) -> Sequence:
+    """The first `limit` pictures."""
+    return replace(sequence, last=min(sequence.last, sequence.first + max(limit, 1) - 1))
+
+
+def relative(path: str, blend: str) -> str:
+    """A path relative to a .blend file if it is at most three folders up, otherwise absolute."""
+    if not blend or path.startswith("//"):
+        return path
+    try:
+        found = os.path.relpath(path, os.path.dirname(os.path.abspath(blend)))
+    except ValueError:
+        return path
+    return path if found.count("..") > 3 else "//" + found.replace(os.sep, "/")

@@ -1,0 +1,19 @@
+"""The scene's current frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bpy
+
+
+@contextmanager
+def kept(scene: bpy.types.Scene) -> Iterator[None]:
+    """At the end, sets the scene back to the frame that it had, if it has another frame then."""
+    before = scene.frame_current, scene.frame_subframe
+    try:
+        yield
+    finally:
+        if (scene.frame_current, scene.frame_subframe) != before:
+            scene.frame_set(before[0], subframe=before[1])

@@ -1,0 +1,389 @@
+"""Blender's Grease Pencil API (version 3, Blender 4.5 to 5.2): layers, frames, drawings and their attributes.
+
+A drawing is a set of strokes, which Blender calls curves. The points of all strokes are in one flat array: stroke `i` has the
+points `offsets[i]` to `offsets[i + 1]`. Values are in attributes of the POINT or CURVE domain. All values are read and written
+as complete NumPy arrays, since the Python API is a thousand times slower point by point.
+
+Three rules keep this safe. No reference to a frame is kept across `frames.new`, which makes it dangle; the drawing stays valid. No
+reference to a stroke is kept. A new attribute is set for all strokes, since Blender's default is 0, which makes opacity invisible.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+
+GENERATED = "GENERATED"
+"""Keyframe type of frames on which nothing is the artist's."""
+KEYFRAME = "KEYFRAME"
+"""Keyframe type of the artist's frames."""
+
+PART = "rototoon_part"
+"""Number of the part of a stroke; 0 for a stroke without a part."""
+MADE = "rototoon_generated"
+"""Whether tracking or snapping wrote the stroke."""
+CONTROL = "rototoon_control"
+"""For each drawn point the index of its control point; fractions are between two control points."""
+TRACKED = "rototoon_tracked"
+"""Where tracking put a point. If the point is elsewhere, the artist moved it."""
+PIN = "rototoon_pin"
+"""Whether the artist fixed a point of a generated stroke."""
+CENTER = "rototoon_center"
+"""The corrected centre of a generated stroke in footage pixels (x, y, 1), or (0, 0, 0)."""
+CONFIDENCE = "rototoon_confidence"
+"""Confidence of a tracked point, 0 to 1."""
+SEGMENT = "rototoon_segment"
+"""For each point of a snapped stroke the index of its segment between control points."""
+
+STROKE = "rototoon_stroke"
+"""Number of the stroke of which a cut stroke is a part; 0 for a stroke that was never cut."""
+INTERVAL = "rototoon_interval"
+"""Parameters of that stroke at the start and the end of the part; both 0 for a complete stroke. Whole numbers are the stroke's
+points, or the joints of a curve's pieces."""
+
+KEY_POINT = "rototoon_key_point"
+"""Number of the skeleton's key point that a line across a limb marks, from 1; 0 for none."""
+
+TRACK = "rototoon_track"
+"""Number that a stroke keeps on all keys and in-betweens of a layer; 0 for none."""
+TWEENED = "rototoon_tweened"
+"""Whether the stroke is an in-between."""
+NEXT = "rototoon_next"
+"""The artist's decision on a stroke's counterpart on the next key: the number of the pair; -1 for no counterpart; 0 if there is no
+decision."""
+BEFORE = "rototoon_before"
+"""The same for the key before. Two strokes are a pair if the `NEXT` of one is the `BEFORE` of the other on the next key."""
+
+TYPES = {
+    KEY_POINT: ("INT", "CURVE"),
+    TRACK: ("INT", "CURVE"),
+    TWEENED: ("BOOLEAN", "CURVE"),
+    NEXT: ("INT", "CURVE"),
+    BEFORE: ("INT", "CURVE"),
+    "fill_opacity": ("FLOAT", "CURVE"),
+    PART: ("INT", "CURVE"),
+    MADE: ("BOOLEAN", "CURVE"),
+    CENTER: ("FLOAT_VECTOR", "CURVE"),
+    CONTROL: ("FLOAT", "POINT"),
+    TRACKED: ("FLOAT_VECTOR", "POINT"),
+    PIN: ("BOOLEAN", "POINT"),
+    CONFIDENCE: ("FLOAT", "POINT"),
+    SEGMENT: ("INT", "POINT"),
+    "radius": ("FLOAT", "POINT"),
+    "opacity": ("FLOAT", "POINT"),
+    "rotation": ("FLOAT", "POINT"),
+    "vertex_color": ("FLOAT_COLOR", "POINT"),
+    "cyclic": ("BOOLEAN", "CURVE"),
+    "material_index": ("INT", "CURVE"),
+    "fill_color": ("FLOAT_COLOR", "CURVE"),
+    "fill_id": ("INT", "CURVE"),
+    "softness": ("FLOAT", "CURVE"),
+    STROKE: ("INT", "CURVE"),
+    INTERVAL: ("FLOAT2", "CURVE"),
+    "nurbs_order": ("INT8", "CURVE"),
+    "knots_mode": ("INT8", "CURVE"),
+    "resolution": ("INT", "CURVE"),
+}
+"""Data type and domain of each attribute that the add-on creates."""
+
+DEFAULTS = {"radius": 0.01, "opacity": 1.0, "fill_opacity": 1.0, CONFIDENCE: 1.0, "nurbs_order": 4, "resolution": 12}
+"""The value that Blender uses if the attribute is missing, where it is not 0."""
+
+FILL_BY_ID = bpy.app.version >= (5, 1, 0)
+"""Whether a stroke is filled by its `fill_id` (Blender 5.1 and later: not 0). Before, it is filled if its material shows a
+fill."""
+
+# Property name, NumPy type and width of an attribute's data, by data type.
+_LAYOUT = {
+    "FLOAT": ("value", np.float32, 1),
+    "INT": ("value", np.int32, 1),
+    "BOOLEAN": ("value", np.bool_, 1),
+    "INT8": ("value", np.int8, 1),
+    "FLOAT_VECTOR": ("vector", np.float32, 3),
+    "FLOAT2": ("vector", np.float32, 2),
+    "FLOAT_COLOR": ("color", np.float32, 4),
+    "BYTE_COLOR": ("color", np.float32, 4),
+    "QUATERNION": ("value", np.float32, 4),
+}
+
+
+def datablocks() -> bpy.types.bpy_prop_collection:
+    """All Grease Pencil data of the file."""
+    name = "grease_pencils_v3" if hasattr(bpy.data, "grease_pencils_v3") else "grease_pencils"
+    return getattr(bpy.data, name)
+
+
+def is_drawing(ob: bpy.types.Object | None) -> bool:
+    """Whether an object is a Grease Pencil object."""
+    return ob is not None and ob.type == "GREASEPENCIL"
+
+
+def layers(ob: bpy.types.Object, name: str) -> list[bpy.types.bpy_struct]:
+    """The layers called `name`, or whose name begins with `name` and a dot or space; the lowest first."""
+    return [layer for layer in ob.data.layers if layer.name == name or layer.name.startswith((name + ".", name + " "))]
+
+
+def layer(ob: bpy.types.Object, name: str) -> bpy.types.bpy_struct:
+    """The layer called `name`. If there is none, it is made on top, without lights: in a scene without lamps, lit ink is
+    black."""
+    found = ob.data.layers.get(name)
+    if found is None:
+        found = ob.data.layers.new(name)
+        found.use_lights = False
+    return found
+
+
+def find_layer(ob: bpy.types.Object, name: str) -> bpy.types.bpy_struct | None:
+    """The layer called `name`; `None` if there is none."""
+    return ob.data.layers.get(name)
+
+
+def every_layer(ob: bpy.types.Object) -> list[bpy.types.bpy_struct]:
+    """All layers, lowest first."""
+    return list(ob.data.layers)
+
+
+def frame_numbers(layer: bpy.types.bpy_struct, selected: bool = False) -> list[int]:
+    """Frame numbers of a layer in time order; with `selected`, only those of selected frames."""
+    return [frame.frame_number for frame in layer.frames if frame.select or not selected]
+
+
+def drawings(layer: bpy.types.bpy_struct) -> dict[int, tuple[bpy.types.bpy_struct, str]]:
+    """Drawing and keyframe type by frame number, in time order."""
+    return {frame.frame_number: (frame.drawing, frame.keyframe_type) for frame in layer.frames}
+
+
+def set_keyframe_type(layer: bpy.types.bpy_struct, types: Mapping[int, str]) -> None:
+    """Sets the keyframe type of the frames in `types`."""
+    for frame in layer.frames:
+        kind = types.get(frame.frame_number)
+        if kind is not None and frame.keyframe_type != kind:
+            frame.keyframe_type = kind
+
+
+def make_frames(layer: bpy.types.bpy_struct, numbers: Iterable[int], kind: str) -> None:
+    """Makes empty frames of a keyframe type on the numbers that have no frame."""
+    have = {frame.frame_number for frame in layer.frames}
+    for number in numbers:
+        if number not in have:
+            layer.frames.new(number).keyframe_type = kind
+
+
+def remove_frames(layer: bpy.types.bpy_struct, numbers: Iterable[int]) -> None:
+    """Removes frames."""
+    for number in numbers:
+        layer.frames.remove(number)
+
+
+def copy_frame(layer: bpy.types.bpy_struct, source: int, number: int) -> None:
+    """Copies the drawing on frame `source` to frame `number`, with everything that Blender knows of its strokes."""
+    layer.frames.copy(source, number)
+
+
+def offsets(drawing: bpy.types.bpy_struct) -> np.ndarray:
+    """Index of each stroke's first point, then the number of points: int32 (strokes + 1)."""
+    position = drawing.attributes.get("position")
+    if position is None or not len(position.data):
+        # For an empty drawing Blender reports one offset, but reading it fails.
+        return np.zeros(1, np.int32)
+    found = np.empty(len(drawing.curve_offsets), np.int32)
+    drawing.curve_offsets.foreach_get("value", found)
+    return found
+
+
+def has(drawing: bpy.types.bpy_struct, name: str) -> bool:
+    """Whether a drawing has an attribute."""
+    return drawing.attributes.get(name) is not None
+
+
+def get(drawing: bpy.types.bpy_struct, name: str, count: int) -> np.ndarray | None:
+    """The values of an attribute, `count` rows. `None` if the drawing has no such attribute of that length."""
+    attribute = drawing.attributes.get(name)
+    if attribute is None or attribute.data_type not in _LAYOUT or len(attribute.data) != count:
+        return None
+    key, kind, width = _LAYOUT[attribute.data_type]
+    values = np.empty(count * width, kind)
+    attribute.data.foreach_get(key, values)
+    return values if width == 1 else values.reshape(count, width)
+
+
+def value(drawing: bpy.types.bpy_struct, name: str, count: int) -> np.ndarray:
+    """The values of an attribute, `count` rows. A missing attribute has its default values."""
+    found = get(drawing, name, count)
+    return blank(name, count) if found is None else found
+
+
+def blank(name: str, count: int) -> np.ndarray:
+    """`count` rows of an attribute's default value."""
+    _, kind, width = _LAYOUT[TYPES[name][0]]
+    return np.full(count if width == 1 else (count, width), DEFAULTS.get(name, 0), kind)
+
+
+def make(drawing: bpy.types.bpy_struct, name: str, kind: str, where: str) -> bpy.types.bpy_struct:
+    """A new attribute of a drawing."""
+    if name != "nurbs_order":
+        return drawing.attributes.new(name, kind, where)
+    # Blender 4.5 writes beyond the attribute's end if it makes it under this name. Renaming it is safe.
+    drawing.attributes.new("rototoon_order", kind, where).name = name
+    return drawing.attributes[name]
+
+
+def put(drawing: bpy.types.bpy_struct, name: str, values: np.ndarray) -> None:
+    """Sets all values of an attribute. A missing attribute is made."""
+    attribute = drawing.attributes.get(name)
+    if attribute is None:
+        attribute = make(drawing, name, *TYPES[name])
+    key, kind, _ = _LAYOUT[attribute.data_type]
+    attribute.data.foreach_set(key, np.ascontiguousarray(values, kind).ravel())
+
+
+def points_changed(drawing: bpy.types.bpy_struct) -> None:
+    """Tells Blender that points have moved."""
+    drawing.tag_positions_changed()
+
+
+def positions(drawing: bpy.types.bpy_struct, count: int) -> np.ndarray:
+    """All points in layer space: float32 (points, 3)."""
+    found = get(drawing, "position", count)
+    return np.zeros((count, 3), np.float32) if found is None else found
+
+
+def domain(drawing: bpy.types.bpy_struct, name: str) -> str:
+    """POINT or CURVE."""
+    return TYPES[name][1] if name in TYPES else drawing.attributes[name].domain
+
+
+@dataclass
+class Rows:
+    """Strokes to write into one drawing: their sizes, and their attributes by name."""
+
+    sizes: np.ndarray
+    values: dict[str, np.ndarray] = field(default_factory=dict)
+
+
+def replace_made(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
+    """Replaces all generated strokes by `rows`. The artist's strokes stay as they are, below them.
+
+    A drawing whose generated strokes equal `rows` is not touched.
+    """
+    starts = offsets(drawing)
+    strokes, count = len(starts) - 1, len(rows.sizes)
+    made = value(drawing, MADE, strokes)
+    first = strokes - count
+    fits = made.sum() == count and made[first:].all() and np.array_equal(np.diff(starts)[first:], rows.sizes)
+    if fits and _holds(drawing, rows, first, starts):
+        return
+    if not fits:
+        if made.any():
+            drawing.remove_strokes(indices=np.flatnonzero(made).tolist())
+        if len(rows.sizes):
+            drawing.add_strokes(rows.sizes.tolist())
+    _write_tail(drawing, rows)
+
+
+def _holds(drawing: bpy.types.bpy_struct, rows: Rows, first: int, starts: np.ndarray) -> bool:
+    """Whether the strokes from `first` on equal `rows`."""
+    for name, values in rows.values.items():
+        curve = name != "position" and domain(drawing, name) == "CURVE"
+        found = get(drawing, name, len(starts) - 1 if curve else int(starts[-1]))
+        if found is None:
+            return False
+        found = found[first if curve else starts[first] :]
+        if not np.array_equal(found, np.asarray(values).astype(found.dtype)):
+            return False
+    return True
+
+
+def append(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
+    """Adds strokes after the existing ones."""
+    if len(rows.sizes):
+        drawing.add_strokes(rows.sizes.tolist())
+    _write_tail(drawing, rows)
+
+
+def _write_tail(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
+    """Sets the attributes of the drawing's last strokes. Attributes that `rows` lacks get their defaults."""
+    starts = offsets(drawing)
+    strokes, points = len(starts) - 1, int(starts[-1])
+    if not len(rows.sizes):
+        drawing.tag_positions_changed()
+        return
+    for name, values in rows.values.items():
+        total = points if name == "position" or domain(drawing, name) == "POINT" else strokes
+        if len(values) < total:
+            head = positions(drawing, points) if name == "position" else value(drawing, name, total)
+            head[total - len(values) :] = values
+            values = head
+        put(drawing, name, values)
+    for name in DEFAULTS:
+        if TYPES[name][1] == "POINT" and name not in rows.values and drawing.attributes.get(name) is not None:
+            values = value(drawing, name, points)
+            values[points - int(rows.sizes.sum()) :] = DEFAULTS[name]
+            put(drawing, name, values)
+    drawing.tag_positions_changed()
+
+
+def remove_strokes(drawing: bpy.types.bpy_struct, indices: list[int]) -> None:
+    """Removes strokes."""
+    drawing.remove_strokes(indices=indices)
+
+
+def copy_strokes(source: bpy.types.bpy_struct, indices: list[int], target: bpy.types.bpy_struct) -> None:
+    """Adds the strokes `indices` of a drawing to another drawing, with all attributes that can be copied."""
+    starts = offsets(source)
+    sizes = np.diff(starts)[indices]
+    points = np.concatenate([np.arange(starts[i], starts[i + 1]) for i in indices])
+    rows = Rows(sizes)
+    for attribute in list(source.attributes):
+        name = attribute.name
+        if name.startswith(".") or name == "curve_type" or attribute.data_type not in _LAYOUT:
+            continue
+        total = int(starts[-1]) if attribute.domain == "POINT" else len(starts) - 1
+        values = get(source, name, total)
+        if values is None:
+            continue
+        if name != "position" and target.attributes.get(name) is None:
+            make(target, name, attribute.data_type, attribute.domain)
+        rows.values[name] = values[points if attribute.domain == "POINT" else indices]
+    append(target, rows)
+
+
+def selected_points(drawing: bpy.types.bpy_struct) -> np.ndarray:
+    """Which points are selected in edit mode. Without a stored selection all are, as in Blender itself."""
+    starts = offsets(drawing)
+    attribute = drawing.attributes.get(".selection")
+    if attribute is None:
+        return np.ones(int(starts[-1]), np.bool_)
+    if attribute.domain == "CURVE":
+        return np.repeat(get(drawing, ".selection", len(starts) - 1), np.diff(starts))
+    return get(drawing, ".selection", int(starts[-1]))
+
+
+def selected_strokes(drawing: bpy.types.bpy_struct) -> np.ndarray:
+    """Which strokes have a selected point in edit mode. Without a stored selection none has."""
+    starts = offsets(drawing)
+    attribute = drawing.attributes.get(".selection")
+    if attribute is None:
+        return np.zeros(len(starts) - 1, bool)
+    values = np.zeros(len(attribute.data), bool)
+    attribute.data.foreach_get("value", values)
+    if len(values) == len(starts) - 1 and attribute.domain == "CURVE":
+        return values
+    return np.array([values[a:b].any() for a, b in zip(starts, starts[1:])], bool)
+
+
+def new_object(name: str, collection: bpy.types.Collection) -> bpy.types.Object:
+    """A new Grease Pencil object with the material Rototoon Ink, linked to `collection`."""
+    data = datablocks().new(name)
+    ob = bpy.data.objects.new(name, data)
+    collection.objects.link(ob)
+    material = bpy.data.materials.get("Rototoon Ink")
+    if material is None:
+        material = bpy.data.materials.new("Rototoon Ink")
+        bpy.data.materials.create_gpencil_data(material)
+        material.grease_pencil.color = (0.9, 0.1, 0.35, 1.0)
+    data.materials.append(material)
+    return ob

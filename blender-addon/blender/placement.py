@@ -1,0 +1,128 @@
+"""The mapping between pixels and layer points on each frame, from an object's settings.
+
+If the camera and the object do not move, one mapping serves all frames. Otherwise the scene is set to each frame and back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import bpy
+import numpy as np
+
+from . import camera as cameras
+from . import footage
+from . import grease_pencil as gp
+from .errors import Problem
+from .frames import kept
+
+
+class Mapper:
+    """Mappings of an object's layers on some frames."""
+
+    def __init__(self, ob: bpy.types.Object, frames: Iterable[int], points: dict[int, np.ndarray], names: list[str]):
+        """`names` are the layers. `points` are the artist's points by layer index; they show the plane on which the artist
+        drew."""
+        self._mappings: dict[tuple[int, int | None], cameras.Mapping] = {}
+        self._moves = _moves(ob)
+        self._points = points
+        layers = [ob.data.layers[name] for name in names]
+        if not self._moves:
+            self._add(ob, layers, None)
+            return
+        scene = bpy.context.scene
+        with kept(scene):
+            for frame in sorted(set(frames)):
+                scene.frame_set(frame)
+                self._add(ob, layers, frame)
+
+    def at(self, layer: int, frame: int) -> cameras.Mapping:
+        """The mapping of a layer on a scene frame."""
+        return self._mappings[layer, frame if self._moves else None]
+
+    @property
+    def still(self) -> bool:
+        """Whether all frames share one mapping."""
+        return not self._moves
+
+    def _add(self, ob, layers, frame: int | None) -> None:
+        view = view_of(ob)
+        for index, layer in enumerate(layers):
+            matrix = cameras.layer_to_world(ob, layer)
+            # The view's z axis in layer space: the normal of a plane that faces the view.
+            normal = (view.to_view @ matrix)[2, :3]
+            normal = normal / np.linalg.norm(normal)
+            plane = cameras.plane_of(self._points.get(index, np.zeros((0, 3))), normal)
+            self._mappings[index, frame] = cameras.Mapping(view, matrix, plane)
+
+
+def view_of(ob: bpy.types.Object) -> cameras.View:
+    """The view of an object's footage on the current frame."""
+    settings = ob.rototoon
+    width, height = settings.width, settings.height
+    if not width or not height:
+        raise Problem("No footage chosen: choose it in the panel Footage")
+    if settings.plane == "REFERENCE":
+        empty = settings.reference
+        if empty is None or empty.empty_display_type != "IMAGE":
+            raise Problem("No reference image chosen: choose the empty that shows the footage")
+        return cameras.reference_view(empty, width, height)
+    found = camera_of(ob)
+    if found is None:
+        raise Problem("The scene has no camera: add one, or choose one in the panel Footage")
+    return cameras.camera_view(bpy.context.scene, found, width, height, placement_in(found, ob))
+
+
+def camera_of(ob: bpy.types.Object) -> bpy.types.Object | None:
+    """The camera that shows the footage."""
+    return ob.rototoon.camera or bpy.context.scene.camera
+
+
+def placement_in(camera: bpy.types.Object, ob: bpy.types.Object) -> cameras.Placement:
+    """The placement of the camera's background image if it shows the object's footage; otherwise the default, which fits."""
+    try:
+        source, entry = footage.background_source(camera)
+    except Problem:
+        return cameras.Placement()
+    if not _shows(source, ob.rototoon):
+        return cameras.Placement()
+    return cameras.Placement(
+        entry.frame_method,
+        tuple(entry.offset),
+        entry.rotation,
+        entry.scale,
+        entry.use_flip_x,
+        entry.use_flip_y,
+    )
+
+
+def _shows(source: footage.Source, settings) -> bool:
+    if source.movie:
+        return bool(settings.movie) and bpy.path.abspath(settings.movie) == source.path
+    number = footage.number_of(source.path)
+    if number is None:
+        return False
+    return footage.picture(bpy.path.abspath(settings.pattern), number) == source.path
+
+
+def _moves(ob: bpy.types.Object) -> bool:
+    """Whether the object, a layer's parent, or the camera or reference image can move."""
+    settings = ob.rototoon
+    objects = [ob, settings.reference if settings.plane == "REFERENCE" else camera_of(ob)]
+    objects += [layer.parent for layer in gp.layers(ob, settings.contours_layer)]
+    return any(is_animated(each) for each in objects)
+
+
+def is_animated(ob: bpy.types.Object | None) -> bool:
+    """Whether an object or one of its parents can move."""
+    while ob is not None:
+        owners = [ob] + ([ob.data] if ob.type in {"CAMERA", "EMPTY"} and ob.data is not None else [])
+        if any(_has_motion(owner) for owner in owners) or len(ob.constraints):
+            return True
+        ob = ob.parent
+    return False
+
+
+def _has_motion(owner) -> bool:
+    data = getattr(owner, "animation_data", None)
+    return data is not None and (data.action is not None or len(data.drivers) > 0 or len(data.nla_tracks) > 0)

@@ -1,0 +1,196 @@
+"""Complete drawings as arrays: reading and writing everything that Blender knows of their strokes.
+
+A drawing keeps its attributes when it is written with other numbers of strokes and points. Vertex groups are an exception: Blender
+keeps them elsewhere, and they stay with the same point indices.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+
+from . import grease_pencil as gp
+
+CATMULL_ROM, POLY, BEZIER, NURBS = range(4)
+_TYPE_NAMES = ("CATMULL_ROM", "POLY", "BEZIER", "NURBS")
+ENDPOINT, ENDPOINT_BEZIER = 1, 3
+"""Knot modes: of a curve from its first to its last control point, and of a chain of Bézier curves."""
+
+
+@dataclass
+class Content:
+    """The strokes of a drawing."""
+
+    sizes: np.ndarray
+    """Number of points of each stroke."""
+    types: np.ndarray
+    """Curve type of each stroke."""
+    point: dict[str, np.ndarray] = field(default_factory=dict)
+    """Attributes of the points by name, with the positions."""
+    curve: dict[str, np.ndarray] = field(default_factory=dict)
+    """Attributes of the strokes by name."""
+    kinds: dict[str, str] = field(default_factory=dict)
+    """Data type of each attribute."""
+
+    @property
+    def starts(self) -> np.ndarray:
+        """Index of each stroke's first point, then the number of points."""
+        return np.concatenate([[0], np.cumsum(self.sizes)]).astype(np.int32)
+
+    def strokes(self, name: str) -> np.ndarray:
+        """An attribute of the strokes, or its default values if it is missing."""
+        found = self.curve.get(name)
+        return gp.blank(name, len(self.sizes)) if found is None else found
+
+    def set_strokes(self, name: str, values: np.ndarray) -> None:
+        """Sets an attribute of the strokes. A missing attribute is made."""
+        self.kinds.setdefault(name, gp.TYPES[name][0])
+        self.curve[name] = values
+
+    def finite(self) -> np.ndarray:
+        """Which strokes have points, all of them finite."""
+        fine = np.isfinite(self.point["position"]).all(1) if len(self.sizes) else np.zeros(0, bool)
+        bad = np.zeros(len(self.sizes), bool)
+        bad[np.repeat(np.arange(len(self.sizes)), self.sizes)[~fine]] = True
+        return ~bad & (self.sizes > 0)
+
+    def equals(self, other: Content) -> bool:
+        """Whether both have the same strokes and attributes."""
+        if not (np.array_equal(self.sizes, other.sizes) and np.array_equal(self.types, other.types)):
+            return False
+        mine, theirs = self.point | self.curve, other.point | other.curve
+        return mine.keys() == theirs.keys() and all(_same(mine[name], theirs[name]) for name in mine)
+
+
+def _same(a: np.ndarray, b: np.ndarray) -> bool:
+    return a.shape == b.shape and a.tobytes() == b.tobytes()
+
+
+def read(drawing) -> Content:
+    """The content of a drawing, without selections and vertex groups."""
+    starts = gp.offsets(drawing)
+    strokes, points = len(starts) - 1, int(starts[-1])
+    content = Content(np.diff(starts), np.zeros(strokes, np.int8))
+    content.point["position"] = gp.positions(drawing, points)
+    for attribute in drawing.attributes:
+        name, curve = attribute.name, attribute.domain == "CURVE"
+        values = None if name.startswith(".") else gp.get(drawing, name, strokes if curve else points)
+        if values is None or name == "position":
+            continue
+        if name == "curve_type":
+            content.types = values
+            continue
+        content.kinds[name] = attribute.data_type
+        (content.curve if curve else content.point)[name] = values
+    return content
+
+
+def write(drawing, content: Content) -> None:
+    """Replaces the content of a drawing."""
+    count, have = len(content.sizes), len(gp.offsets(drawing)) - 1
+    if count > have:
+        drawing.add_strokes([1] * (count - have))
+    elif count < have:
+        drawing.remove_strokes(indices=list(range(count, have)))
+    if count:
+        _set_types(drawing, content.types)
+        sizes = np.diff(gp.offsets(drawing))
+        if not np.array_equal(sizes, content.sizes):
+            drawing.resize_strokes(sizes=content.sizes.tolist(), indices=list(range(count)))
+        for domain, values in (("POINT", content.point), ("CURVE", content.curve)):
+            for name, each in values.items():
+                if drawing.attributes.get(name) is None:
+                    gp.make(drawing, name, content.kinds[name], domain)
+                gp.put(drawing, name, each)
+    drawing.tag_positions_changed()
+
+
+def _set_types(drawing, types: np.ndarray) -> None:
+    now = gp.get(drawing, "curve_type", len(types))
+    now = np.zeros(len(types), np.int8) if now is None else now
+    for kind in np.unique(types):
+        other = np.flatnonzero((types == kind) & (now != kind))
+        if len(other):
+            drawing.set_types(type=_TYPE_NAMES[kind], indices=other.tolist())
+
+
+def joined(one: Content, other: Content) -> Content:
+    """The strokes of both contents. Each gets the attributes of both."""
+    result = Content(np.concatenate([one.sizes, other.sizes]), np.concatenate([one.types, other.types]))
+    result.kinds = one.kinds | other.kinds
+    for side in ("point", "curve"):
+        mine, theirs, into = getattr(one, side), getattr(other, side), getattr(result, side)
+        counts = [len(c.point["position"]) if side == "point" else len(c.sizes) for c in (one, other)]
+        for name in mine | theirs:
+            values = [_or_blank(name, each, count, mine, theirs) for each, count in zip((mine, theirs), counts)]
+            into[name] = np.concatenate(values)
+    return result
+
+
+def _or_blank(name: str, values: dict, count: int, *known: dict) -> np.ndarray:
+    if name in values:
+        return values[name]
+    like = next(each[name] for each in known if name in each)
+    return np.full((count, *like.shape[1:]), gp.DEFAULTS.get(name, 0), like.dtype)
+
+
+def ranges(starts: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """The numbers from `starts[i]` up to `starts[i] + sizes[i]` for all i, one range after the other."""
+    ends = np.cumsum(sizes)
+    total = int(ends[-1]) if len(ends) else 0
+    return np.repeat(np.asarray(starts, np.int64) - (ends - sizes), sizes) + np.arange(total)
+
+
+def shown_frame(layer, frame: int) -> int | None:
+    """The frame of the drawing that a layer shows on `frame`; `None` if it shows none."""
+    numbers = [each.frame_number for each in layer.frames if each.frame_number <= frame]
+    return max(numbers, default=None)
+
+
+def editable_layers(ob, active: bool) -> list:
+    """The layers whose strokes may be replaced, the lowest first. With `active`, only the active layer.
+
+    Locked layers are left out, and so are layers with contours, since tracking knows their points by index.
+    """
+    layers = [ob.data.layers.active] if active else list(ob.data.layers)
+    contours = {layer.name for layer in gp.layers(ob, ob.rototoon.contours_layer)}
+    return [layer for layer in layers if layer is not None and not layer.lock and layer.name not in contours]
+
+
+def filled(ob, content: Content) -> np.ndarray:
+    """For each stroke the number of its fill; 0 for no fill. Strokes with one common fill have the same number."""
+    if gp.FILL_BY_ID:
+        return content.strokes("fill_id")
+    index = content.strokes("material_index")
+    shown = np.array([_shows_fill(material) for material in ob.data.materials])
+    if not len(shown):
+        return np.zeros(len(index), np.int32)
+    index = np.clip(index, 0, len(shown) - 1)
+    return np.where(shown[index], np.arange(1, len(index) + 1), 0).astype(np.int32)
+
+
+def _shows_fill(material) -> bool:
+    return material is not None and material.grease_pencil is not None and material.grease_pencil.show_fill
+
+
+def line_material(ob, index: int) -> int:
+    """Index of the material that draws only the line of material `index`, without its fill. It is made if it does not exist."""
+    materials = ob.data.materials
+    material = materials[min(index, len(materials) - 1)]
+    name = f"{material.name} Line"
+    for place, other in enumerate(materials):
+        if other is not None and other.name == name:
+            return place
+    copy = bpy.data.materials.get(name) or material.copy()
+    copy.name = name
+    copy.grease_pencil.show_fill = False
+    materials.append(copy)
+    return len(materials) - 1
+
+
+def unique_numbers(used: Iterable[int], count: int) -> np.ndarray:
+    """`count` numbers that are larger than all used ones."""
+    return np.arange(count, dtype=np.int32) + 1 + max(used, default=0)

@@ -1,0 +1,79 @@
+"""Drive Bones: bones follow a clip of the library."""
+
+import bpy
+import numpy as np
+
+from ...blender import actions, armatures, preferences
+from ...blender.errors import Problem
+from ...common import jobs
+from ...common.operators import Long, OnArmature
+from ...style.clip_library import clips_of, folder_of
+from ...style.clip_properties import Manner, shared
+from .. import driving, key_points
+
+
+class _Content:
+    """The clip that the bones follow. It is a class of its own, so that the dialog lists it before the style."""
+
+    content: shared("character")
+    motion: shared("motion")
+
+
+class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Operator):
+    bl_idname = "rototoon.drive_bones"
+    bl_label = "Drive Bones"
+    bl_description = (
+        "Make the armature's bones follow a clip of the library in the view's plane, as it is or in another character's style. "
+        "The keys are in a new action. The action before stays in the file"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    view: bpy.props.EnumProperty(name="Plane", description="The plane in which the limbs move", items=armatures.VIEWS)
+    start: bpy.props.IntProperty(name="Start", description="Frame of the first posture", default=1)
+    move: bpy.props.BoolProperty(name="Move", description="The pelvis moves as in the clip", default=True)
+    folder: shared("folder")
+
+    def invoke(self, context, _event):
+        self.start = context.scene.frame_current
+        return context.window_manager.invoke_props_dialog(self)
+
+    def begin(self, context):
+        self._ob = context.object
+        key_points.table_of(self._ob)
+        folder, threads = folder_of(self._ob, self.folder), preferences.threads()
+        content, motion = self.content, self.motion
+        remake = self.remake(folder, motion, content) if self.style else None
+
+        def work(progress):
+            if remake is None:
+                clips = clips_of(folder)
+                return _only(clips, content, motion), clips["fps"]
+            clips = remake(progress, threads)
+            return clips["clips"][0], clips["fps"]
+
+        return jobs.Worker(work)
+
+    def finish(self, context, work) -> str:
+        (clip, fps), ob, scene = work.result, self._ob, context.scene
+        postures = np.array(clip["points"], np.float64)
+        plane = driving.Plane.of(ob, scene, self.view)
+        found = list(driving.poses(ob, postures, plane, self.move))
+        frames = self.start + np.arange(len(postures)) * scene.render.fps / scene.render.fps_base / fps
+        curves = driving.channels(ob, found, self.move)
+        manner = f" as {self.style}" if self.style else ""
+        before = actions.give(ob, "OBJECT", f"{ob.name} {self.motion}{manner}", frames, curves)
+        said = f"{len(found[0])} bones on frames {frames[0]:g} to {frames[-1]:g}"
+        held = [name for name in found[0] if any(not c.mute for c in ob.pose.bones[name].constraints)]
+        said += f"; constraints also move {', '.join(held)}" if held else ""
+        return said + (f'; the action "{before}" is kept' if before else "")
+
+
+def _only(clips, character: str, motion: str):
+    found = [c for c in clips["clips"] if c["motion"] == motion and character in ("", c["character"])]
+    if len(found) != 1:
+        names = ", ".join(f"{c['character']} {c['motion']}" for c in clips["clips"])
+        raise Problem(f'Found {len(found)} clips "{motion}" by "{character}", expected one; the library has {names}')
+    return found[0]
+
+
+CLASSES = (ROTOTOON_OT_drive_bones,)

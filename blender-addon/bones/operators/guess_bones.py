@@ -1,0 +1,22 @@
+"""Guess Bones: finds key points by the names of bones."""
+
+import bpy
+
+from ...common.operators import Guarded, OnArmature
+from ...rototoon.style import KEY_POINTS
+from .. import key_points
+
+
+class ROTOTOON_OT_guess_bones(Guarded, OnArmature, bpy.types.Operator):
+    bl_idname = "rototoon.guess_bones"
+    bl_label = "Guess Bones"
+    bl_description = "Find the bones of the key points by their names. Your choices stay"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def run(self, context) -> str:
+        found = key_points.guess(context.object)
+        missing = [point for point in KEY_POINTS if point not in found]
+        return f"{len(found)} key points" + (f"; choose bones for {', '.join(missing)}" if missing else "")
+
+
+CLASSES = (ROTOTOON_OT_guess_bones,)

@@ -1,0 +1,124 @@
+"""The artist's corrections of generated strokes: pins and centres.
+
+Tracking stores where it put each point. If a point is elsewhere now, the artist moved it, and it becomes a pin. If all points
+moved in the same way, the artist moved the complete part, and this corrects its centre. Pins and centres stay until they are
+released. Positions of pins are kept bit for bit. So an unchanged correction is equal in every run, and its span is not solved
+again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender.placement import Mapper
+from .contours import Contours, Part
+
+MOVED = 0.05
+"""Pixels. A smaller shift is no movement. This is far above the error of single precision, and far below what a hand does on
+purpose."""
+ALIKE = 0.1
+"""Points moved in the same way if their shifts differ from the mean shift by less than this share of it …"""
+ALIKE_FLOOR = 0.25
+"""… or by less than this number of pixels."""
+
+
+@dataclass
+class Corrections:
+    """Corrections of one part by scene frame."""
+
+    pins: dict[int, dict[int, np.ndarray]] = field(default_factory=dict)
+    """Pixels by frame and index of the control point."""
+    centers: dict[int, np.ndarray] = field(default_factory=dict)
+    """Pixels by frame."""
+    held: dict[int, np.ndarray] = field(default_factory=dict)
+    """By frame the stroke's points in layer space, as the artist left them."""
+
+
+def detect(found: Contours, mapper: Mapper) -> dict[int, Corrections]:
+    """Corrections by part number, on frames strictly between two keys of the part, or beside its only key."""
+    return {part.number: _of_part(part, found, mapper) for part in found.parts}
+
+
+def _of_part(part: Part, found: Contours, mapper: Mapper) -> Corrections:
+    corrections = Corrections()
+    for frame, stroke in part.made.items():
+        if not correctable(part.keys, frame):
+            continue
+        drawing = found.drawings[stroke.layer, frame]
+        if not gp.has(drawing.handle, gp.TRACKED):
+            continue
+        pinned = drawing.value(gp.PIN)[stroke.span].copy()
+        center = drawing.value(gp.CENTER)[stroke.index].astype(np.float64)
+        tracked = drawing.value(gp.TRACKED)[stroke.span]
+        has_center = center[2] != 0
+        if not np.array_equal(tracked, stroke.points):
+            mapping = mapper.at(stroke.layer, frame)
+            points = mapping.to_pixels(stroke.points)
+            moved, whole = compare(mapping.to_pixels(tracked), points)
+            if whole:
+                center, has_center = _single(np.append(points.mean(0), 1.0)), True
+            else:
+                pinned |= moved
+        if pinned.any():
+            points = mapper.at(stroke.layer, frame).to_pixels(stroke.points)
+            corrections.pins[frame] = {int(i): points[i] for i in np.flatnonzero(pinned)}
+            corrections.held[frame] = stroke.points
+        if has_center:
+            corrections.centers[frame] = center[:2]
+    return corrections
+
+
+def correctable(keys, frame: int) -> bool:
+    """Whether a correction on a frame has an effect: the frame is between two keys, or beside the only key."""
+    if not keys or frame in keys:
+        return False
+    return len(keys) == 1 or min(keys) < frame < max(keys)
+
+
+def compare(before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Which points (N, 2) in pixels moved, and whether all of them moved in the same way."""
+    shift = after - before
+    moved = np.linalg.norm(shift, axis=1) > MOVED
+    if len(shift) < 2 or not moved.all():
+        return moved, False
+    mean = shift.mean(0)
+    spread = np.linalg.norm(shift - mean, axis=1).max()
+    return moved, bool(spread < max(ALIKE * np.linalg.norm(mean), ALIKE_FLOOR))
+
+
+def _single(values: np.ndarray) -> np.ndarray:
+    """Values rounded to single precision, as in the file, so that they are read back equal."""
+    return values.astype(np.float32).astype(np.float64)
+
+
+def release(drawing, points: np.ndarray | None) -> int:
+    """Releases pins and centres of a drawing's generated strokes; with the mask `points`, only there.
+
+    The current place of a released point counts as tracked, so that the point does not count as moved again. Returns the number
+    of released pins and centres.
+    """
+    starts = gp.offsets(drawing)
+    total, strokes = int(starts[-1]), len(starts) - 1
+    mask = np.ones(total, bool) if points is None else points
+    made = gp.value(drawing, gp.MADE, strokes)
+    mask = mask & np.repeat(made, np.diff(starts))
+    position, tracked = gp.positions(drawing, total), gp.get(drawing, gp.TRACKED, total)
+    if tracked is None:
+        return 0
+    pinned = gp.value(drawing, gp.PIN, total)
+    moved = (position != tracked).any(1)
+    whole = np.zeros(strokes, bool)
+    if total:
+        whole = np.add.reduceat(mask, np.minimum(starts[:-1], total - 1)) > 0
+    centers = gp.value(drawing, gp.CENTER, strokes)
+    released = int(((pinned | moved) & mask).sum() + ((centers[:, 2] != 0) & whole).sum())
+    tracked[mask] = position[mask]
+    pinned[mask] = False
+    centers[whole] = 0
+    gp.put(drawing, gp.TRACKED, tracked)
+    gp.put(drawing, gp.PIN, pinned)
+    gp.put(drawing, gp.CENTER, centers)
+    return released

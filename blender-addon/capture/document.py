@@ -1,0 +1,150 @@
+"""An object's contours as a project document.
+
+Frames of the document are picture numbers: the scene's frame minus the object's frame offset. The object and its parts keep unknown
+fields of an imported document as JSON, and they are in the document again.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..blender import footage
+from ..blender import grease_pencil as gp
+from ..blender.errors import Problem
+from ..blender.placement import Mapper
+from . import contours, corrections, ends, identity, snapping
+
+VERSION = 1
+
+
+@dataclass
+class Reading:
+    """An object's contours, the decisions about new strokes, and the document."""
+
+    found: contours.Contours
+    mapper: Mapper
+    decisions: identity.Decisions
+    corrections: dict[int, corrections.Corrections]
+    document: dict[str, Any]
+    folder: str
+
+
+def read(ob, results: bool = False) -> Reading:
+    """Reads an object. Changes nothing. With `results`, the document has tracks, confidence and snapped curves."""
+    settings = ob.rototoon
+    pattern = footage.pattern_of(ob)
+    found = contours.read(ob)
+    if not found.layer_names:
+        name = settings.contours_layer
+        raise Problem(f'"{ob.name}" has no layer "{name}": draw the contours on a layer of that name')
+    mapper = mapper_of(ob, found)
+    decisions = identity.decide(found, mapper, settings.next_number)
+    corrected = corrections.detect(found, mapper)
+    document = _extra(settings.extra)
+    known = {
+        "pattern": pattern,
+        "first": settings.first,
+        "last": settings.last,
+        "fps": settings.fps,
+        "width": settings.width,
+        "height": settings.height,
+    }
+    document.update({"rototoon": VERSION, "footage": _extra(document.get("footage")) | known})
+    document["parts"] = [
+        _part(part, mapper, corrected[part.number], settings.frame_offset)
+        for part in found.parts
+        if part.keys
+    ]
+    if results:
+        _add_results(ob, document, found, mapper)
+    return Reading(found, mapper, decisions, corrected, document, os.path.dirname(pattern))
+
+
+def mapper_of(ob, found: contours.Contours) -> Mapper:
+    """The mappings of an object's contour layers."""
+    drawn: dict[int, list[np.ndarray]] = {}
+    frames = {frame for _, frame in found.drawings}
+    for (layer, _), drawing in found.drawings.items():
+        drawn.setdefault(layer, []).extend(stroke.points for stroke in drawing.strokes if not stroke.made)
+    points = {layer: np.concatenate(rows) for layer, rows in drawn.items() if rows}
+    if frames:
+        frames = range(min(frames), max(frames) + 1)
+    return Mapper(ob, frames, points, found.layer_names)
+
+
+def _extra(text: Any) -> dict[str, Any]:
+    if isinstance(text, dict):
+        return dict(text)
+    return json.loads(text) if text else {}
+
+
+def _part(part: contours.Part, mapper: Mapper, corrected: corrections.Corrections, offset: int) -> dict[str, Any]:
+    keys = {}
+    for frame in sorted(part.keys):
+        stroke = part.keys[frame]
+        points = mapper.at(stroke.layer, frame).to_pixels(stroke.control_points(part.closed))
+        keys[str(frame - offset)] = points.tolist()
+    entry = _extra(part.extra)
+    entry.update({"name": part.name, "closed": part.closed, "depth": part.depth, "keys": keys})
+    pins = {
+        str(frame - offset): {str(i): point.tolist() for i, point in sorted(points.items())}
+        for frame, points in sorted(corrected.pins.items())
+    }
+    centers = {str(frame - offset): point.tolist() for frame, point in sorted(corrected.centers.items())}
+    if pins:
+        entry["pins"] = pins
+    if centers:
+        entry["centers"] = centers
+    return entry
+
+
+def _add_results(ob, document: dict[str, Any], found: contours.Contours, mapper: Mapper) -> None:
+    offset = ob.rototoon.frame_offset
+    curves = snapping.read(ob)
+    for entry, part in zip(document["parts"], [part for part in found.parts if part.keys], strict=True):
+        first, last = min(part.keys), max(part.keys)
+        if first == last:
+            first, last = _around(part, first)
+            wanted = _wanted(ob, part)
+            if wanted:
+                entry["wants_key"] = wanted
+        if last > first and all(f in part.made or f in part.keys for f in range(first, last + 1)):
+            tracks, confidence = {}, {}
+            for frame in range(first, last + 1):
+                label = str(frame - offset)
+                if frame in part.keys:
+                    tracks[label], confidence[label] = entry["keys"][label], [1.0] * part.count
+                    continue
+                stroke = part.made[frame]
+                tracks[label] = mapper.at(stroke.layer, frame).to_pixels(stroke.points).tolist()
+                sure = found.drawings[stroke.layer, frame].value(gp.CONFIDENCE)[stroke.span]
+                confidence[label] = sure.astype(np.float64).tolist()
+            entry["tracks"], entry["confidence"] = tracks, confidence
+        paths = {
+            str(frame - offset): [path.tolist() for path in segments]
+            for (number, frame), segments in sorted(curves.items())
+            if number == part.number
+        }
+        if paths:
+            entry["curves"] = paths
+
+
+def _around(part: contours.Part, key: int) -> tuple[int, int]:
+    """First and last frame around a part's only key, up to the first frame without its contour."""
+    first, last = key, key
+    while first - 1 in part.made:
+        first -= 1
+    while last + 1 in part.made:
+        last += 1
+    return first, last
+
+
+def _wanted(ob, part: contours.Part) -> list[int]:
+    """Picture numbers on which a part was lost."""
+    item = next((item for item in ob.rototoon.parts if item.number == part.number), None)
+    return ends.wanted(item) if item is not None else []

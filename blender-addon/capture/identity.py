@@ -1,0 +1,212 @@
+"""Parts of strokes: newly drawn strokes are matched to parts, or become new parts.
+
+`decide` works in memory. `write` stores the decisions in the file, after the work that needed them has succeeded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender.errors import Problem
+from ..blender.placement import Mapper
+from . import correspondence, sessions
+from .contours import Contours, Part, Stroke
+
+CLOSING_GAP = 0.03
+"""A stroke also counts as closed if the distance of its ends is less than this share of its length."""
+
+
+@dataclass
+class Decisions:
+    """Decisions that are not yet in the file."""
+
+    strokes: list[tuple[Stroke, Part, np.ndarray]] = field(default_factory=list)
+    """A stroke, its part, and the control numbers of its drawn points."""
+    created: list[Part] = field(default_factory=list)
+    matched: int = 0
+    """Number of strokes that were matched to existing parts."""
+
+
+def decide(found: Contours, mapper: Mapper, next_number: int) -> Decisions:
+    """Gives every stroke without a part a part, in memory."""
+    decisions = Decisions()
+    for part in found.parts:
+        _recount(part, decisions)
+    loose, found.loose = found.loose, []
+    for frame in sorted({stroke.frame for stroke in loose}):
+        drawn = [stroke for stroke in loose if stroke.frame == frame]
+        for stroke in _recognise(found, drawn, frame, mapper, decisions):
+            part = _new_part(found, stroke, mapper, next_number + len(decisions.created))
+            _assign(stroke, part, correspondence.identity(part.count), decisions)
+            decisions.created.append(part)
+    for part in found.parts:
+        for stroke in part.keys.values():
+            if part.count > 1 and len(stroke.points) == part.count and not stroke.control.any():
+                decisions.strokes.append((stroke, part, correspondence.identity(part.count)))
+    _check_names(found)
+    return decisions
+
+
+def _recount(part: Part, decisions: Decisions) -> None:
+    """Sets the number of control points of a part with one key to the number of points that the artist drew there."""
+    if len(part.keys) != 1:
+        return
+    stroke = next(iter(part.keys.values()))
+    if len(stroke.points) != part.count:
+        part.count = len(stroke.points)
+        part.made.clear()
+        stroke.where, stroke.control = np.arange(part.count, dtype=np.float64), correspondence.identity(part.count)
+        decisions.strokes.append((stroke, part, stroke.control))
+
+
+def _recognise(
+    found: Contours, drawn: list[Stroke], frame: int, mapper: Mapper, decisions: Decisions
+) -> list[Stroke]:
+    """Matches drawn strokes to parts that have no key on this frame. Returns the strokes without a match."""
+    candidates = [part for part in found.parts if frame not in part.keys and (part.keys or part.made)]
+    if not candidates:
+        return drawn
+    references = [_reference(part, frame, mapper) for part in candidates]
+    shapes = [mapper.at(stroke.layer, frame).to_pixels(stroke.points) for stroke in drawn]
+    left = set(range(len(drawn)))
+    for which, who, points in match(
+        [(part.closed, points) for part, points in zip(candidates, references, strict=True)],
+        [(candidate_closed(stroke, shape), shape) for stroke, shape in zip(drawn, shapes, strict=True)],
+    ):
+        part, stroke = candidates[which], drawn[who]
+        where = correspondence.locate(shapes[who], points, part.closed)
+        control = correspondence.invert(where, len(stroke.points), part.closed)
+        if control is None or correspondence.invert(control, part.count, part.closed) is None:
+            continue
+        left.discard(who)
+        _assign(stroke, part, control.astype(np.float32), decisions)
+        decisions.matched += 1
+    return [drawn[i] for i in sorted(left)]
+
+
+def _reference(part: Part, frame: int, mapper: Mapper) -> np.ndarray:
+    """The part's contour in pixels: the tracked one on `frame` if there is one, otherwise that of the nearest key."""
+    if frame in part.made:
+        stroke = part.made[frame]
+    else:
+        nearest = min(part.keys or part.made, key=lambda other: (abs(other - frame), other))
+        stroke = (part.keys or part.made)[nearest]
+    return mapper.at(stroke.layer, stroke.frame).to_pixels(stroke.control_points(part.closed))
+
+
+def match(
+    references: list[tuple[bool, np.ndarray]], drawn: list[tuple[bool, np.ndarray]]
+) -> list[tuple[int, int, np.ndarray]]:
+    """Matches of drawn contours: (index of the reference, index of the drawn contour, the reference's points on the drawn
+    line)."""
+
+    def plain(contours):
+        return [{"closed": bool(closed), "points": points.tolist()} for closed, points in contours]
+
+    answer = sessions.matcher({"references": plain(references), "drawn": plain(drawn)})
+    return [(m["reference"], m["drawn"], np.asarray(m["points"], np.float64)) for m in answer["matches"]]
+
+
+def candidate_closed(stroke: Stroke, shape: np.ndarray) -> bool:
+    """Whether a drawn stroke is a closed contour."""
+    if stroke.cyclic or len(shape) < 3:
+        return stroke.cyclic
+    length = np.linalg.norm(np.diff(shape, axis=0), axis=1).sum()
+    return bool(np.linalg.norm(shape[-1] - shape[0]) < CLOSING_GAP * length)
+
+
+def _new_part(found: Contours, stroke: Stroke, mapper: Mapper, number: int) -> Part:
+    shape = mapper.at(stroke.layer, stroke.frame).to_pixels(stroke.points)
+    names = {part.name for part in found.parts}
+    label = number
+    while f"Part {label}" in names:
+        label += 1
+    closed = candidate_closed(stroke, shape)
+    part = Part(number, f"Part {label}", closed, _depth(found, stroke.layer), len(stroke.points), layer=stroke.layer)
+    found.parts.append(part)
+    return part
+
+
+def _depth(found: Contours, layer: int) -> float:
+    """A depth nearer than all parts of the same and lower layers, and farther than the parts of higher layers."""
+    below = [part.depth for part in found.parts if part.layer <= layer]
+    above = [part.depth for part in found.parts if part.layer > layer]
+    low = max(below, default=None)
+    if low is None:
+        return min(above) - 1 if above else 0.0
+    return (low + min(above)) / 2 if above and min(above) <= low + 1 and min(above) > low else low + 1
+
+
+def _assign(stroke: Stroke, part: Part, control: np.ndarray, decisions: Decisions) -> None:
+    stroke.part, stroke.control = part.number, control
+    stroke.where = correspondence.invert(control, part.count, part.closed)
+    if stroke.where is None:
+        stroke.where = np.arange(part.count, dtype=np.float64)
+    part.keys[stroke.frame] = stroke
+    part.layer = stroke.layer
+    decisions.strokes.append((stroke, part, control))
+
+
+def _check_names(found: Contours) -> None:
+    seen = set()
+    for part in found.parts:
+        if part.name in seen:
+            raise Problem(f'Two parts are called "{part.name}": give one of them another name in the list of parts')
+        seen.add(part.name)
+
+
+def write(ob, found: Contours, decisions: Decisions) -> None:
+    """Writes decisions into strokes and the object's list of parts. Parts without a stroke are removed from the list."""
+    touched: dict[tuple[int, int], list[tuple[Stroke, Part, np.ndarray]]] = {}
+    for entry in decisions.strokes:
+        touched.setdefault((entry[0].layer, entry[0].frame), []).append(entry)
+    for part in found.parts:
+        # This generated stroke became a key.
+        for stroke in part.keys.values():
+            if found.drawings[stroke.layer, stroke.frame].value(gp.MADE)[stroke.index]:
+                touched.setdefault((stroke.layer, stroke.frame), [])
+    for place, entries in touched.items():
+        _write_drawing(found, place, entries)
+    for index, name in enumerate(found.layer_names):
+        types = {frame: gp.KEYFRAME for (layer, frame) in touched if layer == index}
+        layer = gp.find_layer(ob, name)
+        kinds = {frame: kind for frame, (_, kind) in gp.drawings(layer).items()}
+        gp.set_keyframe_type(layer, {f: k for f, k in types.items() if kinds.get(f) == gp.GENERATED})
+    write_parts(ob, found)
+
+
+def _write_drawing(found: Contours, place: tuple[int, int], entries: list) -> None:
+    drawing = found.drawings[place]
+    numbers, made, control = (drawing.value(name).copy() for name in (gp.PART, gp.MADE, gp.CONTROL))
+    for stroke in drawing.strokes:
+        if not stroke.made:
+            made[stroke.index] = False
+    for stroke, part, values in entries:
+        numbers[stroke.index] = part.number
+        control[stroke.span] = values
+    gp.put(drawing.handle, gp.PART, numbers)
+    gp.put(drawing.handle, gp.MADE, made)
+    gp.put(drawing.handle, gp.CONTROL, control)
+
+
+def write_parts(ob, found: Contours) -> None:
+    """Makes the object's list of parts equal to that of `found`."""
+    settings = ob.rototoon
+    kept = [part for part in found.parts if part.keys or part.made]
+    numbers = {part.number for part in kept}
+    for index in reversed(range(len(settings.parts))):
+        if settings.parts[index].number not in numbers:
+            settings.parts.remove(index)
+    have = {entry.number: entry for entry in settings.parts}
+    for part in kept:
+        entry = have.get(part.number)
+        if entry is None:
+            entry = settings.parts.add()
+            entry.number, entry.name, entry.closed = part.number, part.name, part.closed
+            entry.depth, entry.extra = part.depth, part.extra
+        entry.count = part.count
+    settings.next_number = max([settings.next_number] + [part.number + 1 for part in kept])
+    settings.active_part = min(settings.active_part, max(len(settings.parts) - 1, 0))

@@ -1,0 +1,33 @@
+"""The operators of this room, one a file."""
+
+from . import (
+    clear_generated,
+    footage_from_camera,
+    footage_from_file,
+    footage_from_reference,
+    match_contours,
+    new_key,
+    release_pins,
+    setup,
+    show_confidence,
+    snap,
+    track,
+    weakest_frame,
+)
+
+_MODULES = (
+    setup,
+    footage_from_file,
+    footage_from_camera,
+    footage_from_reference,
+    new_key,
+    match_contours,
+    track,
+    release_pins,
+    snap,
+    show_confidence,
+    weakest_frame,
+    clear_generated,
+)
+
+CLASSES = tuple(cls for module in _MODULES for cls in module.CLASSES)

@@ -1,0 +1,43 @@
+"""Clear Generated: removes generated frames."""
+
+import bpy
+
+from ...blender import grease_pencil as gp
+from ...common.operators import Guarded, OnDrawing
+from .. import writing
+
+
+class ROTOTOON_OT_clear_generated(Guarded, OnDrawing, bpy.types.Operator):
+    bl_idname = "rototoon.clear_generated"
+    bl_label = "Clear Generated"
+    bl_description = "Remove the results of Track and Snap to Ink. Your keys stay"
+    bl_options = {"REGISTER", "UNDO"}
+
+    frames: bpy.props.EnumProperty(
+        name="Frames",
+        description="Where",
+        items=(("ALL", "All", "All frames"), ("CURRENT", "Current", "The current frame")),
+    )
+    corrected: bpy.props.BoolProperty(
+        name="Corrected Frames Too", description="Remove frames with your corrections too", default=False
+    )
+    snapped: bpy.props.BoolProperty(name="Snapped Lines", description="Clear the snapped layer too", default=True)
+
+    def run(self, context) -> str:
+        ob, current = context.object, context.scene.frame_current
+        layers = [(layer, not self.corrected) for layer in gp.layers(ob, ob.rototoon.contours_layer)]
+        snapped = gp.find_layer(ob, ob.rototoon.snapped_layer)
+        if snapped is not None and self.snapped:
+            layers.append((snapped, False))
+        cleared, kept = 0, 0
+        for layer, keep in layers:
+            drawings = gp.drawings(layer)
+            frames = [f for f in drawings if self.frames == "ALL" or f == current]
+            if keep:
+                kept += sum(writing.is_corrected(drawings[f][0]) for f in frames)
+            cleared += writing.clear(layer, frames, keep_corrected=keep)
+        ob.data.update_tag()
+        return f"{cleared} generated drawings removed" + (f", {kept} with corrections kept" if kept else "")
+
+
+CLASSES = (ROTOTOON_OT_clear_generated,)

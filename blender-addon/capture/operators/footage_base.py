@@ -1,0 +1,77 @@
+"""Base of the operators that set an object's footage. Frames of movies are put into the cache first."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+import bpy
+
+from ...blender import footage, movie, preferences, stage
+from ...blender.errors import Problem
+from ...common import jobs
+from ...common.operators import Long
+
+
+class FootageOperator(Long):
+    """`source(context)` returns the source of the footage. `apply(context, shot)` uses the footage and returns a message."""
+
+    def begin(self, context):
+        """Checks the source. Only a movie that is not in the cache takes long."""
+        self._source = self.source(context)
+        if not self._source.movie:
+            self._sequence = footage.sequence_around(self._source.path)
+            return jobs.Stepper(iter(()), "")
+        if not os.path.isfile(self._source.path):
+            raise Problem(f"No file {self._source.path}: it was moved or renamed")
+        self._cache = preferences.cache_folder()
+        return jobs.Stepper(self._extract(), os.path.basename(self._source.path))
+
+    def _extract(self) -> Iterator[float]:
+        if movie.cached(self._source.path, self._cache) is None:
+            yield from movie.extract(self._source.path, self._cache)
+
+    def finish(self, context, _work) -> str:
+        """Reads the size of the pictures, and applies them."""
+        shot, note = self._movie_shot(context) if self._source.movie else self._sequence_shot(context)
+        return self.apply(context, shot) + note
+
+    def _movie_shot(self, context) -> tuple[stage.Shot, str]:
+        frames = movie.cached(self._source.path, self._cache)
+        if frames is None:
+            raise Problem(f"The frames of {self._source.path} are not in the cache {self._cache}")
+        width, height = footage.size_of(footage.picture(frames.pattern, frames.first))
+        start = context.scene.frame_start if self._source.frame_of_first is None else self._source.frame_of_first
+        keep = {os.path.basename(os.path.dirname(frames.pattern))} | used_folders()
+        removed = movie.shrink(self._cache, preferences.preferences().cache_limit * 2**20, keep)
+        shot = stage.Shot(
+            frames.pattern, frames.first, frames.last, width, height, frames.fps, start, self._source.path
+        )
+        return shot, f"; {removed} older movies were removed from the cache" if removed else ""
+
+    def _sequence_shot(self, context) -> tuple[stage.Shot, str]:
+        sequence, scene = self._sequence, context.scene
+        width, height = footage.size_of(footage.picture(sequence.pattern, sequence.picked))
+        start = footage.first_frame(self._source, sequence, scene.frame_start)
+        fps = scene.render.fps / scene.render.fps_base
+        shot = stage.Shot(sequence.pattern, sequence.first, sequence.last, width, height, fps, start)
+        return shot, f"; {sequence.missing} pictures beyond a gap are left out" if sequence.missing else ""
+
+
+def used_folders() -> set[str]:
+    """Folders of the cache that the objects of this file use."""
+    patterns = [ob.rototoon.pattern for ob in bpy.data.objects if ob.rototoon.movie]
+    return {os.path.basename(os.path.dirname(bpy.path.abspath(pattern))) for pattern in patterns}
+
+
+def described(shot: stage.Shot) -> str:
+    """A message about new footage."""
+    count = shot.last - shot.first + 1
+    name = os.path.basename(shot.movie or shot.pattern)
+    return f"{name}: {count} pictures of {shot.width}x{shot.height}, the first on frame {shot.frame_of_first}"
+
+
+def assign_to_active(context, shot: stage.Shot) -> str:
+    """Sets the footage of the active object. Returns a message."""
+    stage.assign(context.object, shot)
+    return described(shot)

@@ -1,0 +1,55 @@
+"""Snap to Ink: lays contours along the drawn lines."""
+
+import bpy
+import numpy as np
+
+from ...blender import preferences
+from ...blender.errors import Problem
+from ...common import jobs
+from ...common.operators import Long, OnContours
+from .. import document, identity, sessions, snapping
+
+
+class ROTOTOON_OT_snap(Long, OnContours, bpy.types.Operator):
+    bl_idname = "rototoon.snap"
+    bl_label = "Snap to Ink"
+    bl_description = (
+        "Lay the tracked contours along the drawn lines, as strokes on a layer of their own. "
+        "Thickness, fill and material follow your keys"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    def begin(self, context):
+        self._ob = context.object
+        self._reading = document.read(self._ob, results=True)
+        if not any("tracks" in part for part in self._reading.document["parts"]):
+            raise Problem("Nothing to snap: press Track first")
+        entry = sessions.known(self._ob)
+        inputs = document.read(self._ob).document
+        if entry is None or entry.inputs != inputs or entry.folder != self._reading.folder:
+            entry = sessions.get(self._ob, self._reading.document, self._reading.folder)
+        self._session = entry.session
+        threads = preferences.threads()
+        return jobs.Worker(lambda progress: self._session.snap(progress, threads=threads))
+
+    def finish(self, context, work) -> str:
+        reading = document.read(self._ob, results=True)
+        if reading.document != self._reading.document:
+            raise Problem("The contours changed while they were snapped, so the result was dropped: press Snap again")
+        identity.write(self._ob, reading.found, reading.decisions)
+        curves = self._curves(reading)
+        strokes = snapping.write(self._ob, curves, reading.found, reading.mapper)
+        self._ob.data.update_tag()
+        return f'{strokes} lines on the layer "{self._ob.rototoon.snapped_layer}"'
+
+    def _curves(self, reading):
+        offset, curves = self._ob.rototoon.frame_offset, {}
+        for part in reading.found.parts:
+            for frame in sorted({*part.keys, *part.made}):
+                segments = self._session.curves(part.name, frame - offset) if part.keys else []
+                if segments:
+                    curves[part.number, frame] = [np.asarray(path) for path in segments]
+        return curves
+
+
+CLASSES = (ROTOTOON_OT_snap,)

@@ -1,0 +1,104 @@
+"""Properties that a file keeps of an object's footage and parts."""
+
+from __future__ import annotations
+
+import bpy
+
+from . import live
+
+PRESETS = (
+    ("rototoon", "Rototoon", "Follows each part as a textured lattice from both keys. The most exact method"),
+    ("zhou2011", "Zhou & Xiao 2011", "Space-time energy of contours, edges and regions, as published"),
+    ("agarwala2004", "Agarwala et al. 2004", "Keyframe-based rotoscoping: space-time energy of shape, image and edges"),
+    ("liang2012", "Liang et al. 2012", "As Agarwala et al. 2004, with a two-sided ribbon and a colour penalty"),
+)
+PLANES = (
+    ("CAMERA", "Camera", "The camera shows the footage in its background"),
+    ("REFERENCE", "Reference Image", "A reference image (an empty that shows an image) shows the footage"),
+)
+
+
+def _is_image_empty(_self, ob) -> bool:
+    return ob.type == "EMPTY" and ob.empty_display_type == "IMAGE"
+
+
+def _is_camera(_self, ob) -> bool:
+    return ob.type == "CAMERA"
+
+
+class RototoonPart(bpy.types.PropertyGroup):
+    """A contour that is tracked. Its strokes carry its number."""
+
+    # `name` is a property of every PropertyGroup.
+    number: bpy.props.IntProperty(name="Number", description="Number that the part's strokes carry")
+    depth: bpy.props.FloatProperty(
+        name="Depth",
+        description="Larger is nearer to the viewer. Nearer parts hide farther ones",
+        default=0.0,
+        update=live.setting_changed,
+    )
+    closed: bpy.props.BoolProperty(name="Closed", description="The last point joins the first", default=False)
+    count: bpy.props.IntProperty(name="Control Points", description="Number of control points on each frame", min=0)
+    extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")
+    ends: bpy.props.StringProperty(
+        description="Where the track of a part with one key ends before the footage does: [[picture, reason], ...]"
+    )
+
+
+class CaptureSettings:
+    """Footage, parts and settings of tracking, in the property `rototoon` of every object."""
+
+    pattern: bpy.props.StringProperty(
+        name="Footage",
+        description="Files of the picture sequence, with %d or %0Nd for the number",
+        default="",
+    )
+    first: bpy.props.IntProperty(name="First", description="Number of the first picture", default=0)
+    last: bpy.props.IntProperty(name="Last", description="Number of the last picture", default=0)
+    width: bpy.props.IntProperty(name="Width", description="Width of the pictures in pixels", min=0)
+    height: bpy.props.IntProperty(name="Height", description="Height of the pictures in pixels", min=0)
+    fps: bpy.props.FloatProperty(name="Frame Rate", description="Pictures per second", default=24.0, min=0.01)
+    frame_offset: bpy.props.IntProperty(
+        name="Frame Offset", description="The scene shows picture n on frame n + offset", default=0
+    )
+    movie: bpy.props.StringProperty(name="Movie", description="The movie from which the pictures come", default="")
+    plane: bpy.props.EnumProperty(name="Seen Through", description="What shows the footage in the scene", items=PLANES)
+    camera: bpy.props.PointerProperty(
+        name="Camera",
+        description="Camera that shows the footage. If empty, the scene's camera",
+        type=bpy.types.Object,
+        poll=_is_camera,
+    )
+    reference: bpy.props.PointerProperty(
+        name="Reference Image",
+        description="Empty that shows the footage",
+        type=bpy.types.Object,
+        poll=_is_image_empty,
+    )
+    contours_layer: bpy.props.StringProperty(
+        name="Contours",
+        description="Layer with the contours. Layers whose name begins with this name and a dot or space count too",
+        default="Contours",
+    )
+    snapped_layer: bpy.props.StringProperty(
+        name="Snapped", description="Layer on which Snap to Ink draws", default="Snapped"
+    )
+    preset: bpy.props.EnumProperty(
+        name="Method", description="Method of tracking", items=PRESETS, update=live.setting_changed
+    )
+    live: bpy.props.BoolProperty(
+        name="Live",
+        description="Track by itself whenever you move a point or a part, or set, change or remove a key. "
+        "Only what you changed is tracked again. One undo takes back your edit and its result",
+        default=False,
+        update=live.toggled,
+    )
+    show_confidence: bpy.props.BoolProperty(
+        name="Show Confidence", description="Colour the tracked points by confidence: green is high, red is low", default=False
+    )
+    show_pins: bpy.props.BoolProperty(
+        name="Show Pins", description="Mark the points and centres that you fixed", default=True
+    )
+    parts: bpy.props.CollectionProperty(type=RototoonPart)
+    active_part: bpy.props.IntProperty(name="Active Part", default=0)
+    next_number: bpy.props.IntProperty(default=1)

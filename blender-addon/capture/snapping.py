@@ -1,0 +1,134 @@
+"""Snapped lines, which follow the ink, as strokes on a layer of their own.
+
+A snapped stroke joins the paths of a part's segments. Each of its points carries the index of its segment, so the paths can be
+read back. Frames of this layer that the artist made (with another keyframe type than "Generated") are not changed.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender.placement import Mapper
+from . import writing
+from .contours import Contours, Part, read_drawing
+
+
+def join(segments: list[np.ndarray], closed: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points (M, 2) of the joined paths, the segment of each point, and its fractional index between control points (0, 1,
+    2, …)."""
+    points, owner, place = [], [], []
+    for index, path in enumerate(segments):
+        path = np.asarray(path, np.float64).reshape(-1, 2)
+        last = index == len(segments) - 1
+        along = _arc(path)
+        keep = len(path) - (0 if last and not closed else 1)
+        keep = max(keep, 1)
+        points.append(path[:keep])
+        owner.append(np.full(keep, index))
+        place.append(index + along[:keep])
+    return np.concatenate(points), np.concatenate(owner), np.concatenate(place)
+
+
+def split(points: np.ndarray, owner: np.ndarray, closed: bool) -> list[np.ndarray]:
+    """Splits a joined stroke into its paths."""
+    count = int(owner.max()) + 1
+    paths = []
+    for index in range(count):
+        path = points[owner == index]
+        if index + 1 < count:
+            following = points[owner == index + 1][:1]
+        else:
+            following = points[:1] if closed else points[:0]
+        paths.append(np.concatenate([path, following]))
+    return paths
+
+
+def _arc(path: np.ndarray) -> np.ndarray:
+    """The arc length up to each point of a path, as a share of the path's length."""
+    steps = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+    return steps / steps[-1] if steps[-1] > 0 else np.linspace(0, 1, len(path)) if len(path) > 1 else steps
+
+
+def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, mapper: Mapper) -> int:
+    """Writes snapped paths. `curves` are pixels by part number and scene frame. Returns the number of strokes."""
+    layer = gp.layer(ob, ob.rototoon.snapped_layer)
+    own = {frame for frame, (_, kind) in gp.drawings(layer).items() if kind != gp.GENERATED}
+    old = {frame for frame in gp.drawings(layer) if frame not in own}
+    parts = sorted((part for part in found.parts if part.keys), key=lambda part: part.depth)
+    style = {part.number: writing.styles(part, found) for part in parts}
+    frames = sorted({frame for _, frame in curves} - own)
+    gp.remove_frames(layer, sorted(old - set(frames)))
+    gp.make_frames(layer, frames, gp.GENERATED)
+    drawings = gp.drawings(layer)
+    snapped = Mapper(ob, frames, _plane_points(ob, found), [layer.name])
+    written = 0
+    for frame in frames:
+        strokes = [
+            _stroke(part, frame, curves[part.number, frame], style[part.number], snapped)
+            for part in parts
+            if curves.get((part.number, frame))
+        ]
+        gp.replace_made(drawings[frame][0], _rows(strokes))
+        written += len(strokes)
+    return written
+
+
+def _plane_points(ob, found: Contours) -> dict[int, np.ndarray]:
+    """The artist's points, which show the drawing plane of the snapped layer."""
+    rows = [s.points for d in found.drawings.values() for s in d.strokes if not s.made]
+    return {0: np.concatenate(rows)} if rows else {}
+
+
+def _stroke(part: Part, frame: int, segments: list[np.ndarray], style, mapper: Mapper) -> dict[str, np.ndarray]:
+    point, curve, frames = style
+    pixels, owner, place = join(segments, part.closed)
+    wanted = np.array([frame])
+    stroke = {
+        "position": mapper.at(0, frame).to_layer(pixels).astype(np.float32),
+        gp.SEGMENT: owner,
+        gp.PART: np.array([part.number]),
+        gp.MADE: np.array([True]),
+    }
+    low = np.clip(np.floor(place).astype(int), 0, part.count - 1)
+    high = (low + 1) % part.count if part.closed else np.minimum(low + 1, part.count - 1)
+    share = place - low
+    for name, values in point.items():
+        now = writing.blend(values, frames, wanted)[0]
+        weight = share[:, None] if now.ndim > 1 else share
+        stroke[name] = now[low] * (1 - weight) + now[high] * weight
+    for name, values in curve.items():
+        stroke[name] = writing.held(values, frames, wanted)
+    return stroke
+
+
+def _rows(strokes: list[dict[str, np.ndarray]]) -> gp.Rows:
+    rows = gp.Rows(np.array([len(stroke["position"]) for stroke in strokes], np.int32))
+    names = {name for stroke in strokes for name in stroke}
+    for name in sorted(names):
+        values = []
+        for stroke in strokes:
+            count = len(stroke["position"]) if gp.TYPES.get(name, ("", "POINT"))[1] == "POINT" else 1
+            values.append(stroke[name] if name in stroke else gp.blank(name, count))
+        rows.values[name] = np.concatenate(values)
+    return rows
+
+
+def read(ob) -> dict[tuple[int, int], list[np.ndarray]]:
+    """Snapped paths in pixels, by part number and scene frame."""
+    layer = gp.find_layer(ob, ob.rototoon.snapped_layer)
+    if layer is None or not gp.frame_numbers(layer):
+        return {}
+    drawings = {f: read_drawing(handle, kind, 0, f) for f, (handle, kind) in gp.drawings(layer).items()}
+    closed = {part.number: part.closed for part in ob.rototoon.parts}
+    mapper = Mapper(ob, drawings, {}, [layer.name])
+    found = {}
+    for frame, drawing in drawings.items():
+        owner = gp.get(drawing.handle, gp.SEGMENT, len(drawing.points))
+        if owner is None:
+            continue
+        for stroke in drawing.strokes:
+            if stroke.part in closed and len(stroke.points):
+                pixels = mapper.at(0, frame).to_pixels(stroke.points)
+                found[stroke.part, frame] = split(pixels, owner[stroke.span], closed[stroke.part])
+    return found

@@ -1,0 +1,236 @@
+"""Tracked contours as strokes on generated frames beside the artist's keys.
+
+All frames of a layer are laid out in a few large arrays. Then each drawing gets all its strokes with one call, and each attribute
+with one more. Radius, opacity, colours, material and fill come from the key strokes, blended in time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender.placement import Mapper
+from . import correspondence
+from .contours import Contours, Drawing, Part, Stroke
+from .corrections import Corrections
+
+POINT_STYLE = ("radius", "opacity", "rotation", "vertex_color")
+CURVE_STYLE = ("cyclic", "material_index", "fill_color", "softness", "fill_id")
+FILL_BASE = 1_000_000
+"""Added to a part's number for its `fill_id`, so that it differs from those of strokes that the artist filled."""
+
+
+@dataclass
+class Track:
+    """A part's tracked contour."""
+
+    frames: np.ndarray
+    """Scene frames (F,)."""
+    points: np.ndarray
+    """Pixels (F, N, 2)."""
+    confidence: np.ndarray
+    """(F, N)."""
+
+
+@dataclass
+class Block:
+    """The generated strokes of a layer on all its frames. Part `p` has the columns `columns[p]`."""
+
+    frames: np.ndarray
+    sizes: np.ndarray
+    present: np.ndarray
+    """(F, P): whether the part has a generated stroke on the frame."""
+    columns: list[slice]
+    point: dict[str, np.ndarray] = field(default_factory=dict)
+    """By attribute: (F, points) or (F, points, k)."""
+    curve: dict[str, np.ndarray] = field(default_factory=dict)
+    """By attribute: (F, P) or (F, P, k)."""
+    order: np.ndarray | None = None
+    """(F, P): the parts from back to front on each frame; `None` if they are in that order."""
+
+
+def styles(part: Part, found: Contours) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], list[int]]:
+    """Point styles (K, N[, k]) and curve styles (K[, k]) of a part's K keys, and the frames of the keys.
+
+    Only attributes that a key drawing has, or that have a default.
+    """
+    frames = sorted(part.keys)
+    point, curve = {}, {}
+    drawings = [found.drawings[part.keys[f].layer, f] for f in frames]
+    for name in POINT_STYLE:
+        if any(gp.has(d.handle, name) for d in drawings) or name in gp.DEFAULTS:
+            point[name] = np.stack([_point_style(part, part.keys[f], d, name) for f, d in zip(frames, drawings)])
+    for name in CURVE_STYLE:
+        if any(gp.has(d.handle, name) for d in drawings) or name == "cyclic":
+            curve[name] = np.stack([d.value(name)[part.keys[f].index] for f, d in zip(frames, drawings)])
+    if "fill_id" in curve:
+        curve["fill_id"] = np.where(curve["fill_id"] != 0, FILL_BASE + part.number, 0)
+    curve["cyclic"] = curve["cyclic"] | part.closed
+    return point, curve, frames
+
+
+def _point_style(part: Part, stroke: Stroke, drawing: Drawing, name: str) -> np.ndarray:
+    return correspondence.sample(drawing.value(name)[stroke.span], stroke.where, part.closed)
+
+
+def blend(values: np.ndarray, frames: list[int], wanted: np.ndarray) -> np.ndarray:
+    """Styles (K, …) of key frames, blended linearly on the frames `wanted`."""
+    if (values == values[0]).all():
+        return np.broadcast_to(values[0], (len(wanted), *values.shape[1:]))
+    after = np.clip(np.searchsorted(frames, wanted, side="right"), 1, max(len(frames) - 1, 1))
+    after = np.minimum(after, len(frames) - 1)
+    before = np.maximum(after - 1, 0)
+    known = np.asarray(frames, np.float64)
+    share = np.clip((wanted - known[before]) / np.maximum(known[after] - known[before], 1), 0, 1)
+    share = share.reshape((-1,) + (1,) * (values.ndim - 1))
+    return values[before] * (1 - share) + values[after] * share
+
+
+def held(values: np.ndarray, frames: list[int], wanted: np.ndarray) -> np.ndarray:
+    """Styles (K, …) of the key at or before each of the frames `wanted`."""
+    return values[np.clip(np.searchsorted(frames, wanted, side="right") - 1, 0, len(frames) - 1)]
+
+
+def lay_out(
+    layer: int, parts: list[Part], tracks: dict[int, Track], found: Contours, mapper: Mapper, fixed: dict
+) -> Block:
+    """The block of a layer. `fixed` are `Corrections` by part number."""
+    parts = sorted((p for p in parts if p.number in tracks and p.layer == layer), key=lambda p: p.depth)
+    frames = np.unique(np.concatenate([tracks[p.number].frames for p in parts] or [np.zeros(0, int)]))
+    sizes = np.array([p.count for p in parts], np.int32)
+    ends = np.concatenate([[0], np.cumsum(sizes)]).astype(int)
+    columns = [slice(ends[i], ends[i + 1]) for i in range(len(parts))]
+    block = Block(frames, sizes, np.zeros((len(frames), len(parts)), bool), columns)
+    count, total = len(frames), int(ends[-1])
+    for name in (gp.TRACKED, gp.PIN, gp.CONFIDENCE, gp.CONTROL):
+        block.point[name] = np.repeat(gp.blank(name, total)[None], count, 0)
+    block.point["position"] = np.zeros((count, total, 3), np.float32)
+    for name in (gp.PART, gp.MADE, gp.CENTER):
+        block.curve[name] = np.repeat(gp.blank(name, len(parts))[None], count, 0)
+    for index, part in enumerate(parts):
+        _fill_part(block, index, part, tracks[part.number], mapper, fixed.get(part.number, Corrections()))
+        _fill_style(block, index, part, found)
+    return block
+
+
+def _fill_part(block: Block, index: int, part: Part, track: Track, mapper: Mapper, fixed: Corrections) -> None:
+    rows = np.searchsorted(block.frames, track.frames)
+    columns = block.columns[index]
+    if mapper.still:
+        points = mapper.at(part.layer, 0).to_layer(track.points).astype(np.float32)
+    else:
+        each = [mapper.at(part.layer, int(f)).to_layer(p) for f, p in zip(track.frames, track.points, strict=True)]
+        points = np.stack(each).astype(np.float32)
+    pins = block.point[gp.PIN]
+    row_of = {int(frame): row for row, frame in enumerate(track.frames)}
+    # A method that does not track beyond a single key makes no stroke for corrections there.
+    for frame, pinned in fixed.pins.items():
+        if frame not in row_of:
+            continue
+        which = list(pinned)
+        points[row_of[frame], which] = fixed.held[frame][which]
+        pins[rows[row_of[frame]], columns.start + np.array(which)] = True
+    for frame, center in fixed.centers.items():
+        if frame not in row_of:
+            continue
+        block.curve[gp.CENTER][rows[row_of[frame]], index] = (center[0], center[1], 1.0)
+    block.point["position"][rows, columns] = points
+    block.point[gp.TRACKED][rows, columns] = points
+    block.point[gp.CONFIDENCE][rows, columns] = track.confidence
+    block.point[gp.CONTROL][:, columns] = correspondence.identity(part.count)
+    block.curve[gp.PART][:, index] = part.number
+    block.curve[gp.MADE][:, index] = True
+    block.present[rows, index] = [int(frame) not in part.keys for frame in track.frames]
+
+
+def _fill_style(block: Block, index: int, part: Part, found: Contours) -> None:
+    point, curve, frames = styles(part, found)
+    for name, values in point.items():
+        if name not in block.point:
+            shape = (len(block.frames), int(block.sizes.sum()))
+            block.point[name] = np.repeat(gp.blank(name, shape[1])[None], shape[0], 0)
+        block.point[name][:, block.columns[index]] = blend(values, frames, block.frames)
+    for name, values in curve.items():
+        if name not in block.curve:
+            block.curve[name] = np.repeat(gp.blank(name, len(block.sizes))[None], len(block.frames), 0)
+        block.curve[name][:, index] = held(values, frames, block.frames)
+
+
+def write(layer, block: Block, before: Iterable[int]) -> int:
+    """Writes a block into a layer, and removes generated strokes from the other frames of `before`.
+
+    Returns the number of strokes written.
+    """
+    wanted = {int(frame): row for row, frame in enumerate(block.frames) if block.present[row].any()}
+    gp.make_frames(layer, wanted, gp.GENERATED)
+    drawings = gp.drawings(layer)
+    for frame, row in wanted.items():
+        gp.replace_made(drawings[frame][0], rows_of(block, row))
+    clear(layer, [frame for frame in before if frame not in wanted])
+    return int(block.present.sum())
+
+
+def rows_of(block: Block, row: int) -> gp.Rows:
+    """The strokes of one row of a block, which is a frame."""
+    present = block.present[row]
+    if block.order is not None:
+        return _ordered(block, row)
+    rows = gp.Rows(block.sizes[present])
+    if present.all():
+        rows.values = {name: values[row] for name, values in block.point.items()}
+        rows.values |= {name: values[row] for name, values in block.curve.items()}
+        return rows
+    points = np.repeat(present, block.sizes)
+    rows.values = {name: values[row][points] for name, values in block.point.items()}
+    rows.values |= {name: values[row][present] for name, values in block.curve.items()}
+    return rows
+
+
+def _ordered(block: Block, row: int) -> gp.Rows:
+    strokes = block.order[row][block.present[row][block.order[row]]]
+    points = np.concatenate([np.arange(block.columns[i].start, block.columns[i].stop) for i in strokes])
+    rows = gp.Rows(block.sizes[strokes])
+    rows.values = {name: values[row][points] for name, values in block.point.items()}
+    rows.values |= {name: values[row][strokes] for name, values in block.curve.items()}
+    return rows
+
+
+def clear(layer, frames: Iterable[int], keep_corrected: bool = False) -> int:
+    """Removes generated strokes from frames, and generated frames that are empty then.
+
+    With `keep_corrected`, drawings with corrections stay. Returns the number of cleared drawings.
+    """
+    drawings = gp.drawings(layer)
+    gone, cleared = [], 0
+    for frame in frames:
+        if frame not in drawings:
+            continue
+        handle, kind = drawings[frame]
+        starts = gp.offsets(handle)
+        strokes = len(starts) - 1
+        made = gp.value(handle, gp.MADE, strokes)
+        if kind != gp.GENERATED and made.all():
+            continue
+        if keep_corrected and is_corrected(handle):
+            continue
+        if made.any():
+            cleared += 1
+            gp.remove_strokes(handle, np.flatnonzero(made).tolist())
+        if kind == gp.GENERATED and made.all():
+            gone.append(frame)
+    gp.remove_frames(layer, gone)
+    return cleared
+
+
+def is_corrected(handle) -> bool:
+    """Whether a drawing's generated strokes have a pin, a corrected centre, or moved points."""
+    starts = gp.offsets(handle)
+    total, strokes = int(starts[-1]), len(starts) - 1
+    made = gp.value(handle, gp.MADE, strokes)
+    tracked = gp.get(handle, gp.TRACKED, total)
+    moved = np.zeros(total, bool) if tracked is None else (tracked != gp.positions(handle, total)).any(1)
+    touched = (moved | gp.value(handle, gp.PIN, total)) & np.repeat(made, np.diff(starts))
+    return bool(touched.any() or (gp.value(handle, gp.CENTER, strokes)[:, 2] != 0)[made].any())

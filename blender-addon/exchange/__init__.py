@@ -1,0 +1,6 @@
+"""Exchange: project documents into Blender and out of it, and contours as masks.
+
+`files` reads, checks and writes documents. `importing` makes strokes from a document. `outlines` makes outlines for masks.
+
+May import: `rototoon`, `blender`, `common`, `capture`.
+"""

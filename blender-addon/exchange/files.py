@@ -1,0 +1,135 @@
+"""Project documents as files: reading and checking, writing, and fields that the add-on does not know."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ..blender.errors import Problem
+from ..capture.document import VERSION
+
+_FOOTAGE = {"pattern", "first", "last", "fps", "width", "height"}
+_PART = {"name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves", "wants_key"}
+_TOP = {"rototoon", "footage", "parts"}
+
+
+def load(path: str) -> dict[str, Any]:
+    """Reads a document from a file, and checks all fields from which strokes are made."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            document = json.load(file)
+    except OSError as error:
+        raise Problem(f"Cannot read {path}: {error.strerror}") from error
+    except ValueError as error:
+        raise Problem(f"{path} is not a project document: {error}") from error
+    try:
+        check(document)
+    except Problem as problem:
+        raise Problem(f"{path}: {problem}") from None
+    return document
+
+
+def check(document: Any) -> None:
+    """Raises a `Problem` that names the field if `document` does not have the form of a project document."""
+    version = document.get("rototoon") if isinstance(document, dict) else None
+    if not isinstance(version, int):
+        raise Problem('not a project document: no field "rototoon" with a version number')
+    if version > VERSION:
+        raise Problem(f"document of version {version}; this Rototoon knows version {VERSION}: update the extension")
+    shot = document.get("footage")
+    if not isinstance(shot, dict) or not isinstance(shot.get("pattern"), str):
+        raise Problem("footage.pattern: expected a file name pattern")
+    for name in ("first", "last", "width", "height"):
+        if not isinstance(shot.get(name), int):
+            raise Problem(f"footage.{name}: expected a whole number, found {shot.get(name)!r}")
+    if not isinstance(document.get("parts", []), list):
+        raise Problem("parts: expected a list")
+    names = set()
+    for index, part in enumerate(document.get("parts", [])):
+        _check_part(f"parts[{index}]", part, names)
+
+
+def _check_part(place: str, part: Any, names: set[str]) -> None:
+    if not isinstance(part, dict) or not isinstance(part.get("name"), str):
+        raise Problem(f"{place}.name: expected a name")
+    if part["name"] in names:
+        raise Problem(f"{place}.name: {part['name']!r} is the name of another part")
+    names.add(part["name"])
+    counts = set()
+    for field in ("keys", "tracks"):
+        for frame, points in _frames(place, field, part.get(field)):
+            array = _points(f"{place}.{field}[{frame}]", points)
+            counts.add(len(array))
+    if len(counts) > 1:
+        raise Problem(f"{place}: keys and tracks have different numbers of points: {sorted(counts)}")
+    for field in ("pins", "centers", "confidence", "curves"):
+        list(_frames(place, field, part.get(field)))
+
+
+def _frames(place: str, field: str, entries: Any):
+    if entries is None:
+        return
+    if not isinstance(entries, dict):
+        raise Problem(f"{place}.{field}: expected frames, found {type(entries).__name__}")
+    for frame, value in entries.items():
+        try:
+            yield int(frame), value
+        except ValueError:
+            raise Problem(f"{place}.{field}: {frame!r} is not a frame number") from None
+
+
+def _points(place: str, points: Any) -> np.ndarray:
+    try:
+        array = np.asarray(points, np.float64)
+    except (TypeError, ValueError):
+        array = None
+    if array is None or array.ndim != 2 or array.shape[1] != 2 or not np.isfinite(array).all():
+        raise Problem(f"{place}: expected points [x, y] of finite numbers")
+    return array
+
+
+def unknown(entry: Mapping[str, Any], known: set[str]) -> str:
+    """The fields that are not in `known`, as JSON; empty if there are none."""
+    rest = {name: value for name, value in entry.items() if name not in known}
+    return json.dumps(rest) if rest else ""
+
+
+def unknown_of_document(document: Mapping[str, Any]) -> str:
+    """The unknown fields of the document and of its footage."""
+    rest = {name: value for name, value in document.items() if name not in _TOP}
+    shot = {name: value for name, value in document["footage"].items() if name not in _FOOTAGE}
+    if shot:
+        rest["footage"] = shot
+    return json.dumps(rest) if rest else ""
+
+
+def unknown_of_part(entry: Mapping[str, Any]) -> str:
+    """The unknown fields of a part."""
+    return unknown(entry, _PART)
+
+
+def save(path: str, document: dict[str, Any]) -> None:
+    """Writes a document. The file is complete, or it does not appear.
+
+    If the footage is at most three folders up from the file's folder, its path is relative.
+    """
+    folder = os.path.dirname(os.path.abspath(path))
+    shot = dict(document["footage"])
+    near = os.path.relpath(shot["pattern"], folder)
+    if near.count("..") <= 3:
+        shot["pattern"] = near.replace(os.sep, "/")
+    unfinished = f"{path}.{os.getpid()}.unfinished"
+    try:
+        with open(unfinished, "w", encoding="utf-8") as file:
+            json.dump({**document, "footage": shot}, file, allow_nan=False, separators=(",", ":"))
+            file.write("\n")
+        os.replace(unfinished, path)
+    except OSError as error:
+        raise Problem(f"Cannot write {path}: {error.strerror}") from error
+    finally:
+        if os.path.exists(unfinished):
+            os.remove(unfinished)

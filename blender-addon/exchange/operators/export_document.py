@@ -1,0 +1,38 @@
+"""Export Document."""
+
+import os
+
+import bpy
+
+from ...blender.errors import Problem
+from ...capture import document
+from ...common.operators import Guarded, OnContours
+from .. import files
+
+
+class ROTOTOON_OT_export_document(Guarded, OnContours, bpy.types.Operator):
+    bl_idname = "rototoon.export_document"
+    bl_label = "Export Document"
+    bl_description = "Write keys, corrections, tracks and snapped lines as a Rototoon project document"
+    bl_options = {"REGISTER"}
+
+    filepath: bpy.props.StringProperty(name="File", description="The file to write", subtype="FILE_PATH")
+    filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
+    check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+
+    def invoke(self, context, _event):
+        if not self.filepath:
+            self.filepath = f"{context.object.name}.json"
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def run(self, context) -> str:
+        if not self.filepath:
+            raise Problem("No file chosen")
+        path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ".json")
+        reading = document.read(context.object, results=True)
+        files.save(path, reading.document)
+        return f"{len(reading.document['parts'])} parts in {os.path.basename(path)}"
+
+
+CLASSES = (ROTOTOON_OT_export_document,)

@@ -1,0 +1,68 @@
+"""Import Document."""
+
+import os
+
+import bpy
+
+from ...blender import footage, stage
+from ...blender.errors import Problem
+from ...capture import sessions
+from ...common.operators import Guarded, InObjectMode
+from .. import files, importing
+
+
+class ROTOTOON_OT_import_document(Guarded, InObjectMode, bpy.types.Operator):
+    bl_idname = "rototoon.import_document"
+    bl_label = "Import Document"
+    bl_description = "Make strokes from a Rototoon project document: keys, corrections, tracks and snapped lines"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filepath: bpy.props.StringProperty(name="File", description="The project document", subtype="FILE_PATH")
+    filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
+    into: bpy.props.EnumProperty(
+        name="Into",
+        description="The object that gets the contours",
+        items=(
+            ("NEW", "New Object", "A new Grease Pencil object, with a camera if the scene has none"),
+            ("ACTIVE", "Active Object", "The active Grease Pencil object. Its contours are replaced"),
+        ),
+    )
+    keep_numbers: bpy.props.BoolProperty(
+        name="Keep Frame Numbers",
+        description="Show picture n on frame n, instead of the first picture on the scene's first frame",
+        default=False,
+    )
+
+    def invoke(self, context, _event):
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def run(self, context) -> str:
+        path = bpy.path.abspath(self.filepath)
+        project = files.load(path)
+        shot = self._shot(context, project["footage"], os.path.dirname(os.path.abspath(path)))
+        if self.into == "ACTIVE":
+            ob = context.object
+            if ob is None or ob.type != "GREASEPENCIL":
+                raise Problem("Make a Grease Pencil object active, or import into a new one")
+            stage.assign(ob, shot)
+        else:
+            name = os.path.splitext(os.path.basename(path))[0]
+            ob = stage.build(context, shot, "CAMERA", name, match_scene=True)
+        context.view_layer.update()
+        importing.apply(ob, project)
+        sessions.drop(ob)
+        ob.data.update_tag()
+        return f"{len(ob.rototoon.parts)} parts from {os.path.basename(path)}"
+
+    def _shot(self, context, shot: dict, folder: str) -> stage.Shot:
+        pattern = os.path.normpath(os.path.join(folder, shot["pattern"]))
+        first = footage.picture(pattern, shot["first"])
+        if not os.path.isfile(first):
+            raise Problem(f"No picture {first}: the document's footage is missing")
+        start = shot["first"] if self.keep_numbers else context.scene.frame_start
+        fps = float(shot.get("fps", 24.0))
+        return stage.Shot(pattern, shot["first"], shot["last"], shot["width"], shot["height"], fps, start)
+
+
+CLASSES = (ROTOTOON_OT_import_document,)

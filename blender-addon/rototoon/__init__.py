@@ -1,0 +1,64 @@
+"""Rototoon in Python, without Blender.
+
+The package needs Python 3.11 or newer and its native library, nothing else. Put the folder that contains `rototoon` on
+``sys.path``, and::
+
+    from rototoon import Session
+
+    with Session.open("shot_010/project.json") as session:
+        summary = session.track()
+        session.pin("near arm", frame=5, point=3, xy=(31.0, 44.5))
+        session.track()                                  # solves only the span that the pin touches
+        points = numpy.asarray(session.tracks("near arm").points)   # (frames, points, 2), no copy
+        session.snap()
+        session.save("shot_010/tracked.json")
+
+Coordinates are pixels. x points right, y points down, and the origin is the picture's outer top-left corner: the centre of
+a pixel is at +0.5. Frames are the integers of the document. Documents are plain ``dict``s in the form of the project file.
+
+Errors are `RototoonError`. The message names the part, the frame or the field. `Cancelled` means that the work was stopped;
+nothing has changed then.
+
+====================  ==============================================================================
+`session`             `Session`: track, snap, correct and save a project document
+`results`             results that `Session` returns
+`strokes`             matching, fitting and hidden lines of strokes, without a session
+`tween`               in-betweens of drawings
+`style`               skeleton clips, and drawings that follow them
+`documents`           helpers for documents
+`about`               version, path and parameters of the native library
+`native`              the native library: loading, handles, errors
+====================  ==============================================================================
+
+May import: no other room, and nothing beside Python's standard library.
+"""
+
+from . import style, tween
+from .about import library_path, parameters, version
+from .native.errors import Cancelled, LibraryError, RototoonError
+from .results import End, Job, Summary, Track, WeakestFrame
+from .session import Session
+from .strokes import Guides, Pieces, Strokes, fit_strokes, hidden_lines, match_contours
+
+__all__ = [
+    "Cancelled",
+    "End",
+    "Guides",
+    "Job",
+    "LibraryError",
+    "Pieces",
+    "RototoonError",
+    "Session",
+    "Strokes",
+    "Summary",
+    "Track",
+    "WeakestFrame",
+    "fit_strokes",
+    "hidden_lines",
+    "library_path",
+    "match_contours",
+    "parameters",
+    "style",
+    "tween",
+    "version",
+]

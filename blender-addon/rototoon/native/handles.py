@@ -1,0 +1,316 @@
+"""Owned handles. Each is freed once, by `close` or by the garbage collector. Every failure becomes an exception."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import threading
+from collections.abc import Callable, Iterator
+from typing import Any, ClassVar, Self
+
+from . import _bindings, library
+from .errors import Cancelled, RototoonError
+
+
+def call(name: str, *arguments: Any) -> None:
+    """Calls a function whose last parameter is the error text. Raises the error that the function reports."""
+    error = ctypes.c_void_p()
+    status = getattr(library.load().functions, name)(*arguments, ctypes.byref(error))
+    message = ""
+    if error:
+        text = Text(error)
+        message = text.read()
+        text.close()
+    if status == _bindings.ROTOTOON_STATUS_CANCELLED:
+        raise Cancelled(message)
+    if status != _bindings.ROTOTOON_STATUS_OK:
+        raise RototoonError(message or f"{name} failed with status {status}")
+
+
+class Handle:
+    """A pointer from the library. The function `_free` of its type frees it."""
+
+    _free: ClassVar[str]
+
+    def __init__(self, pointer: ctypes.c_void_p) -> None:
+        self._pointer: ctypes.c_void_p | None = pointer
+
+    @classmethod
+    def make(cls, name: str, *arguments: Any) -> Self:
+        """Calls a function that returns a handle through its last parameter before the error."""
+        pointer = ctypes.c_void_p()
+        call(name, *arguments, ctypes.byref(pointer))
+        return cls(pointer)
+
+    @property
+    def closed(self) -> bool:
+        """Whether the handle was freed."""
+        return self._pointer is None
+
+    def pointer(self) -> ctypes.c_void_p:
+        """The pointer. Raises `RototoonError` once the handle is closed."""
+        if self._pointer is None:
+            raise RototoonError(f"the {type(self).__name__.lower()} is closed")
+        return self._pointer
+
+    def read(self, *sizes: int) -> Any:
+        """The content as Python objects that outlive the handle. `sizes` are array sizes that only the caller knows."""
+        raise NotImplementedError
+
+    def close(self) -> None:
+        """Frees the handle. A second call does nothing."""
+        pointer, self._pointer = self._pointer, None
+        if pointer is not None:
+            getattr(library.load().functions, self._free)(pointer)
+
+    def __del__(self) -> None:
+        # `_pointer` is missing if `__init__` was never reached. Nothing may be raised here.
+        if getattr(self, "_pointer", None) is not None:
+            with contextlib.suppress(Exception):
+                Handle.close(self)
+
+
+class Text(Handle):
+    """UTF-8 text from the library."""
+
+    _free = "rototoon_text_free"
+
+    def read(self, *_sizes: int) -> str:
+        """The text."""
+        # Not through `call`, since `call` reads error texts with this method.
+        data, length = ctypes.c_void_p(), ctypes.c_size_t()
+        read = library.load().functions.rototoon_text_read
+        status = read(self.pointer(), ctypes.byref(data), ctypes.byref(length), None)
+        if status != _bindings.ROTOTOON_STATUS_OK:
+            raise RototoonError(f"rototoon_text_read failed with status {status}")
+        return _copy(data, length.value).decode()
+
+
+class TrackArrays(Handle):
+    """Frames, points and confidence of a part."""
+
+    _free = "rototoon_track_free"
+
+    def read(self, *_sizes: int) -> tuple[memoryview, memoryview, memoryview]:
+        """Frames (F,) int32, points (F, N, 2) float64, confidence (F, N) float64, as copies."""
+        frame_count, point_count = ctypes.c_size_t(), ctypes.c_size_t()
+        frames, points, confidence = ctypes.c_void_p(), ctypes.c_void_p(), ctypes.c_void_p()
+        out = (frame_count, point_count, frames, points, confidence)
+        call("rototoon_track_read", self.pointer(), *map(ctypes.byref, out))
+        f, n = frame_count.value, point_count.value
+        return view(frames, "i", f), view(points, "d", f, n, 2), view(confidence, "d", f, n)
+
+
+class CurveArrays(Handle):
+    """Snapped paths of a part on a frame."""
+
+    _free = "rototoon_curves_free"
+
+    def read(self, *_sizes: int) -> list[memoryview]:
+        """The paths, each (M, 2) float64, as copies."""
+        path_count, offsets, points = ctypes.c_size_t(), ctypes.c_void_p(), ctypes.c_void_p()
+        call("rototoon_curves_read", self.pointer(), *map(ctypes.byref, (path_count, offsets, points)))
+        bounds = view(offsets, "i", path_count.value + 1).tolist()
+        size = 2 * ctypes.sizeof(ctypes.c_double)
+        start = points.value or 0
+        return [view(ctypes.c_void_p(start + a * size), "d", b - a, 2) for a, b in zip(bounds, bounds[1:])]
+
+
+class GuideArrays(Handle):
+    """Guiding points of fitted strokes."""
+
+    _free = "rototoon_guides_free"
+
+    def read(self, *sizes: int) -> tuple[memoryview, ...]:
+        """Offsets (strokes + 1) int32, points (G, 2) float64, values (G, channels) float64, nearest (G,) int32 and errors
+        (strokes,) float64, as copies. `sizes` are the numbers of strokes and channels."""
+        strokes, channels = sizes
+        count = ctypes.c_size_t()
+        out = [ctypes.c_void_p() for _ in range(5)]
+        call("rototoon_guides_read", self.pointer(), ctypes.byref(count), *map(ctypes.byref, out))
+        offsets, points, values, nearest, errors = out
+        guides = count.value
+        return (
+            view(offsets, "i", strokes + 1),
+            view(points, "d", guides, 2),
+            view(values, "d", guides, channels),
+            view(nearest, "i", guides),
+            view(errors, "d", strokes),
+        )
+
+
+class PieceArrays(Handle):
+    """Visible and hidden parts of strokes."""
+
+    _free = "rototoon_pieces_free"
+
+    def read(self, *_sizes: int) -> tuple[memoryview, ...]:
+        """Strokes (P,) int32, hidden (P,) int32, intervals (P, 2) float64, offsets (P + 1) int32, indices (M, 3) int32 and
+        weights (M, 3) float64, as copies."""
+        count = ctypes.c_size_t()
+        out = [ctypes.c_void_p() for _ in range(6)]
+        call("rototoon_pieces_read", self.pointer(), ctypes.byref(count), *map(ctypes.byref, out))
+        strokes, hidden, intervals, offsets, indices, weights = out
+        pieces = count.value
+        bounds = view(offsets, "i", pieces + 1)
+        points = bounds[pieces]
+        return (
+            view(strokes, "i", pieces),
+            view(hidden, "i", pieces),
+            view(intervals, "d", pieces, 2),
+            bounds,
+            view(indices, "i", points, 3),
+            view(weights, "d", points, 3),
+        )
+
+
+class MatchArrays(Handle):
+    """Matches of strokes."""
+
+    _free = "rototoon_matches_free"
+
+    def read(self, *_sizes: int) -> tuple[memoryview, ...]:
+        """Offsets (spans + 1) int32, rows (R, 4) int32 and values (R, 2) float64, as copies."""
+        count = ctypes.c_size_t()
+        out = [ctypes.c_void_p() for _ in range(3)]
+        call("rototoon_matches_read", self.pointer(), ctypes.byref(count), *map(ctypes.byref, out))
+        offsets, rows, values = out
+        bounds = view(offsets, "i", count.value + 1)
+        return bounds, view(rows, "i", bounds[count.value], 4), view(values, "d", bounds[count.value], 2)
+
+
+class InBetweenArrays(Handle):
+    """In-betweens."""
+
+    _free = "rototoon_in_betweens_free"
+
+    def read(self, *_sizes: int) -> tuple[memoryview, ...]:
+        """The arrays of `tween.InBetweens` in their order, as copies."""
+        spans, points = ctypes.c_size_t(), ctypes.c_size_t()
+        out = [ctypes.c_void_p() for _ in range(9)]
+        call("rototoon_in_betweens_read", self.pointer(), *map(ctypes.byref, (spans, points, *out)))
+        frame_offsets, shares, stroke_offsets, strokes, point_offsets, indices, weights, places, opacities = out
+        frames, drawn = view(frame_offsets, "i", spans.value + 1), view(stroke_offsets, "i", spans.value + 1)
+        count = drawn[spans.value]
+        bounds = view(point_offsets, "i", count + 1)
+        opaque = sum((frames[s + 1] - frames[s]) * (drawn[s + 1] - drawn[s]) for s in range(spans.value))
+        return (
+            frames,
+            view(shares, "d", frames[spans.value]),
+            drawn,
+            view(strokes, "i", count, 3),
+            bounds,
+            view(indices, "i", bounds[count], 4),
+            view(weights, "d", bounds[count], 2),
+            view(places, "d", points.value, 2),
+            view(opacities, "d", opaque),
+        )
+
+
+class Session(Handle):
+    """A session of the library. It refuses a call during another call, so nothing is freed while in use."""
+
+    _free = "rototoon_session_free"
+
+    def __init__(self, pointer: ctypes.c_void_p) -> None:
+        super().__init__(pointer)
+        self._guard = threading.Lock()
+        self._unwanted = False
+
+    @property
+    def closed(self) -> bool:
+        """Whether `close` was called."""
+        return self._unwanted
+
+    @contextlib.contextmanager
+    def _alone(self) -> Iterator[ctypes.c_void_p]:
+        if self._unwanted:
+            raise RototoonError("the session is closed")
+        if not self._guard.acquire(blocking=False):
+            raise RototoonError("the session is in use by another call; it may be used from one thread at a time")
+        try:
+            yield self.pointer()
+        finally:
+            self._guard.release()
+            if self._unwanted:
+                self.close()
+
+    def call(self, name: str, *arguments: Any) -> None:
+        """Calls a function of the session."""
+        with self._alone() as pointer:
+            call(name, pointer, *arguments)
+
+    def give(self, kind: type[Handle], name: str, *arguments: Any) -> Any:
+        """Calls a function of the session that returns a handle, and returns the content of the handle."""
+        with self._alone() as pointer:
+            return take(kind, name, pointer, *arguments)
+
+    def close(self) -> None:
+        """Frees the session now, or at the end of the call that is running. No new call can begin."""
+        # `_unwanted` is set first. The call that has the guard checks it after the release, so one of the two frees the session.
+        self._unwanted = True
+        if self._guard.acquire(blocking=False):
+            try:
+                super().close()
+            finally:
+                self._guard.release()
+
+
+def take(kind: type[Handle], name: str, *arguments: Any, sizes: tuple[int, ...] = ()) -> Any:
+    """Calls a function that returns a handle, returns the content of the handle, and frees it. `sizes` go to `read`."""
+    handle = kind.make(name, *arguments)
+    try:
+        return handle.read(*sizes)
+    finally:
+        handle.close()
+
+
+def take_both(first: type[Handle], second: type[Handle], name: str, *arguments: Any) -> tuple[Any, Any]:
+    """Calls a function that returns two handles, returns their contents, and frees them."""
+    pointers = ctypes.c_void_p(), ctypes.c_void_p()
+    call(name, *arguments, *map(ctypes.byref, pointers))
+    one, other = first(pointers[0]), second(pointers[1])
+    try:
+        return one.read(), other.read()
+    finally:
+        one.close()
+        other.close()
+
+
+def view(data: ctypes.c_void_p, kind: str, *shape: int) -> memoryview:
+    """A read-only copy of an array as a memoryview. An empty one is one-dimensional: Python allows no other shape."""
+    count = 1
+    for length in shape:
+        count *= length
+    size = {"i": ctypes.sizeof(ctypes.c_int32), "d": ctypes.sizeof(ctypes.c_double)}[kind]
+    flat: Any = memoryview(_copy(data, count * size))
+    made: memoryview = flat.cast(kind, shape) if count else flat.cast(kind)
+    return made
+
+
+def _copy(data: ctypes.c_void_p, size: int) -> bytes:
+    return ctypes.string_at(data, size) if size else b""
+
+
+@contextlib.contextmanager
+def progress_callback(progress: Callable[[float, str], bool | None] | None) -> Iterator[Any]:
+    """The C callback for a Python callback. An exception in the Python callback cancels the work and is raised at the end."""
+    if progress is None:
+        yield _bindings.RototoonProgress()
+        return
+    raised: list[BaseException] = []
+
+    def report(_user: int | None, fraction: float, step: int | None, length: int) -> int:
+        try:
+            return int(progress(fraction, _copy(ctypes.c_void_p(step), length).decode()) is False)
+        except BaseException as error:  # noqa: BLE001 - KeyboardInterrupt must not be lost in the library either
+            raised.append(error)
+            return 1
+
+    try:
+        yield _bindings.RototoonProgress(report)
+    except Cancelled:
+        if not raised:
+            raise
+    if raised:
+        raise raised[0]

@@ -1,0 +1,79 @@
+"""Results that `Session` returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Job:
+    """Tracking of one part between two neighbouring keys."""
+
+    part: str
+    first: int
+    """Frame of the earlier key."""
+    last: int
+    """Frame of the later key."""
+    solved: bool
+    """Whether this run solved it. Otherwise the result is from an earlier run, since nothing that affects it had changed."""
+    termination: str
+    """Why the solver stopped: ``nothing_to_solve``, ``cost_converged``, ``step_converged``, ``no_descent``,
+    ``iteration_limit`` or ``path_chosen``."""
+    iterations: int
+    initial_cost: float
+    final_cost: float
+
+
+@dataclass(frozen=True)
+class End:
+    """Where the track of a part with one key ends before the footage does."""
+
+    part: str
+    frame: int
+    """The first frame beyond the track."""
+    reason: str
+    """``lost``: the part needs a key on that frame. ``cut``: another shot begins there. ``left``: the part left the picture."""
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Result of `Session.track`."""
+
+    jobs: list[Job]
+    """One for each part and span: parts in the document's order, spans in time order."""
+    ends: list[End]
+    """Ends of parts with one key: parts in the document's order, the end before the key first."""
+
+    @property
+    def solved(self) -> int:
+        """Number of jobs that this run solved."""
+        return sum(job.solved for job in self.jobs)
+
+    @property
+    def reused(self) -> int:
+        """Number of jobs whose result is from an earlier run."""
+        return len(self.jobs) - self.solved
+
+
+@dataclass(frozen=True)
+class Track:
+    """The control points of a part on every frame from its first to its last key; with one key, on the frames around it that
+    can be trusted.
+
+    Both arrays are read-only and stay valid after the session is closed. ``numpy.asarray`` takes them without a copy. Both are
+    empty and one-dimensional where the part has not been tracked.
+    """
+
+    frames: memoryview
+    """Frame numbers, int32, shape (F,), rising."""
+    points: memoryview
+    """Points, float64, shape (F, N, 2)."""
+
+
+@dataclass(frozen=True)
+class WeakestFrame:
+    """The frame where the next key helps most."""
+
+    frame: int
+    score: float
+    """Doubt on that frame: the sum over parts of the mean of ``1 - confidence``, smoothed over time."""

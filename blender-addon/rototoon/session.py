@@ -1,0 +1,201 @@
+"""`Session`: a project document, its pictures, and the results of tracking.
+
+A session belongs to one thread at a time. A second call during a running one does not wait: it raises `RototoonError`. Long
+calls release the interpreter lock, so other Python threads keep running.
+"""
+
+from __future__ import annotations
+
+import array
+import ctypes
+import json
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from .native import handles
+from .native.arrays import as_json, text
+from .native.errors import RototoonError
+from .results import End, Job, Summary, Track, WeakestFrame
+from .types import Document, Points, Progress
+
+
+class Session:
+    """A document, its pictures, and the results that tracking already has. Close it, or use it in a ``with`` statement."""
+
+    def __init__(self, handle: handles.Session) -> None:
+        """Use `Session.open` or `Session.from_document`."""
+        self._handle = handle
+
+    # -- document ------------------------------------------------------------------------------------------------
+
+    @classmethod
+    def open(cls, path: str | os.PathLike[str]) -> Session:
+        """Opens a project file. A relative footage pattern is relative to the file's folder."""
+        handle = handles.Session.make("rototoon_session_open", *text(os.fspath(path)))
+        return cls(handle)
+
+    @classmethod
+    def from_document(cls, document: Mapping[str, Any], folder: str | os.PathLike[str]) -> Session:
+        """Opens a document in memory. A relative footage pattern is relative to `folder`."""
+        handle = handles.Session.make("rototoon_session_new", *as_json(document), *text(os.fspath(folder)))
+        return cls(handle)
+
+    def document(self) -> Document:
+        """The current document, with tracks and snapped curves. Results are rounded to 0.0001 pixels."""
+        document: Document = json.loads(self._handle.give(handles.Text, "rototoon_session_document"))
+        return document
+
+    def set_document(self, document: Mapping[str, Any]) -> None:
+        """Replaces the document, and keeps what is known of pictures and solved spans.
+
+        The next `track` solves only the differences. A document that is not valid is refused, and nothing changes.
+        """
+        self._handle.call("rototoon_session_set_document", *as_json(document))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the document. The file is complete, or it does not appear.
+
+        If the file is in another folder than the session, a relative footage pattern is rewritten to name the same files.
+        """
+        self._handle.call("rototoon_session_save", *text(os.fspath(path)))
+
+    def set_footage(self, footage: Mapping[str, Any]) -> None:
+        """Replaces the document's ``footage``. If the pictures differ, the session forgets what it knows of them."""
+        self._handle.call("rototoon_session_set_footage", *as_json(footage))
+
+    # -- the artist's input --------------------------------------------------------------------------------------
+
+    def parts(self) -> list[str]:
+        """Names of the parts in the document's order."""
+        names: list[str] = json.loads(self._handle.give(handles.Text, "rototoon_session_parts"))
+        return names
+
+    def add_part(self, part: Mapping[str, Any]) -> None:
+        """Adds a part at the end. Its form is that of the document: ``name``, ``closed``, ``depth``, ``keys``, ..."""
+        self._handle.call("rototoon_session_add_part", *as_json(part))
+
+    def remove_part(self, part: str) -> None:
+        """Removes a part with its keys, corrections and results."""
+        self._handle.call("rototoon_session_remove_part", *text(part))
+
+    def set_key(self, part: str, frame: int, points: Points) -> None:
+        """Sets the artist's contour on a frame. It has as many points as the part's other keys.
+
+        The key replaces pins and a corrected centre on that frame.
+        """
+        values = _flat(points)
+        data = (ctypes.c_double * len(values)).from_buffer(values) if values else None
+        self._handle.call("rototoon_session_set_key", *text(part), frame, data, len(values))
+
+    def remove_key(self, part: str, frame: int) -> None:
+        """Removes the key on a frame. It is an error if there is none."""
+        self._handle.call("rototoon_session_remove_key", *text(part), frame)
+
+    def pin(self, part: str, frame: int, point: int, xy: Sequence[float]) -> None:
+        """Fixes one control point on a frame between two keys, or beside the only key. The track passes through it exactly."""
+        x, y = xy
+        self._handle.call("rototoon_session_pin", *text(part), frame, point, x, y)
+
+    def unpin(self, part: str, frame: int, point: int | None = None) -> None:
+        """Releases a pin, or with ``point=None`` all pins of the frame. Does nothing if there is no pin."""
+        self._handle.call("rototoon_session_unpin", *text(part), frame, -1 if point is None else point)
+
+    def set_center(self, part: str, frame: int, xy: Sequence[float]) -> None:
+        """Fixes the mean of the part's control points on a frame between keys."""
+        x, y = xy
+        self._handle.call("rototoon_session_set_center", *text(part), frame, x, y)
+
+    def clear_center(self, part: str, frame: int) -> None:
+        """Releases a corrected centre. Does nothing if there is none."""
+        self._handle.call("rototoon_session_clear_center", *text(part), frame)
+
+    # -- work ----------------------------------------------------------------------------------------------------
+
+    def track(self, preset: str = "rototoon", progress: Progress | None = None, *, threads: int = 0) -> Summary:
+        """Tracks every part between its keys and stores ``tracks`` and ``confidence`` in the document.
+
+        The preset ``rototoon`` also follows a part that has one key, before and after that key, as far as the track can be
+        trusted. `Summary.ends` says where the track ends and why. The document's ``wants_key`` lists where the part was lost.
+
+        Spans that have not changed since this session last solved them are not solved again. Snapped curves of frames whose
+        track changed are removed. `preset` is ``rototoon``, ``zhou2011``, ``agarwala2004`` or ``liang2012``. `threads` is the
+        number of threads, 0 for one per core; it does not change the result. Raises `Cancelled`; the document is unchanged then.
+        """
+        options = {"preset": preset, "threads": threads}
+        summary = self._long("rototoon_session_track", options, progress)
+        return Summary([Job(**job) for job in summary["jobs"]], [End(**end) for end in summary["ends"]])
+
+    def snap(self, progress: Progress | None = None, *, threads: int = 0, **options: Any) -> None:
+        """Lays the tracked contours along the drawn ink and stores ``curves`` in the document.
+
+        Keys are snapped too. `options` are parameters of the stage ``snap`` by id, such as ``follow="line"``; see
+        `rototoon.parameters`. Raises `Cancelled`; the document is unchanged then.
+        """
+        self._long("rototoon_session_snap", {"threads": threads, **options}, progress)
+
+    # -- results -------------------------------------------------------------------------------------------------
+
+    def tracks(self, part: str) -> Track:
+        """The tracked control points of a part."""
+        frames, points, _ = self._handle.give(handles.TrackArrays, "rototoon_session_track_of", *text(part))
+        return Track(frames, points)
+
+    def confidence(self, part: str) -> memoryview:
+        """Confidence of each point of `tracks`, 0 to 1: float64, shape (F, N). It is 1 on keys."""
+        confidence: memoryview = self._handle.give(handles.TrackArrays, "rototoon_session_track_of", *text(part))[2]
+        return confidence
+
+    def curves(self, part: str, frame: int) -> list[memoryview]:
+        """The snapped paths of a part on a frame: for each segment between two control points float64 of shape (M, 2).
+
+        The list is empty if the frame has not been snapped.
+        """
+        paths: list[memoryview] = self._handle.give(handles.CurveArrays, "rototoon_session_curves_of", *text(part), frame)
+        return paths
+
+    def weakest_frame(self) -> WeakestFrame | None:
+        """The frame where the next key helps most. It is no key of any part and not beside one. `None` if there is no such
+        frame."""
+        found = json.loads(self._handle.give(handles.Text, "rototoon_session_weakest_frame"))
+        return None if found is None else WeakestFrame(found["frame"], found["score"])
+
+    # -- life ----------------------------------------------------------------------------------------------------
+
+    @property
+    def closed(self) -> bool:
+        """Whether `close` was called."""
+        return self._handle.closed
+
+    def close(self) -> None:
+        """Frees the pictures and everything else. Later calls raise `RototoonError`; closing twice does nothing.
+
+        If a call is running in another thread, it goes on to its end, and the session is freed then.
+        """
+        self._handle.close()
+
+    def __enter__(self) -> Session:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self.close()
+
+    def _long(self, name: str, options: Mapping[str, Any], progress: Progress | None) -> Any:
+        """Makes a call that reports progress. An exception in `progress` cancels the call and is raised here."""
+        with handles.progress_callback(progress) as callback:
+            return json.loads(self._handle.give(handles.Text, name, *as_json(options), callback, None))
+
+
+def _flat(points: Points) -> array.array[float]:
+    """The numbers x, y, x, y, ... of pairs or of a float64 buffer of shape (N, 2)."""
+    try:
+        view = memoryview(points)  # type: ignore[arg-type]
+    except TypeError:
+        flat = array.array("d")
+        for point in points:
+            x, y = point
+            flat.extend((x, y))
+        return flat
+    if view.format != "d" or view.ndim != 2 or view.shape is None or view.shape[1] != 2:
+        raise RototoonError(f"points: expected float64 of shape (N, 2), found {view.format} of shape {view.shape}")
+    return array.array("d", view.tobytes())

@@ -1,0 +1,133 @@
+"""Skeleton clips: captured from contours, kept in a library, and re-made in another character's style; drawings that follow them.
+
+Documents and clips have the form of their JSON files::
+
+    from rototoon import style
+
+    made = style.capture_clip(document, "boy", "walk")
+    style.add_to_library(folder, made.clips)
+    walk = style.translate_clip(style.read_library(folder).clips, style="old", motion="walk", content="boy")
+    reshaped = style.reshape(drawing, walk)
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from .native import handles
+from .native.arrays import as_json, text
+from .types import Progress
+
+KEY_POINTS = (
+    "pelvis", "chest", "neck", "head", "head_top",
+    "l_shoulder", "l_elbow", "l_wrist", "r_shoulder", "r_elbow", "r_wrist",
+    "l_hip", "l_knee", "l_ankle", "r_hip", "r_knee", "r_ankle",
+)  # fmt: skip
+"""Names of the key points, in the order of clips."""
+PARENTS = (0, 0, 1, 2, 3, 2, 5, 6, 2, 8, 9, 0, 11, 12, 0, 14, 15)
+"""The parent of each key point by index. The pelvis is its own parent."""
+
+
+@dataclass(frozen=True)
+class Captured:
+    """A clip that was made from the contours of a document."""
+
+    clips: dict[str, Any]
+    """A file of clips that contains this clip."""
+    first: int
+    """The frame of the first posture."""
+    guessed: dict[str, int]
+    """Key points that had to be filled in, with the number of frames on which no contour shows them."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """Clips of a library."""
+
+    entries: list[dict[str, Any]]
+    """Entries of the index: file, character, motion, frames, fps, source."""
+    troubles: list[str]
+    """What cannot be used, and why. Everything else can be used."""
+    clips: dict[str, Any] | None
+    """A file of clips; `None` if the clips were not read."""
+
+
+@dataclass(frozen=True)
+class Reshaped:
+    """A drawing on every frame of a clip."""
+
+    document: dict[str, Any]
+    """The document with tracks, depths and strokes on every frame."""
+    given: list[dict[str, str]]
+    """Parts that no limb carries: `part`, and the nearest limb (`from`, `to`), which carries it instead."""
+    rigid: list[str]
+    """Parts that move without bending."""
+    points: dict[str, list[list[list[float]]]]
+    """Places of the points of the option `points`, by part and frame."""
+
+
+def capture_clip(
+    document: Mapping[str, Any], character: str, motion: str, first: int | None = None, last: int | None = None
+) -> Captured:
+    """Makes a skeleton clip from tracked contours and the document's limbs."""
+    options: dict[str, Any] = {"character": character, "motion": motion}
+    options |= {name: frame for name, frame in (("first", first), ("last", last)) if frame is not None}
+    answer = handles.take(handles.Text, "rototoon_capture_clip", *as_json(document), *as_json(options))
+    return Captured(**json.loads(answer))
+
+
+def import_motion(motion: str, character: str, name: str, **options: Any) -> tuple[dict[str, Any], float]:
+    """Makes a skeleton clip called `name` from motion capture. `motion` is the text of a BVH file.
+
+    Returns a file of clips that contains the clip, and the angle about the vertical axis from which it is seen, in degrees.
+
+    Options: `view` (``"auto"``, ``"front"``, ``"side"``, ``"three-quarter"`` or degrees; 0 is the front, 90 the side), `up`
+    (``"auto"``, ``"y"`` or ``"z"``), `joints` (for each key point its joint or joints), `way` (whether the pelvis travels), `first`
+    and `last` frame, counted from 0, `fps`.
+    """
+    given = {"character": character, "motion": name, **options}
+    made = json.loads(handles.take(handles.Text, "rototoon_import_motion", *text(motion), *as_json(given)))
+    return made["clips"], made["yaw"]
+
+
+def translate_clip(
+    clips: Mapping[str, Any], *, style: str, motion: str, content: str, progress: Progress | None = None, **options: Any
+) -> dict[str, Any]:
+    """Re-makes the `motion` of the character `content` in the style of the character `style`. Returns a file of clips.
+
+    Options: `preset`, `timing` (``"content"`` or ``"style"``), `strength` (0 to 3), `limb_lengths`, `contacts`, `keys` (drawn poses:
+    ``[{"frame": 0, "points": [[x, y], ...]}]``), `threads`.
+    """
+    given = {"style": style, "motion": motion, "content": content, **options}
+    with handles.progress_callback(progress) as callback:
+        arguments = (*as_json(clips), *as_json(given), callback, None)
+        made: dict[str, Any] = json.loads(handles.take(handles.Text, "rototoon_translate_clip", *arguments))
+    return made
+
+
+def reshape(
+    document: Mapping[str, Any], clips: Mapping[str, Any], progress: Progress | None = None, **options: Any
+) -> Reshaped:
+    """Makes a drawing follow a clip.
+
+    Options: `character` and `motion` choose one of several clips. `rest` is the frame of the drawing. `sub_keys` is the number of
+    points between the key points of each limb that keep its shape. `points` are more points that follow closed parts, by part.
+    `threads`.
+    """
+    with handles.progress_callback(progress) as callback:
+        arguments = (*as_json(document), *as_json(clips), *as_json(options), callback, None)
+        return Reshaped(**json.loads(handles.take(handles.Text, "rototoon_reshape", *arguments)))
+
+
+def add_to_library(folder: str, clips: Mapping[str, Any], source: str = "") -> None:
+    """Adds clips to the library in a folder. They replace clips of the same character and motion."""
+    handles.call("rototoon_library_add", *text(folder), *as_json(clips), *text(source))
+
+
+def read_library(folder: str, character: str = "", motion: str = "", read: bool = True) -> Found:
+    """The clips of a library whose character and motion contain these texts. With `read` false, only the index is read."""
+    wanted = {"character": character, "motion": motion, "read": read}
+    return Found(**json.loads(handles.take(handles.Text, "rototoon_library_find", *text(folder), *as_json(wanted))))

@@ -1,0 +1,4 @@
+"""Strokes: tools for any drawing. `fitting` is Fit Strokes, `hidden` is Remove Hidden Lines.
+
+May import: `rototoon`, `blender`, `common`.
+"""

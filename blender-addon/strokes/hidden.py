@@ -1,0 +1,348 @@
+"""Remove Hidden Lines: cuts lines where filled strokes in front cover them.
+
+The visible parts of a cut stroke replace it. Each part has all attributes of the stroke, the stroke's number (`rototoon_stroke`)
+and its interval of the stroke (`rototoon_interval`). A filled stroke must keep its outline for the fill. It stays with a transparent
+line, and its visible parts are added above it without a fill.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender import hierarchy, placement
+from ..blender import strokes as st
+from ..blender.projection import Projection
+from ..rototoon import Pieces, Strokes, hidden_lines
+
+SUFFIX = " Hidden"
+"""Suffix of the name of a layer with hidden lines."""
+_POLYLINE, _SPLINE, _CHAIN = range(3)
+
+
+@dataclass(frozen=True)
+class Choices:
+    """Which strokes cover others."""
+
+    closed: bool
+    """Whether all closed strokes cover, not only filled ones."""
+    by_stroke: bool
+    """Whether later strokes of a layer cover earlier ones. Otherwise only layers cover layers."""
+
+
+@dataclass
+class Cut:
+    """A drawing without its hidden lines."""
+
+    layer: str
+    frame: int
+    source: int
+    """Frame of the drawing that was cut."""
+    seen: st.Content
+    hidden: st.Content
+    changed: bool
+    """Whether anything was hidden."""
+    pieces: int
+    """Number of hidden parts."""
+
+
+def is_output(layer) -> bool:
+    """Whether a layer is for hidden lines."""
+    return layer.name.endswith(SUFFIX)
+
+
+def frames_between(ob, first: int, last: int) -> list[int]:
+    """The frames of a range on which something can change: the frames of all drawings, or all frames if the view moves."""
+    shows = placement.camera_of(ob)
+    movers = [ob, shows, *(layer.parent for layer in gp.every_layer(ob))]
+    if any(placement.is_animated(each) for each in movers):
+        return list(range(first, last + 1))
+    numbers = {number for layer in gp.every_layer(ob) if not is_output(layer) for number in gp.frame_numbers(layer)}
+    return sorted({first, *(number for number in numbers if first < number <= last)})
+
+
+def cut_frame(ob, frame: int, choices: Choices) -> Iterator[Cut]:
+    """The drawings of the current frame `frame`, without hidden lines."""
+    scene = _Scene(ob, frame, choices)
+    found = hidden_lines(scene.strokes(), scene.forms, scene.depths, scene.fills)
+    pieces = _Pieces(found)
+    may_change = {layer.name for layer in st.editable_layers(ob, active=False)}
+    for entry in scene.entries:
+        if entry.layer.name in may_change:
+            yield _cut(ob, frame, entry, pieces)
+
+
+@dataclass
+class _Entry:
+    """A visible drawing."""
+
+    layer: Any
+    source: int
+    content: st.Content
+    first_stroke: int
+    first_point: int
+    fills: np.ndarray
+    fine: np.ndarray
+    """Strokes with a known curve type and finite points. Others neither cover nor are cut."""
+
+
+class _Scene:
+    """The strokes of all visible layers, as the library takes them."""
+
+    def __init__(self, ob, frame: int, choices: Choices):
+        view = Projection(ob)
+        self.entries: list[_Entry] = []
+        columns = {"sizes": [], "points": [], "closed": [], "forms": [], "depths": [], "fills": []}
+        strokes = points = 0
+        for depth, layer in enumerate(gp.every_layer(ob)):
+            number = st.shown_frame(layer, frame)
+            if layer.hide or is_output(layer) or number is None:
+                continue
+            content = st.read(gp.drawings(layer)[number][0])
+            fine = content.finite() & (_forms(content) >= 0)
+            every, lines = st.filled(ob, content), np.arange(len(content.sizes))
+            covers = every
+            if choices.closed:
+                above = max(every.max(initial=0), 0) + 1
+                covers = np.where((every == 0) & content.strokes("cyclic"), above + lines, every)
+            self.entries.append(_Entry(layer, number, content, strokes, points, every, fine))
+            columns["sizes"].append(content.sizes)
+            columns["points"].append(_pixels(view, layer, content, fine))
+            columns["closed"].append(content.strokes("cyclic"))
+            columns["forms"].append(np.maximum(_forms(content), 0))
+            order = lines if choices.by_stroke else np.zeros_like(lines)
+            columns["depths"].append(np.stack([np.full_like(lines, depth), order], 1))
+            columns["fills"].append(np.where(fine, covers, 0))
+            strokes += len(content.sizes)
+            points += len(content.point["position"])
+        joined = {name: np.concatenate(each) if each else np.zeros(0) for name, each in columns.items()}
+        self._points = np.ascontiguousarray(joined["points"], np.float64).reshape(-1, 2)
+        self._offsets = np.concatenate([[0], np.cumsum(joined["sizes"])]).astype(np.int32)
+        self._closed = joined["closed"].astype(np.uint8)
+        self.forms = joined["forms"].astype(np.uint8)
+        self.depths = np.ascontiguousarray(joined["depths"], np.int32)
+        self.fills = joined["fills"].astype(np.int32)
+
+    def strokes(self) -> Strokes:
+        """The strokes of all layers."""
+        return Strokes(self._offsets, self._points, self._closed)
+
+
+def _forms(content: st.Content) -> np.ndarray:
+    """The library's form of each stroke; -1 for curves that the library does not have."""
+    order, knots = content.strokes("nurbs_order"), content.strokes("knots_mode")
+    quadratic = (content.types == st.NURBS) & (order == 3) & (content.sizes > 2)
+    uniform = quadratic & (np.where(content.strokes("cyclic"), 0, st.ENDPOINT) == knots)
+    chain = quadratic & ~content.strokes("cyclic") & (knots == st.ENDPOINT_BEZIER)
+    return np.select([content.types == st.POLY, uniform, chain], [_POLYLINE, _SPLINE, _CHAIN], -1)
+
+
+def _pixels(view: Projection, layer, content: st.Content, fine: np.ndarray) -> np.ndarray:
+    points = content.point["position"].astype(np.float64)
+    which = np.repeat(fine, content.sizes)
+    pixels = np.zeros((len(points), 2))
+    if which.any():
+        pixels[which] = view.pixels(layer, points[which])
+    return pixels
+
+
+class _Pieces:
+    """The visible and hidden parts, as arrays."""
+
+    def __init__(self, found: Pieces):
+        self.strokes, self.hidden = np.asarray(found.strokes), np.asarray(found.hidden) != 0
+        self.intervals = np.asarray(found.intervals).reshape(-1, 2)
+        offsets = np.asarray(found.offsets)
+        self.starts, self.sizes = offsets[:-1], np.diff(offsets)
+        self.indices = np.asarray(found.indices).reshape(-1, 3)
+        self.weights = np.asarray(found.weights).reshape(-1, 3)
+
+
+def _cut(ob, frame: int, entry: _Entry, pieces: _Pieces) -> Cut:
+    content, count = entry.content, len(entry.content.sizes)
+    # Transparent lines stay, since they carry fills.
+    carriers = _undrawn(content)
+    mine = np.flatnonzero((pieces.strokes >= entry.first_stroke) & (pieces.strokes < entry.first_stroke + count))
+    stroke = pieces.strokes[mine] - entry.first_stroke
+    mine, stroke = (each[entry.fine[stroke] & ~carriers[stroke]] for each in (mine, stroke))
+    touched = np.zeros(count, bool)
+    touched[stroke[pieces.hidden[mine]]] = True
+    seen = mine[touched[stroke] & ~pieces.hidden[mine]]
+    gone = mine[touched[stroke] & pieces.hidden[mine]]
+    kept = np.flatnonzero(~touched | (entry.fills != 0))
+    content = _numbered(content, touched)
+    return Cut(
+        entry.layer.name,
+        frame,
+        entry.source,
+        _built(ob, entry, content, kept, seen, pieces, touched),
+        _built(ob, entry, content, kept[:0], gone, pieces, touched),
+        bool(touched.any()),
+        len(gone),
+    )
+
+
+def _undrawn(content: st.Content) -> np.ndarray:
+    """Strokes whose points are all transparent."""
+    opacity = content.point.get("opacity")
+    undrawn = np.zeros(len(content.sizes), bool)
+    some = content.sizes > 0
+    if opacity is not None and some.any():
+        undrawn[some] = np.maximum.reduceat(opacity, content.starts[:-1][some]) <= 0
+    return undrawn
+
+
+def _numbered(content: st.Content, touched: np.ndarray) -> st.Content:
+    """The content, with numbers for the strokes that are cut."""
+    if not touched.any():
+        return content
+    content = st.Content(content.sizes, content.types, dict(content.point), dict(content.curve), dict(content.kinds))
+    numbers = content.strokes(gp.STROKE).copy()
+    fresh = np.flatnonzero(touched & (numbers == 0))
+    numbers[fresh] = st.unique_numbers(numbers, len(fresh))
+    content.set_strokes(gp.STROKE, numbers)
+    content.set_strokes(gp.INTERVAL, content.strokes(gp.INTERVAL))
+    return content
+
+
+def _built(ob, entry: _Entry, content: st.Content, kept, parts, pieces: _Pieces, touched) -> st.Content:
+    """The strokes `kept`, and `parts` of strokes directly above their stroke."""
+    owner = pieces.strokes[parts] - entry.first_stroke
+    source = np.concatenate([kept, owner])
+    order = np.argsort(source, kind="stable")
+    source = source[order]
+    part = np.concatenate([np.full(len(kept), -1), parts])[order]
+    cut = part >= 0
+    cut[cut] = pieces.sizes[part[cut]] > 0
+    sizes = content.sizes[source].copy()
+    sizes[cut] = pieces.sizes[part[cut]]
+    result = st.Content(sizes, content.types[source].copy(), kinds=dict(content.kinds))
+    indices, weights = _blends(entry, content, pieces, source, part, cut, result)
+    for name, values in content.point.items():
+        result.point[name] = _blended(values, indices, weights)
+    result.curve = {name: values[source].copy() for name, values in content.curve.items()}
+    _mark_parts(result, pieces, part, cut)
+    _part_fills_from_lines(ob, result, part, entry.fills[source], touched[source])
+    return result
+
+
+def _blends(entry, content, pieces, source, part, cut, result):
+    """For each point of the result three points of the drawing (N, 3) and their weights, of which it is the sum."""
+    total = int(result.starts[-1])
+    indices, weights = np.zeros((total, 3), np.int64), np.zeros((total, 3))
+    weights[:, 0] = 1
+    starts = result.starts[:-1]
+    there = st.ranges(content.starts[source[~cut]], result.sizes[~cut])
+    indices[st.ranges(starts[~cut], result.sizes[~cut])] = there[:, None]
+    here = st.ranges(starts[cut], result.sizes[cut])
+    rows = st.ranges(pieces.starts[part[cut]], pieces.sizes[part[cut]])
+    indices[here] = pieces.indices[rows] - entry.first_point
+    weights[here] = pieces.weights[rows]
+    return indices, weights
+
+
+def _blended(values: np.ndarray, indices: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    if values.dtype.kind != "f":
+        nearest = weights.argmax(1) if len(weights) else np.zeros(0, int)
+        return values[indices[np.arange(len(indices)), nearest]]
+    # Points of weight 0 do not count, even if they are not finite.
+    shaped = weights.reshape(*weights.shape, *(1,) * (values.ndim - 1))
+    return np.where(shaped != 0, values[indices] * shaped, 0).sum(1).astype(values.dtype)
+
+
+def _mark_parts(result: st.Content, pieces: _Pieces, part: np.ndarray, cut: np.ndarray) -> None:
+    """Stores the interval of each part, and makes the parts open."""
+    if not cut.any():
+        return
+    which = part[cut]
+    intervals = result.strokes(gp.INTERVAL).copy()
+    intervals[cut] = pieces.intervals[which]
+    result.set_strokes(gp.INTERVAL, intervals)
+    cyclic = result.strokes("cyclic").copy()
+    cyclic[cut] = False
+    result.set_strokes("cyclic", cyclic)
+    curves = cut & (result.types == st.NURBS)
+    if curves.any():
+        knots = result.strokes("knots_mode").copy()
+        # For a single piece Blender needs the mode of ordinary knots. The knots are the same.
+        knots[curves] = np.where(result.sizes[curves] > 3, st.ENDPOINT_BEZIER, st.ENDPOINT)
+        result.set_strokes("knots_mode", knots)
+
+
+def _part_fills_from_lines(ob, result: st.Content, part, fills, touched) -> None:
+    """Makes the lines of strokes that stay for their fill transparent, and removes the fill of their parts."""
+    carrier = (part < 0) & touched
+    if carrier.any():
+        opacity = result.point.get("opacity")
+        opacity = gp.blank("opacity", int(result.starts[-1])) if opacity is None else opacity
+        opacity[np.repeat(carrier, result.sizes)] = 0
+        result.kinds.setdefault("opacity", "FLOAT")
+        result.point["opacity"] = opacity
+    lines = (part >= 0) & (fills != 0)
+    if not lines.any():
+        return
+    if gp.FILL_BY_ID:
+        numbers = result.strokes("fill_id").copy()
+        numbers[lines] = 0
+        result.set_strokes("fill_id", numbers)
+        return
+    index = result.strokes("material_index").copy()
+    for each in np.unique(index[lines]):
+        index[lines & (index == each)] = st.line_material(ob, int(each))
+    result.set_strokes("material_index", index)
+
+
+def write(ob, cuts: list[Cut], move: bool, in_place: bool) -> tuple[int, int]:
+    """Writes cut drawings. Returns the number of changed drawings and of hidden parts.
+
+    With `move`, hidden parts move to layers of their own. With `in_place`, the visible drawings are cut. Otherwise a drawing that
+    shows on several frames gets a new frame where its hidden lines change.
+    """
+    changed = parts = 0
+    by_layer: dict[str, list[Cut]] = {}
+    for each in cuts:
+        by_layer.setdefault(each.layer, []).append(each)
+    for name, group in by_layer.items():
+        if not any(each.changed for each in group):
+            continue
+        layer = gp.find_layer(ob, name)
+        aside = hierarchy.beside(ob, layer, name + SUFFIX) if move else None
+        before: Cut | None = None
+        for each in sorted(group, key=lambda cut: cut.frame):
+            again = before is not None and before.source == each.source
+            same = before.seen.equals(each.seen) if again else not each.changed
+            number = each.source if in_place else each.frame
+            if aside is not None and not (same and again):
+                _put_aside(aside, number, each.hidden)
+            before = each
+            if same:
+                continue
+            _put(layer, number, each.source, each.seen)
+            changed += 1
+            parts += each.pieces
+    return changed, parts
+
+
+def _put_aside(layer, number: int, hidden: st.Content) -> None:
+    """Adds hidden lines to a frame. The hidden lines of an earlier frame do not show on it."""
+    known = gp.drawings(layer).get(number)
+    if known is not None:
+        hidden = st.joined(st.read(known[0]), hidden)
+    elif not len(hidden.sizes) and st.shown_frame(layer, number) is None:
+        return
+    _put(layer, number, None, hidden)
+
+
+def _put(layer, number: int, source: int | None, content: st.Content) -> None:
+    """Writes a drawing on a frame. A new frame is a generated one. It begins as a copy of `source`, for what is not written."""
+    if number not in gp.drawings(layer):
+        if source is None:
+            gp.make_frames(layer, [number], gp.GENERATED)
+        else:
+            gp.copy_frame(layer, source, number)
+            gp.set_keyframe_type(layer, {number: gp.GENERATED})
+    st.write(gp.drawings(layer)[number][0], content)

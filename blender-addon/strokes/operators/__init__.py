@@ -1,0 +1,7 @@
+"""The operators of this room, one a file."""
+
+from . import fit_strokes, hidden_lines
+
+_MODULES = (fit_strokes, hidden_lines)
+
+CLASSES = tuple(cls for module in _MODULES for cls in module.CLASSES)

@@ -1,0 +1,80 @@
+"""Remove Hidden Lines."""
+
+import bpy
+
+from ...blender import grease_pencil as gp
+from ...blender import strokes as st
+from ...blender.errors import Problem
+from ...blender.frames import kept
+from ...common import jobs
+from ...common.operators import Long, OnDrawing
+from .. import hidden
+
+
+class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
+    bl_idname = "rototoon.hidden_lines"
+    bl_label = "Remove Hidden Lines"
+    bl_description = "Cut lines exactly where filled strokes in front cover them, on the frames that you choose"
+    bl_options = {"REGISTER", "UNDO"}
+
+    order: bpy.props.EnumProperty(
+        name="In Front",
+        description="What covers what",
+        items=(
+            ("STROKES", "Layers and Strokes", "Higher layers cover lower ones. In a layer, later strokes cover earlier ones"),
+            ("LAYERS", "Layers", "Higher layers cover lower ones. Strokes of one layer do not cover each other"),
+        ),
+    )
+    covers: bpy.props.EnumProperty(
+        name="Covers",
+        description="Which strokes cover",
+        items=(
+            ("FILLED", "Filled", "Strokes with a fill"),
+            ("CLOSED", "Closed", "Closed strokes too, filled or not"),
+        ),
+    )
+    action: bpy.props.EnumProperty(
+        name="Hidden Lines",
+        description="What to do with hidden lines",
+        items=(
+            ("REMOVE", "Remove", "Delete them"),
+            ("MOVE", "Move to Layer", "Move them to a layer of their own"),
+        ),
+    )
+    frames: bpy.props.EnumProperty(
+        name="Frames",
+        description="Frames to cut",
+        items=(
+            ("CURRENT", "Current", "The drawings that show on the current frame"),
+            ("RANGE", "Scene Range", "All frames of the scene. A held drawing gets a new frame where its hidden lines change"),
+        ),
+    )
+
+    def begin(self, context):
+        self._ob, scene = context.object, context.scene
+        self._frames = [scene.frame_current]
+        if self.frames == "RANGE":
+            self._frames = hidden.frames_between(self._ob, scene.frame_start, scene.frame_end)
+        if not any(not layer.hide and gp.frame_numbers(layer) for layer in gp.every_layer(self._ob)):
+            raise Problem("No drawings are visible: draw something, or show a layer")
+        if not st.editable_layers(self._ob, active=False):
+            raise Problem("No layer can be cut: unlock one. Contours are not changed, since tracking needs their points")
+        self._cuts = []
+        return jobs.Stepper(self._steps(scene), "Looking at frames")
+
+    def _steps(self, scene):
+        choices = hidden.Choices(closed=self.covers == "CLOSED", by_stroke=self.order == "STROKES")
+        with kept(scene):
+            for index, frame in enumerate(self._frames):
+                if frame != scene.frame_current:
+                    scene.frame_set(frame)
+                self._cuts.extend(hidden.cut_frame(self._ob, frame, choices))
+                yield (index + 1) / len(self._frames)
+
+    def finish(self, context, work) -> str:
+        drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
+        self._ob.data.update_tag()
+        return f"{parts} hidden lines on {drawings} drawings" if drawings else "Nothing is hidden"
+
+
+CLASSES = (ROTOTOON_OT_hidden_lines,)

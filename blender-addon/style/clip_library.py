@@ -1,0 +1,113 @@
+"""A library of skeleton clips: its folder, its clips, its damaged files."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ..blender.errors import Problem
+from ..blender.preferences import preferences
+from ..rototoon.style import read_library
+
+ENDING = ".clip.json"
+"""Ending of the names of clip files."""
+
+
+@dataclass
+class Row:
+    """A clip of a library, or a damaged file."""
+
+    character: str
+    motion: str
+    frames: int = 0
+    fps: float = 25.0
+    source: str = ""
+    file: str = ""
+    trouble: str = ""
+    """Why the clip cannot be used; empty if it can."""
+    postures: np.ndarray = field(default_factory=lambda: np.zeros((0, 17, 2)))
+    """Key points (frames, 17, 2)."""
+
+
+@dataclass
+class Shelf:
+    """A library that was read."""
+
+    folder: str
+    rows: list[Row]
+    troubles: list[str]
+    """Other damage, such as a damaged index."""
+
+    def find(self, character: str, motion: str) -> Row | None:
+        """The clip with a character and a motion."""
+        good = (row for row in self.rows if not row.trouble)
+        return next((row for row in good if (row.character, row.motion) == (character, motion)), None)
+
+    def motions(self, character: str = "") -> list[str]:
+        """The motions, or those of one character."""
+        return sorted({row.motion for row in self.rows if not row.trouble and character in ("", row.character)})
+
+    def characters(self, motion: str = "") -> list[str]:
+        """The characters, or those with one motion."""
+        return sorted({row.character for row in self.rows if not row.trouble and motion in ("", row.motion)})
+
+
+def folder_of(ob, chosen: str = "") -> str:
+    """The library's folder: `chosen` if it is given, otherwise the object's, otherwise that of the preferences."""
+    folder = chosen or (ob.rototoon.clips_folder if ob is not None else "") or preferences().clips_folder
+    if not folder:
+        raise Problem("No library chosen: choose its folder in the panel Style")
+    if folder.startswith("//") and not bpy.data.filepath:
+        raise Problem(f"The library {folder} is relative to a file that is not saved: choose it again")
+    return os.path.normpath(bpy.path.abspath(folder))
+
+
+def read(folder: str) -> Shelf:
+    """Reads a library. Damaged files do not affect other files."""
+    found = read_library(folder)
+    clips = {(clip["character"], clip["motion"]): clip["points"] for clip in (found.clips or {}).get("clips", [])}
+    troubles = list(found.troubles)
+    rows = [_row(entry, clips, troubles) for entry in found.entries]
+    known = {row.file for row in rows}
+    for trouble in list(troubles):
+        file = _file_of(folder, trouble)
+        if file and file not in known:
+            known.add(file)
+            troubles.remove(trouble)
+            rows.append(Row(file.removesuffix(ENDING), "", file=file, trouble=trouble))
+    rows.sort(key=lambda row: (bool(row.trouble), row.character.lower(), row.motion.lower()))
+    return Shelf(folder, rows, troubles)
+
+
+def _row(entry: dict[str, Any], clips: dict[tuple[str, str], Any], troubles: list[str]) -> Row:
+    row = Row(**{name: entry[name] for name in ("character", "motion", "frames", "fps", "source", "file")})
+    points = clips.get((row.character, row.motion))
+    if points is not None:
+        row.postures = np.array(points, np.float64)
+        return row
+    mine = [trouble for trouble in troubles if row.file in trouble]
+    row.trouble = mine[0] if mine else f"{row.file}: cannot be read"
+    for trouble in mine:
+        troubles.remove(trouble)
+    return row
+
+
+def _file_of(folder: str, trouble: str) -> str:
+    """The clip file in the folder that a message names; "" if it names none."""
+    try:
+        files = sorted(os.listdir(folder), key=len, reverse=True)
+    except OSError:
+        return ""
+    return next((file for file in files if file.endswith(ENDING) and file in trouble), "")
+
+
+def clips_of(folder: str) -> dict[str, Any]:
+    """All clips of a library as a file of clips. Raises a `Problem` if there are none."""
+    found = read_library(folder)
+    if not found.entries:
+        raise Problem(f"The library {folder} has no clips: save one first")
+    return found.clips

@@ -1,0 +1,189 @@
+"""Limbs of a character, from short lines that the artist draws across its contours.
+
+Each line on the limb layer marks one key point. Its ends are near the two sides of a limb, and the key point is between them. A limb
+connects a key point that has a line with the nearest ancestor that has one. A key point may be drawn on several frames; between
+these, the ends of its line slide along the contour. Lines carry the number of their key point in a stroke attribute, so they may be
+moved and copied.
+
+The limbs are kept in the field `limbs` of the object's document.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender import placement
+from ..blender.errors import Problem
+from ..capture import document
+from ..rototoon.style import KEY_POINTS, PARENTS
+
+LAYER = "Limbs"
+"""Name of the layer with the lines."""
+JOINTS = {"l_shoulder", "r_shoulder", "l_hip", "r_hip"}
+"""Key points at the end of limbs that carry only the body. Arms and legs hang on these limbs and do not bend with them."""
+
+
+POINTS = tuple(
+    (name, name.replace("_", " ").title().replace("L ", "Left ").replace("R ", "Right "), f"The line marks the {name}")
+    for name in KEY_POINTS
+)
+"""Key points as items of a menu: name, label, tooltip."""
+
+
+def name_lines(ob, frame: int, point: str) -> int:
+    """Gives a key point to the selected line of the limb layer, otherwise to the last line without one. Returns the number
+    of lines."""
+    handle = _drawing(ob, frame)
+    strokes = len(gp.offsets(handle)) - 1
+    numbers = gp.value(handle, gp.KEY_POINT, strokes)
+    chosen = np.flatnonzero(gp.selected_strokes(handle))
+    if len(chosen) == 0:
+        chosen = np.flatnonzero(numbers == 0)[-1:]
+    if len(chosen) == 0:
+        raise Problem(f'Draw a short line across the limb on the layer "{LAYER}" first, or select one')
+    if len(chosen) > 1:
+        raise Problem(f"{len(chosen)} lines are selected, but a key point has one line: select one of them")
+    number = KEY_POINTS.index(point) + 1
+    # The new line replaces an older line of the key point.
+    numbers[numbers == number] = 0
+    numbers[chosen] = number
+    gp.put(handle, gp.KEY_POINT, numbers)
+    return len(chosen)
+
+
+def _drawing(ob, frame: int):
+    layer = gp.find_layer(ob, LAYER)
+    if layer is None:
+        raise Problem(f'"{ob.name}" has no layer "{LAYER}": add one and draw a short line across the limb there')
+    drawings = {number: handle for number, (handle, _) in gp.drawings(layer).items() if number <= frame}
+    if not drawings:
+        raise Problem(f'The layer "{LAYER}" has no drawing on frame {frame}')
+    return drawings[max(drawings)]
+
+
+def define(ob, reading: document.Reading) -> list[dict[str, Any]]:
+    """Makes the object's limbs from the lines on the limb layer, stores them with its document, and returns them."""
+    lines = _lines(ob)
+    if not lines:
+        raise Problem(f'No line on the layer "{LAYER}" has a key point yet: choose one in Define Limbs')
+    ends = {point: _end(point, drawn, reading.document) for point, drawn in lines.items()}
+    made = []
+    for child in range(1, len(PARENTS)):
+        parent = _ancestor(child, ends)
+        if child in ends and parent is not None:
+            made.append(_limb(KEY_POINTS[parent], KEY_POINTS[child], ends[parent], ends[child]))
+    keep(ob, made)
+    return made
+
+
+def _ancestor(child: int, ends) -> int | None:
+    """The nearest ancestor of a key point that has a line; `None` if there is none."""
+    while child:
+        child = PARENTS[child]
+        if child in ends:
+            return child
+    return None
+
+
+def count_lines(ob) -> int:
+    """Number of key points with a line."""
+    return len(_lines(ob))
+
+
+def keep(ob, made: list[dict[str, Any]]) -> None:
+    """Stores limbs in the object's document."""
+    extra = _extra(ob)
+    extra["limbs"] = made
+    ob.rototoon.extra = json.dumps(extra)
+
+
+def marks(ob) -> list[dict[str, Any]]:
+    """The object's marks of what is in front of what."""
+    return _extra(ob).get("depth_marks", [])
+
+
+def add_mark(ob, mark: dict[str, Any]) -> None:
+    """Adds a mark to the object's document. It replaces an opposite one on the same frames."""
+    extra = _extra(ob)
+    opposite = {**mark, "front": mark["behind"], "behind": mark["front"]}
+    kept = [known for known in extra.get("depth_marks", []) if known not in (mark, opposite)]
+    extra["depth_marks"] = [*kept, mark]
+    ob.rototoon.extra = json.dumps(extra)
+
+
+def _extra(ob) -> dict[str, Any]:
+    return json.loads(ob.rototoon.extra) if ob.rototoon.extra else {}
+
+
+def defined(ob) -> list[dict[str, Any]]:
+    """The object's limbs."""
+    return _extra(ob).get("limbs", [])
+
+
+def needed(ob) -> None:
+    """Raises a `Problem` if an object has no limbs."""
+    if not defined(ob):
+        raise Problem(f'"{ob.name}" has no limbs: draw lines across them on the layer "{LAYER}", then Define Limbs')
+
+
+def _lines(ob) -> dict[int, dict[int, np.ndarray]]:
+    """By key point and frame the two ends of its line in pixels."""
+    layer = gp.find_layer(ob, LAYER)
+    if layer is None:
+        raise Problem(f'"{ob.name}" has no layer "{LAYER}": add one and draw short lines across the limbs there')
+    drawings = gp.drawings(layer)
+    drawn = [gp.positions(handle, int(gp.offsets(handle)[-1])) for handle, _ in drawings.values()]
+    points = {0: np.concatenate(drawn)} if drawn else {}
+    mapper = placement.Mapper(ob, drawings, points, [LAYER])
+    lines: dict[int, dict[int, np.ndarray]] = {}
+    for frame, (handle, _) in sorted(drawings.items()):
+        starts = gp.offsets(handle)
+        numbers = gp.value(handle, gp.KEY_POINT, len(starts) - 1)
+        every = gp.positions(handle, int(starts[-1]))
+        for number, a, b in zip(numbers, starts, starts[1:]):
+            if number and b - a > 1:
+                ends = mapper.at(0, frame).to_pixels(every[[a, b - 1]])
+                lines.setdefault(int(number) - 1, {})[frame - ob.rototoon.frame_offset] = ends
+    return lines
+
+
+def _end(point: int, drawn: dict[int, np.ndarray], project: dict[str, Any]) -> dict[str, Any]:
+    """A limb's end in the form of documents."""
+    part = _part_of(KEY_POINTS[point], drawn, project)
+    ends = ({str(frame): line[side].tolist() for frame, line in drawn.items()} for side in (0, 1))
+    return {"points": [{"part": part, "drawn": points} for points in ends], "share": 0.5}
+
+
+def _part_of(name: str, drawn: dict[int, np.ndarray], project: dict[str, Any]) -> str:
+    """The part whose contour is nearest to the ends of the line, over all its frames."""
+    best = (np.inf, "")
+    for part in project["parts"]:
+        contours = {int(f): np.asarray(p) for f, p in {**part.get("keys", {}), **part.get("tracks", {})}.items()}
+        if not all(frame in contours for frame in drawn):
+            continue
+        away = sum(_distance(end, contours[frame], part["closed"]) for frame, line in drawn.items() for end in line)
+        best = min(best, (away, part["name"]))
+    if not best[1]:
+        frames = ", ".join(str(frame) for frame in drawn)
+        raise Problem(f"{name}: no contour on picture {frames}; draw the line on a frame that shows the part")
+    return best[1]
+
+
+def _distance(point: np.ndarray, contour: np.ndarray, closed: bool) -> float:
+    following = np.roll(contour, -1, 0) if closed else contour[1:]
+    starts = contour if closed else contour[:-1]
+    along = following - starts
+    share = ((point - starts) * along).sum(1) / np.maximum((along**2).sum(1), 1e-12)
+    nearest = starts + np.clip(share, 0, 1)[:, None] * along
+    return float(np.linalg.norm(nearest - point, axis=1).min())
+
+
+def _limb(start: str, end: str, first: dict[str, Any], last: dict[str, Any]) -> dict[str, Any]:
+    limb = {"from": start, "to": end, "start": first, "end": last}
+    if end in JOINTS:
+        limb["carries"] = [first["points"][0]["part"]]
+    return limb

@@ -1,0 +1,25 @@
+"""The operators of this room, one a file."""
+
+from . import (
+    apply_motion,
+    define_limbs,
+    depth_mark,
+    import_motion,
+    refresh_clips,
+    reshape_drawing,
+    reshape_picture,
+    save_clip,
+)
+
+_MODULES = (
+    define_limbs,
+    refresh_clips,
+    save_clip,
+    import_motion,
+    reshape_drawing,
+    apply_motion,
+    reshape_picture,
+    depth_mark,
+)
+
+CLASSES = tuple(cls for module in _MODULES for cls in module.CLASSES)

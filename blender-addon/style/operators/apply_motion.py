@@ -1,0 +1,33 @@
+"""Apply Motion in Style of…: a drawing follows a motion, re-made in another character's style."""
+
+import bpy
+
+from ..clip_library import folder_of
+from ..clip_properties import Manner, shared
+from .reshaping_base import Reshaping
+
+
+class _Content:
+    """The clip to re-make. It is a class of its own, so that the dialog lists it before the style."""
+
+    motion: shared("motion")
+    content: shared("character", name="Content", description="The character whose motion it is")
+
+
+class ROTOTOON_OT_apply_motion(Manner, _Content, Reshaping, bpy.types.Operator):
+    bl_idname = "rototoon.apply_motion"
+    bl_label = "Apply Motion in Style of…"
+    bl_description = (
+        "Re-make a motion of the library in another character's style, and make the drawing at the playhead follow it, on "
+        "generated frames after the drawing"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    style: shared("style", description="The character whose style the motion gets")
+
+    def begin(self, context):
+        remake = self.remake(folder_of(context.object, self.folder), self.motion, self.content)
+        return self.work(context, lambda progress, threads: (remake(progress, threads), {}), before=0.5)
+
+
+CLASSES = (ROTOTOON_OT_apply_motion,)

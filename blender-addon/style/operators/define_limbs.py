@@ -1,0 +1,34 @@
+"""Define Limbs: makes limbs from lines across contours."""
+
+import bpy
+
+from ...capture import document, identity
+from ...common.operators import Guarded, OnContours
+from .. import limbs
+
+
+class ROTOTOON_OT_define_limbs(Guarded, OnContours, bpy.types.Operator):
+    bl_idname = "rototoon.define_limbs"
+    bl_label = "Define Limbs"
+    bl_description = (
+        f'Choose the key point that the selected line on the layer "{limbs.LAYER}" marks, or the last line that you drew. It is '
+        "a short line across the limb, from one side to the other. Neighbouring key points make limbs, which move with the contours"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    point: bpy.props.EnumProperty(name="Key Point", description="The key point that the line marks", items=limbs.POINTS)
+
+    def run(self, context) -> str:
+        ob = context.object
+        limbs.name_lines(ob, context.scene.frame_current, self.point)
+        # New strokes get their parts here, since limbs refer to parts by name.
+        reading = document.read(ob)
+        identity.write(ob, reading.found, reading.decisions)
+        lines = limbs.count_lines(ob)
+        if lines < 2:
+            return f"{self.point}: draw the line of the next key point"
+        made = limbs.define(ob, document.read(ob, results=True))
+        return f"{lines} key points, {len(made)} limbs"
+
+
+CLASSES = (ROTOTOON_OT_define_limbs,)

@@ -1,0 +1,43 @@
+"""Save Clip: adds the motion of contours to the library."""
+
+import bpy
+
+from ...capture import document
+from ...common.operators import Guarded, OnContours
+from ...rototoon.style import add_to_library, capture_clip
+from .. import clip_browser, limbs
+from ..clip_library import folder_of
+from ..clip_properties import Performance, shared
+
+
+class ROTOTOON_OT_save_clip(Guarded, Performance, OnContours, bpy.types.Operator):
+    bl_idname = "rototoon.save_clip"
+    bl_label = "Save Clip"
+    bl_description = "Save the motion of the tracked contours and their limbs as a skeleton clip in the library"
+    bl_options = {"REGISTER"}
+
+    last: shared("last")
+    folder: shared("folder")
+
+    def invoke(self, context, _event):
+        settings = context.object.rototoon
+        self.first, self.last = settings.first + settings.frame_offset, settings.last + settings.frame_offset
+        self.character = self.character or context.object.name
+        return context.window_manager.invoke_props_dialog(self)
+
+    def run(self, context) -> str:
+        ob = context.object
+        folder = folder_of(ob, self.folder)
+        limbs.needed(ob)
+        project = document.read(ob, results=True).document
+        character, offset = self.character or ob.name, ob.rototoon.frame_offset
+        frames = (self.first - offset, self.last - offset) if self.last > self.first else (None, None)
+        made = capture_clip(project, character, self.motion, *frames)
+        add_to_library(folder, made.clips, bpy.path.basename(bpy.data.filepath))
+        clip_browser.refresh(folder)
+        count = len(made.clips["clips"][0]["points"])
+        guessed = f"; filled in: {', '.join(made.guessed)}" if made.guessed else ""
+        return f'"{self.motion}" by "{character}", {count} frames{guessed}'
+
+
+CLASSES = (ROTOTOON_OT_save_clip,)

@@ -1,0 +1,118 @@
+"""A drawing's contours on every frame of a clip, as generated strokes after the drawing's key.
+
+The drawing does not change. The motion begins on the frame after it, on generated frames, which Clear Generated removes. Strokes
+keep the radius, colours, material and fill of the drawing.
+"""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender import placement
+from ..blender.errors import Problem
+from ..capture import document, identity, writing
+from ..rototoon import documents
+from . import limbs
+
+
+@dataclass
+class Drawing:
+    """The drawing that is reshaped."""
+
+    uid: int
+    inputs: dict[str, Any]
+    """The object's document at the beginning. It must be the same at the end."""
+    project: dict[str, Any]
+    """The document of the drawing: its contours on one frame, with limbs."""
+    frame: int
+    """The drawing's frame in the scene."""
+
+
+def begin(ob, frame: int) -> Drawing:
+    """The drawing at a frame: the last frame up to it on which every part has a key."""
+    reading = document.read(ob)
+    limbs.needed(ob)
+    offset = ob.rototoon.frame_offset
+    keys = [sorted(part.keys) for part in reading.found.parts if part.keys]
+    known = {number for frames in keys for number in frames}
+    before = [number for number in known if number <= frame and all(number in frames for frames in keys)]
+    if not before:
+        raise Problem(f"No frame up to {frame} has a key of every part: go to the drawing that you want to reshape")
+    rest = max(before)
+    if max(known) > rest:
+        raise Problem(f"Frame {max(known)} has a key after the drawing on frame {rest}: reshape a drawing without later keys")
+    project = copy.deepcopy(reading.document)
+    for part in project["parts"]:
+        part["keys"] = {str(rest - offset): part["keys"][str(rest - offset)]}
+        for name in ("pins", "centers", "tracks", "confidence", "curves", "wants_key"):
+            part.pop(name, None)
+    return Drawing(ob.session_uid, reading.document, project, rest)
+
+
+def finish(ob, drawing: Drawing, made) -> int:
+    """Writes the result. Returns the number of frames."""
+    reading = document.read(ob)
+    if reading.document != drawing.inputs:
+        raise Problem("The drawing changed while it was reshaped, so the result was dropped: do it again")
+    identity.write(ob, reading.found, reading.decisions)
+    reading = document.read(ob)
+    tracks, frames = _tracks(reading, drawing, made.document)
+    names = reading.found.layer_names
+    if not reading.mapper.still:
+        points = {index: _drawn(reading, index) for index in range(len(names))}
+        reading.mapper = placement.Mapper(ob, [drawing.frame, *frames], points, names)
+    by_number = {part.number: copy.copy(part) for part in reading.found.parts}
+    for part in by_number.values():
+        # Styles come from the drawing only.
+        part.keys = {drawing.frame: part.keys[drawing.frame]} if drawing.frame in part.keys else {}
+        part.layer = part.keys[drawing.frame].layer if part.keys else part.layer
+    parts = [part for part in by_number.values() if part.keys]
+    for index, name in enumerate(names):
+        block = writing.lay_out(index, parts, tracks, reading.found, reading.mapper, {})
+        block.order = _order(block, index, parts, tracks, made.document)
+        layer = gp.find_layer(ob, name)
+        writing.write(layer, block, list(gp.drawings(layer)))
+    ob.data.update_tag()
+    return len(frames)
+
+
+def _order(block: writing.Block, layer: int, parts, tracks, project: dict[str, Any]) -> np.ndarray:
+    """The block's parts from back to front on each frame."""
+    columns = sorted((p for p in parts if p.number in tracks and p.layer == layer), key=lambda p: p.depth)
+    first = project["footage"]["first"]
+    entries = {part["name"]: part for part in project["parts"]}
+    depths = np.empty((len(block.frames), len(columns)))
+    for column, part in enumerate(columns):
+        entry = entries[part.name]
+        depths[:, column] = entry.get("depth", 0.0)
+        for frame, depth in documents.by_frame(entry.get("depths")).items():
+            depths[frame - first, column] = depth
+    return np.argsort(depths, axis=1, kind="stable")
+
+
+def _drawn(reading: document.Reading, layer: int) -> np.ndarray:
+    drawings = [d for (index, _), d in reading.found.drawings.items() if index == layer]
+    return np.concatenate([d.points for d in drawings]) if drawings else np.zeros((0, 3))
+
+
+def _tracks(reading: document.Reading, drawing: Drawing, project: dict[str, Any]):
+    first = project["footage"]["first"]
+    shift = drawing.frame + 1 - first
+    numbers = {part.name: part.number for part in reading.found.parts}
+    tracks, frames = {}, []
+    for part in project["parts"]:
+        by_frame = documents.by_frame(part.get("tracks"))
+        if not by_frame:
+            continue
+        frames = [frame + shift for frame in by_frame]
+        points = np.array(list(by_frame.values()), np.float64)
+        sure = np.ones(points.shape[:2])
+        tracks[numbers[part["name"]]] = writing.Track(np.array(frames), points, sure)
+    if not tracks:
+        raise Problem("Nothing was reshaped: no closed contour on the drawing")
+    return tracks, frames

@@ -1,0 +1,134 @@
+"""The artist's choices for in-betweens, and the options of the library that follow from them."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+from ..blender.errors import Problem
+
+SPACINGS = (
+    (
+        "SMOOTH",
+        "Smooth",
+        "One velocity through several keys, and at rest at the first key, the last key, and where the movement turns back",
+    ),
+    ("LINEAR", "Linear", "Constant speed"),
+    ("EASE_IN", "Ease In", "Starts at rest and speeds up"),
+    ("EASE_OUT", "Ease Out", "Slows down and ends at rest"),
+    ("EASE_IN_OUT", "Ease In and Out", "Starts and ends at rest"),
+    ("COSINE", "Cosine", "Starts and ends at rest, a little softer"),
+    ("BOUNCE", "Bounce", "Falls like a ball, and bounces before it comes to rest"),
+    ("CHART", "Chart", "Your list of percentages, one for each in-between"),
+    ("CURVE", "Curve", "The curve that you draw in the panel Tween"),
+)
+LEAVING = (
+    ("GROW", "Grow and Shrink", "They grow from their middle and shrink into it"),
+    ("FADE", "Fade", "They fade in and out"),
+    ("LEAVE", "Leave the Picture", "They come in from outside the picture and leave it, away from the picture's middle"),
+)
+PEGS = (
+    ("FOUND", "Found", "Find the strokes that move as one, and their joints"),
+    ("GROUPS", "Layer Groups", "The layers of a group move as one. A group inside another group hangs on that group"),
+    ("LAYERS", "Layers", "Each layer moves as one, and hangs on its group"),
+)
+
+
+@dataclass(frozen=True)
+class Choices:
+    """The choices for a span."""
+
+    spacing: str = "SMOOTH"
+    chart: str = ""
+    """Percentages of the spacing CHART."""
+    bounces: int = 3
+    arcs: float = 0.5
+    rigid: bool = True
+    contacts: bool = True
+    leaving: str = "GROW"
+    rest: bool = True
+    step: int = 1
+    curve: tuple[tuple[float, float], ...] = ()
+    """Times and shares of the spacing CURVE."""
+    pegs: str = "FOUND"
+    follow: bool = False
+    """Whether strokes follow the captured contours on which they lie. It is false in older files, which do not have this
+    choice."""
+
+    def kept(self) -> dict[str, Any]:
+        """The form in the file."""
+        return asdict(self)
+
+    @classmethod
+    def of(cls, kept: dict[str, Any]) -> Choices:
+        """The choices from a file. Unknown fields are left out."""
+        names = {field.name for field in fields(cls)}
+        known = {name: value for name, value in kept.items() if name in names}
+        if "curve" in known:
+            known["curve"] = tuple((float(time), float(share)) for time, share in known["curve"])
+        return cls(**known)
+
+    def frames(self, first: int, last: int) -> list[int]:
+        """The frames between two keys that get a drawing."""
+        return list(range(first + self.step, last, self.step))
+
+    def written(self, first: int, last: int) -> Any:
+        """The spacing from one key to the next, as the library takes it."""
+        if self.spacing == "BOUNCE":
+            return {"bounce": self.bounces}
+        if self.spacing == "CURVE":
+            return {"curve": [list(place) for place in self.curve]}
+        if self.spacing != "CHART":
+            return self.spacing.lower()
+        shares = percentages(self.chart)
+        frames = self.frames(first, last)
+        if len(shares) == len(frames):
+            times = [(frame - first) / (last - first) for frame in frames]
+        else:
+            times = [(k + 1) / (len(shares) + 1) for k in range(len(shares))]
+        return {"curve": [[time, share] for time, share in zip(times, shares)]}
+
+    def shared(self) -> dict[str, Any]:
+        """The options of the library that all spans of a call have in common. Leaving the picture also needs its size: see
+        `Sheet.leaving`."""
+        return {
+            "arcs": self.arcs,
+            "rigid": self.rigid,
+            "contacts": self.contacts,
+            "leaving": self.leaving.lower(),
+            "rest": self.rest,
+        }
+
+
+def places(text: str) -> tuple[tuple[float, float], ...]:
+    """Times and shares of a list such as "0 0, 0.3 0.8, 1 1"."""
+    found = []
+    for pair in (words.split() for words in text.split(",") if words.strip()):
+        try:
+            time, share = map(float, pair)
+        except ValueError:
+            said = " ".join(pair)
+            raise Problem(f'The curve has "{said}", expected a time and a share such as 0.3 0.8') from None
+        if not (0 <= time <= 1 and -10 <= share <= 10):
+            raise Problem(f"The curve has {time:g} {share:g}, expected a time from 0 to 1 and a share from -10 to 10")
+        if found and found[-1][0] >= time:
+            raise Problem(f"The curve has {time:g} after {found[-1][0]:g}, expected times that rise")
+        found.append((time, share))
+    return tuple(found)
+
+
+def percentages(text: str) -> list[float]:
+    """Shares of a list such as "10, 25 50 90"."""
+    words = text.replace(",", " ").replace("%", " ").replace(";", " ").split()
+    if not words:
+        raise Problem("The chart is empty: write one percentage for each in-between, such as 10, 30, 70, 90")
+    shares = []
+    for word in words:
+        try:
+            share = float(word) / 100
+        except ValueError:
+            raise Problem(f'The chart has "{word}", expected percentages such as 10, 30, 70, 90') from None
+        if not -10 <= share <= 10:
+            raise Problem(f"The chart has {word}, expected percentages from -1000 to 1000")
+        shares.append(share)
+    return shares

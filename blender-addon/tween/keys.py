@@ -1,0 +1,88 @@
+"""The drawings of a layer: the artist's keys, and the in-betweens."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender import strokes as st
+from . import records
+
+OURS = {gp.TRACK, gp.TWEENED, gp.NEXT, gp.BEFORE}
+"""Attributes that do not affect the look of a stroke."""
+
+
+@dataclass
+class Frames:
+    """The frames of a layer."""
+
+    keys: list[int]
+    """The artist's frames, in time order."""
+    made: list[int]
+    """Frames of in-betweens, in time order."""
+    edited: list[int] = field(default_factory=list)
+    """Keys that were in-betweens until the artist changed them."""
+    blank: set[int] = field(default_factory=set)
+    """Keys without strokes."""
+
+
+def is_tweened(handle, kind: str) -> bool:
+    """Whether a drawing is an in-between, and has no strokes of the artist."""
+    if kind != gp.GENERATED:
+        return False
+    if not gp.has(handle, gp.TWEENED):
+        return False
+    made = gp.value(handle, gp.TWEENED, len(gp.offsets(handle)) - 1)
+    return bool(len(made) and made.all())
+
+
+def frames_of(layer, record: records.Layer) -> Frames:
+    """Sorts the frames of a layer into keys and in-betweens."""
+    found = Frames([], [])
+    sums = {frame: total for span in record.spans.values() for frame, total in span.sums.items()}
+    for number, (handle, kind) in gp.drawings(layer).items():
+        if not is_tweened(handle, kind):
+            found.keys.append(number)
+        elif number in sums and sums[number] != _sum(handle):
+            found.keys.append(number)
+            found.edited.append(number)
+        else:
+            found.made.append(number)
+            continue
+        if len(gp.offsets(handle)) < 2:
+            found.blank.add(number)
+    found.keys.sort()
+    found.made.sort()
+    return found
+
+
+def _sum(handle) -> int:
+    return records.checksum(gp.positions(handle, int(gp.offsets(handle)[-1])))
+
+
+def digest(content: st.Content) -> bytes:
+    """Digest of everything that a drawing shows."""
+    summed = hashlib.blake2b(digest_size=16)
+    summed.update(content.sizes.tobytes() + content.types.tobytes())
+    for side in (content.point, content.curve):
+        for name in sorted(side):
+            if name not in OURS:
+                summed.update(name.encode())
+                summed.update(np.ascontiguousarray(side[name]))
+    return summed.digest()
+
+
+def around(frames: Iterable[int], current: int) -> tuple[int, int] | None:
+    """The two keys around a frame. On a key: this key and the next one. On the last key: the one before and this key."""
+    rising = sorted(frames)
+    if len(rising) < 2 or current < rising[0]:
+        return None
+    k = max(index for index, frame in enumerate(rising) if frame <= current)
+    if k == len(rising) - 1:
+        # After the last key there are no in-betweens.
+        return (rising[k - 1], rising[k]) if current == rising[k] else None
+    return rising[k], rising[k + 1]

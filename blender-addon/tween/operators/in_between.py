@@ -1,0 +1,153 @@
+"""In-between: draws the frames between keys."""
+
+import bpy
+
+from ...blender import grease_pencil as gp
+from ...blender import strokes as st
+from .. import charts, spacing_curve
+from .. import keys as ks
+from ..charts import Choices
+from .tweening_base import LAYERS, Tweening
+
+
+class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
+    bl_idname = "rototoon.in_between"
+    bl_label = "In-between"
+    bl_description = (
+        "Draw the frames between keys. Strokes are matched in any order and direction. Groups of strokes swing along arcs, and "
+        "turning strokes do not shrink. Your keys are never changed, and only what you changed is drawn again"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    frames: bpy.props.EnumProperty(
+        name="Frames",
+        description="Between which keys",
+        items=(
+            ("CURRENT", "Around the Playhead", "The two keys around the current frame"),
+            ("SELECTED", "Selected Keys", "Neighbouring keys that are both selected"),
+            ("RANGE", "Scene Range", "All keys within the scene's range"),
+            ("ALL", "All", "All keys"),
+        ),
+    )
+    layers: bpy.props.EnumProperty(name="Layers", description="On which layers", items=LAYERS, default="ALL")
+    spacing: bpy.props.EnumProperty(
+        name="Spacing", description="How far the movement has come on each in-between", items=charts.SPACINGS
+    )
+    chart: bpy.props.StringProperty(
+        name="Chart",
+        description="How far the movement has come on each in-between, in percent: 0 is the earlier key, 100 the later one. "
+        "Values may go beyond",
+        default="10, 30, 70, 90",
+    )
+    curve: bpy.props.StringProperty(
+        name="Curve",
+        description="Times and shares of a spacing curve, such as 0 0, 0.3 0.8, 1 1. If empty, the curve in the panel",
+        default="",
+    )
+    bounces: bpy.props.IntProperty(name="Bounces", description="Number of bounces", default=3, min=0, max=10)
+    arcs: bpy.props.FloatProperty(
+        name="Arcs",
+        description="How much turning strokes move along arcs: 0 is straight, 1 is a full arc around the middle of the turn",
+        default=0.5,
+        min=0.0,
+        max=1.0,
+    )
+    step: bpy.props.IntProperty(
+        name="Frames Each",
+        description="Number of frames that a drawing stays: 1 is on ones, 2 on twos",
+        default=1,
+        min=1,
+        soft_max=4,
+    )
+    rigid: bpy.props.BoolProperty(
+        name="Keep Shapes", description="Shapes bend and turn instead of shrinking", default=True
+    )
+    contacts: bpy.props.BoolProperty(
+        name="Keep Contacts", description="Strokes that touch on both keys stay in touch", default=True
+    )
+    leaving: bpy.props.EnumProperty(
+        name="New and Lost", description="Movement of strokes that only one of two keys has", items=charts.LEAVING
+    )
+    pegs: bpy.props.EnumProperty(name="Moves as One", description="Which strokes move as one", items=charts.PEGS)
+    follow: bpy.props.BoolProperty(
+        name="Follow Captured",
+        description="Strokes that lie on a captured contour move with it, as it was tracked in the footage",
+        default=True,
+    )
+    rest: bpy.props.BoolProperty(
+        name="Rest at the Ends",
+        description="A smooth movement begins and ends at rest. Otherwise it keeps its speed there",
+        default=True,
+    )
+
+    def draw(self, _context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "frames")
+        layout.prop(self, "layers")
+        layout.separator()
+        layout.prop(self, "spacing")
+        if self.spacing == "CHART":
+            layout.prop(self, "chart")
+        elif self.spacing == "BOUNCE":
+            layout.prop(self, "bounces")
+        elif self.spacing == "CURVE":
+            layout.prop(self, "curve", placeholder="As drawn in the panel Tween")
+        elif self.spacing == "SMOOTH":
+            layout.prop(self, "rest")
+        layout.prop(self, "arcs", slider=True)
+        layout.prop(self, "step")
+        layout.prop(self, "pegs")
+        layout.prop(self, "follow")
+        layout.separator()
+        layout.prop(self, "rigid")
+        layout.prop(self, "contacts")
+        layout.prop(self, "leaving")
+
+    def chosen_layers(self, context):
+        return st.editable_layers(context.object, self.layers == "ACTIVE")
+
+    def begin(self, context):
+        if self.spacing == "CHART":
+            charts.percentages(self.chart)
+        curve = ()
+        if self.spacing == "CURVE":
+            curve = charts.places(self.curve) or spacing_curve.sampled()
+        self._choices = Choices(
+            self.spacing,
+            self.chart if self.spacing == "CHART" else "",
+            self.bounces,
+            self.arcs,
+            self.rigid,
+            self.contacts,
+            self.leaving,
+            self.rest,
+            self.step,
+            curve,
+            self.pegs,
+            self.follow,
+        )
+        scene = context.scene
+        self._range = scene.frame_start, scene.frame_end
+        self._selected = {
+            layer.name: set(gp.frame_numbers(layer, selected=True)) for layer in gp.every_layer(context.object)
+        }
+        self._now = scene.frame_current
+        return super().begin(context)
+
+    def choose(self, name, found, record):
+        spans = list(zip(found.keys, found.keys[1:]))
+        if self.frames == "CURRENT":
+            around = ks.around(found.keys, self._now)
+            # An in-between that the artist changed is a key now. The spans on both its sides are drawn again.
+            held = record.holding(*around) if around is not None else None
+            touched = held is not None and bool(found.edited)
+            spans = [span for span in spans if span == around or (touched and record.holding(*span) is held)]
+        elif self.frames == "SELECTED":
+            spans = [span for span in spans if set(span) <= self._selected[name]]
+        elif self.frames == "RANGE":
+            spans = [span for span in spans if self._range[0] <= span[0] and span[1] <= self._range[1]]
+        return dict.fromkeys(spans, self._choices)
+
+
+CLASSES = (ROTOTOON_OT_in_between,)

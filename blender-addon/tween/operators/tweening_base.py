@@ -1,0 +1,60 @@
+"""Bases of the operators that draw in-betweens."""
+
+
+from ...blender import grease_pencil as gp
+from ...blender import preferences
+from ...blender import strokes as st
+from ...common import jobs
+from ...common.operators import Long, OnDrawing
+from .. import keys as ks
+from .. import tweening
+from ..charts import Choices
+
+LAYERS = (("ACTIVE", "Active", "The active layer"), ("ALL", "All", "All layers that are not locked"))
+
+
+class OnKeys(OnDrawing):
+    """An operator that needs a Grease Pencil object with at least two frames on a layer."""
+
+    @classmethod
+    def poll(cls, context) -> bool:
+        """Called by Blender."""
+        if not super().poll(context):
+            return False
+        if not any(len(gp.frame_numbers(layer)) > 1 for layer in gp.every_layer(context.object)):
+            cls.poll_message_set("Draw on two keys first")
+            return False
+        return True
+
+
+class Tweening(OnKeys, Long):
+    """Reads the keys, draws in a thread, and writes the in-betweens."""
+
+    def choose(self, name: str, found: ks.Frames, record) -> dict[tuple[int, int], Choices]:
+        """The spans of a layer to draw, with their choices."""
+        raise NotImplementedError
+
+    def chosen_layers(self, context) -> list:
+        """The layers on which to draw."""
+        return st.editable_layers(context.object, active=False)
+
+    def begin(self, context):
+        self._ob = context.object
+        self._current = context.scene.frame_current
+        self._plan = tweening.plan(self._ob, self.chosen_layers(context), self.choose)
+        if not self._plan.calls and not self._plan.current:
+            raise tweening.nothing_to_draw(self._plan)
+        plan, threads = self._plan, preferences.threads()
+        return jobs.Worker(lambda progress: tweening.draw(plan, progress, threads))
+
+    def finish(self, context, work) -> str:
+        done = tweening.finish(self._ob, self._plan)
+        spans = "1 span" if done.spans == 1 else f"{done.spans} spans"
+        said = f"{done.drawings} in-betweens in {spans}" if done.spans else "Nothing had changed"
+        if done.spans and self._plan.current:
+            said += f", {self._plan.current} spans were up to date"
+        if done.keys:
+            said += f", {done.keys} drawings that you had changed are keys now"
+        if self._plan.blank:
+            said += f", {self._plan.blank} spans with a blank key were left out"
+        return said

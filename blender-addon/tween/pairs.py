@@ -1,0 +1,74 @@
+"""Pairs of strokes that the artist made, stored on the strokes.
+
+The two strokes of a pair carry the same number, one as `NEXT`, the other as `BEFORE`. So a pair survives when a stroke is moved,
+reordered or copied, or when its neighbours are deleted. A number without a counterpart means nothing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender import strokes as st
+
+NONE = -1
+
+
+def between(earlier: st.Content, later: st.Content) -> list[tuple[int, int]]:
+    """Pairs of strokes of neighbouring keys by index; -1 for no counterpart."""
+    to, of = earlier.strokes(gp.NEXT), later.strokes(gp.BEFORE)
+    found = {int(number): j for j, number in reversed(list(enumerate(of))) if number > 0}
+    pairs = []
+    for i, number in enumerate(to.tolist()):
+        if number == NONE:
+            pairs.append((i, NONE))
+        elif number > 0 and number in found:
+            pairs.append((i, found.pop(number)))
+    pairs.extend((NONE, int(j)) for j in np.flatnonzero(of == NONE))
+    return pairs
+
+
+class Hand:
+    """The artist's decisions on two neighbouring keys, stored in their drawings."""
+
+    def __init__(self, earlier, later):
+        """`earlier` and `later` are the drawings of the keys."""
+        self._handles = (earlier, later)
+        self._names = (gp.NEXT, gp.BEFORE)
+
+    def values(self) -> tuple[np.ndarray, np.ndarray]:
+        """The marks of the strokes of both drawings."""
+        counts = [len(gp.offsets(handle)) - 1 for handle in self._handles]
+        found = [gp.value(h, name, n) for h, name, n in zip(self._handles, self._names, counts)]
+        return found[0], found[1]
+
+    def restore(self, values: tuple[np.ndarray, np.ndarray]) -> None:
+        """Restores the result of `values`."""
+        for handle, name, each in zip(self._handles, self._names, values):
+            if len(each):
+                gp.put(handle, name, each)
+
+    def pair(self, i: int, j: int) -> None:
+        """Pairs stroke `i` of the earlier key with stroke `j` of the later key. Earlier pairs of both are removed."""
+        to, of = self._without(i, j)
+        to[i] = of[j] = max(int(to.max()), int(of.max()), 0) + 1
+        self.restore((to, of))
+
+    def alone(self, side: int, index: int) -> None:
+        """Marks a stroke as without a counterpart. Side 0 is the earlier key."""
+        values = self._without(*((index, None) if side == 0 else (None, index)))
+        values[side][index] = NONE
+        self.restore(values)
+
+    def release(self, side: int, index: int) -> None:
+        """Takes back the decision on a stroke."""
+        self.restore(self._without(*((index, None) if side == 0 else (None, index))))
+
+    def _without(self, i: int | None, j: int | None) -> tuple[np.ndarray, np.ndarray]:
+        to, of = self.values()
+        for index, own, other in ((i, to, of), (j, of, to)):
+            if index is not None:
+                if own[index] > 0:
+                    other[other == own[index]] = 0
+                own[index] = 0
+        return to, of

@@ -1,0 +1,89 @@
+"""Records of in-betweens in the file, so that only changed spans are drawn again.
+
+The records are one JSON text on the Grease Pencil data. For each layer it has the next free number of a stroke, and its spans by the
+frame of the earlier key. A span has its last frame, a digest of everything from which it was drawn, the artist's choices, and a
+checksum of each drawing. The checksum shows whether the artist has changed the drawing since.
+"""
+
+from __future__ import annotations
+
+import json
+import zlib
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from .charts import Choices
+
+PROPERTY = "rototoon_tween"
+
+
+@dataclass
+class Span:
+    """A span that was drawn."""
+
+    last: int
+    digest: str
+    choices: Choices
+    sums: dict[int, int] = field(default_factory=dict)
+    """Checksums of the drawings by frame."""
+
+
+@dataclass
+class Layer:
+    """The records of a layer."""
+
+    next_track: int = 1
+    spans: dict[int, Span] = field(default_factory=dict)
+
+    def holding(self, first: int, last: int) -> Span | None:
+        """The recorded span that contains a span."""
+        for start, span in self.spans.items():
+            if start <= first and last <= span.last:
+                return span
+        return None
+
+
+def read(data) -> dict[str, Layer]:
+    """The records of a data-block by layer; none if the text cannot be read."""
+    try:
+        kept = json.loads(data.get(PROPERTY, "{}"))
+        return {name: _layer(each) for name, each in kept.items()}
+    except (ValueError, TypeError, KeyError, AttributeError):
+        return {}
+
+
+def _layer(kept: dict[str, Any]) -> Layer:
+    spans = {
+        int(first): Span(
+            int(each["last"]),
+            str(each["digest"]),
+            Choices.of(each["choices"]),
+            {int(frame): int(total) for frame, total in each["sums"].items()},
+        )
+        for first, each in kept["spans"].items()
+    }
+    return Layer(int(kept["next"]), spans)
+
+
+def write(data, records: dict[str, Layer]) -> None:
+    """Writes the records into a data-block. Without records, the text is removed."""
+    kept = {name: _kept(layer) for name, layer in records.items() if layer.spans or layer.next_track > 1}
+    if kept:
+        data[PROPERTY] = json.dumps(kept, separators=(",", ":"))
+    elif PROPERTY in data:
+        del data[PROPERTY]
+
+
+def _kept(layer: Layer) -> dict[str, Any]:
+    spans = {
+        str(first): {"last": s.last, "digest": s.digest, "choices": s.choices.kept(), "sums": s.sums}
+        for first, s in sorted(layer.spans.items())
+    }
+    return {"next": layer.next_track, "spans": spans}
+
+
+def checksum(positions: np.ndarray) -> int:
+    """Checksum of the points of a drawing, float32 (N, 3)."""
+    return zlib.crc32(np.ascontiguousarray(positions, np.float32))
