@@ -10,6 +10,7 @@
 //! (equidistribution; de Boor 1973).
 
 use super::grow::grow;
+use nalgebra::{Matrix3, Matrix3x2};
 use rototoon_base::geometry::Point;
 
 /// Exponent from error to the share of the allowed length.
@@ -110,24 +111,14 @@ fn parabola_error(points: &[Point], lengths: &[f64]) -> f64 {
     })
 }
 
-/// Solves the moment equations of a quadratic by elimination.
+/// Solves the moment equations of a quadratic. `None` where they are singular to working precision.
 fn solve(m: [f64; 5], sums: [Point; 3]) -> Option<[Point; 3]> {
-    let mut a = [[m[0], m[1], m[2]], [m[1], m[2], m[3]], [m[2], m[3], m[4]]];
-    let mut b = sums;
-    for k in 0..3 {
-        if a[k][k].abs() <= 1e-12 * m[0] {
-            return None;
-        }
-        for i in k + 1..3 {
-            let factor = a[i][k] / a[k][k];
-            for j in k..3 {
-                a[i][j] -= factor * a[k][j];
-            }
-            let by = b[k] * factor;
-            b[i] -= by;
-        }
-    }
-    let c2 = b[2] / a[2][2];
-    let c1 = (b[1] - c2 * a[1][2]) / a[1][1];
-    Some([(b[0] - c1 * a[0][1] - c2 * a[0][2]) / a[0][0], c1, c2])
+    let moments = Matrix3::new(m[0], m[1], m[2], m[1], m[2], m[3], m[2], m[3], m[4]);
+    let sums = Matrix3x2::from_fn(|i, axis| sums[i][axis]);
+    let factor = moments.cholesky()?;
+    let pivots = factor.l_dirty().diagonal().map(|root| root * root);
+    (pivots.min() > 1e-12 * m[0]).then(|| {
+        let found = factor.solve(&sums);
+        [0, 1, 2].map(|i| Point::new(found[(i, 0)], found[(i, 1)]))
+    })
 }

@@ -14,6 +14,7 @@
 
 use super::cholesky::{NotPositiveDefinite, SparseCholesky};
 use super::normal_equations::NormalEquations;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Added to the diagonal, as a share of its mean, so that a variable without any residual keeps the matrix definite.
 const DIAGONAL_FLOOR: f64 = 1e-10;
@@ -25,7 +26,7 @@ pub struct DampedSystem {
     /// Z, one column a long row, one after the other.
     spread: Vec<f64>,
     /// Of I + UZ.
-    small: DenseCholesky,
+    small: Cholesky<f64, Dyn>,
 }
 
 impl DampedSystem {
@@ -36,7 +37,7 @@ impl DampedSystem {
             damped: vec![0.0; rows.len()],
             cholesky: SparseCholesky::new(equations.variables(), starts, rows),
             spread: Vec::new(),
-            small: DenseCholesky::default(),
+            small: Cholesky::pack_dirty(DMatrix::zeros(0, 0)),
         }
     }
 
@@ -57,13 +58,11 @@ impl DampedSystem {
             columns.iter().zip(values).for_each(|(&j, &value)| self.spread[start + j as usize] = value);
         }
         self.cholesky.solve(&mut self.spread);
-        let mut matrix: Vec<Vec<f64>> = equations
-            .long_rows()
-            .enumerate()
-            .map(|(i, row)| self.spread.chunks_exact(n).take(i + 1).map(|column| product(row, column)).collect())
-            .collect();
-        matrix.iter_mut().enumerate().for_each(|(i, row)| row[i] += 1.0);
-        self.small = DenseCholesky::factor(matrix)?;
+        let rows: Vec<(&[u32], &[f64])> = equations.long_rows().collect();
+        let column = |j: usize| &self.spread[j * n..(j + 1) * n];
+        let unit = DMatrix::identity(rows.len(), rows.len());
+        let matrix = unit + DMatrix::from_fn(rows.len(), rows.len(), |i, j| product(rows[i], column(j)));
+        self.small = matrix.cholesky().ok_or(NotPositiveDefinite)?;
         Ok(())
     }
 
@@ -73,9 +72,9 @@ impl DampedSystem {
         if self.spread.is_empty() {
             return;
         }
-        let mut shares: Vec<f64> = equations.long_rows().map(|row| product(row, b)).collect();
-        self.small.solve(&mut shares);
-        for (column, share) in self.spread.chunks_exact(b.len()).zip(shares) {
+        let shares: Vec<f64> = equations.long_rows().map(|row| product(row, b)).collect();
+        let shares = self.small.solve(&DVector::from_vec(shares));
+        for (column, share) in self.spread.chunks_exact(b.len()).zip(&shares) {
             b.iter_mut().zip(column).for_each(|(b, c)| *b -= share * c);
         }
     }
@@ -83,48 +82,6 @@ impl DampedSystem {
 
 fn product((columns, values): (&[u32], &[f64]), dense: &[f64]) -> f64 {
     columns.iter().zip(values).map(|(&j, value)| value * dense[j as usize]).sum()
-}
-
-/// Cholesky factor of a small dense matrix, as rows of its lower triangle.
-#[derive(Clone, Debug, Default)]
-pub struct DenseCholesky {
-    rows: Vec<Vec<f64>>,
-}
-
-impl DenseCholesky {
-    /// Factors the symmetric matrix whose row `i` holds its first `i` + 1 entries.
-    pub fn factor(mut rows: Vec<Vec<f64>>) -> Result<Self, NotPositiveDefinite> {
-        for i in 0..rows.len() {
-            let (done, rest) = rows.split_at_mut(i);
-            let row = &mut rest[0];
-            for j in 0..=i {
-                let (before, from_j) = row.split_at_mut(j);
-                let other = if j < i { &done[j][..j] } else { &*before };
-                let value = from_j[0] - before.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
-                if j < i {
-                    from_j[0] = value / done[j][j];
-                } else if value > 0.0 {
-                    from_j[0] = value.sqrt();
-                } else {
-                    return Err(NotPositiveDefinite);
-                }
-            }
-        }
-        Ok(Self { rows })
-    }
-
-    /// Replaces `b` by the solution.
-    pub fn solve(&self, b: &mut [f64]) {
-        for (i, row) in self.rows.iter().enumerate() {
-            let known: f64 = row[..i].iter().zip(&*b).map(|(l, b)| l * b).sum();
-            b[i] = (b[i] - known) / row[i];
-        }
-        for (i, row) in self.rows.iter().enumerate().rev() {
-            b[i] /= row[i];
-            let here = b[i];
-            row[..i].iter().zip(&mut *b).for_each(|(l, b)| *b -= l * here);
-        }
-    }
 }
 
 #[cfg(test)]
@@ -171,14 +128,5 @@ mod tests {
                 prop_assert!((left + damping * diagonal * x[j] - b[j]).abs() < 1e-6, "{} for {}", left, b[j]);
             }
         }
-    }
-
-    #[test]
-    fn a_small_dense_system_is_solved() {
-        let factor = DenseCholesky::factor(vec![vec![4.0], vec![2.0, 5.0], vec![-2.0, 1.0, 6.0]]).unwrap();
-        let mut b = [4.0, 8.0, 5.0];
-        factor.solve(&mut b);
-        assert!(b.iter().all(|x| (x - 1.0).abs() < 1e-14), "{b:?}");
-        assert_eq!(DenseCholesky::factor(vec![vec![0.0]]).unwrap_err(), NotPositiveDefinite);
     }
 }

@@ -1,74 +1,50 @@
-//! Small dense symmetric positive definite systems, row-major.
+//! Small dense symmetric positive definite systems, for matrices that callers hold row by row.
 //!
-//! A = LLᵀ by the row-oriented Cholesky algorithm (Golub & Van Loan, *Matrix Computations*, §4.2): the inner loops are dot
-//! products of rows. Always on the calling thread and in one order, so results do not depend on the number of threads.
+//! The factorisation A = LLᵀ and the substitutions are nalgebra's. This module adds two things: it takes and gives rows,
+//! and it refuses a matrix that is definite only by rounding. All runs on the calling thread and in one order, so results do
+//! not depend on the number of threads.
+//!
+//! Beside a hand-written factorisation (`cargo bench -p rototoon-base --bench dense`, before it was removed) nalgebra
+//! solves systems of 16 to 64 unknowns in half of the time and those of 4 and 192 in the same. It inverts 16 to 64
+//! unknowns in 1.7 times the time, which is a hundredth of what the callers in `rototoon-style` do with the result.
 
-use super::vector::dot;
+use nalgebra::{Cholesky, DMatrix, Dyn};
 
-/// The lower factor L of a symmetric positive definite matrix.
+/// A pivot that is smaller than this share of its diagonal entry is rounding, and says nothing about the matrix.
+const ROUNDING: f64 = 1e-14;
+
+/// The factor of a symmetric positive definite matrix.
 #[derive(Clone, Debug)]
 pub struct DenseCholesky {
-    n: usize,
-    l: Vec<f64>,
+    factor: Cholesky<f64, Dyn>,
 }
 
 impl DenseCholesky {
-    /// Factors the `n` × `n` matrix whose lower triangle is given (the upper is not read). `None` where it is not positive
+    /// Factors the `n` × `n` matrix given row by row; only its lower triangle is read. `None` where it is not positive
     /// definite to working precision, or not finite.
-    pub fn new(n: usize, matrix: &[f64]) -> Option<Self> {
-        let mut l = matrix.to_vec();
-        for i in 0..n {
-            let (above, row) = l.split_at_mut(i * n);
-            for j in 0..i {
-                let other = &above[j * n..j * n + j + 1];
-                row[j] = (row[j] - dot(&row[..j], &other[..j])) / other[j];
-            }
-            let rest = row[i] - dot(&row[..i], &row[..i]);
-            // A pivot below the rounding of what it is left over from says nothing about the matrix.
-            if !(rest > 1e-14 * row[i].abs() && rest.is_finite()) {
-                return None;
-            }
-            row[i] = rest.sqrt();
-            row[i + 1..n].fill(0.0);
-        }
-        Some(Self { n, l })
+    pub fn new(n: usize, rows: &[f64]) -> Option<Self> {
+        let factor = DMatrix::from_row_slice(n, n, rows).cholesky()?;
+        let pivots = factor.l_dirty().diagonal().map(|root| root * root);
+        let definite = pivots.iter().enumerate().all(|(i, pivot)| {
+            let entry = rows[i * n + i].abs();
+            pivot.is_finite() && *pivot > ROUNDING * entry
+        });
+        definite.then_some(Self { factor })
     }
 
     /// Replaces `b` (`n` rows of `width` right-hand sides each) by the solution of Ax = b.
     pub fn solve(&self, b: &mut [f64], width: usize) {
-        let n = self.n;
-        for i in 0..n {
-            let (above, row) = b.split_at_mut(i * width);
-            for j in 0..i {
-                subtract(&mut row[..width], self.l[i * n + j], &above[j * width..(j + 1) * width]);
-            }
-            let pivot = 1.0 / self.l[i * n + i];
-            row[..width].iter_mut().for_each(|v| *v *= pivot);
-        }
-        for i in (0..n).rev() {
-            let (above, below) = b.split_at_mut((i + 1) * width);
-            let row = &mut above[i * width..];
-            for j in i + 1..n {
-                subtract(row, self.l[j * n + i], &below[(j - i - 1) * width..(j - i) * width]);
-            }
-            let pivot = 1.0 / self.l[i * n + i];
-            row.iter_mut().for_each(|v| *v *= pivot);
+        let mut columns = DMatrix::from_row_slice(b.len() / width.max(1), width, b);
+        self.factor.solve_mut(&mut columns);
+        for (row, solved) in b.chunks_exact_mut(width.max(1)).zip(columns.row_iter()) {
+            row.iter_mut().zip(solved.iter()).for_each(|(b, x)| *b = *x);
         }
     }
 
-    /// A⁻¹, both triangles.
+    /// A⁻¹ row by row, both triangles.
     pub fn inverse(&self) -> Vec<f64> {
-        let n = self.n;
-        let mut inverse = vec![0.0; n * n];
-        (0..n).for_each(|i| inverse[i * n + i] = 1.0);
-        self.solve(&mut inverse, n);
-        inverse
-    }
-}
-
-fn subtract(from: &mut [f64], factor: f64, what: &[f64]) {
-    for (value, w) in from.iter_mut().zip(what) {
-        *value -= factor * w;
+        // The inverse is symmetric up to rounding, so its columns stand for its rows.
+        self.factor.inverse().data.into()
     }
 }
 

@@ -14,8 +14,9 @@
 //! λ follows the gain ratio ρ between the decrease of E and the decrease that the linear model promised (Nielsen 1999):
 //! after a good step λ shrinks by max(1/3, 1 − (2ρ − 1)³), after each refusal in a row it grows by 2, 4, 8, ….
 
-use super::damped_system::{DampedSystem, DenseCholesky};
+use super::damped_system::DampedSystem;
 use super::normal_equations::NormalEquations;
+use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
 
 /// A sum of squares to minimise.
@@ -237,11 +238,11 @@ impl State {
             })
             .collect();
         let along = |row: &[(usize, f64)], v: &[f64]| row.iter().map(|&(j, c)| c * v[j]).sum::<f64>();
-        let lower = self.constraints.iter().enumerate();
-        let matrix = lower.map(|(i, row)| columns[..=i].iter().map(|v| along(row, v)).collect()).collect();
-        let mut multipliers: Vec<f64> = self.constraints.iter().map(|row| along(row, step)).collect();
-        DenseCholesky::factor(matrix).ok()?.solve(&mut multipliers);
-        for (column, multiplier) in columns.iter().zip(multipliers) {
+        let count = self.constraints.len();
+        let matrix = DMatrix::from_fn(count, count, |i, j| along(&self.constraints[i], &columns[j]));
+        let sums = DVector::from_fn(count, |i, _| along(&self.constraints[i], step));
+        let multipliers = matrix.cholesky()?.solve(&sums);
+        for (column, multiplier) in columns.iter().zip(&multipliers) {
             step.iter_mut().zip(column).for_each(|(d, c)| *d -= multiplier * c);
         }
         Some(())

@@ -15,6 +15,7 @@
 
 use super::curve::WIDEST;
 use super::{Handle, MOST_HANDLES, Sink};
+use nalgebra::Matrix2;
 use rototoon_base::geometry::Point;
 
 /// How far apart along the contour coupled points are at the most.
@@ -151,13 +152,9 @@ impl Blocks {
 /// Of a symmetric block, with a floor on its diagonal; the unit where nothing is known.
 fn inverse([a, b, _, d]: Block) -> Block {
     let floor = 1e-9 * (a + d);
-    let (a, d) = (a + floor, d + floor);
-    let determinant = a * d - b * b;
-    if determinant > 0.0 {
-        [d / determinant, -b / determinant, -b / determinant, a / determinant]
-    } else {
-        [1.0, 0.0, 0.0, 1.0]
-    }
+    let block = Matrix2::new(a + floor, b, b, d + floor);
+    let inverse = block.try_inverse().filter(|_| block.determinant() > 0.0).unwrap_or_else(Matrix2::identity);
+    [inverse.m11, inverse.m12, inverse.m21, inverse.m22]
 }
 
 /// What the residuals between two neighbouring frames add to the matrix: a [`Sink`].

@@ -5,6 +5,7 @@
 //! the axes of Λ, at most 2ρ from u. Along an edge Λ vanishes: nothing is known there.
 
 use super::response::Map;
+use nalgebra::{Matrix2, Vector2};
 use rototoon_base::geometry::Point;
 
 /// Temperature of the costs.
@@ -33,13 +34,12 @@ pub fn pull(map: &Map, (place, tangent): (Point, Point), now: Point, reach: f64,
     let u = back.rotate(now - place);
     let (mean, [xx, xy, yy], least) = moments(map, u, reach);
     let s = SPREAD * SPREAD;
-    let determinant = (xx + s) * (yy + s) - xy * xy;
-    let precision = [(yy + s) / determinant, -xy / determinant, (xx + s) / determinant];
+    let spread = Matrix2::new(xx + s, xy, xy, yy + s);
+    let precision = spread.try_inverse().unwrap_or_else(Matrix2::zeros);
     let prior = 1.0 / (reach * reach + s);
-    let (values, axes) = eigen([precision[0] - prior, precision[1], precision[2] - prior]);
-    let pulled =
-        Point::new(precision[0] * mean.x + precision[1] * mean.y, precision[1] * mean.x + precision[2] * mean.y);
-    let eta = pulled - u * prior;
+    let (values, axes) = eigen(precision - Matrix2::from_diagonal_element(prior));
+    let pulled = precision * Vector2::new(mean.x, mean.y);
+    let eta = Point::new(pulled.x, pulled.y) - u * prior;
     let sure = ((BAD - least) / (BAD - GOOD)).clamp(0.0, 1.0) * map.shown * trust;
     let along = |k: usize| {
         let value = values[k].max(1e-9);
@@ -91,12 +91,11 @@ fn moments(map: &Map, u: Point, reach: f64) -> (Point, [f64; 3], f64) {
     (mean, covariance, least)
 }
 
-/// Eigenvalues and unit eigenvectors of a symmetric 2 × 2 matrix (xx, xy, yy).
-fn eigen([xx, xy, yy]: [f64; 3]) -> ([f64; 2], [Point; 2]) {
-    let (middle, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-    let radius = half.hypot(xy);
-    let axis = Point::from_angle(0.5 * xy.atan2(half));
-    ([middle + radius, middle - radius], [axis, axis.perp()])
+/// Eigenvalues and unit eigenvectors of a symmetric matrix.
+fn eigen(matrix: Matrix2<f64>) -> ([f64; 2], [Point; 2]) {
+    let found = matrix.symmetric_eigen();
+    let axis = |k: usize| Point::new(found.eigenvectors[(0, k)], found.eigenvectors[(1, k)]);
+    ([found.eigenvalues[0], found.eigenvalues[1]], [axis(0), axis(1)])
 }
 
 #[cfg(test)]

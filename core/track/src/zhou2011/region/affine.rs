@@ -9,6 +9,7 @@
 //! "Nearest" is found by propagating offsets in two sweeps (Danielsson, "Euclidean distance mapping", 1980), which can be
 //! off by a fraction of a pixel.
 
+use nalgebra::{Matrix2, Vector2};
 use rototoon_base::geometry::similarity::Similarity;
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{Colour, Raster};
@@ -32,22 +33,20 @@ impl Affine {
     pub fn fit(from: &[Point], to: &[Point]) -> Self {
         let (source, target) = (polygon::center(from), polygon::center(to));
         // M = (Σ q pᵀ)(Σ p pᵀ)⁻¹ with both sets centred.
-        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-        let (mut qx, mut qy) = (Point::ZERO, Point::ZERO);
+        let (mut images, mut moments) = (Matrix2::zeros(), Matrix2::zeros());
         for (&p, &q) in from.iter().zip(to) {
-            let (p, q) = (p - source, q - target);
-            xx += p.x * p.x;
-            xy += p.x * p.y;
-            yy += p.y * p.y;
-            qx += q * p.x;
-            qy += q * p.y;
+            let (p, q) = (column(p - source), column(q - target));
+            images += q * p.transpose();
+            moments += p * p.transpose();
         }
-        let determinant = xx * yy - xy * xy;
-        if determinant <= 1e-6 * (xx + yy) * (xx + yy) || determinant.is_nan() {
+        let round = 1e-6 * moments.trace().powi(2);
+        let inverse = moments.try_inverse().filter(|_| moments.determinant() > round);
+        let Some(inverse) = inverse else {
             let factor = Similarity::fit(from, to).factor;
             return Self { x: factor, y: factor.perp(), source, target };
-        }
-        Self { x: (qx * yy - qy * xy) / determinant, y: (qy * xx - qx * xy) / determinant, source, target }
+        };
+        let map = images * inverse;
+        Self { x: Point::new(map.m11, map.m21), y: Point::new(map.m12, map.m22), source, target }
     }
 
     /// Image of a point.
@@ -55,6 +54,10 @@ impl Affine {
         let p = p - self.source;
         self.x * p.x + self.y * p.y + self.target
     }
+}
+
+fn column(p: Point) -> Vector2<f64> {
+    Vector2::new(p.x, p.y)
 }
 
 /// A run of coloured pixels of one row.
