@@ -1,9 +1,12 @@
 //! The strip of pixels around a segment that its path may use.
 //!
-//! All pixels whose centre is within the half width of the segment: a rectangle with a half disc at each end. The half
-//! width is a share of the segment's length, since the drawn curve bulges from its chord by a share of it (an arc of 120°
-//! by 0.29 of the chord), within limits that grow with the picture's height: short segments keep room for imprecise ends,
-//! long ones get no room to run away along another line.
+//! It contains all pixels whose centre is within the half width of the segment: a rectangle with a half disc at each
+//! end.
+//!
+//! The half width is a share of the segment's length, because the drawn curve bulges from its chord by a share of the
+//! length (an arc of 120° by 0.29 of the chord). It has limits, which grow with the picture's height. The lower limit
+//! gives short segments room for imprecise ends. The upper limit keeps the paths of long segments from running away
+//! along another line.
 
 use super::cost::REFERENCE_LINES;
 use rototoon_base::geometry::{Point, polyline};
@@ -19,19 +22,19 @@ pub(super) struct Corridor {
     pub width: usize,
     /// Rows of the box.
     pub height: usize,
-    /// By pixel of the box, row by row: the squared share of the half width that lies between pixel and segment, 0 on
-    /// the segment and 1 on the border; infinite outside.
+    /// By pixel of the box, row by row: the squared distance from the segment, divided by the squared half width. It is
+    /// 0 on the segment, 1 on the border of the strip and infinite outside.
     pub remoteness: Vec<f32>,
 }
 
-/// How wide corridors are.
+/// How wide the strip around a segment is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CorridorWidth {
     /// Half width as a share of the segment's length.
     pub share: f64,
-    /// Least half width in pixels of a picture of 540 lines; grows with the picture's height.
+    /// Least half width in pixels at 540 lines. It grows with the picture's height.
     pub least: f64,
-    /// Greatest half width in pixels of a picture of 540 lines; grows with the picture's height.
+    /// Greatest half width in pixels at 540 lines. It grows with the picture's height.
     pub most: f64,
 }
 
@@ -42,18 +45,20 @@ impl Default for CorridorWidth {
 }
 
 impl CorridorWidth {
-    /// Half width in pixels for a segment of `length` pixels in a picture of `lines` rows.
+    /// Half width in pixels for a segment of `length` pixels in a picture of `lines` rows. It is never below 1.5 px at
+    /// 540 lines.
     pub fn half_width(&self, length: f64, lines: usize) -> f64 {
         let scale = (lines as f64 / REFERENCE_LINES).max(1.0);
         let least = if self.least >= 1.5 { self.least } else { 1.5 } * scale;
         let wanted = (self.share * length).min(self.most * scale);
-        // A value that is no number loses each comparison and leaves the least.
+        // A NaN fails each comparison, so the result is the lower limit.
         if wanted > least { wanted } else { least }
     }
 }
 
 impl Corridor {
-    /// The corridor of the segment `a`–`b`, both in a picture of `size`.
+    /// The strip around the segment `a`–`b`, in pixels. Both ends must be in the picture, which has the width and
+    /// height `size`.
     pub fn new(a: Point, b: Point, half_width: f64, size: (usize, usize)) -> Self {
         let low = (a.min(b) - half_width).floor().max(Point::ZERO);
         let high = (a.max(b) + half_width).ceil().min(Point::new(size.0 as f64, size.1 as f64));
@@ -70,7 +75,7 @@ impl Corridor {
         Self { x, y, width, height, remoteness }
     }
 
-    /// Index in the box of the pixel that holds `p`, a point of the picture.
+    /// Index in the box of the pixel that contains `p`, a point of the picture.
     pub fn index(&self, p: Point) -> usize {
         let column = (p.x as usize - self.x).min(self.width - 1);
         let row = (p.y as usize - self.y).min(self.height - 1);
@@ -82,7 +87,7 @@ impl Corridor {
         (self.x + index % self.width, self.y + index / self.width)
     }
 
-    /// Whether a pixel of the box belongs to the corridor.
+    /// Whether a pixel of the box belongs to the strip.
     pub fn contains(&self, index: usize) -> bool {
         self.remoteness[index].is_finite()
     }

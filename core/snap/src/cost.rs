@@ -1,65 +1,68 @@
-//! What a live wire sticks to: edges and ink lines of a picture, found where they are asked for.
+//! Edges and ink lines of a picture: the features that a live wire follows.
 //!
-//! Each pixel carries one [`Feature`] of each [`Follow`] kind:
+//! Each pixel has one [`Feature`] of each [`Kind`]:
 //!
 //! - **Edge** (Mortensen & Barrett 1995, §3): the gradient of the colour channel where it is largest, and whether the
-//!   channel's Laplacian crosses zero at the pixel, i.e. differs in sign from one of the four neighbours and is the nearer
-//!   to zero of the two.
-//! - **Line**: dark ink of a few pixels' width has two edges, and an artist who draws down its middle wants neither. Its
-//!   centre is the valley of the luma (Steger 1998): the larger eigenvalue of the Hessian is the strength, and the pixel
-//!   counts where the slope across the valley vanishes within it. A step between two flats bends too, but its slope
-//!   vanishes nowhere.
+//!   channel's Laplacian crosses zero at the pixel. It crosses zero where it differs in sign from one of the four
+//!   neighbours and is the nearer to zero of the two.
+//! - **Line**: dark ink of a few pixels' width has two edges, but an artist draws down its middle. The centre of a line
+//!   is the valley of the luma (Steger 1998). The strength is the larger eigenvalue of the Hessian. The pixel is on the
+//!   line where the slope across the valley is zero within the pixel. A step between two flat colours has a second
+//!   derivative too, but its slope is nowhere zero.
 //!
-//! Both carry where in the pixel the feature lies, across its own direction.
+//! Both kinds also store where in the pixel the feature is, as an offset across the feature's own direction.
 //!
-//! The picture is cut into square tiles that are filtered when a wire first comes near, so that the cost follows the
-//! length of the contours and not the size of the picture, and contours of one picture share it.
+//! The picture is cut into square tiles. A tile is filtered when a wire first comes near it. So the time depends on the
+//! length of the contours, not on the size of the picture, and the contours of one picture share the work.
 //!
-//! Limits: light lines on dark ground are followed as edges; lines much wider than the line scale too.
+//! Limits: light lines on a dark background are followed as edges, and so are lines much wider than the scale of the
+//! line filter.
 
 use super::derivatives::{Derivatives, Kernels, Window};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, Raster};
 use std::sync::OnceLock;
 
-/// Side of a tile in pixels: the filter's border adds a quarter to its area.
+/// Side of a tile in pixels. The filter's border adds a quarter to its area.
 const TILE: usize = 64;
 
-/// Standard deviation in pixels of the edge filter: keeps the two sides of a 2 px line apart, and still evens out the
+/// Standard deviation in pixels of the edge filter. It keeps the two sides of a 2 px line apart and still smooths the
 /// steps of aliased drawings.
 const EDGE_SIGMA: f64 = 0.8;
 
-/// Standard deviation in pixels, at [`REFERENCE_LINES`] lines, of the line filter: finds lines of 1 to 5 px.
+/// Standard deviation in pixels, at [`REFERENCE_LINES`] lines, of the line filter. It finds lines of 1 to 5 px.
 const LINE_SIGMA: f64 = 1.0;
 
-/// Picture height that pixel measures are given for; they grow with larger pictures.
+/// Picture height in lines at which the pixel measures of this module are given. They grow with taller pictures.
 pub(super) const REFERENCE_LINES: f64 = 540.0;
 
-/// Gradient (colour per pixel) below which there is no edge: two of 255 levels over a pixel.
+/// Gradient (colour per pixel, colours 0 to 1) below which there is no edge: two of 255 levels over a pixel.
 const EDGE_FLOOR: f32 = 0.008;
 
 /// Second derivative (luma per px²) below which there is no line.
 const LINE_FLOOR: f32 = 0.006;
 
-/// Slope (luma per pixel) that a valley's two sides have at least, a pixel from the middle.
+/// Least slope (luma per pixel) on each side of a valley, one pixel from its middle.
 const SLOPE_FLOOR: f32 = 0.01;
 
-/// Farthest place of a feature from its pixel's centre, in pixels, that is believed.
+/// Largest offset of a feature from its pixel's centre, in pixels. A larger one is not trusted.
 const MAX_OFFSET: f32 = 1.0;
 
-/// Half a pixel and a little: a valley's bottom belongs to the pixel whose centre is this near (diagonals need 0.71).
+/// A valley's bottom belongs to the pixel whose centre is at most this far away, in pixels. It is a little more than
+/// half a pixel because diagonals need 0.71.
 const LINE_REACH: f32 = 0.71;
 
 /// Luma weights of ITU-R BT.601, for encoded red, green and blue.
 const LUMA: [f32; 3] = [0.299, 0.587, 0.114];
 
-/// What a path sticks to.
+/// What a path follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Follow {
-    /// The line's centre where most control points lie nearer to ink centres than to edges, else the edge.
+    /// The line's centre where the control points are, on average, nearer to ink centres than to edges; otherwise the
+    /// edge.
     #[default]
     Auto,
-    /// The border between two colours, i.e. one side of an ink line.
+    /// The border between two colours, which is one side of an ink line.
     Edge,
     /// The centre of dark ink.
     Line,
@@ -72,34 +75,34 @@ pub(super) enum Kind {
     Line,
 }
 
-/// What one pixel has of an edge or a line.
+/// The edge or line at one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Feature {
     /// Gradient or second derivative; 0 below the floor.
     pub strength: f32,
-    /// Place along the normal from the pixel's centre, in pixels; NaN where there is none in reach.
+    /// Place along the normal from the pixel's centre, in pixels. NaN where there is none in reach.
     pub offset: f32,
-    /// Direction of the tangent from x towards y, a full turn being 2¹⁶. An edge has its darker side on a fixed hand; a
-    /// line has no sense.
+    /// Angle of the tangent from the x axis towards the y axis. A full turn is 2¹⁶. An edge has its darker side always
+    /// on the same hand; a line has no sense of direction.
     pub direction: i16,
     /// Whether the edge or line passes through this pixel.
     pub present: bool,
 }
 
 impl Feature {
-    /// Unit vector across the tangent: the gradient of an edge.
+    /// Unit vector across the tangent. For an edge it is the direction of the gradient.
     pub fn normal(&self) -> Point {
         Point::from_angle(f64::from(self.direction) * (std::f64::consts::TAU / 65536.0)).perp()
     }
 
-    /// Sub-pixel place in the pixel (`x`, `y`), if there is one.
+    /// Sub-pixel place, in pixels of the picture, of the feature in the pixel (`x`, `y`), if it has one.
     pub fn place(&self, x: usize, y: usize) -> Option<Point> {
         let centre = Point::new(x as f64 + 0.5, y as f64 + 0.5);
         self.offset.is_finite().then(|| centre + self.normal() * f64::from(self.offset))
     }
 }
 
-/// An angle in radians as a share of the full turn, 2¹⁶.
+/// An angle in radians in units of 2⁻¹⁶ turn.
 fn to_turn(radians: f32) -> i16 {
     ((radians * (32768.0 / std::f32::consts::PI)).round() as i32) as i16
 }
@@ -114,13 +117,13 @@ pub(super) struct Features<'a> {
 }
 
 impl<'a> Features<'a> {
-    /// Nothing is computed yet.
+    /// Prepares the features of a picture. Nothing is computed yet.
     pub fn new(picture: &'a Raster<Colour>) -> Self {
         let columns = picture.width().div_ceil(TILE);
         let count = columns * picture.height().div_ceil(TILE);
         let scale = (picture.height() as f64 / REFERENCE_LINES).max(1.0);
         let empty = || (0..count).map(|_| OnceLock::new()).collect();
-        // Beyond twice the reference, lines that lie close together would melt into one.
+        // Beyond twice the reference height, the filter would merge lines that are close together.
         let line_sigma = LINE_SIGMA * scale.min(2.0);
         Self {
             picture,
@@ -136,7 +139,7 @@ impl<'a> Features<'a> {
         (self.picture.width(), self.picture.height())
     }
 
-    /// Pixels of this picture in a pixel at the reference height; at least 1.
+    /// Pixels of this picture in a pixel at the reference height, at least 1.
     pub fn scale(&self) -> f64 {
         self.scale
     }
@@ -148,7 +151,7 @@ impl<'a> Features<'a> {
     }
 
     fn tile(&self, kind: Kind, x: usize, y: usize) -> Box<[Feature]> {
-        // One pixel more on each side, for the neighbours.
+        // One pixel more on each side: the features need their neighbours.
         let window = Window { x: x as isize - 1, y: y as isize - 1, width: TILE + 2, height: TILE + 2 };
         let kernels = &self.kernels[kind as usize];
         match kind {
@@ -174,7 +177,7 @@ fn inner_pixels() -> impl Iterator<Item = usize> {
     (1..=TILE).flat_map(|y| (1..=TILE).map(move |x| y * STRIDE + x))
 }
 
-/// What an edge needs of one colour channel.
+/// The derivatives of one colour channel that the edge feature needs.
 struct Channel {
     x: Vec<f32>,
     y: Vec<f32>,
@@ -193,7 +196,7 @@ impl Channel {
         let here = self.laplacian[at];
         let wins = |other: usize, first: bool| {
             let there = self.laplacian[other];
-            // Of two that are equally near to zero, the left or upper one; an exact zero wins over both signs.
+            // Of two values equally near to zero the left or upper one wins. An exact zero wins over both signs.
             here * there < 0.0 && (here.abs() < there.abs() || (first && here.abs() == there.abs()))
         };
         let opposite = |a: usize, b: usize| here == 0.0 && self.laplacian[a] * self.laplacian[b] < 0.0;
@@ -232,11 +235,11 @@ fn edge_at(channels: &[Channel; 3], at: usize) -> Feature {
     let (nx, ny) = (channel.x[at] / here, channel.y[at] / here);
     let before = near(&channel.magnitude, at, -nx, -ny);
     let after = near(&channel.magnitude, at, nx, ny);
-    // Vertex of the parabola through the magnitudes at -1, 0 and 1 along the gradient.
+    // Vertex of the parabola through the magnitudes at −1, 0 and 1 along the gradient.
     let bend = before - 2.0 * here + after;
     let vertex = if bend < 0.0 { 0.5 * (before - after) / bend } else { f32::NAN };
     let offset = if vertex.abs() <= MAX_OFFSET { vertex } else { f32::NAN };
-    // The gradient is the tangent turned by a right angle from x towards y, so the offset counts along the normal.
+    // The gradient is the tangent turned by a right angle from x towards y, so the offset is measured along the normal.
     Feature { strength: here, offset, direction: to_turn((-nx).atan2(ny)), present: channel.crosses_zero(at) }
 }
 
@@ -248,13 +251,13 @@ fn line_at(d: &Derivatives, at: usize) -> Feature {
     if !bend.is_finite() || bend < LINE_FLOOR {
         return Feature { offset: f32::NAN, ..Feature::default() };
     }
-    // The principal direction of the larger curvature points across the valley.
+    // The principal direction of the larger eigenvalue points across the valley.
     let across = 0.5 * (2.0 * xy).atan2(xx - yy);
     let (ny, nx) = across.sin_cos();
     let shift = -(d.x[at] * nx + d.y[at] * ny) / bend;
     let offset = if shift.abs() <= MAX_OFFSET { shift } else { f32::NAN };
     let direction = to_turn(across - std::f32::consts::FRAC_PI_2);
-    // Beside a step the slope falls off so fast that its extrapolation vanishes, but it keeps its sign.
+    // Beside a step the slope falls off so fast that its linear extrapolation reaches zero, but it keeps its sign.
     let slope = |side: f32| near(&d.x, at, side * nx, side * ny) * nx + near(&d.y, at, side * nx, side * ny) * ny;
     let valley = slope(-1.0) < -SLOPE_FLOOR && slope(1.0) > SLOPE_FLOOR;
     Feature { strength: bend, offset, direction, present: valley && shift.abs() <= LINE_REACH }
@@ -264,7 +267,7 @@ fn line_at(d: &Derivatives, at: usize) -> Feature {
 mod tests {
     use super::*;
 
-    /// Share of the pixel (`x`, `y`) on the side `p · normal < d`, by 8 × 8 samples.
+    /// Share of the pixel (`x`, `y`) that is inside, by 8 × 8 samples.
     fn coverage(x: usize, y: usize, inside: impl Fn(Point) -> bool) -> f32 {
         let count = (0..64).filter(|i| {
             let shift = Point::new((i % 8) as f64 + 0.5, (i / 8) as f64 + 0.5) / 8.0;

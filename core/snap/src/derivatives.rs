@@ -1,10 +1,10 @@
 //! Gaussian derivatives of a window of a picture.
 //!
-//! Separable convolution with sampled kernels of the Gaussian and its first two derivatives. The samples are scaled so
-//! that a constant, a ramp and a parabola are differentiated exactly, which plain samples at σ below 1 do not do. What
-//! lies outside the picture repeats its border.
+//! The derivatives are separable convolutions with sampled kernels of the Gaussian and its first two derivatives. The
+//! samples are scaled so that the derivatives of a constant, a ramp and a parabola are exact. Plain samples are not
+//! exact at σ below 1. Outside the picture the border pixels are repeated by the caller's `read` function.
 //!
-//! Only windows are filtered: a live wire looks at a narrow corridor of a large picture.
+//! Only windows are filtered, because a live wire needs a narrow strip of a large picture.
 
 /// A rectangle of pixels that may reach over the picture's border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub(super) struct Window {
     pub height: usize,
 }
 
-/// Derivatives of one channel on a window, row by row, per pixel.
+/// Derivatives of one channel on a window, row by row. The unit of length is the pixel.
 pub(super) struct Derivatives {
     /// ∂/∂x.
     pub x: Vec<f32>,
@@ -33,7 +33,7 @@ pub(super) struct Derivatives {
     pub yy: Vec<f32>,
 }
 
-/// Kernels of one σ; correlation form, centre in the middle.
+/// Kernels of one σ, as correlation weights with the centre in the middle.
 pub(super) struct Kernels {
     value: Vec<f32>,
     slope: Vec<f32>,
@@ -41,7 +41,7 @@ pub(super) struct Kernels {
 }
 
 impl Kernels {
-    /// Kernels of standard deviation `sigma` pixels, cut at three σ.
+    /// Kernels of standard deviation `sigma` pixels, cut off at three σ.
     pub fn new(sigma: f64) -> Self {
         let radius = (3.0 * sigma).ceil().max(1.0) as isize;
         let taps: Vec<f64> = (-radius..=radius).map(|i| i as f64).collect();
@@ -62,7 +62,8 @@ impl Kernels {
         self.value.len() / 2
     }
 
-    /// Derivatives on `window` of the channel that `read(x, y)` gives; called on the window grown by the radius.
+    /// Derivatives on `window` of the channel that `read(x, y)` gives. `read` is called for each pixel of the window
+    /// grown by the radius, so it must accept places outside the picture.
     pub fn derivatives(&self, window: Window, read: impl Fn(isize, isize) -> f32) -> Derivatives {
         let r = self.radius();
         let (wide, tall) = (window.width + 2 * r, window.height + 2 * r);
@@ -85,7 +86,7 @@ impl Kernels {
     }
 }
 
-/// Rows correlated with `kernel`; the result is narrower by the kernel's length less one.
+/// Correlates each row with `kernel`. The result is narrower by the kernel's length less one.
 fn correlate_rows(source: &[f32], width: usize, height: usize, kernel: &[f32]) -> Vec<f32> {
     let narrow = width + 1 - kernel.len();
     let mut result = vec![0.0; narrow * height];
@@ -99,7 +100,7 @@ fn correlate_rows(source: &[f32], width: usize, height: usize, kernel: &[f32]) -
     result
 }
 
-/// Columns correlated with `kernel`; `source` has `height + kernel.len() - 1` rows of `width` values.
+/// Correlates each column with `kernel`. `source` has `height + kernel.len() - 1` rows of `width` values.
 fn correlate_columns(source: &[f32], width: usize, height: usize, kernel: &[f32]) -> Vec<f32> {
     let mut result = vec![0.0; width * height];
     for (y, out) in result.chunks_exact_mut(width).enumerate() {

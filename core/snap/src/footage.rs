@@ -1,10 +1,11 @@
-//! All parts of a scene on all of their frames.
+//! Snaps all parts of a scene on all of their frames.
 //!
-//! Frames are independent but for one thing: whether a part's ink centre or edge is followed is decided by all of its
-//! frames together. Paths of both kinds are therefore found where a frame's own points are in doubt, and the part's vote
-//! chooses in the end; so each picture is asked for once.
+//! The frames are independent except for one decision: whether a part follows ink centres or edges is decided by all of
+//! its frames together, so that it does not flicker. With [`Follow::Auto`] each frame is therefore snapped in both
+//! ways, and the sum of the frames' votes chooses at the end. Each picture is read only once.
 //!
-//! As many frames are in work as there are threads, and no more: a picture is dropped before the next is asked for.
+//! At most as many frames are in memory at a time as there are threads. A picture is dropped before the next one is
+//! read.
 
 use super::cost::Follow;
 use super::snapper::{InkVote, SnapOptions, Snapper};
@@ -13,13 +14,13 @@ use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Cancelled, FrameError, FrameNumber, FrameSource, Part, Progress, Scene};
 use std::collections::BTreeMap;
 
-/// Snapped paths of one part: by frame, one path a segment.
+/// Snapped paths of one part: for each frame one path per segment, in pixels of the picture.
 pub type PartCurves = BTreeMap<FrameNumber, Vec<Vec<Point>>>;
 
-/// Why snapping failed. Nothing was changed.
+/// Why snapping failed. The scene is not changed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SnapError {
-    /// A picture could not be had.
+    /// A picture could not be read.
     #[error(transparent)]
     Frame(#[from] FrameError),
     /// The caller asked to stop.
@@ -31,18 +32,20 @@ pub enum SnapError {
 struct Found {
     part: usize,
     vote: InkVote,
-    /// Along edges and along lines; one of them is missing where the options leave no choice.
+    /// Paths along edges and along lines. One of them is missing if the options fix the kind.
     paths: [Option<Vec<Vec<Point>>>; 2],
 }
 
-/// Snaps every part on every frame of its tracks, or of its keys where it has no tracks. The result has one entry a part.
+/// Snaps every part on every frame of its tracks, or of its keys where it has no tracks. The result has one entry per
+/// part, in the order of the scene. Coordinates are pixels of the picture.
 ///
-/// Each picture is asked for once, and the result does not depend on the number of threads. Progress is reported by the
-/// calling thread, after as many frames as there are threads; cancelling takes effect there.
+/// Each picture is requested once, and the result does not depend on the number of threads. The calling thread reports
+/// progress after each batch of as many frames as there are threads. A run can be cancelled at these reports.
 ///
 /// # Errors
 ///
-/// The error of the first frame, in time order, whose picture cannot be had; [`SnapError::Cancelled`] when told to stop.
+/// The error of the first frame, in time order, whose picture cannot be read; [`SnapError::Cancelled`] if the progress
+/// listener asks to stop.
 pub fn snap_scene(
     scene: &Scene,
     frames: &dyn FrameSource,
@@ -66,7 +69,7 @@ pub fn snap_scene(
     Ok(choose(scene.parts.len(), found))
 }
 
-/// By frame, the parts that have a contour on it, with the contour.
+/// For each frame, the parts that have a contour on it, with the contour.
 fn contours_by_frame(scene: &Scene) -> BTreeMap<FrameNumber, Vec<(usize, &[Point])>> {
     let mut work: BTreeMap<FrameNumber, Vec<(usize, &[Point])>> = BTreeMap::new();
     for (index, part) in scene.parts.iter().enumerate() {
@@ -100,7 +103,7 @@ fn snap_frame(
     each.collect()
 }
 
-/// Of each part, the paths of the kind that its frames together vote for.
+/// For each part, the paths of the kind that wins the vote of all its frames.
 fn choose(parts: usize, found: Vec<(FrameNumber, Vec<Found>)>) -> Vec<PartCurves> {
     let mut votes = vec![InkVote::default(); parts];
     for entry in found.iter().flat_map(|(_, entries)| entries) {
@@ -123,7 +126,7 @@ mod tests {
     use std::sync::Arc;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
-    /// A dark disc outline that moves to the right; frame 7 is missing.
+    /// A dark disc outline that moves to the right. Frame 7 is missing.
     struct Disc {
         asked: AtomicUsize,
     }

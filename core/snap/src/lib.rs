@@ -1,34 +1,38 @@
-//! Contours onto the drawn ink: intelligent scissors (Mortensen & Barrett 1995) between fixed control points.
+//! Snaps contours to the drawn ink: intelligent scissors (Mortensen & Barrett 1995) between fixed control points.
 //!
 //! This crate makes a polygon that is already near a drawn line follow it exactly. It does not move control points and does
 //! not follow contours through time; `rototoon-track` does that.
 //!
-//! A tracked contour is a polygon; what the artist sees is a curve. Between two neighbouring control points the least
-//! costly chain of pixels is searched, where a step costs 0.43 f_Z + 0.43 f_G + 0.14 f_D a pixel's length: no zero crossing
-//! of the Laplacian, weak gradient, and disagreement of directions make it dear (Zhou & Xiao 2011, eq. 13). The
-//! chain is then moved to the sub-pixel place of the edge.
+//! **What.** A tracked contour is a polygon, but the artist sees a curve. For each two neighbouring control points this
+//! module searches the chain of pixels of least cost between them. A step costs 0.43 f_Z + 0.43 f_G + 0.14 f_D per
+//! pixel of length (Zhou & Xiao 2011, eq. 13). f_Z is high where the Laplacian does not cross zero, f_G where the
+//! gradient is weak, and f_D where step and edge differ in direction. The chain is then moved to the sub-pixel place of
+//! the edge or line.
 //!
-//! Four things differ from the papers:
+//! **Differences from the papers:**
 //!
-//! - The search is confined to a [corridor](CorridorWidth) around the segment: it cannot run away along another line, and
-//!   takes a millisecond.
-//! - f_G is relative to what the segment's ends lie on, not to the strongest gradient of the picture, so that a faint line
-//!   is not left for a stronger one.
-//! - Diagonal steps weigh √2 in all three terms (the paper weighs f_G alone), so that a cost is the integral of the local
-//!   cost along the path and its least value does not depend on the line's direction.
-//! - Contours on ink follow its centre when their points lie there ([`Follow`]): an ink line has an edge on both sides,
-//!   and paths that stick to edges would choose one of them in each segment. The choice is made for a contour as a
-//!   whole, and by [`snap_scene`] for a part on all of its frames, so that it does not flicker. On edges, f_D makes the
-//!   change of sides dear: it counts the sense of the gradient.
+//! - The search is limited to a [strip](CorridorWidth) around the segment. So it cannot run away along another line,
+//!   and it takes about a millisecond.
+//! - f_G is relative to the features at the segment's ends, not to the strongest gradient of the picture. So a path on
+//!   a faint line does not jump to a stronger line nearby.
+//! - Diagonal steps weigh √2 in all three terms (in the paper in f_G alone). So the cost is the integral of a local
+//!   cost along the path, and its minimum does not depend on the line's direction.
+//! - A contour whose points are on ink follows the centre of the ink ([`Follow`]). An ink line has an edge on both
+//!   sides, and a path along edges would choose one of them for each segment. The choice is made for a contour as a
+//!   whole. [`snap_scene`] makes it for a part on all of its frames, so that it does not flicker. On edges, f_D uses
+//!   the sign of the gradient, so changing sides is expensive.
+//!
+//! **Limits.** Light lines on a dark background and very wide lines are followed as edges only. A segment without ink
+//! between its ends stays straight.
 //!
 //! Files, in reading order:
 //!
 //! - `derivatives`: Gaussian derivatives of a window
-//! - `cost`: edges and lines of a picture, found where they are asked for
+//! - `cost`: edges and lines of a picture, computed where a path needs them
 //! - `centre`: the middle of an ink line
-//! - `corridor`: the pixels a path may use
+//! - `corridor`: the pixels that a path may use
 //! - `live_wire`: Dijkstra's search
-//! - `subpixel`: from pixels to a path
+//! - `subpixel`: from a chain of pixels to a smooth path
 //! - `snapper`: contours of one picture
 //! - `footage`: parts of a scene on all frames
 //!
@@ -72,7 +76,8 @@ pub use snapper::{InkVote, SnapOptions, Snapper};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, Raster};
 
-/// One path a segment of a single contour: [`Snapper::snap`] for those who have but one contour in a picture.
+/// Snaps a single contour of a picture: one path per segment, as [`Snapper::snap`] gives them. For several contours of
+/// one picture use one [`Snapper`], which reuses its work.
 pub fn snap_contour(
     picture: &Raster<Colour>,
     contour: &[Point],

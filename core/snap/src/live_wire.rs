@@ -1,20 +1,22 @@
-//! The least costly path through a grid of pixels (Dijkstra 1959), as intelligent scissors use it.
+//! The path of least cost through a grid of pixels (Dijkstra 1959), as intelligent scissors use it.
 //!
-//! Steps go to the eight neighbours. Costs are whole numbers, so that sums are exact and a tie is a tie on every machine.
-//! Among equally costly predecessors the one with the smaller index is kept: the path is defined by the costs alone, not
-//! by the order of the queue.
+//! Steps go to the eight neighbours. Costs are whole numbers, so sums are exact and ties are the same on every machine.
+//! Of predecessors with equal cost the one with the smaller index is kept. So the path depends on the costs alone, not
+//! on the order of the queue.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// The eight neighbours as (column, row) steps, in the order of their direction from x towards y, an eighth turn apart.
+/// The eight neighbours as (column, row) steps. They are ordered by direction from the x axis towards the y axis, an
+/// eighth of a turn apart.
 pub(super) const NEIGHBOURS: [(isize, isize); 8] =
     [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
-/// Pixel indices from `start` to `goal`, both included, of least total cost in a grid of `width` × `height` pixels.
+/// The path of least total cost from `start` to `goal` in a grid of `width` × `height` pixels, as pixel indices with
+/// both ends.
 ///
-/// `cost(from, to, k)` is what the step in direction `NEIGHBOURS[k]` costs, at least 1, or `None` where it is not allowed.
-/// `None` where the goal cannot be reached.
+/// `cost(from, to, k)` is the cost of the step in direction `NEIGHBOURS[k]`. A cost of 0 counts as 1. `None` forbids
+/// the step. The result is `None` if the goal cannot be reached.
 pub(super) fn shortest_path(
     (width, height): (usize, usize),
     start: usize,
@@ -69,7 +71,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Least costs from `start` by Bellman-Ford: every step is tried until nothing changes.
+    /// Least costs from `start` by Bellman–Ford: every step is tried until nothing changes.
     fn naive(
         (width, height): (usize, usize),
         start: usize,
@@ -106,7 +108,7 @@ mod tests {
             ends in (0usize..64, 0usize..64),
         ) {
             let (start, goal) = (ends.0 % (width * height), ends.1 % (width * height));
-            // 0 is a wall; diagonal steps cost more.
+            // Pixels of value 0 are walls. Diagonal steps cost more.
             let cost = |_: usize, to: usize, k: usize| (pixels[to] > 0).then(|| pixels[to] * (2 + (k % 2) as u32));
             let expected = naive((width, height), start, cost)[goal];
             match shortest_path((width, height), start, goal, cost) {
@@ -128,7 +130,7 @@ mod tests {
 
     #[test]
     fn of_equal_paths_the_one_of_smaller_indices_is_taken() {
-        // Round a wall in the middle of a 3 × 3 grid, both ways cost the same.
+        // There are two ways around a wall in the middle of a 3 × 3 grid, with the same cost.
         let cost = |_: usize, to: usize, _: usize| (to != 4).then_some(1);
         assert_eq!(shortest_path((3, 3), 3, 5, cost), Some(vec![3, 1, 5]));
     }

@@ -1,4 +1,7 @@
 //! Intelligent scissors between the fixed control points of contours of one picture.
+//!
+//! For each segment the costs are computed in a strip around it, Dijkstra's search finds the chain of pixels, and the
+//! chain is refined to sub-pixel places.
 
 use super::centre::ink_centre;
 use super::corridor::{Corridor, CorridorWidth};
@@ -15,20 +18,20 @@ const MAGNITUDE: f32 = 0.43;
 /// Weight of the gradient direction, ibid.
 const DIRECTION: f32 = 0.14;
 
-/// Cost units of a pixel's length of the worst ground: fine enough that rounding decides nothing visible.
+/// Cost units per pixel of length at the highest local cost. It is fine enough that rounding has no visible effect.
 const UNITS: f32 = 4096.0;
 
-/// How much dearer than on the segment a step is at the corridor's border: makes paths over flat ground straight, and
-/// leaves the choice to the ink wherever there is some.
+/// How much more a step costs at the strip's border than on the segment, as a share. It makes paths over flat areas
+/// straight, and leaves the choice to the ink wherever there is some.
 const REMOTENESS: f32 = 0.5;
 
-/// Least share of a path's pixels that lie on an edge or line; with fewer the straight segment is the better guess.
+/// Least share of a path's pixels that are on an edge or line. With fewer the straight segment is the better guess.
 const LEAST_SUPPORT: f64 = 0.35;
 
-/// Distance in pixels from a segment's end at which a feature counts as the one that the end lies on.
+/// A feature within this distance of a segment's end, in pixels, counts as the one that the end is on.
 const END_RADIUS: f64 = 2.0;
 
-/// Least share of the corridor's strongest feature that counts in full: what is fainter may be noise.
+/// Least strength that counts in full, as a share of the strip's strongest feature. Fainter features may be noise.
 const LEAST_FULL: f32 = 0.15;
 
 /// Search radius, in pixels at 540 lines, of the vote between edge and line.
@@ -37,50 +40,54 @@ const VOTE_RADIUS: f64 = 3.0;
 /// How to snap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SnapOptions {
-    /// What the paths stick to.
+    /// What the paths follow.
     pub follow: Follow,
-    /// How far from a segment its path may go.
+    /// How far a path may go from its segment.
     pub corridor: CorridorWidth,
 }
 
-/// How far control points lie from the nearest edges and from the nearest ink centres; sums over points, each distance at
-/// most the search radius. Votes of several contours or frames are added.
+/// How far control points are from the nearest edges and from the nearest ink centres. Each is a sum over points, and
+/// each distance is at most the search radius of 3 px. Add the votes of several contours or frames with
+/// [`InkVote::and`].
+///
+/// The unit is the pixel at 540 lines; above 1080 lines the scale stays at that of 1080 lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct InkVote {
-    /// Sum of the distances to edges, in pixels at 540 lines.
+    /// Sum of the distances to edges.
     pub edge: f64,
-    /// Sum of the distances to ink centres, in pixels at 540 lines.
+    /// Sum of the distances to ink centres.
     pub line: f64,
 }
 
 impl InkVote {
-    /// Both votes together.
+    /// The sum of both votes.
     pub fn and(self, other: Self) -> Self {
         Self { edge: self.edge + other.edge, line: self.line + other.line }
     }
 
-    /// What the points lie nearer to; edges where it is a draw.
+    /// The kind that the points are nearer to; edges if both are equal.
     pub fn winner(self) -> Follow {
         if self.line < self.edge { Follow::Line } else { Follow::Edge }
     }
 }
 
-/// Snaps contours to one picture. What is computed of the picture is kept for the next contour.
+/// Snaps contours to one picture. It keeps the computed features for the next contour.
 pub struct Snapper<'a> {
     features: Features<'a>,
 }
 
 impl<'a> Snapper<'a> {
-    /// Looks at nothing yet: features are computed near the contours, when they are asked for.
+    /// Prepares a picture. Features are computed later, near the contours that are snapped.
     pub fn new(picture: &'a Raster<Colour>) -> Self {
         Self { features: Features::new(picture) }
     }
 
-    /// One path a segment, in pixels, from its control point to the next; a closed contour's last goes to its first.
+    /// Snaps a contour. The result has one path per segment, in pixels, from its control point to the next one. The
+    /// last segment of a closed contour goes to the first point.
     ///
     /// Each path begins and ends exactly at its control points and has at least two points. It is the straight segment
-    /// where an end lies outside the picture (or is no number), the ends coincide, or nothing drawn leads from one to the
-    /// other within the corridor.
+    /// where an end is outside the picture or NaN, where both ends coincide, or where too little ink connects them
+    /// within the strip.
     pub fn snap(&self, contour: &[Point], closed: bool, options: &SnapOptions) -> Vec<Vec<Point>> {
         let follow = match options.follow {
             Follow::Auto => self.vote(contour).winner(),
@@ -98,7 +105,7 @@ impl<'a> Snapper<'a> {
         })
     }
 
-    /// Distance from `p` to the nearest feature, at most the search radius; in pixels at 540 lines.
+    /// Distance from `p` to the nearest feature, at most the search radius. The unit is that of [`InkVote`].
     fn nearest(&self, kind: Kind, p: Point) -> f64 {
         let scale = self.features.scale().min(2.0);
         let reach = VOTE_RADIUS * scale;
@@ -113,7 +120,7 @@ impl<'a> Snapper<'a> {
         nearest / scale
     }
 
-    /// Where the edge or line lies that passes through a pixel.
+    /// Sub-pixel place of the edge or line that passes through a pixel.
     fn place(&self, kind: Kind, feature: Feature, x: usize, y: usize) -> Option<Point> {
         match kind {
             _ if !feature.present => None,
@@ -137,7 +144,7 @@ impl<'a> Snapper<'a> {
         self.wire(a, b, kind, &corridor).unwrap_or_else(|| vec![a, b])
     }
 
-    /// The path within a corridor; `None` where it finds too little to follow.
+    /// The path within a strip. `None` where too few of its pixels are on a feature.
     fn wire(&self, a: Point, b: Point, kind: Kind, corridor: &Corridor) -> Option<Vec<Point>> {
         let features: Vec<Feature> = (0..corridor.width * corridor.height)
             .map(|i| {
@@ -166,9 +173,12 @@ impl<'a> Snapper<'a> {
     }
 }
 
-/// The strength from which on f_G is 0, for a segment with these `ends`: that of the fainter of the features at the ends, so
-/// that a stronger line near by is no better than the one that was drawn on. The paper's training of f_G serves the
-/// same end (§5). The corridor's strongest where neither end lies on anything; `None` where nothing is in the corridor.
+/// The feature strength from which on f_G is 0, for a segment with these `ends`. It is the strength of the fainter of
+/// the features at the ends, so that a stronger line nearby is no better than the one that was drawn on. The training
+/// of f_G in Mortensen & Barrett 1995, §5, has the same purpose.
+///
+/// If neither end is on a feature it is the strength of the strongest one in the strip. `None` if the strip has no
+/// feature.
 fn full_strength(features: &[Feature], corridor: &Corridor, ends: [Point; 2]) -> Option<f32> {
     let strongest = features.iter().fold(0.0f32, |most, f| most.max(f.strength));
     let mut full = strongest;
@@ -187,19 +197,20 @@ fn full_strength(features: &[Feature], corridor: &Corridor, ends: [Point; 2]) ->
     (strongest > 0.0).then(|| full.max(LEAST_FULL * strongest))
 }
 
-/// Cost of a pixel's length of a step from `p` to `q` in direction `NEIGHBOURS[k]`, 0 to 1: Mortensen & Barrett 1995, eq. 1.
+/// Cost per pixel of length of a step from `p` to `q` in direction `NEIGHBOURS[k]`, 0 to 1: Mortensen & Barrett 1995,
+/// eq. 1.
 fn local_cost(p: Feature, q: Feature, k: usize, full: f32, signed: bool) -> f32 {
     let zero_crossing = if q.present { 0.0 } else { 1.0 };
     let magnitude = 1.0 - (q.strength / full).min(1.0);
     ZERO_CROSSING * zero_crossing + MAGNITUDE * magnitude + DIRECTION * direction_cost(p, q, k, signed)
 }
 
-/// f_D, 0 to 1: how much the step and the edges at its two pixels differ in direction. Eq. 3 and 4 of the paper are
-/// (acos d_p + acos d_q)/π with the step turned so that d_p ≥ 0; since that reaches 3/2, it is divided by 3π/2 instead,
-/// as the authors do in their later work (1998).
+/// f_D, 0 to 1: how much the step and the edges at its two pixels differ in direction. Eq. 3 and 4 of Mortensen &
+/// Barrett 1995 are (acos d_p + acos d_q)/π, with the step turned so that d_p ≥ 0. That expression reaches 3/2. So here
+/// the divisor is 3π/2, as in the authors' later work (1998).
 ///
-/// Angles are whole shares of a full turn, whose differences wrap by themselves. A pixel without direction counts as
-/// a right angle, the arc cosine of the zero vector's product.
+/// Angles are integer shares of a full turn, so their differences wrap around. A pixel without direction counts as a
+/// right angle: the scalar product with the zero vector is 0.
 fn direction_cost(p: Feature, q: Feature, k: usize, signed: bool) -> f32 {
     const QUARTER: u16 = 1 << 14;
     let step = (k * (65536 / NEIGHBOURS.len())) as u16 as i16;
@@ -213,7 +224,7 @@ fn direction_cost(p: Feature, q: Feature, k: usize, signed: bool) -> f32 {
         let turned = step.wrapping_add(i16::MIN);
         (away(p, turned), away(q, turned))
     };
-    // A line has no sense: half a turn is no turn.
+    // A line has no sense of direction: half a turn counts as no turn.
     let at_q = if signed { at_q } else { at_q.min(2 * QUARTER - at_q) };
     f32::from(at_p.min(QUARTER)) / (3.0 * f32::from(QUARTER)) + f32::from(at_q) / (3.0 * f32::from(QUARTER))
 }
@@ -235,7 +246,7 @@ mod tests {
                     let (dp, dq) = (Point::from_angle(angle(tp)), Point::from_angle(angle(tq)));
                     let mut link = Point::from_angle(angle(k as i32 * 8192));
                     if dp.dot(link).abs() < 1e-9 {
-                        continue; // Both senses of the step are as good.
+                        continue; // Both senses of the step are equally good.
                     }
                     if dp.dot(link) < 0.0 {
                         link = -link;

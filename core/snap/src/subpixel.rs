@@ -1,32 +1,36 @@
 //! From a chain of pixels to a path along the ink with sub-pixel places.
 //!
-//! Each pixel that the edge or line passes is moved to the feature's own place, across its direction (parabola through the
-//! gradient magnitude for an edge, the middle between both edges for a line). Gaps between them are bridged where that is nearly straight; elsewhere pixels stay at their centre. Binomial smoothing along
-//! the path takes out the staircase of those that stayed and joins fixed ends that lie a pixel or two beside the ink
-//! without a kink. It moves a curve of radius r by about 1/2r px, which is below a tenth of a pixel for radii above 5.
+//! 1. Each pixel on an edge or line is moved across the feature's direction to the feature's own place. For an edge
+//!    that is the vertex of a parabola through the gradient magnitude, for a line the middle between both edges.
+//! 2. Pixels without a feature are left out where the way across them is nearly straight. Elsewhere they stay at their
+//!    centres.
+//! 3. Binomial smoothing along the path removes the staircase of those pixels. It also joins fixed ends that are a
+//!    pixel or two beside the ink without a kink. It moves a curve of radius r by about 1/2r px, less than a tenth of a
+//!    pixel for radii above 5.
 //!
-//! The path stays on its side of an ink line: a wire of the edge kind pays for a gradient that turns round, and a pixel is
-//! moved to the extremum of its own gradient.
+//! A path along an edge stays on its side of an ink line: a gradient that changes its sign is expensive, and each pixel
+//! moves to the extremum of its own gradient.
 
 use super::corridor::Corridor;
 use rototoon_base::geometry::Point;
 use rototoon_base::geometry::polyline::nearest_on_segment;
 
-/// Binomial passes (¼, ½, ¼); each adds ½ px² of variance on a path of one point a pixel.
+/// Number of binomial passes (¼, ½, ¼). Each adds ½ px² of variance on a path of one point per pixel.
 const PASSES: usize = 2;
 
-/// Pixels that the feature does not pass are left out where all of a run lie this near to the straight way, in pixels.
+/// A run of pixels without a feature is left out if all of them are at most this far from the straight way across the
+/// run, in pixels.
 const STRAIGHT: f64 = 1.0;
 
-/// The same as a share of the straight way: over flat ground, chains of horizontal and diagonal steps that bulge by up to
-/// a fifth (½ tan 22.5°) are as short as any.
+/// The same limit as a share of the length of the straight way; the larger limit counts. On flat areas, chains of
+/// horizontal and diagonal steps that bulge by up to a fifth (½ tan 22.5°) are as short as any.
 const BULGE: f64 = 0.25;
 
-/// Points nearer than this to their predecessor are dropped, in pixels.
+/// Points nearer than this to their predecessor or to the end are dropped, in pixels.
 const LEAST_STEP: f64 = 0.3;
 
-/// The path through `pixels` of the corridor, from exactly `a` to exactly `b`; `place` is where the feature lies that
-/// passes through a pixel.
+/// The path through `pixels`, given by index in the strip's box, from exactly `a` to exactly `b`. `place` gives the
+/// sub-pixel place of the feature that passes through a pixel. All coordinates are pixels of the picture.
 pub(super) fn refine(
     pixels: &[usize],
     corridor: &Corridor,
@@ -69,7 +73,7 @@ fn centre((x, y): (usize, usize)) -> Point {
     Point::new(x as f64 + 0.5, y as f64 + 0.5)
 }
 
-/// The path without points that hardly leave their predecessor or the end; both ends are kept.
+/// The path without points that are too near to their predecessor or to the end. Both ends are kept.
 fn thin(path: &[Point]) -> Vec<Point> {
     let end = path[path.len() - 1];
     let mut kept = vec![path[0]];

@@ -1,9 +1,9 @@
-//! Whole contours on drawings whose truth is known.
+//! Complete contours on drawings with a known true outline.
 
 use super::*;
 use rototoon_base::geometry::polyline;
 
-/// A picture of coverage-weighted colours: `paint` gives the colour at a point, averaged over 6 × 6 samples a pixel.
+/// An antialiased picture: `paint` gives the colour at a point, and each pixel is the mean of 6 × 6 samples.
 fn drawing(width: usize, height: usize, paint: impl Fn(Point) -> Colour) -> Raster<Colour> {
     Raster::from_fn(width, height, |x, y| {
         let mut sum = [0.0; 3];
@@ -87,7 +87,7 @@ fn a_slanted_border_is_straight() {
 
 #[test]
 fn the_path_does_not_jump_to_a_stronger_parallel_line() {
-    // The wanted line is fainter and has a gap of 8 px.
+    // The line to follow is fainter and has a gap of 8 px.
     let faint = [0.6, 0.6, 0.6];
     let picture = drawing(120, 60, |p| {
         if (p.y - 20.0).abs() < 1.0 && (p.x - 60.0).abs() > 4.0 {
@@ -131,7 +131,7 @@ fn where_nothing_can_be_followed_the_segment_stays() {
     assert_eq!(straight(&drawn, &[a, outside, b]), [[a, outside], [outside, b]]);
     let broken = straight(&drawn, &[a, Point::new(f64::NAN, 3.0)]);
     assert!(broken[0].len() == 2 && broken[0][1].x.is_nan());
-    // The border crosses the corridor, but nothing leads along it.
+    // The border crosses the strip, but it does not connect the two ends.
     assert_eq!(straight(&drawn, &[Point::new(5.0, 20.0), Point::new(45.0, 20.0)])[0].len(), 2);
 }
 
