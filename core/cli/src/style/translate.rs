@@ -1,4 +1,4 @@
-//! `rototoon style translate`: a motion re-made in another character's manner.
+//! `rototoon style translate`: makes a motion in another character's style.
 
 use super::{load, name, named};
 use crate::failure::Failure;
@@ -27,11 +27,11 @@ fn on_or_off(id: &'static str, help: &'static str) -> Arg {
 pub fn command() -> Command {
     let presets = Preset::ALL.iter().map(|(id, help, _)| PossibleValue::new(*id).help(*help));
     let paces = PossibleValuesParser::new([
-        PossibleValue::new("content").help("That of the content's clip, frame by frame"),
-        PossibleValue::new("style").help("Slower or faster, as the style's other clips are beside the content's"),
+        PossibleValue::new("content").help("The timing of the content's clip, frame by frame"),
+        PossibleValue::new("style").help("Slower or faster, by how the style's other clips differ from the content's"),
     ]);
     Command::new("translate")
-        .about("Re-makes a motion in another character's manner")
+        .about("Makes a motion in another character's style")
         .arg(
             Arg::new("clips")
                 .value_name("CLIPS")
@@ -39,14 +39,14 @@ pub fn command() -> Command {
                 .required(true)
                 .value_parser(value_parser!(PathBuf)),
         )
-        .arg(name("style", "The character in whose manner"))
-        .arg(name("motion", "The motion to make; a clip of it by that character is left out of account"))
-        .arg(name("content", "The character whose motion it was: gives length, timing and the way"))
+        .arg(name("style", "The character whose style the result has"))
+        .arg(name("motion", "The motion to make; a clip of this motion by the style's character is not used"))
+        .arg(name("content", "The character whose clip of the motion gives length, timing and way"))
         .arg(
             Arg::new("key_pose")
                 .long("key-pose")
                 .value_name("FILE")
-                .help("Postures drawn for the result: one for its first frame, or a list of {\"frame\", \"points\"}")
+                .help("Drawn postures for the result: one for its first frame, or a list of {\"frame\", \"points\"}")
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(
@@ -56,12 +56,18 @@ pub fn command() -> Command {
                 .default_value("rototoon")
                 .value_parser(PossibleValuesParser::new(presets)),
         )
-        .arg(Arg::new("timing").long("timing").help("Whose timing").default_value("content").value_parser(paces))
+        .arg(
+            Arg::new("timing")
+                .long("timing")
+                .help("The timing of the result")
+                .default_value("content")
+                .value_parser(paces),
+        )
         .arg(
             Arg::new("strength")
                 .long("strength")
                 .value_name("NUMBER")
-                .help("Factor on what the style adds to the motion, 0 to 3 (default preset)")
+                .help("Factor on the change that the style makes, 0 to 3 (only of the default preset)")
                 .default_value("1.1")
                 .allow_negative_numbers(true)
                 .value_parser(|text: &str| match text.parse::<f64>() {
@@ -73,12 +79,12 @@ pub fn command() -> Command {
             Arg::new("rank")
                 .long("rank")
                 .value_name("N")
-                .help("Components of the bilinear and liang2012 presets; else their own")
+                .help("Number of components of the presets bilinear and liang2012 [default: that of the preset]")
                 .value_parser(value_parser!(u16).range(1..=1000)),
         )
         .arg(on_or_off("limb-lengths", "Whether limbs keep within the lengths of the style's own clips"))
         .arg(on_or_off("contacts", "Whether feet that stand in the content's clip stay where they stand"))
-        .arg(arguments::output("OUT", "The file to write: one clip, with the standard deviation of each key point"))
+        .arg(arguments::output("OUT", "The file to write: one clip with the standard deviation of each key point"))
         .args(arguments::of_stage(Stage::Run))
 }
 
