@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::host::Suites;
 use super::image::Image;
+use super::log::log;
 use super::param::Parameters;
 use super::property::{Properties, call, terminated};
 use openfx::sys::generic::core::{OfxRectD, kOfxPropInstanceData};
@@ -108,7 +109,7 @@ impl<'a> Effect<'a> {
     /// Tells the user of an error that a press of a button had.
     pub fn complain(&self, text: &str) {
         if !self.message(text) {
-            eprintln!("Rototoon: {text}");
+            log(text);
         }
     }
 
@@ -123,7 +124,7 @@ impl<'a> Effect<'a> {
             function(self.handle.cast(), kind.as_ptr(), c"rototoon".as_ptr(), c"%s".as_ptr(), text.as_ptr()) == 0
         });
         if !told {
-            eprintln!("Rototoon: {}", text.to_string_lossy());
+            log(&text.to_string_lossy());
         }
     }
 

@@ -3,6 +3,7 @@
 use super::effect::Effect;
 use super::failure::Failure;
 use super::host;
+use super::log::log;
 use super::property::Properties;
 use openfx::sys::generic::core::{
     OfxPropertySetHandle, OfxStatus, kOfxActionDescribe, kOfxActionLoad, kOfxActionUnload, kOfxStatFailed, kOfxStatOK,
@@ -73,11 +74,7 @@ pub unsafe fn entry(
             let _ = catch_unwind(AssertUnwindSafe(|| {
                 // Messages are about instances, which descriptions are not.
                 let described = [kOfxActionDescribe, kOfxImageEffectActionDescribeInContext].contains(&name);
-                if handle.is_null() || described {
-                    eprintln!("Rototoon: {text}")
-                } else {
-                    action.effect.complain(&text)
-                }
+                if handle.is_null() || described { log(&text) } else { action.effect.complain(&text) }
             }));
             // What a panic carries may panic when it is dropped.
             let _ = catch_unwind(AssertUnwindSafe(|| drop(panic)));

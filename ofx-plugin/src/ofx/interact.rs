@@ -6,6 +6,7 @@
 use super::effect::Effect;
 use super::failure::Failure;
 use super::host;
+use super::log::log;
 use super::property::{Properties, call};
 use openfx::sys::generic::core::{
     OfxPointD, OfxPropertySetHandle, OfxStatus, kOfxActionCreateInstance, kOfxActionDescribe,
@@ -88,7 +89,7 @@ pub unsafe fn entry(
         Ok(Err(failure)) => failure.status(),
         Err(panic) => {
             let _ = catch_unwind(AssertUnwindSafe(|| {
-                eprintln!("Rototoon: internal error in the overlay");
+                log("internal error in the overlay");
                 drop(panic);
             }));
             kOfxStatFailed

@@ -7,6 +7,7 @@
 //! - [`effect`]: effects, their clips and what they say to the user
 //! - [`image`]: images, released on every path
 //! - [`interact`]: what is drawn over the viewer, and the pen there
+//! - `log`: messages that the host cannot show
 //! - [`param`]: parameters described, read and set
 //! - [`progress`]: how far long work has come
 //! - [`threads`]: work on the host's threads
@@ -24,6 +25,7 @@ pub mod failure;
 pub mod host;
 pub mod image;
 pub mod interact;
+mod log;
 pub mod param;
 pub mod progress;
 pub mod property;
