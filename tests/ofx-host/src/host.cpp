@@ -165,38 +165,21 @@ public:
   }
 };
 
-class IntegerParam : public Keyed<ofx::Param::IntegerInstance> {
+// A parameter of whole numbers: an integer, a choice or a flag.
+template <class Base, class Value> class WholeParam : public Keyed<Base> {
 public:
-  IntegerParam(ofx::Param::Descriptor &d, ofx::Param::SetInstance *s) : Keyed(d, s) {
-    track.value = {double(d.getProperties().getIntProperty(kOfxParamPropDefault))};
+  WholeParam(ofx::Param::Descriptor &d, ofx::Param::SetInstance *s) : Keyed<Base>(d, s) {
+    this->track.value = {double(d.getProperties().getIntProperty(kOfxParamPropDefault))};
   }
-  OfxStatus get(int &v) override { return get(0, v); }
-  OfxStatus get(OfxTime t, int &v) override { v = int(std::lround(track.at(t)[0])); return kOfxStatOK; }
-  OfxStatus set(int v) override { track.value = {double(v)}; return kOfxStatOK; }
-  OfxStatus set(OfxTime t, int v) override { track.keys[t] = {double(v)}; return kOfxStatOK; }
+  OfxStatus get(Value &v) override { return get(0, v); }
+  OfxStatus get(OfxTime t, Value &v) override { v = Value(std::lround(this->track.at(t)[0])); return kOfxStatOK; }
+  OfxStatus set(Value v) override { this->track.value = {double(v)}; return kOfxStatOK; }
+  OfxStatus set(OfxTime t, Value v) override { this->track.keys[t] = {double(v)}; return kOfxStatOK; }
 };
 
-class ChoiceParam : public Keyed<ofx::Param::ChoiceInstance> {
-public:
-  ChoiceParam(ofx::Param::Descriptor &d, ofx::Param::SetInstance *s) : Keyed(d, s) {
-    track.value = {double(d.getProperties().getIntProperty(kOfxParamPropDefault))};
-  }
-  OfxStatus get(int &v) override { return get(0, v); }
-  OfxStatus get(OfxTime t, int &v) override { v = int(std::lround(track.at(t)[0])); return kOfxStatOK; }
-  OfxStatus set(int v) override { track.value = {double(v)}; return kOfxStatOK; }
-  OfxStatus set(OfxTime t, int v) override { track.keys[t] = {double(v)}; return kOfxStatOK; }
-};
-
-class BooleanParam : public Keyed<ofx::Param::BooleanInstance> {
-public:
-  BooleanParam(ofx::Param::Descriptor &d, ofx::Param::SetInstance *s) : Keyed(d, s) {
-    track.value = {double(d.getProperties().getIntProperty(kOfxParamPropDefault))};
-  }
-  OfxStatus get(bool &v) override { return get(0, v); }
-  OfxStatus get(OfxTime t, bool &v) override { v = track.at(t)[0] >= 0.5; return kOfxStatOK; }
-  OfxStatus set(bool v) override { track.value = {double(v)}; return kOfxStatOK; }
-  OfxStatus set(OfxTime t, bool v) override { track.keys[t] = {double(v)}; return kOfxStatOK; }
-};
+using IntegerParam = WholeParam<ofx::Param::IntegerInstance, int>;
+using ChoiceParam = WholeParam<ofx::Param::ChoiceInstance, int>;
+using BooleanParam = WholeParam<ofx::Param::BooleanInstance, bool>;
 
 class DoubleParam : public Keyed<ofx::Param::DoubleInstance> {
 public:
