@@ -154,7 +154,7 @@ fn what_is_doubtful_is_told_once_and_drawn() {
     };
     let larger = ClipSettings { x2: 100, y2: 80, ..ClipSettings::default() };
     for (source, document, parts, said) in [
-        (ClipSettings::default(), document(), "star, leg, arm*", "no part is called \"leg\""),
+        (ClipSettings::default(), document(), "star, leg, arm*", "\"leg\", but no part has this name"),
         (ClipSettings::default(), untracked, "", "not tracked"),
         (larger, document(), "", "64x48"),
     ] {
