@@ -1,4 +1,4 @@
-//! `demo`: the main job from end to end in real Blender, on the sample cartoon or on any project document.
+//! `demo`: runs the main workflow in real Blender, on the sample cartoon or on any project document.
 
 use crate::bundle::{Bundle, Packager, bundle};
 use crate::shell::{command, empty_folder, root, run, target};
@@ -10,10 +10,10 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Pictures on the contact sheet.
+/// Number of pictures on the contact sheet.
 const PICTURES: usize = 12;
 
-/// Builds and installs the extension, lets it track and snap, and leaves what came out in `target/demo`.
+/// Builds and installs the extension, tracks and snaps with it, and writes the results to `target/demo`.
 pub fn demo(project: Option<PathBuf>, blender: Option<PathBuf>) -> Result<()> {
     let blender =
         blender.map(|path| path.canonicalize().with_context(|| format!("no Blender at {path:?}"))).transpose()?;
@@ -62,7 +62,7 @@ pub fn demo(project: Option<PathBuf>, blender: Option<PathBuf>) -> Result<()> {
     Ok(())
 }
 
-/// The script inside Blender, with a configuration of its own.
+/// The command that runs the script inside Blender, with a Blender configuration of its own.
 fn script(packager: &Packager) -> Command {
     let script = root().join("tests/blender/demo.py");
     let mut start = match packager {
@@ -93,7 +93,7 @@ fn document(path: &Path) -> Result<Value> {
     serde_json::from_str(&text).with_context(|| format!("cannot read {path:?}"))
 }
 
-/// Lays the rendered strokes over their frames.
+/// Makes the contact sheet: the rendered strokes over their frames.
 fn contact_sheet(report: &Value, tracked: &Value, out: &Path) -> Result<()> {
     let pattern = tracked["footage"]["pattern"].as_str().context("footage.pattern is not a text")?;
     let renders = report["renders"].as_object().context("report.json: no renders")?;
@@ -109,7 +109,7 @@ fn contact_sheet(report: &Value, tracked: &Value, out: &Path) -> Result<()> {
     sheet::write(&pictures, &out.join("contact.png"))
 }
 
-/// Times, and accuracy where a truth document lies beside the project.
+/// A table of times, and of accuracy if a truth document is next to the project.
 fn table(project: &Path, tracked: &Value, report: &Value) -> Result<String> {
     let mut text =
         format!("Blender {}\n\n| step | seconds |\n| --- | ---: |\n", report["blender"].as_str().unwrap_or("?"));
@@ -118,7 +118,7 @@ fn table(project: &Path, tracked: &Value, report: &Value) -> Result<String> {
     }
     let truth = project.with_file_name("truth.json");
     if !truth.exists() {
-        writeln!(text, "\nNo truth.json lies beside the project: accuracy is not known.")?;
+        writeln!(text, "\nThere is no truth.json next to the project, so the accuracy is not known.")?;
         return Ok(text);
     }
     let rows = measure(tracked, &document(&truth)?)?;

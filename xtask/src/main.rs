@@ -28,21 +28,21 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Show the main job in real Blender: install, import, track, snap, render. Results are in target/demo.
+    /// Show the main workflow in real Blender: install, import, track, snap, render. Results are in target/demo.
     Demo {
-        /// A project document; the sample cartoon where none is given.
+        /// The project document; the sample cartoon by default.
         #[arg(long)]
         project: Option<PathBuf>,
-        /// An installed Blender; the `bpy` wheel from PyPI where none is given.
+        /// The binary of an installed Blender; the `bpy` wheel from PyPI by default.
         #[arg(long)]
         blender: Option<PathBuf>,
     },
-    /// Run every check, in Blender and in an OpenFX host too, and say what could not be run.
+    /// Run all checks, also in Blender and in an OpenFX host, and list the steps that could not be run.
     Test {
         /// Also run the OpenFX plugin under valgrind.
         #[arg(long)]
         valgrind: bool,
-        /// Run one step only, on what those before it left.
+        /// Run only this step, with the files that earlier steps have left.
         #[arg(long, value_name = "NAME")]
         step: Option<String>,
     },
@@ -50,21 +50,22 @@ enum Command {
     Bundle,
     /// Write the C header and the Python bindings.
     Generate {
-        /// Change nothing; fail where a file is stale.
+        /// Change nothing, and fail if a file is stale.
         #[arg(long)]
         check: bool,
     },
-    /// Measure curve fitting beside its peers on six outlines.
+    /// Compare curve fitting with other libraries on six outlines.
     BenchFit(bench_fit::Arguments),
-    /// Measure factorisation beside scikit-learn, reshaping beside libigl, and the style paper's experiments, with plots in target/style.
+    /// Compare factorisation with scikit-learn and reshaping with libigl, and run the style paper's experiments. Plots are in
+    /// target/style.
     BenchStyle(bench_style::Arguments),
-    /// Measure every preset on sets with known truth, with tables and pictures in target/bench-tracking.
+    /// Measure every tracking preset on sets with known truth. Tables and pictures are in target/bench-tracking.
     BenchTracking(bench_tracking::Arguments),
-    /// Measure matching and in-betweens on sets with known truth, with sheets in target/bench-tween.
+    /// Measure matching and in-betweens on sets with known truth. Sheets are in target/bench-tween.
     BenchTween(bench_tween::Arguments),
-    /// Accept the golden pictures that the tests last drew.
+    /// Accept the pictures that the last tests drew as the new golden pictures.
     Bless,
-    /// Photograph the panel in a real Blender window (Debian sid in a chroot; needs root and debootstrap).
+    /// Take pictures of the panel in a real Blender window (Debian sid in a chroot; needs root and debootstrap).
     Photograph,
 }
 

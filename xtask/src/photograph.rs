@@ -1,8 +1,8 @@
-//! `photograph`: pictures of the panel and of Match Strokes in a real Blender window.
+//! `photograph`: takes pictures of the panel and of Match Strokes in a real Blender window.
 //!
-//! The `bpy` wheels have no windows. Debian sid packages a current Blender: it is unpacked into a folder of its own
-//! (debootstrap), started there under a virtual screen (Xvfb) and photographed. Sid moves, and the job needs root: where it
-//! cannot be done, that is said and nothing fails.
+//! The `bpy` wheels have no windows, but Debian sid packages a current Blender. debootstrap installs it into a folder of its
+//! own. There it runs on a virtual screen (Xvfb), of which a picture is taken. Sid changes over time, and debootstrap and
+//! chroot need root. If the pictures cannot be taken, the command says so and succeeds.
 
 use crate::bundle::{Packager, bundle};
 use crate::shell::{capture, command, root, run, target, works};
@@ -11,7 +11,7 @@ use rototoon_tests::sample;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What the picture needs from Debian.
+/// The Debian packages that the pictures need.
 const PACKAGES: [&str; 9] = [
     "blender",
     "xvfb",
@@ -24,16 +24,16 @@ const PACKAGES: [&str; 9] = [
     "ca-certificates",
 ];
 
-/// What is photographed: see `tests/blender/photograph.py`.
+/// The names of the pictures; `tests/blender/photograph.py` prepares them.
 const PICTURES: [&str; 2] = ["panel", "pairs"];
 
-/// Starts Blender under Xvfb for `$1`, waits until the script says that it is drawn, and takes the picture.
+/// Starts Blender under Xvfb for the picture `$1`, waits until the script reports that it is ready, and takes the picture.
 const SESSION: &str = r#"
 set -u
 cd /photograph
 export DISPLAY=:77 LIBGL_ALWAYS_SOFTWARE=1 HOME=/photograph BLENDER_USER_RESOURCES=/photograph/resources
 rm -rf ready "$1.png" resources
-# Without saved preferences the first start asks for a quick set-up in front of everything.
+# Without saved preferences the first start shows a quick set-up in front of everything.
 blender --background --python-expr "import bpy; bpy.context.preferences.view.show_splash = False; bpy.ops.wm.save_userpref()" \
   >blender.log 2>&1
 Xvfb :77 -screen 0 1600x900x24 >xvfb.log 2>&1 &
@@ -51,7 +51,7 @@ kill "$blender" "$screen" 2>/dev/null
 cat ready 2>/dev/null || { echo "Blender ended early:"; tail -n 20 blender.log; }
 "#;
 
-/// Leaves `panel.png` and `pairs.png` in `target/photograph`, or says why it can't.
+/// Writes `panel.png` and `pairs.png` to `target/photograph`, or prints why it cannot.
 pub fn photograph() -> Result<()> {
     if let Some(reason) = cannot() {
         println!("photograph: not done: {reason}");
@@ -76,7 +76,7 @@ pub fn photograph() -> Result<()> {
         };
         let picture = stage.join(format!("{what}.png"));
         if said.trim() != "ready" || !picture.exists() {
-            bail!("no picture of {what} was taken: {said}");
+            bail!("the picture {what} was not taken: {said}");
         }
         let place = folder.join(format!("{what}.png"));
         std::fs::copy(&picture, &place)?;
@@ -85,7 +85,7 @@ pub fn photograph() -> Result<()> {
     Ok(())
 }
 
-/// Why this machine can't, if it can't.
+/// The reason why this machine cannot take pictures, if there is one.
 fn cannot() -> Option<String> {
     if !capture(command("id").arg("-u")).is_ok_and(|id| id == "0") {
         return Some("it needs root for chroot".into());
@@ -96,7 +96,7 @@ fn cannot() -> Option<String> {
     None
 }
 
-/// Debian sid with Blender in a folder, made once.
+/// Installs Debian sid with Blender into a folder, once.
 fn install(system: &Path) -> Result<()> {
     let stamp = system.join("photograph-installed");
     if stamp.exists() {
@@ -108,12 +108,12 @@ fn install(system: &Path) -> Result<()> {
     std::fs::create_dir_all(system)?;
     let mut bootstrap = command("debootstrap");
     bootstrap.args(["--variant=minbase", "sid"]).arg(system);
-    // Another mirror than debootstrap's own.
+    // The variable replaces debootstrap's default mirror.
     bootstrap.args(std::env::var_os("DEBIAN_MIRROR"));
     run(&mut bootstrap)?;
     let _proc = Mount::proc(system)?;
     let apt = |words: &[&str]| run(chroot(system).env("DEBIAN_FRONTEND", "noninteractive").arg("apt-get").args(words));
-    // A mirror may be a snapshot of some day.
+    // The mirror may be an old snapshot, whose index has expired.
     apt(&["-qq", "-o", "Acquire::Check-Valid-Until=false", "update"])?;
     let mut words = vec!["-qq", "install", "--yes", "--no-install-recommends"];
     words.extend(PACKAGES);
@@ -127,7 +127,7 @@ fn chroot(system: &Path) -> Command {
     start
 }
 
-/// `/proc` inside the folder, for as long as this lives.
+/// Mounts `/proc` inside the folder until it is dropped.
 struct Mount(PathBuf);
 
 impl Mount {

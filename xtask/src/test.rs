@@ -1,4 +1,4 @@
-//! `test`: everything that is checked, each step to its end ([`crate::steps`]).
+//! `test`: runs all checks. Each is a step of its own ([`crate::steps`]).
 
 use crate::bundle::{self, Bundle, Packager, bundle};
 use crate::generate::generate;
@@ -9,16 +9,16 @@ use anyhow::{Result, bail};
 use rototoon_tests::{doll, sample};
 use std::path::PathBuf;
 
-/// The package that is built apart: it compiles C++.
+/// The package that is built separately, because it compiles C++.
 const OFX_HOST: &str = "rototoon-ofx-host";
-/// Steps at once.
+/// Number of steps that run at the same time.
 const AT_ONCE: usize = 2;
-/// Names of the steps that others wait for.
+/// Names of the steps that others need.
 const ENVIRONMENTS: &str = "Python environments";
 const BUNDLE: &str = "extension bundle";
 const FILES: &str = "sample cartoon";
 
-/// Runs all checks. Fails where one fails; what could not be run is said, and fails nothing.
+/// Runs all checks. Fails if one of them fails. Checks that cannot be run here are listed and do not count as failures.
 pub fn test(valgrind: bool) -> Result<()> {
     if !works("cc", &["--version"]) {
         bail!("no C compiler (cc) was found; install one, for example: apt-get install gcc");
@@ -31,17 +31,17 @@ pub fn test(valgrind: bool) -> Result<()> {
     run_all(&steps, AT_ONCE, &run).finish()
 }
 
-/// Runs one of the checks, as a part of [`test`].
+/// Runs one check. [`test`] runs this function in a process of its own for each check.
 pub fn step(name: &str) -> Result<()> {
     let steps = steps(true);
     let Some(step) = steps.iter().find(|step| step.name == name) else {
         let names: Vec<&str> = steps.iter().map(|step| &step.name[..]).collect();
-        bail!("--step: there is none called {name:?}, expected one of {names:?}");
+        bail!("--step: found {name:?}, expected one of {names:?}");
     };
     step.run_here()
 }
 
-/// All checks, those that others wait for first.
+/// All checks, in an order that starts those that others need first.
 fn steps(valgrind: bool) -> Vec<Step> {
     let mut steps = vec![
         Step::new("format", || component("fmt", "rustfmt", &["fmt", "--all", "--check"])),
@@ -64,7 +64,7 @@ fn steps(valgrind: bool) -> Vec<Step> {
     steps
 }
 
-/// The environments of all steps, made before they are wanted: downloads leave the processors to the compiler.
+/// Makes the Python environments of all steps in advance. Downloads leave the processors to the compiler meanwhile.
 fn environments() -> Result<()> {
     bundle::tools()?;
     python_environment()?;
@@ -83,7 +83,7 @@ fn rust_tests() -> Result<Option<String>> {
     run(cargo().args(["test", "--quiet", "--no-fail-fast", "--workspace", "--exclude", OFX_HOST])).map(|()| None)
 }
 
-/// A cargo subcommand that comes as a component of the toolchain; added by rustup where it is missing.
+/// Runs a Cargo subcommand that is a component of the toolchain. If it is missing, rustup adds it.
 fn component(subcommand: &str, name: &str, arguments: &[&str]) -> Result<Option<String>> {
     let there = || run(cargo().args([subcommand, "--version"]).stdout(std::process::Stdio::null())).is_ok();
     if !there() {
@@ -95,7 +95,7 @@ fn component(subcommand: &str, name: &str, arguments: &[&str]) -> Result<Option<
     run(cargo().args(arguments)).map(|()| None)
 }
 
-/// The plugin in the official host library, which is compiled for it.
+/// Tests the plugin in a host with the official host library, which is compiled for it.
 fn ofx_tests() -> Result<Option<String>> {
     if let Some(reason) = missing_package("c++", "g++") {
         return Ok(Some(reason));
@@ -105,7 +105,7 @@ fn ofx_tests() -> Result<Option<String>> {
     Ok(None)
 }
 
-/// The same, watched by valgrind, compiled as artists get it: under valgrind tracking would else take very long.
+/// Runs the same tests under valgrind, as a release build, because an unoptimised tracker would take very long.
 fn valgrind_tests() -> Result<Option<String>> {
     if let Some(reason) = missing_package("valgrind", "valgrind").or_else(|| missing_package("c++", "g++")) {
         return Ok(Some(reason));
@@ -117,7 +117,7 @@ fn valgrind_tests() -> Result<Option<String>> {
     Ok(None)
 }
 
-/// Why a program cannot be had; where the system lets us, its package is installed first.
+/// The reason why a program is missing, if it is. Root installs its package first.
 fn missing_package(program: &str, package: &str) -> Option<String> {
     let there = || works(program, &["--version"]);
     if !there() && capture(command("id").arg("-u")).is_ok_and(|id| id == "0") {
@@ -127,7 +127,7 @@ fn missing_package(program: &str, package: &str) -> Option<String> {
     (!there()).then(|| format!("{program} is missing; install it: apt-get install {package}"))
 }
 
-/// pytest without Blender, on the packed library.
+/// Runs pytest without Blender, with the library of the bundle.
 fn python_tests() -> Result<Option<String>> {
     let built = Bundle::last();
     run(command(python_environment()?)
@@ -141,18 +141,18 @@ fn python_environment() -> Result<PathBuf> {
     python::venv("venv-python", &python::find_any()?, &["pytest", "numpy"])
 }
 
-/// Where the sample cartoon and the doll are.
+/// The folder of the sample cartoon and the doll.
 fn files() -> PathBuf {
     target().join("sample-files")
 }
 
-/// The sample cartoon and the doll, which tests in Blender track and reshape.
+/// Writes the sample cartoon and the doll, which tests in Blender track and reshape.
 fn sample_files() -> Result<()> {
     sample::write(&files().join("sample"))?;
     doll::write(&files().join("doll"))
 }
 
-/// pytest inside one Blender, with the zip installed in a configuration of its own.
+/// Runs pytest inside one version of Blender, with the zip installed in a configuration of its own.
 fn blender_tests(wheel: Wheel) -> Result<Option<String>> {
     let built = Bundle::last();
     let Some(python) = python::blender_venv(wheel)? else {
@@ -167,7 +167,7 @@ fn blender_tests(wheel: Wheel) -> Result<Option<String>> {
         .env("ROTOTOON_ROOT", root())
         .env("ROTOTOON_SAMPLE", files())
         .env("BLENDER_USER_RESOURCES", resources)
-        // The library of the zip is what is tested.
+        // The tests must use the library in the zip.
         .env_remove("ROTOTOON_LIBRARY"))?;
     Ok(None)
 }
