@@ -1,5 +1,5 @@
-//! Tells the linker to keep the plugin in memory once it is loaded: threads that end late must find their code, and a host
-//! that unloads and loads again finds the plugin as it left it.
+//! Makes the linker mark the plugin as never unloaded. Threads that end late still need its code, and a host that unloads
+//! and loads the plugin again gets it with its state.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

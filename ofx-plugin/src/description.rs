@@ -1,4 +1,4 @@
-//! What the effects say of themselves alike.
+//! The parts of an effect's description that all effects share.
 
 use crate::ofx::entry::Action;
 use crate::ofx::{Effect, Failure, Properties};
@@ -18,33 +18,33 @@ use openfx::sys::image_effect_v1::image_effect::{
 };
 use std::ffi::CStr;
 
-/// The input.
+/// Name of the input clip.
 pub const SOURCE: &CStr = kOfxImageEffectSimpleSourceClipName;
-/// The output.
+/// Name of the output clip.
 pub const OUTPUT: &CStr = kOfxImageEffectOutputClipName;
 
 const COMPONENTS: [&CStr; 3] = [kOfxImageComponentRGBA, kOfxImageComponentRGB, kOfxImageComponentAlpha];
 const DEPTHS: [&CStr; 4] = [kOfxBitDepthFloat, kOfxBitDepthHalf, kOfxBitDepthShort, kOfxBitDepthByte];
 
-/// In what effects differ.
+/// The parts of an effect's description that differ between effects.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
-    /// A name for people.
+    /// The name that the user sees.
     pub label: &'static str,
-    /// A sentence.
+    /// One sentence that says what the effect does.
     pub description: &'static str,
-    /// Whether a piece of the picture can be made by itself.
+    /// Whether a piece of the picture can be rendered by itself.
     pub tiles: bool,
 }
 
-/// What an effect can do.
+/// Describes an effect: labels, contexts, pixel depths and abilities.
 pub fn effect(effect: &Effect, about: &About) -> Result<(), Failure> {
     let properties = effect.properties()?;
     for name in [kOfxPropLabel, kOfxPropShortLabel, kOfxPropLongLabel] {
         properties.set_text(name, 0, about.label)?;
     }
     properties.set_text(kOfxImageEffectPluginPropGrouping, 0, "Rototoon")?;
-    // Hosts before 1.2 have no place for a description.
+    // Hosts before OpenFX 1.2 do not have this property.
     let _ = properties.set_text(kOfxPropPluginDescription, 0, about.description);
     for (index, context) in [kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral].into_iter().enumerate() {
         properties.set_name(kOfxImageEffectPropSupportedContexts, index as i32, context)?;
@@ -57,12 +57,12 @@ pub fn effect(effect: &Effect, about: &About) -> Result<(), Failure> {
     properties.set_int(kOfxImageEffectPropTemporalClipAccess, 0, 1)?;
     properties.set_int(kOfxImageEffectPropSupportsMultipleClipDepths, 0, 0)?;
     properties.set_name(kOfxImageEffectPluginRenderThreadSafety, 0, kOfxImageEffectRenderFullySafe)?;
-    // An effect shares its rows among the host's threads by itself: what they have in common is prepared once.
+    // The effects distribute rows over the host's threads themselves, because that prepares shared data only once.
     properties.set_int(kOfxImageEffectPluginPropHostFrameThreading, 0, 0)?;
     properties.set_name(kOfxImageEffectPropClipPreferencesSlaveParam, 0, c"output")
 }
 
-/// Input and output in the action's context: the input may be missing where the context allows it.
+/// Describes the input and output clips in the action's context. The input is optional except in the filter context.
 pub fn clips(action: &Action, about: &About) -> Result<(), Failure> {
     let context = action.input.text(kOfxImageEffectPropContext, 0)?;
     let source = clip(&action.effect, SOURCE, about)?;

@@ -1,14 +1,14 @@
-//! Colours as the host has them, and as the screen shows them: core looks at the latter.
+//! Conversion between the host's colours and display colours, which the core uses.
 
 use crate::ofx::host;
 use crate::pixels::{Depth, Format};
 use rototoon::image::colour;
 
-/// Hosts whose floats are light, not what the screen shows.
+/// Beginnings of the names of hosts whose float pixels are linear light.
 const LINEAR_HOSTS: [&str; 4] =
     ["uk.co.thefoundry.nuke", "fr.inria.Natron", "com.eyeonline.Fusion", "com.blackmagicdesign.Fusion"];
 
-/// Whether an image of this host holds linear light.
+/// The encoding of an image of this host: linear light or display values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Encoding {
     linear: bool,
@@ -22,12 +22,12 @@ impl Encoding {
         Self { linear: linear && matches!(format.depth, Depth::Half | Depth::Float) }
     }
 
-    /// A value as the screen shows it.
+    /// Converts a value of the image to a display value (sRGB).
     pub fn shown(&self, value: f32) -> f32 {
         if self.linear { colour::encode(value) } else { value }
     }
 
-    /// The reverse.
+    /// Converts a display value (sRGB) to a value of the image.
     pub fn held(&self, value: f32) -> f32 {
         if self.linear { colour::decode(value) } else { value }
     }

@@ -1,15 +1,15 @@
 //! Rototoon as an OpenFX plugin.
 //!
-//! - [`ofx`]: a thin safe layer over the host's C functions, the only place that is not safe
-//! - [`pixels`]: pixels of every depth and component
-//! - [`parameters`]: what parameters are made of
-//! - [`description`], [`encoding`]: what the effects have in common
-//! - [`lines`]: the effect `org.rototoon.Lines`: the footage as a tracker of edges sees it
-//! - [`roto`]: the effect `org.rototoon.Roto`: parts as mattes, cutouts, lines and ids
-//! - [`plugins`](mod@plugins): the list that the host asks for
+//! - [`ofx`]: a thin safe layer over the host's C functions
+//! - [`pixels`]: reads and writes pixels of every depth and component
+//! - [`parameters`]: describes the core's effect parameters to the host
+//! - [`description`], [`encoding`]: code that the effects share
+//! - [`lines`]: the effect `org.rototoon.Lines`, which shows the images that a tracker of edges uses
+//! - [`roto`]: the effect `org.rototoon.Roto`, which draws parts as mattes, cutouts, lines and ids
+//! - [`plugins`](mod@plugins): the list of effects that the host reads
 //!
-//! Core works in pixels with y down from the upper left corner; OpenFX has y up. [`roto::placement`] is where one becomes the
-//! other.
+//! The core works in pixels, with y down from the upper left corner. OpenFX has y up. [`roto::placement`] converts between
+//! them.
 
 pub mod description;
 pub mod encoding;

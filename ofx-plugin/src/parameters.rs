@@ -1,4 +1,4 @@
-//! Core's lists of parameters ([`rototoon::scene::effects`]), told to a host.
+//! Describes the core's lists of effect parameters ([`rototoon::scene::effects`]) to a host.
 
 use crate::ofx::{Failure, Parameters, Properties};
 use openfx::sys::generic::core::{kOfxPropLabel, kOfxPropLongLabel, kOfxPropShortLabel};
@@ -33,7 +33,7 @@ pub fn define(list: &[EffectParameter], parameters: &Parameters) -> Result<(), F
 }
 
 fn terminated(id: &str) -> Result<CString, Failure> {
-    CString::new(id).map_err(|_| Failure::Told(format!("the id {id:?} holds a zero")))
+    CString::new(id).map_err(|_| Failure::Told(format!("the parameter id {id:?} contains a zero byte")))
 }
 
 fn type_of(kind: &EffectKind) -> &'static CStr {
@@ -49,7 +49,7 @@ fn type_of(kind: &EffectKind) -> &'static CStr {
     }
 }
 
-/// Default, range and choices.
+/// Sets the default, the range and the choices of a parameter.
 fn values(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
     match *kind {
         EffectKind::File | EffectKind::Text | EffectKind::Hidden => text(kind, properties),
@@ -81,7 +81,7 @@ fn text(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
     properties.set_int(kOfxParamPropAnimates, 0, 0)?;
     if *kind == EffectKind::File {
         properties.set_name(kOfxParamPropStringMode, 0, kOfxParamStringIsFilePath)?;
-        // A file may be chosen that is yet to be saved.
+        // The user may choose a file that does not exist yet, to save to it.
         return properties.set_int(kOfxParamPropStringFilePathExists, 0, 0);
     }
     properties.set_name(kOfxParamPropStringMode, 0, kOfxParamStringIsSingleLine)?;
@@ -96,7 +96,7 @@ fn choice<'a>(labels: impl Iterator<Item = &'a str>, default: i32, properties: &
     properties.set_int(kOfxParamPropDefault, 0, default)
 }
 
-/// Ids and labels of one of core's choices, and the index of the default.
+/// The ids and labels of the core's choice parameter `id`, and the index of its default.
 pub fn shared(id: &str) -> (Vec<(&'static str, &'static str)>, i32) {
     match parameters::find(id).map(|parameter| parameter.kind) {
         Some(Kind::Choice { default, choices }) => {

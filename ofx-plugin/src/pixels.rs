@@ -1,8 +1,8 @@
-//! Pixels of every depth and component, as premultiplied RGBA floats and back.
+//! Converts pixels of every depth and component to premultiplied RGBA floats, and back.
 
 use half::f16;
 
-/// Bits of a value.
+/// The type of a value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depth {
     /// 8 bits, 0 to 255.
@@ -16,7 +16,7 @@ pub enum Depth {
     Float,
 }
 
-/// Values of a pixel.
+/// The values of a pixel, in order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Layout {
     /// Red, green, blue, opacity.
@@ -28,42 +28,42 @@ pub enum Layout {
     Alpha,
 }
 
-/// What colours have to do with opacity.
+/// The relation of colours to opacity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Premultiplication {
-    /// Opacity is 1, whatever the image says.
+    /// The opacity is 1, whatever the image contains.
     Opaque,
-    /// Colours are multiplied by it.
+    /// Colours are multiplied by the opacity.
     #[default]
     Multiplied,
-    /// Colours are what they are.
+    /// Colours are not multiplied by the opacity.
     Separate,
 }
 
-/// Of what kind an image's pixels are.
+/// The format of an image's pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Format {
-    /// Bits of a value.
+    /// The type of a value.
     pub depth: Depth,
-    /// Values of a pixel.
+    /// The values of a pixel.
     pub layout: Layout,
-    /// What colours have to do with opacity.
+    /// The relation of colours to opacity.
     pub premultiplication: Premultiplication,
 }
 
 /// Red, green and blue multiplied by opacity, and opacity.
 pub type Pixel = [f32; 4];
 
-/// A pixel through which everything is seen.
+/// A fully transparent pixel.
 pub const CLEAR: Pixel = [0.0; 4];
 
 impl Format {
-    /// Bytes of a pixel.
+    /// The number of bytes of a pixel.
     pub fn bytes(&self) -> usize {
         self.layout.values() * self.depth.bytes()
     }
 
-    /// Reads pixels; what is beyond the shorter of the two is left.
+    /// Reads as many pixels as both slices have.
     pub fn read(&self, bytes: &[u8], pixels: &mut [Pixel]) {
         match self.depth {
             Depth::Byte => self.read_values(bytes, pixels, |b: [u8; 1]| f32::from(b[0]) / 255.0),
@@ -93,7 +93,7 @@ impl Format {
         }
     }
 
-    /// Writes pixels; what is beyond the shorter of the two is left.
+    /// Writes as many pixels as both slices have.
     pub fn write(&self, pixels: &[Pixel], bytes: &mut [u8]) {
         match self.depth {
             Depth::Byte => self.write_values(pixels, bytes, |v| [(v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]),
@@ -126,7 +126,7 @@ fn from_alpha<const N: usize>(pixel: &[[u8; N]], value: &impl Fn([u8; N]) -> f32
 }
 
 impl Layout {
-    /// Values of a pixel.
+    /// The number of values of a pixel.
     pub fn values(&self) -> usize {
         match self {
             Self::Rgba => 4,
@@ -137,7 +137,7 @@ impl Layout {
 }
 
 impl Depth {
-    /// Bytes of a value.
+    /// The number of bytes of a value.
     pub fn bytes(&self) -> usize {
         match self {
             Self::Byte => 1,
@@ -155,7 +155,7 @@ mod tests {
     const LAYOUTS: [Layout; 3] = [Layout::Rgba, Layout::Rgb, Layout::Alpha];
 
     #[test]
-    fn what_is_written_is_read() {
+    fn written_pixels_are_read_back() {
         let pixels = [[0.2, 0.1, 0.4, 0.5], [0.0; 4], [1.0; 4], [0.05, 0.3, 0.0, 0.3]];
         for depth in DEPTHS {
             for layout in LAYOUTS {
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn opaque_images_are_opaque_and_values_are_held_where_they_must_be() {
+    fn opaque_images_have_opacity_one_and_bytes_are_clamped() {
         let opaque = Format { premultiplication: Premultiplication::Opaque, ..Format::default() };
         let mut bytes = vec![0; 16];
         opaque.write(&[[0.5, 0.25, 2.0, 0.1]], &mut bytes);

@@ -1,4 +1,4 @@
-//! The list of effects that the host asks for.
+//! The list of effects that the host reads.
 #![allow(unsafe_code, reason = "the host looks the functions up by name and calls them with raw pointers")]
 #![allow(non_snake_case, reason = "the names are those that OpenFX looks up")]
 
@@ -22,7 +22,7 @@ const fn plugin(id: &'static CStr, main: Main) -> OfxPlugin {
     }
 }
 
-/// Version of the effects: the major one changes when old compositions would look different.
+/// Version of the effects. The major version changes when old compositions would look different.
 const MAJOR: c_uint = 1;
 const MINOR: c_uint = 0;
 
@@ -52,19 +52,19 @@ unsafe extern "C" fn lines_main(
     unsafe { entry::entry(action, handle, input, output, lines::perform) }
 }
 
-/// How many effects there are.
+/// The number of effects.
 #[unsafe(no_mangle)]
 pub extern "C" fn OfxGetNumberOfPlugins() -> c_int {
     PLUGINS.len() as c_int
 }
 
-/// An effect by number; null beyond the last.
+/// The effect of this index; null beyond the last one.
 #[unsafe(no_mangle)]
 pub extern "C" fn OfxGetPlugin(index: c_int) -> *const OfxPlugin {
     usize::try_from(index).ok().and_then(|index| PLUGINS.get(index)).map_or(std::ptr::null(), std::ptr::from_ref)
 }
 
-/// Tells of the host before it asks for effects.
+/// Sets the host, before it reads the effects.
 #[unsafe(no_mangle)]
 pub extern "C" fn OfxSetHost(host: *const OfxHost) -> OfxStatus {
     host::set(host.cast_mut());

@@ -1,3 +1,3 @@
-//! Does nothing: only a package with a build script has build dependencies.
+//! Does nothing. It exists because only a package with a build script can have build dependencies.
 
 fn main() {}

@@ -1,4 +1,4 @@
-//! Compiles the official HostSupport library, the XML parser that it brings, and the bridge to it.
+//! Compiles the official HostSupport library, the XML parser that comes with it, and the bridge to it.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -28,19 +28,19 @@ fn main() {
         .define("OFX_DEBUG_PROPERTIES", None)
         .define("OFX_DEBUG_PARAMETERS", None)
         .std("c++14")
-        // The library relies on what other compilers' headers bring along.
+        // The library relies on other compilers' headers to include `cstring`.
         .flag("-include")
         .flag("cstring")
         .warnings(false)
         .compile("rototoon_ofx_host");
-    // The plugin looks OpenGL up in the process of its host, as which the tests have a recorder.
+    // The plugin looks OpenGL up in its host's process. The tests export functions of these names that record lines.
     println!("cargo::rustc-link-arg-tests=-Wl,--export-dynamic-symbol=gl*");
     for file in ["build.rs", "src/bridge.rs", "src/host.cpp", "src/host.h"] {
         println!("cargo::rerun-if-changed={file}");
     }
 }
 
-/// The folder of a package of `Cargo.lock`, downloaded if need be.
+/// The folder of a package of `Cargo.lock`, which Cargo downloads if needed.
 fn source(package: &str) -> PathBuf {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)
@@ -53,7 +53,7 @@ fn source(package: &str) -> PathBuf {
     let found = packages.iter().find(|candidate| candidate["name"] == package);
     let manifest = found.and_then(|found| found["manifest_path"].as_str());
     let manifest = manifest.unwrap_or_else(|| panic!("cargo metadata lists no package {package}"));
-    Path::new(manifest).parent().expect("a manifest lies in a folder").to_path_buf()
+    Path::new(manifest).parent().expect("a manifest is in a folder").to_path_buf()
 }
 
 fn sources(folder: &Path) -> Vec<PathBuf> {

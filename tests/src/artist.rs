@@ -8,10 +8,8 @@
 //! number of adjustments as a share of all control points of the frames between keys is the measure of Zhou & Xiao 2011
 //! (Table 1: 3.6 %, 5.8 % and 9.3 %).
 //!
-//! Frames that are equally bad are taken in the order of the Python script that the measure was first written down in
-//! ([`crate::hash_order`]).
+//! Of equally bad frames and parts the first one is taken.
 
-use crate::hash_order;
 use crate::measure::{Figures, Row, between_keys, figures, rows};
 use crate::truth::Truth;
 use anyhow::{Result, ensure};
@@ -108,10 +106,10 @@ pub fn correct(
 
 /// The frames with most bad points, no two of them neighbours, at most a quarter of all.
 fn chosen_frames(rows: &[Row], height: f64) -> Vec<FrameNumber> {
-    let mut counts = BTreeMap::new();
-    let bad = || rows.iter().filter(|row| row.bad(height)).map(|row| row.frame);
-    bad().for_each(|frame| *counts.entry(frame).or_insert(0) += 1);
-    let mut frames = hash_order::of_set(bad());
+    let mut counts = BTreeMap::<FrameNumber, usize>::new();
+    rows.iter().filter(|row| row.bad(height)).for_each(|row| *counts.entry(row.frame).or_default() += 1);
+    let mut frames: Vec<FrameNumber> = counts.keys().copied().collect();
+    // The sort is stable, so the first of equally bad frames comes first.
     frames.sort_by_key(|frame| Reverse(counts[frame]));
     let most = rows.iter().map(|row| row.frame).collect::<BTreeSet<_>>().len().div_ceil(4);
     let mut chosen: Vec<FrameNumber> = Vec::new();

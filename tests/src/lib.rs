@@ -6,7 +6,6 @@
 //! - [`truth`]: truth documents
 //! - [`measure`]: how near tracked contours come to the truth
 //! - [`artist`]: how many corrections they still need
-//! - [`hash_order`]: the order in which the artist takes equally bad frames
 //! - [`benchmark`]: every preset over sets with truth, tables and pictures of it
 //! - [`memory`]: peak memory of a process
 //! - [`golden`]: pictures that somebody accepted
@@ -20,7 +19,6 @@ pub mod chart;
 pub mod doll;
 pub mod drawing;
 pub mod golden;
-pub mod hash_order;
 pub mod lettering;
 pub mod measure;
 pub mod memory;

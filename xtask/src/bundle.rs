@@ -1,8 +1,8 @@
-//! `bundle`: the extension as a zip that Blender installs, and the OpenFX plugin ([`crate::ofx`]).
+//! `bundle`: makes the extension's zip, which Blender installs, and the OpenFX bundle ([`crate::ofx`]).
 //!
-//! The native library is built against an old glibc with zig as the linker (cargo-zigbuild and ziglang from PyPI, in an
-//! environment under `target/`), so that it loads on every Linux that Blender itself runs on; the symbol versions it needs are
-//! read back to make sure. Blender's own packager builds the zip and validates it.
+//! The native library must load on every Linux on which Blender runs. So it is built against an old glibc, with zig as the
+//! linker (cargo-zigbuild and ziglang from PyPI, in an environment under `target/`). A check reads the symbol versions that
+//! the library needs. Blender's own packager builds and validates the zip.
 
 use crate::{elf, ofx};
 use anyhow::{Context, Result, bail, ensure};
@@ -11,7 +11,8 @@ use std::process::Command;
 use xtask_shell::python;
 use xtask_shell::shell::{capture, cargo, command, copy_folder, empty_folder, root, run, target};
 
-/// The newest glibc the library may need: that of the systems Blender's own builds support (VFX platform CY2023 on).
+/// The newest glibc that the library may need: that of the systems which Blender's own builds support (VFX platform CY2023
+/// and later).
 pub const GLIBC: (u32, u32) = (2, 28);
 /// The packages that are tested together, as arguments of cargo: all but the OpenFX host, which compiles C++.
 pub const TESTED: [&str; 3] = ["--workspace", "--exclude", "rototoon-ofx-host"];
@@ -19,16 +20,16 @@ const TRIPLE: &str = "x86_64-unknown-linux-gnu";
 const LIBRARY: &str = "librototoon_capi.so";
 const PLUGIN: &str = "librototoon_ofx.so";
 
-/// What `bundle` leaves behind.
+/// The files that `bundle` makes.
 #[derive(Clone, Debug)]
 pub struct Bundle {
     /// The extension.
     pub zip: PathBuf,
     /// The native library.
     pub library: PathBuf,
-    /// The command line, built with it.
+    /// The command line.
     pub cli: PathBuf,
-    /// The OpenFX bundle, built with it.
+    /// The OpenFX bundle.
     pub ofx: PathBuf,
     /// The development commands that need the core; built with [`Build::WithMeasure`] only.
     pub measure: PathBuf,
@@ -61,10 +62,10 @@ impl Bundle {
     }
 }
 
-/// What packs the extension: Blender's packager from a wheel, or an installed Blender.
+/// The program that packs the extension: Blender's packager in a wheel, or an installed Blender.
 #[derive(Clone, Debug)]
 pub enum Packager {
-    /// Interpreter of an environment that holds the `bpy` wheel.
+    /// Interpreter of an environment with the `bpy` wheel.
     Wheel(PathBuf),
     /// A Blender binary.
     Blender(PathBuf),
@@ -89,7 +90,7 @@ pub fn bundle(packager: &Packager, build: Build) -> Result<Bundle> {
     Ok(bundle)
 }
 
-/// What builds against an old glibc: the interpreter of an environment with zig and cargo-zigbuild.
+/// The interpreter of an environment with zig and cargo-zigbuild, which build against an old glibc.
 pub fn tools() -> Result<PathBuf> {
     python::venv("venv-build", &python::find_any()?, &["cargo-zigbuild", "ziglang"])
 }
@@ -102,11 +103,11 @@ pub fn compile_tested() -> Result<()> {
 /// Library, command line and OpenFX plugin as artists install them.
 fn compile_installed(build: Build) -> Result<()> {
     let tools = tools()?;
-    let bin = tools.parent().context("an interpreter lies in a folder")?;
+    let bin = tools.parent().context("an interpreter is in a folder")?;
     let path = std::env::var_os("PATH").unwrap_or_default();
     let path = std::env::join_paths(std::iter::once(bin.to_path_buf()).chain(std::env::split_paths(&path)))?;
     if !capture(command("rustup").args(["target", "list", "--installed"])).is_ok_and(|list| list.contains(TRIPLE)) {
-        // Without rustup the host's own standard library serves.
+        // Without rustup the standard library of this machine's toolchain is used.
         let _ = capture(command("rustup").args(["target", "add", TRIPLE]));
     }
     let versioned = format!("{TRIPLE}.{}.{}", GLIBC.0, GLIBC.1);
@@ -115,12 +116,12 @@ fn compile_installed(build: Build) -> Result<()> {
         .args(["-p", "rototoon-capi", "-p", "rototoon-cli", "-p", "rototoon-ofx"])
         .args(if build == Build::WithMeasure { &["-p", "xtask-measure"][..] } else { &[] })
         .env("PATH", path)
-        // The zip is downloaded by artists: no line tables.
+        // Line tables would only make the zip larger.
         .env("CARGO_PROFILE_RELEASE_DEBUG", "none")
         .env("CARGO_PROFILE_RELEASE_STRIP", "symbols"))
 }
 
-/// The extension's folder as it is packed: the add-on's files, the library, the licence.
+/// Makes the folder that is packed: the add-on's files, the library, the licences.
 fn stage(library: &Path) -> Result<PathBuf> {
     let staged = target().join("bundle/rototoon");
     empty_folder(&staged)?;
@@ -136,7 +137,7 @@ fn stage(library: &Path) -> Result<PathBuf> {
     // The add-on's own licence is in its folder; the library's goes beside the library.
     std::fs::copy(root().join("LICENSE"), native.join("LICENSE"))?;
     let manifest = std::fs::read_to_string(staged.join("blender_manifest.toml")).context("blender_manifest.toml")?;
-    // Blender's validator accepts platform names that no Blender has.
+    // Blender's validator accepts platform names that do not exist.
     let platforms = manifest.lines().find(|line| line.starts_with("platforms")).unwrap_or_default();
     ensure!(
         platforms.contains("[\"linux-x64\"]"),
@@ -155,14 +156,14 @@ fn pack(packager: &Packager, staged: &Path, place: &Path) -> Result<()> {
         .arg("--output-dir")
         .arg(&out))?;
     let built: Vec<PathBuf> = std::fs::read_dir(&out)?.map(|e| Ok(e?.path())).collect::<Result<_>>()?;
-    let [zip] = built.as_slice() else { bail!("the packager left {built:?}, expected one zip") };
-    ensure!(zip.file_name() == place.file_name(), "the packager left {zip:?}, expected it to be called as {place:?}");
+    let [zip] = built.as_slice() else { bail!("the packager made {built:?}, expected one zip") };
+    ensure!(zip.file_name() == place.file_name(), "the packager made {zip:?}, expected the file name of {place:?}");
     run(packager.command()?.arg("validate").arg(zip))?;
     std::fs::rename(zip, place).with_context(|| format!("cannot move {zip:?} to {place:?}"))
 }
 
 impl Packager {
-    /// The oldest Blender wheel whose Python is here.
+    /// The oldest Blender wheel whose version of Python is installed.
     pub fn from_wheel() -> Result<Self> {
         Ok(Self::Wheel(python::any_blender_venv()?.1))
     }
@@ -183,7 +184,7 @@ impl Packager {
     }
 }
 
-/// Blender's packager inside the wheel: `bpy/<version>/scripts/addons_core/bl_pkg/cli/blender_ext.py`.
+/// The path of Blender's packager in the wheel: `bpy/<version>/scripts/addons_core/bl_pkg/cli/blender_ext.py`.
 fn blender_ext(interpreter: &Path) -> Result<PathBuf> {
     let find = "import sysconfig; print(sysconfig.get_paths()['platlib'])";
     let bpy = Path::new(&capture(command(interpreter).args(["-c", find]))?).join("bpy");

@@ -1,4 +1,4 @@
-//! `demo`: the main job from end to end in real Blender, on the sample cartoon or on any project document.
+//! `demo`: runs the main workflow in real Blender, on the sample cartoon or on any project document.
 
 use crate::bundle::{Build, Bundle, Packager, bundle};
 use anyhow::{Context, Result, ensure};
@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use xtask_shell::shell::{command, empty_folder, root, run, target};
 
-/// Pictures on the contact sheet.
+/// Number of pictures on the contact sheet.
 const PICTURES: usize = 12;
 
-/// Builds and installs the extension, lets it track and snap, and leaves what came out in `target/demo`.
+/// Builds and installs the extension, tracks and snaps with it, and writes the results to `target/demo`.
 pub fn demo(project: Option<PathBuf>, blender: Option<PathBuf>) -> Result<()> {
     let blender =
         blender.map(|path| path.canonicalize().with_context(|| format!("no Blender at {path:?}"))).transpose()?;
@@ -54,7 +54,7 @@ pub fn demo(project: Option<PathBuf>, blender: Option<PathBuf>) -> Result<()> {
     Ok(())
 }
 
-/// The script inside Blender, with a configuration of its own.
+/// The command that runs the script inside Blender, with a Blender configuration of its own.
 fn script(packager: &Packager) -> Command {
     let script = root().join("tests/blender/demo.py");
     let mut start = match packager {

@@ -1,15 +1,15 @@
-//! The versions of glibc's symbols that a library asks for, read from its ELF file.
+//! Reads from an ELF file which libraries, and which versions of glibc's symbols, a library needs.
 //!
-//! A shared library lists, in the section of type `SHT_GNU_verneed`, each library it needs and the symbol versions it
-//! needs of it (Linux Standard Base Core 5.0, "Symbol Version Requirements"): records of 16 bytes, each followed by its
-//! entries of 16 bytes, names given as offsets into the linked string table. Only 64-bit little-endian files are read.
+//! The section of type `SHT_GNU_verneed` of a shared library lists each library that it needs, with the symbol versions that
+//! it needs of it (Linux Standard Base Core 5.0, "Symbol Version Requirements"). A record has 16 bytes and is followed by
+//! its entries of 16 bytes. Names are offsets into the linked string table. Only 64-bit little-endian files are supported.
 
 use anyhow::{Context, Result, bail, ensure};
 use std::path::Path;
 
 const VERNEED: u32 = 0x6fff_fffe;
 
-/// The names of all symbol versions a library needs, such as `GLIBC_2.17`.
+/// The names of all symbol versions that a library needs, such as `GLIBC_2.17`.
 pub fn needed_versions(file: &[u8]) -> Result<Vec<String>> {
     ensure!(file.starts_with(b"\x7fELF\x02\x01"), "not a 64-bit little-endian ELF file");
     let sections = number(file, 0x28, 8)?;
@@ -59,7 +59,7 @@ pub fn needed_libraries(file: &[u8]) -> Result<Vec<String>> {
     Ok(names)
 }
 
-/// Fails where a library needs a newer glibc than `most`, major and minor number.
+/// Fails if a library needs a newer glibc than `most` (major and minor number).
 pub fn assert_glibc(path: &Path, most: (u32, u32)) -> Result<()> {
     let file = std::fs::read(path).with_context(|| format!("cannot read {path:?}"))?;
     let versions = needed_versions(&file).with_context(|| format!("{path:?}"))?;
@@ -67,7 +67,7 @@ pub fn assert_glibc(path: &Path, most: (u32, u32)) -> Result<()> {
         if let Some(found) = glibc(version)
             && found > most
         {
-            bail!("{path:?} needs {version}, but glibc {}.{} is the newest allowed", most.0, most.1);
+            bail!("{path:?} needs {version}, expected glibc {}.{} at most", most.0, most.1);
         }
     }
     Ok(())
@@ -86,7 +86,7 @@ fn number(file: &[u8], at: usize, bytes: usize) -> Result<usize> {
 
 fn string(file: &[u8], at: usize) -> Result<String> {
     let rest = file.get(at..).context("the ELF file is cut short")?;
-    let end = rest.iter().position(|&b| b == 0).context("a name in the ELF file has no end")?;
+    let end = rest.iter().position(|&b| b == 0).context("a name in the ELF file is not terminated")?;
     Ok(String::from_utf8_lossy(&rest[..end]).into_owned())
 }
 

@@ -1,10 +1,10 @@
-//! `generate`: the C header from the ABI crate, and the Python bindings from the header.
+//! `generate`: makes the C header from the ABI crate, and the Python bindings from the header.
 //!
 //! The header is the contract between the library and its callers. Its hash is compiled into the library and written
-//! into the bindings, so that a library and a Python package that do not belong together refuse each other.
+//! into the bindings, so that Python refuses a library that does not belong to it.
 //!
-//! The bindings are read from the header, not from the Rust source: what Python believes is what C callers see. The
-//! reader knows just the declarations that the header uses, and refuses anything else.
+//! The bindings are made from the header, not from the Rust source, so that Python and C callers use the same
+//! declarations. The parser knows only the declarations that the header uses, and refuses all others.
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::fmt::Write;
@@ -14,7 +14,7 @@ const SOURCES: &str = "core/capi/src";
 const HEADER: &str = "core/capi/include/rototoon.h";
 const BINDINGS: &str = "blender-addon/rototoon/native/_bindings.py";
 
-/// Writes the header and the bindings; with `check`, changes nothing and fails where one of them is stale.
+/// Writes the header and the bindings. With `check` it changes nothing, and fails if one of them is stale.
 pub fn generate(check: bool) -> Result<()> {
     let root = root();
     let header = header(&root)?;
@@ -27,7 +27,7 @@ pub fn generate(check: bool) -> Result<()> {
         }
         stale.push(path);
         if !check {
-            std::fs::write(&file, content).with_context(|| format!("writing {path}"))?;
+            std::fs::write(&file, content).with_context(|| format!("cannot write {path}"))?;
             println!("wrote {path}");
         }
     }
@@ -36,7 +36,7 @@ pub fn generate(check: bool) -> Result<()> {
 }
 
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the workspace").to_path_buf()
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask is in the workspace").to_path_buf()
 }
 
 fn header(root: &Path) -> Result<String> {
@@ -59,10 +59,10 @@ fn header(root: &Path) -> Result<String> {
         },
         ..Default::default()
     };
-    // The crate's root alone: its modules are read from there, and would be declared twice if they were given as well.
+    // Only the crate's root is given. cbindgen finds the modules itself, and would declare them twice if they were given.
     let builder = cbindgen::Builder::new().with_config(config).with_src(root.join(SOURCES).join("lib.rs"));
     let mut text = Vec::new();
-    builder.generate().context("reading the ABI crate")?.write(&mut text);
+    builder.generate().context("cannot read the ABI crate")?.write(&mut text);
     Ok(String::from_utf8(text)?)
 }
 
@@ -85,7 +85,7 @@ enum Declaration {
     Function { name: String, result: CType, parameters: Vec<CType> },
 }
 
-/// A type as ctypes calls it.
+/// The ctypes expression of a type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CType(&'static str);
 
@@ -123,7 +123,7 @@ fn bindings(header: &str) -> Result<String> {
     ))
 }
 
-/// FNV-1a, 64 bits (Fowler, Noll, Vo), as the library computes it of the header it was built with.
+/// FNV-1a, 64 bits (Fowler, Noll, Vo). The library computes the same hash of the header that it is built with.
 fn hash(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
@@ -131,7 +131,7 @@ fn hash(bytes: &[u8]) -> u64 {
 fn declarations(header: &str) -> Result<Vec<Declaration>> {
     let mut found = Vec::new();
     let mut code = String::new();
-    // Comments are whole lines. What stands between `#if...` with __cplusplus and the next `#endif` is for C++ alone.
+    // Comments are complete lines. Lines between an `#if...` with __cplusplus and the next `#endif` are for C++ only.
     let mut only_cpp = false;
     for line in header.lines().map(str::trim) {
         match line {
@@ -160,11 +160,11 @@ fn constant(line: &str) -> Option<Declaration> {
     Some(Declaration::Constant { name: name.into(), value: value.parse().ok()? })
 }
 
-/// Takes the enumerations out of `code`; returns their names.
+/// Removes the enumerations from `code` and adds their constants to `found`. Returns the names of the enumerations.
 fn enumerations(code: &mut String, found: &mut Vec<Declaration>) -> Result<Vec<String>> {
     let mut names = Vec::new();
     while let Some(open) = code.find('{') {
-        let close = code[open..].find('}').map(|at| open + at).context("header: { without }")?;
+        let close = code[open..].find('}').map(|at| open + at).context("header: found { without }")?;
         let start = code[..open].rfind(';').map_or(0, |at| at + 1);
         let head = code[start..open].trim().trim_start_matches("typedef").trim();
         let name = head.strip_prefix("enum").with_context(|| format!("header: {head:?} is not an enum"))?.trim();
@@ -172,7 +172,7 @@ fn enumerations(code: &mut String, found: &mut Vec<Declaration>) -> Result<Vec<S
             let (key, value) = entry.split_once('=').with_context(|| format!("header: {entry} has no value"))?;
             found.push(Declaration::Constant { name: key.trim().into(), value: value.trim().parse()? });
         }
-        let end = code[close..].find(';').map(|at| close + at).context("header: enum without ;")?;
+        let end = code[close..].find(';').map(|at| close + at).context("header: found an enum without ;")?;
         names.push(name.to_owned());
         code.replace_range(start..=end, "");
     }
@@ -183,7 +183,7 @@ fn statement_declaration(statement: &str, enums: &[String]) -> Result<Option<Dec
     let (front, parameters) = match statement.split_once('(') {
         // Opaque handles, and the integer type behind an enum.
         None if statement.starts_with("typedef ") => return Ok(None),
-        None => bail!("not a declaration that is known"),
+        None => bail!("found an unknown kind of declaration"),
         Some((front, rest)) if front.starts_with("typedef ") => {
             let (name, rest) = rest.split_once(')').ok_or_else(|| anyhow!("a ) is missing"))?;
             let name = name.trim().trim_start_matches('*').into();
@@ -226,7 +226,7 @@ fn c_type(text: &str, enums: &[String]) -> Result<CType> {
         "size_t" => "ctypes.c_size_t",
         "RototoonProgress" => "RototoonProgress",
         _ if enums.iter().any(|name| name == text) => "ctypes.c_int32",
-        _ => bail!("type {text:?} is not known"),
+        _ => bail!("found the unknown type {text:?}"),
     }))
 }
 
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn refuses_what_it_does_not_know() {
+    fn unknown_declarations_are_refused() {
         for bad in ["float f(void);", "int32_t x;", "struct S { int32_t a; };"] {
             assert!(declarations(bad).is_err(), "{bad}");
         }
@@ -278,7 +278,7 @@ mod tests {
 
     #[test]
     fn hash_is_fnv_1a() {
-        // Test vectors of the authors' reference code.
+        // Test vectors of the reference code by the authors of FNV.
         assert_eq!(hash(b""), 0xcbf2_9ce4_8422_2325);
         assert_eq!(hash(b"a"), 0xaf63_dc4c_8601_ec8c);
         assert_eq!(hash(b"foobar"), 0x8594_4171_f739_67e8);

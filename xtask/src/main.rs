@@ -23,16 +23,16 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Show the main job in real Blender: install, import, track, snap, render. Results are in target/demo.
+    /// Show the main workflow in real Blender: install, import, track, snap, render. Results are in target/demo.
     Demo {
-        /// A project document; the sample cartoon where none is given.
+        /// The project document; the sample cartoon by default.
         #[arg(long)]
         project: Option<PathBuf>,
-        /// An installed Blender; the `bpy` wheel from PyPI where none is given.
+        /// The binary of an installed Blender; the `bpy` wheel from PyPI by default.
         #[arg(long)]
         blender: Option<PathBuf>,
     },
-    /// Run every check, in Blender and in an OpenFX host too, and say what could not be run.
+    /// Run all checks, also in Blender and in an OpenFX host, and list the steps that could not be run.
     Test {
         /// Also run the OpenFX plugin under valgrind.
         #[arg(long)]
@@ -48,7 +48,7 @@ enum Command {
     Bundle,
     /// Write the C header and the Python bindings.
     Generate {
-        /// Change nothing; fail where a file is stale.
+        /// Change nothing, and fail if a file is stale.
         #[arg(long)]
         check: bool,
     },

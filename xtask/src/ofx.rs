@@ -1,25 +1,25 @@
-//! The OpenFX bundle: `target/Rototoon.ofx.bundle`, laid out as OpenFX 1.4 wants ("Packaging OFX Plug-ins").
+//! Makes the OpenFX bundle `target/Rototoon.ofx.bundle`, with the folders of OpenFX 1.4 ("Packaging OFX Plug-ins").
 
 use crate::elf;
 use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
 use xtask_shell::shell::{empty_folder, root, target};
 
-/// What the plugin may need of the system: the families of libc and libm, and what unwinds.
+/// The system libraries that the plugin may link: the parts of glibc, and the unwinder.
 const SYSTEM: [&str; 7] =
     ["libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "librt.so.1", "libgcc_s.so.1", "ld-linux-x86-64.so.2"];
 
-/// Where the bundle is.
+/// The folder of the bundle.
 pub fn place() -> PathBuf {
     target().join("Rototoon.ofx.bundle")
 }
 
-/// Lays the bundle out around the library.
+/// Makes the bundle of a library.
 pub fn lay_out(library: &Path) -> Result<()> {
     let file = std::fs::read(library).with_context(|| format!("cannot read {library:?}"))?;
     let needed = elf::needed_libraries(&file).with_context(|| format!("{library:?}"))?;
     let foreign: Vec<_> = needed.iter().filter(|name| !SYSTEM.contains(&name.as_str())).collect();
-    ensure!(foreign.is_empty(), "{library:?} needs {foreign:?}, expected nothing beyond {SYSTEM:?}");
+    ensure!(foreign.is_empty(), "{library:?} links {foreign:?}, expected only libraries of {SYSTEM:?}");
     let place = place();
     empty_folder(&place)?;
     let contents = place.join("Contents");
@@ -36,7 +36,7 @@ pub fn lay_out(library: &Path) -> Result<()> {
     }
     std::fs::copy(root().join("LICENSE"), resources.join("LICENSE"))?;
     println!("OpenFX: {}", place.display());
-    println!("  hosts look in /usr/OFX/Plugins and in the folders that OFX_PLUGIN_PATH lists: copy it to one of them");
+    println!("  copy it to /usr/OFX/Plugins or to a folder of OFX_PLUGIN_PATH, where hosts look for plugins");
     Ok(())
 }
 
@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn what_links_something_else_is_refused() {
+    fn other_files_are_refused() {
         let folder = target().join("xtask-ofx-test");
         empty_folder(&folder).unwrap();
         let other = folder.join("not-elf.so");

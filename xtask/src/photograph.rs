@@ -1,8 +1,8 @@
 //! `photograph`: the documentation's pictures of every panel and of Match Strokes, taken in a real Blender window.
 //!
-//! The `bpy` wheels have no windows. Debian sid packages a current Blender: it is unpacked into a folder of its own
-//! (debootstrap), started there under a virtual screen (Xvfb) and photographed. Sid moves, and the job needs root: where it
-//! cannot be done, that is said and nothing fails.
+//! The `bpy` wheels have no windows, but Debian sid packages a current Blender. debootstrap installs it into a folder of its
+//! own. There it runs on a virtual screen (Xvfb), of which a picture is taken. Sid changes over time, and debootstrap and
+//! chroot need root. If the pictures cannot be taken, the command says so and succeeds.
 
 use crate::bundle::{Build, Packager, bundle};
 use anyhow::{Context, Result, bail};
@@ -91,7 +91,7 @@ fn accept(taken: &Path, kept: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Why this machine can't, if it can't.
+/// The reason why this machine cannot take pictures, if there is one.
 fn cannot() -> Option<String> {
     if !capture(command("id").arg("-u")).is_ok_and(|id| id == "0") {
         return Some("it needs root for chroot".into());
@@ -102,7 +102,7 @@ fn cannot() -> Option<String> {
     None
 }
 
-/// Debian sid with Blender in a folder, made once.
+/// Installs Debian sid with Blender into a folder, once.
 fn install(system: &Path) -> Result<()> {
     let stamp = system.join("photograph-installed");
     if stamp.exists() {
@@ -114,12 +114,12 @@ fn install(system: &Path) -> Result<()> {
     std::fs::create_dir_all(system)?;
     let mut bootstrap = command("debootstrap");
     bootstrap.args(["--variant=minbase", "sid"]).arg(system);
-    // Another mirror than debootstrap's own.
+    // The variable replaces debootstrap's default mirror.
     bootstrap.args(std::env::var_os("DEBIAN_MIRROR"));
     run(&mut bootstrap)?;
     let _proc = Mount::proc(system)?;
     let apt = |words: &[&str]| run(chroot(system).env("DEBIAN_FRONTEND", "noninteractive").arg("apt-get").args(words));
-    // A mirror may be a snapshot of some day.
+    // The mirror may be an old snapshot, whose index has expired.
     apt(&["-qq", "-o", "Acquire::Check-Valid-Until=false", "update"])?;
     let mut words = vec!["-qq", "install", "--yes", "--no-install-recommends"];
     words.extend(PACKAGES);
@@ -133,7 +133,7 @@ fn chroot(system: &Path) -> Command {
     start
 }
 
-/// `/proc` inside the folder, for as long as this lives.
+/// Mounts `/proc` inside the folder until it is dropped.
 struct Mount(PathBuf);
 
 impl Mount {

@@ -1,8 +1,8 @@
-//! Steps that run beside each other, each in a process of its own, and a summary that hides nothing.
+//! Runs steps in parallel, each in a process of its own, and prints a summary of all of them.
 //!
-//! Compilers leave processors idle at the ends of their work, and so do downloads and Blender: steps that do not wait for
-//! each other run two at a time. Cargo locks the folder that it builds in, so of those that build in the same one a single
-//! step runs at a time. What a step prints appears as a whole when it has ended.
+//! A compiler leaves processors idle at the end of its work, and so do downloads and Blender. So steps that do not depend on
+//! each other run in parallel. Cargo locks the folder that it builds in, so only one step at a time builds in it. The output
+//! of a step is printed when the step has ended.
 
 use anyhow::{Context, Result, bail};
 use std::fs::{self, File};
@@ -11,58 +11,59 @@ use std::sync::mpsc;
 use std::time::Instant;
 use xtask_shell::shell::{command, target};
 
-/// What a step does; `Ok(Some(reason))` says that it could not be done here.
+/// The work of a step. `Ok(Some(reason))` means that it cannot be run here.
 pub type Body = Box<dyn Fn() -> Result<Option<String>>>;
 
-/// One of the steps.
+/// A step.
 pub struct Step {
-    /// How it is called, and shown.
+    /// Its name, for the command line and messages.
     pub name: String,
-    /// Steps that must have passed before.
+    /// Steps that must have passed before it.
     needs: Vec<String>,
-    /// Steps that must have ended before, however.
+    /// Steps that must have ended before it, with any outcome.
     after: Vec<String>,
-    /// Whether it builds in cargo's folder for development.
+    /// Whether it builds in Cargo's target folder for development.
     builds: bool,
     body: Body,
 }
 
-/// How a step ended.
+/// The outcome of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// As it should.
+    /// It passed.
     Passed,
-    /// With an error.
+    /// It failed with this error.
     Failed(String),
-    /// It could not be run here.
+    /// It could not be run here, for this reason.
     NotRun(String),
 }
 
 impl Step {
-    /// A step that waits for nothing.
+    /// A step that depends on no other.
     pub fn new(name: &str, body: impl Fn() -> Result<Option<String>> + 'static) -> Self {
         Self { name: name.to_owned(), needs: Vec::new(), after: Vec::new(), builds: false, body: Box::new(body) }
     }
 
-    /// The same, which needs what another step leaves.
+    /// Makes the step need that another one has passed.
     pub fn needs(mut self, name: &str) -> Self {
         self.needs.push(name.to_owned());
         self
     }
 
-    /// The same, after another step.
+    /// Makes the step start after another one has ended.
     pub fn after(mut self, name: &str) -> Self {
         self.after.push(name.to_owned());
         self
     }
 
-    /// The same, which builds in cargo's folder for development.
+    /// Declares that the step builds in Cargo's target folder for development.
     pub fn builds(mut self) -> Self {
         self.builds = true;
         self
     }
 
-    /// Does it here and now, and writes down how it ended ([`in_own_process`] reads it); an error where it failed.
+    /// Runs the step in this process and writes its outcome to a file, which [`in_own_process`] reads. It is an error if the
+    /// step fails.
     pub fn run_here(&self) -> Result<()> {
         let ended = (self.body)();
         let told = match &ended {
@@ -71,7 +72,7 @@ impl Step {
             Err(error) => format!("failed\n{error:#}"),
         };
         if let Ok(Some(reason)) = &ended {
-            println!("it could not be run here: {reason}");
+            println!("this step cannot be run here: {reason}");
         }
         let file = file(&self.name, "outcome")?;
         fs::write(&file, told).with_context(|| format!("cannot write {file:?}"))?;
@@ -79,7 +80,7 @@ impl Step {
     }
 }
 
-/// A file beside the steps' others: its log, or its outcome.
+/// The file with the log or the outcome of a step.
 fn file(step: &str, kind: &str) -> Result<PathBuf> {
     let folder = target().join("test");
     fs::create_dir_all(&folder).with_context(|| format!("cannot make {folder:?}"))?;
@@ -98,7 +99,7 @@ fn child(step: &str, more: &[&str]) -> Result<Outcome> {
     let (log, outcome) = (file(step, "log")?, file(step, "outcome")?);
     let _ = fs::remove_file(&outcome);
     let output = File::create(&log).with_context(|| format!("cannot write {log:?}"))?;
-    let program = std::env::current_exe().context("this program has no place")?;
+    let program = std::env::current_exe().context("cannot find the path of this program")?;
     let status = command(program)
         .args(["test", "--step", step])
         .args(more)
@@ -110,7 +111,7 @@ fn child(step: &str, more: &[&str]) -> Result<Outcome> {
     let printed = fs::read(&log).with_context(|| format!("cannot read {log:?}"))?;
     println!("\n=== {step}\n{}", String::from_utf8_lossy(&printed).trim_end());
     let Ok(told) = fs::read_to_string(&outcome) else {
-        bail!("it ended with {status}, and said nothing of its outcome")
+        bail!("the step {step} ended with {status} and wrote no outcome")
     };
     let (word, reason) = told.split_once('\n').unwrap_or((&told, ""));
     Ok(match word {
@@ -120,10 +121,10 @@ fn child(step: &str, more: &[&str]) -> Result<Outcome> {
     })
 }
 
-/// Name, outcome and seconds of each step, in their order.
+/// Name, outcome and seconds of each step, in the order of the steps.
 pub struct Report(Vec<(String, Outcome, f64)>);
 
-/// Runs all steps, at most `at_once` beside each other, the earlier ones first.
+/// Runs all steps with `run`, at most `at_once` at the same time. Of the steps that may start, the first one starts first.
 pub fn run_all(steps: &[Step], at_once: usize, run: &(dyn Fn(&str) -> Outcome + Sync)) -> Report {
     let mut ended: Vec<Option<(Outcome, f64)>> = steps.iter().map(|_| None).collect();
     let mut running: Vec<usize> = Vec::new();
@@ -152,23 +153,23 @@ pub fn run_all(steps: &[Step], at_once: usize, run: &(dyn Fn(&str) -> Outcome + 
             if running.is_empty() {
                 break;
             }
-            let (step, outcome, seconds) = receiver.recv().expect("a running step tells when it has ended");
+            let (step, outcome, seconds) = receiver.recv().expect("a running step sends its outcome");
             running.retain(|&r| r != step);
             ended[step] = Some((outcome, seconds));
         }
     });
-    let never = || (Outcome::Failed("it waits for a step that is none".into()), 0.0);
+    let never = || (Outcome::Failed("it waits for a step that does not exist".into()), 0.0);
     let all = steps.iter().zip(ended).map(|(step, ended)| (step.name.clone(), ended.unwrap_or_else(never)));
     Report(all.map(|(name, (outcome, seconds))| (name, outcome, seconds)).collect())
 }
 
-/// Whether all that a step waits for has ended.
+/// Whether all steps that a step waits for have ended.
 fn ready(steps: &[Step], ended: &[Option<(Outcome, f64)>], step: usize) -> bool {
     let has_ended = |name: &String| steps.iter().zip(ended).any(|(other, end)| other.name == *name && end.is_some());
     steps[step].needs.iter().chain(&steps[step].after).all(has_ended)
 }
 
-/// What a step needs and has not got.
+/// A message if a step that this step needs has not passed.
 fn missing(steps: &[Step], ended: &[Option<(Outcome, f64)>], step: usize) -> Option<String> {
     let passed = |name: &String| {
         let mut ends = steps.iter().zip(ended).filter(|(other, _)| other.name == *name);
@@ -179,7 +180,7 @@ fn missing(steps: &[Step], ended: &[Option<(Outcome, f64)>], step: usize) -> Opt
 }
 
 impl Report {
-    /// Prints the summary; an error where a step failed. What could not be run is said, and fails nothing.
+    /// Prints the summary. It is an error if a step failed, but not if a step could not be run.
     pub fn finish(&self) -> Result<()> {
         println!("\n=== Summary");
         for (name, outcome, seconds) in &self.0 {
@@ -214,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failed_step_fails_the_whole_and_the_others_go_on() {
+    fn a_failed_step_fails_the_run_and_the_others_go_on() {
         let outcome = |name: &str| match name {
             "b" => Outcome::Failed("broken".into()),
             "c" => Outcome::NotRun("no such machine".into()),
@@ -226,12 +227,12 @@ mod tests {
     }
 
     #[test]
-    fn what_could_not_be_run_fails_nothing() {
+    fn steps_that_could_not_be_run_are_no_failures() {
         run_all(&[step("a")], 2, &|_| Outcome::NotRun("no such machine".into())).finish().unwrap();
     }
 
     #[test]
-    fn a_step_waits_for_what_it_needs_and_is_not_run_without() {
+    fn a_step_waits_for_the_steps_it_needs_and_is_not_run_if_they_fail() {
         let steps = [
             step("late").needs("first"),
             step("last").after("broken"),
@@ -253,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn no_more_run_at_once_than_may_and_only_one_that_builds() {
+    fn at_most_three_steps_run_at_once_and_only_one_that_builds() {
         let steps: Vec<Step> = (0..8).map(|i| step(&i.to_string())).collect();
         let steps: Vec<Step> = steps.into_iter().enumerate().map(|(i, s)| if i < 4 { s.builds() } else { s }).collect();
         let running = Mutex::new(Vec::<usize>::new());
@@ -271,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_that_waits_for_none_is_no_pass() {
+    fn a_step_that_waits_for_a_missing_step_fails() {
         let report = run_all(&[step("a").after("nothing")], 2, &|_| Outcome::Passed);
         assert!(report.finish().is_err());
     }

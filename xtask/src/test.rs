@@ -1,4 +1,4 @@
-//! `test`: everything that is checked, each step to its end ([`crate::steps`]).
+//! `test`: runs all checks. Each is a step of its own ([`crate::steps`]).
 
 use crate::bundle::{self, Build, Bundle, Packager, TESTED, bundle};
 use crate::docs::docs;
@@ -9,11 +9,11 @@ use std::path::PathBuf;
 use xtask_shell::python::{self, WHEELS, Wheel};
 use xtask_shell::shell::{capture, cargo, command, empty_folder, root, run, target, works};
 
-/// The package that is built apart: it compiles C++.
+/// The package that is built separately, because it compiles C++.
 const OFX_HOST: &str = "rototoon-ofx-host";
-/// Steps at once.
+/// Number of steps that run at the same time.
 const AT_ONCE: usize = 2;
-/// Names of the steps that others wait for.
+/// Names of the steps that others need.
 const ENVIRONMENTS: &str = "Python environments";
 const RUST_BUILD: &str = "Rust build";
 const BUNDLE: &str = "extension bundle";
@@ -38,7 +38,7 @@ pub fn step(name: &str, build: Build) -> Result<()> {
     let steps = steps(true, build);
     let Some(step) = steps.iter().find(|step| step.name == name) else {
         let names: Vec<&str> = steps.iter().map(|step| &step.name[..]).collect();
-        bail!("--step: there is none called {name:?}, expected one of {names:?}");
+        bail!("--step: found {name:?}, expected one of {names:?}");
     };
     step.run_here()
 }
@@ -98,7 +98,7 @@ fn rust_tests() -> Result<Option<String>> {
     run(cargo().args(["test", "--quiet", "--no-fail-fast"]).args(TESTED)).map(|()| None)
 }
 
-/// A cargo subcommand that comes as a component of the toolchain; added by rustup where it is missing.
+/// Runs a Cargo subcommand that is a component of the toolchain. If it is missing, rustup adds it.
 fn component(subcommand: &str, name: &str, arguments: &[&str]) -> Result<Option<String>> {
     let there = || run(cargo().args([subcommand, "--version"]).stdout(std::process::Stdio::null())).is_ok();
     if !there() {
@@ -120,7 +120,7 @@ fn ofx_tests(build: Build) -> Result<Option<String>> {
     Ok(None)
 }
 
-/// The same, watched by valgrind, compiled as artists get it: under valgrind tracking would else take very long.
+/// Runs the same tests under valgrind, as a release build, because an unoptimised tracker would take very long.
 fn valgrind_tests() -> Result<Option<String>> {
     if let Some(reason) = missing_package("valgrind", "valgrind").or_else(|| missing_package("c++", "g++")) {
         return Ok(Some(reason));
@@ -132,7 +132,7 @@ fn valgrind_tests() -> Result<Option<String>> {
     Ok(None)
 }
 
-/// Why a program cannot be had; where the system lets us, its package is installed first.
+/// The reason why a program is missing, if it is. Root installs its package first.
 fn missing_package(program: &str, package: &str) -> Option<String> {
     let there = || works(program, &["--version"]);
     if !there() && capture(command("id").arg("-u")).is_ok_and(|id| id == "0") {
@@ -156,12 +156,12 @@ fn python_environment() -> Result<PathBuf> {
     python::venv("venv-python", &python::find_any()?, &["pytest", "numpy"])
 }
 
-/// Where the sample cartoon and the doll are.
+/// The folder of the sample cartoon and the doll.
 fn files() -> PathBuf {
     target().join("sample-files")
 }
 
-/// The sample cartoon and the doll, which tests in Blender track and reshape.
+/// Writes the sample cartoon and the doll, which tests in Blender track and reshape.
 fn sample_files() -> Result<()> {
     bundle::compile_tested()?;
     run(command(&Bundle::of(Build::Tested).measure).arg("sample").arg(files()))
@@ -182,7 +182,7 @@ fn blender_tests(wheel: Wheel, build: Build) -> Result<Option<String>> {
         .env("ROTOTOON_ROOT", root())
         .env("ROTOTOON_SAMPLE", files())
         .env("BLENDER_USER_RESOURCES", resources)
-        // The library of the zip is what is tested.
+        // The tests must use the library in the zip.
         .env_remove("ROTOTOON_LIBRARY"))?;
     Ok(None)
 }

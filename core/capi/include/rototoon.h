@@ -6,36 +6,36 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// What every caller promises and may rely on:
+// Every caller keeps these rules, and may rely on them:
 //
-// - Coordinates are pixels, x right, y down, with the origin at the picture's outer top-left corner: a pixel's centre
-//   lies at +0.5. Frames are the numbers of the document.
-// - Text comes in as UTF-8 bytes with their length, without a terminating zero. A null pointer is an empty array where
-//   the length is 0. Arrays are read during the call only.
-// - Functions return a status. Other than `ROTOTOON_STATUS_OK`, the text in `*error` says what was wrong; it is null
-//   after success. `error` itself may be null. Free the text with `rototoon_text_free`.
-// - Handles come out through the last parameter before `error` (null unless the call succeeded). Each is freed once,
-//   with the `_free` of its type, while no call uses it.
-// - Null, misaligned and oversize arguments are refused. A dangling pointer cannot be noticed.
-// - A panic never leaves the library: it becomes `ROTOTOON_STATUS_PANIC`.
-// - A session may be used from any thread, but from one at a time: a call during another one on the same session
-//   returns `ROTOTOON_STATUS_BUSY` at once. Different sessions are independent. Texts, tracks and curves never change
-//   and may be read from several threads.
-// - Progress callbacks are called on the thread that made the call, and must not use its session.
+// - Coordinates are in pixels, x to the right, y down. The origin is the outer top-left corner of the picture, so the
+//   centre of the first pixel is at (0.5, 0.5). Frames have the numbers of the document.
+// - A text argument is UTF-8 bytes and their count, without a terminating zero. A null pointer is allowed where the
+//   length is 0. The library reads arrays during the call only.
+// - Functions return a status. If it is not `ROTOTOON_STATUS_OK`, `*error` is a text that says what was wrong.
+//   After success `*error` is null. `error` itself may be null. Free the text with `rototoon_text_free`.
+// - New handles come out through the last parameters before `error`. They are null unless the call succeeded. The
+//   caller frees each handle once, with the `_free` function of its type, while no call uses it.
+// - Null, misaligned and oversize arguments are refused. A dangling pointer cannot be detected.
+// - A panic never leaves the library. It becomes `ROTOTOON_STATUS_PANIC`.
+// - A session may be used from any thread, but only from one at a time. A call during another call on the same session
+//   returns `ROTOTOON_STATUS_BUSY` at once. Different sessions are independent. All other handles never change, so
+//   several threads may read them.
+// - Progress callbacks run on the thread that made the call. They must not use the session of that call.
 // - A call that does not succeed leaves the session's document as it was.
 
 
 
-// Rises with every change that an old caller would not survive.
+// Version of the ABI. It rises with every change that breaks older callers.
 #define ROTOTOON_ABI_VERSION 1
 
-// One stroke is one.
+// The two strokes correspond to each other.
 #define PAIR 0
 
-// The earlier stroke is whole, the later one a piece.
+// The later stroke is a piece of the earlier one.
 #define SPLIT 1
 
-// The earlier stroke is a piece, the later one whole.
+// The earlier stroke is a piece of the later one.
 #define JOINED 2
 
 // The earlier stroke has no counterpart.
@@ -44,19 +44,19 @@
 // The later stroke has no counterpart.
 #define APPEARED 4
 
-// How a call ended.
+// The result of a call.
 enum RototoonStatus
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // Done; out parameters are set.
+  // Success. The out parameters are set.
   ROTOTOON_STATUS_OK = 0,
-  // Failed; the error text says which file, field or frame, what was found and what was expected.
+  // The call failed. The error text names the file, field or frame, what was found and what was expected.
   ROTOTOON_STATUS_ERROR = 1,
-  // The progress callback asked to stop; nothing was changed.
+  // The progress callback cancelled the work. Nothing was changed.
   ROTOTOON_STATUS_CANCELLED = 2,
-  // A defect of the library, caught; the handle may still be used.
+  // The library has a defect and panicked. The handle may still be used.
   ROTOTOON_STATUS_PANIC = 3,
   // An argument is null, misaligned, too long, or not UTF-8.
   ROTOTOON_STATUS_BAD_ARGUMENT = 4,
@@ -74,19 +74,19 @@ typedef int32_t RototoonStatus;
 // The snapped paths of a part on one frame.
 typedef struct RototoonCurves RototoonCurves;
 
-// Guiding points of fitted strokes.
+// The guiding points of fitted strokes.
 typedef struct RototoonGuides RototoonGuides;
 
-// Drawings between others.
+// In-betweens of several spans.
 typedef struct RototoonInBetweens RototoonInBetweens;
 
-// Which stroke of a drawing is which of the next one.
+// The matches of the strokes of each drawing with those of the next one.
 typedef struct RototoonMatches RototoonMatches;
 
-// Parts of strokes that are seen or hidden, by stroke and along it.
+// The visible and hidden pieces of strokes, ordered by stroke, and along each stroke.
 typedef struct RototoonPieces RototoonPieces;
 
-// A document with its pictures and with what tracking remembers.
+// A session: a document, its pictures, and the results that tracking keeps for reuse.
 typedef struct RototoonSession RototoonSession;
 
 // UTF-8 text: an error message or a JSON document.
@@ -95,15 +95,17 @@ typedef struct RototoonText RototoonText;
 // The track of a part: frame numbers, points, confidence.
 typedef struct RototoonTrack RototoonTrack;
 
-// Told the finished share of the work (0 to 1, never falling) and the name of the step (UTF-8, not terminated),
-// about twenty times a second; returns 0 to go on, anything else to cancel. Null is allowed: nobody is told.
+// Progress callback, called about twenty times a second. `fraction` is the finished share of the work, 0 to 1, and
+// never falls. `step` is the name of the present step: `step_length` bytes of UTF-8, without a terminating zero, valid
+// during the call. `user` is the pointer given with the callback. It returns 0 to go on, any other number to cancel.
+// A null callback is allowed.
 typedef int32_t (*RototoonProgress)(void *user, double fraction, const uint8_t *step, size_t step_length);
 
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
 
-// `ROTOTOON_ABI_VERSION` as the library was built with it. Compare before any other call.
+// The `ROTOTOON_ABI_VERSION` that the library was built with. Compare it with the header's before any other call.
 uint32_t rototoon_abi_version(void);
 
 // FNV-1a hash (64 bits) of the bytes of the `rototoon.h` that the library was built with.
@@ -112,31 +114,39 @@ uint64_t rototoon_header_hash(void);
 // The version of Rototoon, such as "0.1.0".
 RototoonStatus rototoon_version(struct RototoonText **version, struct RototoonText **error);
 
-// Every parameter as a JSON list: `id`, `label`, `help`, `stage`, and what values it takes.
+// Describes every parameter, as a JSON list of objects: `id`, `label`, `help`, `stage` ("run", "track", "snap",
+// "render" or "export"), `type` ("choice", "integer", "number" or "flag"), `default`, and the fields of that type:
+// `choices` of a choice, `min` and `max` of numbers, `unit` of a number.
 RototoonStatus rototoon_parameters(struct RototoonText **parameters, struct RototoonText **error);
 
-// Finds which drawn contour is which known one, whatever their order, direction, start and number of points.
+// Finds the drawn contour that corresponds to each reference contour. Their order, direction, first point and number
+// of points may differ.
 //
-// `request` is JSON: `{"references": [contour], "drawn": [contour]}`, a contour being `{"closed": bool, "points":
-// [[x, y]]}` in pixels, with its `"color": [r, g, b]` (sRGB, 0 to 1) where it has one. `matches` is JSON: `{"matches":
-// [{"reference": index, "drawn": index, "points": [[x, y]], "cost": number}]}`, rising by reference: `points` are the
-// reference's control points on the drawn line; the cost is 0 for equal contours. What has no counterpart is left out.
+// `request` is JSON: `{"references": [contour], "drawn": [contour]}`. A contour is `{"closed": bool, "points":
+// [[x, y]], "color": [r, g, b]}`, with points in pixels and the colour in sRGB from 0 to 1. The colour may be left out.
+//
+// `matches` is JSON: `{"matches": [{"reference": index, "drawn": index, "points": [[x, y]], "cost": number}]}`, in the
+// order of the references. `points` are the reference's control points, placed on the drawn contour. The cost is 0 for
+// equal contours. References without a counterpart are left out.
 RototoonStatus rototoon_match_contours(const uint8_t *request,
                                        size_t request_length,
                                        struct RototoonText **matches,
                                        struct RototoonText **error);
 
-// The bytes of a text (UTF-8, not terminated); they live as long as the handle.
+// Reads a text: `length` bytes of UTF-8 at `data`, without a terminating zero. They live as long as the handle.
 RototoonStatus rototoon_text_read(const struct RototoonText *text,
                                   const uint8_t **data,
                                   size_t *length,
                                   struct RototoonText **error);
 
-// Frees a text; null is allowed.
+// Frees a text. Null is allowed.
 void rototoon_text_free(struct RototoonText *text);
 
-// The arrays of a track, which live as long as the handle: `frame_count` frame numbers (rising), `frame_count` ×
-// `point_count` × 2 coordinates (x, y in pixels), `frame_count` × `point_count` confidences (0 to 1).
+// Reads the arrays of a track. They live as long as the handle.
+//
+// - `frames`: `frame_count` frame numbers in rising order.
+// - `points`: `frame_count` × `point_count` × 2 coordinates, x and y in pixels, frame by frame.
+// - `confidence`: `frame_count` × `point_count` numbers from 0 to 1, frame by frame.
 RototoonStatus rototoon_track_read(const struct RototoonTrack *track,
                                    size_t *frame_count,
                                    size_t *point_count,
@@ -145,21 +155,24 @@ RototoonStatus rototoon_track_read(const struct RototoonTrack *track,
                                    const double **confidence,
                                    struct RototoonText **error);
 
-// Frees a track; null is allowed.
+// Frees a track. Null is allowed.
 void rototoon_track_free(struct RototoonTrack *track);
 
-// The arrays of snapped paths, which live as long as the handle: path `i` has the points `offsets[i]` to
-// `offsets[i + 1]` (excluded) of `points` (x, y in pixels); there are `path_count` + 1 offsets.
+// Reads the arrays of snapped paths. They live as long as the handle.
+//
+// - `offsets`: `path_count` + 1 numbers. Path `i` has the points `offsets[i]` to `offsets[i + 1]` (excluded).
+// - `points`: two coordinates per point, x and y in pixels.
 RototoonStatus rototoon_curves_read(const struct RototoonCurves *curves,
                                     size_t *path_count,
                                     const int32_t **offsets,
                                     const double **points,
                                     struct RototoonText **error);
 
-// Frees snapped paths; null is allowed.
+// Frees snapped paths. Null is allowed.
 void rototoon_curves_free(struct RototoonCurves *curves);
 
-// A session of a JSON document. A relative footage pattern is relative to `folder`. Pictures are read when needed.
+// Creates a session from the JSON text of a document. A relative footage pattern is relative to `folder`. Pictures are
+// read when they are needed.
 RototoonStatus rototoon_session_new(const uint8_t *document,
                                     size_t document_length,
                                     const uint8_t *folder,
@@ -167,58 +180,59 @@ RototoonStatus rototoon_session_new(const uint8_t *document,
                                     struct RototoonSession **session,
                                     struct RototoonText **error);
 
-// A session of a project file; footage is relative to its folder.
+// Creates a session from a project file. A relative footage pattern is relative to the file's folder.
 RototoonStatus rototoon_session_open(const uint8_t *path,
                                      size_t path_length,
                                      struct RototoonSession **session,
                                      struct RototoonText **error);
 
-// Frees a session; null is allowed. No call may be running on it.
+// Frees a session. Null is allowed. No call may be running on it.
 void rototoon_session_free(struct RototoonSession *session);
 
-// The document as JSON, results included.
+// Returns the document as JSON, with its results.
 RototoonStatus rototoon_session_document(const struct RototoonSession *session,
                                          struct RototoonText **document,
                                          struct RototoonText **error);
 
-// Puts another document in place, keeping what is known of pictures and solved spans: tracking solves what differs.
+// Replaces the document, given as JSON. The session keeps solved spans, so tracking solves only spans that differ. It
+// keeps its pictures if the footage is the same.
 RototoonStatus rototoon_session_set_document(const struct RototoonSession *session,
                                              const uint8_t *document,
                                              size_t document_length,
                                              struct RototoonText **error);
 
-// Writes the document to a file, whole or not at all. In another folder than the session's, a relative footage
-// pattern is rewritten so that it names the same files.
+// Writes the document to a file, completely or not at all. If the file is not in the session's folder, a relative
+// footage pattern is rewritten so that it names the same files.
 RototoonStatus rototoon_session_save(const struct RototoonSession *session,
                                      const uint8_t *path,
                                      size_t path_length,
                                      struct RototoonText **error);
 
-// Replaces the footage: JSON with the fields of the document's `footage`.
+// Replaces the footage. `footage` is JSON with the fields of the document's `footage`.
 RototoonStatus rototoon_session_set_footage(const struct RototoonSession *session,
                                             const uint8_t *footage,
                                             size_t footage_length,
                                             struct RototoonText **error);
 
-// The names of the parts: a JSON list in the document's order.
+// Returns the names of the parts as a JSON list, in the document's order.
 RototoonStatus rototoon_session_parts(const struct RototoonSession *session,
                                       struct RototoonText **names,
                                       struct RototoonText **error);
 
-// Adds a part at the end: JSON as in the document's `parts`.
+// Adds a part at the end. `part` is JSON in the form of the document's `parts`.
 RototoonStatus rototoon_session_add_part(const struct RototoonSession *session,
                                          const uint8_t *part,
                                          size_t part_length,
                                          struct RototoonText **error);
 
-// Removes a part, by name, and all that belongs to it.
+// Removes the part of this name, with its keys, corrections and results.
 RototoonStatus rototoon_session_remove_part(const struct RototoonSession *session,
                                             const uint8_t *part,
                                             size_t part_length,
                                             struct RototoonText **error);
 
-// Sets the artist's contour of a part on a frame. `points` are `value_count` numbers x, y, x, y, ...: as many points
-// as the part's other keys have. Pins and a corrected centre on the frame give way.
+// Sets the artist's contour of a part on a frame. `points` has `value_count` numbers: x, y, x, y, ... in pixels. The
+// number of points must be that of the part's other keys. Pins and a fixed centre on the frame are removed.
 RototoonStatus rototoon_session_set_key(const struct RototoonSession *session,
                                         const uint8_t *part,
                                         size_t part_length,
@@ -227,14 +241,15 @@ RototoonStatus rototoon_session_set_key(const struct RototoonSession *session,
                                         size_t value_count,
                                         struct RototoonText **error);
 
-// Removes the key of a part on a frame; an error where there is none.
+// Removes the key of a part on a frame. It is an error if there is none.
 RototoonStatus rototoon_session_remove_key(const struct RototoonSession *session,
                                            const uint8_t *part,
                                            size_t part_length,
                                            int32_t frame,
                                            struct RototoonText **error);
 
-// Fixes control point `point` (from 0) of a part on a frame between its keys, or beside its only key.
+// Fixes control point `point` (counted from 0) of a part at (`x`, `y`) pixels. The frame must be between the part's
+// keys. If the part has a single key, it may be any other frame of the footage.
 RototoonStatus rototoon_session_pin(const struct RototoonSession *session,
                                     const uint8_t *part,
                                     size_t part_length,
@@ -244,7 +259,7 @@ RototoonStatus rototoon_session_pin(const struct RototoonSession *session,
                                     double y,
                                     struct RototoonText **error);
 
-// Releases control point `point`, or with -1 all of the frame; nothing happens where none is fixed.
+// Releases control point `point` of a part on a frame, or all of them with -1. It is no error if none is fixed.
 RototoonStatus rototoon_session_unpin(const struct RototoonSession *session,
                                       const uint8_t *part,
                                       size_t part_length,
@@ -252,7 +267,8 @@ RototoonStatus rototoon_session_unpin(const struct RototoonSession *session,
                                       int32_t point,
                                       struct RototoonText **error);
 
-// Fixes the mean of the control points of a part on a frame between its keys.
+// Fixes the mean of the control points of a part at (`x`, `y`) pixels. The frame must be between the part's keys. If
+// the part has a single key, it may be any other frame of the footage.
 RototoonStatus rototoon_session_set_center(const struct RototoonSession *session,
                                            const uint8_t *part,
                                            size_t part_length,
@@ -261,26 +277,30 @@ RototoonStatus rototoon_session_set_center(const struct RototoonSession *session
                                            double y,
                                            struct RototoonText **error);
 
-// Releases the centre of a part on a frame; nothing happens where none is fixed.
+// Releases the centre of a part on a frame. It is no error if it is not fixed.
 RototoonStatus rototoon_session_clear_center(const struct RototoonSession *session,
                                              const uint8_t *part,
                                              size_t part_length,
                                              int32_t frame,
                                              struct RototoonText **error);
 
-// Tracks every part between its keys and stores `tracks` and `confidence` in the document. The default preset follows a
-// part with one key outward from it, as far as it can be trusted, and stores in `wants_key` where it was lost.
+// Tracks every part between its keys and stores `tracks` and `confidence` in the document. The default preset tracks a
+// part with a single key outward from that key, as far as the result is reliable. It stores the frames on which it
+// lost the part in `wants_key`.
 //
-// `options` is JSON of the parameters of the stages "track" and "run" (see `rototoon_parameters`), such as
-// `{"preset": "zhou2011", "threads": 2}`; each may be missing, and so may all (length 0). The threads do not change
-// the result. Spans that nothing touched since they were last solved are reused. Snapped curves of frames whose
-// track changed are dropped.
+// `options` is a JSON object of the parameters of the stages "track" and "run" (see `rototoon_parameters`), such as
+// `{"preset": "zhou2011", "threads": 2}`. Each may be left out, and the text may be empty. The number of threads does
+// not change the result. Spans that have not changed since they were last solved are reused. Snapped curves of frames
+// whose track changed are dropped.
 //
 // `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
-// "final_cost"}], "ends": [{"part", "frame", "reason"}]}`, one job for each part and span; `solved` is false where the
-// job was reused; `termination` is one of nothing_to_solve, cost_converged, step_converged, no_descent,
-// iteration_limit, path_chosen. `ends` tells of parts with one key where the track ends before the footage does: the
-// first frame beyond it; `reason` is one of lost (a key is wanted on the frame), cut (another shot), left (the picture).
+// "final_cost"}], "ends": [{"part", "frame", "reason"}]}`.
+//
+// - `jobs` has one entry for each part and span. `solved` is false if the span was reused. `termination` is one of
+//   nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit, path_chosen.
+// - `ends` has an entry for each end of a single-key part's track that is not an end of the footage. `frame` is the
+//   first frame without a track. `reason` is "lost" (the part needs a key on that frame), "cut" (another shot begins
+//   there) or "left" (the part left the picture).
 RototoonStatus rototoon_session_track(const struct RototoonSession *session,
                                       const uint8_t *options,
                                       size_t options_length,
@@ -289,10 +309,10 @@ RototoonStatus rototoon_session_track(const struct RototoonSession *session,
                                       struct RototoonText **summary,
                                       struct RototoonText **error);
 
-// Lays the contours along the drawn ink and stores `curves` in the document.
+// Snaps the contours to the drawn ink and stores `curves` in the document.
 //
-// `options` is JSON of the parameters of the stages "snap" and "run" (see `rototoon_parameters`). `summary` is JSON:
-// `{"frames": number of snapped frames, parts added up}`.
+// `options` is a JSON object of the parameters of the stages "snap" and "run" (see `rototoon_parameters`). `summary` is
+// JSON: `{"frames": number}`, the number of snapped frames, summed over the parts.
 RototoonStatus rototoon_session_snap(const struct RototoonSession *session,
                                      const uint8_t *options,
                                      size_t options_length,
@@ -301,15 +321,15 @@ RototoonStatus rototoon_session_snap(const struct RototoonSession *session,
                                      struct RototoonText **summary,
                                      struct RototoonText **error);
 
-// The track of a part; empty where it was not tracked.
+// Returns the track of a part. It has no frames if the part is not tracked.
 RototoonStatus rototoon_session_track_of(const struct RototoonSession *session,
                                          const uint8_t *part,
                                          size_t part_length,
                                          struct RototoonTrack **track,
                                          struct RototoonText **error);
 
-// The snapped paths of a part on a frame, one for each segment between control points; none where it was not
-// snapped.
+// Returns the snapped paths of a part on a frame, one for each segment between control points. There are none if the
+// part is not snapped on that frame.
 RototoonStatus rototoon_session_curves_of(const struct RototoonSession *session,
                                           const uint8_t *part,
                                           size_t part_length,
@@ -317,16 +337,24 @@ RototoonStatus rototoon_session_curves_of(const struct RototoonSession *session,
                                           struct RototoonCurves **curves,
                                           struct RototoonText **error);
 
-// Where the next key helps most: JSON `{"frame", "score"}`, or `null` where nothing was tracked or all frames are at
-// or beside keys. The score is the sum over parts of the mean of 1 - confidence, smoothed over time.
+// Returns the frame on which the next key helps most, as JSON `{"frame", "score"}`. It is `null` if nothing is tracked
+// or if every frame is a key frame or next to one. The score is the sum over the parts of the mean of 1 - confidence,
+// smoothed over time.
 RototoonStatus rototoon_session_weakest_frame(const struct RototoonSession *session,
                                               struct RototoonText **weakest,
                                               struct RototoonText **error);
 
-// Fits quadratic B-splines with few guiding points to strokes. Stroke `i` has the points `offsets[i]` to `offsets[i + 1]`
-// (excluded) of `points` (x, y in pixels); its end joins its start where `closed[i]` is not 0. Each point carries
-// `channel_count` numbers of `values`, which the guides carry on. No point of a stroke is farther than `tolerance` pixels
-// from its curve, and no place of the curve farther than that from the stroke. Strokes without points give no guides.
+// Fits uniform quadratic B-splines with few guiding points to strokes.
+//
+// - `offsets`: `stroke_count` + 1 numbers, beginning with 0. Stroke `i` has the points `offsets[i]` to `offsets[i + 1]`
+//   (excluded).
+// - `points`: two coordinates per point, x and y in pixels.
+// - `closed`: one number per stroke. If it is not 0, the end of the stroke joins its start.
+// - `values`: `channel_count` numbers per point, such as pressure. The guiding points get fitted values.
+// - `tolerance`: a distance in pixels. No point of a stroke is farther from the curve, and no place of the curve is
+//   farther from the stroke.
+//
+// Strokes without points give no guiding points.
 RototoonStatus rototoon_fit_strokes(const int32_t *offsets,
                                     size_t stroke_count,
                                     const double *points,
@@ -337,10 +365,14 @@ RototoonStatus rototoon_fit_strokes(const int32_t *offsets,
                                     struct RototoonGuides **guides,
                                     struct RototoonText **error);
 
-// The arrays of fitted strokes, which live as long as the handle: stroke `i` has the guiding points `offsets[i]` to
-// `offsets[i + 1]` (excluded) of `points` (x, y in pixels), those of corners twice; `values` are what they carry;
-// `nearest` the given point that is nearest to each; `errors` the largest distance of each stroke. There are
-// `guide_count` guides.
+// Reads the arrays of fitted strokes. They live as long as the handle.
+//
+// - `offsets`: one more than there are strokes. Stroke `i` has the guiding points `offsets[i]` to `offsets[i + 1]`
+//   (excluded).
+// - `points`: `guide_count` × 2 coordinates, x and y in pixels. The guiding point of a corner occurs twice.
+// - `values`: `guide_count` × `channel_count` numbers, guiding point by guiding point.
+// - `nearest`: for each guiding point the index of the given point that is nearest along the stroke.
+// - `errors`: for each stroke the largest distance between stroke and curve, in pixels.
 RototoonStatus rototoon_guides_read(const struct RototoonGuides *guides,
                                     size_t *guide_count,
                                     const int32_t **offsets,
@@ -350,15 +382,20 @@ RototoonStatus rototoon_guides_read(const struct RototoonGuides *guides,
                                     const double **errors,
                                     struct RototoonText **error);
 
-// Frees fitted strokes; null is allowed.
+// Frees fitted strokes. Null is allowed.
 void rototoon_guides_free(struct RototoonGuides *guides);
 
-// Cuts strokes where filled strokes in front hide them. Strokes are given as to `rototoon_fit_strokes`. `forms[i]` says
-// what the points of stroke `i` mean: 0 a polyline, 1 guiding points of a uniform quadratic B-spline, 2 control points of
-// a chain of quadratic Bezier curves. `depths` has two numbers for each stroke, layer and stroke: of two layers the
-// larger is in front, in a layer the larger stroke; equal ones do not hide each other. `fills[i]` is 0 where a stroke is not filled;
-// strokes of a layer with the same number fill one shape. What is nearer to an outline than `border` pixels lies on it;
-// parts shorter than `sliver` pixels take after their surroundings.
+// Cuts strokes where filled strokes in front of them hide them.
+//
+// - `offsets`, `points`, `closed`: the strokes, as in `rototoon_fit_strokes`.
+// - `forms`: one number per stroke, the meaning of its points. 0 is a polyline, 1 guiding points of a uniform quadratic
+//   B-spline, 2 control points of a chain of quadratic Bezier curves.
+// - `depths`: two numbers per stroke, its layer and its place in the layer. The larger layer is in front. In one layer
+//   the larger place is in front. Strokes of equal depth do not hide each other.
+// - `fills`: one number per stroke. 0 means that the stroke is not filled. Strokes of one layer with the same number
+//   are the outlines of one filled shape, which has the depth of its rearmost outline.
+// - `border`: a distance in pixels. A line that is no farther from an outline lies on the outline.
+// - `sliver`: a length in pixels. Shorter parts are as visible as the parts around them.
 RototoonStatus rototoon_hidden_lines(const int32_t *offsets,
                                      size_t stroke_count,
                                      const double *points,
@@ -371,11 +408,19 @@ RototoonStatus rototoon_hidden_lines(const int32_t *offsets,
                                      struct RototoonPieces **cut,
                                      struct RototoonText **error);
 
-// The arrays of cut strokes, which live as long as the handle. There are `piece_count` parts, in the order of the strokes
-// and along each: part `i` belongs to the stroke `strokes[i]`, is hidden where `hidden[i]` is not 0, and reaches from
-// parameter `intervals[2 i]` to `intervals[2 i + 1]` (over the end of a closed stroke's last piece if it runs over its
-// seam). Its points are `offsets[i]` to `offsets[i + 1]` (excluded), none where it is a whole stroke; each is the sum of
-// three given points by `indices` with `weights`. Parts of polylines are polylines, all others are of form 2; all are open.
+// Reads the arrays of cut strokes. They live as long as the handle. There are `piece_count` pieces, ordered by stroke,
+// and along each stroke.
+//
+// - `strokes`: for each piece the index of its stroke.
+// - `hidden`: for each piece a number that is not 0 if the piece is hidden.
+// - `intervals`: for each piece two parameters of its stroke, start and end. The end is beyond the stroke's last
+//   parameter if the piece runs over the seam of a closed stroke.
+// - `offsets`: `piece_count` + 1 numbers. Piece `i` has the points `offsets[i]` to `offsets[i + 1]` (excluded). It has
+//   none if it is a complete stroke.
+// - `indices`, `weights`: three numbers for each point of a piece. The point is the sum of the three given points of
+//   these indices, with these weights.
+//
+// All pieces are open. Pieces of polylines are polylines. All other pieces have form 2.
 RototoonStatus rototoon_pieces_read(const struct RototoonPieces *pieces,
                                     size_t *piece_count,
                                     const int32_t **strokes,
@@ -386,14 +431,16 @@ RototoonStatus rototoon_pieces_read(const struct RototoonPieces *pieces,
                                     const double **weights,
                                     struct RototoonText **error);
 
-// Frees cut strokes; null is allowed.
+// Frees cut strokes. Null is allowed.
 void rototoon_pieces_free(struct RototoonPieces *pieces);
 
-// Makes a skeleton clip of a document's tracked contours, by its limbs.
+// Makes a skeleton clip from a document's tracked contours. The document's limbs tell where the key points are.
 //
-// `document` is a project document as JSON, `options` JSON: `character`, `motion`, and `first` and `last` frame, which may be
-// left out. `made` is JSON: `{"clips": a file of clips, "first": the frame of the first posture, "guessed": {key point:
-// number of frames on which no contour tells it}}`.
+// `document` is a project document as JSON. `options` is a JSON object: `character` and `motion` are the names for the
+// clip, `first` and `last` its first and last frame. The frames may be left out.
+//
+// `made` is JSON: `{"clips": a file of clips, "first": frame of the first posture, "guessed": {key point: number of
+// frames}}`. `guessed` counts the frames on which no contour defines the key point, so that it was filled in.
 RototoonStatus rototoon_capture_clip(const uint8_t *document,
                                      size_t document_length,
                                      const uint8_t *options,
@@ -401,12 +448,20 @@ RototoonStatus rototoon_capture_clip(const uint8_t *document,
                                      struct RototoonText **made,
                                      struct RototoonText **error);
 
-// Makes a skeleton clip of motion capture, seen from one side.
+// Makes a skeleton clip from motion capture, seen from one direction.
 //
-// `motion` is the text of a BVH file, `options` JSON: `character`, `motion`; and `view` ("auto", "front", "side", "three-quarter" or
-// degrees about the vertical, 0 front and 90 side), `up` ("auto", "y" or "z"), `joints` ({key point: joint, or list of joints}), `way`
-// (whether the pelvis goes its way), `first` and `last` frame from 0, and `fps`, which may be left out. `made` is JSON: `{"clips":
-// a file of clips, "yaw": degrees that it is seen from}`.
+// `motion` is the text of a BVH file. `options` is a JSON object with the names `character` and `motion`. It may also
+// have:
+//
+// - `view`: the direction, "auto", "front", "side", "three-quarter" or degrees about the vertical (0 front, 90 side).
+//   "auto" shows most of the motion.
+// - `up`: the axis that points up, "auto", "y" or "z".
+// - `joints`: `{key point: joint or list of joints}`, for joints that are not recognised by their names.
+// - `way`: true to let the pelvis move through the picture. Otherwise it stays at the origin.
+// - `first`, `last`: the frames of the file, counted from 0. Give both or none.
+// - `fps`: frames per second of the clip.
+//
+// `made` is JSON: `{"clips": a file of clips, "yaw": the direction in degrees}`.
 RototoonStatus rototoon_import_motion(const uint8_t *motion,
                                       size_t motion_length,
                                       const uint8_t *options,
@@ -414,11 +469,20 @@ RototoonStatus rototoon_import_motion(const uint8_t *motion,
                                       struct RototoonText **made,
                                       struct RototoonText **error);
 
-// Re-makes a motion in another character's manner.
+// Makes a motion in the style of another character.
 //
-// `clips` is a file of clips as JSON, `options` JSON: `style`, `motion`, `content`; and `preset`, `timing` ("content" or
-// "style"), `strength` (0 to 3), `limb_lengths`, `contacts`, `keys` (drawn poses as their files hold them) and `threads`, which
-// may be left out. `made` is a file of clips with the one that was made.
+// `clips` is a file of clips as JSON. `options` is a JSON object with three names: `style` (the character whose style
+// is used), `motion`, and `content` (the character whose motion is used). It may also have:
+//
+// - `preset`: the method.
+// - `timing`: whose timing the result has, "content" or "style".
+// - `strength`: a number from 0 to 3, the factor on the change that the style makes.
+// - `limb_lengths`: whether limbs keep within the lengths of the style's clips.
+// - `contacts`: whether feet that stand in the content's clip stay where they stand.
+// - `keys`: drawn poses, in the form of a file of key poses.
+// - `threads`: number of threads, 0 for one per core.
+//
+// `made` is a file of clips with one clip.
 RototoonStatus rototoon_translate_clip(const uint8_t *clips,
                                        size_t clips_length,
                                        const uint8_t *options,
@@ -428,13 +492,24 @@ RototoonStatus rototoon_translate_clip(const uint8_t *clips,
                                        struct RototoonText **made,
                                        struct RototoonText **error);
 
-// Makes a drawing follow a clip: its contours and strokes on every frame.
+// Makes a drawing follow a clip: moves its contours and strokes on every frame.
 //
-// `document` is a project document with limbs as JSON, `clips` a file of clips as JSON. `options` is JSON: `character` and
-// `motion` choose the clip where there are several; `rest`, the frame of the drawing; `sub_keys`, points of each limb between its
-// key points; `points`, by closed part further points [x, y] that follow it; `threads`; all may be left out. `made` is JSON:
-// `{"document": the document with tracks, depths and strokes on every frame, "given": [{"part", "from", "to"}] parts that no limb
-// carries with the one they follow, "rigid": names of parts that do not bend, "points": {part: by frame the places of its points}}`.
+// `document` is a project document with limbs, as JSON. `clips` is a file of clips, as JSON. `options` is a JSON
+// object, in which all fields may be left out:
+//
+// - `character`, `motion`: the names of the clip. They are needed if the file has several clips.
+// - `rest`: the frame of the drawing.
+// - `sub_keys`: the number of points of each limb between its key points, 0 to 100.
+// - `points`: `{closed part: [[x, y]]}`, further points in pixels that follow the part.
+// - `threads`: number of threads, 0 for one per core.
+//
+// `made` is a JSON object:
+//
+// - `document`: the document with tracks, depths and strokes on every frame.
+// - `given`: `[{"part", "from", "to"}]`, the parts that no limb carries, each with the key points of the nearest limb,
+//   which it follows.
+// - `rigid`: the names of the parts that do not bend.
+// - `points`: `{part: [[[x, y]]]}`, for each frame the places of the further points.
 RototoonStatus rototoon_reshape(const uint8_t *document,
                                 size_t document_length,
                                 const uint8_t *clips,
@@ -446,8 +521,8 @@ RototoonStatus rototoon_reshape(const uint8_t *document,
                                 struct RototoonText **made,
                                 struct RototoonText **error);
 
-// Adds clips to the library of a folder, in place of those of the same character and motion. `clips` is a file of clips as JSON,
-// `source` says where they come from and may be empty.
+// Adds clips to the library in a folder. They replace clips of the same character and motion. `clips` is a file of
+// clips as JSON. `source` is a text that says where the clips come from. It may be empty.
 RototoonStatus rototoon_library_add(const uint8_t *folder,
                                     size_t folder_length,
                                     const uint8_t *clips,
@@ -456,9 +531,13 @@ RototoonStatus rototoon_library_add(const uint8_t *folder,
                                     size_t source_length,
                                     struct RototoonText **error);
 
-// The clips of a library. `wanted` is JSON: words that `character` and `motion` must hold, and whether to `read` the clips; all
-// may be left out. `found` is JSON: `{"entries": [{"file", "character", "motion", "frames", "fps", "source"}], "troubles": [what
-// cannot be used], "clips": a file of clips or null}`.
+// Finds clips in the library in a folder.
+//
+// `wanted` is a JSON object, in which all fields may be left out: `character` and `motion` are words that the names
+// must contain, in upper or lower case; `read` is whether to read the clips.
+//
+// `found` is JSON: `{"entries": [{"file", "character", "motion", "frames", "fps", "source"}], "troubles": [text],
+// "clips": a file of clips or null}`. `troubles` are messages about files that cannot be used.
 RototoonStatus rototoon_library_find(const uint8_t *folder,
                                      size_t folder_length,
                                      const uint8_t *wanted,
@@ -466,14 +545,19 @@ RototoonStatus rototoon_library_find(const uint8_t *folder,
                                      struct RototoonText **found,
                                      struct RototoonText **error);
 
-// Finds which stroke of a drawing is which of the next one, for all neighbours of several drawings.
+// Matches the strokes of each drawing with the strokes of the next drawing.
 //
-// The strokes of all drawings are given as to `rototoon_fit_strokes`, one drawing after the other: drawing `d` has the
-// strokes `drawings[d]` to `drawings[d + 1]` (excluded), from behind to the front; `drawings` has `drawing_count` + 1
-// numbers. `colours` are three numbers for each stroke (sRGB, 0 to 1; NaN where it has none), `labels` two (material and
-// layer; -1 where it has none); both may be null. `by_hand` are `by_hand_count` pairs that are kept: a stroke and its
-// counterpart in the next drawing, by their numbers among all strokes; with -1 in the place of either the other one has
-// none. `options` is a JSON object: `max_cost`, `max_turn`, `max_scale`, `threads`; all may be left out.
+// - `offsets`, `points`, `closed`: the strokes of all drawings, one drawing after the other, as in
+//   `rototoon_fit_strokes`. Stroke numbers below count all of them.
+// - `colours`: three numbers per stroke, sRGB from 0 to 1, or NaN if it has no colour. The pointer may be null.
+// - `labels`: two numbers per stroke, its material and its layer, or -1 if it has none. The pointer may be null.
+// - `drawings_of`: `drawing_count` + 1 numbers. Drawing `d` has the strokes `drawings_of[d]` to `drawings_of[d + 1]`
+//   (excluded), from behind to the front.
+// - `by_hand`: `by_hand_count` pairs that are kept: a stroke and its counterpart in the next drawing. With -1 as
+//   counterpart, or as stroke, the other one has no counterpart.
+// - `options`: a JSON object, in which all fields may be left out. `max_cost` is the cost from which on a stroke has no
+//   counterpart. `max_turn` (radians) and `max_scale` (a factor) limit the movement of the entire drawing. `threads` is
+//   the number of threads, 0 for one per core.
 RototoonStatus rototoon_match_strokes(const int32_t *offsets,
                                       size_t stroke_count,
                                       const double *points,
@@ -491,13 +575,19 @@ RototoonStatus rototoon_match_strokes(const int32_t *offsets,
                                       struct RototoonMatches **found,
                                       struct RototoonText **error);
 
-// The arrays of matches, which live as long as the handle. The drawings `d` and `d` + 1 have the rows `offsets[d]` to
-// `offsets[d + 1]` (excluded; none where they were not asked for). A row has four numbers in `rows`: kind, stroke of the
-// earlier drawing, stroke of the later one (by their numbers among all, -1 for none), and flags; and two in `values`.
-// Kinds: 0 a pair, 1 the later stroke is a piece of the earlier one, 2 the earlier is a piece of the later one, 3 vanished,
-// 4 appeared. Flags: 1 the later stroke is walked backwards, 2 made by hand. Values: of closed strokes the share of the
-// later one's length at which the first point of the earlier one lies; how sure the pair is, 0 to 1. Pieces stand in the
-// order along the whole.
+// Reads the arrays of matches. They live as long as the handle. There are `span_count` spans. A span is two neighbouring
+// drawings.
+//
+// - `offsets`: `span_count` + 1 numbers. The drawings `d` and `d` + 1 have the rows `offsets[d]` to `offsets[d + 1]`
+//   (excluded). They have none if they did not have to be matched.
+// - `rows`: four numbers per row: kind, stroke of the earlier drawing, stroke of the later drawing, flags. Strokes are
+//   numbered among all strokes, -1 is none. Kinds are: 0 a pair; 1 the later stroke is a piece of the earlier one; 2
+//   the earlier stroke is a piece of the later one; 3 the earlier stroke has no counterpart; 4 the later stroke has
+//   none. Flags are: 1 the later stroke runs backwards; 2 the pair was made by hand.
+// - `values`: two numbers per row. The first one is for closed strokes: the share of the later stroke's length at which
+//   the first point of the earlier one is. The second one is the confidence of the pair, 0 to 1.
+//
+// The pieces of a stroke are in their order along it.
 RototoonStatus rototoon_matches_read(const struct RototoonMatches *matches,
                                      size_t *span_count,
                                      const int32_t **offsets,
@@ -505,21 +595,33 @@ RototoonStatus rototoon_matches_read(const struct RototoonMatches *matches,
                                      const double **values,
                                      struct RototoonText **error);
 
-// Frees matches; null is allowed.
+// Frees matches. Null is allowed.
 void rototoon_matches_free(struct RototoonMatches *matches);
 
-// Draws between drawings on key frames, all wanted frames in one call.
+// Makes in-betweens: the drawings on frames between key drawings, all of them in one call.
 //
-// The drawings are given as to `rototoon_match_strokes`; drawing `d` lies on `frames[d]`, which rise. `options` is a JSON
-// object, in which all but `spans` may be left out: `spans`, a list of `{"key": d, "frames": [...]}`, frames between
-// drawing `d` and the next one; `spacing`, by drawing how the movement to the next one runs, as documents write it
-// (`"smooth"`, `"linear"`, `"ease_in"`, ..., a curve, or a chart); `corners`, the drawings at which velocities do not join;
-// `arcs` (0 to 1), `rigid`, `contacts`, `rest`; `leaving`, what strokes do that only one of two drawings has: `"grow"`,
-// `"fade"` or `{"leave": [width, height]}`; `pegs` as documents write them, with `hung`, the name of the peg of each stroke,
-// or null; `captured`, contours whose movement is known: a list of `{"closed": bool, "first": frame, "contours": [...]}`, the
-// points on each frame from the first on, which strokes that lie on them follow; and the options of
-// `rototoon_match_strokes`. Without pegs these are found. A span depends on the drawings at its ends, on what was captured
-// between them, and if its spacing is smooth also on the drawings beside them, on nothing else.
+// The arguments are those of `rototoon_match_strokes`, and `frames`: the frame of each drawing, in rising order.
+// `options` is a JSON object, in which all fields may be left out:
+//
+// - `spans`: a list of `{"key": d, "frames": [...]}`, the frames to draw between drawing `d` and the next one. Without
+//   it nothing is drawn.
+// - `spacing`: for each drawing the spacing of the movement to the next one, in the form of documents: `"smooth"`,
+//   `"linear"`, `"ease_in"`, ..., a curve, or a chart.
+// - `corners`: the drawings at which the velocity may jump.
+// - `arcs`: the strength of arcs, from 0 (straight ways) to 1 (turns about the fixed point of a movement).
+// - `rigid`: whether shapes change as rigidly as possible. `contacts`: whether contacts between strokes are kept.
+// - `rest`: whether everything rests before the first and after the last drawing. Otherwise it moves on with constant
+//   speed.
+// - `leaving`: what a stroke does that only one of two drawings has: `"grow"`, `"fade"` or `{"leave": [width, height]}`
+//   with the size of the picture.
+// - `pegs`: pegs in the form of documents. `hung`: for each stroke the name of its peg, or null. Strokes without a peg
+//   get one that is found.
+// - `captured`: contours whose movement is known, a list of `{"closed": bool, "first": frame, "contours": [...]}`. They
+//   have the points on each frame, beginning with frame `first`. Strokes on such a contour follow it.
+// - The options of `rototoon_match_strokes`.
+//
+// A span depends on the drawings at its ends and on the captured contours between them. If its spacing is smooth, it
+// also depends on the drawing before and the drawing after these. It depends on nothing else.
 RototoonStatus rototoon_draw_in_betweens(const int32_t *offsets,
                                          size_t stroke_count,
                                          const double *points,
@@ -539,14 +641,23 @@ RototoonStatus rototoon_draw_in_betweens(const int32_t *offsets,
                                          struct RototoonInBetweens **drawn,
                                          struct RototoonText **error);
 
-// The arrays of in-betweens, which live as long as the handle. There are `span_count` spans, as they were asked. Span `s`
-// has the frames `frame_offsets[s]` to `frame_offsets[s + 1]` (excluded), whose share of the way is in `shares`, and draws
-// the strokes `stroke_offsets[s]` to `stroke_offsets[s + 1]` on all of them, from behind to the front. A stroke has three
-// numbers in `strokes`: that of the earlier and of the later drawing (-1 for none), and flags (1 closed, 2 only a part of the
-// earlier one, 4 only a part of the later one). Stroke `i` has `point_offsets[i + 1] - point_offsets[i]` points on each
-// frame. Each point of it has four numbers in `indices`, the given points of the earlier and of the later drawing between
-// which its place lies, and in `weights` the weights of the second of either two. `points` are x, y by span, frame and
-// point, `opacities` by span, frame and stroke.
+// Reads the arrays of in-betweens. They live as long as the handle. There are `span_count` spans, in the order of the
+// option `spans`.
+//
+// - `frame_offsets`: `span_count` + 1 numbers. Span `s` has the frames `frame_offsets[s]` to `frame_offsets[s + 1]`
+//   (excluded).
+// - `shares`: for each frame the share of the way between the two drawings, 0 to 1.
+// - `stroke_offsets`: `span_count` + 1 numbers. Every frame of span `s` has the strokes `stroke_offsets[s]` to
+//   `stroke_offsets[s + 1]` (excluded), from behind to the front.
+// - `strokes`: three numbers per stroke: the stroke of the earlier drawing, the stroke of the later drawing (-1 for
+//   none), and flags. Flags are: 1 closed; 2 only a part of the earlier stroke; 4 only a part of the later stroke.
+// - `point_offsets`: one more than there are strokes. Stroke `i` has `point_offsets[i + 1] - point_offsets[i]` points
+//   on each frame.
+// - `indices`: four numbers for each point of a stroke: two given points of the earlier drawing and two of the later
+//   drawing. The point comes from a place between the two of each drawing.
+// - `weights`: two numbers for each point of a stroke: the weight of the second of the two points, for each drawing.
+// - `points`: `point_count` × 2 coordinates, x and y in pixels, ordered by span, frame, stroke and point.
+// - `opacities`: numbers from 0 to 1, ordered by span, frame and stroke.
 RototoonStatus rototoon_in_betweens_read(const struct RototoonInBetweens *in_betweens,
                                          size_t *span_count,
                                          size_t *point_count,
@@ -561,7 +672,7 @@ RototoonStatus rototoon_in_betweens_read(const struct RototoonInBetweens *in_bet
                                          const double **opacities,
                                          struct RototoonText **error);
 
-// Frees in-betweens; null is allowed.
+// Frees in-betweens. Null is allowed.
 void rototoon_in_betweens_free(struct RototoonInBetweens *in_betweens);
 
 #ifdef __cplusplus

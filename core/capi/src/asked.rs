@@ -1,4 +1,4 @@
-//! What callers ask of matching and in-betweens, as JSON.
+//! The JSON options of stroke matching and in-betweens. `rototoon_draw_in_betweens` documents them.
 
 use crate::status::Failure;
 use rototoon::tween::between::{Captured, Leaving, Options};
@@ -8,37 +8,37 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Farthest from the origin that a captured point may lie along an axis.
+/// Largest absolute coordinate of a captured point, in pixels.
 const FARTHEST: f64 = 1e9;
 
-/// What is asked, as JSON.
+/// The options, as read from JSON.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Asked {
     max_cost: f64,
     max_turn: f64,
     max_scale: f64,
-    /// Threads to use; 0 for all.
+    /// Number of threads; 0 for one per core.
     pub threads: usize,
     arcs: f64,
     rigid: bool,
     contacts: bool,
     rest: bool,
     leaving: AskedLeaving,
-    /// By drawing how the movement to the next one runs, as documents write it.
+    /// For each drawing the spacing of the movement to the next one, in the form of documents.
     pub spacing: Vec<Value>,
-    /// Drawings at which velocities do not join.
+    /// Drawings at which the velocity may jump.
     pub corners: Vec<usize>,
-    /// What is to be drawn.
+    /// The spans to draw.
     pub spans: Vec<AskedSpan>,
-    /// Pegs as documents write them.
+    /// Pegs, in the form of documents.
     pub pegs: Vec<Value>,
-    /// By stroke the name of its peg.
+    /// For each stroke the name of its peg.
     pub hung: Vec<Option<String>>,
     captured: Vec<AskedCaptured>,
 }
 
-/// A captured contour: its points on the frames from the first on.
+/// A captured contour: its points on each frame, beginning with frame `first`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct AskedCaptured {
@@ -55,13 +55,13 @@ enum AskedLeaving {
     Leave([f64; 2]),
 }
 
-/// Frames to be drawn between two drawings.
+/// The frames to draw between two drawings.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AskedSpan {
-    /// Number of the drawing before.
+    /// Index of the earlier drawing.
     pub key: usize,
-    /// Frames between it and the next one.
+    /// Frames between it and the next drawing.
     pub frames: Vec<i32>,
 }
 
@@ -89,7 +89,7 @@ impl Default for Asked {
 }
 
 impl Asked {
-    /// What a caller's JSON asks; nothing asked is the default.
+    /// Reads a caller's JSON. Options that are left out have their defaults, and so have all in an empty text.
     pub fn parse(json: &str) -> Result<Self, Failure> {
         match json {
             "" => Ok(Self::default()),
@@ -97,12 +97,12 @@ impl Asked {
         }
     }
 
-    /// How strokes are matched.
+    /// The options of stroke matching.
     pub fn matching(&self) -> MatchingOptions {
         MatchingOptions { max_cost: self.max_cost, max_turn: self.max_turn, max_scale: self.max_scale }
     }
 
-    /// How in-betweens are made.
+    /// The options of in-betweens.
     pub fn between(&self) -> Options {
         let leaving = match self.leaving {
             AskedLeaving::Grow => Leaving::Grow,
@@ -112,14 +112,14 @@ impl Asked {
         Options { arcs: self.arcs, rigid: self.rigid, contacts: self.contacts, leaving, rest: self.rest }
     }
 
-    /// Contours whose movement is known.
+    /// The captured contours, checked.
     pub fn captured(&self) -> Result<Arc<[Captured]>, Failure> {
         self.captured.iter().enumerate().map(|(k, part)| part.checked(k)).collect()
     }
 }
 
 impl AskedCaptured {
-    /// The part, number `k` of what was captured.
+    /// The contour, checked. `k` is its index, for messages.
     fn checked(&self, k: usize) -> Result<Captured, Failure> {
         let wrong = |text: String| Failure::Error(format!("captured[{k}].{text}"));
         let mut contours = BTreeMap::new();

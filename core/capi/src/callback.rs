@@ -1,16 +1,19 @@
-//! The callback that long work reports to.
+//! The progress callback of long work.
 
 use crate::work::GoOn;
 use std::ffi::c_void;
 
-/// Told the finished share of the work (0 to 1, never falling) and the name of the step (UTF-8, not terminated),
-/// about twenty times a second; returns 0 to go on, anything else to cancel. Null is allowed: nobody is told.
+/// Progress callback, called about twenty times a second. `fraction` is the finished share of the work, 0 to 1, and
+/// never falls. `step` is the name of the present step: `step_length` bytes of UTF-8, without a terminating zero, valid
+/// during the call. `user` is the pointer given with the callback. It returns 0 to go on, any other number to cancel.
+/// A null callback is allowed.
 pub type RototoonProgress =
     Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64, step: *const u8, step_length: usize) -> i32>;
 
-/// Calls `body` with the caller's callback as a Rust one.
+/// Calls `body` with the caller's callback wrapped as a Rust closure.
 ///
-/// # Safety `progress` is null or may be called with `user` during the call.
+/// # Safety
+/// `progress` is null, or may be called with `user` during the call.
 pub(crate) unsafe fn with_progress<T>(
     progress: RototoonProgress,
     user: *mut c_void,

@@ -1,94 +1,94 @@
-//! The artist's edits, on the scene. Each either does all that it says or changes nothing.
+//! The artist's edits of the scene. An edit that is refused changes nothing.
 
 use rototoon::geometry::Point;
 use rototoon::scene::{FrameNumber, Part, Scene};
 
-/// Beyond this, in pixels, a coordinate is taken for a mistake of the caller.
+/// Largest absolute coordinate, in pixels. A larger one is a mistake of the caller.
 const MAX_COORDINATE: f64 = 1e6;
 
-/// Why an edit was refused; the scene is as it was.
+/// Why an edit was refused. The scene is unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EditError {
-    /// No part of that name.
+    /// The document has no part of that name.
     #[error("no part {name:?}; the document has {known}")]
     NoSuchPart {
-        /// The name asked for.
+        /// The requested name.
         name: String,
-        /// The names that there are.
+        /// The names of the document's parts, as a list for people.
         known: String,
     },
     /// The part has no key on that frame.
     #[error("part {part:?}: no key on frame {frame}")]
     NoSuchKey {
-        /// The part.
+        /// Name of the part.
         part: String,
-        /// The frame asked for.
+        /// The requested frame.
         frame: FrameNumber,
     },
-    /// A key with another number of points than the part's other keys, or without any.
+    /// The key has another number of points than the part's other keys, or none.
     #[error("part {part:?}, key on frame {frame}: found {found} points, expected {expected}")]
     PointCount {
-        /// The part.
+        /// Name of the part.
         part: String,
         /// The key's frame.
         frame: FrameNumber,
-        /// Points given.
+        /// Number of points given.
         found: usize,
-        /// Points needed.
+        /// Number of points needed, and why.
         expected: String,
     },
-    /// Half a point.
+    /// The number of coordinates is odd.
     #[error(
         "part {part:?}, key on frame {frame}: found {found} coordinates, expected an even number (x, y, x, y, ...)"
     )]
     OddCoordinates {
-        /// The part.
+        /// Name of the part.
         part: String,
         /// The key's frame.
         frame: FrameNumber,
-        /// Values given.
+        /// Number of coordinates given.
         found: usize,
     },
-    /// A coordinate that is not finite, or very large.
+    /// A coordinate is not finite, or very large.
     #[error("part {part:?}, frame {frame}, point {index}: found ({x}, {y}), expected pixels within ±{MAX_COORDINATE}")]
     Coordinate {
-        /// The part.
+        /// Name of the part.
         part: String,
         /// The frame.
         frame: FrameNumber,
         /// Index of the point; 0 for a centre.
         index: usize,
-        /// Found.
+        /// The x that was found, in pixels.
         x: f64,
-        /// Found.
+        /// The y that was found, in pixels.
         y: f64,
     },
-    /// A control point that the part does not have.
+    /// The part has no control point of that index.
     #[error("part {part:?}: no point {index}; it has {count}, counted from 0")]
     NoSuchPoint {
-        /// The part.
+        /// Name of the part.
         part: String,
-        /// The index asked for.
+        /// The requested index.
         index: i64,
-        /// Points of the part.
+        /// Number of the part's points.
         count: usize,
     },
-    /// A correction on a frame that is not between keys, nor beside a single one.
-    #[error("part {part:?}: frame {frame} is {what}; corrections go on frames between its keys")]
+    /// A correction on a frame that takes none: it is a key frame, or outside the part's keys.
+    #[error("part {part:?}: frame {frame} is {what}; a correction needs a frame between the part's keys")]
     NotBetweenKeys {
-        /// The part.
+        /// Name of the part.
         part: String,
-        /// The frame asked for.
+        /// The requested frame.
         frame: FrameNumber,
-        /// What the frame is.
+        /// Where the frame is, for the message.
         what: &'static str,
     },
-    /// A key where the footage has no picture.
+    /// The footage has no picture on that frame.
     #[error("part {part:?}: frame {frame} is outside the footage, which has frames {first} to {last}")]
     OutsideFootage {
-        /// The part.
+        /// Name of the part.
         part: String,
-        /// The frame asked for.
+        /// The requested frame.
         frame: FrameNumber,
         /// First frame of the footage.
         first: FrameNumber,
@@ -97,7 +97,7 @@ pub enum EditError {
     },
 }
 
-/// Index of the part of a name.
+/// The index of the part that has this name.
 pub fn part_index(scene: &Scene, name: &str) -> Result<usize, EditError> {
     scene.parts.iter().position(|part| part.name == name).ok_or_else(|| {
         let names: Vec<String> = scene.parts.iter().map(|part| format!("{:?}", part.name)).collect();
@@ -111,10 +111,10 @@ fn part_mut<'a>(scene: &'a mut Scene, name: &str) -> Result<&'a mut Part, EditEr
     Ok(&mut scene.parts[index])
 }
 
-/// Sets the artist's contour on a frame. `coordinates` are x, y, x, y, ...
+/// Sets the artist's contour of a part on a frame. `coordinates` are x, y, x, y, ... in pixels.
 ///
-/// Corrections on the frame give way. A part whose only key changes its number of points loses its corrections and
-/// results, as they speak of points that are no more.
+/// Corrections on the frame are removed. If the part's only key gets another number of points, the part loses all
+/// corrections and results, because they belong to points that no longer exist.
 pub fn set_key(scene: &mut Scene, name: &str, frame: FrameNumber, coordinates: &[f64]) -> Result<(), EditError> {
     let (first, last) = (scene.footage.first, scene.footage.last);
     let part = part_mut(scene, name)?;
@@ -137,7 +137,7 @@ pub fn set_key(scene: &mut Scene, name: &str, frame: FrameNumber, coordinates: &
     part.keys.insert(frame, points);
     part.wants_key.clear();
     if part.keys.len() == 2 {
-        // What was followed outward from one key is no longer what lies between two.
+        // Tracking from a single key reaches beyond the two keys. Those results are no longer valid.
         forget_outside_keys(part);
     }
     Ok(())
@@ -166,14 +166,14 @@ fn key_points(part: &Part, frame: FrameNumber, coordinates: &[f64]) -> Result<Ve
 }
 
 fn check_point(part: &Part, frame: FrameNumber, index: usize, point: Point) -> Result<(), EditError> {
-    // Written so that NaN is refused too.
+    // The comparison is false for NaN, so NaN is refused too.
     if point.x.abs() <= MAX_COORDINATE && point.y.abs() <= MAX_COORDINATE {
         return Ok(());
     }
     Err(EditError::Coordinate { part: part.name.clone(), frame, index, x: point.x, y: point.y })
 }
 
-/// Removes a key; results on frames that are no longer between keys go with it.
+/// Removes a key, and the results on frames that are no longer between keys.
 pub fn remove_key(scene: &mut Scene, name: &str, frame: FrameNumber) -> Result<(), EditError> {
     let part = part_mut(scene, name)?;
     part.keys.remove(&frame).ok_or_else(|| EditError::NoSuchKey { part: name.into(), frame })?;
@@ -193,7 +193,8 @@ fn forget_results(part: &mut Part, forget: impl Fn(FrameNumber) -> bool) {
     part.curves.retain(|frame, _| !forget(*frame));
 }
 
-/// An error where a correction would have no effect: corrections go between keys, or beside a part's only key.
+/// Refuses a correction that would have no effect. A correction needs a frame between two keys, or, if the part has a
+/// single key, any other frame of the footage.
 fn check_correctable(scene: &Scene, name: &str, frame: FrameNumber) -> Result<(), EditError> {
     let (first, last) = (scene.footage.first, scene.footage.last);
     let part = &scene.parts[part_index(scene, name)?];
@@ -204,7 +205,7 @@ fn check_correctable(scene: &Scene, name: &str, frame: FrameNumber) -> Result<()
     let what = if single {
         return Ok(());
     } else if part.keys.contains_key(&frame) {
-        "a key, which is changed itself"
+        "a key frame, where the key itself is edited"
     } else if part.keys.range(..frame).next().is_none() {
         "before the first key"
     } else if part.keys.range(frame..).next().is_none() {
@@ -215,7 +216,7 @@ fn check_correctable(scene: &Scene, name: &str, frame: FrameNumber) -> Result<()
     Err(EditError::NotBetweenKeys { part: part.name.clone(), frame, what })
 }
 
-/// Fixes a control point on a frame between keys.
+/// Fixes a control point on a frame between keys, or on any other frame of the footage if the part has a single key.
 pub fn pin(scene: &mut Scene, name: &str, frame: FrameNumber, index: i64, point: Point) -> Result<(), EditError> {
     check_correctable(scene, name, frame)?;
     let part = part_mut(scene, name)?;
@@ -227,7 +228,7 @@ pub fn pin(scene: &mut Scene, name: &str, frame: FrameNumber, index: i64, point:
     Ok(())
 }
 
-/// Releases a control point, or with index −1 all of the frame. Nothing happens where none is fixed.
+/// Releases a control point on a frame, or all of them with index −1. It is no error if none is fixed.
 pub fn unpin(scene: &mut Scene, name: &str, frame: FrameNumber, index: i64) -> Result<(), EditError> {
     let part = part_mut(scene, name)?;
     let count = part.point_count();
@@ -243,7 +244,8 @@ pub fn unpin(scene: &mut Scene, name: &str, frame: FrameNumber, index: i64) -> R
     Ok(())
 }
 
-/// Fixes the mean of the control points on a frame between keys.
+/// Fixes the mean of the control points on a frame between keys, or on any other frame of the footage if the part has
+/// a single key.
 pub fn set_center(scene: &mut Scene, name: &str, frame: FrameNumber, center: Point) -> Result<(), EditError> {
     check_correctable(scene, name, frame)?;
     let part = part_mut(scene, name)?;
@@ -252,7 +254,7 @@ pub fn set_center(scene: &mut Scene, name: &str, frame: FrameNumber, center: Poi
     Ok(())
 }
 
-/// Releases the centre. Nothing happens where none is fixed.
+/// Releases the centre on a frame. It is no error if it is not fixed.
 pub fn clear_center(scene: &mut Scene, name: &str, frame: FrameNumber) -> Result<(), EditError> {
     part_mut(scene, name)?.centers.remove(&frame);
     Ok(())
@@ -275,7 +277,7 @@ mod tests {
         Scene { footage, parts: vec![part] }
     }
 
-    /// The message of a refused edit, which must have changed nothing.
+    /// The error message of an edit. Checks that the edit is refused and changes nothing.
     fn refused(edit: impl Fn(&mut Scene) -> Result<(), EditError>) -> String {
         let mut edited = scene();
         let message = edit(&mut edited).unwrap_err().to_string();
@@ -296,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn removed_key_takes_results_outside_the_keys_along() {
+    fn removing_a_key_removes_the_results_outside_the_remaining_keys() {
         let mut scene = scene();
         set_key(&mut scene, "arm", 4, &KEY).unwrap();
         remove_key(&mut scene, "arm", 8).unwrap();
@@ -307,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn pins_come_and_go() {
+    fn pins_are_set_and_released() {
         let mut scene = scene();
         for index in 0..2 {
             pin(&mut scene, "arm", 3, index, Point::ONE).unwrap();
@@ -357,7 +359,7 @@ mod tests {
             (refused(|s| set_key(s, "arm", 4, &KEY[..3])), "found 3 coordinates, expected an even number"),
             (refused(|s| set_key(s, "arm", 4, &[0.0, 0.0, f64::NAN, 0.0])), "frame 4, point 1: found (NaN, 0)"),
             (refused(|s| remove_key(s, "arm", 4)), "no key on frame 4"),
-            (refused(|s| pin(s, "arm", 8, 0, Point::ONE)), "frame 8 is a key, which is changed itself"),
+            (refused(|s| pin(s, "arm", 8, 0, Point::ONE)), "frame 8 is a key frame, where the key itself is edited;"),
             (refused(|s| pin(s, "arm", 9, 0, Point::ONE)), "frame 9 is after the last key"),
             (refused(|s| pin(s, "arm", -1, 0, Point::ONE)), "frame -1 is before the first key"),
             (refused(|s| pin(s, "arm", 4, 2, Point::ONE)), "no point 2; it has 2, counted from 0"),

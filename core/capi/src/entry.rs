@@ -1,17 +1,16 @@
-//! The one way in: every exported function runs its body through [`entry`], and reads its arguments with the checked
-//! readers below.
+//! Every exported function runs its body through [`entry`] and reads its arguments with the checked readers below.
 
 use crate::status::{Failure, RototoonStatus};
 use crate::text::RototoonText;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// No argument is longer: an object of Rust cannot be.
+/// Most bytes of an argument: the largest size of a Rust object.
 pub const MAX_BYTES: usize = isize::MAX as usize;
 
-/// Runs `body`, turns failures and panics into a status, and leaves the text in `error`.
+/// Runs `body`, turns failures and panics into a status, and writes the error text to `error`.
 ///
-/// A panic must not cross into the caller (that would be undefined), so it is caught here and nowhere else.
+/// A panic that crosses into the caller is undefined behaviour, so it is caught here.
 ///
 /// # Safety
 /// `error` is null or points to a writable pointer.
@@ -19,7 +18,7 @@ pub unsafe fn entry(error: *mut *mut RototoonText, body: impl FnOnce() -> Result
     if !error.is_null() && !error.is_aligned() {
         return RototoonStatus::BadArgument;
     }
-    // What a panic leaves behind is either dropped here or behind a poisoned mutex, which the session repairs.
+    // State that a panic leaves half-changed is dropped here, or it is behind a poisoned mutex, which the session repairs.
     let (status, message) = match catch_unwind(AssertUnwindSafe(body)) {
         Ok(Ok(())) => (RototoonStatus::Ok, None),
         Ok(Err(failure)) => (failure.status(), Some(failure.to_string())),
@@ -33,7 +32,7 @@ pub unsafe fn entry(error: *mut *mut RototoonText, body: impl FnOnce() -> Result
     status
 }
 
-/// Frees a handle; null is allowed.
+/// Frees a handle. Null is allowed, and ignored.
 ///
 /// # Safety
 /// `handle` is null or came from [`give`] and was not freed.
@@ -41,9 +40,9 @@ pub unsafe fn free<T>(handle: *mut T) {
     if handle.is_null() || !handle.is_aligned() {
         return;
     }
-    // SAFETY: not null, so it came from `Box::into_raw` in `give` and this is its one release.
+    // SAFETY: not null, so it came from `Box::into_raw` in `give`, and it is released only here.
     let handle = unsafe { Box::from_raw(handle) };
-    // A panic of a destructor ends here; what it did not free is lost, which is better than an abort.
+    // A panic of a destructor is caught here. Leaking the memory that it did not free is better than an abort.
     let _ = catch_unwind(AssertUnwindSafe(move || drop(handle)));
 }
 
@@ -52,10 +51,10 @@ fn panic_message(panic: &(dyn Any + Send)) -> &str {
     text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("a panic without a message")
 }
 
-/// The array of `length` values at `data`; null is allowed for length 0. `name` is the argument's, for messages.
+/// The array of `length` values at `data`. Null is allowed if the length is 0. `name` names the argument in messages.
 ///
 /// # Safety
-/// Where `data` is not null, `length` values can be read there for as long as `'a`, and nobody writes them meanwhile.
+/// If `data` is not null, `length` values can be read there during `'a`, and nobody writes to them.
 pub unsafe fn slice<'a, T>(data: *const T, length: usize, name: &str) -> Result<&'a [T], Failure> {
     if length == 0 {
         return Ok(&[]);
@@ -70,14 +69,14 @@ pub unsafe fn slice<'a, T>(data: *const T, length: usize, name: &str) -> Result<
     if length > MAX_BYTES / size_of::<T>() {
         return Err(Failure::BadArgument(format!("{name}: length {length} is more than memory can hold")));
     }
-    // SAFETY: not null, aligned, no longer than an object may be, readable by this function's contract.
+    // SAFETY: not null, aligned, not longer than the largest object, readable by this function's contract.
     Ok(unsafe { std::slice::from_raw_parts(data, length) })
 }
 
 /// The UTF-8 text of `length` bytes at `data`.
 ///
 /// # Safety
-/// As [`slice()`].
+/// The same as [`slice()`].
 pub unsafe fn text<'a>(data: *const u8, length: usize, name: &str) -> Result<&'a str, Failure> {
     // SAFETY: the same contract.
     let bytes = unsafe { slice(data, length, name) }?;
@@ -92,14 +91,14 @@ pub unsafe fn handle<'a, T>(handle: *const T, name: &str) -> Result<&'a T, Failu
     if handle.is_null() || !handle.is_aligned() {
         return Err(Failure::BadArgument(format!(
             "{name}: {} handle",
-            if handle.is_null() { "null" } else { "no such" }
+            if handle.is_null() { "null" } else { "misaligned" }
         )));
     }
     // SAFETY: not null and aligned, alive by this function's contract; handles are only ever shared, never `&mut`.
     Ok(unsafe { &*handle })
 }
 
-/// Checks an out parameter and sets it to `empty`, so that a call that fails leaves no chance value there.
+/// Checks an out parameter and sets it to `empty`, so that its value is defined even if the call fails.
 ///
 /// # Safety
 /// `out` is null or writable.
@@ -113,7 +112,7 @@ pub unsafe fn clear<T>(out: *mut T, empty: T, name: &str) -> Result<(), Failure>
     Ok(())
 }
 
-/// Hands a new handle to the caller, who frees it with the `_free` of its type.
+/// Gives a new handle to the caller, who frees it with the `_free` function of its type.
 ///
 /// # Safety
 /// [`clear`] has accepted `out` in the same call.

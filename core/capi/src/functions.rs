@@ -6,13 +6,14 @@ use crate::status::RototoonStatus;
 use crate::text::RototoonText;
 use rototoon::scene::parameters;
 
-/// Rises with every change that an old caller would not survive.
+/// Version of the ABI. It rises with every change that breaks older callers.
 pub const ROTOTOON_ABI_VERSION: u32 = 1;
 
-/// The header that callers of this build see.
+/// The header that belongs to this build.
 const HEADER: &[u8] = include_bytes!("../include/rototoon.h");
 
-/// FNV-1a, 64 bits (Fowler, Noll, Vo): short enough for a compile-time function. It guards against mix-ups alone.
+/// FNV-1a, 64 bits (Fowler, Noll, Vo). It is short enough for a compile-time function, and it only has to detect a
+/// library and a header that do not belong together.
 const fn fnv_1a(bytes: &[u8]) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325;
     let mut index = 0;
@@ -25,7 +26,7 @@ const fn fnv_1a(bytes: &[u8]) -> u64 {
 
 const HEADER_HASH: u64 = fnv_1a(HEADER);
 
-/// `ROTOTOON_ABI_VERSION` as the library was built with it. Compare before any other call.
+/// The `ROTOTOON_ABI_VERSION` that the library was built with. Compare it with the header's before any other call.
 #[unsafe(no_mangle)]
 pub extern "C" fn rototoon_abi_version() -> u32 {
     ROTOTOON_ABI_VERSION
@@ -53,7 +54,9 @@ pub unsafe extern "C" fn rototoon_version(
     }
 }
 
-/// Every parameter as a JSON list: `id`, `label`, `help`, `stage`, and what values it takes.
+/// Describes every parameter, as a JSON list of objects: `id`, `label`, `help`, `stage` ("run", "track", "snap",
+/// "render" or "export"), `type` ("choice", "integer", "number" or "flag"), `default`, and the fields of that type:
+/// `choices` of a choice, `min` and `max` of numbers, `unit` of a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_parameters(
     parameters: *mut *mut RototoonText,
@@ -69,12 +72,15 @@ pub unsafe extern "C" fn rototoon_parameters(
     }
 }
 
-/// Finds which drawn contour is which known one, whatever their order, direction, start and number of points.
+/// Finds the drawn contour that corresponds to each reference contour. Their order, direction, first point and number
+/// of points may differ.
 ///
-/// `request` is JSON: `{"references": [contour], "drawn": [contour]}`, a contour being `{"closed": bool, "points":
-/// [[x, y]]}` in pixels, with its `"color": [r, g, b]` (sRGB, 0 to 1) where it has one. `matches` is JSON: `{"matches":
-/// [{"reference": index, "drawn": index, "points": [[x, y]], "cost": number}]}`, rising by reference: `points` are the
-/// reference's control points on the drawn line; the cost is 0 for equal contours. What has no counterpart is left out.
+/// `request` is JSON: `{"references": [contour], "drawn": [contour]}`. A contour is `{"closed": bool, "points":
+/// [[x, y]], "color": [r, g, b]}`, with points in pixels and the colour in sRGB from 0 to 1. The colour may be left out.
+///
+/// `matches` is JSON: `{"matches": [{"reference": index, "drawn": index, "points": [[x, y]], "cost": number}]}`, in the
+/// order of the references. `points` are the reference's control points, placed on the drawn contour. The cost is 0 for
+/// equal contours. References without a counterpart are left out.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_match_contours(
     request: *const u8,

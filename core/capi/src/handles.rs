@@ -1,4 +1,4 @@
-//! What calls hand out: text and arrays, owned by the caller until freed. They never change, so threads may share them.
+//! Handles of text and arrays. The caller owns and frees them. They never change, so threads may share them.
 
 use crate::entry::{clear, entry, free, handle};
 use crate::status::RototoonStatus;
@@ -21,15 +21,15 @@ pub struct RototoonCurves {
 }
 
 impl RototoonTrack {
-    /// The track of a part; empty where it was not tracked.
+    /// The track of a part. It has no frames if the part is not tracked.
     pub fn of(part: &Part) -> Self {
         let point_count = part.point_count();
         let mut track = Self { frames: Vec::new(), point_count, points: Vec::new(), confidence: Vec::new() };
-        // Tracks of another number of points belong to keys that are gone.
+        // Tracks with another number of points belong to keys that no longer exist.
         for (frame, points) in part.tracks.iter().filter(|(_, points)| points.len() == point_count) {
             track.frames.push(*frame);
             track.points.extend(points.iter().flat_map(|p| p.to_array()));
-            // A document written by hand may have tracks alone, and keys are sure in any case.
+            // A document written by hand may have tracks without confidence. Keys are certain in any case.
             let known = part.confidence.get(frame).filter(|known| known.len() == points.len());
             let otherwise = if part.keys.contains_key(frame) { 1.0 } else { 0.0 };
             match known {
@@ -42,7 +42,7 @@ impl RototoonTrack {
 }
 
 impl RototoonCurves {
-    /// Paths one after the other.
+    /// Joins paths, one after the other, into flat arrays.
     pub fn of(paths: &[Vec<Point>]) -> Self {
         let mut curves = Self { offsets: vec![0], points: Vec::new() };
         for path in paths {
@@ -53,7 +53,7 @@ impl RototoonCurves {
     }
 }
 
-/// The bytes of a text (UTF-8, not terminated); they live as long as the handle.
+/// Reads a text: `length` bytes of UTF-8 at `data`, without a terminating zero. They live as long as the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_text_read(
     text: *const RototoonText,
@@ -74,15 +74,18 @@ pub unsafe extern "C" fn rototoon_text_read(
     }
 }
 
-/// Frees a text; null is allowed.
+/// Frees a text. Null is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_text_free(text: *mut RototoonText) {
     // SAFETY: the crate's contract.
     unsafe { free(text) }
 }
 
-/// The arrays of a track, which live as long as the handle: `frame_count` frame numbers (rising), `frame_count` ×
-/// `point_count` × 2 coordinates (x, y in pixels), `frame_count` × `point_count` confidences (0 to 1).
+/// Reads the arrays of a track. They live as long as the handle.
+///
+/// - `frames`: `frame_count` frame numbers in rising order.
+/// - `points`: `frame_count` × `point_count` × 2 coordinates, x and y in pixels, frame by frame.
+/// - `confidence`: `frame_count` × `point_count` numbers from 0 to 1, frame by frame.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_track_read(
     track: *const RototoonTrack,
@@ -112,15 +115,17 @@ pub unsafe extern "C" fn rototoon_track_read(
     }
 }
 
-/// Frees a track; null is allowed.
+/// Frees a track. Null is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_track_free(track: *mut RototoonTrack) {
     // SAFETY: the crate's contract.
     unsafe { free(track) }
 }
 
-/// The arrays of snapped paths, which live as long as the handle: path `i` has the points `offsets[i]` to
-/// `offsets[i + 1]` (excluded) of `points` (x, y in pixels); there are `path_count` + 1 offsets.
+/// Reads the arrays of snapped paths. They live as long as the handle.
+///
+/// - `offsets`: `path_count` + 1 numbers. Path `i` has the points `offsets[i]` to `offsets[i + 1]` (excluded).
+/// - `points`: two coordinates per point, x and y in pixels.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_curves_read(
     curves: *const RototoonCurves,
@@ -144,7 +149,7 @@ pub unsafe extern "C" fn rototoon_curves_read(
     }
 }
 
-/// Frees snapped paths; null is allowed.
+/// Frees snapped paths. Null is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_curves_free(curves: *mut RototoonCurves) {
     // SAFETY: the crate's contract.

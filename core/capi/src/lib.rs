@@ -1,38 +1,40 @@
 //! C ABI of Rototoon, for ctypes and other foreign callers.
 //!
-//! The header `include/rototoon.h` is generated from this crate and the Python bindings from the header
-//! (`cargo xtask generate`). Layers, from the outside: the exported functions ([`session_abi`], [`strokes_abi`],
-//! [`tween_abi`], [`style_abi`], [`functions`], [`handles`]) read their arguments through [`entry`] and report through
-//! [`callback`]; below them all is safe Rust ([`session`], [`edit`], [`options`], [`matching`], [`strokes`], [`sheet`],
-//! [`style`], [`work`]).
+//! `cargo xtask generate` generates the header `include/rototoon.h` from this crate, and the Python bindings from the
+//! header.
+//!
+//! The crate has two layers. The outer one is the exported functions: [`session_abi`], [`strokes_abi`], [`tween_abi`],
+//! [`style_abi`], [`functions`], [`handles`]. They read their arguments through [`entry`] and report progress through
+//! [`callback`]. The inner one is safe Rust: [`session`], [`edit`], [`options`], [`matching`], [`strokes`], [`sheet`],
+//! [`style`], [`work`].
 //!
 //! # Contract
 //!
-//! What every caller promises and may rely on:
+//! Every caller keeps these rules, and may rely on them:
 //!
-//! - Coordinates are pixels, x right, y down, with the origin at the picture's outer top-left corner: a pixel's centre
-//!   lies at +0.5. Frames are the numbers of the document.
-//! - Text comes in as UTF-8 bytes with their length, without a terminating zero. A null pointer is an empty array where
-//!   the length is 0. Arrays are read during the call only.
-//! - Functions return a status. Other than `ROTOTOON_STATUS_OK`, the text in `*error` says what was wrong; it is null
-//!   after success. `error` itself may be null. Free the text with `rototoon_text_free`.
-//! - Handles come out through the last parameter before `error` (null unless the call succeeded). Each is freed once,
-//!   with the `_free` of its type, while no call uses it.
-//! - Null, misaligned and oversize arguments are refused. A dangling pointer cannot be noticed.
-//! - A panic never leaves the library: it becomes `ROTOTOON_STATUS_PANIC`.
-//! - A session may be used from any thread, but from one at a time: a call during another one on the same session
-//!   returns `ROTOTOON_STATUS_BUSY` at once. Different sessions are independent. Texts, tracks and curves never change
-//!   and may be read from several threads.
-//! - Progress callbacks are called on the thread that made the call, and must not use its session.
+//! - Coordinates are in pixels, x to the right, y down. The origin is the outer top-left corner of the picture, so the
+//!   centre of the first pixel is at (0.5, 0.5). Frames have the numbers of the document.
+//! - A text argument is UTF-8 bytes and their count, without a terminating zero. A null pointer is allowed where the
+//!   length is 0. The library reads arrays during the call only.
+//! - Functions return a status. If it is not `ROTOTOON_STATUS_OK`, `*error` is a text that says what was wrong.
+//!   After success `*error` is null. `error` itself may be null. Free the text with `rototoon_text_free`.
+//! - New handles come out through the last parameters before `error`. They are null unless the call succeeded. The
+//!   caller frees each handle once, with the `_free` function of its type, while no call uses it.
+//! - Null, misaligned and oversize arguments are refused. A dangling pointer cannot be detected.
+//! - A panic never leaves the library. It becomes `ROTOTOON_STATUS_PANIC`.
+//! - A session may be used from any thread, but only from one at a time. A call during another call on the same session
+//!   returns `ROTOTOON_STATUS_BUSY` at once. Different sessions are independent. All other handles never change, so
+//!   several threads may read them.
+//! - Progress callbacks run on the thread that made the call. They must not use the session of that call.
 //! - A call that does not succeed leaves the session's document as it was.
 //!
 //! # Limits
 //!
-//! The contract holds for all functions, so that none repeats it in a section on safety of its own.
+//! The functions do not repeat the contract in safety sections of their own.
 
-// The workspace denies unsafe code; a C ABI is made of it. Each use names its reason.
+// The workspace denies unsafe code, but a C ABI needs it. Each use names its reason.
 #![allow(unsafe_code)]
-// Stated once, above.
+// The contract above is the safety section of all functions.
 #![allow(clippy::missing_safety_doc)]
 
 mod asked;

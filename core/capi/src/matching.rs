@@ -1,4 +1,4 @@
-//! Contour matching as JSON in, JSON out.
+//! Contour matching with a request and an answer in JSON. `rototoon_match_contours` documents both.
 
 use crate::status::Failure;
 use rototoon::geometry::Point;
@@ -40,7 +40,7 @@ impl From<Contour> for DrawnContour {
     }
 }
 
-/// Matches the contours of a request; the answer as JSON.
+/// Matches the contours of a request. Returns the answer as JSON.
 pub fn answer(request: &str) -> Result<String, Failure> {
     let request: Request =
         serde_json::from_str(request).map_err(|error| Failure::Error(format!("request: {error}")))?;

@@ -1,15 +1,15 @@
-//! Options of long work as callers write them: a JSON object of parameter ids, checked against the core's list.
+//! The options of tracking and snapping: a JSON object of parameter ids, checked against the core's list of parameters.
 
 use crate::status::Failure;
 use rototoon::scene::parameters::{ALL, Kind, Parameter, Stage, find};
 use serde_json::{Map, Value};
 
-/// Values of the parameters of a stage and of running; what is not given has its default.
+/// Values of the parameters of one stage and of [`Stage::Run`]. A parameter without a value has its default.
 #[derive(Debug)]
 pub struct Options(Map<String, Value>);
 
 impl Options {
-    /// Reads and checks `json`; an empty text gives nothing.
+    /// Reads and checks `json`. An empty text gives all defaults.
     pub fn parse(json: &str, stage: Stage) -> Result<Self, Failure> {
         let given: Map<String, Value> = match json {
             "" => Map::new(),
@@ -23,7 +23,7 @@ impl Options {
         Ok(Self(given))
     }
 
-    /// A choice.
+    /// The value of a choice: its id.
     pub fn choice(&self, id: &str) -> &str {
         let default = match find(id).map(|parameter| parameter.kind) {
             Some(Kind::Choice { default, .. }) => default,
@@ -32,7 +32,7 @@ impl Options {
         self.0.get(id).and_then(Value::as_str).unwrap_or(default)
     }
 
-    /// A number.
+    /// The value of a number or a whole number.
     pub fn number(&self, id: &str) -> f64 {
         let default = match find(id).map(|parameter| parameter.kind) {
             Some(Kind::Number { default, .. }) => default,

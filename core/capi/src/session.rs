@@ -1,4 +1,4 @@
-//! A document with its pictures and with what tracking remembers: what a session handle points to.
+//! The session behind a session handle: a document, its pictures, and the results that tracking keeps for reuse.
 
 use crate::edit::part_index;
 use crate::options::Options;
@@ -16,10 +16,10 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// How messages call a document that came as text.
+/// The name of a document without a file, for messages.
 const ORIGIN: &str = "document";
 
-/// A document in work.
+/// A session.
 pub struct Session {
     document: Document,
     folder: PathBuf,
@@ -27,7 +27,7 @@ pub struct Session {
     trackers: BTreeMap<&'static str, Tracker>,
 }
 
-/// What tracking did, as callers read it.
+/// The summary of tracking, as callers read it.
 #[derive(Debug, Serialize)]
 struct Summary<'a> {
     jobs: Vec<JobSummary<'a>>,
@@ -54,31 +54,31 @@ struct JobSummary<'a> {
 }
 
 impl Session {
-    /// The session of a JSON document; a relative footage pattern is relative to `folder`.
+    /// Creates a session from the JSON text of a document. A relative footage pattern is relative to `folder`.
     pub fn new(json: &str, folder: &Path) -> Result<Self, Failure> {
         let document = Document::parse(json, ORIGIN).map_err(Failure::error)?;
         Ok(Self::of(document, folder))
     }
 
-    /// The session of a project file.
+    /// Creates a session from a project file.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let document = Document::load(path).map_err(Failure::error)?;
         Ok(Self::of(document, path.parent().unwrap_or(Path::new(""))))
     }
 
     fn of(document: Document, folder: &Path) -> Self {
-        // Absolute, so that a change of the working directory changes nothing.
+        // An absolute folder does not depend on later changes of the working directory.
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
         Self { document, folder, pictures: None, trackers: BTreeMap::new() }
     }
 
-    /// The document as it stands.
+    /// The document as JSON.
     pub fn document(&self) -> String {
         self.document.to_json()
     }
 
-    /// Writes the document. In another folder than the session's, a relative footage pattern is rewritten so that it names
-    /// the same files.
+    /// Writes the document. If `path` is not in the session's folder, a relative footage pattern is rewritten so that it
+    /// names the same files.
     pub fn save(&self, path: &Path) -> Result<(), Failure> {
         let target = std::path::absolute(path).map_err(Failure::error)?;
         let mut document = self.document.clone();
@@ -86,7 +86,7 @@ impl Session {
         document.save(path).map_err(Failure::error)
     }
 
-    /// Replaces the document; what is known of pictures and spans stays where it still holds.
+    /// Replaces the document. Keeps solved spans, and the pictures if the footage is the same.
     pub fn set_document(&mut self, json: &str) -> Result<(), Failure> {
         let document = Document::parse(json, ORIGIN).map_err(Failure::error)?;
         self.put(document);
@@ -118,8 +118,8 @@ impl Session {
         })
     }
 
-    /// Changes the document's JSON, so that what is added goes through the same checks as a file, and fields that this
-    /// version does not know stay. The parts themselves are kept as they are in memory: JSON rounds results.
+    /// Changes the document's JSON. So the new fields pass the same checks as a file, and fields that this version does
+    /// not know are kept. Existing parts are copied from memory, because JSON rounds results.
     fn rewrite(&mut self, change: impl FnOnce(&mut Value)) -> Result<(), Failure> {
         let mut json = value(&self.document.to_json(), ORIGIN)?;
         change(&mut json);
@@ -132,7 +132,7 @@ impl Session {
         Ok(())
     }
 
-    /// Removes a part and all that belongs to it.
+    /// Removes a part with its keys, corrections and results.
     pub fn remove_part(&mut self, name: &str) -> Result<(), Failure> {
         let index = part_index(&self.document.scene, name).map_err(Failure::error)?;
         self.document.scene.parts.remove(index);
@@ -151,18 +151,18 @@ impl Session {
         Ok(&self.document.scene.parts[index])
     }
 
-    /// The scene, to edit.
+    /// The scene, for editing.
     pub fn scene_mut(&mut self) -> &mut Scene {
         &mut self.document.scene
     }
 
-    /// The frame where the next key helps most as JSON `{"frame", "score"}`, or `null`.
+    /// The frame on which the next key helps most, as JSON `{"frame", "score"}`, or `null`.
     pub fn weakest_frame(&self) -> String {
         let found = weakest_frame(&self.document.scene.parts);
         found.map_or(Value::Null, |w| json!({"frame": w.frame, "score": w.score})).to_string()
     }
 
-    /// Tracks the parts; returns the summary as JSON.
+    /// Tracks the parts. Returns the summary as JSON.
     pub fn track(&mut self, options: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
         let options = Options::parse(options, Stage::Track)?;
         let (preset, id) = preset(options.choice("preset"))?;
@@ -180,7 +180,7 @@ impl Session {
         Ok(summary(&scene, &tracking))
     }
 
-    /// Snaps the contours to the ink; returns a summary as JSON.
+    /// Snaps the contours to the ink. Returns a summary as JSON.
     pub fn snap(&mut self, options: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
         let options = Options::parse(options, Stage::Snap)?;
         let snapping = snap_options(&options)?;
@@ -199,14 +199,14 @@ impl Session {
         Ok(json!({"frames": frames}).to_string())
     }
 
-    /// Forgets pictures and solved spans: after a panic they may be half-written.
+    /// Drops pictures and solved spans. After a panic they may be half-written.
     pub fn forget(&mut self) {
         self.pictures = None;
         self.trackers.clear();
     }
 }
 
-/// The frame source, opened at first use.
+/// The footage's pictures, opened at first use.
 fn pictures<'a>(slot: &'a mut Option<Sequence>, document: &Document, folder: &Path) -> Result<&'a Sequence, Failure> {
     if slot.is_none() {
         *slot = Some(Sequence::new(&document.scene.footage, folder).map_err(Failure::error)?);
@@ -223,7 +223,7 @@ fn snap_options(options: &Options) -> Result<SnapOptions, Failure> {
         "auto" => Follow::Auto,
         "edge" => Follow::Edge,
         "line" => Follow::Line,
-        other => return Err(Failure::Error(format!("options: nothing to follow is called {other:?}"))),
+        other => return Err(Failure::Error(format!("options: follow: found {other:?}, expected auto, edge or line"))),
     };
     let corridor = CorridorWidth {
         share: options.number("corridor_share"),
@@ -236,7 +236,7 @@ fn snap_options(options: &Options) -> Result<SnapOptions, Failure> {
 fn preset(id: &str) -> Result<(Preset, &'static str), Failure> {
     Preset::ALL.iter().copied().find(|(_, known)| *known == id).ok_or_else(|| {
         let known: Vec<&str> = Preset::ALL.iter().map(|(_, id)| *id).collect();
-        Failure::Error(format!("options: preset {id:?}, expected one of {}", known.join(", ")))
+        Failure::Error(format!("options: preset: found {id:?}, expected one of {}", known.join(", ")))
     })
 }
 

@@ -1,4 +1,4 @@
-//! The session's functions.
+//! The exported functions of sessions.
 
 use crate::callback::{RototoonProgress, with_progress};
 use crate::edit;
@@ -14,7 +14,7 @@ use std::path::Path;
 use std::ptr::null_mut;
 use std::sync::{Mutex, TryLockError};
 
-/// A document with its pictures and with what tracking remembers.
+/// A session: a document, its pictures, and the results that tracking keeps for reuse.
 pub struct RototoonSession(Mutex<Session>);
 
 impl RototoonSession {
@@ -22,13 +22,13 @@ impl RototoonSession {
         Self(Mutex::new(session))
     }
 
-    /// Runs `body` alone on the session, or fails at once where another call is on it.
+    /// Runs `body` on the session. Fails at once if another call is using the session.
     pub(crate) fn with<T>(&self, body: impl FnOnce(&mut Session) -> Result<T, Failure>) -> Result<T, Failure> {
         let mut session = match self.0.try_lock() {
             Ok(session) => session,
             Err(TryLockError::WouldBlock) => return Err(Failure::Busy),
             Err(TryLockError::Poisoned(poisoned)) => {
-                // A call panicked. Documents are replaced only as a whole; caches may be half-written.
+                // A call panicked. The document is intact, because it is replaced in one step. Caches may be half-written.
                 let mut session = poisoned.into_inner();
                 session.forget();
                 self.0.clear_poison();
@@ -46,7 +46,8 @@ impl RototoonSession {
     }
 }
 
-/// A session of a JSON document. A relative footage pattern is relative to `folder`. Pictures are read when needed.
+/// Creates a session from the JSON text of a document. A relative footage pattern is relative to `folder`. Pictures are
+/// read when they are needed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_new(
     document: *const u8,
@@ -69,7 +70,7 @@ pub unsafe extern "C" fn rototoon_session_new(
     }
 }
 
-/// A session of a project file; footage is relative to its folder.
+/// Creates a session from a project file. A relative footage pattern is relative to the file's folder.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_open(
     path: *const u8,
@@ -89,14 +90,14 @@ pub unsafe extern "C" fn rototoon_session_open(
     }
 }
 
-/// Frees a session; null is allowed. No call may be running on it.
+/// Frees a session. Null is allowed. No call may be running on it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_free(session: *mut RototoonSession) {
     // SAFETY: the crate's contract.
     unsafe { free(session) }
 }
 
-/// The document as JSON, results included.
+/// Returns the document as JSON, with its results.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_document(
     session: *const RototoonSession,
@@ -115,7 +116,8 @@ pub unsafe extern "C" fn rototoon_session_document(
     }
 }
 
-/// Puts another document in place, keeping what is known of pictures and solved spans: tracking solves what differs.
+/// Replaces the document, given as JSON. The session keeps solved spans, so tracking solves only spans that differ. It
+/// keeps its pictures if the footage is the same.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_set_document(
     session: *const RototoonSession,
@@ -133,8 +135,8 @@ pub unsafe extern "C" fn rototoon_session_set_document(
     }
 }
 
-/// Writes the document to a file, whole or not at all. In another folder than the session's, a relative footage
-/// pattern is rewritten so that it names the same files.
+/// Writes the document to a file, completely or not at all. If the file is not in the session's folder, a relative
+/// footage pattern is rewritten so that it names the same files.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_save(
     session: *const RototoonSession,
@@ -152,7 +154,7 @@ pub unsafe extern "C" fn rototoon_session_save(
     }
 }
 
-/// Replaces the footage: JSON with the fields of the document's `footage`.
+/// Replaces the footage. `footage` is JSON with the fields of the document's `footage`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_set_footage(
     session: *const RototoonSession,
@@ -170,7 +172,7 @@ pub unsafe extern "C" fn rototoon_session_set_footage(
     }
 }
 
-/// The names of the parts: a JSON list in the document's order.
+/// Returns the names of the parts as a JSON list, in the document's order.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_parts(
     session: *const RototoonSession,
@@ -189,7 +191,7 @@ pub unsafe extern "C" fn rototoon_session_parts(
     }
 }
 
-/// Adds a part at the end: JSON as in the document's `parts`.
+/// Adds a part at the end. `part` is JSON in the form of the document's `parts`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_add_part(
     session: *const RototoonSession,
@@ -207,7 +209,7 @@ pub unsafe extern "C" fn rototoon_session_add_part(
     }
 }
 
-/// Removes a part, by name, and all that belongs to it.
+/// Removes the part of this name, with its keys, corrections and results.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_remove_part(
     session: *const RototoonSession,
@@ -225,8 +227,8 @@ pub unsafe extern "C" fn rototoon_session_remove_part(
     }
 }
 
-/// Sets the artist's contour of a part on a frame. `points` are `value_count` numbers x, y, x, y, ...: as many points
-/// as the part's other keys have. Pins and a corrected centre on the frame give way.
+/// Sets the artist's contour of a part on a frame. `points` has `value_count` numbers: x, y, x, y, ... in pixels. The
+/// number of points must be that of the part's other keys. Pins and a fixed centre on the frame are removed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_set_key(
     session: *const RototoonSession,
@@ -248,7 +250,7 @@ pub unsafe extern "C" fn rototoon_session_set_key(
     }
 }
 
-/// Removes the key of a part on a frame; an error where there is none.
+/// Removes the key of a part on a frame. It is an error if there is none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_remove_key(
     session: *const RototoonSession,
@@ -267,7 +269,8 @@ pub unsafe extern "C" fn rototoon_session_remove_key(
     }
 }
 
-/// Fixes control point `point` (from 0) of a part on a frame between its keys, or beside its only key.
+/// Fixes control point `point` (counted from 0) of a part at (`x`, `y`) pixels. The frame must be between the part's
+/// keys. If the part has a single key, it may be any other frame of the footage.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_pin(
     session: *const RototoonSession,
@@ -289,7 +292,7 @@ pub unsafe extern "C" fn rototoon_session_pin(
     }
 }
 
-/// Releases control point `point`, or with -1 all of the frame; nothing happens where none is fixed.
+/// Releases control point `point` of a part on a frame, or all of them with -1. It is no error if none is fixed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_unpin(
     session: *const RototoonSession,
@@ -309,7 +312,8 @@ pub unsafe extern "C" fn rototoon_session_unpin(
     }
 }
 
-/// Fixes the mean of the control points of a part on a frame between its keys.
+/// Fixes the mean of the control points of a part at (`x`, `y`) pixels. The frame must be between the part's keys. If
+/// the part has a single key, it may be any other frame of the footage.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_set_center(
     session: *const RototoonSession,
@@ -330,7 +334,7 @@ pub unsafe extern "C" fn rototoon_session_set_center(
     }
 }
 
-/// Releases the centre of a part on a frame; nothing happens where none is fixed.
+/// Releases the centre of a part on a frame. It is no error if it is not fixed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_clear_center(
     session: *const RototoonSession,
@@ -349,19 +353,23 @@ pub unsafe extern "C" fn rototoon_session_clear_center(
     }
 }
 
-/// Tracks every part between its keys and stores `tracks` and `confidence` in the document. The default preset follows a
-/// part with one key outward from it, as far as it can be trusted, and stores in `wants_key` where it was lost.
+/// Tracks every part between its keys and stores `tracks` and `confidence` in the document. The default preset tracks a
+/// part with a single key outward from that key, as far as the result is reliable. It stores the frames on which it
+/// lost the part in `wants_key`.
 ///
-/// `options` is JSON of the parameters of the stages "track" and "run" (see `rototoon_parameters`), such as
-/// `{"preset": "zhou2011", "threads": 2}`; each may be missing, and so may all (length 0). The threads do not change
-/// the result. Spans that nothing touched since they were last solved are reused. Snapped curves of frames whose
-/// track changed are dropped.
+/// `options` is a JSON object of the parameters of the stages "track" and "run" (see `rototoon_parameters`), such as
+/// `{"preset": "zhou2011", "threads": 2}`. Each may be left out, and the text may be empty. The number of threads does
+/// not change the result. Spans that have not changed since they were last solved are reused. Snapped curves of frames
+/// whose track changed are dropped.
 ///
 /// `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
-/// "final_cost"}], "ends": [{"part", "frame", "reason"}]}`, one job for each part and span; `solved` is false where the
-/// job was reused; `termination` is one of nothing_to_solve, cost_converged, step_converged, no_descent,
-/// iteration_limit, path_chosen. `ends` tells of parts with one key where the track ends before the footage does: the
-/// first frame beyond it; `reason` is one of lost (a key is wanted on the frame), cut (another shot), left (the picture).
+/// "final_cost"}], "ends": [{"part", "frame", "reason"}]}`.
+///
+/// - `jobs` has one entry for each part and span. `solved` is false if the span was reused. `termination` is one of
+///   nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit, path_chosen.
+/// - `ends` has an entry for each end of a single-key part's track that is not an end of the footage. `frame` is the
+///   first frame without a track. `reason` is "lost" (the part needs a key on that frame), "cut" (another shot begins
+///   there) or "left" (the part left the picture).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_track(
     session: *const RototoonSession,
@@ -386,10 +394,10 @@ pub unsafe extern "C" fn rototoon_session_track(
     }
 }
 
-/// Lays the contours along the drawn ink and stores `curves` in the document.
+/// Snaps the contours to the drawn ink and stores `curves` in the document.
 ///
-/// `options` is JSON of the parameters of the stages "snap" and "run" (see `rototoon_parameters`). `summary` is JSON:
-/// `{"frames": number of snapped frames, parts added up}`.
+/// `options` is a JSON object of the parameters of the stages "snap" and "run" (see `rototoon_parameters`). `summary` is
+/// JSON: `{"frames": number}`, the number of snapped frames, summed over the parts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_snap(
     session: *const RototoonSession,
@@ -414,7 +422,7 @@ pub unsafe extern "C" fn rototoon_session_snap(
     }
 }
 
-/// The track of a part; empty where it was not tracked.
+/// Returns the track of a part. It has no frames if the part is not tracked.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_track_of(
     session: *const RototoonSession,
@@ -436,8 +444,8 @@ pub unsafe extern "C" fn rototoon_session_track_of(
     }
 }
 
-/// The snapped paths of a part on a frame, one for each segment between control points; none where it was not
-/// snapped.
+/// Returns the snapped paths of a part on a frame, one for each segment between control points. There are none if the
+/// part is not snapped on that frame.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_curves_of(
     session: *const RototoonSession,
@@ -462,8 +470,9 @@ pub unsafe extern "C" fn rototoon_session_curves_of(
     }
 }
 
-/// Where the next key helps most: JSON `{"frame", "score"}`, or `null` where nothing was tracked or all frames are at
-/// or beside keys. The score is the sum over parts of the mean of 1 - confidence, smoothed over time.
+/// Returns the frame on which the next key helps most, as JSON `{"frame", "score"}`. It is `null` if nothing is tracked
+/// or if every frame is a key frame or next to one. The score is the sum over the parts of the mean of 1 - confidence,
+/// smoothed over time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_weakest_frame(
     session: *const RototoonSession,

@@ -1,4 +1,5 @@
-//! Drawings on key frames as flat arrays, matched and drawn between: what comes in and what goes out.
+//! Stroke matching and in-betweens of drawings in flat arrays. `rototoon_match_strokes` and `rototoon_draw_in_betweens`
+//! document the arrays.
 
 use crate::asked::Asked;
 use crate::status::Failure;
@@ -12,63 +13,63 @@ use rototoon::tween::between::{GivenPegs, Key};
 use rototoon::tween::matching::{HandPair, InPieces, Matching};
 use std::ops::Range;
 
-/// Strokes of several drawings, one drawing after the other, and what is decided of them.
+/// The strokes of several drawings, one drawing after the other, and the pairs made by hand.
 pub struct Drawings<'a> {
     /// The strokes of all drawings.
     pub strokes: Strokes<'a>,
-    /// Three for each stroke, sRGB from 0 to 1, NaN where it has none; or nothing.
+    /// Three numbers per stroke, sRGB from 0 to 1, NaN if it has no colour; or empty.
     pub colours: &'a [f64],
-    /// Material and layer of each stroke, -1 where it has none; or nothing.
+    /// Material and layer of each stroke, -1 if it has none; or empty.
     pub labels: &'a [i32],
-    /// Drawing `d` has the strokes `drawings[d]` to `drawings[d + 1]`.
+    /// Drawing `d` has the strokes `drawings[d]` to `drawings[d + 1]` (excluded).
     pub drawings: &'a [i32],
-    /// The frame of each drawing; or nothing.
+    /// The frame of each drawing; or empty.
     pub frames: &'a [i32],
-    /// Pairs made by hand: a stroke and its counterpart in the next drawing; -1 in the place of either for none.
+    /// Pairs made by hand: a stroke and its counterpart in the next drawing. -1 in place of one: the other has none.
     pub by_hand: &'a [i32],
 }
 
-/// Which stroke of a drawing is which of the next one.
+/// The matches of the strokes of each drawing with those of the next one.
 #[derive(Default)]
 pub struct RototoonMatches {
-    /// Drawing `d` and the next one have the rows `offsets[d]` to `offsets[d + 1]`.
+    /// Drawing `d` and the next one have the rows `offsets[d]` to `offsets[d + 1]` (excluded).
     pub offsets: Vec<i32>,
-    /// For each row kind, stroke of the earlier drawing, stroke of the later one, and flags.
+    /// Four numbers per row: kind, stroke of the earlier drawing, stroke of the later drawing, flags.
     pub rows: Vec<i32>,
-    /// For each row start and confidence.
+    /// Two numbers per row: start and confidence.
     pub values: Vec<f64>,
 }
 
-/// Drawings between others.
+/// In-betweens of several spans.
 #[derive(Default)]
 pub struct RototoonInBetweens {
-    /// Span `s` has the frames `frame_offsets[s]` to `frame_offsets[s + 1]`.
+    /// Span `s` has the frames `frame_offsets[s]` to `frame_offsets[s + 1]` (excluded).
     pub frame_offsets: Vec<i32>,
-    /// By frame the share of the way.
+    /// For each frame the share of the way between the keys, 0 to 1.
     pub shares: Vec<f64>,
-    /// Span `s` draws the strokes `stroke_offsets[s]` to `stroke_offsets[s + 1]`.
+    /// Span `s` has the strokes `stroke_offsets[s]` to `stroke_offsets[s + 1]` (excluded).
     pub stroke_offsets: Vec<i32>,
-    /// By stroke the stroke of the earlier key and of the later one, and flags.
+    /// For each stroke: the stroke of the earlier key, the stroke of the later key, and flags.
     pub strokes: Vec<i32>,
-    /// Stroke `i` has the points `point_offsets[i]` to `point_offsets[i + 1]`.
+    /// Stroke `i` has the points `point_offsets[i]` to `point_offsets[i + 1]` (excluded).
     pub point_offsets: Vec<i32>,
-    /// By point the two points of either key around its place.
+    /// For each point and key, the two points of the key between which it comes from.
     pub indices: Vec<i32>,
-    /// By point the weight of the second of either two.
+    /// For each point and key, the weight of the second of these points.
     pub weights: Vec<f64>,
-    /// By span, frame, and point: x, y.
+    /// x and y in pixels, by span, frame, stroke and point.
     pub points: Vec<f64>,
-    /// By span, frame, and stroke: its opacity.
+    /// Opacities, by span, frame and stroke.
     pub opacities: Vec<f64>,
 }
 
-/// Kinds of rows of [`RototoonMatches`].
+/// The kinds of rows of [`RototoonMatches`].
 pub mod kind {
-    /// One stroke is one.
+    /// The two strokes correspond to each other.
     pub const PAIR: i32 = 0;
-    /// The earlier stroke is whole, the later one a piece.
+    /// The later stroke is a piece of the earlier one.
     pub const SPLIT: i32 = 1;
-    /// The earlier stroke is a piece, the later one whole.
+    /// The earlier stroke is a piece of the later one.
     pub const JOINED: i32 = 2;
     /// The earlier stroke has no counterpart.
     pub const VANISHED: i32 = 3;
@@ -80,7 +81,7 @@ const REVERSED: i32 = 1;
 const BY_HAND: i32 = 2;
 
 impl Drawings<'_> {
-    /// The strokes of each drawing as a range of all; an error where the arrays do not belong together.
+    /// The range of each drawing's strokes. It is an error if the lengths of the arrays do not fit together.
     fn checked(&self) -> Result<Vec<Range<usize>>, Failure> {
         let count = self.strokes.checked()?;
         let wrong = |text: String| Err(Failure::Error(text));
@@ -202,7 +203,7 @@ pub fn matches(drawings: &Drawings, options: &str, go_on: GoOn<'_>) -> Result<Ro
     Ok(RototoonMatches::new(&run(asked.threads, go_on, work)?, &ranges))
 }
 
-/// Draws the spans that are asked; and which stroke is which in the spans that had to be matched for it.
+/// Draws the requested spans. Also returns the matches of the drawings that had to be matched for it.
 pub fn in_betweens(
     drawings: &Drawings,
     options: &str,
@@ -224,7 +225,7 @@ pub fn in_betweens(
     Ok((result, RototoonMatches::new(&found, &ranges)))
 }
 
-/// A part of a progress.
+/// Reports a part of the work as progress of all of it.
 struct Part<'a> {
     progress: &'a dyn Progress,
     from: f64,
@@ -300,7 +301,7 @@ impl RototoonInBetweens {
         self.strokes.extend([number(0), number(1), flags]);
         for k in 0..drawn.points {
             for side in [0, 1] {
-                // Where one key lacks it, the other one says how it looks.
+                // A stroke that only one key has takes both places from that key.
                 let (stand, first) = match (&drawn.stands[side], &drawn.stands[1 - side]) {
                     (Some(stand), _) => (stand, firsts[side]),
                     (None, Some(stand)) => (stand, firsts[1 - side]),
@@ -323,7 +324,7 @@ mod tests {
     const POINTS: [f64; 24] = [
         0.0, 0.0, 10.0, 0.0, 20.0, 0.0, 0.0, 30.0, 0.0, 60.0, // first drawing: across, down
         8.0, 60.0, 8.0, 30.0, 28.0, 0.0, 8.0, 0.0, 3.0, 3.0, 4.0, 4.0, 5.0,
-        5.0, // second: down, across, and one more
+        5.0, // second drawing: down, across, and a third line
     ];
 
     fn drawings<'a>(by_hand: &'a [i32]) -> Drawings<'a> {
@@ -338,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn strokes_find_each_other() {
+    fn strokes_are_matched() {
         let found = matches(&drawings(&[]), "", None).unwrap();
         assert_eq!(found.offsets, [0, 3]);
         assert_eq!(found.rows, [0, 0, 3, 1, 0, 1, 2, 1, 4, -1, 4, 0]);
@@ -348,16 +349,16 @@ mod tests {
     }
 
     #[test]
-    fn all_frames_come_at_once() {
+    fn one_call_draws_all_frames() {
         let options = r#"{"spans": [{"key": 0, "frames": [2, 3, 4]}], "spacing": ["linear"], "arcs": 0}"#;
         let (found, pairs) = in_betweens(&drawings(&[]), options, None).unwrap();
         assert_eq!(pairs.rows.len(), 12);
         assert_eq!((&found.frame_offsets[..], &found.shares[..]), (&[0, 3][..], &[0.25, 0.5, 0.75][..]));
         assert_eq!(found.stroke_offsets, [0, 3]);
-        // What appears lies where it does on the later drawing: above its neighbour below.
+        // The stroke that appears keeps its place in the later drawing's order: after the stroke behind it.
         assert_eq!(found.strokes, [0, 3, 0, -1, 4, 0, 1, 2, 0]);
         assert_eq!(found.point_offsets, [0, 3, 6, 8]);
-        // The middle of the first stroke lies half-way between the two points of its counterpart.
+        // The middle point of the first stroke comes from halfway between the two points of its counterpart.
         assert_eq!((&found.indices[4..8], &found.weights[2..4]), (&[1, 1, 7, 8][..], &[0.0, 0.5][..]));
         assert_eq!(found.points.len(), 3 * 8 * 2);
         assert!((found.points[16] - 4.0).abs() < 1e-6, "{:?}", &found.points[16..22]);
@@ -365,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_named() {
+    fn errors_name_the_wrong_argument() {
         let said = |drawings: &Drawings, options: &str| in_betweens(drawings, options, None).err().unwrap().to_string();
         let fine = drawings(&[]);
         assert!(said(&fine, r#"{"colour": 1}"#).starts_with("options: unknown field `colour`"));
@@ -388,11 +389,11 @@ mod tests {
     }
 
     #[test]
-    fn given_pegs_carry() {
+    fn given_pegs_carry_their_strokes() {
         let options = r#"{"spans": [{"key": 0, "frames": [3]}], "pegs": [{"name": "arm", "pivot": [0, 0], "keys":
             [{"frame": 1}, {"frame": 5, "turn": 360}]}], "hung": ["arm", null, null, null, null], "arcs": 0}"#;
         let (found, _) = in_betweens(&drawings(&[]), options, None).unwrap();
-        // Half-way round: (0, 0) to (8, 0) and (20, 0) to (28, 0) in the peg's frame, turned by half a turn.
+        // Halfway: (0, 0) to (8, 0) and (20, 0) to (28, 0) in the peg's frame, turned by half a turn.
         assert!(
             (found.points[0] + 4.0).abs() < 1e-6 && (found.points[4] + 24.0).abs() < 1e-6,
             "{:?}",

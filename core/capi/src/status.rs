@@ -1,18 +1,18 @@
-//! How a call ended, and the failures behind the codes.
+//! The status of a call, and the failures behind it.
 
 use rototoon::scene::Cancelled;
 
-/// How a call ended.
+/// The result of a call.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RototoonStatus {
-    /// Done; out parameters are set.
+    /// Success. The out parameters are set.
     Ok = 0,
-    /// Failed; the error text says which file, field or frame, what was found and what was expected.
+    /// The call failed. The error text names the file, field or frame, what was found and what was expected.
     Error = 1,
-    /// The progress callback asked to stop; nothing was changed.
+    /// The progress callback cancelled the work. Nothing was changed.
     Cancelled = 2,
-    /// A defect of the library, caught; the handle may still be used.
+    /// The library has a defect and panicked. The handle may still be used.
     Panic = 3,
     /// An argument is null, misaligned, too long, or not UTF-8.
     BadArgument = 4,
@@ -20,30 +20,30 @@ pub enum RototoonStatus {
     Busy = 5,
 }
 
-/// Why a call did not do what it was asked.
+/// Why a call failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
-    /// The caller's input or its surroundings.
+    /// The input is wrong, or a file cannot be read or written.
     #[error("{0}")]
     Error(String),
-    /// The caller asked to stop.
+    /// The caller cancelled the work.
     #[error("cancelled")]
     Cancelled,
-    /// An argument that no memory or text can be read from.
+    /// An argument is null, misaligned, too long, or not UTF-8.
     #[error("{0}")]
     BadArgument(String),
-    /// Two calls at once.
+    /// Another call on the same session is running.
     #[error("the session is in use by another call; a session may be used from one thread at a time")]
     Busy,
 }
 
 impl Failure {
-    /// A failure with the text of an error of the core.
+    /// A failure with the text of an error.
     pub fn error(error: impl std::fmt::Display) -> Self {
         Self::Error(error.to_string())
     }
 
-    /// The code that the caller sees.
+    /// The status that the caller gets.
     pub fn status(&self) -> RototoonStatus {
         match self {
             Self::Error(_) => RototoonStatus::Error,

@@ -1,4 +1,5 @@
-//! Fitting and hidden lines of whole drawings: strokes as flat arrays in, flat arrays out.
+//! Curve fitting and hidden lines of drawings in flat arrays. `rototoon_fit_strokes` and `rototoon_hidden_lines` document
+//! the arrays.
 
 use crate::status::Failure;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
@@ -7,50 +8,51 @@ use rototoon::geometry::Point;
 use rototoon::tween::hidden::{Cover, Depth, FillRule, Form, Line, hidden_lines};
 use std::collections::BTreeMap;
 
-/// Strokes of a drawing: stroke `i` has the points `offsets[i]` to `offsets[i + 1]`.
+/// The strokes of a drawing.
 pub struct Strokes<'a> {
-    /// One more than there are strokes, from 0, never falling.
+    /// One more than there are strokes, beginning with 0, never falling. Stroke `i` has the points `offsets[i]` to
+    /// `offsets[i + 1]` (excluded).
     pub offsets: &'a [i32],
-    /// x, y in pixels.
+    /// x and y of each point, in pixels.
     pub points: &'a [f64],
-    /// Not 0 where the end joins the start.
+    /// For each stroke a number that is not 0 if the end joins the start.
     pub closed: &'a [u8],
 }
 
-/// Guiding points of fitted strokes.
+/// The guiding points of fitted strokes.
 #[derive(Default)]
 pub struct RototoonGuides {
-    /// Stroke `i` has the guides `offsets[i]` to `offsets[i + 1]`.
+    /// Stroke `i` has the guiding points `offsets[i]` to `offsets[i + 1]` (excluded).
     pub offsets: Vec<i32>,
-    /// x, y of each guide.
+    /// x and y of each guiding point, in pixels.
     pub points: Vec<f64>,
-    /// For each guide its values, one a channel.
+    /// For each guiding point its values, one per channel.
     pub values: Vec<f64>,
-    /// For each guide the index of the given point that is nearest along the stroke.
+    /// For each guiding point the index of the given point that is nearest along the stroke.
     pub nearest: Vec<i32>,
-    /// For each stroke the largest distance between line and curve.
+    /// For each stroke the largest distance between stroke and curve, in pixels.
     pub errors: Vec<f64>,
 }
 
-/// Parts of strokes that are seen or hidden, by stroke and along it.
+/// The visible and hidden pieces of strokes, ordered by stroke, and along each stroke.
 #[derive(Default)]
 pub struct RototoonPieces {
-    /// For each part the index of its stroke, never falling.
+    /// For each piece the index of its stroke, never falling.
     pub strokes: Vec<i32>,
-    /// For each part, whether it is hidden.
+    /// For each piece 1 if it is hidden, else 0.
     pub hidden: Vec<i32>,
-    /// For each part, from which parameter of the stroke to which.
+    /// For each piece its first and last parameter on the stroke.
     pub intervals: Vec<f64>,
-    /// Part `i` has the points `offsets[i]` to `offsets[i + 1]`; none where it is a whole stroke.
+    /// Piece `i` has the points `offsets[i]` to `offsets[i + 1]` (excluded). It has none if it is a complete stroke.
     pub offsets: Vec<i32>,
-    /// Three points of the drawing for each point, by index.
+    /// For each point of a piece the indices of three given points.
     pub indices: Vec<i32>,
-    /// Their weights.
+    /// For each point of a piece the weights of these points.
     pub weights: Vec<f64>,
 }
 
 impl Strokes<'_> {
-    /// The number of strokes; an error where the arrays do not belong together.
+    /// The number of strokes. It is an error if the lengths of the arrays do not fit together.
     pub fn checked(&self) -> Result<usize, Failure> {
         let wrong = |text: String| Err(Failure::Error(text));
         let Some((&first, rest)) = self.offsets.split_first() else {
@@ -79,13 +81,13 @@ impl Strokes<'_> {
     }
 }
 
-/// A fitted stroke with the values of its guides, channel by channel.
+/// A fitted stroke with the values of its guiding points, channel by channel.
 struct Carrying {
     fitted: Fitted,
     carried: Vec<Vec<f64>>,
 }
 
-/// Fits all strokes; `values` has `channels` numbers for each point.
+/// Fits all strokes to within `tolerance` pixels. `values` has `channels` numbers for each point.
 pub fn fitted(strokes: &Strokes, values: &[f64], channels: usize, tolerance: f64) -> Result<RototoonGuides, Failure> {
     let count = strokes.checked()?;
     let expected = channels.saturating_mul(strokes.points.len() / 2);
@@ -128,7 +130,7 @@ impl RototoonGuides {
     }
 }
 
-/// For each guide the given point whose parameter is nearest to the middle of the guide's influence.
+/// For each guiding point the given point whose parameter is nearest to the middle of the guiding point's influence.
 fn nearest(fitted: &Fitted) -> Vec<usize> {
     let mut order: Vec<usize> = (0..fitted.parameters.len()).collect();
     order.sort_by(|&a, &b| fitted.parameters[a].total_cmp(&fitted.parameters[b]).then(a.cmp(&b)));
@@ -150,17 +152,17 @@ fn nearest(fitted: &Fitted) -> Vec<usize> {
     (0..guides).map(at).collect()
 }
 
-/// What the points of a stroke mean and where it lies.
+/// The meaning of the strokes' points, their depths and their fills.
 pub struct Placing<'a> {
-    /// 0 polyline, 1 uniform quadratic B-spline, 2 chain of Bézier parabolas.
+    /// For each stroke 0 for a polyline, 1 for a uniform quadratic B-spline, 2 for a chain of quadratic Bézier curves.
     pub forms: &'a [u8],
-    /// Layer and stroke; larger is nearer.
+    /// For each stroke its layer and its place in the layer. Larger is nearer.
     pub depths: &'a [i32],
-    /// 0 where a stroke is not filled; strokes of a layer with the same number fill one shape.
+    /// For each stroke 0 if it is not filled. Strokes of one layer with the same number are outlines of one shape.
     pub fills: &'a [i32],
 }
 
-/// The parts of strokes that are seen and hidden.
+/// Cuts strokes into visible and hidden pieces.
 pub fn pieces(
     strokes: &Strokes,
     placing: &Placing,
@@ -177,7 +179,7 @@ pub fn pieces(
         }
     }
     let forms = placing.forms.iter().map(|&form| form_of(form)).collect::<Result<Vec<_>, _>>()?;
-    // Strokes without points are not there.
+    // Strokes without points have no pieces.
     let present: Vec<usize> = (0..count).filter(|&i| !strokes.range(i).is_empty()).collect();
     let lines = present.iter().map(|&i| line(strokes, placing, forms[i], i)).collect::<Result<Vec<_>, _>>()?;
     let covers = covers(placing, &present, &lines);
@@ -219,7 +221,7 @@ fn line(strokes: &Strokes, placing: &Placing, form: Form, stroke: usize) -> Resu
     Ok(Line { path, depth })
 }
 
-/// One cover for each fill of a layer. Several outlines of one fill make holes; the fill lies as deep as its first stroke.
+/// One cover for each fill of a layer. A fill with several outlines has holes. Its depth is that of its rearmost outline.
 fn covers(placing: &Placing, present: &[usize], lines: &[Line]) -> Vec<Cover> {
     let mut groups: BTreeMap<(i32, i32), Vec<usize>> = BTreeMap::new();
     for (k, &stroke) in present.iter().enumerate() {
@@ -240,7 +242,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn strokes_are_fitted_with_what_they_carry() {
+    fn strokes_are_fitted_with_their_values() {
         let line: Vec<f64> = (0..50).flat_map(|k| [k as f64, 0.0]).collect();
         let wave: Vec<f64> = (0..200).flat_map(|k| [k as f64, 40.0 * (k as f64 / 30.0).sin()]).collect();
         let points: Vec<f64> = [line, wave].concat();
@@ -293,7 +295,7 @@ mod tests {
             let placing = Placing { forms: &[0; 3], depths: &[0, 0, 0, 1, 0, 1], fills };
             pieces(&strokes, &placing, &Default::default()).unwrap().hidden.iter().filter(|&&h| h == 0).count()
         };
-        // Beside the two squares: the line in the hole, nothing of it, nothing of it.
+        // The line in the hole is visible beside the two squares only if both outlines are of one fill.
         assert_eq!([seen(&[0, 3, 3]), seen(&[0, 3, 4]), seen(&[0, 3, 0])], [3, 2, 2]);
     }
 }

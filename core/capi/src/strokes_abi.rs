@@ -1,4 +1,4 @@
-//! Strokes of drawings: fitting and hidden lines.
+//! The exported functions of curve fitting and hidden lines.
 
 use crate::entry::{MAX_BYTES, clear, entry, free, give, handle, slice};
 use crate::status::{Failure, RototoonStatus};
@@ -6,10 +6,11 @@ use crate::strokes::{Placing, RototoonGuides, RototoonPieces, Strokes, fitted, p
 use crate::text::RototoonText;
 use rototoon::tween::hidden;
 
-/// The strokes of three arrays.
+/// Makes strokes of three arrays.
 ///
 /// # Safety
-/// As `slice`: `stroke_count` + 1 offsets, two coordinates for each point that they count, `stroke_count` flags.
+/// The same as of `slice`, for `stroke_count` + 1 offsets, two coordinates for each point up to the last offset, and
+/// `stroke_count` flags.
 pub(crate) unsafe fn strokes<'a>(
     offsets: *const i32,
     stroke_count: usize,
@@ -30,10 +31,17 @@ pub(crate) unsafe fn strokes<'a>(
     }
 }
 
-/// Fits quadratic B-splines with few guiding points to strokes. Stroke `i` has the points `offsets[i]` to `offsets[i + 1]`
-/// (excluded) of `points` (x, y in pixels); its end joins its start where `closed[i]` is not 0. Each point carries
-/// `channel_count` numbers of `values`, which the guides carry on. No point of a stroke is farther than `tolerance` pixels
-/// from its curve, and no place of the curve farther than that from the stroke. Strokes without points give no guides.
+/// Fits uniform quadratic B-splines with few guiding points to strokes.
+///
+/// - `offsets`: `stroke_count` + 1 numbers, beginning with 0. Stroke `i` has the points `offsets[i]` to `offsets[i + 1]`
+///   (excluded).
+/// - `points`: two coordinates per point, x and y in pixels.
+/// - `closed`: one number per stroke. If it is not 0, the end of the stroke joins its start.
+/// - `values`: `channel_count` numbers per point, such as pressure. The guiding points get fitted values.
+/// - `tolerance`: a distance in pixels. No point of a stroke is farther from the curve, and no place of the curve is
+///   farther from the stroke.
+///
+/// Strokes without points give no guiding points.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_fit_strokes(
     offsets: *const i32,
@@ -59,10 +67,14 @@ pub unsafe extern "C" fn rototoon_fit_strokes(
     }
 }
 
-/// The arrays of fitted strokes, which live as long as the handle: stroke `i` has the guiding points `offsets[i]` to
-/// `offsets[i + 1]` (excluded) of `points` (x, y in pixels), those of corners twice; `values` are what they carry;
-/// `nearest` the given point that is nearest to each; `errors` the largest distance of each stroke. There are
-/// `guide_count` guides.
+/// Reads the arrays of fitted strokes. They live as long as the handle.
+///
+/// - `offsets`: one more than there are strokes. Stroke `i` has the guiding points `offsets[i]` to `offsets[i + 1]`
+///   (excluded).
+/// - `points`: `guide_count` × 2 coordinates, x and y in pixels. The guiding point of a corner occurs twice.
+/// - `values`: `guide_count` × `channel_count` numbers, guiding point by guiding point.
+/// - `nearest`: for each guiding point the index of the given point that is nearest along the stroke.
+/// - `errors`: for each stroke the largest distance between stroke and curve, in pixels.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_guides_read(
     guides: *const RototoonGuides,
@@ -95,19 +107,24 @@ pub unsafe extern "C" fn rototoon_guides_read(
     }
 }
 
-/// Frees fitted strokes; null is allowed.
+/// Frees fitted strokes. Null is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_guides_free(guides: *mut RototoonGuides) {
     // SAFETY: the crate's contract.
     unsafe { free(guides) }
 }
 
-/// Cuts strokes where filled strokes in front hide them. Strokes are given as to `rototoon_fit_strokes`. `forms[i]` says
-/// what the points of stroke `i` mean: 0 a polyline, 1 guiding points of a uniform quadratic B-spline, 2 control points of
-/// a chain of quadratic Bezier curves. `depths` has two numbers for each stroke, layer and stroke: of two layers the
-/// larger is in front, in a layer the larger stroke; equal ones do not hide each other. `fills[i]` is 0 where a stroke is not filled;
-/// strokes of a layer with the same number fill one shape. What is nearer to an outline than `border` pixels lies on it;
-/// parts shorter than `sliver` pixels take after their surroundings.
+/// Cuts strokes where filled strokes in front of them hide them.
+///
+/// - `offsets`, `points`, `closed`: the strokes, as in `rototoon_fit_strokes`.
+/// - `forms`: one number per stroke, the meaning of its points. 0 is a polyline, 1 guiding points of a uniform quadratic
+///   B-spline, 2 control points of a chain of quadratic Bezier curves.
+/// - `depths`: two numbers per stroke, its layer and its place in the layer. The larger layer is in front. In one layer
+///   the larger place is in front. Strokes of equal depth do not hide each other.
+/// - `fills`: one number per stroke. 0 means that the stroke is not filled. Strokes of one layer with the same number
+///   are the outlines of one filled shape, which has the depth of its rearmost outline.
+/// - `border`: a distance in pixels. A line that is no farther from an outline lies on the outline.
+/// - `sliver`: a length in pixels. Shorter parts are as visible as the parts around them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_hidden_lines(
     offsets: *const i32,
@@ -138,11 +155,19 @@ pub unsafe extern "C" fn rototoon_hidden_lines(
     }
 }
 
-/// The arrays of cut strokes, which live as long as the handle. There are `piece_count` parts, in the order of the strokes
-/// and along each: part `i` belongs to the stroke `strokes[i]`, is hidden where `hidden[i]` is not 0, and reaches from
-/// parameter `intervals[2 i]` to `intervals[2 i + 1]` (over the end of a closed stroke's last piece if it runs over its
-/// seam). Its points are `offsets[i]` to `offsets[i + 1]` (excluded), none where it is a whole stroke; each is the sum of
-/// three given points by `indices` with `weights`. Parts of polylines are polylines, all others are of form 2; all are open.
+/// Reads the arrays of cut strokes. They live as long as the handle. There are `piece_count` pieces, ordered by stroke,
+/// and along each stroke.
+///
+/// - `strokes`: for each piece the index of its stroke.
+/// - `hidden`: for each piece a number that is not 0 if the piece is hidden.
+/// - `intervals`: for each piece two parameters of its stroke, start and end. The end is beyond the stroke's last
+///   parameter if the piece runs over the seam of a closed stroke.
+/// - `offsets`: `piece_count` + 1 numbers. Piece `i` has the points `offsets[i]` to `offsets[i + 1]` (excluded). It has
+///   none if it is a complete stroke.
+/// - `indices`, `weights`: three numbers for each point of a piece. The point is the sum of the three given points of
+///   these indices, with these weights.
+///
+/// All pieces are open. Pieces of polylines are polylines. All other pieces have form 2.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_pieces_read(
     pieces: *const RototoonPieces,
@@ -178,7 +203,7 @@ pub unsafe extern "C" fn rototoon_pieces_read(
     }
 }
 
-/// Frees cut strokes; null is allowed.
+/// Frees cut strokes. Null is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_pieces_free(pieces: *mut RototoonPieces) {
     // SAFETY: the crate's contract.

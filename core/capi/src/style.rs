@@ -1,4 +1,5 @@
-//! Skeleton clips, their library, and drawings that follow them, as JSON in, JSON out.
+//! Skeleton clips, their library, and drawings that follow them, with JSON arguments and results. The functions of
+//! [`crate::style_abi`] document the JSON.
 
 use crate::status::Failure;
 use crate::work::{GoOn, run};
@@ -17,7 +18,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Longest limb, in sub-key points.
+/// Most sub-key points of a limb.
 const MOST_SUB_KEYS: usize = 100;
 
 fn options<T: DeserializeOwned>(json: &str) -> Result<T, Failure> {
@@ -40,7 +41,7 @@ struct CaptureOptions {
     last: Option<FrameNumber>,
 }
 
-/// A clip of a document's contours.
+/// Makes a clip from a document's contours.
 pub fn capture(document: &str, json: &str) -> Result<String, Failure> {
     let given: CaptureOptions = options(json)?;
     let document = Document::parse(document, "document").map_err(Failure::error)?;
@@ -110,7 +111,7 @@ impl ImportOptions {
     }
 }
 
-/// A clip of a motion in a BVH file's text.
+/// Makes a clip from the text of a BVH file.
 pub fn import(text: &str, json: &str) -> Result<String, Failure> {
     let given: ImportOptions = options(json)?;
     if given.character.is_empty() || given.motion.is_empty() {
@@ -171,7 +172,7 @@ impl TranslateOptions {
     }
 }
 
-/// A motion in another character's manner.
+/// Makes a motion in the style of another character.
 pub fn translate(clips: &str, json: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
     let given: TranslateOptions = options(json)?;
     let how = given.read()?;
@@ -207,7 +208,7 @@ struct ReshapeOptions {
     threads: usize,
 }
 
-/// A drawing on every frame of a clip.
+/// Makes a drawing follow a clip on every frame.
 pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
     let given: ReshapeOptions = options(json)?;
     let mut document = Document::parse(document, "document").map_err(Failure::error)?;
@@ -265,14 +266,14 @@ fn chosen<'a>(clips: &'a Clips, given: &ReshapeOptions) -> Result<&'a Clip, Fail
     }
 }
 
-/// Adds clips to the library of a folder.
+/// Adds clips to the library in a folder.
 pub fn library_add(folder: &str, clips: &str, source: &str) -> Result<(), Failure> {
     let clips = Clips::parse(clips, "clips").map_err(Failure::error)?;
     let mut library = Library::open(Path::new(folder));
     clips.clips.iter().try_for_each(|clip| library.add(clip, clips.fps, source)).map_err(Failure::error)
 }
 
-/// The clips of a folder whose character and motion hold given words, read where asked for.
+/// Finds the clips of a library whose character and motion contain given words, and reads them if requested.
 pub fn library_find(folder: &str, json: &str) -> Result<String, Failure> {
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields, default)]
@@ -310,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_motion_or_its_options_is_told() {
+    fn errors_of_a_motion_and_its_options_are_reported() {
         let with = |more: &str| said(&format!(r#"{{"character": "a", "motion": "walk"{more}}}"#));
         assert!(with("").starts_with("line 1: found the end of the file"));
         assert!(with(r#", "view": 30, "up": "z", "way": true, "first": 0, "last": 4"#).starts_with("line 1:"));

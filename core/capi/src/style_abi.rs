@@ -1,4 +1,4 @@
-//! Skeleton clips, their library, and drawings that follow them.
+//! The exported functions of skeleton clips, their library, and drawings that follow them.
 
 use crate::callback::{RototoonProgress, with_progress};
 use crate::entry::{clear, entry, give, text};
@@ -8,11 +8,13 @@ use crate::text::RototoonText;
 use std::ffi::c_void;
 use std::ptr::null_mut;
 
-/// Makes a skeleton clip of a document's tracked contours, by its limbs.
+/// Makes a skeleton clip from a document's tracked contours. The document's limbs tell where the key points are.
 ///
-/// `document` is a project document as JSON, `options` JSON: `character`, `motion`, and `first` and `last` frame, which may be
-/// left out. `made` is JSON: `{"clips": a file of clips, "first": the frame of the first posture, "guessed": {key point:
-/// number of frames on which no contour tells it}}`.
+/// `document` is a project document as JSON. `options` is a JSON object: `character` and `motion` are the names for the
+/// clip, `first` and `last` its first and last frame. The frames may be left out.
+///
+/// `made` is JSON: `{"clips": a file of clips, "first": frame of the first posture, "guessed": {key point: number of
+/// frames}}`. `guessed` counts the frames on which no contour defines the key point, so that it was filled in.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_capture_clip(
     document: *const u8,
@@ -34,12 +36,20 @@ pub unsafe extern "C" fn rototoon_capture_clip(
     }
 }
 
-/// Makes a skeleton clip of motion capture, seen from one side.
+/// Makes a skeleton clip from motion capture, seen from one direction.
 ///
-/// `motion` is the text of a BVH file, `options` JSON: `character`, `motion`; and `view` ("auto", "front", "side", "three-quarter" or
-/// degrees about the vertical, 0 front and 90 side), `up` ("auto", "y" or "z"), `joints` ({key point: joint, or list of joints}), `way`
-/// (whether the pelvis goes its way), `first` and `last` frame from 0, and `fps`, which may be left out. `made` is JSON: `{"clips":
-/// a file of clips, "yaw": degrees that it is seen from}`.
+/// `motion` is the text of a BVH file. `options` is a JSON object with the names `character` and `motion`. It may also
+/// have:
+///
+/// - `view`: the direction, "auto", "front", "side", "three-quarter" or degrees about the vertical (0 front, 90 side).
+///   "auto" shows most of the motion.
+/// - `up`: the axis that points up, "auto", "y" or "z".
+/// - `joints`: `{key point: joint or list of joints}`, for joints that are not recognised by their names.
+/// - `way`: true to let the pelvis move through the picture. Otherwise it stays at the origin.
+/// - `first`, `last`: the frames of the file, counted from 0. Give both or none.
+/// - `fps`: frames per second of the clip.
+///
+/// `made` is JSON: `{"clips": a file of clips, "yaw": the direction in degrees}`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_import_motion(
     motion: *const u8,
@@ -61,11 +71,20 @@ pub unsafe extern "C" fn rototoon_import_motion(
     }
 }
 
-/// Re-makes a motion in another character's manner.
+/// Makes a motion in the style of another character.
 ///
-/// `clips` is a file of clips as JSON, `options` JSON: `style`, `motion`, `content`; and `preset`, `timing` ("content" or
-/// "style"), `strength` (0 to 3), `limb_lengths`, `contacts`, `keys` (drawn poses as their files hold them) and `threads`, which
-/// may be left out. `made` is a file of clips with the one that was made.
+/// `clips` is a file of clips as JSON. `options` is a JSON object with three names: `style` (the character whose style
+/// is used), `motion`, and `content` (the character whose motion is used). It may also have:
+///
+/// - `preset`: the method.
+/// - `timing`: whose timing the result has, "content" or "style".
+/// - `strength`: a number from 0 to 3, the factor on the change that the style makes.
+/// - `limb_lengths`: whether limbs keep within the lengths of the style's clips.
+/// - `contacts`: whether feet that stand in the content's clip stay where they stand.
+/// - `keys`: drawn poses, in the form of a file of key poses.
+/// - `threads`: number of threads, 0 for one per core.
+///
+/// `made` is a file of clips with one clip.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_translate_clip(
     clips: *const u8,
@@ -90,13 +109,24 @@ pub unsafe extern "C" fn rototoon_translate_clip(
     }
 }
 
-/// Makes a drawing follow a clip: its contours and strokes on every frame.
+/// Makes a drawing follow a clip: moves its contours and strokes on every frame.
 ///
-/// `document` is a project document with limbs as JSON, `clips` a file of clips as JSON. `options` is JSON: `character` and
-/// `motion` choose the clip where there are several; `rest`, the frame of the drawing; `sub_keys`, points of each limb between its
-/// key points; `points`, by closed part further points [x, y] that follow it; `threads`; all may be left out. `made` is JSON:
-/// `{"document": the document with tracks, depths and strokes on every frame, "given": [{"part", "from", "to"}] parts that no limb
-/// carries with the one they follow, "rigid": names of parts that do not bend, "points": {part: by frame the places of its points}}`.
+/// `document` is a project document with limbs, as JSON. `clips` is a file of clips, as JSON. `options` is a JSON
+/// object, in which all fields may be left out:
+///
+/// - `character`, `motion`: the names of the clip. They are needed if the file has several clips.
+/// - `rest`: the frame of the drawing.
+/// - `sub_keys`: the number of points of each limb between its key points, 0 to 100.
+/// - `points`: `{closed part: [[x, y]]}`, further points in pixels that follow the part.
+/// - `threads`: number of threads, 0 for one per core.
+///
+/// `made` is a JSON object:
+///
+/// - `document`: the document with tracks, depths and strokes on every frame.
+/// - `given`: `[{"part", "from", "to"}]`, the parts that no limb carries, each with the key points of the nearest limb,
+///   which it follows.
+/// - `rigid`: the names of the parts that do not bend.
+/// - `points`: `{part: [[[x, y]]]}`, for each frame the places of the further points.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_reshape(
     document: *const u8,
@@ -124,8 +154,8 @@ pub unsafe extern "C" fn rototoon_reshape(
     }
 }
 
-/// Adds clips to the library of a folder, in place of those of the same character and motion. `clips` is a file of clips as JSON,
-/// `source` says where they come from and may be empty.
+/// Adds clips to the library in a folder. They replace clips of the same character and motion. `clips` is a file of
+/// clips as JSON. `source` is a text that says where the clips come from. It may be empty.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_library_add(
     folder: *const u8,
@@ -146,9 +176,13 @@ pub unsafe extern "C" fn rototoon_library_add(
     }
 }
 
-/// The clips of a library. `wanted` is JSON: words that `character` and `motion` must hold, and whether to `read` the clips; all
-/// may be left out. `found` is JSON: `{"entries": [{"file", "character", "motion", "frames", "fps", "source"}], "troubles": [what
-/// cannot be used], "clips": a file of clips or null}`.
+/// Finds clips in the library in a folder.
+///
+/// `wanted` is a JSON object, in which all fields may be left out: `character` and `motion` are words that the names
+/// must contain, in upper or lower case; `read` is whether to read the clips.
+///
+/// `found` is JSON: `{"entries": [{"file", "character", "motion", "frames", "fps", "source"}], "troubles": [text],
+/// "clips": a file of clips or null}`. `troubles` are messages about files that cannot be used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_library_find(
     folder: *const u8,

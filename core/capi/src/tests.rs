@@ -1,4 +1,4 @@
-//! The ABI as a foreign caller meets it: pointers, statuses, texts.
+//! Tests of the ABI from the side of a foreign caller: pointers, statuses, texts.
 
 use crate::callback::RototoonProgress;
 use crate::edit;
@@ -19,7 +19,7 @@ use crate::text::RototoonText;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
-/// Tracks and curves are given; the pictures do not exist.
+/// A document with tracks and curves. Its pictures do not exist.
 const DOCUMENT: &str = r#"{
   "rototoon": 1,
   "footage": {"pattern": "no_such_%03d.png", "first": 0, "last": 9, "fps": 25, "width": 64, "height": 48},
@@ -32,7 +32,7 @@ const DOCUMENT: &str = r#"{
   }]
 }"#;
 
-/// The text of a handle, which is freed.
+/// Reads a text and frees its handle.
 fn take(text: *mut RototoonText) -> String {
     if text.is_null() {
         return String::new();
@@ -101,7 +101,7 @@ fn track(session: &Owned, options: &str, progress: RototoonProgress, user: *mut 
 }
 
 #[test]
-fn document_goes_in_and_out_with_fields_that_are_not_known() {
+fn unknown_fields_of_a_document_are_kept() {
     let session = session();
     assert_eq!(pin(session.0, "near arm", 3, 1), (Fine, "".into()));
     let found = document(&session);
@@ -128,7 +128,7 @@ fn bad_documents_are_named() {
 fn null_arguments_are_refused() {
     let session = session();
     let mut text = null_mut();
-    // SAFETY: nulls are the point; all else are locals or living handles.
+    // SAFETY: the nulls are what is tested; all other arguments are locals or living handles.
     unsafe {
         let cases = [
             (pin(null(), "near arm", 3, 1), "session: null handle"),
@@ -146,7 +146,7 @@ fn null_arguments_are_refused() {
             assert_eq!(status, BadArgument);
             assert!(message.contains(expected), "{message:?} should say {expected:?}");
         }
-        // Nobody listens to the message; freeing nothing does nothing.
+        // The pointer for the message may be null. Freeing null does nothing.
         assert_eq!(rototoon_session_parts(null(), &mut text, null_mut()), BadArgument);
         rototoon_text_free(null_mut());
         rototoon_track_free(null_mut());
@@ -170,7 +170,7 @@ fn misaligned_oversize_and_undecodable_arguments_are_refused() {
             (key(odd.cast(), 2), "points: pointer is not aligned to 8 bytes"),
             (key(numbers.as_ptr(), usize::MAX), "points: length 18446744073709551615 is more than"),
             (key(numbers.as_ptr(), MAX_BYTES / 8 + 1), "is more than"),
-            (pin(odd.cast(), "near arm", 3, 1), "session: no such handle"),
+            (pin(odd.cast(), "near arm", 3, 1), "session: misaligned handle"),
             (outcome(|error| rototoon_session_remove_part(session.0, [0xFF_u8].as_ptr(), 1, error)), "part: not UTF-8"),
         ];
         for ((status, message), expected) in cases {
@@ -183,7 +183,7 @@ fn misaligned_oversize_and_undecodable_arguments_are_refused() {
 }
 
 #[test]
-fn panics_become_a_status_and_the_session_lives_on() {
+fn panics_become_a_status_and_the_session_stays_usable() {
     // SAFETY: the out parameter is a local.
     let found = outcome(|error| unsafe { entry(error, || panic!("number {}", 7)) });
     assert_eq!(found, (Panic, "defect in Rototoon: number 7".into()));
@@ -209,7 +209,7 @@ fn refused_edit_says_why_and_changes_nothing() {
 }
 
 fn edit_message() -> String {
-    let what = "a key, which is changed itself";
+    let what = "a key frame, where the key itself is edited";
     edit::EditError::NotBetweenKeys { part: "near arm".into(), frame: 6, what }.to_string()
 }
 
@@ -225,7 +225,7 @@ fn cancelled_track_leaves_the_document_as_it_was() {
     assert_eq!(document(&session), before);
 }
 
-/// Uses the session that `user` points to while a call on it runs; leaves the status there.
+/// A session to be used while a call on it runs, and the status and error text of that use.
 struct Intruder {
     session: *const RototoonSession,
     found: Option<(RototoonStatus, String)>,
@@ -272,7 +272,7 @@ fn options_and_missing_pictures_are_named() {
 }
 
 #[test]
-fn arrays_hold_what_the_document_holds() {
+fn arrays_have_the_values_of_the_document() {
     let session = session();
     let part = "near arm";
     let (mut tracks, mut curves) = (null_mut(), null_mut());

@@ -1,4 +1,4 @@
-//! Drawings on key frames: matching, and drawing between them.
+//! The exported functions of stroke matching and in-betweens.
 
 use crate::callback::{RototoonProgress, with_progress};
 use crate::entry::{MAX_BYTES, clear, entry, free, give, handle, slice, text};
@@ -9,20 +9,21 @@ use crate::text::RototoonText;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
-/// The array, or nothing where the pointer is null.
+/// The array, or an empty one if the pointer is null.
 ///
 /// # Safety
-/// As `slice`.
+/// The same as of `slice`.
 unsafe fn optional<'a, T>(data: *const T, length: usize, name: &str) -> Result<&'a [T], Failure> {
     // SAFETY: this function's contract.
     if data.is_null() { Ok(&[]) } else { unsafe { slice(data, length, name) } }
 }
 
-/// The drawings of flat arrays.
+/// Makes drawings of flat arrays.
 ///
 /// # Safety
-/// As `strokes`; three colours and two labels for each stroke or null, `drawing_count` + 1 drawings, `drawing_count` frames
-/// or null, two numbers for each of `by_hand_count` pairs.
+/// The same as of `strokes`, and: `colours` has three numbers per stroke or is null, `labels` two per stroke or is null,
+/// `drawings` has `drawing_count` + 1 numbers, `frames` has `drawing_count` or is null, and `by_hand` has two numbers for
+/// each of `by_hand_count` pairs.
 #[allow(clippy::too_many_arguments)]
 unsafe fn drawings<'a>(
     offsets: *const i32,
@@ -52,14 +53,19 @@ unsafe fn drawings<'a>(
     }
 }
 
-/// Finds which stroke of a drawing is which of the next one, for all neighbours of several drawings.
+/// Matches the strokes of each drawing with the strokes of the next drawing.
 ///
-/// The strokes of all drawings are given as to `rototoon_fit_strokes`, one drawing after the other: drawing `d` has the
-/// strokes `drawings[d]` to `drawings[d + 1]` (excluded), from behind to the front; `drawings` has `drawing_count` + 1
-/// numbers. `colours` are three numbers for each stroke (sRGB, 0 to 1; NaN where it has none), `labels` two (material and
-/// layer; -1 where it has none); both may be null. `by_hand` are `by_hand_count` pairs that are kept: a stroke and its
-/// counterpart in the next drawing, by their numbers among all strokes; with -1 in the place of either the other one has
-/// none. `options` is a JSON object: `max_cost`, `max_turn`, `max_scale`, `threads`; all may be left out.
+/// - `offsets`, `points`, `closed`: the strokes of all drawings, one drawing after the other, as in
+///   `rototoon_fit_strokes`. Stroke numbers below count all of them.
+/// - `colours`: three numbers per stroke, sRGB from 0 to 1, or NaN if it has no colour. The pointer may be null.
+/// - `labels`: two numbers per stroke, its material and its layer, or -1 if it has none. The pointer may be null.
+/// - `drawings_of`: `drawing_count` + 1 numbers. Drawing `d` has the strokes `drawings_of[d]` to `drawings_of[d + 1]`
+///   (excluded), from behind to the front.
+/// - `by_hand`: `by_hand_count` pairs that are kept: a stroke and its counterpart in the next drawing. With -1 as
+///   counterpart, or as stroke, the other one has no counterpart.
+/// - `options`: a JSON object, in which all fields may be left out. `max_cost` is the cost from which on a stroke has no
+///   counterpart. `max_turn` (radians) and `max_scale` (a factor) limit the movement of the entire drawing. `threads` is
+///   the number of threads, 0 for one per core.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_match_strokes(
     offsets: *const i32,
@@ -103,13 +109,19 @@ pub unsafe extern "C" fn rototoon_match_strokes(
     }
 }
 
-/// The arrays of matches, which live as long as the handle. The drawings `d` and `d` + 1 have the rows `offsets[d]` to
-/// `offsets[d + 1]` (excluded; none where they were not asked for). A row has four numbers in `rows`: kind, stroke of the
-/// earlier drawing, stroke of the later one (by their numbers among all, -1 for none), and flags; and two in `values`.
-/// Kinds: 0 a pair, 1 the later stroke is a piece of the earlier one, 2 the earlier is a piece of the later one, 3 vanished,
-/// 4 appeared. Flags: 1 the later stroke is walked backwards, 2 made by hand. Values: of closed strokes the share of the
-/// later one's length at which the first point of the earlier one lies; how sure the pair is, 0 to 1. Pieces stand in the
-/// order along the whole.
+/// Reads the arrays of matches. They live as long as the handle. There are `span_count` spans. A span is two neighbouring
+/// drawings.
+///
+/// - `offsets`: `span_count` + 1 numbers. The drawings `d` and `d` + 1 have the rows `offsets[d]` to `offsets[d + 1]`
+///   (excluded). They have none if they did not have to be matched.
+/// - `rows`: four numbers per row: kind, stroke of the earlier drawing, stroke of the later drawing, flags. Strokes are
+///   numbered among all strokes, -1 is none. Kinds are: 0 a pair; 1 the later stroke is a piece of the earlier one; 2
+///   the earlier stroke is a piece of the later one; 3 the earlier stroke has no counterpart; 4 the later stroke has
+///   none. Flags are: 1 the later stroke runs backwards; 2 the pair was made by hand.
+/// - `values`: two numbers per row. The first one is for closed strokes: the share of the later stroke's length at which
+///   the first point of the earlier one is. The second one is the confidence of the pair, 0 to 1.
+///
+/// The pieces of a stroke are in their order along it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_matches_read(
     matches: *const RototoonMatches,
@@ -136,25 +148,37 @@ pub unsafe extern "C" fn rototoon_matches_read(
     }
 }
 
-/// Frees matches; null is allowed.
+/// Frees matches. Null is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_matches_free(matches: *mut RototoonMatches) {
     // SAFETY: the crate's contract.
     unsafe { free(matches) }
 }
 
-/// Draws between drawings on key frames, all wanted frames in one call.
+/// Makes in-betweens: the drawings on frames between key drawings, all of them in one call.
 ///
-/// The drawings are given as to `rototoon_match_strokes`; drawing `d` lies on `frames[d]`, which rise. `options` is a JSON
-/// object, in which all but `spans` may be left out: `spans`, a list of `{"key": d, "frames": [...]}`, frames between
-/// drawing `d` and the next one; `spacing`, by drawing how the movement to the next one runs, as documents write it
-/// (`"smooth"`, `"linear"`, `"ease_in"`, ..., a curve, or a chart); `corners`, the drawings at which velocities do not join;
-/// `arcs` (0 to 1), `rigid`, `contacts`, `rest`; `leaving`, what strokes do that only one of two drawings has: `"grow"`,
-/// `"fade"` or `{"leave": [width, height]}`; `pegs` as documents write them, with `hung`, the name of the peg of each stroke,
-/// or null; `captured`, contours whose movement is known: a list of `{"closed": bool, "first": frame, "contours": [...]}`, the
-/// points on each frame from the first on, which strokes that lie on them follow; and the options of
-/// `rototoon_match_strokes`. Without pegs these are found. A span depends on the drawings at its ends, on what was captured
-/// between them, and if its spacing is smooth also on the drawings beside them, on nothing else.
+/// The arguments are those of `rototoon_match_strokes`, and `frames`: the frame of each drawing, in rising order.
+/// `options` is a JSON object, in which all fields may be left out:
+///
+/// - `spans`: a list of `{"key": d, "frames": [...]}`, the frames to draw between drawing `d` and the next one. Without
+///   it nothing is drawn.
+/// - `spacing`: for each drawing the spacing of the movement to the next one, in the form of documents: `"smooth"`,
+///   `"linear"`, `"ease_in"`, ..., a curve, or a chart.
+/// - `corners`: the drawings at which the velocity may jump.
+/// - `arcs`: the strength of arcs, from 0 (straight ways) to 1 (turns about the fixed point of a movement).
+/// - `rigid`: whether shapes change as rigidly as possible. `contacts`: whether contacts between strokes are kept.
+/// - `rest`: whether everything rests before the first and after the last drawing. Otherwise it moves on with constant
+///   speed.
+/// - `leaving`: what a stroke does that only one of two drawings has: `"grow"`, `"fade"` or `{"leave": [width, height]}`
+///   with the size of the picture.
+/// - `pegs`: pegs in the form of documents. `hung`: for each stroke the name of its peg, or null. Strokes without a peg
+///   get one that is found.
+/// - `captured`: contours whose movement is known, a list of `{"closed": bool, "first": frame, "contours": [...]}`. They
+///   have the points on each frame, beginning with frame `first`. Strokes on such a contour follow it.
+/// - The options of `rototoon_match_strokes`.
+///
+/// A span depends on the drawings at its ends and on the captured contours between them. If its spacing is smooth, it
+/// also depends on the drawing before and the drawing after these. It depends on nothing else.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_draw_in_betweens(
     offsets: *const i32,
@@ -204,14 +228,23 @@ pub unsafe extern "C" fn rototoon_draw_in_betweens(
     }
 }
 
-/// The arrays of in-betweens, which live as long as the handle. There are `span_count` spans, as they were asked. Span `s`
-/// has the frames `frame_offsets[s]` to `frame_offsets[s + 1]` (excluded), whose share of the way is in `shares`, and draws
-/// the strokes `stroke_offsets[s]` to `stroke_offsets[s + 1]` on all of them, from behind to the front. A stroke has three
-/// numbers in `strokes`: that of the earlier and of the later drawing (-1 for none), and flags (1 closed, 2 only a part of the
-/// earlier one, 4 only a part of the later one). Stroke `i` has `point_offsets[i + 1] - point_offsets[i]` points on each
-/// frame. Each point of it has four numbers in `indices`, the given points of the earlier and of the later drawing between
-/// which its place lies, and in `weights` the weights of the second of either two. `points` are x, y by span, frame and
-/// point, `opacities` by span, frame and stroke.
+/// Reads the arrays of in-betweens. They live as long as the handle. There are `span_count` spans, in the order of the
+/// option `spans`.
+///
+/// - `frame_offsets`: `span_count` + 1 numbers. Span `s` has the frames `frame_offsets[s]` to `frame_offsets[s + 1]`
+///   (excluded).
+/// - `shares`: for each frame the share of the way between the two drawings, 0 to 1.
+/// - `stroke_offsets`: `span_count` + 1 numbers. Every frame of span `s` has the strokes `stroke_offsets[s]` to
+///   `stroke_offsets[s + 1]` (excluded), from behind to the front.
+/// - `strokes`: three numbers per stroke: the stroke of the earlier drawing, the stroke of the later drawing (-1 for
+///   none), and flags. Flags are: 1 closed; 2 only a part of the earlier stroke; 4 only a part of the later stroke.
+/// - `point_offsets`: one more than there are strokes. Stroke `i` has `point_offsets[i + 1] - point_offsets[i]` points
+///   on each frame.
+/// - `indices`: four numbers for each point of a stroke: two given points of the earlier drawing and two of the later
+///   drawing. The point comes from a place between the two of each drawing.
+/// - `weights`: two numbers for each point of a stroke: the weight of the second of the two points, for each drawing.
+/// - `points`: `point_count` × 2 coordinates, x and y in pixels, ordered by span, frame, stroke and point.
+/// - `opacities`: numbers from 0 to 1, ordered by span, frame and stroke.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_in_betweens_read(
     in_betweens: *const RototoonInBetweens,
@@ -263,7 +296,7 @@ pub unsafe extern "C" fn rototoon_in_betweens_read(
     }
 }
 
-/// Frees in-betweens; null is allowed.
+/// Frees in-betweens. Null is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_in_betweens_free(in_betweens: *mut RototoonInBetweens) {
     // SAFETY: the crate's contract.

@@ -1,25 +1,25 @@
-//! Long work with a progress callback that is always called on the caller's own thread.
+//! Runs long work and calls the progress callback on the caller's own thread.
 //!
-//! The core reports from whichever thread has finished something. A foreign callback should not be called from there:
-//! hosts allow their API on one thread only, and every worker would wait for the interpreter lock. So the work runs on
-//! a thread of its own, leaves its reports in one place, and the calling thread looks there at a steady pace and calls
-//! back. Steady calls, also without news, let a host notice a keypress or a signal during a long step.
+//! The core reports progress from any of its threads. The foreign callback must not be called from there: hosts allow
+//! their API on one thread only, and every worker would wait for the interpreter lock. So the work runs on a thread of
+//! its own and writes its reports to a [`Board`]. The calling thread reads the board at a steady pace and calls back.
+//! It calls back even if nothing has changed, so that a host can notice a key press or a signal during a long step.
 
 use crate::status::Failure;
 use rototoon::scene::{Cancelled, Progress, Silent};
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Told the finished share and the step; returns whether to go on.
+/// The progress callback. It gets the finished share (0 to 1) and the name of the step, and returns whether to go on.
 pub type GoOn<'a> = Option<&'a mut dyn FnMut(f64, &str) -> bool>;
 
-/// Between two calls of the callback: often enough to feel immediate, seldom enough to cost nothing.
+/// Time between two calls of the callback. It feels immediate and costs next to nothing.
 const PACE: Duration = Duration::from_millis(50);
 
-/// More threads than any machine has are a mistake of the caller, and each costs a stack.
+/// Most threads. More are a mistake of the caller, and each one costs a stack.
 const MAX_THREADS: usize = 1024;
 
-/// The latest report of the work, and the caller's wish.
+/// The latest report of the work, and whether the caller has cancelled it.
 #[derive(Default)]
 struct Board {
     done: f64,
@@ -51,7 +51,7 @@ impl Progress for Shared {
     }
 }
 
-/// Says that the work has ended, also where it ends in a panic.
+/// Marks the work as finished when dropped, even after a panic.
 struct Finish<'a>(&'a Shared);
 
 impl Drop for Finish<'_> {
@@ -61,8 +61,10 @@ impl Drop for Finish<'_> {
     }
 }
 
-/// Runs `work` on `threads` threads (0: one a core). `go_on(done, step)` is called on this thread, at least once before
-/// the work begins and once after it ended well; once it has returned false, what the work returned is dropped.
+/// Runs `work` on `threads` threads (0 for one per core).
+///
+/// `go_on(done, step)` is called on this thread: once before the work begins, and once after it has succeeded. Once it
+/// has returned false, the result of the work is dropped and the call fails with [`Failure::Cancelled`].
 pub fn run<T: Send>(
     threads: usize,
     go_on: GoOn<'_>,
@@ -82,7 +84,7 @@ pub fn run<T: Send>(
         return Err(Failure::Cancelled);
     }
     let shared = Shared::default();
-    // What is told if the work has nothing to report yet.
+    // The step that the callback gets until the work makes its first report.
     "starting".clone_into(&mut shared.board().step);
     let result = std::thread::scope(|scope| {
         let worker = scope.spawn(|| {
@@ -121,7 +123,7 @@ mod tests {
     use std::sync::atomic::{AtomicBool, Ordering};
 
     #[test]
-    fn callback_runs_on_the_calling_thread_and_never_falls() {
+    fn callback_runs_on_the_calling_thread_with_rising_shares() {
         let caller = std::thread::current().id();
         let mut seen = Vec::new();
         let mut go_on = |done: f64, _: &str| {
@@ -143,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn refused_at_the_start_never_begins() {
+    fn work_cancelled_at_the_start_never_begins() {
         let begun = AtomicBool::new(false);
         let answer = run(0, Some(&mut |_, _| false), |_| {
             begun.store(true, Ordering::Relaxed);
@@ -154,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn cancelled_work_is_told_and_its_result_dropped() {
+    fn cancelled_work_is_stopped_and_its_result_dropped() {
         let answer = run(0, Some(&mut |done, _| done < 0.5), |progress| {
             while progress.report("working", 0.5).is_ok() {
                 std::thread::sleep(PACE / 10);
@@ -166,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn panics_of_the_work_come_out_of_the_call() {
+    fn panics_of_the_work_reach_the_caller() {
         let caught = std::panic::catch_unwind(|| {
             run(0, Some(&mut |_, _| true), |_| -> Result<(), Failure> { panic!("broken") })
         });

@@ -1,11 +1,11 @@
-//! Options made from the core's list of parameters, and the values given for them.
+//! Command-line options made from the core's list of parameters, and functions that read their values.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use rototoon::scene::parameters::{Kind, Parameter, Stage, find, of};
 use std::path::{Path, PathBuf};
 
-/// The project document.
+/// The argument for the project document.
 pub fn project() -> Arg {
     Arg::new("project")
         .value_name("PROJECT")
@@ -14,7 +14,7 @@ pub fn project() -> Arg {
         .value_parser(value_parser!(PathBuf))
 }
 
-/// The file or files to write.
+/// The option for the file or files to write.
 pub fn output(name: &'static str, help: &'static str) -> Arg {
     Arg::new("output")
         .short('o')
@@ -83,7 +83,7 @@ pub fn flag(arguments: &ArgMatches, id: &str) -> bool {
     arguments.get_one::<bool>(id).copied().unwrap_or(false)
 }
 
-/// The number of threads given; 0 for one a core.
+/// The number of threads given; 0 for one per core.
 pub fn threads(arguments: &ArgMatches) -> usize {
     arguments.get_one::<i64>("threads").and_then(|n| usize::try_from(*n).ok()).unwrap_or(0)
 }

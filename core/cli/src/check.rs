@@ -1,4 +1,4 @@
-//! `rototoon check`: everything that is wrong with a document and its frames.
+//! `rototoon check`: lists every problem of a document and its frames.
 
 use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
@@ -10,7 +10,7 @@ use rototoon::scene::parameters::Stage;
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("check")
-        .about("Lists every problem of a document and its frames; exit status 0 where it is usable")
+        .about("Lists every problem of a document and its frames; the exit status is 0 if there are no errors")
         .arg(arguments::project())
         .args(arguments::of_stage(Stage::Run))
 }
@@ -27,7 +27,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     for (count, kind) in [(problems.left_off().0, "error"), (problems.left_off().1, "warning")] {
         if count > 0 {
-            line(kind, &format!("{}: and {count} {kind}s more", path.display()));
+            line(kind, &format!("{}: and {count} more {kind}s", path.display()));
         }
     }
     if problems.error_count() > 0 { Err(Failure::Reported) } else { Ok(()) }

@@ -1,4 +1,4 @@
-//! `rototoon export`: files for other programs.
+//! `rototoon export`: writes files for other programs.
 
 use crate::failure::Failure;
 use crate::{arguments, project};
@@ -11,7 +11,7 @@ use rototoon::scene::parameters::Stage;
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("export")
-        .about("Writes the result as an animated SVG, as shapes for Nuke or Silhouette, or as a document")
+        .about("Writes the result as animated SVG, as shapes for Nuke or Silhouette, or as a document")
         .arg(arguments::project())
         .arg(arguments::output("FILE", "FILE.svg, FILE.nk (Nuke RotoPaint), FILE.fxs (Silhouette) or FILE.json"))
         .args(arguments::of_stage(Stage::Export))

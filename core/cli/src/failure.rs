@@ -7,10 +7,10 @@ use std::process::ExitCode;
 
 /// The work failed.
 pub const FAILED: u8 = 1;
-/// The command was not used as it must be.
+/// The arguments are wrong.
 pub const WRONG_USE: u8 = 2;
 
-/// Why a subcommand ended early.
+/// Why a subcommand failed.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// The document could not be read.
@@ -25,19 +25,19 @@ pub enum Failure {
     /// A file could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// The command was not used as it must be.
+    /// The arguments are wrong.
     #[error("{0}")]
     Use(String),
-    /// Anything else.
+    /// Any other error.
     #[error("{0}")]
     Other(String),
-    /// All has been said.
+    /// The subcommand has already printed its errors.
     #[error("failed")]
     Reported,
 }
 
 impl Failure {
-    /// Says what went wrong, one line each, and gives the exit status.
+    /// Prints the errors, one per line, and returns the exit status.
     pub fn report(self) -> ExitCode {
         match &self {
             Self::Reported => {}
@@ -49,7 +49,7 @@ impl Failure {
     }
 }
 
-/// One line on standard error. That nobody reads it is no reason to fail.
+/// Prints a line to standard error. A closed standard error is ignored.
 pub fn line(kind: &str, text: &str) {
     let _ = writeln!(std::io::stderr(), "{kind}: {text}");
 }

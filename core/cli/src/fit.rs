@@ -1,4 +1,4 @@
-//! `rototoon fit`: lines of points become quadratic B-splines with few guiding points.
+//! `rototoon fit`: fits quadratic B-splines with few guiding points to lines of points.
 
 use crate::failure::Failure;
 use crate::{arguments, progress};
@@ -28,7 +28,7 @@ pub fn command() -> Command {
             Arg::new("tolerance")
                 .long("tolerance")
                 .value_name("PX")
-                .help("Largest distance between line and curve, measured both ways")
+                .help("Largest distance in pixels from the line to the curve and from the curve to the line")
                 .required(true)
                 .allow_negative_numbers(true)
                 .value_parser(tolerance),

@@ -1,4 +1,4 @@
-//! `rototoon import`: shapes of other programs as keys.
+//! `rototoon import`: reads shapes of other programs as keys.
 
 use crate::failure::{Failure, line};
 use crate::{arguments, project};
@@ -11,12 +11,12 @@ use std::path::PathBuf;
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("import")
-        .about("Puts shapes of Silhouette or SVG into a document, as keys of parts")
+        .about("Adds shapes of Silhouette or SVG to a document, as keys of parts")
         .arg(arguments::project())
         .arg(
             Arg::new("shapes")
                 .value_name("SHAPES")
-                .help("FILE.fxs (Silhouette) or FILE.svg; a part of a shape's name becomes the shape")
+                .help("FILE.fxs (Silhouette) or FILE.svg; a shape becomes the part of the same name")
                 .required(true)
                 .value_parser(value_parser!(PathBuf)),
         )
@@ -25,7 +25,7 @@ pub fn command() -> Command {
             Arg::new("frame")
                 .long("frame")
                 .value_name("N")
-                .help("The frame of shapes that are not animated; else the first of the footage")
+                .help("The frame of shapes that are not animated [default: the first frame of the footage]")
                 .allow_negative_numbers(true)
                 .value_parser(value_parser!(FrameNumber)),
         )
@@ -38,7 +38,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     if !["svg", "fxs"].contains(&extension.as_str()) {
         return Err(Failure::Use(format!("{}: expected a name that ends in .svg or .fxs", shapes.display())));
     }
-    // What it lacks is no matter: it is about to change.
+    // Warnings about this document are not printed, because the import changes it.
     let mut document = Document::load(from)?;
     let footage = &document.scene.footage;
     let still = given.get_one::<FrameNumber>("frame").copied().unwrap_or(footage.first);

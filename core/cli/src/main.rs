@@ -1,11 +1,12 @@
-//! Command line of Rototoon: one file a subcommand.
+//! The command line of Rototoon. Each subcommand has its own module.
 //!
 //! - [`arguments`]: options made from the core's list of parameters
-//! - [`progress`]: a bar on a terminal, and Ctrl-C
+//! - [`project`]: reads and writes documents
+//! - [`progress`]: the progress bar, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
 //! - [`track`], [`snap`], [`render`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`]: the subcommands
 //!
-//! Exit status: 0 done, 1 failed, 2 wrong use.
+//! The exit status is 0 for success, 1 for failure and 2 for wrong arguments.
 
 mod arguments;
 mod check;
@@ -25,10 +26,10 @@ use clap::{ArgMatches, Command};
 use failure::Failure;
 use std::process::ExitCode;
 
-/// What a subcommand does with its arguments.
+/// The function that runs a subcommand with its arguments.
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
-/// Each subcommand with what it does.
+/// Each subcommand with the function that runs it.
 fn subcommands() -> [(Command, Run); 9] {
     [
         (track::command(), track::run),

@@ -1,5 +1,5 @@
-//! Long work: a bar on standard error where that is a terminal, the wanted number of threads, and Ctrl-C, which ends
-//! the work in order, so that nothing is half-written. A second Ctrl-C ends it at once.
+//! Runs long work on the requested number of threads. If standard error is a terminal, it shows a progress bar. Ctrl-C
+//! cancels the work in an orderly way, so that no file is half-written. A second Ctrl-C ends the process at once.
 
 use crate::failure::Failure;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -7,9 +7,9 @@ use rototoon::scene::{Cancelled, Progress};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Steps of the bar.
+/// Number of steps of the bar.
 const STEPS: u64 = 1000;
-/// Exit status of a process that Ctrl-C ended, as shells give it.
+/// The exit status that shells report for a process ended by Ctrl-C.
 const INTERRUPTED: i32 = 130;
 
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -30,7 +30,7 @@ impl Progress for Bar {
     }
 }
 
-/// Runs `work` on `threads` threads, 0 for one a core.
+/// Runs `work` on `threads` threads; 0 for one per core.
 pub fn run<T: Send>(
     threads: usize,
     work: impl FnOnce(&dyn Progress) -> Result<T, Failure> + Send,
@@ -40,7 +40,7 @@ pub fn run<T: Send>(
             std::process::exit(INTERRUPTED);
         }
     };
-    ctrlc::set_handler(interrupt).map_err(|error| Failure::Other(format!("cannot listen to Ctrl-C: {error}")))?;
+    ctrlc::set_handler(interrupt).map_err(|error| Failure::Other(format!("cannot catch Ctrl-C: {error}")))?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()

@@ -1,11 +1,11 @@
-//! Documents from and to the files that the command names.
+//! Reads and writes the documents that the command names.
 
 use crate::failure::{Failure, line};
 use rototoon::pipeline;
 use rototoon::project::Document;
 use std::path::Path;
 
-/// Reads a document and says what has no effect in it.
+/// Reads a document and prints its warnings.
 pub fn load(path: &Path) -> Result<Document, Failure> {
     let document = Document::load(path)?;
     for warning in document.problems().warnings() {
@@ -19,7 +19,7 @@ pub fn folder(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
-/// Writes a document that was read from `from`; its footage stays the same.
+/// Writes a document that was read from `from`. A relative footage pattern is rewritten so that it names the same files.
 pub fn save(mut document: Document, from: &Path, to: &Path) -> Result<(), Failure> {
     pipeline::relocate(&mut document, folder(from), folder(to));
     Ok(document.save(to)?)

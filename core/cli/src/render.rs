@@ -1,4 +1,4 @@
-//! `rototoon render`: pictures of the result.
+//! `rototoon render`: draws pictures of the result.
 
 use crate::failure::Failure;
 use crate::{arguments, progress, project};
@@ -13,15 +13,18 @@ use std::ops::RangeInclusive;
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("render")
-        .about("Draws contours over the footage, the parts' matte, the parts cut out, or which part is where")
+        .about("Draws the contours over the footage, the parts' matte, the parts cut out, or a picture of part ids")
         .arg(arguments::project())
-        .arg(arguments::output("PATTERN", "Files such as out.%04d.exr or out.%04d.png; a plain name for one frame"))
+        .arg(arguments::output(
+            "PATTERN",
+            "The files to write, such as out.%04d.exr or out.%04d.png; for one frame also a plain name",
+        ))
         .args(arguments::of_stage(Stage::Render))
         .arg(
             Arg::new("frames")
                 .long("frames")
                 .value_name("A-B")
-                .help("First and last frame, or one frame; else the whole footage")
+                .help("First and last frame, or one frame [default: all frames of the footage]")
                 .allow_hyphen_values(true)
                 .value_parser(range),
         )
@@ -29,7 +32,7 @@ pub fn command() -> Command {
             Arg::new("parts")
                 .long("parts")
                 .value_name("NAME")
-                .help("Only the part of this name; may be given several times")
+                .help("Draws only the part of this name; may be given several times")
                 .action(clap::ArgAction::Append),
         )
         .args(arguments::of_stage(Stage::Run))
@@ -62,15 +65,15 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Frames as `A-B` or `A`; either may be negative.
+/// Reads frames in the form `A-B` or `A`. Both may be negative.
 pub fn range(text: &str) -> Result<RangeInclusive<FrameNumber>, String> {
-    let wrong = || "expected frames such as 3-9, or one such as 3".to_owned();
-    // The first character is a sign or a digit, so a dash after it separates.
+    let wrong = || "expected frames such as 3-9, or one frame such as 3".to_owned();
+    // The first character is a sign or a digit, so the next dash is the separator.
     let at = text.char_indices().skip(1).find(|(_, c)| *c == '-').map(|(at, _)| at);
     let (first, last) = at.map_or((text, text), |at| (&text[..at], &text[at + 1..]));
     let (first, last) = (first.parse().map_err(|_| wrong())?, last.parse().map_err(|_| wrong())?);
     if first > last {
-        Err(format!("expected a first frame before the last, found {first} and {last}"))
+        Err(format!("found first frame {first} and last frame {last}, expected the first one not to be the greater"))
     } else {
         Ok(first..=last)
     }

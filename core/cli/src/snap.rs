@@ -1,4 +1,4 @@
-//! `rototoon snap`: contours onto the drawn ink.
+//! `rototoon snap`: snaps contours to the drawn ink.
 
 use crate::failure::Failure;
 use crate::{arguments, progress, project};
@@ -36,7 +36,7 @@ fn options(given: &ArgMatches) -> Result<SnapOptions, Failure> {
         "auto" => Follow::Auto,
         "edge" => Follow::Edge,
         "line" => Follow::Line,
-        other => return Err(Failure::Use(format!("nothing to follow is called {other:?}"))),
+        other => return Err(Failure::Use(format!("--follow: found {other:?}, expected auto, edge or line"))),
     };
     let corridor = CorridorWidth {
         share: arguments::number(given, "corridor_share"),

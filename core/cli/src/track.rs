@@ -1,4 +1,4 @@
-//! `rototoon track`: contours from the keys to every frame.
+//! `rototoon track`: tracks contours from the keys to every frame.
 
 use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
@@ -12,7 +12,10 @@ use rototoon::track::{Ending, Preset, TrackEnd, TrackOptions, Tracking};
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("track")
-        .about("Tracks every part from its first key to its last; a part with one key as far as it can be trusted")
+        .about(
+            "Tracks every part from its first key to its last. A part with a single key is tracked outward from it, as far \
+             as the result is reliable",
+        )
         .arg(arguments::project())
         .arg(arguments::output("OUT", "The document to write, with tracks and confidence"))
         .args(arguments::of_stage(Stage::Track))
@@ -35,14 +38,14 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     project::save(document, from, to)
 }
 
-/// Says where the tracks of parts with one key end, and where they want a key.
+/// Prints where the tracks of parts with a single key end, and where these parts need a key.
 fn say_ends(scene: &Scene, tracking: &Tracking) {
     for (part, track) in scene.parts.iter().zip(&tracking.parts) {
         for TrackEnd { frame, reason } in &track.ends {
             let what = match reason {
-                Ending::Lost => format!("wants a key on frame {frame}: it was lost there"),
+                Ending::Lost => format!("needs a key on frame {frame}: its track is lost there"),
                 Ending::Cut => format!("ends before frame {frame}: another shot begins there"),
-                Ending::Left => format!("ends before frame {frame}: it left the picture"),
+                Ending::Left => format!("ends before frame {frame}: it has left the picture"),
             };
             line("note", &format!("part {:?} {what}", part.name));
         }

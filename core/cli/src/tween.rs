@@ -1,4 +1,4 @@
-//! `rototoon tween`: the drawings between drawings on key frames.
+//! `rototoon tween`: makes the in-betweens of drawings on key frames.
 
 use crate::failure::Failure;
 use crate::{arguments, progress, project};
@@ -13,27 +13,28 @@ use rototoon::tween::between::{Leaving, Options};
 /// The subcommand.
 pub fn command() -> Command {
     let leaving = PossibleValuesParser::new([
-        PossibleValue::new("grow").help("Shrink into their middle, or grow out of it"),
-        PossibleValue::new("fade").help("Become transparent"),
-        PossibleValue::new("leave").help("Move out of the picture"),
+        PossibleValue::new("grow").help("They shrink into their middle, or grow out of it"),
+        PossibleValue::new("fade").help("They become transparent"),
+        PossibleValue::new("leave").help("They move out of the picture"),
     ]);
     let ends = PossibleValuesParser::new([
         PossibleValue::new("rest").help("Everything rests before the first and after the last drawing"),
-        PossibleValue::new("move").help("Everything moves on with constant speed"),
+        PossibleValue::new("move")
+            .help("Everything moves with constant speed before the first and after the last drawing"),
     ]);
     let captured = PossibleValuesParser::new([
-        PossibleValue::new("follow").help("Strokes move as the tracked parts that they lie on"),
-        PossibleValue::new("ignore").help("Only what the drawings say counts"),
+        PossibleValue::new("follow").help("Strokes that lie on a tracked part move with it"),
+        PossibleValue::new("ignore").help("The drawings alone decide how strokes move"),
     ]);
     Command::new("tween")
-        .about("Matches the strokes of drawings on key frames and makes the drawings between them")
+        .about("Matches the strokes of drawings on key frames and makes the in-betweens")
         .arg(arguments::project())
         .arg(arguments::output("OUT", "The document to write, with matches and in-betweens"))
         .arg(
             Arg::new("arcs")
                 .long("arcs")
                 .value_name("NUMBER")
-                .help("Strength of arcs, 0 for straight ways to 1 for turns about the fixed point of a movement")
+                .help("Strength of arcs, from 0 (straight ways) to 1 (turns about the fixed point of a movement)")
                 .default_value("0.5")
                 .allow_negative_numbers(true)
                 .value_parser(|text: &str| match text.parse::<f64>() {
@@ -44,7 +45,7 @@ pub fn command() -> Command {
         .arg(
             Arg::new("leaving")
                 .long("leaving")
-                .help("What strokes do that only one of two drawings has")
+                .help("How strokes disappear or appear that only one of two drawings has")
                 .default_value("grow")
                 .value_parser(leaving),
         )
@@ -52,7 +53,7 @@ pub fn command() -> Command {
         .arg(
             Arg::new("captured")
                 .long("captured")
-                .help("What tracked parts of the document mean to its drawings")
+                .help("Whether strokes follow tracked parts of the document")
                 .default_value("follow")
                 .value_parser(captured),
         )

@@ -1,11 +1,11 @@
-//! The command line as users call it: what it writes, what it says, how it ends.
+//! Tests of the command line: the files that it writes, its messages, its exit status.
 
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// A folder with a short cartoon: a square that moves 3 px a frame over frames 0 to 6, 64x48 pixels.
+/// A folder with a short cartoon of 64x48 pixels: a square that moves 3 px per frame on frames 0 to 6.
 struct Cartoon {
     folder: tempfile::TempDir,
 }
@@ -84,7 +84,7 @@ fn said(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// Runs a command that must end well; what it said.
+/// Runs a command that must succeed. Returns its standard error.
 fn good(arguments: &[&str]) -> String {
     let output = command(arguments).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", said(&output));
@@ -92,7 +92,7 @@ fn good(arguments: &[&str]) -> String {
     said(&output)
 }
 
-/// Runs a command that must fail with this exit status; what it said.
+/// Runs a command that must fail with this exit status. Returns its standard error.
 fn bad(arguments: &[&str], status: i32) -> String {
     let output = command(arguments).output().unwrap();
     assert_eq!(output.status.code(), Some(status), "{arguments:?}: {}", said(&output));
@@ -152,7 +152,7 @@ fn a_document_written_elsewhere_finds_its_frames() {
     good(&["track", text(&project), "-o", text(&out)]);
     assert_eq!(read(&out)["footage"]["pattern"], "../../frames/f_%03d.png");
     assert_eq!(good(&["check", text(&out)]), "");
-    // Back from a folder whose own name has a place for a number in it.
+    // Back from a folder whose own name contains a pattern for a number.
     fs::rename(cartoon.path("frames"), other.join("frames")).unwrap();
     fs::copy(&project, other.join("p.json")).unwrap();
     let back = cartoon.path("back.json");
@@ -186,7 +186,7 @@ fn missing_and_unreadable_frames_are_named() {
     let error = bad(&["track", text(&project), "-o", text(&out)], 1);
     assert!(error.starts_with("error: frame ") && error.lines().count() == 1, "{error}");
     assert!(!out.exists());
-    // Snapping asks for the keys' frames alone, and those are there.
+    // Snapping needs only the frames of the keys, and these exist.
     good(&["snap", text(&project), "-o", text(&out)]);
 }
 
@@ -232,10 +232,10 @@ fn odd_parts_are_tracked_or_left_alone_with_a_warning() {
 }
 
 #[test]
-fn cutouts_hold_the_footage_where_the_parts_are() {
+fn cutouts_have_the_footage_where_the_parts_are() {
     let cartoon = Cartoon::new();
     let project = cartoon.keyed();
-    // The drawing of frame 0 on a transparent ground, its upper half half as opaque.
+    // Frame 0 with alpha: the upper half of the picture has alpha 102, the lower half 255.
     let mut cel = image::open(cartoon.frame(0)).unwrap().to_rgba8();
     cel.enumerate_pixels_mut().for_each(|(_, y, pixel)| pixel.0[3] = if y < 24 { 102 } else { 255 });
     cel.save(cartoon.frame(0)).unwrap();
@@ -249,14 +249,14 @@ fn cutouts_hold_the_footage_where_the_parts_are() {
         let wanted = if inside { cel.get_pixel(x, y).0 } else { [0; 4] };
         assert_eq!(found.0, wanted, "{x} {y}");
         let (light, alpha) = (exr.get_pixel(x, y).0, f32::from(wanted[3]) / 255.0);
-        // Light of an sRGB-encoded value, IEC 61966-2-1, all of these being above its straight piece.
+        // Linear light of an sRGB value (IEC 61966-2-1). All values here are above the linear segment of the curve.
         let red = alpha * ((f32::from(wanted[0]) / 255.0 + 0.055) / 1.055).powf(2.4);
         assert!((light[3] - alpha).abs() < 1e-6 && (light[0] - red).abs() < 1e-5, "{x} {y}: {light:?} {red} {alpha}");
     }
 }
 
 #[test]
-fn bad_documents_end_with_one_line_a_problem() {
+fn bad_documents_give_one_line_per_problem() {
     let cartoon = Cartoon::new();
     let out = cartoon.path("out.json");
     let keyed = fs::read_to_string(cartoon.keyed()).unwrap();
@@ -311,7 +311,7 @@ fn wrong_use_ends_with_two() {
 }
 
 #[test]
-fn pictures_are_written_for_the_frames_asked_for() {
+fn pictures_are_written_for_the_given_frames() {
     let cartoon = Cartoon::new();
     let project = cartoon.keyed();
     let out = cartoon.path("out.json");
@@ -340,7 +340,7 @@ fn the_svg_has_a_path_for_each_part() {
     assert!(text.contains("viewBox=\"0 0 64 48\"") && text.contains("<title>square</title>"));
 }
 
-/// What was there before, and nothing but that, after a command could not write.
+/// Checks that a command which could not write has left the old file, and no temporary file.
 fn unharmed(cartoon: &Cartoon, out: &Path, before: &[u8]) {
     assert_eq!(fs::read(out).unwrap(), before);
     assert!(cartoon.names().iter().all(|name| !name.starts_with(".rototoon")), "{:?}", cartoon.names());
@@ -352,7 +352,7 @@ fn a_full_disk_leaves_the_file_as_it_was() {
     let cartoon = Cartoon::new();
     let (project, out) = (cartoon.keyed(), cartoon.path("out.json"));
     fs::write(&out, "before").unwrap();
-    // Files may not grow beyond one block: writing fails part of the way, as on a full disk.
+    // The limit on the file size makes writing fail half-way, as on a full disk.
     let script = "trap '' XFSZ; ulimit -f 1; exec \"$@\"";
     let output = Command::new("sh")
         .args(["-c", script, "sh", env!("CARGO_BIN_EXE_rototoon"), "track", text(&project), "-o", text(&out)])
@@ -375,7 +375,7 @@ fn a_full_device_is_an_error() {
 
 #[cfg(unix)]
 #[test]
-fn a_folder_that_cannot_be_written_is_known_before_the_work() {
+fn a_read_only_folder_is_reported_before_the_work() {
     use std::os::unix::fs::PermissionsExt;
     let cartoon = Cartoon::new();
     let project = cartoon.keyed();
@@ -385,7 +385,7 @@ fn a_folder_that_cannot_be_written_is_known_before_the_work() {
     fs::write(&out, "before").unwrap();
     fs::set_permissions(&folder, fs::Permissions::from_mode(0o555)).unwrap();
     if fs::write(folder.join("probe"), "").is_ok() {
-        eprintln!("SKIPPED the read-only folder: this user may write everywhere");
+        eprintln!("SKIPPED the test of a read-only folder: this user may write everywhere");
     } else {
         assert!(bad(&["track", text(&project), "-o", text(&out)], 1).contains("out.json: cannot write: "));
         unharmed(&cartoon, &out, b"before");
@@ -396,14 +396,14 @@ fn a_folder_that_cannot_be_written_is_known_before_the_work() {
         bad(&["track", text(&project), "-o", text(&out)], 1).contains("out.json: cannot write: the file is read-only")
     );
     let none = cartoon.path("none/out.json");
-    // The frames are gone, yet it is the folder that is named: it is looked at first.
+    // The frames are missing too, but the folder is reported, because it is checked first.
     fs::remove_dir_all(cartoon.path("frames")).unwrap();
     assert!(bad(&["track", text(&project), "-o", text(&none)], 1).contains("none/out.json: cannot write: "));
 }
 
 #[cfg(unix)]
 #[test]
-fn an_interrupt_leaves_whole_files_only() {
+fn an_interrupt_leaves_no_incomplete_files() {
     use std::process::Stdio;
     let cartoon = Cartoon::new();
     const COUNT: i32 = 500;

@@ -1,4 +1,4 @@
-//! Shapes to other programs and back, and pictures of ids, as users call for them.
+//! Tests of export to other programs, import from them, and pictures of ids, from the command line.
 
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -11,17 +11,17 @@ const HEIGHT: f64 = 48.0;
 
 type Keys = BTreeMap<i32, Vec<[f64; 2]>>;
 
-/// A triangle that moves unevenly on frames 2 to 6, as tracked.
+/// The track of a triangle that moves unevenly on frames 2 to 6.
 fn triangle() -> Keys {
     let at = |frame: i32| {
         let (x, y) = (f64::from(frame * frame) * 0.7, f64::from(frame) * 1.3);
         vec![[4.25 + x, 3.5 + y], [20.0 + x, 5.0 + y], [11.5 + x, 17.75 + y]]
     };
-    // It rests on two frames.
+    // It rests on frames 4 and 5.
     (2..=6).map(|frame| (frame, at(if frame == 5 { 4 } else { frame }))).collect()
 }
 
-/// An open line with keys on the first and the last frame alone.
+/// An open line with keys on the first and the last frame only.
 fn line() -> Keys {
     [(0, vec![[1.0, 40.0], [30.5, 44.0]]), (8, vec![[3.0, 41.0], [33.5, 40.0]])].into()
 }
@@ -50,7 +50,7 @@ impl Folder {
         path
     }
 
-    /// Two parts: the line nearer than the triangle.
+    /// A document of two parts. The line is nearer than the triangle.
     fn captured(&self) -> PathBuf {
         let keys: Keys = triangle().into_iter().filter(|(frame, _)| [2, 6].contains(frame)).collect();
         self.document(
@@ -67,7 +67,7 @@ fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
 
-/// Runs a command that must end with this status; what it said.
+/// Runs a command that must end with this status. Returns its standard error.
 fn run(arguments: &[&str], status: i32) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_rototoon")).args(arguments).output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
@@ -75,7 +75,7 @@ fn run(arguments: &[&str], status: i32) -> String {
     said
 }
 
-/// Name, closed and keys of a document's parts, the farthest first.
+/// The name, whether it is closed, and the keys of each part of a document, the farthest part first.
 fn parts(path: &Path) -> Vec<(String, bool, Keys)> {
     let document: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
     assert_eq!(document["note"], "kept");
@@ -100,7 +100,7 @@ fn same(found: &Keys, expected: &Keys, tolerance: f64) {
 }
 
 #[test]
-fn silhouette_shapes_come_back_as_they_went() {
+fn silhouette_shapes_are_the_same_after_export_and_import() {
     let folder = Folder::new();
     let (shapes, empty, out) = (folder.path("a.fxs"), folder.document("empty.json", json!([])), folder.path("o.json"));
     run(&["export", text(&folder.captured()), "-o", text(&shapes)], 0);
@@ -116,11 +116,11 @@ fn silhouette_shapes_come_back_as_they_went() {
 }
 
 #[test]
-fn svg_shapes_come_back_as_they_went() {
+fn svg_shapes_are_the_same_after_export_and_import() {
     let folder = Folder::new();
     let (shapes, empty, out) = (folder.path("a.svg"), folder.document("empty.json", json!([])), folder.path("o.json"));
     let captured = folder.captured();
-    // Half of the last decimal that the SVG has.
+    // Half a unit of the last decimal place in the SVG.
     let tolerance = 0.005 + 1e-9;
     run(&["export", text(&captured), "-o", text(&shapes)], 0);
     run(&["import", text(&empty), text(&shapes), "-o", text(&out)], 0);
@@ -135,7 +135,7 @@ fn svg_shapes_come_back_as_they_went() {
 }
 
 #[test]
-fn a_part_of_the_name_takes_the_keys_and_stays_where_it_is() {
+fn a_shape_replaces_the_part_of_its_name() {
     let folder = Folder::new();
     let (shapes, captured) = (folder.path("a.svg"), folder.captured());
     let still = "<path id=\"triangle\" d=\"M1 2h8v9z\"/><path id=\"new\" d=\"M1 2h8\"/>";
@@ -150,7 +150,7 @@ fn a_part_of_the_name_takes_the_keys_and_stays_where_it_is() {
 }
 
 #[test]
-fn what_cannot_be_imported_is_named_and_nothing_is_written() {
+fn import_errors_are_named_and_nothing_is_written() {
     let folder = Folder::new();
     let (captured, out) = (folder.captured(), folder.path("o.json"));
     let file = |name: &str, content: &str| {
@@ -184,14 +184,14 @@ fn what_cannot_be_imported_is_named_and_nothing_is_written() {
     assert!(!out.exists());
 }
 
-/// A word, or what stands in braces.
+/// A word, or a list in braces.
 #[derive(Debug)]
 enum Item {
     Word(String),
     List(Vec<Item>),
 }
 
-/// What stands in a Nuke script up to a closing brace or the end.
+/// The items of a Nuke script up to a closing brace or the end.
 fn items(rest: &mut std::iter::Peekable<std::str::Chars>) -> Vec<Item> {
     let mut found = Vec::new();
     while let Some(c) = rest.next() {

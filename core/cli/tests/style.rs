@@ -1,4 +1,4 @@
-//! `rototoon style` as a user calls it.
+//! Tests of `rototoon style` from the command line.
 
 use serde_json::{Value, json};
 use std::path::Path;
@@ -36,7 +36,7 @@ fn translate(folder: &Path, more: &[&str]) -> Output {
 }
 
 #[test]
-fn a_clip_is_written_in_the_form_of_those_read() {
+fn the_result_is_a_file_of_clips() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("clips.json"), library().to_string()).unwrap();
     let pose = folder.path().join("pose.json");
@@ -56,7 +56,7 @@ fn a_clip_is_written_in_the_form_of_those_read() {
 }
 
 #[test]
-fn what_is_wrong_is_said_and_nothing_is_written() {
+fn errors_are_reported_and_nothing_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let clips = folder.path().join("clips.json");
     let said = |text: &str, more: &[&str]| {
@@ -99,7 +99,7 @@ fn a_library_is_filled_listed_and_learned_from() {
     assert!(out.exists());
 }
 
-/// A figure that stands and then lifts an arm, as BVH; its left hand has the name given.
+/// A BVH file of a figure that stands and then lifts an arm. `hand` is the name of its left hand.
 fn captured(hand: &str) -> String {
     let limb = |names: [&str; 3], offsets: [[i32; 3]; 3]| -> String {
         let open: String = names
@@ -163,7 +163,7 @@ fn motion_capture_becomes_clips() {
         status == Some(1) && said.contains("short.bvh: line ") && said.contains("found 17 numbers, expected 18"),
         "{said}"
     );
-    assert!(import(&[&lift, &lift]).1.contains("found \"lift\" by \"anna\" again"));
+    assert!(import(&[&lift, &lift]).1.contains("found \"lift\" by \"anna\", expected each motion of a character once"));
     assert_eq!(import(&[&lift, "--view", "above"]).0, Some(2));
     assert_eq!(import(&[&path("none.bvh")]).0, Some(1));
 }

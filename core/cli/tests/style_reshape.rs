@@ -1,4 +1,4 @@
-//! `rototoon style clip` and `rototoon style reshape` as a user calls them.
+//! Tests of `rototoon style clip` and `rototoon style reshape` from the command line.
 
 use serde_json::{Value, json};
 use std::path::Path;
@@ -12,7 +12,7 @@ fn said(done: &Output) -> String {
     String::from_utf8_lossy(&done.stderr).into_owned()
 }
 
-/// Eight points, from the top right down and from the bottom left up, moved to the right by a frame's number.
+/// Eight points: four down the right side, then four up the left side. The frame's number moves them to the right.
 fn ring(x: f64, top: f64, bottom: f64, half: f64, frame: usize) -> Value {
     let at = |k: usize| {
         let y =
@@ -73,14 +73,14 @@ fn contours_become_a_clip_and_a_drawing_follows_it() {
         let x = |frame: &str| part["tracks"][frame][0][0].as_f64().unwrap();
         assert!((x("4") - x("0") - 4.0).abs() < 1e-3, "{part}");
     }
-    // What was made can be drawn and exported like what was tracked.
+    // The result can be rendered and exported like a tracked document.
     let render = ["render", "moved.json", "-o", "m_%02d.png", "--what", "matte"];
     assert!(rototoon(folder, &render).status.success() && folder.join("m_04.png").exists());
     assert!(rototoon(folder, &["export", "moved.json", "-o", "moved.svg"]).status.success());
 }
 
 #[test]
-fn what_is_wrong_is_said_with_its_file() {
+fn errors_name_their_file() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let mut shot = figure(3);

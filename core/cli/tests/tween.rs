@@ -1,11 +1,11 @@
-//! `rototoon tween` as users call it.
+//! Tests of `rototoon tween` from the command line.
 
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// A folder with a document of these fields beside footage and parts.
+/// A folder with a document that has footage, no parts, and these fields.
 fn project(fields: Value) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let footage = json!({"pattern": "f_%03d.png", "first": 0, "last": 20, "fps": 24, "width": 200, "height": 100});
@@ -58,7 +58,7 @@ fn in_betweens_and_matches_are_written() {
 
 #[test]
 fn strokes_follow_the_tracked_parts_that_they_lie_on() {
-    // A square that goes out and comes back; the drawings have it, and a line that is no part.
+    // The part is a square that moves away and comes back. The drawings have that square, and a line that is no part.
     let at = |x: f64| json!([[x, 20.0], [x + 30.0, 20.0], [x + 30.0, 50.0], [x, 50.0]]);
     let tracks = json!({"2": at(100.0), "3": at(125.0), "4": at(140.0), "5": at(125.0), "6": at(102.0)});
     let keys = json!({"2": at(100.0), "6": at(102.0)});
@@ -74,7 +74,7 @@ fn strokes_follow_the_tracked_parts_that_they_lie_on() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let written: Value = serde_json::from_str(&fs::read_to_string(&out).unwrap()).unwrap();
         let half = written["in_betweens"][1]["strokes"].clone();
-        assert_eq!(half[1]["points"][2], json!([50.0, 60.0]), "the line goes its own way");
+        assert_eq!(half[1]["points"][2], json!([50.0, 60.0]), "the line does not follow the part");
         half[0]["points"][0].clone()
     };
     assert_eq!(corner(&[]), json!([140.0, 20.0]));
@@ -108,7 +108,7 @@ fn pairs_made_by_hand_and_pegs_are_respected() {
 }
 
 #[test]
-fn what_is_wrong_is_named_and_nothing_is_written() {
+fn errors_are_named_and_nothing_is_written() {
     let bad = |change: &dyn Fn(&mut Value), expected: &str| {
         let mut fields = two_drawings();
         change(&mut fields);
@@ -142,7 +142,7 @@ fn what_is_wrong_is_named_and_nothing_is_written() {
 fn check_finds_all_that_is_wrong_with_drawings_pairs_and_pegs() {
     let check = |path: &Path| {
         let output = Command::new(env!("CARGO_BIN_EXE_rototoon")).arg("check").arg(path).output().unwrap();
-        // The frames of the footage are not there, which is said too.
+        // Missing frames of the footage are reported too, and left out here.
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         let start = format!(": {}: ", path.display());
         let lines: Vec<String> =
@@ -175,7 +175,7 @@ fn check_finds_all_that_is_wrong_with_drawings_pairs_and_pegs() {
             "error pairs[0] (frame 2).from: found 5, expected the index of one of the 2 strokes on frame 2",
         ]
     );
-    // JSON has no such number; the reader says where it stands.
+    // JSON has no NaN. The reader names the line and column.
     fs::write(&path, fs::read_to_string(&path).unwrap().replacen("130.0", "NaN", 1)).unwrap();
     let (code, lines) = check(&path);
     assert!(code == Some(1) && lines.len() == 1 && lines[0].starts_with("error line 1, column "), "{lines:?}");

@@ -1,4 +1,4 @@
-//! Clips and parameters of the effect.
+//! Describes the effect's clips and parameters.
 
 use crate::description::{self, About};
 use crate::ofx::Failure;
@@ -9,22 +9,22 @@ use rototoon::scene::effects::LINES;
 
 const ABOUT: About = About {
     label: "Rototoon Lines",
-    description: "What a tracker of edges sees of a drawing: filtered colours, edges, distances to them.",
+    description: "Shows the images that a tracker of edges uses: filtered colours, edges, distances to the edges.",
     tiles: false,
 };
 
-/// What the effect can do.
+/// Describes the effect.
 pub fn describe(action: &Action) -> Result<(), Failure> {
     description::effect(&action.effect, &ABOUT)
 }
 
-/// Clips and parameters in a context.
+/// Describes the clips and parameters in a context.
 pub fn describe_in_context(action: &Action) -> Result<(), Failure> {
     description::clips(action, &ABOUT)?;
     parameters::define(&LINES, &action.effect.parameters()?)
 }
 
-/// Edges are white premultiplied by what they cover; the rest is as the source.
+/// Sets the premultiplication of the output: edges and distances are premultiplied, filtered colours are as the source.
 pub fn clip_preferences(action: &Action) -> Result<(), Failure> {
     if action.effect.parameters()?.int(c"output", 0.0)? == 0 {
         return Err(Failure::Default);

@@ -1,8 +1,8 @@
-//! The effect `org.rototoon.Lines`: the footage as a tracker of edges sees it.
+//! The effect `org.rototoon.Lines`: shows the images that a tracker of edges uses.
 //!
-//! The filtered colours (mean shift), the edges in them (Canny), and the distance to the nearest edge, with the parameters of
-//! each; the defaults are those of the preset `zhou2011`. All three look at the whole picture, so the effect does not work
-//! in tiles. Colours are filtered as the screen shows them, whatever the host holds.
+//! It shows the filtered colours (mean shift), the edges in them (Canny), or the distance to the nearest edge. Each has its
+//! parameters. The defaults are those of the preset `zhou2011`. All three need the complete picture, so the effect does not
+//! support tiles. The filter works on display colours, whatever colours the host has.
 
 pub mod describe;
 pub mod render;
@@ -17,13 +17,13 @@ use openfx::sys::image_effect_v1::image_effect::{
 };
 use std::ffi::CStr;
 
-/// The effect's id, fixed for ever.
+/// The effect's id. Old compositions contain it, so it never changes.
 pub const ID: &CStr = c"org.rototoon.Lines";
 
-/// Does an action.
+/// Runs an action.
 pub fn perform(action: &Action) -> Result<(), Failure> {
     let name = action.name;
-    // Hosts show an effect's controls only where making and ending an instance succeed.
+    // Hosts show an effect's controls only if creating and destroying an instance succeed.
     if [kOfxActionLoad, kOfxActionCreateInstance, kOfxActionDestroyInstance].contains(&name) {
         return Ok(());
     }

@@ -1,4 +1,4 @@
-//! Pixels of the effect.
+//! Renders the effect's pixels.
 
 use crate::description::{OUTPUT, SOURCE};
 use crate::encoding::Encoding;
@@ -47,7 +47,7 @@ pub fn render(action: &Action) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The row `y` of a picture that lies at `bounds`, as far as it is in the window.
+/// Copies row `y` of a picture with these bounds, as far as it is in the window, into the window's row `pixels`.
 fn copy(picture: &Raster<Pixel>, bounds: &Bounds, window: &Bounds, y: i32, pixels: &mut [Pixel]) {
     let shared = bounds.shared(window);
     if shared.is_empty() || y < shared.y1 || y >= shared.y2 {
@@ -58,7 +58,7 @@ fn copy(picture: &Raster<Pixel>, bounds: &Bounds, window: &Bounds, y: i32, pixel
     pixels[(shared.x1 - window.x1) as usize..][..from.len()].copy_from_slice(from);
 }
 
-/// What is seen of the source, from the top.
+/// The chosen image of the source, with rows from the top.
 fn seen(source: &Image, parameters: &Parameters, time: f64, scale: f64) -> Result<Raster<Pixel>, Failure> {
     let bounds = source.bounds;
     let mut pixels = Raster::new(bounds.width(), (bounds.y2 - bounds.y1) as usize, CLEAR);

@@ -1,8 +1,9 @@
-//! Effects, their clips and what they say to the user.
+//! Effects, their clips, and their messages to the user.
 
 use super::failure::Failure;
 use super::host::Suites;
 use super::image::Image;
+use super::log::log;
 use super::param::Parameters;
 use super::property::{Properties, call, terminated};
 use openfx::sys::generic::core::{OfxRectD, kOfxPropInstanceData};
@@ -14,7 +15,7 @@ use openfx::sys::image_effect_v1::message::{kOfxMessageError, kOfxMessageWarning
 use std::ffi::{CStr, c_void};
 use std::marker::PhantomData;
 
-/// An effect: described or made, as the action says.
+/// An effect. The action decides whether it is a description or an instance.
 #[derive(Clone, Copy)]
 pub struct Effect<'a> {
     pub(super) handle: OfxImageEffectHandle,
@@ -36,7 +37,7 @@ pub struct Region {
 }
 
 impl Region {
-    /// What two rectangles share; none where that has no area.
+    /// The intersection of two rectangles; `None` if it has no area.
     pub fn shared(&self, other: &Self) -> Option<Self> {
         let both = Self {
             x1: self.x1.max(other.x1),
@@ -99,21 +100,21 @@ impl<'a> Effect<'a> {
         Ok(Clip { handle, properties, suites: self.suites })
     }
 
-    /// Whether the host wants no more of what is being rendered.
+    /// Whether the host has aborted the render.
     pub fn aborted(&self) -> bool {
         // SAFETY: the effect's own handle.
         self.suites.effect.abort.is_some_and(|abort| unsafe { abort(self.handle) } != 0)
     }
 
-    /// Tells the user of an error that a press of a button had.
+    /// Shows the user an error that a button press caused, or logs it if the host cannot show messages.
     pub fn complain(&self, text: &str) {
         if !self.message(text) {
-            eprintln!("Rototoon: {text}");
+            log(text);
         }
     }
 
-    /// Tells the user of something about what is shown, where the host has a place for it that does not interrupt; else
-    /// the log.
+    /// Shows the user an error or a warning about the picture, without interrupting. It is logged if the host cannot show
+    /// such messages.
     pub fn note(&self, text: &str, error: bool) {
         let kind = if error { kOfxMessageError } else { kOfxMessageWarning };
         let text = terminated(text);
@@ -123,11 +124,11 @@ impl<'a> Effect<'a> {
             function(self.handle.cast(), kind.as_ptr(), c"rototoon".as_ptr(), c"%s".as_ptr(), text.as_ptr()) == 0
         });
         if !told {
-            eprintln!("Rototoon: {}", text.to_string_lossy());
+            log(&text.to_string_lossy());
         }
     }
 
-    /// Takes back what [`Self::note`] showed.
+    /// Removes the messages of [`Self::note`].
     pub fn clear_note(&self) {
         if let Some(clear) = self.suites.persistent.and_then(|suite| suite.clearPersistentMessage) {
             // SAFETY: the effect's own handle.
@@ -145,12 +146,12 @@ impl<'a> Effect<'a> {
         status == 0
     }
 
-    /// Ties data to an instance, which [`Self::take_data`] must end.
+    /// Attaches data to an instance. [`Self::take_data`] must release it.
     pub fn set_data<T: Sync + Send>(&self, data: Box<T>) -> Result<(), Failure> {
         let properties = self.properties()?;
         let pointer = Box::into_raw(data);
         properties.set_pointer(kOfxPropInstanceData, 0, pointer.cast()).inspect_err(|_| {
-            // SAFETY: the pointer was made above and the host did not take it.
+            // SAFETY: the pointer was made above, and the host did not store it.
             drop(unsafe { Box::from_raw(pointer) });
         })
     }
@@ -161,15 +162,15 @@ impl<'a> Effect<'a> {
     /// `T` is the type that this effect's [`Self::set_data`] was given.
     pub unsafe fn data<T: Sync + Send>(&self) -> Result<&'a T, Failure> {
         let pointer = self.properties()?.pointer(kOfxPropInstanceData, 0)?;
-        // SAFETY: the pointer came from `set_data`, with the caller's `T`; OpenFX has no other action of an instance run
-        // once it is being destroyed, so the data outlives the action.
+        // SAFETY: the pointer came from `set_data`, with the caller's `T`. A host runs no other action of an instance while
+        // it is destroyed, so the data outlives the action.
         unsafe { pointer.cast::<T>().as_ref() }.ok_or(Failure::Missing("instance data"))
     }
 
-    /// Takes the data of an instance that ends.
+    /// Takes the data of an instance that is destroyed.
     ///
     /// # Safety
-    /// As for [`Self::data`]; no reference to the data is left.
+    /// The same as of [`Self::data`], and no reference to the data is left.
     pub unsafe fn take_data<T: Sync + Send>(&self) -> Result<Option<Box<T>>, Failure> {
         let properties = self.properties()?;
         let pointer = properties.pointer(kOfxPropInstanceData, 0)?.cast::<T>();
@@ -194,7 +195,7 @@ unsafe impl Send for Clip<'_> {}
 unsafe impl Sync for Clip<'_> {}
 
 impl<'a> Clip<'a> {
-    /// Whether anything is connected to the clip, as far as the host tells the truth.
+    /// Whether anything is connected to the clip. Some hosts report this wrongly.
     pub fn connected(&self) -> bool {
         self.properties.int(kOfxImageClipPropConnected, 0).is_ok_and(|connected| connected != 0)
     }
@@ -210,7 +211,7 @@ impl<'a> Clip<'a> {
         aspect.ok().filter(|aspect| aspect.is_finite() && *aspect > 0.0).unwrap_or(1.0)
     }
 
-    /// Where the clip has pixels at a time; none where it has none.
+    /// The rectangle in which the clip has pixels at a time; `None` if it is empty or unknown.
     pub fn region(&self, time: f64) -> Option<Region> {
         let mut rect = OfxRectD { x1: 0.0, y1: 0.0, x2: 0.0, y2: 0.0 };
         call!(self.suites.effect, clipGetRegionOfDefinition, self.handle, time, &mut rect).ok()?;
@@ -218,7 +219,7 @@ impl<'a> Clip<'a> {
         (region.x1 < region.x2 && region.y1 < region.y2).then_some(region)
     }
 
-    /// The image at a time. None where the host has none: it is then transparent black.
+    /// The image at a time. `None` if the host has none; callers then use transparent black.
     pub fn image(&self, time: f64) -> Result<Option<Image<'a>>, Failure> {
         Image::fetch(self, time)
     }

@@ -1,8 +1,9 @@
-//! Actions in, statuses out; no panic leaves the plugin.
+//! The entry point of an effect: runs an action and returns its status. No panic leaves the plugin.
 
 use super::effect::Effect;
 use super::failure::Failure;
 use super::host;
+use super::log::log;
 use super::property::Properties;
 use openfx::sys::generic::core::{
     OfxPropertySetHandle, OfxStatus, kOfxActionDescribe, kOfxActionLoad, kOfxActionUnload, kOfxStatFailed, kOfxStatOK,
@@ -12,22 +13,22 @@ use std::any::Any;
 use std::ffi::{CStr, c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// What an action came with.
+/// An action of the host with its arguments.
 pub struct Action<'a> {
-    /// Its name, as OpenFX names it.
+    /// Its OpenFX name.
     pub name: &'a CStr,
-    /// The effect that it is about.
+    /// The effect that it is for.
     pub effect: Effect<'a>,
-    /// What it asks.
+    /// The input arguments.
     pub input: Properties<'a>,
-    /// Where the answer goes.
+    /// The output arguments, which the effect sets.
     pub output: Properties<'a>,
 }
 
-/// What does an action.
+/// A function that runs an action.
 pub type Perform = fn(&Action) -> Result<(), Failure>;
 
-/// Does an action; the only way from a host into an effect.
+/// Runs an action. Every call of the host to an effect goes through this function.
 ///
 /// # Safety
 /// The arguments are those of a call by the host: a terminated name, and handles that are null or live for the call.
@@ -69,17 +70,13 @@ pub unsafe fn entry(
         Ok(Err(failure)) => failure.status(),
         Err(panic) => {
             let text = format!("internal error in {}: {}", name.to_string_lossy(), said(panic.as_ref()));
-            // The message itself must not take the host along.
+            // A panic in showing the message must not reach the host.
             let _ = catch_unwind(AssertUnwindSafe(|| {
-                // Messages are about instances, which descriptions are not.
+                // Hosts show messages of instances only, and a description is not an instance.
                 let described = [kOfxActionDescribe, kOfxImageEffectActionDescribeInContext].contains(&name);
-                if handle.is_null() || described {
-                    eprintln!("Rototoon: {text}")
-                } else {
-                    action.effect.complain(&text)
-                }
+                if handle.is_null() || described { log(&text) } else { action.effect.complain(&text) }
             }));
-            // What a panic carries may panic when it is dropped.
+            // Dropping the panic's payload may panic too.
             let _ = catch_unwind(AssertUnwindSafe(|| drop(panic)));
             kOfxStatFailed
         }

@@ -1,17 +1,17 @@
-//! Why an action did not do its work.
+//! The failures of actions.
 
 use openfx::sys::generic::core::{
     OfxStatus, kOfxStatErrFormat, kOfxStatErrMemory, kOfxStatErrMissingHostFeature, kOfxStatFailed,
     kOfxStatReplyDefault,
 };
 
-/// Why an action did not do its work.
+/// Why an action failed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Failure {
-    /// The host is to do what it does by default.
+    /// The plugin leaves the action to the host's default behaviour.
     #[error("left to the host")]
     Default,
-    /// The host wants the work no more.
+    /// The host or the user aborted the work.
     #[error("aborted")]
     Aborted,
     /// A host's function failed.
@@ -19,26 +19,26 @@ pub enum Failure {
     Host {
         /// Name of the function.
         function: &'static str,
-        /// What it returned.
+        /// The status that it returned.
         status: OfxStatus,
     },
-    /// The host lacks what the plugin cannot do without.
+    /// The host lacks a function or a suite that the plugin needs.
     #[error("the host has no {0}")]
     Missing(&'static str),
-    /// An image is of a kind that was not asked for.
+    /// An image has a format that the plugin does not support.
     #[error("{0}")]
     Format(String),
-    /// What the user is to know.
+    /// An error whose text is shown to the user.
     #[error("{0}")]
     Told(String),
 }
 
 impl Failure {
-    /// The status that the host is given.
+    /// The status that is returned to the host.
     pub fn status(&self) -> OfxStatus {
         match self {
             Self::Default => kOfxStatReplyDefault,
-            // What was rendered is not whole, and a host that aborted does not use it.
+            // An aborted picture is incomplete. A host that aborted does not use it.
             Self::Aborted | Self::Told(_) => kOfxStatFailed,
             Self::Host { status, .. } if *status == kOfxStatErrMemory => kOfxStatErrMemory,
             Self::Host { .. } => kOfxStatFailed,

@@ -1,7 +1,7 @@
-//! The suites that the host offers.
+//! The host and its suites.
 //!
-//! A host loads a plugin, unloads it and may load it again, each effect of a bundle by itself; every load fetches the suites
-//! anew. They are the host's own static tables.
+//! A host may load, unload and load each effect of a bundle again. Every load fetches the suites anew. The suites are static
+//! tables of the host.
 
 use super::failure::Failure;
 use super::property::Properties;
@@ -21,7 +21,7 @@ use std::sync::{PoisonError, RwLock};
 static HOST: AtomicPtr<OfxHost> = AtomicPtr::new(std::ptr::null_mut());
 static SUITES: RwLock<Option<Suites>> = RwLock::new(None);
 
-/// The host's functions; all but the first three may be missing.
+/// The host's suites. All but the first three may be missing.
 #[derive(Clone, Copy)]
 pub struct Suites {
     pub(super) property: &'static OfxPropertySuiteV1,
@@ -35,16 +35,16 @@ pub struct Suites {
     pub(super) draw: Option<&'static OfxDrawSuiteV1>,
 }
 
-/// Either version of the progress suite.
+/// The progress suite, in one of its versions.
 #[derive(Clone, Copy)]
 pub(super) enum ProgressSuite {
-    /// With a label alone.
+    /// Version 1, which takes a label.
     V1(&'static OfxProgressSuiteV1),
-    /// With the label's id.
+    /// Version 2, which takes a label and its id.
     V2(&'static OfxProgressSuiteV2),
 }
 
-/// Remembers the host.
+/// Stores the host.
 pub fn set(host: *mut OfxHost) {
     HOST.store(host, Ordering::Release);
 }
@@ -52,7 +52,7 @@ pub fn set(host: *mut OfxHost) {
 /// Fetches the suites.
 pub fn load() -> Result<(), Failure> {
     let host = HOST.load(Ordering::Acquire);
-    // SAFETY: OpenFX has `setHost` called before any action, with a host that lives as long as the plugin is loaded.
+    // SAFETY: the host calls `setHost` before any action, with a host that lives as long as the plugin is loaded.
     let host = unsafe { host.as_ref() }.ok_or(Failure::Missing("host"))?;
     let message = suite::<OfxMessageSuiteV2>(host, kOfxMessageSuite, 2);
     let v2 = suite(host, kOfxProgressSuite, 2).map(ProgressSuite::V2);
@@ -69,7 +69,7 @@ pub fn load() -> Result<(), Failure> {
     };
     *SUITES.write().unwrap_or_else(PoisonError::into_inner) = Some(suites);
     let name = name().unwrap_or_default();
-    // Their persistent messages fail or show nothing.
+    // The persistent messages of these hosts fail or show nothing.
     if ["DaVinciResolve", "com.blackmagicdesign", "com.eyeonline"].iter().any(|known| name.starts_with(known))
         && let Some(suites) = SUITES.write().unwrap_or_else(PoisonError::into_inner).as_mut()
     {
@@ -83,7 +83,7 @@ pub fn suites() -> Result<Suites, Failure> {
     (*SUITES.read().unwrap_or_else(PoisonError::into_inner)).ok_or(Failure::Missing("property suite"))
 }
 
-/// Whether the host draws for overlays ([`super::interact`]).
+/// Whether the host has the DrawSuite, with which overlays draw ([`super::interact`]).
 pub fn draws() -> bool {
     suites().is_ok_and(|suites| suites.draw.is_some())
 }
@@ -103,7 +103,7 @@ pub fn name() -> Option<String> {
 
 fn suite<T>(host: &OfxHost, name: &CStr, version: i32) -> Option<&'static T> {
     let fetch = host.fetchSuite?;
-    // SAFETY: the host's own handle and a terminated name. What comes back is null or the suite of this name and version,
-    // whose table `T` is, and which the host keeps.
+    // SAFETY: the host's own handle and a terminated name. The result is null or the suite of this name and version. `T` is
+    // the type of that suite's table, and the host keeps the table.
     unsafe { fetch(host.host, name.as_ptr(), version).cast::<T>().as_ref() }
 }

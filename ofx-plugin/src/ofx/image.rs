@@ -1,7 +1,7 @@
-//! Images, released on every path.
+//! Images of clips. They are released when dropped.
 //!
-//! Depth, components, bounds and bytes from row to row are read from each image and never assumed. Rows may lie in memory
-//! from the bottom or from the top.
+//! Depth, components, bounds and bytes per row are read from each image and never assumed. In memory the first row may be
+//! the bottom row or the top row.
 
 use super::effect::Clip;
 use super::failure::Failure;
@@ -18,7 +18,7 @@ use openfx::sys::image_effect_v1::image_effect::{
 };
 use std::marker::PhantomData;
 
-/// A rectangle of pixels, y up: the right column and the top row excluded.
+/// A rectangle of pixels, y up. `x2` and `y2` are excluded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Bounds {
     /// First column.
@@ -32,7 +32,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// What two rectangles share; may be empty.
+    /// The intersection of two rectangles, which may be empty.
     pub fn shared(&self, other: &Self) -> Self {
         Self {
             x1: self.x1.max(other.x1),
@@ -42,32 +42,32 @@ impl Bounds {
         }
     }
 
-    /// Whether there is no pixel.
+    /// Whether the rectangle has no pixels.
     pub fn is_empty(&self) -> bool {
         self.x1 >= self.x2 || self.y1 >= self.y2
     }
 
-    /// Pixels in a row.
+    /// The number of pixels in a row.
     pub fn width(&self) -> usize {
         (i64::from(self.x2) - i64::from(self.x1)).max(0) as usize
     }
 }
 
-/// An image of a clip; dropping releases it.
+/// An image of a clip. Dropping it releases it.
 pub struct Image<'a> {
     handle: OfxPropertySetHandle,
     suites: Suites,
     data: *mut u8,
     row_bytes: isize,
-    /// Which pixels it has.
+    /// The rectangle of its pixels.
     pub bounds: Bounds,
-    /// Of what kind they are.
+    /// The format of its pixels.
     pub format: Format,
     clip: PhantomData<&'a ()>,
 }
 
-// SAFETY: the pixels are plain memory that the host leaves alone until the image is released; the handle is used by `drop`
-// only. Rows are shared for reading; writing goes through `Rows`, which are apart.
+// SAFETY: the pixels are plain memory that the host does not touch until the image is released. Only `drop` uses the handle.
+// Rows are shared for reading. Writing goes through `Rows`, which do not overlap.
 unsafe impl Send for Image<'_> {}
 // SAFETY: as above.
 unsafe impl Sync for Image<'_> {}
@@ -85,7 +85,7 @@ impl<'a> Image<'a> {
         if fetched.is_err() || handle.is_null() {
             return Ok(None);
         }
-        // From here on the image is released, whatever is wrong with it.
+        // From here on the image is released, even if an error follows.
         let mut image = Self {
             handle,
             suites: clip.suites,
@@ -95,7 +95,7 @@ impl<'a> Image<'a> {
             format: Format::default(),
             clip: PhantomData,
         };
-        // SAFETY: the handle of the image, which is not released before `image` ends.
+        // SAFETY: the handle of the image, which is not released before `image` is dropped.
         let properties = unsafe { Properties::new(handle, clip.suites.property) };
         let [x1, y1, x2, y2] = properties.ints(kOfxImagePropBounds)?;
         image.bounds = Bounds { x1, y1, x2, y2 };
@@ -108,16 +108,16 @@ impl<'a> Image<'a> {
         let needed = (image.bounds.width() * image.format.bytes()) as isize;
         if i64::from(y2) - i64::from(y1) > 1 && image.row_bytes.abs() < needed {
             let found = image.row_bytes;
-            return Err(Failure::Format(format!("an image has {found} bytes a row, expected at least {needed}")));
+            return Err(Failure::Format(format!("image: found {found} bytes per row, expected at least {needed}")));
         }
         Ok(Some(image))
     }
 
-    /// The bytes of row `y` from column `x1` on, `x2` excluded; none where the image does not have them all.
+    /// The bytes of row `y` from column `x1` to `x2` (excluded). `None` if the image does not have all of them.
     pub fn row(&self, y: i32, x1: i32, x2: i32) -> Option<&[u8]> {
         let (start, length) = self.place(y, x1, x2)?;
-        // SAFETY: `place` holds the row to the bounds that the host gave with the pointer. Rows are written through `Rows`
-        // of an image borrowed as mutable, so not while this borrow lasts.
+        // SAFETY: `place` checks the row against the bounds that the host gave with the pointer. Writing needs `Rows` of a
+        // mutable borrow of the image, so nothing is written during this borrow.
         Some(unsafe { std::slice::from_raw_parts(start, length) })
     }
 
@@ -127,13 +127,13 @@ impl<'a> Image<'a> {
             return None;
         }
         let column = (x1 - b.x1) as usize * self.format.bytes();
-        // SAFETY: row and column lie in the bounds, so that the address lies in the host's memory for them.
+        // SAFETY: row and column are within the bounds, so the address is within the image's memory.
         let start = unsafe { self.data.offset((y - b.y1) as isize * self.row_bytes).add(column) };
         Some((start, (x2 - x1) as usize * self.format.bytes()))
     }
 
-    /// The rows of a window in bands of at most `height` rows, to be written by different threads. What the image does not
-    /// have is left out.
+    /// Divides the rows of a window into bands of at most `height` rows, which different threads may write. Pixels outside
+    /// the image are left out.
     pub fn bands(&mut self, window: Bounds, height: i32) -> Vec<Rows<'_>> {
         let window = window.shared(&self.bounds);
         if window.is_empty() {
@@ -147,15 +147,15 @@ impl<'a> Image<'a> {
     }
 }
 
-/// Rows of an image that nothing else writes or reads.
+/// Rows of an image that nobody else reads or writes.
 pub struct Rows<'a> {
     image: &'a Image<'a>,
-    /// The pixels.
+    /// The rectangle of the pixels.
     pub window: Bounds,
 }
 
 impl Rows<'_> {
-    /// Of what kind the pixels are.
+    /// The format of the pixels.
     pub fn format(&self) -> Format {
         self.image.format
     }
@@ -164,7 +164,7 @@ impl Rows<'_> {
     pub fn row(&mut self, y: i32) -> Option<&mut [u8]> {
         let w = self.window;
         let (start, length) = (w.y1..w.y2).contains(&y).then(|| self.image.place(y, w.x1, w.x2)).flatten()?;
-        // SAFETY: as in `Image::row`; the rows of different bands are apart, and this one is borrowed as mutable.
+        // SAFETY: as in `Image::row`. Bands do not overlap, and this one is borrowed mutably.
         Some(unsafe { std::slice::from_raw_parts_mut(start, length) })
     }
 }
@@ -179,13 +179,17 @@ fn format(properties: &Properties) -> Result<Format, Failure> {
         name if is(name, kOfxBitDepthShort) => Depth::Short,
         name if is(name, kOfxBitDepthHalf) => Depth::Half,
         name if is(name, kOfxBitDepthFloat) => Depth::Float,
-        other => return Err(Failure::Format(format!("found pixels of depth {other:?}, expected byte to float"))),
+        other => {
+            return Err(Failure::Format(format!("image: found depth {other:?}, expected byte, short, half or float")));
+        }
     };
     let layout = match layout.as_str() {
         name if is(name, kOfxImageComponentRGBA) => Layout::Rgba,
         name if is(name, kOfxImageComponentRGB) => Layout::Rgb,
         name if is(name, kOfxImageComponentAlpha) => Layout::Alpha,
-        other => return Err(Failure::Format(format!("found components {other:?}, expected RGBA, RGB or alpha"))),
+        other => {
+            return Err(Failure::Format(format!("image: found components {other:?}, expected RGBA, RGB or alpha")));
+        }
     };
     let premultiplication = match premultiplication.as_str() {
         name if is(name, kOfxImageOpaque) => Premultiplication::Opaque,

@@ -1,11 +1,12 @@
-//! What an effect draws over the host's viewer, and the pen there.
+//! Overlays: drawing over the host's viewer, and the pen in it.
 //!
-//! Two ways to draw: the DrawSuite of OpenFX 1.5, and in older hosts OpenGL, whose functions are looked up in the host's own
-//! process, since the plugin links none. Where there is neither, nothing is drawn.
+//! An overlay draws with the DrawSuite of OpenFX 1.5, or with OpenGL in older hosts. The plugin does not link OpenGL: it
+//! looks its functions up in the host's process. If there is neither, nothing is drawn.
 
 use super::effect::Effect;
 use super::failure::Failure;
 use super::host;
+use super::log::log;
 use super::property::{Properties, call};
 use openfx::sys::generic::core::{
     OfxPointD, OfxPropertySetHandle, OfxStatus, kOfxActionCreateInstance, kOfxActionDescribe,
@@ -23,10 +24,10 @@ use openfx::sys::image_effect_v1::pixels::OfxRGBAColourF;
 use std::ffi::{CStr, c_char, c_double, c_float, c_int, c_uint, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// What happens in the viewer.
+/// The kind of an event of the viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// It is to be drawn.
+    /// The overlay must be drawn.
     Draw,
     /// The pen goes down.
     Down,
@@ -36,23 +37,23 @@ pub enum Event {
     Up,
 }
 
-/// What an event came with.
+/// An event of the viewer with its arguments.
 pub struct View<'a> {
-    /// What happens.
+    /// The kind of the event.
     pub event: Event,
-    /// The effect whose viewer it is.
+    /// The effect that the overlay belongs to.
     pub effect: Effect<'a>,
-    /// Time of the viewer.
+    /// Time of the viewer, in frames.
     pub time: f64,
-    /// Size of a pixel of the screen, canonical.
+    /// Size of a screen pixel in canonical coordinates.
     pub pixel: f64,
-    /// Where the pen is, canonical.
+    /// Position of the pen in canonical coordinates.
     pub pen: [f64; 2],
     canvas: Option<Canvas>,
     interact: *mut c_void,
 }
 
-/// Deals with an event of an effect's viewer; the only way from a host's overlay into an effect.
+/// Handles an event of the viewer. Every call of the host to an overlay goes through this function.
 ///
 /// # Safety
 /// The arguments are those of a call by the host: a terminated name, and handles that are null or live for the call.
@@ -79,7 +80,7 @@ pub unsafe fn entry(
     ];
     let Some((_, event)) = events.into_iter().find(|(known, _)| *known == name) else { return kOfxStatReplyDefault };
     let act = || {
-        // SAFETY: the handles live for the call, and the view made of them ends before it.
+        // SAFETY: the handles live for the call, and the view made of them is dropped before it ends.
         let view = unsafe { View::new(event, handle.cast_mut(), input, draw_suite) }?;
         perform(&view)
     };
@@ -88,7 +89,7 @@ pub unsafe fn entry(
         Ok(Err(failure)) => failure.status(),
         Err(panic) => {
             let _ = catch_unwind(AssertUnwindSafe(|| {
-                eprintln!("Rototoon: internal error in the overlay");
+                log("internal error in the overlay");
                 drop(panic);
             }));
             kOfxStatFailed
@@ -124,7 +125,7 @@ impl View<'_> {
         let pen = if event == Event::Draw { [0.0; 2] } else { input.doubles(kOfxInteractPropPenPosition)? };
         Ok(Self {
             event,
-            // SAFETY: the handle of an effect that lives at least as long as what is drawn over it.
+            // SAFETY: the handle of the effect, which lives at least as long as its overlay.
             effect: unsafe { Effect::new(effect, suites) },
             time: input.double(kOfxPropTime, 0)?,
             pixel: if scale[0].is_finite() && scale[0] > 0.0 { scale[0] } else { 1.0 },
@@ -142,7 +143,8 @@ impl View<'_> {
         }
     }
 
-    /// Draws a line through points, canonical; closed or open.
+    /// Draws a line through points in canonical coordinates. If `closed`, the last point joins the first. `colour` is RGBA,
+    /// `width` is in screen pixels.
     pub fn line(&self, points: &[[f64; 2]], closed: bool, colour: [f32; 4], width: f32) {
         match &self.canvas {
             Some(Canvas::Suite(suite, context)) => draw_by_suite(suite, *context, points, closed, colour, width),
@@ -152,7 +154,7 @@ impl View<'_> {
     }
 }
 
-/// What is drawn on.
+/// The means of drawing.
 enum Canvas {
     Suite(&'static OfxDrawSuiteV1, OfxDrawContextHandle),
     OpenGl(OpenGl),
@@ -169,13 +171,13 @@ fn draw_by_suite(
     let points: Vec<OfxPointD> = points.iter().map(|&[x, y]| OfxPointD { x, y }).collect();
     let colour = OfxRGBAColourF { r, g, b, a };
     let primitive = if closed { kOfxDrawPrimitiveLineLoop } else { kOfxDrawPrimitiveLineStrip };
-    // What a host cannot draw is not drawn.
+    // Errors of the host are ignored: the line is then missing.
     let _ = call!(suite, setColour, context, &colour);
     let _ = call!(suite, setLineWidth, context, width);
     let _ = call!(suite, draw, context, primitive, points.as_ptr(), points.len() as c_int);
 }
 
-/// The few functions of OpenGL 1 that draw lines.
+/// The functions of OpenGL 1.1 that are needed to draw lines.
 struct OpenGl {
     begin: unsafe extern "C" fn(c_uint),
     end: unsafe extern "C" fn(),
@@ -194,10 +196,10 @@ unsafe extern "C" {
 impl OpenGl {
     const LINE_LOOP: c_uint = 2;
     const LINE_STRIP: c_uint = 3;
-    /// The current colour, and what is set for lines.
+    /// The attribute groups to save: the current colour and the line state.
     const BITS: c_uint = 0x1 | 0x4;
 
-    /// The functions, where the host's process has them all.
+    /// The functions, if the host's process has all of them.
     #[cfg(unix)]
     fn find() -> Option<Self> {
         fn function<T: Copy>(name: &CStr) -> Option<T> {
@@ -224,7 +226,7 @@ impl OpenGl {
     }
 
     fn line(&self, points: &[[f64; 2]], closed: bool, [r, g, b, a]: [f32; 4], width: f32) {
-        // SAFETY: OpenFX has the host's context current, in canonical coordinates, while an overlay is drawn.
+        // SAFETY: during the drawing of an overlay the host's OpenGL context is current, in canonical coordinates.
         unsafe {
             (self.push)(Self::BITS);
             (self.colour)(r, g, b, a);

@@ -1,21 +1,22 @@
 //! A thin safe layer over the C functions of an OpenFX host.
 //!
-//! - [`host`]: the suites that the host offers
-//! - [`entry`]: actions in, statuses out; no panic leaves the plugin
-//! - [`failure`]: why an action did not do its work
+//! - [`host`]: the host and its suites
+//! - [`entry`]: the entry point of effects, which no panic leaves
+//! - [`failure`]: the failures of actions
 //! - [`property`]: typed access to properties
-//! - [`effect`]: effects, their clips and what they say to the user
-//! - [`image`]: images, released on every path
-//! - [`interact`]: what is drawn over the viewer, and the pen there
-//! - [`param`]: parameters described, read and set
-//! - [`progress`]: how far long work has come
+//! - [`effect`]: effects, their clips, and their messages to the user
+//! - [`image`]: images of clips
+//! - [`interact`]: overlays over the viewer
+//! - `log`: messages that the host cannot show
+//! - [`param`]: parameters of effects
+//! - [`progress`]: the progress display
 //! - [`threads`]: work on the host's threads
 //!
-//! Handles are valid while the action runs that they came with; the types here borrow from the [`effect::Effect`] that the
-//! entry point makes for an action, and so end with it.
+//! The handles of an action are valid while it runs. The types here borrow from the [`effect::Effect`] that the entry point
+//! makes for the action, so they cannot outlive it.
 #![allow(
     unsafe_code,
-    reason = "handles and functions come from the host as raw pointers; each use says what makes it valid"
+    reason = "handles and functions come from the host as raw pointers; each use says why it is valid"
 )]
 
 pub mod effect;
@@ -24,6 +25,7 @@ pub mod failure;
 pub mod host;
 pub mod image;
 pub mod interact;
+mod log;
 pub mod param;
 pub mod progress;
 pub mod property;

@@ -1,4 +1,4 @@
-//! Parameters of an effect: described, read at a time, set.
+//! The parameters of an effect: describes them, reads their values at a time, and sets them.
 
 use super::failure::Failure;
 use super::host::Suites;
@@ -26,7 +26,7 @@ impl<'a> Parameters<'a> {
     pub fn define(&self, kind: &CStr, id: &CStr) -> Result<Properties<'a>, Failure> {
         let mut properties = std::ptr::null_mut();
         call!(self.suites.parameter, paramDefine, self.set, kind.as_ptr(), id.as_ptr(), &mut properties)?;
-        // SAFETY: the set of the parameter described, which lives for the action.
+        // SAFETY: the property set of the new parameter, which lives for the action.
         Ok(unsafe { Properties::new(properties, self.suites.property) })
     }
 
@@ -70,10 +70,10 @@ impl<'a> Parameters<'a> {
         Ok(unsafe { copied(value) })
     }
 
-    /// Sets texts and whole numbers as one step of the host's undo.
+    /// Sets texts, given by parameter id, as one undo step named `label`.
     pub fn set(&self, label: &str, texts: &[(&CStr, &str)]) -> Result<(), Failure> {
         let label = terminated(label);
-        // A host without edit blocks makes several steps of it.
+        // A host without edit blocks makes one undo step per text.
         let begun = call!(self.suites.parameter, paramEditBegin, self.set, label.as_ptr()).is_ok();
         let result = texts.iter().try_for_each(|(id, value)| {
             let value = terminated(value);

@@ -1,18 +1,18 @@
-//! How far long work has come, shown by the host, which may cancel it.
+//! The host's progress display, in which the user may cancel the work.
 
 use super::effect::Effect;
 use super::host::ProgressSuite;
 use super::property::{call, terminated};
 use openfx::sys::generic::core::kOfxStatReplyNo;
 
-/// A progress display; dropping ends it. Without the suite there is none, and nothing cancels.
+/// A progress display. Dropping it closes it. A host without a progress suite shows none, and cannot cancel.
 pub struct Bar<'a> {
     effect: Effect<'a>,
     started: bool,
 }
 
 impl<'a> Bar<'a> {
-    /// Shows a display with a label.
+    /// Opens a display with a label.
     pub fn new(effect: Effect<'a>, label: &str) -> Self {
         let label = terminated(label);
         let handle = effect.handle.cast();
@@ -26,7 +26,7 @@ impl<'a> Bar<'a> {
         Self { effect, started }
     }
 
-    /// Shows a share of the whole, 0 to 1; whether to go on.
+    /// Shows the finished share, 0 to 1. Returns whether to go on.
     pub fn update(&self, done: f64) -> bool {
         let update = match self.effect.suites.progress {
             Some(ProgressSuite::V1(suite)) => suite.progressUpdate,
@@ -34,7 +34,7 @@ impl<'a> Bar<'a> {
             None => None,
         };
         let Some(update) = update.filter(|_| self.started) else { return true };
-        // SAFETY: the effect's own handle. Any status but a clear no goes on: some hosts return nonsense.
+        // SAFETY: the effect's own handle. Only an explicit no cancels, because some hosts return arbitrary statuses.
         unsafe { update(self.effect.handle.cast(), done) != kOfxStatReplyNo }
     }
 }

@@ -6,7 +6,7 @@ use openfx::sys::generic::property::OfxPropertySuiteV1;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::marker::PhantomData;
 
-/// A set of properties of something that lives for `'a`.
+/// A property set of an object that lives for `'a`.
 #[derive(Clone, Copy)]
 pub struct Properties<'a> {
     handle: OfxPropertySetHandle,
@@ -14,12 +14,12 @@ pub struct Properties<'a> {
     owner: PhantomData<&'a ()>,
 }
 
-/// Calls a function of a suite that may be missing from it.
+/// Calls a function of a suite. It is an error if the suite lacks the function.
 macro_rules! call {
     ($suite:expr, $function:ident, $($argument:expr),* $(,)?) => {
         match $suite.$function {
-            // SAFETY: the handles are valid as the layer's types promise, the names are terminated, and the pointers are
-            // to places of the type that the function writes.
+            // SAFETY: the types of this layer guarantee that the handles are valid. The names are terminated. The pointers
+            // are to places of the type that the function writes.
             Some(function) => $crate::ofx::property::check(stringify!($function), unsafe { function($($argument),*) }),
             None => Err($crate::ofx::failure::Failure::Missing(stringify!($function))),
         }
@@ -32,13 +32,13 @@ pub(super) fn check(function: &'static str, status: OfxStatus) -> Result<(), Fai
     if status == kOfxStatOK { Ok(()) } else { Err(Failure::Host { function, status }) }
 }
 
-/// Text for the host; what comes after a zero byte is cut off.
+/// A terminated text for the host. It ends before the first zero byte.
 pub(super) fn terminated(text: &str) -> CString {
     let end = text.find('\0').unwrap_or(text.len());
     CString::new(&text[..end]).unwrap_or_default()
 }
 
-/// Text of the host; empty for null.
+/// A copy of a text of the host; empty for null.
 ///
 /// # Safety
 /// The pointer is null or to a terminated string.
@@ -64,21 +64,21 @@ impl<'a> Properties<'a> {
         Ok(self.handle)
     }
 
-    /// A whole number.
+    /// Reads a whole number.
     pub fn int(&self, name: &CStr, index: i32) -> Result<i32, Failure> {
         let mut value: c_int = 0;
         call!(self.suite, propGetInt, self.handle()?, name.as_ptr(), index, &mut value)?;
         Ok(value)
     }
 
-    /// A number.
+    /// Reads a number.
     pub fn double(&self, name: &CStr, index: i32) -> Result<f64, Failure> {
         let mut value = 0.0;
         call!(self.suite, propGetDouble, self.handle()?, name.as_ptr(), index, &mut value)?;
         Ok(value)
     }
 
-    /// A text.
+    /// Reads a text.
     pub fn text(&self, name: &CStr, index: i32) -> Result<String, Failure> {
         let mut value: *mut c_char = std::ptr::null_mut();
         call!(self.suite, propGetString, self.handle()?, name.as_ptr(), index, &mut value)?;
@@ -86,14 +86,14 @@ impl<'a> Properties<'a> {
         Ok(unsafe { copied(value) })
     }
 
-    /// A pointer.
+    /// Reads a pointer.
     pub fn pointer(&self, name: &CStr, index: i32) -> Result<*mut c_void, Failure> {
         let mut value = std::ptr::null_mut();
         call!(self.suite, propGetPointer, self.handle()?, name.as_ptr(), index, &mut value)?;
         Ok(value)
     }
 
-    /// Several whole numbers.
+    /// Reads `N` whole numbers.
     pub fn ints<const N: usize>(&self, name: &CStr) -> Result<[i32; N], Failure> {
         let mut values = [0; N];
         for (index, value) in values.iter_mut().enumerate() {
@@ -102,7 +102,7 @@ impl<'a> Properties<'a> {
         Ok(values)
     }
 
-    /// Several numbers.
+    /// Reads `N` numbers.
     pub fn doubles<const N: usize>(&self, name: &CStr) -> Result<[f64; N], Failure> {
         let mut values = [0.0; N];
         for (index, value) in values.iter_mut().enumerate() {
@@ -111,7 +111,7 @@ impl<'a> Properties<'a> {
         Ok(values)
     }
 
-    /// How many values a property has.
+    /// The number of values of a property.
     pub fn dimension(&self, name: &CStr) -> Result<i32, Failure> {
         let mut count: c_int = 0;
         call!(self.suite, propGetDimension, self.handle()?, name.as_ptr(), &mut count)?;
@@ -139,7 +139,7 @@ impl<'a> Properties<'a> {
         call!(self.suite, propSetString, self.handle()?, name.as_ptr(), index, value.as_ptr())
     }
 
-    /// Sets a text that OpenFX names.
+    /// Sets a text that is already terminated, such as a constant of OpenFX.
     pub fn set_name(&self, name: &CStr, index: i32, value: &CStr) -> Result<(), Failure> {
         call!(self.suite, propSetString, self.handle()?, name.as_ptr(), index, value.as_ptr())
     }

@@ -1,7 +1,6 @@
 //! Work on the host's threads.
 //!
-//! Jobs are taken one after the other by whichever thread is free. A host without threads, or one that lends none now, has
-//! them all done on the calling thread.
+//! The next free thread takes the next job. If the host has no threads, or lends none, the calling thread does all jobs.
 
 use super::effect::Effect;
 use openfx::sys::image_effect_v1::multi_thread::OfxMultiThreadSuiteV1;
@@ -38,32 +37,32 @@ pub fn each(effect: &Effect, count: usize, job: &(dyn Fn(usize) + Sync)) {
             && let Some(function) = suite.multiThread
         {
             let argument: *const Work = &work;
-            // SAFETY: the function returns when all threads have; the work outlives it, and may be shared by them.
+            // SAFETY: the function returns after all threads have ended. The work outlives it, and threads may share it.
             let _ = unsafe { function(Some(run), threads as c_uint, argument.cast_mut().cast()) };
         }
     }
-    // What no thread has taken.
     let panic = work.panic.lock().unwrap_or_else(PoisonError::into_inner).take();
     if let Some(panic) = panic {
         resume_unwind(panic);
     }
+    // Jobs that no thread has taken.
     work.go();
 }
 
 fn threads(suite: &OfxMultiThreadSuiteV1) -> usize {
-    // SAFETY: no argument. OpenFX has no threads within threads.
+    // SAFETY: the function has no arguments. OpenFX allows no threads within threads.
     if suite.multiThreadIsSpawnedThread.is_some_and(|function| unsafe { function() } != 0) {
         return 1;
     }
     let mut count: c_uint = 1;
-    // SAFETY: the place is a number to write.
+    // SAFETY: the pointer is to a local number.
     let status = suite.multiThreadNumCPUs.map(|function| unsafe { function(&mut count) });
     if status == Some(0) { count as usize } else { 1 }
 }
 
 /// The entry point of each thread.
 unsafe extern "C" fn run(_index: c_uint, _count: c_uint, argument: *mut c_void) {
-    // SAFETY: `each` gave its work, which outlives the call.
+    // SAFETY: the argument is the work of `each`, which outlives the call.
     let work = unsafe { &*argument.cast_const().cast::<Work>() };
     if let Err(panic) = catch_unwind(AssertUnwindSafe(|| work.go())) {
         *work.panic.lock().unwrap_or_else(PoisonError::into_inner) = Some(panic);

@@ -1,6 +1,6 @@
-//! Load, save and track.
+//! The buttons Load, Save and Track.
 //!
-//! Only what the user did counts: each value that the plugin sets comes back as a change of its own.
+//! Only changes by the user are handled. Each value that the plugin sets itself is reported as a change too.
 
 use super::instance::ORIGIN;
 use super::{instance, stored, track};
@@ -15,7 +15,7 @@ use openfx::sys::image_effect_v1::param::kOfxTypeParameter;
 use rototoon::project::Document;
 use std::path::{Path, PathBuf};
 
-/// Something of the instance was changed.
+/// Handles a change of a parameter or a clip.
 pub fn changed(action: &Action) -> Result<(), Failure> {
     let is = |name: &std::ffi::CStr, text: &str| text.as_bytes() == name.to_bytes();
     let kind = action.input.text(kOfxPropType, 0)?;
@@ -43,7 +43,7 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
             effect.complain(&text);
             Err(Failure::Told(text))
         }
-        // Cancelled by the user, who need not be told.
+        // The user has cancelled it and needs no message.
         Err(Failure::Aborted) => Ok(()),
         other => other,
     }
@@ -61,8 +61,8 @@ fn chosen(effect: &Effect) -> Result<PathBuf, Failure> {
     Ok(path)
 }
 
-/// Takes the project's shapes into the composition. The footage is then named by its whole path, since the composition lies
-/// in no folder.
+/// Loads the project's shapes into the composition. The footage then gets an absolute path, because the composition has no
+/// folder of its own.
 fn load(effect: &Effect) -> Result<(), Failure> {
     let path = chosen(effect)?;
     let mut document = Document::load(&path).map_err(|error| Failure::Told(error.to_string()))?;
@@ -76,12 +76,12 @@ fn load(effect: &Effect) -> Result<(), Failure> {
     effect.parameters()?.set("Load project", &[(c"document", &stored::encode(&document.to_json()))])
 }
 
-/// Writes the composition's shapes to the project's file; footage below its folder is named relative to it.
+/// Writes the composition's shapes to the project's file. Footage below the file's folder gets a relative path.
 fn save(effect: &Effect) -> Result<(), Failure> {
     let path = chosen(effect)?;
     let text = effect.parameters()?.text(c"document")?;
     if text.trim().is_empty() {
-        return Err(Failure::Told("there are no shapes to save: load a project first".into()));
+        return Err(Failure::Told("found no shapes to save: load a project first".into()));
     }
     let told = |error: &dyn std::fmt::Display| Failure::Told(error.to_string());
     let json = stored::decode(&text).map_err(Failure::Told)?;

@@ -1,4 +1,4 @@
-//! Clips and parameters of the effect.
+//! Describes the effect's clips and parameters.
 
 use super::overlay_entry;
 use crate::description::{self, About};
@@ -13,15 +13,15 @@ use rototoon::scene::effects::ROTO;
 
 const ABOUT: About = About {
     label: "Rototoon Roto",
-    description: "Contours of drawn characters, tracked by Rototoon, as cutouts, mattes, lines and ids.",
+    description: "Draws contours of drawn characters, tracked by Rototoon, as cutouts, mattes, lines or ids.",
     tiles: true,
 };
 
-/// What the effect can do.
+/// Describes the effect.
 pub fn describe(action: &Action) -> Result<(), Failure> {
     description::effect(&action.effect, &ABOUT)?;
     let properties = action.effect.properties()?;
-    // A host without overlays may have no place for them.
+    // A host without overlays may lack the property for their entry point.
     if host::properties()?.int(kOfxImageEffectPropSupportsOverlays, 0).is_ok_and(|supported| supported != 0) {
         let _ = properties.set_pointer(kOfxImageEffectPluginPropOverlayInteractV1, 0, overlay_entry::of_host(false));
     }
@@ -31,7 +31,7 @@ pub fn describe(action: &Action) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Clips and parameters in a context.
+/// Describes the clips and parameters in a context.
 pub fn describe_in_context(action: &Action) -> Result<(), Failure> {
     description::clips(action, &ABOUT)?;
     parameters::define(&ROTO, &action.effect.parameters()?)

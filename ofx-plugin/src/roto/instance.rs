@@ -1,4 +1,4 @@
-//! What an instance keeps: its document, read once, and what the user was told.
+//! The data of an instance: its document, which is read once, and the messages that the user has seen.
 
 use super::overlay::Drag;
 use super::stored;
@@ -9,12 +9,12 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
-/// How messages name the document.
+/// The name of the stored document in messages.
 pub const ORIGIN: &str = "the composition's document";
-/// Most different things that are told of until the user changes something.
+/// Most different messages until the user changes something.
 const MOST_NOTES: usize = 20;
 
-/// What an instance keeps between actions.
+/// The data that an instance keeps between actions.
 #[derive(Debug, Default)]
 pub struct Instance {
     read: Mutex<Option<Read>>,
@@ -22,24 +22,24 @@ pub struct Instance {
     drag: Mutex<Option<Drag>>,
 }
 
-/// A document that was read, or why it could not be.
+/// A document, or why it could not be read.
 #[derive(Clone, Debug)]
 struct Read {
     origin: Origin,
     result: Result<Arc<Document>, String>,
 }
 
-/// Where a document came from; equal where it would come out the same.
+/// The origin of a document. Equal origins give equal documents.
 #[derive(Clone, Debug, PartialEq)]
 enum Origin {
-    /// The text in the composition.
+    /// The text stored in the composition.
     Text(String),
-    /// A file with its time and size.
+    /// A file with its modification time and size.
     File(String, Option<(SystemTime, u64)>),
 }
 
 impl Instance {
-    /// The document: that in the composition, else the project's file. None where there is neither.
+    /// The document stored in the composition, or else the project's file. `None` if there is neither.
     pub fn document(&self, parameters: &Parameters) -> Result<Option<Arc<Document>>, Failure> {
         let text = parameters.text(c"document")?;
         let origin = if text.trim().is_empty() {
@@ -69,12 +69,12 @@ impl Instance {
         }
     }
 
-    /// Lets go of what can be read again.
+    /// Drops the document, which can be read again.
     pub fn forget(&self) {
         *lock(&self.read) = None;
     }
 
-    /// Tells the user of something about what is shown: once, until something is changed.
+    /// Shows the user a message about the picture, once until the user changes something.
     pub fn note(&self, effect: &Effect, text: &str, error: bool) {
         let new = {
             let mut told = lock(&self.told);
@@ -90,12 +90,12 @@ impl Instance {
         *lock(&self.drag)
     }
 
-    /// Remembers it.
+    /// Sets the control point that is being dragged.
     pub fn set_drag(&self, drag: Option<Drag>) {
         *lock(&self.drag) = drag;
     }
 
-    /// The user changed something: what was told may hold no more.
+    /// Removes the messages, because the user has changed something and they may no longer be true.
     pub fn changed(&self, effect: &Effect) {
         let told = std::mem::take(&mut *lock(&self.told));
         if !told.is_empty() {

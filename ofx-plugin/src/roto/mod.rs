@@ -1,17 +1,17 @@
-//! The effect `org.rototoon.Roto`: the parts of a project document as cutout, matte, overlay or ids.
+//! The effect `org.rototoon.Roto`: draws the parts of a project document as cutout, matte, overlay or ids.
 //!
-//! - [`describe`]: clips and parameters
-//! - [`settings`]: what the parameters say at a time
-//! - [`instance`]: what an instance keeps: its document, read once, and what the user was told
-//! - [`stored`]: the document as the text that a host keeps
-//! - [`placement`]: where the footage's pixels are in the host's picture
-//! - [`parts`]: which parts are meant
-//! - [`picture`]: what is drawn
-//! - [`regions`]: where something is drawn, and what of the source that needs
-//! - [`render`]: the pixels of a window
-//! - [`overlay`]: contours over the viewer, control points that can be dragged; [`overlay_entry`]: how the host calls it
+//! - [`describe`]: describes clips and parameters
+//! - [`settings`]: the parameters' values at a time
+//! - [`instance`]: the data of an instance: its document, and the messages that the user has seen
+//! - [`stored`]: encodes the document as a text that the host stores
+//! - [`placement`]: places the footage's pixels in the host's picture
+//! - [`parts`]: selects parts by name
+//! - [`picture`]: draws the parts
+//! - [`regions`]: the regions that are drawn, and the regions of the source that they need
+//! - [`render`]: renders the pixels of a window
+//! - [`overlay`]: draws contours over the viewer, with control points that can be dragged; [`overlay_entry`]: how the host calls it
 //! - [`buttons`]: load, save, track
-//! - [`track`]: core's tracker on the source's frames
+//! - [`track`]: runs the core's tracker on the source's frames
 
 pub mod buttons;
 pub mod describe;
@@ -41,10 +41,10 @@ use openfx::sys::image_effect_v1::image_effect::{
 };
 use std::ffi::CStr;
 
-/// The effect's id, fixed for ever.
+/// The effect's id. Old compositions contain it, so it never changes.
 pub const ID: &CStr = c"org.rototoon.Roto";
 
-/// Does an action.
+/// Runs an action.
 pub fn perform(action: &Action) -> Result<(), Failure> {
     let name = action.name;
     if name == kOfxActionLoad {
@@ -72,7 +72,7 @@ pub fn perform(action: &Action) -> Result<(), Failure> {
 
 #[allow(unsafe_code, reason = "the data of an instance is a pointer that the host keeps")]
 fn instance<'a>(effect: &Effect<'a>) -> Result<&'a Instance, Failure> {
-    // SAFETY: `create` ties this type to every instance of this effect.
+    // SAFETY: `create` attaches data of this type to every instance of this effect.
     unsafe { effect.data::<Instance>() }
 }
 
@@ -82,7 +82,7 @@ fn create(action: &Action) -> Result<(), Failure> {
 
 #[allow(unsafe_code, reason = "the data of an instance is a pointer that the host keeps")]
 fn destroy(action: &Action) -> Result<(), Failure> {
-    // SAFETY: as in `instance`; no other action of the instance runs now.
+    // SAFETY: as in `instance`. No other action of the instance runs at the same time.
     unsafe { action.effect.take_data::<Instance>() }.map(drop)
 }
 

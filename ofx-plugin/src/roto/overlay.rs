@@ -1,7 +1,7 @@
-//! Contours over the viewer, and control points that can be dragged.
+//! Draws contours over the viewer, and lets the user drag their control points.
 //!
-//! A drag on a key frame moves the key's point; on a frame between keys it makes a pin, which **Track** then holds to. The
-//! point moves at once on that frame, and the document is written when the pen goes up.
+//! A drag on a key frame moves the key's point. A drag on a frame between keys makes a pin, which the next **Track** keeps.
+//! The point moves at once on that frame. The document is written when the pen goes up.
 
 use super::parts::selected;
 use super::placement::Placement;
@@ -15,9 +15,9 @@ use rototoon::render::motion::outline_at;
 use rototoon::scene::{FrameNumber, palette};
 use std::sync::Arc;
 
-/// Pixels of the screen within which a point is taken.
+/// Largest distance from the pen at which a point is picked, in screen pixels.
 const NEAR: f64 = 8.0;
-/// Half the side of a control point in pixels of the screen.
+/// Half the side of a control point's square, in screen pixels.
 const HANDLE: f64 = 3.0;
 
 /// A control point that is being dragged.
@@ -26,11 +26,11 @@ pub struct Drag {
     part: usize,
     point: usize,
     frame: FrameNumber,
-    /// Where the pen is, in pixels of the footage.
+    /// Position of the pen in pixels of the footage.
     at: Point,
 }
 
-/// The shapes that a viewer shows.
+/// The shapes that the viewer shows.
 struct Shown {
     document: Arc<Document>,
     parts: Vec<usize>,
@@ -41,7 +41,7 @@ struct Shown {
 impl Shown {
     fn of(view: &View) -> Result<Self, Failure> {
         let (instance, parameters) = (instance(&view.effect)?, view.effect.parameters()?);
-        // What is wrong with a document is told by render.
+        // Rendering reports the errors of a document.
         let document = instance.document(&parameters).ok().flatten().ok_or(Failure::Default)?;
         let settings = Settings::read(&parameters, view.time)?;
         let mut parts = selected(&document.scene.parts, &settings.parts).0;
@@ -50,13 +50,13 @@ impl Shown {
         Ok(Self { document, parts, settings, placement })
     }
 
-    /// The document's frame, if the viewer is on one.
+    /// The document's frame at the viewer's time; `None` between frames.
     fn frame(&self) -> Option<FrameNumber> {
         let time = self.settings.document_time;
         (time.fract() == 0.0 && time.abs() < 1e9).then_some(time as FrameNumber)
     }
 
-    /// The control point nearest to the pen, of the nearest part where several are as near.
+    /// The control point nearest to the pen. Of several at the same distance, that of the frontmost part.
     fn nearest(&self, view: &View) -> Option<Drag> {
         let (frame, pen) = (self.frame()?, Point::from(view.pen));
         let points = self.parts.iter().rev().flat_map(|&part| {
@@ -69,7 +69,7 @@ impl Shown {
     }
 }
 
-/// Deals with an event of the viewer.
+/// Handles an event of the viewer.
 pub fn perform(view: &View) -> Result<(), Failure> {
     let dragged = instance(&view.effect)?.drag();
     match (view.event, dragged) {
@@ -106,7 +106,7 @@ fn draw(view: &View, dragged: Option<Drag>) -> Result<(), Failure> {
         let [r, g, b] = palette::distinct(index);
         let drag = dragged.filter(|drag| drag.part == index && Some(drag.frame) == frame);
         let outline = |points: &[Point]| points.iter().map(|&p| shown.placement.shown(p)).collect::<Vec<_>>();
-        // While a point is dragged, the control points are what can be seen to move.
+        // A drag moves control points, so snapped curves are not shown while it lasts.
         let curves = shown.settings.curves && drag.is_none();
         let Some(mut points) = outline_at(part, shown.settings.document_time, curves) else { continue };
         if let Some(drag) = drag
@@ -146,7 +146,7 @@ fn keep(view: &View, shown: &Shown, drag: Drag) -> Result<(), Failure> {
     if let Some(point) = part.tracks.get_mut(&drag.frame).and_then(|track| track.get_mut(drag.point)) {
         *point = drag.at;
     }
-    // The snapped line was that of another contour.
+    // The snapped curve belongs to the old contour.
     part.curves.remove(&drag.frame);
     let problems = document.problems();
     if problems.error_count() > 0 {

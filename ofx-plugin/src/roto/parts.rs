@@ -1,9 +1,9 @@
-//! Which parts are meant.
+//! Selects parts by name.
 
 use rototoon::scene::Part;
 
-/// The indices of the parts that a list of names means, in the document's order, and the names that mean none. Names are
-/// separated by commas, and `*` stands for any text; an empty list means all parts.
+/// The indices of the parts that a list of names selects, in the document's order, and the names that select no part.
+/// Names are separated by commas, and `*` matches any text. An empty list selects all parts.
 pub fn selected<'a>(parts: &[Part], names: &'a str) -> (Vec<usize>, Vec<&'a str>) {
     let patterns: Vec<&str> = names.split(',').map(str::trim).filter(|name| !name.is_empty()).collect();
     if patterns.is_empty() {
@@ -15,7 +15,7 @@ pub fn selected<'a>(parts: &[Part], names: &'a str) -> (Vec<usize>, Vec<&'a str>
     (indices, missing.copied().collect())
 }
 
-/// Whether a name fits a pattern.
+/// Whether a name matches a pattern.
 fn matches(pattern: &str, name: &str) -> bool {
     let mut pieces = pattern.split('*');
     let first = pieces.next().unwrap_or_default();

@@ -1,8 +1,8 @@
-//! What is drawn: outlines at a time, made into pixels.
+//! Draws the outlines at a time into pixels.
 //!
-//! Parts are drawn from the farthest to the nearest, parts of equal depth in the document's order, so that ids and lines
-//! of nearer parts lie over those of farther ones. Lines have a dark border, as in core's overlay: where two cross, the one
-//! above shows.
+//! Parts are drawn from the farthest to the nearest, and parts of equal depth in the document's order. So ids and lines of
+//! nearer parts cover those of farther ones. Lines have a dark border, as in the core's overlay. It shows which of two
+//! crossing lines is in front.
 
 use super::placement::Placement;
 use super::settings::{Output, Settings};
@@ -14,7 +14,7 @@ use rototoon::render::mask::{Bounds, Mask};
 use rototoon::render::motion::{outline_at, shutter};
 use rototoon::scene::{Part, Raster, Scene, palette};
 
-/// Width of a line's border on each side, as a share of the line's.
+/// Width of a line's border on each side, as a share of the line's width.
 const BORDER: f64 = 0.5;
 /// Opacity of the border.
 const BORDER_OPACITY: f32 = 0.5;
@@ -22,20 +22,20 @@ const BORDER_OPACITY: f32 = 0.5;
 /// Something to draw, in pixels with y turned down.
 #[derive(Clone, Debug)]
 pub enum Picture {
-    /// What was there, within the mask or, where the flag is set, without.
+    /// The previous pixels inside the mask, or outside of it if the flag is set.
     Cutout(Mask, bool),
-    /// White within the mask or without.
+    /// White inside the mask, or outside of it if the flag is set.
     Matte(Mask, bool),
-    /// Masks in their colours, the farthest first.
+    /// Masks with their colours, the farthest first.
     Ids(Vec<(Mask, [f32; 3])>),
-    /// Outlines over what was there, the farthest first.
+    /// Outlines over the previous pixels, the farthest first.
     Lines(Lines),
 }
 
-/// Outlines to draw.
+/// Outlines to draw as lines.
 #[derive(Clone, Debug)]
 pub struct Lines {
-    /// Points, and whether the last joins the first.
+    /// For each outline its points, and whether the last point joins the first.
     outlines: Vec<(Vec<Point>, bool)>,
     width: f64,
     colour: [f32; 4],
@@ -71,7 +71,7 @@ impl Picture {
         }
     }
 
-    /// Whether the picture is what was there before, all over a window.
+    /// Whether the picture changes no pixel of a window.
     pub fn changes_nothing(&self, window: Window) -> bool {
         match self {
             Self::Cutout(mask, true) => mask.misses(window),
@@ -80,7 +80,7 @@ impl Picture {
         }
     }
 
-    /// What is drawn at most; the flag says that it is drawn everywhere else.
+    /// The bounds of the drawn pixels. If the flag is true, pixels outside of them are drawn too.
     pub fn bounds(&self) -> (Option<Bounds>, bool) {
         match self {
             Self::Cutout(mask, invert) | Self::Matte(mask, invert) => (mask.bounds(), *invert),
@@ -89,7 +89,7 @@ impl Picture {
         }
     }
 
-    /// Draws over the pixels of a window. `None` where `go_on`, asked at each row, says no.
+    /// Draws over the pixels of a window. Calls `go_on` at each row, and returns `None` if it returns false.
     pub fn paint(&self, window: Window, pixels: &mut Raster<Pixel>, go_on: &mut dyn FnMut() -> bool) -> Option<()> {
         match self {
             Self::Cutout(mask, invert) => {
@@ -153,8 +153,8 @@ impl Lines {
     }
 }
 
-/// The outlines of closed parts at the times that the shutter is open. A part that is there at the time itself is there at
-/// all of them: beyond its track it holds.
+/// The outlines of closed parts at the times while the shutter is open. A part with an outline at the frame's time has one
+/// at all of these times: outside of its track it keeps that outline.
 fn instants(parts: &[&Part], settings: &Settings, placement: &Placement) -> Vec<Vec<Vec<Point>>> {
     let time = settings.document_time;
     let still: Vec<(&Part, Vec<Point>)> =

@@ -1,9 +1,9 @@
-//! Where the footage's pixels are in the host's picture: the border between core's coordinates and the host's.
+//! Places the footage's pixels in the host's picture: converts between the core's coordinates and the host's.
 //!
-//! Core counts y down from the upper left corner of the footage. The host's canonical coordinates have y up and square
-//! pixels at full size; its pixels are those times the render scale, divided by the pixel aspect ratio across. Drawing is
-//! done in **pixels with y turned down**: row `v` is the host's row `-1 - v`, so that nothing depends on the height of
-//! anything.
+//! The core has y down from the upper left corner of the footage. The host's canonical coordinates have y up and square
+//! pixels at full size. Its pixel coordinates are the canonical ones times the render scale; x is also divided by the pixel
+//! aspect ratio. Drawing uses **pixels with y turned down**: row `v` is the host's row `-1 - v`. So it does not depend on
+//! the height of a picture.
 
 use crate::description::{OUTPUT, SOURCE};
 use crate::ofx::effect::Region;
@@ -14,20 +14,21 @@ use rototoon::render::coverage::Window;
 use rototoon::render::mask;
 use rototoon::scene::Footage;
 
-/// From footage to pixels with y turned down, and between these and canonical coordinates.
+/// Converts footage coordinates to pixels with y turned down, and to and from canonical coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     factor: Point,
     shift: Point,
-    /// Pixels for a canonical unit.
+    /// Pixels per canonical unit.
     scale: Point,
-    /// Whether a pixel of the footage is a pixel of the host's picture at full size.
+    /// Whether the footage is not stretched: one of its pixels is one pixel of the host's picture at full size.
     pub matches: bool,
 }
 
 impl Placement {
-    /// Where the footage is: where the source is if it has its size, else where the project's format is if that has, else
-    /// stretched over the source, or over the format where there is none.
+    /// Places the footage. If the source has the footage's size, the footage is where the source is. Otherwise, if the
+    /// project's format has that size, it is where the format is. Otherwise it is stretched over the source, or over the
+    /// format if there is no source.
     pub fn of(effect: &Effect, footage: &Footage, time: f64, render_scale: [f64; 2]) -> Result<Self, Failure> {
         let source = effect.clip(SOURCE)?;
         let aspect = effect.clip(OUTPUT)?.pixel_aspect();
@@ -50,35 +51,35 @@ impl Placement {
         Self { factor, shift: Point::new(region.x1, -region.y2) * scale, scale, matches }
     }
 
-    /// A point of the footage in pixels.
+    /// Converts a point of the footage to pixels with y turned down.
     pub fn place(&self, p: Point) -> Point {
         p * self.factor + self.shift
     }
 
-    /// A point of the footage in canonical coordinates.
+    /// Converts a point of the footage to canonical coordinates.
     pub fn shown(&self, p: Point) -> [f64; 2] {
         let placed = self.place(p) / self.scale;
         [placed.x, -placed.y]
     }
 
-    /// The reverse.
+    /// Converts canonical coordinates to a point of the footage.
     pub fn footage(&self, [x, y]: [f64; 2]) -> Point {
         (Point::new(x, -y) * self.scale - self.shift) / self.factor
     }
 
-    /// Lengths in pixels at full size as pixels of the render scale.
+    /// Converts a length in pixels at full size to pixels at the render scale.
     pub fn length(&self, pixels: f64) -> f64 {
         pixels * self.scale.y
     }
 
-    /// Bounds of what is drawn in canonical coordinates.
+    /// Converts bounds in pixels with y turned down to canonical coordinates.
     pub fn canonical(&self, bounds: &mask::Bounds) -> Region {
         let (least, most) = (bounds.least / self.scale, bounds.most / self.scale);
         Region { x1: least.x, y1: -most.y, x2: most.x, y2: -least.y }
     }
 }
 
-/// The host's pixels as a window to draw.
+/// Converts a rectangle of the host's pixels to a window with y turned down.
 pub fn window(bounds: &Bounds) -> Window {
     Window { left: bounds.x1.into(), top: (-bounds.y2).into(), right: bounds.x2.into(), bottom: (-bounds.y1).into() }
 }
@@ -100,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_go_where_they_belong_and_back() {
+    fn corners_are_converted_both_ways() {
         let region = Region { x1: 10.0, y1: 20.0, x2: 110.0, y2: 70.0 };
         let placement = Placement::new(&footage(100, 50), &region, 1.0, [1.0, 1.0], true);
         assert_eq!(placement.place(Point::ZERO), Point::new(10.0, -70.0));
@@ -115,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_turned_round() {
+    fn rows_are_turned_down() {
         let bounds = Bounds { x1: 1, y1: 2, x2: 5, y2: 9 };
         assert_eq!(window(&bounds), Window { left: 1, top: -9, right: 5, bottom: -2 });
     }

@@ -1,4 +1,4 @@
-//! Where something is drawn, what of the source that needs, and of what kind the output is.
+//! The regions that are drawn, the regions of the source that they need, and the format of the output.
 
 use super::instance;
 use super::parts::selected;
@@ -16,17 +16,17 @@ use openfx::sys::image_effect_v1::image_effect::{
     kOfxImageEffectPropSupportsMultiResolution, kOfxImageOpaque, kOfxImagePreMultiplied,
 };
 
-/// What is drawn at the time of an action, and where.
+/// The picture to draw at the time of an action.
 pub struct Drawn {
-    /// What is drawn.
+    /// The picture.
     pub picture: Picture,
-    /// Where the footage is.
+    /// The placement of the footage.
     pub placement: Placement,
     /// The parameters' values.
     pub settings: Settings,
 }
 
-/// What is drawn; none where no document is set. What is doubtful about it is told.
+/// The picture to draw; `None` if no document is set. Warns the user about possible mistakes.
 pub fn drawn(effect: &Effect, time: f64, render_scale: [f64; 2]) -> Result<Option<Drawn>, Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let settings = Settings::read(&parameters, time)?;
@@ -38,15 +38,16 @@ pub fn drawn(effect: &Effect, time: f64, render_scale: [f64; 2]) -> Result<Optio
     let placement = Placement::of(effect, footage, time, render_scale)?;
     if !placement.matches {
         let (width, height) = (footage.width, footage.height);
-        let text = format!("the project is made for {width}x{height} pixels, and stretched over other footage");
+        let text =
+            format!("the project is made for {width}x{height} pixels and is stretched over footage of another size");
         instance.note(effect, &text, false);
     }
     let (parts, missing) = selected(&document.scene.parts, &settings.parts);
     for name in missing {
-        instance.note(effect, &format!("parts: no part is called {name:?}"), false);
+        instance.note(effect, &format!("parts: found {name:?}, but no part has this name"), false);
     }
     if !document.scene.parts.iter().any(|part| !part.tracks.is_empty()) {
-        instance.note(effect, "the project is not tracked: its parts are drawn on their key frames only", false);
+        instance.note(effect, "the project is not tracked, so its parts are drawn on their key frames only", false);
     }
     let picture = Picture::new(&document.scene, &parts, &settings, &placement);
     Ok(Some(Drawn { picture, placement, settings }))
@@ -58,16 +59,16 @@ fn time_and_scale(action: &Action) -> Result<(f64, [f64; 2]), Failure> {
     Ok((action.input.double(kOfxPropTime, 0)?, if usable { scale } else { [1.0; 2] }))
 }
 
-/// Where the source has pixels, if it is connected.
+/// The region in which the source has pixels, if it is connected.
 fn source_region(effect: &Effect, time: f64) -> Result<Option<Region>, Failure> {
     let source = effect.clip(SOURCE)?;
     Ok(if source.connected() { source.region(time) } else { None })
 }
 
-/// The region of definition: no more than what is drawn.
+/// Sets the region of definition: the region that is drawn.
 pub fn definition(action: &Action) -> Result<(), Failure> {
     let (time, scale) = time_and_scale(action)?;
-    // A host whose images are all of one size has to be given that.
+    // If the host supports only one image size, it must get the default region.
     if host::properties()?.int(kOfxImageEffectPropSupportsMultiResolution, 0).is_ok_and(|multi| multi == 0) {
         return Err(Failure::Default);
     }
@@ -85,7 +86,7 @@ pub fn definition(action: &Action) -> Result<(), Failure> {
     action.output.set_doubles(kOfxImageEffectPropRegionOfDefinition, &region.to_array())
 }
 
-/// The region of the source that a region of the output needs.
+/// Sets the region of the source that a region of the output needs.
 pub fn interest(action: &Action) -> Result<(), Failure> {
     let (time, scale) = time_and_scale(action)?;
     let [x1, y1, x2, y2] = action.input.doubles(kOfxImageEffectPropRegionOfInterest)?;
@@ -102,13 +103,13 @@ pub fn interest(action: &Action) -> Result<(), Failure> {
     action.output.set_doubles(c"OfxImageClipPropRoI_Source", &needed.to_array())
 }
 
-/// The frames of the source that a frame needs: itself. Motion blur is made of the outlines alone.
+/// Sets the frames of the source that a frame needs: only itself, because motion blur uses only the outlines.
 pub fn frames_needed(action: &Action) -> Result<(), Failure> {
     let time = action.input.double(kOfxPropTime, 0)?;
     action.output.set_doubles(c"OfxImageClipPropFrameRange_Source", &[time, time])
 }
 
-/// Whether the output is the source.
+/// Reports that the output is the source, if it is.
 pub fn identity(action: &Action) -> Result<(), Failure> {
     let (time, scale) = time_and_scale(action)?;
     let effect = &action.effect;
@@ -117,7 +118,7 @@ pub fn identity(action: &Action) -> Result<(), Failure> {
     if !output.shows_source() || !effect.clip(SOURCE)?.connected() {
         return Err(Failure::Default);
     }
-    // What fails is told by render.
+    // Rendering reports errors.
     let same = match drawn(effect, time, scale) {
         Ok(None) => true,
         Ok(Some(drawn)) => drawn.picture.changes_nothing(window(&Bounds { x1, y1, x2, y2 })),
@@ -130,8 +131,8 @@ pub fn identity(action: &Action) -> Result<(), Failure> {
     action.output.set_double(kOfxPropTime, 0, time)
 }
 
-/// Of what kind the output is: a matte, ids and what is cut out of an opaque source are premultiplied, the rest is as the
-/// source. Frames differ although nothing is animated.
+/// Sets the format of the output. A matte, ids and a cutout of an opaque source are premultiplied; other outputs are as the
+/// source. Frames are declared to vary, because they differ although no parameter is animated.
 pub fn clip_preferences(action: &Action) -> Result<(), Failure> {
     let effect = &action.effect;
     let output = Output::of(&effect.parameters()?, 0.0)?;

@@ -1,7 +1,7 @@
-//! Pixels.
+//! Renders the effect's pixels.
 //!
-//! The window is cut into bands of rows, which the host's threads draw one after the other; what is in a pixel depends on
-//! neither. At each row the host is asked whether it still wants the picture.
+//! The window is divided into bands of rows, which the host's threads draw. Neither bands nor threads change a pixel. Each row
+//! begins with a check whether the host has aborted.
 
 use super::placement::window;
 use super::regions::{Drawn, drawn};
@@ -17,7 +17,7 @@ use rototoon::scene::Raster;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Rows of a band: enough that what bands do over again at their borders is little.
+/// Rows of a band. Neighbouring bands repeat some work at their border, so bands must not be low.
 const BAND: i32 = 64;
 
 /// Renders a window.
@@ -41,7 +41,7 @@ pub fn render(action: &Action) -> Result<(), Failure> {
     let drawn = drawn(effect, time, scale)?;
     let shows_source = match &drawn {
         Some(drawn) => drawn.settings.output.shows_source(),
-        // Nothing to cut by or to draw: the source as it is, or an empty matte.
+        // Without a document the output is the unchanged source, or an empty matte.
         None => Output::of(&effect.parameters()?, time)?.shows_source(),
     };
     let source = if shows_source { source(effect, time)? } else { None };
@@ -61,7 +61,7 @@ fn source<'a>(effect: &Effect<'a>, time: f64) -> Result<Option<Image<'a>>, Failu
     if source.connected() { source.image(time) } else { Ok(None) }
 }
 
-/// Draws a band; `None` where it was aborted.
+/// Draws a band. Returns `None` if the render was aborted.
 fn draw(
     effect: &Effect,
     drawn: Option<&Drawn>,
@@ -92,7 +92,7 @@ fn draw(
     Some(())
 }
 
-/// Reads row `y` of the source, which may be smaller than what is drawn: beyond it is nothing.
+/// Reads row `y` of the source. The source may be smaller than the window; pixels outside of it stay as they are.
 fn read(source: &Image, bounds: &Bounds, y: i32, pixels: &mut [Pixel]) {
     let shared = bounds.shared(&source.bounds);
     if shared.is_empty() {

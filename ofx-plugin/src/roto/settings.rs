@@ -1,23 +1,23 @@
-//! What the parameters say at a time.
+//! The parameters' values at a time.
 
 use crate::ofx::{Failure, Parameters};
 use rototoon::render::coverage::MOST_INSTANTS;
 
-/// What is made.
+/// The kind of picture that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Output {
-    /// The source within the parts.
+    /// The source inside the parts.
     Cutout,
-    /// Coverage of the parts.
+    /// The coverage of the parts.
     Matte,
     /// Outlines over the source.
     Overlay,
-    /// A colour for each part.
+    /// The parts, each in a colour of its own.
     Ids,
 }
 
 impl Output {
-    /// The output chosen.
+    /// The chosen output.
     pub fn of(parameters: &Parameters, time: f64) -> Result<Self, Failure> {
         Ok(match parameters.int(c"output", time)? {
             1 => Self::Matte,
@@ -36,32 +36,32 @@ impl Output {
 /// The values of the parameters at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// What is made.
+    /// The kind of picture that is drawn.
     pub output: Output,
-    /// The time in the document.
+    /// The time in the document, in frames.
     pub document_time: f64,
-    /// Names of parts.
+    /// Names of parts, as a list with commas.
     pub parts: String,
-    /// Whether snapped paths are followed.
+    /// Whether snapped paths are used.
     pub curves: bool,
-    /// Whether cutout and matte are turned round.
+    /// Whether cutout and matte are inverted.
     pub invert: bool,
-    /// Pixels outward.
+    /// By how many pixels at full size the mask grows.
     pub grow: f64,
-    /// Pixels of fading on each side.
+    /// Pixels at full size over which the mask fades, on each side of its edge.
     pub feather: f64,
-    /// Frames that the shutter is open.
+    /// How long the shutter is open, in frames.
     pub shutter: f64,
-    /// Times within the shutter.
+    /// Number of times within the shutter's opening.
     pub samples: usize,
-    /// Pixels across a line.
+    /// Width of lines in pixels at full size.
     pub line_width: f64,
-    /// Colour and opacity of lines.
+    /// RGB and opacity of lines.
     pub line_colour: [f32; 4],
 }
 
 impl Settings {
-    /// Reads them; a value that is no number counts as 0.
+    /// Reads the values. A number that is not finite counts as 0.
     pub fn read(parameters: &Parameters, time: f64) -> Result<Self, Failure> {
         let number = |id| parameters.double(id, time).map(|v| if v.is_finite() { v } else { 0.0 });
         let [r, g, b, a] = parameters.colour(c"lineColor", time)?;

@@ -1,16 +1,16 @@
-//! The document as the text that a host keeps.
+//! Encodes the document as a text that the host stores.
 //!
-//! Hosts do things to text: Nuke runs what stands in brackets as TCL, others break lines or mangle quotes. So the document's
-//! JSON is kept in letters, digits, `-` and `_` alone (base64url, RFC 4648 §5, without padding) behind a name with the version
-//! of this form. Plain JSON, as a script may set it, is taken too.
+//! Hosts change texts: Nuke runs text in brackets as TCL, and other hosts break lines or mangle quotes. So the document's
+//! JSON is stored with letters, digits, `-` and `_` only (base64url, RFC 4648 §5, without padding), after a prefix with the
+//! version of this encoding. Plain JSON, which a script may set, is read too.
 
 use std::borrow::Cow;
 
-/// What a text of this form begins with.
+/// The prefix of an encoded document.
 const PREFIX: &str = "rototoon1_";
 const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 
-/// The text that is kept of a document's JSON.
+/// Encodes a document's JSON.
 pub fn encode(json: &str) -> String {
     let mut text = String::with_capacity(PREFIX.len() + json.len().div_ceil(3) * 4);
     text.push_str(PREFIX);
@@ -23,13 +23,13 @@ pub fn encode(json: &str) -> String {
     text
 }
 
-/// The JSON of a text that was kept; an error says what is wrong with it.
+/// Decodes a stored text into JSON. The error is a message for the user.
 pub fn decode(text: &str) -> Result<Cow<'_, str>, String> {
     let text = text.trim();
     let Some(code) = text.strip_prefix(PREFIX) else {
         if text.starts_with("rototoon") {
             return Err(format!(
-                "a newer Rototoon kept the composition's document, expected one that begins with {PREFIX}"
+                "the composition's document was stored by a newer Rototoon: expected a text that begins with {PREFIX}"
             ));
         }
         return Ok(Cow::Borrowed(text));
@@ -40,7 +40,7 @@ pub fn decode(text: &str) -> Result<Cow<'_, str>, String> {
     let (mut bits, mut count) = (0u32, 0);
     for (at, letter) in code.bytes().enumerate() {
         let value = values[usize::from(letter)];
-        let value = value.ok_or_else(|| format!("the composition's document is damaged at letter {at}"))?;
+        let value = value.ok_or_else(|| format!("the composition's document is damaged at character {at}"))?;
         bits = bits << 6 | value;
         count += 6;
         if count >= 8 {
@@ -48,7 +48,9 @@ pub fn decode(text: &str) -> Result<Cow<'_, str>, String> {
             bytes.push((bits >> count) as u8);
         }
     }
-    String::from_utf8(bytes).map(Cow::Owned).map_err(|_| "the composition's document is damaged: it is no text".into())
+    String::from_utf8(bytes)
+        .map(Cow::Owned)
+        .map_err(|_| "the composition's document is damaged: it is not UTF-8".into())
 }
 
 #[cfg(test)]
@@ -56,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_kept_comes_back_whatever_its_length() {
+    fn encoded_texts_of_any_length_are_decoded() {
         for json in ["", "{", "{}", "{\"ü\": [1, 2.5]}\n", "größer als 3 → 4"] {
             let text = encode(json);
             assert!(text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_'), "{text}");
@@ -67,10 +69,10 @@ mod tests {
     }
 
     #[test]
-    fn plain_json_is_taken_and_damage_is_told() {
+    fn plain_json_is_read_and_damage_is_reported() {
         assert_eq!(decode(" {\"a\": 1} ").unwrap(), "{\"a\": 1}");
-        assert!(decode("rototoon1_TW[u").unwrap_err().contains("letter 2"));
-        assert!(decode("rototoon1___8").unwrap_err().contains("no text"));
+        assert!(decode("rototoon1_TW[u").unwrap_err().contains("character 2"));
+        assert!(decode("rototoon1___8").unwrap_err().contains("not UTF-8"));
         assert!(decode("rototoon2_TWFu").unwrap_err().contains("newer"));
     }
 }

@@ -1,7 +1,7 @@
-//! Core's tracker on the source's frames.
+//! Runs the core's tracker on the source's frames.
 //!
-//! The tracker runs on threads of its own; the host is asked for frames, told of progress and asked whether to go on by the
-//! thread that the action came on, and by no other: hosts allow their functions there.
+//! The tracker runs on threads of its own. Only the thread of the action calls the host: it fetches frames, reports progress
+//! and checks whether the user has cancelled. Hosts do not allow these calls on other threads.
 
 use super::placement::Placement;
 use super::{instance, stored};
@@ -22,18 +22,17 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, s
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Between two looks at the host's wish.
+/// Time between two checks whether the user has cancelled.
 const PACE: Duration = Duration::from_millis(40);
-/// Bytes of frames that are kept.
+/// Most bytes of frames that are kept.
 const KEPT: usize = 1 << 30;
 type Picture = Arc<Raster<Colour>>;
 
-/// Follows the document's keys through the source's frames and keeps the result in the document.
+/// Tracks the document's parts through the source's frames and stores the result in the document.
 pub fn track(effect: &Effect, time: f64) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let document = instance.document(&parameters)?;
-    let document =
-        document.ok_or_else(|| Failure::Told("there are no shapes to track: load a project first".into()))?;
+    let document = document.ok_or_else(|| Failure::Told("found no shapes to track: load a project first".into()))?;
     let source = effect.clip(SOURCE)?;
     let clip_range = source.connected().then(|| source.frame_range()).flatten();
     let clip_range = clip_range.ok_or_else(|| Failure::Told("connect the footage to the input Source first".into()))?;
@@ -58,7 +57,7 @@ pub fn track(effect: &Effect, time: f64) -> Result<(), Failure> {
     parameters.set("Track", &[(c"document", &stored::encode(&document.to_json()))])
 }
 
-/// The document's frames that the source has and the user wants.
+/// The document's frames to track: those of the source, limited to the frames that the user has chosen.
 fn range(clip: [f64; 2], chosen: [i32; 2], offset: i32) -> RangeInclusive<FrameNumber> {
     let (first, last) = (clip[0].ceil() as i32, clip[1].floor() as i32);
     let wanted = if chosen[0] < chosen[1] { chosen } else { [first, last] };
@@ -66,7 +65,7 @@ fn range(clip: [f64; 2], chosen: [i32; 2], offset: i32) -> RangeInclusive<FrameN
     first.saturating_sub(offset)..=last.saturating_sub(offset)
 }
 
-/// The scene with those frames, keys and corrections alone.
+/// The scene with only these frames and their keys and corrections.
 fn within(scene: &Scene, range: RangeInclusive<FrameNumber>) -> Scene {
     let mut scene = scene.clone();
     (scene.footage.first, scene.footage.last) = (*range.start(), *range.end());
@@ -78,10 +77,10 @@ fn within(scene: &Scene, range: RangeInclusive<FrameNumber>) -> Scene {
     pipeline::in_effect(&scene)
 }
 
-/// Puts tracks into the scene, beside what it has on frames that were not asked for.
+/// Stores new tracks in the scene. The scene keeps its tracks on frames outside the range.
 fn merge(scene: &mut Scene, mut tracking: Tracking, range: &RangeInclusive<FrameNumber>) {
     for (part, found) in scene.parts.iter().zip(&mut tracking.parts) {
-        // A part without keys there was not looked for.
+        // A part without keys in the range was not tracked.
         let untouched = found.tracks.is_empty();
         let kept = |frame: &FrameNumber| untouched || !range.contains(frame);
         found
@@ -98,7 +97,7 @@ fn run(effect: &Effect, source: Clip, offset: i32, scene: &Scene, options: Track
     let frames = HostFrames { ask: Mutex::new(ask), kept: Mutex::default(), most: kept_frames(scene) };
     let board = Board::default();
     let pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("rototoon-{index}")).build();
-    let pool = pool.map_err(|error| Failure::Told(format!("no threads to track on: {error}")))?;
+    let pool = pool.map_err(|error| Failure::Told(format!("cannot start threads to track on: {error}")))?;
     let bar = Bar::new(*effect, "Rototoon: tracking");
     let clerk = Clerk { effect, source, offset, scene };
     let result = std::thread::scope(|scope| {
@@ -125,13 +124,13 @@ fn kept_frames(scene: &Scene) -> usize {
     (KEPT / size.max(1)).max(4)
 }
 
-/// A frame that a thread of the tracker waits for.
+/// A request for a frame by a thread of the tracker, which waits for the answer.
 struct Request {
     frame: FrameNumber,
     answer: SyncSender<Result<Picture, FrameError>>,
 }
 
-/// Frames asked of the thread that may ask the host; the last ones are kept.
+/// The source's frames. They are requested from the thread that may call the host. The last ones are kept.
 struct HostFrames {
     ask: Mutex<Sender<Request>>,
     kept: Mutex<VecDeque<(FrameNumber, Picture)>>,
@@ -145,7 +144,7 @@ impl FrameSource for HostFrames {
             return Ok(picture.clone());
         }
         let (answer, answered) = sync_channel(1);
-        let gone = |_| unreadable(frame, "the host was not asked");
+        let gone = |_| unreadable(frame, "tracking has ended");
         let request = Request { frame, answer };
         self.ask.lock().unwrap_or_else(PoisonError::into_inner).send(request).map_err(|_| gone(()))?;
         let picture = answered.recv().map_err(|_| gone(()))??;
@@ -162,7 +161,7 @@ fn unreadable(frame: FrameNumber, reason: &str) -> FrameError {
     FrameError::Unreadable { frame, path: "Source".into(), reason: reason.into() }
 }
 
-/// Answers for the host.
+/// Answers requests for frames, on the thread that may call the host.
 struct Clerk<'a> {
     effect: &'a Effect<'a>,
     source: Clip<'a>,
@@ -171,11 +170,11 @@ struct Clerk<'a> {
 }
 
 impl Clerk<'_> {
-    /// Answers what is asked, for a while.
+    /// Answers requests until there are none. Waits for the first one at most [`PACE`].
     fn serve(&self, asked: &Receiver<Request>) {
         let mut next = asked.recv_timeout(PACE);
         while let Ok(request) = next {
-            // Whoever asked may have been cancelled.
+            // The thread that waits may have been cancelled.
             let _ = request.answer.send(self.fetch(request.frame));
             next = asked.try_recv().map_err(|_| RecvTimeoutError::Timeout);
         }
@@ -185,12 +184,12 @@ impl Clerk<'_> {
         let time = f64::from(frame) + f64::from(self.offset);
         let failed = |failure: Failure| unreadable(frame, &failure.to_string());
         let image = self.source.image(time).map_err(failed)?;
-        let image = image.ok_or_else(|| unreadable(frame, "the host has no picture of it"))?;
+        let image = image.ok_or_else(|| unreadable(frame, "the host has no image of this frame"))?;
         let placement = Placement::of(self.effect, &self.scene.footage, time, [1.0; 2]).map_err(failed)?;
         Ok(Arc::new(self.picture(&image, &placement)))
     }
 
-    /// The image as the footage's picture, colours as the screen shows them.
+    /// Converts the image to a picture of the footage's size, in display colours.
     fn picture(&self, image: &Image, placement: &Placement) -> Raster<Colour> {
         let (width, height) = (self.scene.footage.width, self.scene.footage.height);
         let (bounds, encoding) = (image.bounds, Encoding::of(&image.format));
@@ -209,7 +208,7 @@ impl Clerk<'_> {
     }
 }
 
-/// The value between the four pixels around a point, whose centres are at whole numbers.
+/// Interpolates bilinearly between the four pixels around a point. Pixel centres are at whole numbers.
 fn sample(picture: &Raster<Pixel>, p: Point) -> Pixel {
     let (whole, share) = (p.floor(), p - p.floor());
     let at = |dx: isize, dy: isize| picture.clamped(whole.x as isize + dx, whole.y as isize + dy);
@@ -225,7 +224,7 @@ fn sample(picture: &Raster<Pixel>, p: Point) -> Pixel {
     sum
 }
 
-/// What the tracker has come to, and whether it is to go on.
+/// The finished share of the work, and whether it is cancelled.
 #[derive(Default)]
 struct Board(Mutex<(f64, bool)>);
 
@@ -261,14 +260,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_are_those_of_the_clip_and_the_user() {
+    fn the_range_is_in_the_clip_and_in_the_chosen_frames() {
         assert_eq!(range([1.0, 34.0], [0, 0], 1), 0..=33);
         assert_eq!(range([1.0, 34.0], [5, 80], 0), 5..=34);
         assert_eq!(range([1.5, 9.9], [7, 3], -10), 12..=19);
     }
 
     #[test]
-    fn samples_lie_between_pixels() {
+    fn samples_are_interpolated_between_pixels() {
         let picture = Raster::from_fn(3, 2, |x, y| [x as f32, y as f32, 0.0, 1.0]);
         assert_eq!(sample(&picture, Point::new(1.0, 1.0)), [1.0, 1.0, 0.0, 1.0]);
         assert_eq!(sample(&picture, Point::new(0.5, 0.25)), [0.5, 0.25, 0.0, 1.0]);

@@ -1,1 +1,1 @@
-//! Nothing but its `Cargo.toml`, which says why it exists.
+//! This package is empty. Its `Cargo.toml` says why it exists.

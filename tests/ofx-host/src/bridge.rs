@@ -1,12 +1,12 @@
 //! The bridge to `host.cpp`.
-#![allow(unsafe_code, reason = "cxx writes calls of C++ functions, whose signatures it checks on both sides")]
+#![allow(unsafe_code, reason = "cxx generates the calls of C++ functions and checks their signatures on both sides")]
 
-/// A float as the bits of a half.
+/// Converts a float to the bits of a half.
 fn to_half(value: f32) -> u16 {
     half::f16::from_f32(value).to_bits()
 }
 
-/// The bits of a half as a float.
+/// Converts the bits of a half to a float.
 fn from_half(bits: u16) -> f32 {
     half::f16::from_bits(bits).to_f32()
 }
@@ -46,7 +46,7 @@ impl Default for ffi::ClipSettings {
     }
 }
 
-/// What both sides share.
+/// The types and functions that both sides share.
 #[allow(missing_docs, reason = "cxx's own items")]
 #[cxx::bridge(namespace = "rototoon_host")]
 pub mod ffi {
@@ -59,7 +59,7 @@ pub mod ffi {
         y2: i32,
     }
 
-    /// A canonical rectangle, and the status that came with it.
+    /// A rectangle in canonical coordinates, and the status of the action that gave it.
     #[derive(Clone, Debug, PartialEq)]
     struct Region {
         status: String,
@@ -69,33 +69,33 @@ pub mod ffi {
         y2: f64,
     }
 
-    /// How the host behaves.
+    /// The behaviour of the host.
     #[derive(Clone, Debug)]
     struct Settings {
         /// The host's name.
         name: String,
-        /// Suites that it has not.
+        /// Suites that the host does not have.
         missing_suites: Vec<String>,
-        /// Rendering is aborted after that many questions; never where negative.
+        /// Rendering is aborted after that many checks by the plugin; never if negative.
         abort_after: i32,
-        /// Progress is cancelled after that many updates; never where negative.
+        /// Progress is cancelled after that many updates; never if negative.
         cancel_after: i32,
-        /// Whether no image can be had.
+        /// Whether clips give no images.
         no_images: bool,
         /// Whether clips may differ in size.
         multi_resolution: bool,
-        /// Processors that the multi-thread suite tells of.
+        /// Number of processors that the multi-thread suite reports.
         cpus: u32,
     }
 
-    /// What a clip is connected to.
+    /// The images that a clip is connected to.
     #[derive(Clone, Debug)]
     struct ClipSettings {
         depth: String,
         components: String,
         premultiplication: String,
         connected: bool,
-        /// Region of definition, in pixels at scale 1.
+        /// Region of definition, in pixels at scale 1, y up.
         x1: i32,
         y1: i32,
         x2: i32,
@@ -104,21 +104,21 @@ pub mod ffi {
         aspect: f64,
         first: f64,
         last: f64,
-        /// Bytes after each row.
+        /// Unused bytes after each row.
         padding: i32,
-        /// Whether rows lie in memory from the top, so that the bytes from a row to the next are negative.
+        /// Whether the top row is first in memory, so that the number of bytes per row is negative.
         top_down: bool,
-        /// Pixels that images reach over what was asked for, on each side.
+        /// Pixels by which images exceed the requested region, on each side.
         margin: i32,
     }
 
-    /// What was rendered.
+    /// A rendered picture.
     #[derive(Clone, Debug, PartialEq)]
     struct Picture {
         width: usize,
         height: usize,
         channels: usize,
-        /// Rows from the bottom.
+        /// Values of the pixels, with rows from the bottom.
         values: Vec<f32>,
         /// Bytes outside the window that were written.
         damage: usize,

@@ -31,10 +31,10 @@
 #include "ofxhImageEffectAPI.h"
 #include "ofxhUtilities.h"
 
-// ---------------------------------------------------------------- lines that are drawn
+// ---------------------------------------------------------------- recorded lines
 
 namespace {
-// Of each line: whether it is closed, how many points it has, and the points.
+// The numbers of each line: whether it is closed, the number of its points, and their coordinates.
 std::vector<double> &drawn_lines() {
   static std::vector<double> lines;
   return lines;
@@ -74,7 +74,7 @@ std::string text_of(rust::Str s) { return std::string(s.data(), s.size()); }
 
 std::string status_name(OfxStatus status) { return OFX::StatStr(status); }
 
-// What tests set and ask for, reached from any thread.
+// The state that tests set and read, shared by all threads.
 struct Controls {
   std::mutex mutex;
   std::vector<std::string> log, messages;
@@ -90,7 +90,7 @@ Controls &controls() {
   return instance;
 }
 
-// Takes what the library writes to std::cout, line by line; a thread's line is not mixed with another's.
+// Records the library's output to std::cout line by line. Lines of different threads are not mixed.
 class LineLog : public std::streambuf {
 protected:
   int overflow(int c) override {
@@ -165,38 +165,21 @@ public:
   }
 };
 
-class IntegerParam : public Keyed<ofx::Param::IntegerInstance> {
+// A parameter of whole numbers: an integer, a choice or a flag.
+template <class Base, class Value> class WholeParam : public Keyed<Base> {
 public:
-  IntegerParam(ofx::Param::Descriptor &d, ofx::Param::SetInstance *s) : Keyed(d, s) {
-    track.value = {double(d.getProperties().getIntProperty(kOfxParamPropDefault))};
+  WholeParam(ofx::Param::Descriptor &d, ofx::Param::SetInstance *s) : Keyed<Base>(d, s) {
+    this->track.value = {double(d.getProperties().getIntProperty(kOfxParamPropDefault))};
   }
-  OfxStatus get(int &v) override { return get(0, v); }
-  OfxStatus get(OfxTime t, int &v) override { v = int(std::lround(track.at(t)[0])); return kOfxStatOK; }
-  OfxStatus set(int v) override { track.value = {double(v)}; return kOfxStatOK; }
-  OfxStatus set(OfxTime t, int v) override { track.keys[t] = {double(v)}; return kOfxStatOK; }
+  OfxStatus get(Value &v) override { return get(0, v); }
+  OfxStatus get(OfxTime t, Value &v) override { v = Value(std::lround(this->track.at(t)[0])); return kOfxStatOK; }
+  OfxStatus set(Value v) override { this->track.value = {double(v)}; return kOfxStatOK; }
+  OfxStatus set(OfxTime t, Value v) override { this->track.keys[t] = {double(v)}; return kOfxStatOK; }
 };
 
-class ChoiceParam : public Keyed<ofx::Param::ChoiceInstance> {
-public:
-  ChoiceParam(ofx::Param::Descriptor &d, ofx::Param::SetInstance *s) : Keyed(d, s) {
-    track.value = {double(d.getProperties().getIntProperty(kOfxParamPropDefault))};
-  }
-  OfxStatus get(int &v) override { return get(0, v); }
-  OfxStatus get(OfxTime t, int &v) override { v = int(std::lround(track.at(t)[0])); return kOfxStatOK; }
-  OfxStatus set(int v) override { track.value = {double(v)}; return kOfxStatOK; }
-  OfxStatus set(OfxTime t, int v) override { track.keys[t] = {double(v)}; return kOfxStatOK; }
-};
-
-class BooleanParam : public Keyed<ofx::Param::BooleanInstance> {
-public:
-  BooleanParam(ofx::Param::Descriptor &d, ofx::Param::SetInstance *s) : Keyed(d, s) {
-    track.value = {double(d.getProperties().getIntProperty(kOfxParamPropDefault))};
-  }
-  OfxStatus get(bool &v) override { return get(0, v); }
-  OfxStatus get(OfxTime t, bool &v) override { v = track.at(t)[0] >= 0.5; return kOfxStatOK; }
-  OfxStatus set(bool v) override { track.value = {double(v)}; return kOfxStatOK; }
-  OfxStatus set(OfxTime t, bool v) override { track.keys[t] = {double(v)}; return kOfxStatOK; }
-};
+using IntegerParam = WholeParam<ofx::Param::IntegerInstance, int>;
+using ChoiceParam = WholeParam<ofx::Param::ChoiceInstance, int>;
+using BooleanParam = WholeParam<ofx::Param::BooleanInstance, bool>;
 
 class DoubleParam : public Keyed<ofx::Param::DoubleInstance> {
 public:
@@ -239,7 +222,7 @@ public:
   OfxStatus get(OfxTime, std::string &v) override { v = value; return kOfxStatOK; }
   OfxStatus set(const char *v) override { value = v; return kOfxStatOK; }
   OfxStatus set(OfxTime, const char *v) override { value = v; return kOfxStatOK; }
-  // The library's own keep the text in a member that concurrent readers would overwrite.
+  // The library's own versions keep the text in a member, which concurrent readers would overwrite.
   OfxStatus getV(va_list arg) override { *va_arg(arg, const char **) = value.c_str(); return kOfxStatOK; }
   OfxStatus getV(OfxTime, va_list arg) override { *va_arg(arg, const char **) = value.c_str(); return kOfxStatOK; }
 };
@@ -289,7 +272,8 @@ float decode(const Depth &depth, const unsigned char *in) {
   return four;
 }
 
-// Pixels with unused bytes after each row, rows from the bottom or from the top, and guarded on both sides.
+// Pixels in memory. Rows begin with the bottom or the top row, unused bytes follow each row, and guard bytes are on both
+// sides.
 struct Buffer {
   OfxRectI bounds;
   Depth depth;
@@ -357,7 +341,7 @@ public:
   }
   fx::Image *getImage(OfxTime time, const OfxRectD *bounds) override;
   const std::string &findSupportedComp(const std::string &s) const override {
-    // The library maps RGB nowhere.
+    // The library has no mapping for RGB.
     return isSupportedComponent(s) ? s : ClipInstance::findSupportedComp(s);
   }
   void adopt(const ClipSettings &s) {
@@ -481,7 +465,8 @@ fx::Image *TestClip::getImage(OfxTime time, const OfxRectD *region) {
   return new FetchedImage(*this, scale, draw(time, bounds, scale), whole);
 }
 
-// The frame's picture at a scale: the mean of the pixels that a pixel covers, clear where the frame has none.
+// The frame's picture at a scale. Each pixel is the mean of the full-size pixels that it covers. Pixels outside the frame
+// are transparent.
 std::shared_ptr<Buffer> TestClip::draw(OfxTime time, const OfxRectI &bounds, double scale) {
   auto buffer = std::make_shared<Buffer>(bounds, depth_of(getPixelDepth()), channels_of(getComponents()),
                                          settings.padding, settings.top_down);
@@ -565,7 +550,7 @@ public:
   }
   fx::Descriptor *makeDescriptor(fx::ImageEffectPlugin *plugin) override {
     fx::Descriptor *descriptor = new fx::Descriptor(plugin);
-    // The library is of OpenFX 1.4, which does not know it.
+    // The library supports OpenFX 1.4, which does not have this property.
     static const ofx::Property::PropSpec newer[] = {
         {kOfxImageEffectPluginPropOverlayInteractV2, ofx::Property::ePointer, 1, false, nullptr},
         ofx::Property::propSpecEnd};
@@ -645,11 +630,11 @@ OfxRectI rect(const Bounds &b) { return {b.x1, b.y1, b.x2, b.y2}; }
 
 } // namespace
 
-// ---------------------------------------------------------------- what Rust calls
+// ---------------------------------------------------------------- functions that Rust calls
 
 void open(rust::Str folder) {
   host();
-  // The variable is read when the cache is made; no other folder of the machine may add plugins.
+  // A new cache forgets the plugins of the last folder. The library also scans OFX_PLUGIN_PATH and /usr/OFX/Plugins.
   ofx::PluginCache::clearPluginCache();
   cache().reset(new fx::PluginCache(host()));
   ofx::PluginCache *global = ofx::PluginCache::getPluginCache();
@@ -795,7 +780,7 @@ Picture Effect::output() const {
   for (int y = w.y1; y < w.y2; ++y) {
     for (int x = w.x1; x < w.x2; ++x) {
       unsigned char *at = rest.data() + buffer.offset(x, y);
-      // Shorter pixels may well have the very value.
+      // A short pixel may have the canary's value by chance.
       bool touched = pixel < 12;
       for (size_t i = 0; i < pixel; ++i) touched = touched || at[i] != kCanary;
       picture.untouched += !touched;

@@ -1,4 +1,4 @@
-// A host over the official HostSupport library, as small as tests need it: see lib.rs for what each function does.
+// A small test host on top of the official HostSupport library. lib.rs says what each function does.
 #pragma once
 
 #include "rust/cxx.h"

@@ -1,10 +1,10 @@
 //! An OpenFX host for tests.
 //!
-//! Plugin cache, properties, parameters, clips and actions are the official HostSupport library's; `host.cpp` adds what
-//! each host must: images, values and keys of parameters, threads, progress, messages. The library's debug log of every
-//! call with its status is kept by line, so that a test can refuse any unexpected error status.
+//! The official HostSupport library provides plugin cache, properties, parameters, clips and actions. `host.cpp` adds the
+//! parts that every host writes itself: images, values and keys of parameters, threads, progress, messages. The library logs
+//! every call with its status. The host keeps these lines, so that a test can refuse any unexpected error status.
 //!
-//! The library has one plugin cache a process: [`Host::open`] waits until no other test has one.
+//! The library has one plugin cache per process, so [`Host::open`] waits until no other test has a host.
 
 mod bridge;
 
@@ -21,7 +21,7 @@ pub struct Host {
 }
 
 impl Host {
-    /// Loads all plugins in the bundles of a folder; waits for any other host to be dropped.
+    /// Loads all plugins in the bundles of a folder. Waits until any other host is dropped.
     pub fn open(folder: &Path) -> Self {
         let only = ONE.lock().unwrap_or_else(PoisonError::into_inner);
         bridge::ffi::configure(&Settings::default());
@@ -41,40 +41,40 @@ impl Host {
         bridge::ffi::plugins()
     }
 
-    /// The contexts that a plugin says it supports.
+    /// The contexts that a plugin supports.
     pub fn contexts(&self, id: &str) -> Vec<String> {
         bridge::ffi::contexts(id)
     }
 
-    /// How the host behaves from now on.
+    /// Sets the behaviour of the host.
     pub fn configure(&self, settings: &Settings) {
         bridge::ffi::configure(settings);
     }
 
-    /// Describes an effect in a context and makes its clips and parameters; [`Effect::create`] tells the plugin.
+    /// Describes an effect in a context and makes its clips and parameters. [`Effect::create`] then creates the instance.
     pub fn effect(&self, id: &str, context: &str) -> Effect<'_> {
         let effect = bridge::ffi::new_effect(id, context);
         assert!(effect.is_some_and_valid(), "{id} could not be described in {context}: {:?}", self.log());
         Effect { inner: effect, _host: self }
     }
 
-    /// The lines of the library's log since it was last asked for.
+    /// Takes the lines of the library's log since the last call.
     pub fn log(&self) -> Vec<String> {
         bridge::ffi::take_log()
     }
 
-    /// The lines of the log that tell of an error, since it was last asked for.
+    /// Takes the log, and returns its lines with an error status.
     pub fn errors(&self) -> Vec<String> {
         let told = |line: &String| line.contains("kOfxStatErr") || line.contains("kOfxStatFailed");
         self.log().into_iter().filter(told).collect()
     }
 
-    /// What plugins said to the user since it was last asked for, as `type: text`.
+    /// Takes the messages of plugins to the user since the last call, as `type: text`.
     pub fn messages(&self) -> Vec<String> {
         bridge::ffi::take_messages()
     }
 
-    /// How many images are fetched and not released.
+    /// The number of images that are fetched and not released.
     pub fn live_images(&self) -> i32 {
         bridge::ffi::live_images()
     }
@@ -101,7 +101,7 @@ impl Valid for cxx::UniquePtr<bridge::ffi::Effect> {
     }
 }
 
-/// An instance of an effect; the host must outlive it.
+/// An instance of an effect.
 pub struct Effect<'a> {
     inner: cxx::UniquePtr<bridge::ffi::Effect>,
     _host: &'a Host,
@@ -112,53 +112,54 @@ impl Effect<'_> {
         self.inner.pin_mut()
     }
 
-    /// What a clip is connected to.
+    /// Connects a clip.
     pub fn set_clip(&mut self, name: &str, settings: &ClipSettings) {
         self.pin().set_clip(name, settings);
     }
 
-    /// The picture of an input clip at a time: RGBA from the bottom row up, at the lower left of the clip's region.
+    /// Sets the picture of an input clip at a time: RGBA, rows from the bottom, at the lower left of the clip's region.
     pub fn set_frame(&mut self, clip: &str, time: f64, width: usize, rgba: &[f32]) {
         let height = rgba.len() / 4 / width.max(1);
         self.pin().set_frame(clip, time, width as i32, height as i32, rgba);
     }
 
-    /// The action CreateInstance, and the clip preferences; the status of the first that failed.
+    /// Runs the action CreateInstance and reads the clip preferences. Returns the status.
     pub fn create(&mut self) -> String {
         self.pin().create()
     }
 
-    /// The action DestroyInstance, by which the instance ends.
+    /// Runs the action DestroyInstance. Returns the status.
     pub fn destroy(mut self) -> String {
         self.pin().destroy()
     }
 
-    /// Renders a window, in pixels of the scale. More than one thread: that many windows of `tile_rows` rows at once.
+    /// Renders a window, in pixels at the scale, and returns the status. The window is divided into tiles of `tile_rows` rows
+    /// (0 for one tile), which `threads` threads render at the same time.
     pub fn render(&mut self, time: f64, window: Bounds, scale: f64, threads: i32, tile_rows: i32) -> String {
         self.pin().render(time, &window, scale, threads, tile_rows)
     }
 
-    /// What was last rendered.
+    /// The last rendered picture.
     pub fn output(&self) -> Picture {
         self.inner.output()
     }
 
-    /// The region of definition, canonical; empty status where the plugin left it to the host.
+    /// The region of definition in canonical coordinates.
     pub fn region_of_definition(&mut self, time: f64, scale: f64) -> Region {
         self.pin().region_of_definition(time, scale)
     }
 
-    /// What of an input clip is needed for a region of the output.
+    /// The region of an input clip that a region of the output needs, in canonical coordinates.
     pub fn region_of_interest(&mut self, clip: &str, time: f64, scale: f64, wanted: &Region) -> Region {
         self.pin().region_of_interest(clip, time, scale, wanted)
     }
 
-    /// The clip that the output is identical to; empty where it is none.
+    /// The clip that the output is identical to; empty if there is none.
     pub fn identity(&mut self, time: f64, window: Bounds, scale: f64) -> String {
         self.pin().identity(time, &window, scale)
     }
 
-    /// The frame ranges needed of an input clip.
+    /// The frame ranges that are needed of an input clip: first, last, first, last, ...
     pub fn frames_needed(&mut self, clip: &str, time: f64) -> Vec<f64> {
         self.pin().frames_needed(clip, time)
     }
@@ -173,7 +174,7 @@ impl Effect<'_> {
         self.inner.parameters()
     }
 
-    /// A property of a parameter as text; empty where it has none.
+    /// A property of a parameter as text; empty if it has no such property.
     pub fn parameter_property(&self, name: &str, property: &str, index: i32) -> String {
         self.inner.parameter_property(name, property, index)
     }
@@ -184,13 +185,13 @@ impl Effect<'_> {
         self.changed(name);
     }
 
-    /// Sets a key.
+    /// Sets a key at a time, as a user does.
     pub fn set_at(&mut self, name: &str, time: f64, values: &[f64]) {
         self.pin().set_numbers_at(name, time, values);
         self.changed(name);
     }
 
-    /// The value at a time.
+    /// The values of a number, flag, choice or colour at a time.
     pub fn get(&self, name: &str, time: f64) -> Vec<f64> {
         self.inner.numbers(name, time)
     }
@@ -201,17 +202,17 @@ impl Effect<'_> {
         self.changed(name);
     }
 
-    /// Sets a text, as a script does: nobody is told.
+    /// Sets a text as a script does, without telling the plugin.
     pub fn set_text_silently(&mut self, name: &str, value: &str) {
         self.pin().set_text(name, value);
     }
 
-    /// A text.
+    /// The value of a text.
     pub fn text(&self, name: &str) -> String {
         self.inner.text(name)
     }
 
-    /// Presses a button; the status.
+    /// Presses a button. Returns the status.
     pub fn press(&mut self, name: &str) -> String {
         self.changed(name)
     }
@@ -220,23 +221,23 @@ impl Effect<'_> {
         self.pin().changed(name, "OfxChangeUserEdited", 0.0)
     }
 
-    /// Tells of a change that the plugin itself made.
+    /// Reports a change that the plugin made itself. Returns the status.
     pub fn changed_by_plugin(&mut self, name: &str) -> String {
         self.pin().changed(name, "OfxChangePluginEdited", 0.0)
     }
 
-    /// Any action without arguments.
+    /// Runs any action without arguments. Returns the status.
     pub fn action(&mut self, name: &str) -> String {
         self.pin().action(name)
     }
 
-    /// An event of the overlay with the pen at a place, canonical, and the size of a pixel of the screen; by the DrawSuite's
-    /// entry point or by that of OpenGL. Draw is `OfxInteractActionDraw`.
+    /// Sends an event to the overlay and returns the status. It goes to the entry point for the DrawSuite or to that for
+    /// OpenGL. `pen` is the pen's position and `pixel` the size of a screen pixel, both in canonical coordinates.
     pub fn overlay(&mut self, action: &str, draw_suite: bool, time: f64, pen: [f64; 2], pixel: f64) -> String {
         self.pin().overlay(action, draw_suite, time, pen[0], pen[1], pixel)
     }
 
-    /// The lines that were drawn since the last event, whether closed, and their points.
+    /// The lines drawn by the last event: whether each is closed, and its points.
     pub fn drawn(&self) -> Vec<(bool, Vec<[f64; 2]>)> {
         let (flat, mut at, mut lines) = (self.inner.drawn(), 0, Vec::new());
         while at + 1 < flat.len() {

@@ -1,4 +1,4 @@
-//! Regions, identity, abort, keys, what is wrong with documents.
+//! Tests of regions, identity, abort, keys and wrong documents.
 
 use crate::common::{
     CUTOUT, FILTER, GENERAL, HEIGHT, IDS, MATTE, OK, OVERLAY, WHOLE, WIDTH, bundles, clean, document, effect, footage,
@@ -19,7 +19,7 @@ fn region(region: &Region) -> [f64; 4] {
 }
 
 #[test]
-fn regions_are_as_small_as_they_can_be() {
+fn regions_are_as_small_as_possible() {
     let host = host();
     let mut effect = effect(&host, FILTER, &ClipSettings::default());
     effect.set_text("document", &rectangle());
@@ -44,7 +44,7 @@ fn regions_are_as_small_as_they_can_be() {
     effect.set("invert", &[1.0]);
     assert_eq!(region(&effect.region_of_definition(1.0, 1.0)), region(&whole));
     effect.set("invert", &[0.0]);
-    // Beyond the track there is nothing.
+    // After the end of the track nothing is drawn.
     assert_eq!(region(&effect.region_of_definition(9.0, 1.0)), [0.0; 4]);
     host.configure(&Settings { multi_resolution: false, ..Settings::default() });
     assert_eq!(region(&effect.region_of_definition(1.0, 1.0)), region(&whole));
@@ -115,7 +115,7 @@ fn keys_of_parameters_count_at_their_time() {
 }
 
 #[test]
-fn bad_documents_are_told_once_and_take_no_host_along() {
+fn bad_documents_are_reported_once_and_do_not_crash() {
     let host = host();
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.json");
@@ -136,7 +136,7 @@ fn bad_documents_are_told_once_and_take_no_host_along() {
         }
         let messages = host.messages();
         assert!(messages.len() == 1 && messages[0].contains(said), "{text}: {messages:?}");
-        // A change of anything lets it be told again.
+        // After any change the message is shown again.
         effect.set("grow", &[1.0]);
         effect.render(1.0, WHOLE, 1.0, 1, 0);
         assert_eq!(host.messages().len(), 1);
@@ -145,7 +145,7 @@ fn bad_documents_are_told_once_and_take_no_host_along() {
 }
 
 #[test]
-fn what_is_doubtful_is_told_once_and_drawn() {
+fn warnings_are_shown_once_and_the_picture_is_drawn() {
     let host = host();
     let untracked = {
         let mut scene = crate::common::scene();
@@ -154,7 +154,7 @@ fn what_is_doubtful_is_told_once_and_drawn() {
     };
     let larger = ClipSettings { x2: 100, y2: 80, ..ClipSettings::default() };
     for (source, document, parts, said) in [
-        (ClipSettings::default(), document(), "star, leg, arm*", "no part is called \"leg\""),
+        (ClipSettings::default(), document(), "star, leg, arm*", "\"leg\", but no part has this name"),
         (ClipSettings::default(), untracked, "", "not tracked"),
         (larger, document(), "", "64x48"),
     ] {
@@ -216,7 +216,7 @@ fn a_file_that_changes_is_read_again() {
     let mut effect = effect(&host, FILTER, &ClipSettings::default());
     effect.set("output", &[MATTE]);
     effect.set_text("document", "");
-    // Set by a script, which no host tells of: the file itself is drawn.
+    // A script sets the project file, and no host reports that. The effect reads the file itself.
     std::fs::write(&file, rectangle()).unwrap();
     effect.set_text_silently("project", file.to_str().unwrap());
     let area = |picture: rototoon_ofx_host::Picture| picture.values.iter().sum::<f32>() / 4.0;

@@ -1,4 +1,4 @@
-//! Load, save, track.
+//! Tests of the buttons Load, Save and Track.
 
 use crate::common::{FILTER, OK, ROTO, clean, document, effect, host, kept, p};
 use rototoon::geometry::{Point, polygon, polyline};
@@ -17,7 +17,7 @@ fn blob(frame: i32) -> Vec<Point> {
     corners.iter().map(|&corner| centre + turn.rotate(corner)).collect()
 }
 
-/// A filled shape with an ink outline on paper, rows from the bottom.
+/// A filled shape with an ink outline on paper. Rows are from the bottom.
 fn drawing(frame: i32) -> Vec<f32> {
     let contour = blob(frame);
     let mut pixels = Vec::new();
@@ -90,7 +90,7 @@ fn track_follows_the_drawing_and_keeps_the_result() {
             assert!(worst < 3.0, "{frame}: {worst}");
         }
         assert!(host.furthest_progress() > 0.0);
-        // What the plugin sets comes back and starts nothing.
+        // A change by the plugin itself starts nothing.
         assert_eq!(effect.changed_by_plugin("track"), "kOfxStatReplyDefault");
         results.push(after);
     }
@@ -113,7 +113,7 @@ fn a_cancelled_track_changes_nothing_and_may_be_started_again() {
 }
 
 #[test]
-fn what_cannot_be_tracked_is_told() {
+fn tracking_errors_are_reported() {
     let host = host();
     let mut effect = tracked(&host, false);
     effect.set("firstFrame", &[102.0]);
@@ -151,7 +151,7 @@ fn load_and_save() {
     let loaded = kept(&effect);
     assert_eq!(loaded.scene.parts, crate::common::scene().parts);
     assert!(loaded.scene.footage.pattern.starts_with(folder.path().to_str().unwrap()));
-    // Saved beside the footage again, it is named as before.
+    // Saved in the footage's folder, the document has its relative pattern again.
     std::fs::remove_file(&file).unwrap();
     assert_eq!(effect.press("save"), OK);
     assert_eq!(Document::load(&file).unwrap().scene, crate::common::scene());

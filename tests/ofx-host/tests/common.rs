@@ -1,4 +1,4 @@
-//! The bundle, documents and pictures to test with.
+//! The bundle, documents and pictures for the tests.
 
 use rototoon::geometry::Point;
 use rototoon::project::Document;
@@ -13,7 +13,7 @@ pub const ROTO: &str = "org.rototoon.Roto";
 pub const FILTER: &str = "OfxImageEffectContextFilter";
 /// The context with any inputs.
 pub const GENERAL: &str = "OfxImageEffectContextGeneral";
-/// What succeeded.
+/// The status of success.
 pub const OK: &str = "kOfxStatOK";
 
 /// Width of the test footage.
@@ -21,17 +21,17 @@ pub const WIDTH: usize = 64;
 /// Height of the test footage.
 pub const HEIGHT: usize = 48;
 
-/// Index of an output.
+/// Index of the output Cutout.
 pub const CUTOUT: f64 = 0.0;
-/// Index of an output.
+/// Index of the output Matte.
 pub const MATTE: f64 = 1.0;
-/// Index of an output.
+/// Index of the output Overlay.
 pub const OVERLAY: f64 = 2.0;
-/// Index of an output.
+/// Index of the output Ids.
 pub const IDS: f64 = 3.0;
 
-/// A folder that holds a bundle and nothing else, since hosts look through all that lies in it: of the bundle that a variable
-/// names, else of the library built with the tests.
+/// A folder that contains only a bundle, because hosts scan everything in it. The bundle has the library of the bundle that
+/// the variable `ROTOTOON_OFX_BUNDLE` names, or else the library built with the tests.
 pub fn bundles() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
@@ -42,7 +42,7 @@ pub fn bundles() -> &'static Path {
             Some(bundle) => Path::new(&bundle).join("Contents/Linux-x86-64/Rototoon.ofx"),
             None => std::env::current_exe().unwrap().with_file_name("librototoon_ofx.so"),
         };
-        // Under another name first: a running test may have the last one open.
+        // The library gets another name first, because a running test may have the old one open.
         let new = inner.join(format!("new-{}", std::process::id()));
         std::fs::copy(&library, &new).unwrap_or_else(|error| panic!("{library:?}: {error}"));
         std::fs::rename(new, inner.join("Rototoon.ofx")).unwrap();
@@ -67,7 +67,7 @@ pub fn footage() -> Footage {
 
 /// A part with tracks on frames 0 to 4.
 pub fn part(name: &str, depth: f64, closed: bool, contour: impl Fn(f64) -> Vec<Point>) -> Part {
-    // As exact as documents are.
+    // Rounded as in documents.
     let rounded = |p: Point| (p * 1e4).round() / 1e4;
     let contour = |frame: f64| contour(frame).into_iter().map(rounded).collect::<Vec<_>>();
     let tracks = (0..=4).map(|frame| (frame, contour(f64::from(frame)))).collect();
@@ -96,7 +96,7 @@ pub fn document() -> String {
     Document::new(scene()).to_json()
 }
 
-/// The document that an instance keeps.
+/// The document that an instance stores in its parameter.
 pub fn kept(effect: &Effect) -> Document {
     let text = effect.text("document");
     assert!(text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_'), "a host may mangle {text}");
@@ -116,7 +116,7 @@ pub fn effect<'a>(host: &'a Host, context: &str, source: &ClipSettings) -> Effec
     effect
 }
 
-/// A picture of byte values in blocks of 2 × 2 pixels, premultiplied, so that neither depth nor half size rounds it.
+/// A premultiplied picture of byte values in blocks of 2 × 2 pixels. Neither a depth nor half size rounds it.
 pub fn pattern(frame: i32) -> Vec<f32> {
     let pixel = |k: usize| {
         let (x, y) = (k % WIDTH / 2, k / WIDTH / 2);
@@ -131,7 +131,7 @@ pub fn pattern(frame: i32) -> Vec<f32> {
 /// All pixels of the test footage.
 pub const WHOLE: Bounds = Bounds { x1: 0, y1: 0, x2: WIDTH as i32, y2: HEIGHT as i32 };
 
-/// Renders and returns the picture; nothing may be amiss.
+/// Renders and returns the picture. Checks for errors and for wrongly written pixels.
 pub fn rendered(host: &Host, effect: &mut Effect, time: f64, window: Bounds) -> Picture {
     assert_eq!(effect.render(time, window, 1.0, 1, 0), OK, "{:?}", host.messages());
     clean(host);
@@ -140,7 +140,7 @@ pub fn rendered(host: &Host, effect: &mut Effect, time: f64, window: Bounds) -> 
     picture
 }
 
-/// No error status was given or had, and no image is left.
+/// Checks that the log has no error status and that all images are released.
 pub fn clean(host: &Host) {
     let errors = host.errors();
     assert!(errors.is_empty(), "{errors:#?}");

@@ -1,9 +1,9 @@
-//! Contexts, parameters, loading again.
+//! Tests of contexts, parameters and loading again.
 
 use crate::common::{FILTER, GENERAL, OK, ROTO, WHOLE, bundles, clean, effect, host, rendered};
 use rototoon_ofx_host::{ClipSettings, Host};
 
-/// Ids are fixed for ever: old compositions hold them.
+/// The ids of the parameters. They never change, because old compositions contain them.
 const IDS: [&str; 24] = [
     "shapes",
     "project",

@@ -1,4 +1,4 @@
-//! The effect that shows what a tracker of edges sees.
+//! Tests of the effect that shows the images that a tracker of edges uses.
 
 use crate::common::{FILTER, GENERAL, HEIGHT, OK, WHOLE, WIDTH, clean, host, rendered};
 use rototoon::image::canny::{CannyOptions, canny};
@@ -9,7 +9,7 @@ use rototoon_ofx_host::{ClipSettings, Effect, Host};
 
 const LINES: &str = "org.rototoon.Lines";
 
-/// A dark blob on light paper, with some noise, rows from the top.
+/// A dark blob on light paper, with some noise. Rows are from the top.
 fn picture() -> Raster<Colour> {
     Raster::from_fn(WIDTH, HEIGHT, |x, y| {
         let (dx, dy) = (x as f32 - 30.0, y as f32 - 22.0);
@@ -24,7 +24,7 @@ fn instance<'a>(host: &'a Host, settings: &ClipSettings) -> Effect<'a> {
     effect.set_clip("Output", settings);
     let picture = picture();
     let mut values = Vec::with_capacity(4 * WIDTH * HEIGHT);
-    // No `flat_map`: compiled, it branches on what is not yet set, which valgrind reports.
+    // `flat_map` compiles to a branch on uninitialised memory, which valgrind reports.
     (0..HEIGHT).rev().for_each(|y| picture.row(y).iter().for_each(|&[r, g, b]| values.extend([r, g, b, 1.0])));
     effect.set_frame("Source", 1.0, WIDTH, &values);
     assert_eq!(effect.create(), OK);
@@ -61,7 +61,7 @@ fn it_shows_what_the_core_computes() {
 }
 
 #[test]
-fn every_kind_of_image_is_taken() {
+fn every_image_format_is_supported() {
     let host = host();
     for depth in ["OfxBitDepthByte", "OfxBitDepthShort", "OfxBitDepthHalf", "OfxBitDepthFloat"] {
         for components in ["OfxImageComponentRGBA", "OfxImageComponentRGB", "OfxImageComponentAlpha"] {

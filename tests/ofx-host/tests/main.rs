@@ -1,13 +1,13 @@
-//! The plugin in the official host library.
+//! Tests of the plugin in a host made with the official host library.
 //!
-//! - `common`: the bundle, documents and pictures to test with
+//! - `common`: the bundle, documents and pictures for the tests
 //! - `describing`: contexts, parameters, loading again
-//! - `pixels`: every depth, component, tile, row order, scale and number of threads draw the same
-//! - `shapes`: the matte is that of the command line and of the truth
-//! - `actions`: regions, identity, abort, keys, what is wrong with documents
+//! - `pixels`: the picture does not depend on depth, components, tiles, row order or threads
+//! - `shapes`: the matte is the same as that of the command line, and near the truth
+//! - `actions`: regions, identity, abort, keys, wrong documents
 //! - `buttons`: load, save, track
 //! - `overlay`: contours over the viewer, control points that can be dragged
-//! - `lines`: the effect that shows what a tracker of edges sees
+//! - `lines`: the effect that shows the images that a tracker of edges uses
 
 mod actions;
 mod buttons;

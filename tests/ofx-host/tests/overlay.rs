@@ -1,4 +1,4 @@
-//! Contours over the viewer, control points that can be dragged.
+//! Tests of the contours over the viewer and of dragging control points.
 
 use crate::common::{FILTER, HEIGHT, OK, bundles, clean, effect, host, kept, scene};
 use rototoon::geometry::Point;
@@ -26,13 +26,13 @@ fn contours_and_points_are_drawn_where_they_are() {
     for draw_suite in [false, true] {
         assert_eq!(effect.overlay(DRAW, draw_suite, 2.0, [0.0; 2], 0.5), OK);
         let lines = effect.drawn();
-        // An outline and a square for each of its points, the farthest part first.
+        // Each part has an outline and a square for each of its points, the farthest part first.
         let points: usize = scene.parts.iter().map(|part| part.tracks[&2].len()).sum();
         assert_eq!(lines.len(), 3 + points, "{draw_suite}");
         let ground: Vec<[f64; 2]> = scene.parts[2].tracks[&2].iter().map(|&p| shown(p)).collect();
         assert!(!lines[0].0 && lines[0].1.iter().zip(&ground).all(|(a, b)| near(*a, *b)), "{:?}", lines[0]);
         assert!(lines[1].0 && near(lines[1].1[0], [ground[0][0] - 1.5, ground[0][1] - 1.5]));
-        // Between frames there is a contour, and nothing to take hold of.
+        // Between frames there are contours, but no control points.
         assert_eq!(effect.overlay(DRAW, draw_suite, 2.5, [0.0; 2], 0.5), OK);
         assert_eq!(effect.drawn().len(), 3);
         assert_eq!(effect.overlay(DRAW, draw_suite, 40.0, [0.0; 2], 0.5), OK);
@@ -70,14 +70,14 @@ fn a_drag_moves_a_key_or_makes_a_pin() {
 }
 
 #[test]
-fn the_pen_elsewhere_is_the_hosts() {
+fn pen_events_off_the_points_are_left_to_the_host() {
     let host = host();
     let mut effect = effect(&host, FILTER, &ClipSettings::default());
     let before = effect.text("document");
     for action in [DOWN, MOVE, UP] {
         assert_eq!(effect.overlay(action, false, 2.0, [1.0, 1.0], 0.1), NOT_OURS, "{action}");
     }
-    // Down and up in one place moves nothing.
+    // Pen down and up in one place moves nothing.
     let at = scene().parts[0].tracks[&2][3];
     assert_eq!(effect.overlay(DOWN, false, 2.0, shown(at), 0.1), OK);
     assert_eq!(effect.overlay(UP, false, 2.0, shown(at), 0.1), OK);

@@ -1,16 +1,16 @@
-//! Every depth, component, tile, row order, scale and number of threads draw the same.
+//! The picture does not depend on depth, components, tiles, row order or threads.
 
 use crate::common::{
     CUTOUT, FILTER, GENERAL, HEIGHT, IDS, MATTE, OK, OVERLAY, WHOLE, WIDTH, clean, effect, host, pattern, rendered,
 };
 use rototoon_ofx_host::{Bounds, ClipSettings, Picture, Settings};
 
-/// Half a code value of a byte, and what a half rounds.
+/// Half a code value of a byte, and the rounding of a half.
 const HALF_A_CODE: f32 = 0.5 / 255.0 + 1e-4;
 const DEPTHS: [&str; 4] = ["OfxBitDepthByte", "OfxBitDepthShort", "OfxBitDepthHalf", "OfxBitDepthFloat"];
 const COMPONENTS: [&str; 3] = ["OfxImageComponentRGBA", "OfxImageComponentRGB", "OfxImageComponentAlpha"];
 
-/// The values of a picture that another with `channels` values a pixel has too.
+/// The values of a picture, reduced to those of a picture with `channels` values per pixel.
 fn channels(reference: &Picture, channels: usize) -> Vec<f32> {
     let pixels = reference.values.chunks(reference.channels);
     match channels {
@@ -25,7 +25,7 @@ fn scaled(window: Bounds, scale: f64) -> Bounds {
     Bounds { x1: at(window.x1), y1: at(window.y1), x2: at(window.x2), y2: at(window.y2) }
 }
 
-/// Sets what makes pixels depend on their neighbours.
+/// Sets parameters that make pixels depend on their neighbours.
 fn set(effect: &mut rototoon_ofx_host::Effect, output: f64) {
     effect.set("output", &[output]);
     effect.set("grow", &[1.5]);
@@ -35,7 +35,7 @@ fn set(effect: &mut rototoon_ofx_host::Effect, output: f64) {
 }
 
 #[test]
-fn every_kind_of_image_is_drawn_alike() {
+fn every_image_format_gives_the_same_picture() {
     let host = host();
     for output in [CUTOUT, MATTE, OVERLAY, IDS] {
         for scale in [1.0, 0.5] {
@@ -159,7 +159,7 @@ fn premultiplication_is_honoured_both_ways() {
 }
 
 #[test]
-fn pixels_that_are_not_square_are_hit_all_the_same() {
+fn the_pixel_aspect_ratio_does_not_change_the_pixels() {
     let host = host();
     let mut square = effect(&host, FILTER, &ClipSettings::default());
     let mut wide = effect(&host, FILTER, &ClipSettings { aspect: 2.0, ..ClipSettings::default() });

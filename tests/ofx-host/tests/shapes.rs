@@ -1,4 +1,4 @@
-//! The matte is that of the command line and of the truth.
+//! The matte is the same as that of the command line, and near the truth.
 
 use crate::common::{FILTER, HEIGHT, MATTE, ROTO, WHOLE, WIDTH, clean, document, effect, host, p, rendered, scene};
 use rototoon::geometry::Point;
@@ -12,7 +12,7 @@ use rototoon_tests::sample::rig::Rig;
 use rototoon_tests::sample::{FRAMES, HOLD};
 use tiny_skia::{FillRule, Mask, PathBuilder, Transform};
 
-/// The matte of a picture from the top.
+/// The matte of a picture, with rows from the top.
 fn matte(picture: &Picture) -> Raster<f32> {
     Raster::from_fn(picture.width, picture.height, |x, y| {
         picture.values[picture.channels * ((picture.height - 1 - y) * picture.width + x)]
@@ -42,7 +42,7 @@ fn sample() -> Scene {
     Scene { footage, parts: (0..PARTS.len()).map(part).collect() }
 }
 
-/// The union of polygons by tiny-skia.
+/// The union of polygons, drawn by tiny-skia.
 fn by_tiny_skia(polygons: &[Vec<Point>], width: usize, height: usize) -> Raster<f32> {
     let mut mask = Mask::new(width as u32, height as u32).unwrap();
     let mut path = PathBuilder::new();
@@ -51,7 +51,7 @@ fn by_tiny_skia(polygons: &[Vec<Point>], width: usize, height: usize) -> Raster<
             if k == 0 { path.move_to(p.x as f32, p.y as f32) } else { path.line_to(p.x as f32, p.y as f32) }
         });
         path.close();
-        // One after the other: the winding of one must not undo that of another.
+        // Each polygon is filled by itself, so that opposite windings do not cancel.
         let one = std::mem::replace(&mut path, PathBuilder::new()).finish().unwrap();
         mask.fill_path(&one, FillRule::Winding, true, Transform::identity());
     }
@@ -59,7 +59,7 @@ fn by_tiny_skia(polygons: &[Vec<Point>], width: usize, height: usize) -> Raster<
 }
 
 #[test]
-fn the_matte_of_the_sample_cartoon_is_that_of_the_command_line_and_of_the_truth() {
+fn the_matte_of_the_sample_cartoon_is_that_of_the_command_line_and_near_the_truth() {
     let (host, scene) = (host(), sample());
     let (width, height) = (scene.footage.width, scene.footage.height);
     let source = ClipSettings { x2: width as i32, y2: height as i32, last: 23.0, ..ClipSettings::default() };
@@ -82,7 +82,7 @@ fn the_matte_of_the_sample_cartoon_is_that_of_the_command_line_and_of_the_truth(
         let apart = found.data().iter().zip(truth.data()).map(|(a, b)| (a - b).abs());
         let far = apart.clone().filter(|d| *d > 0.3).count();
         let mean = apart.sum::<f32>() / (width * height) as f32;
-        // tiny-skia covers by 4 x 4 samples, and lays opacities over each other where parts meet.
+        // tiny-skia computes coverage with 4 x 4 samples, and composites the coverages where parts meet.
         assert!(far < 60 && mean < 1e-3, "{frame}: {far} pixels, mean {mean}");
     }
     clean(&host);
@@ -136,7 +136,7 @@ fn the_nearest_part_shows_in_ids_and_its_line_lies_above() {
         let k = 4 * ((HEIGHT - 1 - q.y as usize) * WIDTH + q.x as usize);
         [picture.values[k], picture.values[k + 1], picture.values[k + 2]]
     };
-    // Inside the star and the drop, inside the drop alone, inside neither.
+    // A point inside star and drop, one inside the drop only, one inside neither.
     let colour = |index: usize| rototoon::scene::palette::distinct(index);
     let near = |a: [f32; 3], b: [f32; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-3);
     assert!(near(at(&ids, p(31.0, 22.0)), colour(0)), "{:?}", at(&ids, p(31.0, 22.0)));

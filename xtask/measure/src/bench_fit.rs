@@ -1,7 +1,7 @@
-//! `bench-fit`: curve fitting beside SciPy's FITPACK, paper.js, fit-curve and cu2qu on the same six outlines.
+//! `bench-fit`: compares curve fitting with SciPy's FITPACK, paper.js, fit-curve and cu2qu on the same six outlines.
 //!
-//! Makes a Python environment, and with Node.js a folder with the two JavaScript libraries, under `target/bench-fit`, builds
-//! the optimised program, and runs `tests/bench_fit.py`, which says what is measured and how.
+//! It makes a Python environment under `target/bench-fit`, and with Node.js also a folder with the two JavaScript libraries.
+//! Then it builds the optimised program and runs `tests/bench_fit.py`, which says what it measures and how.
 
 use anyhow::{Context, Result};
 use clap::Args;
@@ -9,20 +9,20 @@ use std::path::PathBuf;
 use xtask_shell::python;
 use xtask_shell::shell::{capture, cargo, command, root, run, target};
 
-/// Peers in Python, beside NumPy.
+/// NumPy and the Python libraries to compare with.
 const PYTHON: [&str; 3] = ["numpy", "scipy==1.17.1", "cu2qu==1.6.7.post2"];
-/// Peers in JavaScript.
+/// The JavaScript libraries to compare with.
 const NODE: [&str; 2] = ["fit-curve@0.2.0", "paper@0.12.18"];
 
-/// What to measure.
+/// The arguments of `bench-fit`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Largest distance between line and curve.
+    /// Largest distance between line and curve, in pixels.
     #[arg(long, value_name = "PX", default_value_t = 1.0)]
     tolerance: f64,
 }
 
-/// Measures.
+/// Runs the benchmark.
 pub fn bench_fit(arguments: &Arguments) -> Result<()> {
     let folder = target().join("bench-fit");
     std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {folder:?}"))?;
@@ -38,14 +38,17 @@ pub fn bench_fit(arguments: &Arguments) -> Result<()> {
         Ok(node) => {
             measure.arg("--node").arg(node);
         }
-        Err(reason) => println!("without paper.js, fit-curve and cu2qu: {reason:#}"),
+        Err(reason) => println!("paper.js, fit-curve and cu2qu are left out: {reason:#}"),
     }
     run(&mut measure)?;
-    println!("\n{} shows our curves over the points", picture.strip_prefix(root()).unwrap_or(&picture).display());
+    println!(
+        "\n{} shows Rototoon's curves over the points",
+        picture.strip_prefix(root()).unwrap_or(&picture).display()
+    );
     Ok(())
 }
 
-/// The folder in which the JavaScript libraries are installed.
+/// Installs the JavaScript libraries into a folder and returns the folder.
 fn peers(folder: PathBuf) -> Result<PathBuf> {
     capture(command("node").arg("--version")).context("Node.js is not installed")?;
     if NODE.iter().all(|peer| folder.join("node_modules").join(peer.split('@').next().unwrap_or("")).is_dir()) {

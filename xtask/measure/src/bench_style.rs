@@ -1,9 +1,11 @@
-//! `bench-style`: factorisation beside scikit-learn, reshaping beside libigl, and the experiments of Liang et al. 2012.
+//! `bench-style`: compares factorisation with scikit-learn and reshaping with libigl, and repeats the experiments of Liang
+//! et al. 2012.
 //!
-//! Makes a Python environment under `target/bench-style`, builds the optimised program, and runs `tests/bench_style.py` (kernels
-//! beside their peers) and `tests/bench_style_paper.py` (the experiments); these say what is measured and how. Plots are in
-//! `target/style`, as SVG and PNG, for each folder one of its own. Folders that hold a tracking set (`project.json` and `truth.json`)
-//! go to `bench-tracking` with the presets of the two papers: it counts how many points an artist corrects with either.
+//! It makes a Python environment under `target/bench-style`, builds the optimised program, and runs `tests/bench_style.py`
+//! (the comparisons) and `tests/bench_style_paper.py` (the experiments). These scripts say what they measure and how. Plots
+//! are in `target/style`, as SVG and PNG, with a subfolder for each given folder. Folders with a tracking set
+//! (`project.json` and `truth.json`) go to `bench-tracking`, with the presets of the two papers. It counts how many points
+//! an artist corrects with each of them.
 
 use crate::bench_tracking;
 use anyhow::{Context, Result, ensure};
@@ -14,27 +16,27 @@ use std::path::{Path, PathBuf};
 use xtask_shell::python;
 use xtask_shell::shell::{cargo, command, root, run, target};
 
-/// Peers, beside NumPy.
+/// NumPy and the libraries to compare with.
 const PYTHON: [&str; 3] = ["numpy", "scikit-learn==1.9.1", "libigl==2.6.3"];
-/// Presets of the trackers whose corrections Liang et al. 2012 compare.
+/// Presets of the two trackers whose number of corrections Liang et al. 2012 compare.
 const TRACKERS: [&str; 2] = ["agarwala2004", "liang2012"];
-/// Heights of a plot's field: of one alone, of one among several.
+/// Height of a plot's only panel, and of one of several panels.
 const HEIGHTS: [f32; 2] = [320.0, 150.0];
 
-/// What to measure.
+/// The arguments of `bench-style`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Folders with a clips.json, or with a tracking set (project.json and truth.json); made-up gaits where none is given.
+    /// Folders with a clips.json or with a tracking set (project.json and truth.json); synthetic gaits by default.
     dirs: Vec<PathBuf>,
-    /// A clips document that is measured like a folder's.
+    /// A further file of clips to measure.
     #[arg(long)]
     clips: Option<PathBuf>,
-    /// Only the kernels beside their peers, without the paper's experiments.
+    /// Run only the comparisons with other libraries, not the paper's experiments.
     #[arg(long)]
     kernels: bool,
 }
 
-/// Measures.
+/// Runs the benchmark.
 pub fn bench_style(arguments: &Arguments) -> Result<()> {
     let (clips, sets) = sorted(arguments)?;
     eprintln!("building the optimised benchmark");
@@ -64,7 +66,8 @@ pub fn bench_style(arguments: &Arguments) -> Result<()> {
     }
     if sets.is_empty() {
         println!(
-            "\nUser-edit ratios: give folders with tracking sets too, or cargo xtask bench-tracking --preset agarwala2004 --preset liang2012"
+            "\nUser-edit ratios are measured on folders with tracking sets, or by: cargo xtask bench-tracking --preset \
+             agarwala2004 --preset liang2012"
         );
         return Ok(());
     }
@@ -72,7 +75,7 @@ pub fn bench_style(arguments: &Arguments) -> Result<()> {
     bench_tracking::bench_tracking(&bench_tracking::Arguments::of(&sets, &TRACKERS))
 }
 
-/// Clips documents, and folders of tracking sets.
+/// Divides the arguments into files of clips and folders of tracking sets.
 fn sorted(arguments: &Arguments) -> Result<(Vec<PathBuf>, Vec<PathBuf>)> {
     let (mut clips, mut sets): (Vec<PathBuf>, Vec<PathBuf>) =
         (arguments.clips.clone().into_iter().collect(), Vec::new());
@@ -80,7 +83,7 @@ fn sorted(arguments: &Arguments) -> Result<(Vec<PathBuf>, Vec<PathBuf>)> {
         let (document, set) = (folder.join("clips.json"), folder.join("project.json"));
         ensure!(
             document.exists() || set.exists(),
-            "{}: expected a clips.json or a project.json there",
+            "{}: found neither a clips.json nor a project.json, expected one of them",
             folder.display()
         );
         if document.exists() {
@@ -109,7 +112,7 @@ fn experiments(measure: &mut std::process::Command, out: &Path) -> Result<()> {
     Ok(())
 }
 
-/// A chart of a plot's numbers; none where they are not as the script writes them.
+/// Makes a chart of a plot's numbers. `None` if they are not in the form that the script writes.
 fn chart(plot: &Value) -> Option<Chart> {
     let text = |value: &Value, key: &str| value[key].as_str().map(str::to_owned);
     let axis = |value: &Value| {
@@ -147,7 +150,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn plots_are_read_as_the_script_writes_them() {
+    fn plots_of_the_script_are_read() {
         let panel = json!({"label": "y", "low": 0, "high": 2, "series": [{"name": "a", "points": [[1, 2], [2, 1.5]], "dashed": false}]});
         let x = json!({"label": "x", "low": 1, "high": 9, "logarithmic": true});
         let plot = json!({"title": "t", "note": "", "x": x, "panels": [panel]});

@@ -1,8 +1,9 @@
-//! `bench-tracking`: every preset over sets with known truth; tables and pictures in `target/bench-tracking`.
+//! `bench-tracking`: measures every preset on sets with known truth. It writes tables and pictures to
+//! `target/bench-tracking`.
 //!
-//! The measurements are made by an optimised program (`rototoon-tests`, binary `bench-tracking`), since this one is built
-//! for quick development; each set and preset has a process of its own, so that nothing is warm that should be cold and
-//! its peak memory is its own. Files appear whole: an interrupted run leaves what was finished.
+//! An optimised program makes the measurements (`rototoon-tests`, binary `bench-tracking`), because xtask itself is not
+//! optimised. Each set and preset runs in a process of its own, so that all start with cold caches and peak memory is
+//! measured separately. An interrupted run leaves the files of the finished measurements.
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
@@ -15,36 +16,36 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use xtask_shell::shell::{capture, cargo, command, root, run, target};
 
-/// Times that a track is measured for its growth; the fastest counts.
+/// How often tracking is timed for the growth. The fastest run counts.
 const REPEATS: usize = 5;
 
-/// What to measure.
+/// The arguments of `bench-tracking`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Folders with project.json (key frames only) and truth.json; three drawn here where none is given.
+    /// Folders with project.json (key frames only) and truth.json; three synthetic sets by default.
     dirs: Vec<PathBuf>,
-    /// Only this preset; may be given several times.
+    /// Measure only this preset; may be given several times.
     #[arg(long = "preset", value_name = "ID")]
     presets: Vec<String>,
-    /// Leave out the simulated artist, who corrects and tracks again.
+    /// Leave out the simulated artist, who corrects the tracks and tracks again.
     #[arg(long)]
     no_edits: bool,
-    /// Threads; 0 for one a core.
+    /// Number of threads; 0 for one per core.
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
-    /// The default preset alone, whole and with each of its mechanisms left out.
+    /// Measure only the default preset: complete, and without each of its mechanisms.
     #[arg(long, conflicts_with = "presets")]
     ablations: bool,
-    /// Instead: how seconds and memory grow with frames, parts, points and pixels of drawn scenes.
+    /// Measure instead how time and memory grow with the frames, parts, points and pixels of synthetic scenes.
     #[arg(long, conflicts_with = "dirs")]
     growth: bool,
-    /// Instead: peak memory of 100 drawn frames of 1920x1080.
+    /// Measure instead the peak memory of 100 synthetic frames of 1920x1080.
     #[arg(long, conflicts_with = "dirs")]
     memory: bool,
 }
 
 impl Arguments {
-    /// Some presets over some folders, with the simulated artist.
+    /// Arguments that measure these presets on these folders, with the simulated artist.
     pub fn of(dirs: &[PathBuf], presets: &[&str]) -> Self {
         let presets = presets.iter().map(|id| (*id).to_owned()).collect();
         Self {
@@ -59,7 +60,7 @@ impl Arguments {
     }
 }
 
-/// Measures.
+/// Runs the benchmark.
 pub fn bench_tracking(arguments: &Arguments) -> Result<()> {
     let known = presets();
     if let Some(id) = arguments.presets.iter().find(|id| !known.contains(&id.as_str())) {
@@ -79,28 +80,28 @@ pub fn bench_tracking(arguments: &Arguments) -> Result<()> {
     bench.sets(arguments, &known)
 }
 
-/// A way to track.
+/// A preset, complete or without one of its mechanisms.
 struct Way {
     preset: &'static str,
-    /// A mechanism that is left out.
+    /// The mechanism that is left out.
     without: Option<&'static str>,
 }
 
 impl Way {
-    /// As the results call it.
+    /// Its name in the results.
     fn name(&self) -> String {
         self.without.map_or(self.preset.to_owned(), |id| format!("{} without {id}", self.preset))
     }
 }
 
-/// The optimised program.
+/// Builds the optimised program and returns its path.
 fn program() -> Result<PathBuf> {
     eprintln!("building the optimised benchmark");
     run(cargo().args(["build", "--quiet", "--release", "-p", "rototoon-tests", "--bin", "bench-tracking"]))?;
     Ok(target().join("release").join(format!("bench-tracking{}", std::env::consts::EXE_SUFFIX)))
 }
 
-/// The program and where its results go.
+/// The program, the folder of its results, and the number of threads.
 struct Bench {
     program: PathBuf,
     out: PathBuf,
@@ -126,17 +127,20 @@ impl Bench {
                         failures.push((set.clone(), preset.name(), format!("{error:#}")));
                     }
                 }
-                // After each run, so that an interrupted benchmark has its table.
+                // The table is written after each run, so that an interrupted benchmark has one.
                 write_files(&self.out, &outcomes, &failures)?;
             }
         }
         println!("{}", table::markdown(&outcomes, &failures));
-        println!("{} holds table.md, table.json, a plot of errors a set, and an overlay sheet a run", shown(&self.out));
+        println!(
+            "{} contains table.md, table.json, a plot of errors for each set, and an overlay sheet for each run",
+            shown(&self.out)
+        );
         ensure!(failures.is_empty(), "{} of {} runs failed", failures.len(), failures.len() + outcomes.len());
         Ok(())
     }
 
-    /// The sets with their names, which differ.
+    /// The sets with unique names.
     fn folders(&self, dirs: &[PathBuf]) -> Result<Vec<(String, PathBuf)>> {
         if dirs.is_empty() {
             return own::write(&self.out);
@@ -145,7 +149,7 @@ impl Bench {
         for dir in dirs {
             let folder = dir.canonicalize().with_context(|| format!("no folder {dir:?}"))?;
             for file in ["project.json", "truth.json"] {
-                ensure!(folder.join(file).is_file(), "{dir:?} holds no {file}");
+                ensure!(folder.join(file).is_file(), "{dir:?} contains no {file}");
             }
             let name = folder.file_name().map_or("set".into(), |name| name.to_string_lossy().into_owned());
             let taken = |name: &str| sets.iter().any(|(other, _)| other == name);
@@ -159,7 +163,7 @@ impl Bench {
     fn run(&self, set: &str, folder: &Path, way: &Way, no_edits: bool) -> Result<Outcome> {
         let name = format!("{set}.{}", way.name().replace(' ', "-"));
         let (out, results) = (self.out.join(&name), self.out.join(format!("{name}.json")));
-        // Results of an earlier run must not be taken for this one's.
+        // Results of an earlier run must not be mistaken for those of this run.
         if results.exists() {
             std::fs::remove_file(&results).with_context(|| format!("cannot remove {results:?}"))?;
         }
@@ -186,7 +190,7 @@ impl Bench {
 
     fn growth(&self) -> Result<()> {
         let mut measured: Vec<Measured> = Vec::new();
-        // The quantities share their base.
+        // All quantities share one base scene, which is measured once.
         let mut known: Vec<(Puppet, Sample)> = Vec::new();
         for quantity in growth::quantities() {
             let mut samples = Vec::new();
@@ -208,7 +212,7 @@ impl Bench {
         self.write("growth.md", text.as_bytes())?;
         self.write("growth.svg", drawing.svg().as_bytes())?;
         self.write("growth.png", &drawing.png()?)?;
-        println!("{text}\n{} holds growth.md, growth.svg and growth.png", shown(&self.out));
+        println!("{text}\n{} contains growth.md, growth.svg and growth.png", shown(&self.out));
         Ok(())
     }
 
@@ -222,11 +226,11 @@ impl Bench {
             writeln!(text, "| keyed on {keyed} | {:.1} | {peak} |", sample.seconds)?;
         }
         self.write("memory.md", text.as_bytes())?;
-        println!("{text}\n{} holds memory.md", shown(&self.out));
+        println!("{text}\n{} contains memory.md", shown(&self.out));
         Ok(())
     }
 
-    /// The fastest of several tracks of a drawn scene, and the largest of their peaks.
+    /// Tracks a synthetic scene several times. Returns the shortest time and the largest peak memory.
     fn time(&self, puppet: &Puppet, repeats: usize) -> Result<Sample> {
         let folder = self.out.join("drawn");
         xtask_shell::shell::empty_folder(&folder)?;
@@ -237,7 +241,8 @@ impl Bench {
         for _ in 0..repeats {
             let mut start = command(&self.program);
             let said = capture(start.arg("time").arg(&folder).args(["--threads", &self.threads.to_string()]))?;
-            let sample: Sample = serde_json::from_str(&said).with_context(|| format!("{said:?} is no sample"))?;
+            let sample: Sample =
+                serde_json::from_str(&said).with_context(|| format!("found {said:?}, expected a sample"))?;
             best = Some(best.map_or(sample, |b| Sample {
                 seconds: b.seconds.min(sample.seconds),
                 peak_mb: b.peak_mb.zip(sample.peak_mb).map(|(a, b)| a.max(b)),
@@ -266,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn sets_have_names_of_their_own() {
+    fn sets_get_unique_names() {
         let base = target().join("xtask-bench-sets");
         xtask_shell::shell::empty_folder(&base).unwrap();
         let dirs = ["a/walk", "b/walk", "run"].map(|name| base.join(name));
@@ -275,7 +280,7 @@ mod tests {
             std::fs::write(dir.join("project.json"), "{}").unwrap();
         }
         let missing = bench().folders(&dirs).unwrap_err().to_string();
-        assert!(missing.contains("walk") && missing.contains("holds no truth.json"), "{missing}");
+        assert!(missing.contains("walk") && missing.contains("contains no truth.json"), "{missing}");
         dirs.iter().for_each(|dir| std::fs::write(dir.join("truth.json"), "{}").unwrap());
         let names: Vec<String> = bench().folders(&dirs).unwrap().into_iter().map(|(name, _)| name).collect();
         assert_eq!(names, ["walk", "walk-2", "run"]);
@@ -283,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_preset_is_told_before_anything_is_built() {
+    fn an_unknown_preset_is_reported_before_anything_is_built() {
         let arguments = Arguments {
             dirs: vec![],
             presets: vec!["best".into()],

@@ -1,8 +1,9 @@
-//! `bench-tween`: matching and in-betweens on sets with known truth; tables, and sheets in `target/bench-tween`.
+//! `bench-tween`: measures matching and in-betweens on sets with known truth. It prints tables and writes sheets to
+//! `target/bench-tween`.
 //!
-//! Strokes are drawn anew in another order, direction and number of points and found again, beside pairing by index; and
-//! in-betweens are held against the true frames, beside linear interpolation of rightly paired points. The measurements are
-//! made by an optimised program (`rototoon-tests`, binary `bench-tween`).
+//! Matching must find strokes that are drawn again in another order, direction and number of points. It is compared with
+//! pairing by index. In-betweens are compared with the true frames, as is linear interpolation of correctly paired points.
+//! An optimised program makes the measurements (`rototoon-tests`, binary `bench-tween`).
 
 use anyhow::{Context, Result};
 use clap::Args;
@@ -10,14 +11,14 @@ use rototoon_tests::sample;
 use std::path::PathBuf;
 use xtask_shell::shell::{cargo, command, run, target};
 
-/// What to measure.
+/// The arguments of `bench-tween`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Folders with project.json and truth.json; the sample cartoon where none is given.
+    /// Folders with project.json and truth.json; the sample cartoon by default.
     dirs: Vec<PathBuf>,
 }
 
-/// Measures.
+/// Runs the benchmark.
 pub fn bench_tween(arguments: &Arguments) -> Result<()> {
     let out = target().join("bench-tween");
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make {out:?}"))?;

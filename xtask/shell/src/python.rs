@@ -4,7 +4,7 @@ use crate::shell::{capture, command, run, target};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 
-/// A version of the `bpy` wheel and the Python it is built for.
+/// A version of the `bpy` wheel, and the version of Python that it is built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wheel {
     /// Version of Blender, as on PyPI.
@@ -20,10 +20,10 @@ pub const WHEELS: [Wheel; 3] = [
     Wheel { blender: "5.2.3", python: "3.13" },
 ];
 
-/// An interpreter of a version such as "3.11": the first one that really runs.
+/// An interpreter of a version such as "3.11": the first one that runs.
 ///
-/// Looked for: `python3.11`, `python3` and `python` on the search path, then the versions that pyenv holds (whose shims may
-/// exist and yet refuse to run).
+/// Candidates are `python3.11`, `python3` and `python` on the search path, then the versions that pyenv has installed. The
+/// shims of pyenv may exist and still refuse to run.
 pub fn find(version: &str) -> Option<PathBuf> {
     let mut candidates: Vec<PathBuf> = [&format!("python{version}"), "python3", "python"].map(PathBuf::from).into();
     let pyenv = std::env::var_os("PYENV_ROOT").map(PathBuf::from);
@@ -40,15 +40,15 @@ fn version_of(python: &Path) -> Result<String> {
     capture(command(python).args(["-c", "import sys; print('%d.%d' % sys.version_info[:2])"]))
 }
 
-/// Any interpreter from 3.11 on (older ones lack `tomllib`).
+/// An interpreter of version 3.11 or later. Older versions lack `tomllib`.
 pub fn find_any() -> Result<PathBuf> {
     ["3.11", "3.13", "3.12", "3.14"].iter().find_map(|v| find(v)).context(
-        "no Python from 3.11 on was found; install it, for example: apt-get install python3.11 python3.11-venv",
+        "found no Python of version 3.11 or later; install it, for example: apt-get install python3.11 python3.11-venv",
     )
 }
 
-/// A virtual environment `target/<name>` with these requirements; returns its interpreter. Made once: a file in it names
-/// what is installed. Downloads are tried twice.
+/// Makes a virtual environment `target/<name>` with these requirements and returns its interpreter. It is made once: a file
+/// in it lists the installed requirements. Downloads are tried twice.
 pub fn venv(name: &str, python: &Path, requirements: &[&str]) -> Result<PathBuf> {
     let folder = target().join(name);
     let interpreter = folder.join("bin/python");
@@ -60,11 +60,11 @@ pub fn venv(name: &str, python: &Path, requirements: &[&str]) -> Result<PathBuf>
     println!("Python environment {name}: {}", requirements.join(", "));
     let plain = capture(command(python).args(["-m", "venv", "--clear"]).arg(&folder));
     if let Err(reason) = plain {
-        // Debian splits ensurepip off; an environment without pip serves as well where another pip can fill it.
+        // Debian has ensurepip in a package of its own. An environment without pip works too, if another pip fills it.
         capture(command(python).args(["-m", "venv", "--clear", "--without-pip"]).arg(&folder)).map_err(|_| reason)?;
     }
     if let Err(first) = install(python, &interpreter, requirements) {
-        println!("{first:#}\ntrying once more");
+        println!("{first:#}\ntrying again");
         install(python, &interpreter, requirements)?;
     }
     std::fs::write(&stamp, wanted).with_context(|| format!("cannot write {stamp:?}"))?;
@@ -83,14 +83,14 @@ fn install(python: &Path, interpreter: &Path, requirements: &[&str]) -> Result<(
     bail!("{} has no pip; install it, for example: apt-get install python3-pip python3-venv", python.display())
 }
 
-/// The environment with a Blender wheel and pytest; `None` where its Python isn't there.
+/// The environment with a Blender wheel and pytest; `None` if its version of Python is not installed.
 pub fn blender_venv(wheel: Wheel) -> Result<Option<PathBuf>> {
     let Some(python) = find(wheel.python) else { return Ok(None) };
     let bpy = format!("bpy=={}", wheel.blender);
     venv(&format!("venv-bpy-{}", wheel.blender), &python, &[&bpy, "pytest"]).map(Some)
 }
 
-/// The environment of the oldest supported Blender whose Python is here.
+/// The environment of the oldest supported Blender whose version of Python is installed.
 pub fn any_blender_venv() -> Result<(Wheel, PathBuf)> {
     for wheel in WHEELS {
         if let Some(python) = blender_venv(wheel)? {
@@ -98,7 +98,8 @@ pub fn any_blender_venv() -> Result<(Wheel, PathBuf)> {
         }
     }
     bail!(
-        "Blender's wheels need Python 3.11 or 3.13, and neither was found; install one, for example: apt-get install python3.11 python3.11-venv"
+        "found neither Python 3.11 nor 3.13, which Blender's wheels need; install one, for example: apt-get install \
+         python3.11 python3.11-venv"
     )
 }
 
@@ -107,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_found_interpreter_is_of_its_version() {
+    fn a_found_interpreter_has_the_requested_version() {
         assert_eq!(find("2.99"), None);
         for version in ["3.11", "3.13"] {
             if let Some(python) = find(version) {

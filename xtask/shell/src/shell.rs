@@ -1,4 +1,4 @@
-//! Running other programs, and where things are.
+//! Runs other programs, and finds the workspace's folders.
 
 use anyhow::{Context, Result, bail};
 use std::ffi::OsStr;
@@ -10,7 +10,7 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("the package lies in the workspace").to_path_buf()
 }
 
-/// The folder of everything that is built; `CARGO_TARGET_DIR` moves it.
+/// The folder of all built files. `CARGO_TARGET_DIR` overrides it.
 pub fn target() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |folder| root().join(folder))
 }
@@ -27,7 +27,7 @@ pub fn cargo() -> Command {
     command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// Runs a command to its end; an error names the command and how it ended.
+/// Runs a command to its end. The error names the command and its exit status.
 pub fn run(command: &mut Command) -> Result<()> {
     let status = command.status().with_context(|| format!("cannot start {}", shown(command)))?;
     if !status.success() {
@@ -36,7 +36,7 @@ pub fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Runs a command and returns what it printed; an error holds what it said on standard error.
+/// Runs a command and returns its standard output. The error contains its standard error.
 pub fn capture(command: &mut Command) -> Result<String> {
     let output = command.stdin(Stdio::null()).output().with_context(|| format!("cannot start {}", shown(command)))?;
     if !output.status.success() {
@@ -51,13 +51,13 @@ pub fn works(program: &str, arguments: &[&str]) -> bool {
     capture(command(program).args(arguments)).is_ok()
 }
 
-/// The command as one would type it.
+/// The command line of a command, for messages.
 fn shown(command: &Command) -> String {
     let words = std::iter::once(command.get_program()).chain(command.get_args());
     words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
 
-/// Makes a folder that is empty.
+/// Makes an empty folder, and removes the old one.
 pub fn empty_folder(path: &Path) -> Result<()> {
     if path.exists() {
         std::fs::remove_dir_all(path).with_context(|| format!("cannot remove {path:?}"))?;
@@ -65,7 +65,7 @@ pub fn empty_folder(path: &Path) -> Result<()> {
     std::fs::create_dir_all(path).with_context(|| format!("cannot make {path:?}"))
 }
 
-/// Copies the files of a folder that `keep` accepts by name, folders too.
+/// Copies a folder with its subfolders. Copies only files and folders whose names `keep` accepts.
 pub fn copy_folder(from: &Path, to: &Path, keep: &dyn Fn(&str) -> bool) -> Result<()> {
     std::fs::create_dir_all(to).with_context(|| format!("cannot make {to:?}"))?;
     for entry in std::fs::read_dir(from).with_context(|| format!("cannot read {from:?}"))? {
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn copies_what_is_kept() {
+    fn copies_only_accepted_names() {
         let folder = target().join("xtask-copy-test");
         empty_folder(&folder).unwrap();
         std::fs::create_dir_all(folder.join("a/inner")).unwrap();

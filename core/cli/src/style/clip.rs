@@ -1,4 +1,4 @@
-//! `rototoon style clip`: a skeleton clip of a document's tracked contours.
+//! `rototoon style clip`: makes a skeleton clip from a document's tracked contours.
 
 use super::{name, named};
 use crate::arguments;
@@ -13,15 +13,15 @@ use std::ops::RangeInclusive;
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("clip")
-        .about("Makes a skeleton clip of tracked contours, by the document's limbs")
+        .about("Makes a skeleton clip from tracked contours and the document's limbs")
         .arg(arguments::project())
-        .arg(name("character", "Who moves"))
-        .arg(name("motion", "What is done, such as walk"))
+        .arg(name("character", "Name of the character"))
+        .arg(name("motion", "Name of the motion, such as walk"))
         .arg(
             Arg::new("frames")
                 .long("frames")
                 .value_name("A-B")
-                .help("First and last frame; else the whole footage")
+                .help("First and last frame [default: all frames of the footage]")
                 .allow_hyphen_values(true)
                 .value_parser(render::range),
         )

@@ -1,4 +1,4 @@
-//! `rototoon style import`: skeleton clips of motion capture.
+//! `rototoon style import`: makes skeleton clips from motion capture.
 
 use crate::arguments;
 use crate::failure::{Failure, line};
@@ -17,42 +17,50 @@ pub fn command() -> Command {
     let option =
         |id: &'static str, value: &'static str, help: &'static str| Arg::new(id).long(id).value_name(value).help(help);
     Command::new("import")
-        .about("Makes skeleton clips of motion capture: BVH files, seen from one side")
+        .about("Makes skeleton clips from motion capture (BVH files), seen from one direction")
         .arg(
             Arg::new("files")
                 .value_name("FILE.bvh")
-                .help("The motions")
+                .help("The motion files")
                 .required(true)
                 .num_args(1..)
                 .value_parser(value_parser!(PathBuf)),
         )
-        .arg(option("motion", "NAME", "What is done; else the file's name without its ending"))
-        .arg(option("character", "NAME", "Who moves; else the name of the file's folder"))
+        .arg(option("motion", "NAME", "Name of the motion [default: the file's name without its ending]"))
+        .arg(option("character", "NAME", "Name of the character [default: the name of the file's folder]"))
         .arg(
-            option("view", "VIEW", "From where: front, side, three-quarter, auto (where most of the motion is seen), or degrees about the vertical, 0 front and 90 side")
-                .default_value("auto")
-                .allow_hyphen_values(true)
-                .value_parser(view),
+            option(
+                "view",
+                "VIEW",
+                "The direction of the view: front, side, three-quarter, auto (shows most of the motion), or degrees about \
+                 the vertical (0 front, 90 side)",
+            )
+            .default_value("auto")
+            .allow_hyphen_values(true)
+            .value_parser(view),
         )
         .arg(
-            option("up", "AXIS", "The axis that points up; auto is the one along which the character is tall")
+            option("up", "AXIS", "The axis that points up; auto takes the axis along which the character is tallest")
                 .default_value("auto")
                 .value_parser(PossibleValuesParser::new(["auto", "y", "z"])),
         )
         .arg(
-            option("joints", "MAP.json", "Joints of key points that their names do not tell: {\"l_wrist\": \"Hand.L\", …}")
+            option("joints", "MAP.json", "Joints that are not recognised by their names: {\"l_wrist\": \"Hand.L\", …}")
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(
-            option("frames", "A-B", "First and last frame of the file, from 0; else all")
+            option("frames", "A-B", "First and last frame of the file, counted from 0 [default: all]")
                 .allow_hyphen_values(true)
                 .value_parser(render::range),
         )
-        .arg(option("fps", "NUMBER", "Frames a second of the clips; else those of the first file").value_parser(value_parser!(f64)))
+        .arg(
+            option("fps", "NUMBER", "Frames per second of the clips [default: those of the first file]")
+                .value_parser(value_parser!(f64)),
+        )
         .arg(
             Arg::new("way")
                 .long("way")
-                .help("Let the pelvis go its way through the picture; else it stays at the origin")
+                .help("Lets the pelvis move through the picture; otherwise it stays at the origin")
                 .action(ArgAction::SetTrue),
         )
         .arg(arguments::output("CLIPS", "The file of clips to write"))
@@ -86,7 +94,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         if let Some(twin) = clips.iter().position(|clip| clip.character == character && clip.motion == motion) {
             let twin = files[twin].display();
             return Err(failed(&format!(
-                "found {motion:?} by {character:?} again, expected each motion of a character once; the other is {twin}"
+                "found {motion:?} by {character:?}, expected each motion of a character once; {twin} has it too"
             )));
         }
         if options.view == View::Auto {
@@ -118,7 +126,7 @@ fn options(given: &ArgMatches) -> Result<Options, Failure> {
         None => None,
         Some(frames) => match (usize::try_from(*frames.start()), usize::try_from(*frames.end())) {
             (Ok(first), Ok(last)) => Some(first..=last),
-            _ => return Err(Failure::Use("--frames: expected frames from 0".into())),
+            _ => return Err(Failure::Use("--frames: found a negative frame, expected frames from 0".into())),
         },
     };
     let view = given.get_one::<View>("view").copied().unwrap_or_default();
@@ -126,7 +134,7 @@ fn options(given: &ArgMatches) -> Result<Options, Failure> {
     Ok(Options { view, up, joints, way: given.get_flag("way"), frames, fps })
 }
 
-/// Who moves and what is done.
+/// The names of the character and of the motion of a file.
 fn labels(given: &ArgMatches, file: &Path) -> Result<(String, String), Failure> {
     let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
     let folder = whole.parent().and_then(Path::file_name);

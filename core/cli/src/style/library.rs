@@ -1,4 +1,4 @@
-//! `rototoon style library`: a folder of clips with an index.
+//! `rototoon style library`: fills and lists a library, which is a folder of clips with an index.
 
 use crate::arguments;
 use crate::failure::{Failure, line};
@@ -20,19 +20,23 @@ pub fn command() -> Command {
     let word =
         |id: &'static str, help: &'static str| Arg::new(id).long(id).value_name("WORD").help(help).default_value("");
     let add = Command::new("add")
-        .about("Adds the clips of a file; those of the same character and motion are replaced")
+        .about("Adds the clips of a file; they replace clips of the same character and motion")
         .arg(folder())
         .arg(
-            Arg::new("clips").value_name("CLIPS").help("The clips").required(true).value_parser(value_parser!(PathBuf)),
+            Arg::new("clips")
+                .value_name("CLIPS")
+                .help("The file of clips")
+                .required(true)
+                .value_parser(value_parser!(PathBuf)),
         )
         .arg(word("source", "Where the clips come from"));
     let list = Command::new("list")
-        .about("Lists clips: character, motion, frames, frames a second, file, source")
+        .about("Lists clips: character, motion, frames, frames per second, file, source")
         .arg(folder())
-        .arg(word("character", "Only characters whose names hold this"))
-        .arg(word("motion", "Only motions whose names hold this"));
+        .arg(word("character", "Only characters whose names contain this word"))
+        .arg(word("motion", "Only motions whose names contain this word"));
     Command::new("library")
-        .about("A folder of clips with an index")
+        .about("Fills and lists a library, a folder of clips with an index")
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands([add, list])
@@ -54,7 +58,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     let found = library.search(arguments::choice(given, "character"), arguments::choice(given, "motion"));
     for e in found {
-        // A reader that has gone away is no failure.
+        // A closed standard output, such as of `head`, is no error.
         let fields = format!("{}\t{}\t{}\t{}\t{}\t{}", e.character, e.motion, e.frames, e.fps, e.file, e.source);
         if writeln!(out, "{fields}").is_err() {
             break;

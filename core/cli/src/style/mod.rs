@@ -1,10 +1,10 @@
-//! `rototoon style`: skeleton clips, a motion re-made in another character's manner, and drawings that follow it.
+//! `rototoon style`: makes skeleton clips, makes motions in another character's style, and makes drawings follow clips.
 //!
-//! - [`clip`]: clips of tracked contours
-//! - [`import`]: clips of motion capture
-//! - [`library`]: a folder of clips
-//! - [`translate`]: another character's manner
-//! - [`reshape`]: a drawing that follows a clip
+//! - [`clip`]: makes clips from tracked contours
+//! - [`import`]: makes clips from motion capture
+//! - [`library`]: keeps clips in a folder
+//! - [`translate`]: makes a motion in another character's style
+//! - [`reshape`]: makes a drawing follow a clip
 
 mod clip;
 mod import;
@@ -22,7 +22,7 @@ use std::path::Path;
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("style")
-        .about("Skeleton clips: captured, re-made in another character's manner, followed by a drawing")
+        .about("Makes skeleton clips, makes motions in another character's style, and makes drawings follow clips")
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands([clip::command(), import::command(), library::command(), translate::command(), reshape::command()])
@@ -44,7 +44,7 @@ fn name(id: &'static str, help: &'static str) -> Arg {
     Arg::new(id).long(id).value_name("NAME").help(help).required(true)
 }
 
-/// An error of clips or limbs, with the file that it is about.
+/// Adds the name of the file to an error of clips or limbs.
 fn named(error: PipelineError, from: &Path) -> Failure {
     match error {
         PipelineError::Style(reason) => Failure::Other(format!("{}: {reason}", from.display())),
@@ -52,7 +52,7 @@ fn named(error: PipelineError, from: &Path) -> Failure {
     }
 }
 
-/// Clips of a file, or of a library as far as it can be used.
+/// The clips of a file, or of a library. Unusable files of a library give warnings.
 fn load(from: &Path) -> Result<Clips, Failure> {
     if !from.is_dir() {
         return Clips::load(from).map_err(|e| Failure::Other(e.to_string()));

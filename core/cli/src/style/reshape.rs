@@ -1,4 +1,4 @@
-//! `rototoon style reshape`: a drawing that follows a skeleton clip.
+//! `rototoon style reshape`: makes a drawing follow a skeleton clip.
 
 use super::{load, named};
 use crate::failure::{Failure, line};
@@ -20,7 +20,7 @@ const MOST_SUB_KEYS: i64 = 100;
 pub fn command() -> Command {
     let word = |id: &'static str, help: &'static str| Arg::new(id).long(id).value_name("NAME").help(help);
     Command::new("reshape")
-        .about("Makes a drawing follow a skeleton clip: its contours and strokes on every frame")
+        .about("Makes a drawing follow a skeleton clip: moves its contours and strokes on every frame")
         .arg(arguments::project())
         .arg(
             Arg::new("clips")
@@ -29,13 +29,13 @@ pub fn command() -> Command {
                 .required(true)
                 .value_parser(value_parser!(PathBuf)),
         )
-        .arg(word("character", "Of several clips, the one by this character"))
-        .arg(word("motion", "Of several clips, the one of this motion"))
+        .arg(word("character", "Character of the clip; needed if there are clips of several characters"))
+        .arg(word("motion", "Motion of the clip; needed if there are clips of several motions"))
         .arg(
             Arg::new("rest")
                 .long("rest")
                 .value_name("FRAME")
-                .help("The frame of the drawing; else the first on which every part has a contour")
+                .help("The frame of the drawing [default: the first one on which every part has a contour]")
                 .allow_negative_numbers(true)
                 .value_parser(value_parser!(i32)),
         )
@@ -43,14 +43,14 @@ pub fn command() -> Command {
             Arg::new("over")
                 .long("over")
                 .value_name("PROJECT")
-                .help("The document whose footage the result lies over; else the drawing's own")
+                .help("The document whose footage is behind the result [default: the drawing's document]")
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(
             Arg::new("sub_keys")
                 .long("sub-keys")
                 .value_name("N")
-                .help("Points of each limb between its key points that hold its shape; 0 for none")
+                .help("Number of points of each limb between its key points, which keep its shape; 0 for none")
                 .default_value("5")
                 .value_parser(value_parser!(i64).range(0..=MOST_SUB_KEYS)),
         )
@@ -82,12 +82,13 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         Ok((document, made))
     })?;
     for (part, (start, end)) in &made.given {
-        line("warning", &format!("{}: part {part:?}: no limb carries it; it follows {start} to {end}", from.display()));
+        let text = format!("part {part:?}: no limb carries it, so it follows the nearest one, {start} to {end}");
+        line("warning", &format!("{}: {text}", from.display()));
     }
     project::save(document, from, to)
 }
 
-/// The one clip that is meant.
+/// The clip that the arguments select.
 fn chosen<'a>(clips: &'a Clips, from: &Path, given: &ArgMatches) -> Result<&'a Clip, Failure> {
     let fits = |id: &str, value: &str| given.get_one::<String>(id).is_none_or(|wanted| wanted == value);
     let mut found = clips.clips.iter().filter(|c| fits("character", &c.character) && fits("motion", &c.motion));

@@ -1,4 +1,4 @@
-//! `rototoon style translate`: a motion re-made in another character's manner.
+//! `rototoon style translate`: makes a motion in another character's style.
 
 use super::{load, name, named};
 use crate::failure::Failure;
@@ -26,12 +26,12 @@ fn on_or_off(id: &'static str, help: &'static str) -> Arg {
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("translate")
-        .about("Re-makes a motion in another character's manner")
+        .about("Makes a motion in another character's style")
         .args(of_task())
         .args(of_method())
         .arg(on_or_off("limb-lengths", "Whether limbs keep within the lengths of the style's own clips"))
         .arg(on_or_off("contacts", "Whether feet that stand in the content's clip stay where they stand"))
-        .arg(arguments::output("OUT", "The file to write: one clip, with the standard deviation of each key point"))
+        .arg(arguments::output("OUT", "The file to write: one clip with the standard deviation of each key point"))
         .args(arguments::of_stage(Stage::Run))
 }
 
@@ -43,13 +43,13 @@ fn of_task() -> [Arg; 5] {
             .help("The clips to learn from: a file of clips, or the folder of a library")
             .required(true)
             .value_parser(value_parser!(PathBuf)),
-        name("style", "The character in whose manner"),
-        name("motion", "The motion to make; a clip of it by that character is left out of account"),
-        name("content", "The character whose motion it was: gives length, timing and the way"),
+        name("style", "The character whose style the result has"),
+        name("motion", "The motion to make; a clip of this motion by the style's character is not used"),
+        name("content", "The character whose clip of the motion gives length, timing and way"),
         Arg::new("key_pose")
             .long("key-pose")
             .value_name("FILE")
-            .help("Postures drawn for the result: one for its first frame, or a list of {\"frame\", \"points\"}")
+            .help("Drawn postures for the result: one for its first frame, or a list of {\"frame\", \"points\"}")
             .value_parser(value_parser!(PathBuf)),
     ]
 }
@@ -58,8 +58,8 @@ fn of_task() -> [Arg; 5] {
 fn of_method() -> [Arg; 4] {
     let presets = Preset::ALL.iter().map(|(id, help, _)| PossibleValue::new(*id).help(*help));
     let paces = PossibleValuesParser::new([
-        PossibleValue::new("content").help("That of the content's clip, frame by frame"),
-        PossibleValue::new("style").help("Slower or faster, as the style's other clips are beside the content's"),
+        PossibleValue::new("content").help("The timing of the content's clip, frame by frame"),
+        PossibleValue::new("style").help("Slower or faster, by how the style's other clips differ from the content's"),
     ]);
     [
         Arg::new("style_preset")
@@ -67,11 +67,11 @@ fn of_method() -> [Arg; 4] {
             .help("The method that translates")
             .default_value("rototoon")
             .value_parser(PossibleValuesParser::new(presets)),
-        Arg::new("timing").long("timing").help("Whose timing").default_value("content").value_parser(paces),
+        Arg::new("timing").long("timing").help("The timing of the result").default_value("content").value_parser(paces),
         Arg::new("strength")
             .long("strength")
             .value_name("NUMBER")
-            .help("Factor on what the style adds to the motion, 0 to 3 (default preset)")
+            .help("Factor on the change that the style makes, 0 to 3 (only of the default preset)")
             .default_value("1.1")
             .allow_negative_numbers(true)
             .value_parser(|text: &str| match text.parse::<f64>() {
@@ -81,7 +81,7 @@ fn of_method() -> [Arg; 4] {
         Arg::new("rank")
             .long("rank")
             .value_name("N")
-            .help("Components of the bilinear and liang2012 presets; else their own")
+            .help("Number of components of the presets bilinear and liang2012 [default: that of the preset]")
             .value_parser(value_parser!(u16).range(1..=1000)),
     ]
 }
