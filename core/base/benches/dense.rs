@@ -1,7 +1,7 @@
-//! Small dense systems and band systems: our own factorisations beside nalgebra's.
+//! Small dense systems by nalgebra, behind the interface of `numeric::dense`, and our own band factorisation beside
+//! nalgebra's dense one.
 //!
-//! `cargo bench -p rototoon-base --bench dense`. The module docs of `numeric::dense` and `numeric::banded` quote what this
-//! prints.
+//! `cargo bench -p rototoon-base --bench dense`. The module docs of `numeric::banded` quote what this prints.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use nalgebra::{DMatrix, DVector};
@@ -21,7 +21,7 @@ fn inverses(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("dense inverse");
     for n in [4, 16, 64, 192] {
         let rows = matrix(n);
-        group.bench_with_input(BenchmarkId::new("own", n), &rows, |bencher, rows| {
+        group.bench_with_input(BenchmarkId::new("by rows", n), &rows, |bencher, rows| {
             bencher.iter(|| DenseCholesky::new(n, black_box(rows)).map(|factor| factor.inverse()));
         });
         group.bench_with_input(BenchmarkId::new("nalgebra", n), &rows, |bencher, rows| {
@@ -35,7 +35,7 @@ fn solutions(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("dense solve");
     for n in [4, 16, 64, 192] {
         let rows = matrix(n);
-        group.bench_with_input(BenchmarkId::new("own", n), &rows, |bencher, rows| {
+        group.bench_with_input(BenchmarkId::new("by rows", n), &rows, |bencher, rows| {
             bencher.iter(|| {
                 let mut b = vec![1.0; n];
                 DenseCholesky::new(n, black_box(rows)).map(|factor| factor.solve(&mut b, 1));

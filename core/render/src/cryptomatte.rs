@@ -15,6 +15,7 @@
 use super::layers::{Attribute, Channel};
 use super::visible::{Share, Visible};
 use rototoon_base::scene::Scene;
+use std::io::Cursor;
 
 /// Name of the layers.
 pub const LAYER: &str = "CryptoObject";
@@ -33,21 +34,7 @@ pub struct SameId {
 
 /// MurmurHash3_32 with seed 0.
 pub fn murmur3(bytes: &[u8]) -> u32 {
-    let scrambled = |block: u32| block.wrapping_mul(0xcc9e_2d51).rotate_left(15).wrapping_mul(0x1b87_3593);
-    let blocks = bytes.chunks_exact(4);
-    let rest = blocks.remainder();
-    let mut hash = 0u32;
-    for block in blocks {
-        hash ^= scrambled(u32::from_le_bytes([block[0], block[1], block[2], block[3]]));
-        hash = hash.rotate_left(13).wrapping_mul(5).wrapping_add(0xe654_6b64);
-    }
-    if !rest.is_empty() {
-        hash ^= scrambled(rest.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte)));
-    }
-    hash ^= bytes.len() as u32;
-    hash = (hash ^ hash >> 16).wrapping_mul(0x85eb_ca6b);
-    hash = (hash ^ hash >> 13).wrapping_mul(0xc2b2_ae35);
-    hash ^ hash >> 16
+    murmur3::murmur3_32(&mut Cursor::new(bytes), 0).expect("bytes in memory can be read")
 }
 
 /// The id of a name, as the bits of a finite, normal float.

@@ -6,6 +6,9 @@
 //! finished row is taken from the rows below it, and runs along memory as they do, so that the processor's vectors are
 //! full. `BLOCK` rows are finished before the rows below them are touched, which then are read and written once instead
 //! of `BLOCK` times.
+//!
+//! nalgebra has no band factorisation. Its dense one takes 7 times as long for 120 rows of half width 18 (134 µs beside 20)
+//! and 27 times as long for 400 rows of half width 42 (6.1 ms beside 0.22): `cargo bench -p rototoon-base --bench dense`.
 
 use super::vector::vectorised;
 use std::ops::Range;
