@@ -21,7 +21,7 @@ use crate::image::Sequence;
 use crate::import::{self, ImportError};
 use crate::project::curves::{CurveGuides, Curves};
 use crate::project::save::DECIMALS;
-use crate::project::{Document, WriteError, output, validate, write_whole};
+use crate::project::{Document, Inputs, WriteError, output, validate, write_whole};
 use crate::render::{self, EncodeError, Format, OverlayOptions};
 use crate::scene::{Cancelled, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
 use crate::snap::{SnapError, SnapOptions, snap_scene};
@@ -277,14 +277,9 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
         }
         Err(error) => return Err(PipelineError::Request(format!("output {error}"))),
     };
+    let inputs = Inputs::default().footage(footage, sequence.folder());
     for (frame, path) in &frames {
-        let own = std::fs::canonicalize(path).ok();
-        if own.is_some() && own == std::fs::canonicalize(sequence.path(*frame)).ok() {
-            let path = path.display();
-            return Err(PipelineError::Request(format!(
-                "frame {frame}: {path} is the footage itself, expected another"
-            )));
-        }
+        inputs.check(path).map_err(|error| PipelineError::Request(format!("frame {frame}: {error}")))?;
     }
     Ok(Rendering {
         frames,

@@ -6,7 +6,7 @@
 
 use anyhow::{Context, Result, bail};
 use std::fs::{self, File};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::Instant;
 use xtask_shell::shell::{command, target};
@@ -87,19 +87,21 @@ fn file(step: &str, kind: &str) -> Result<PathBuf> {
     Ok(folder.join(format!("{}.{kind}", step.replace(' ', "-"))))
 }
 
-/// Runs a step as `xtask test --step NAME`, and prints what it printed.
-pub fn in_own_process(step: &str, more: &[&str]) -> Outcome {
-    child(step, more).unwrap_or_else(|error| {
+/// Runs a step as `xtask test --step NAME`, with `more` arguments, and prints its output when it has ended.
+///
+/// `program` is this program, found before the first step: a step that compiles the workspace links it anew, and the system
+/// then no longer knows the running program by its path.
+pub fn in_own_process(program: &Path, step: &str, more: &[&str]) -> Outcome {
+    child(program, step, more).unwrap_or_else(|error| {
         eprintln!("{error:#}");
         Outcome::Failed(format!("{error:#}"))
     })
 }
 
-fn child(step: &str, more: &[&str]) -> Result<Outcome> {
+fn child(program: &Path, step: &str, more: &[&str]) -> Result<Outcome> {
     let (log, outcome) = (file(step, "log")?, file(step, "outcome")?);
     let _ = fs::remove_file(&outcome);
     let output = File::create(&log).with_context(|| format!("cannot write {log:?}"))?;
-    let program = std::env::current_exe().context("cannot find the path of this program")?;
     let status = command(program)
         .args(["test", "--step", step])
         .args(more)

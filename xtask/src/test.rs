@@ -4,7 +4,7 @@ use crate::bundle::{self, Build, Bundle, Packager, TESTED, bundle};
 use crate::docs::docs;
 use crate::generate::generate;
 use crate::steps::{Step, in_own_process, run_all};
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use std::path::PathBuf;
 use xtask_shell::python::{self, WHEELS, Wheel};
 use xtask_shell::shell::{capture, cargo, command, empty_folder, root, run, target, works};
@@ -26,9 +26,10 @@ pub fn test(valgrind: bool, build: Build) -> Result<()> {
     }
     let steps = steps(valgrind, build);
     let release: &[&str] = if build == Build::Tested { &[] } else { &["--release"] };
+    let program = std::env::current_exe().context("cannot find the path of this program")?;
     let run = |name: &str| {
         println!("started: {name}");
-        in_own_process(name, release)
+        in_own_process(&program, name, release)
     };
     run_all(&steps, AT_ONCE, &run).finish()
 }

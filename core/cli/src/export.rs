@@ -25,9 +25,12 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         return Err(Failure::Use(format!("{}: expected a name that ends in .svg, .nk, .fxs or .json", to.display())));
     }
     let document = project::load(from)?;
+    let inputs = project::inputs(&document, from);
     if extension == "json" {
+        inputs.check(to)?;
         return project::save(document, from, to);
     }
+    inputs.file(from).check(to)?;
     let id = arguments::choice(given, "motion");
     let motion = Motion::from_id(id).ok_or_else(|| Failure::Use(format!("no motion {id:?}")))?;
     let spacing = arguments::number(given, "spacing");

@@ -1,7 +1,7 @@
 //! Errors and exit statuses.
 
 use rototoon::pipeline::PipelineError;
-use rototoon::project::{LoadError, SaveError, WriteError};
+use rototoon::project::{LoadError, OverwritesInput, SaveError, WriteError};
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -25,6 +25,9 @@ pub enum Failure {
     /// A file could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// The output is a file that the command reads.
+    #[error(transparent)]
+    Overwrites(#[from] OverwritesInput),
     /// The arguments are wrong.
     #[error("{0}")]
     Use(String),
@@ -44,7 +47,7 @@ impl Failure {
             Self::Load(error) => error.lines().iter().for_each(|text| line("error", text)),
             other => other.to_string().lines().for_each(|text| line("error", text)),
         }
-        let request = matches!(self, Self::Use(_) | Self::Pipeline(PipelineError::Request(_)));
+        let request = matches!(self, Self::Use(_) | Self::Overwrites(_) | Self::Pipeline(PipelineError::Request(_)));
         ExitCode::from(if request { WRONG_USE } else { FAILED })
     }
 }

@@ -8,7 +8,7 @@ use rototoon::fit::{Options, Preset};
 use rototoon::pipeline;
 use rototoon::project::curves::Curves;
 use rototoon::project::output::check_writable;
-use rototoon::project::write_whole;
+use rototoon::project::{Inputs, write_whole};
 use rototoon::scene::parameters::Stage;
 use std::path::PathBuf;
 
@@ -56,6 +56,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let preset = Preset::from_id(id).ok_or_else(|| Failure::Use(format!("no preset {id:?}")))?;
     let tolerance = given.get_one::<f64>("tolerance").copied().unwrap_or(0.0);
     let curves = Curves::load(from).map_err(|error| Failure::Other(error.to_string()))?;
+    Inputs::default().file(from).check(to)?;
     check_writable(to)?;
     let options = Options { tolerance, preset };
     let text = progress::run(arguments::threads(given), |bar| {

@@ -53,5 +53,6 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     for warning in warnings {
         line("warning", &format!("{}: {warning}", shapes.display()));
     }
+    project::inputs(&document, from).file(shapes).check(to)?;
     project::save(document, from, to)
 }

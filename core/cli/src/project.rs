@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, line};
 use rototoon::pipeline;
-use rototoon::project::Document;
+use rototoon::project::{Document, Inputs};
 use std::path::Path;
 
 /// Reads a document and prints its warnings.
@@ -17,6 +17,12 @@ pub fn load(path: &Path) -> Result<Document, Failure> {
 /// The folder that a document's footage is relative to.
 pub fn folder(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
+}
+
+/// The footage of a document that was read from `from`. No output may be one of its frames; the document itself may be
+/// written over by a later state of it.
+pub fn inputs(document: &Document, from: &Path) -> Inputs {
+    Inputs::default().footage(&document.scene.footage, folder(from))
 }
 
 /// Writes a document that was read from `from`. A relative footage pattern is rewritten so that it names the same files.

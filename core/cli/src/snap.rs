@@ -23,6 +23,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let options = options(given)?;
     let mut document = project::load(from)?;
+    project::inputs(&document, from).check(to)?;
     check_writable(to)?;
     let document = progress::run(arguments::threads(given), |bar| {
         pipeline::snap(&mut document, project::folder(from), &options, bar)?;

@@ -28,6 +28,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let id = arguments::choice(given, "preset");
     let preset = Preset::from_id(id).ok_or_else(|| Failure::Use(format!("no preset {id:?}")))?;
     let mut document = project::load(from)?;
+    project::inputs(&document, from).check(to)?;
     check_writable(to)?;
     let options = TrackOptions { preset, ..TrackOptions::default() };
     let document = progress::run(arguments::threads(given), |bar| {

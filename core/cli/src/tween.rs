@@ -64,6 +64,7 @@ pub fn command() -> Command {
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let mut document = rototoon::project::Document::load(from)?;
+    project::inputs(&document, from).check(to)?;
     check_writable(to)?;
     let footage = &document.scene.footage;
     let leaving = match arguments::choice(given, "leaving") {

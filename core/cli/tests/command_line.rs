@@ -325,7 +325,7 @@ fn pictures_are_written_for_the_given_frames() {
     assert!((area - 480.0).abs() < 1e-3, "{area}");
     let before = fs::read(cartoon.frame(2)).unwrap();
     let own = bad(&["render", text(&out), "-o", text(&cartoon.path("frames/f_%03d.png"))], 2);
-    assert!(own.contains("is the footage itself"), "{own}");
+    assert!(own.contains("that the command reads"), "{own}");
     assert_eq!(fs::read(cartoon.frame(2)).unwrap(), before);
 }
 

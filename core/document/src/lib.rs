@@ -47,6 +47,7 @@ pub mod clips;
 pub mod curves;
 pub mod drawings;
 mod fields;
+pub mod inputs;
 pub mod library;
 pub mod limbs;
 pub mod load;
@@ -59,6 +60,7 @@ mod shape;
 pub mod validate;
 
 pub use fields::FieldError;
+pub use inputs::{Inputs, OverwritesInput};
 pub use load::LoadError;
 pub use output::{WriteError, write_whole};
 pub use problem::{Problem, Problems, Severity};

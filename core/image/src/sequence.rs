@@ -42,6 +42,11 @@ impl Sequence {
         &self.footage
     }
 
+    /// The folder that a relative pattern starts in.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// Where a frame's file should be.
     pub fn path(&self, frame: FrameNumber) -> PathBuf {
         self.folder.join(self.pattern.path(frame))

@@ -32,6 +32,7 @@ pub fn command() -> Command {
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let document = project::load(from)?;
+    project::inputs(&document, from).file(from).check(to)?;
     check_writable(to)?;
     let job = ClipJob {
         character: arguments::choice(given, "character").to_owned(),

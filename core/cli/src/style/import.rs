@@ -6,6 +6,7 @@ use crate::render;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use rototoon::import::bvh::{JointMap, Options, Up, View, seen};
+use rototoon::project::Inputs;
 use rototoon::project::clips::Clips;
 use rototoon::project::output::check_writable;
 use rototoon::scene::{Clip, FrameNumber};
@@ -82,6 +83,8 @@ fn view(text: &str) -> Result<View, String> {
 /// Runs it.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let to = arguments::path(given, "output");
+    let read = given.get_many::<PathBuf>("files").into_iter().flatten().chain(given.get_one("joints"));
+    read.fold(Inputs::default(), |inputs, path| inputs.file(path)).check(to)?;
     check_writable(to)?;
     let mut options = options(given)?;
     let mut clips: Vec<Clip> = Vec::new();

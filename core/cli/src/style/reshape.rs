@@ -64,6 +64,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let mut document = project::load(from)?;
     let clips = load(arguments::path(given, "clips"))?;
     let clip = chosen(&clips, arguments::path(given, "clips"), given)?;
+    let inputs = project::inputs(&document, from).file(arguments::path(given, "clips"));
+    let inputs = given.get_one::<PathBuf>("over").into_iter().fold(inputs, |inputs, path| inputs.file(path));
+    inputs.check(to)?;
     check_writable(to)?;
     let over = match given.get_one::<PathBuf>("over") {
         Some(path) => {

@@ -6,6 +6,7 @@ use crate::{arguments, progress};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::pipeline;
+use rototoon::project::Inputs;
 use rototoon::project::clips::load_key_poses;
 use rototoon::project::output::check_writable;
 use rototoon::scene::parameters::Stage;
@@ -97,6 +98,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         None => Vec::new(),
     };
     let keys: Vec<KeyPose> = keys.into_iter().map(|key| KeyPose { frame: key.frame, posture: key.posture }).collect();
+    let read = given
+        .get_one::<PathBuf>("key_pose")
+        .into_iter()
+        .fold(Inputs::default().file(from), |read, path| read.file(path));
+    read.check(to)?;
     check_writable(to)?;
     let preset = text("style_preset");
     let options = Options {

@@ -15,6 +15,8 @@ const LEAST_SPACING: f64 = 0.25;
 #[derive(Clone, Debug)]
 pub struct Outlines<'a> {
     part: &'a Part,
+    /// Number of control points on every frame.
+    points: usize,
     /// Number of points of each segment, its end left out; nothing where the part has no snapped paths.
     counts: Vec<usize>,
 }
@@ -32,12 +34,14 @@ impl<'a> Outlines<'a> {
                 *count = (*count).max(wanted as usize);
             }
         }
-        Self { part, counts }
+        let points = part.keys.values().chain(part.tracks.values()).next().map_or(0, Vec::len);
+        Self { part, points, counts }
     }
 
-    /// The contour on a frame; none where the part has none there, or one without points.
+    /// The contour on a frame. `None` where the part has none there, or one with another number of points than its first key.
     pub fn at(&self, frame: FrameNumber) -> Option<Vec<Point>> {
-        let points = self.part.points_at(frame).filter(|points| !points.is_empty())?;
+        // A document may hold a frame with another number of points: it is no contour of this part.
+        let points = self.part.points_at(frame).filter(|points| !points.is_empty() && points.len() == self.points)?;
         if self.counts.is_empty() {
             return Some(points.clone());
         }
@@ -58,5 +62,22 @@ impl<'a> Outlines<'a> {
     /// Frames of `first` to `last` on which there is a contour, with it.
     pub fn within(&self, first: FrameNumber, last: FrameNumber) -> Vec<(FrameNumber, Vec<Point>)> {
         (first..=last).filter_map(|frame| Some((frame, self.at(frame)?))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_with_another_number_of_points_has_no_contour() {
+        let square = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0)].map(Point::from).to_vec();
+        let mut part = Part { closed: true, ..Part::default() };
+        part.keys.insert(0, square.clone());
+        part.tracks.insert(0, square.clone());
+        part.tracks.insert(1, square[..2].to_vec());
+        part.tracks.insert(2, square.clone());
+        let frames: Vec<_> = Outlines::new(&part, 1.0).within(0, 2).into_iter().map(|(frame, _)| frame).collect();
+        assert_eq!(frames, [0, 2]);
     }
 }

@@ -1,0 +1,122 @@
+//! The files that a command reads, so that it does not write over one of them.
+//!
+//! Two paths may name one file: by `..`, by symbolic or hard links, by letters of another case. Paths are compared after
+//! the system has resolved them; on Unix files are compared by device and inode too. A path where no file is names none.
+
+use rototoon_base::scene::{Footage, FramePattern};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What a command reads.
+#[derive(Clone, Debug, Default)]
+pub struct Inputs {
+    files: Vec<(PathBuf, Identity)>,
+}
+
+/// A command was asked to write over a file that it reads.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}: found a file that the command reads ({}), expected another name for the output", output.display(), input.display())]
+pub struct OverwritesInput {
+    /// The output as it was given.
+    pub output: PathBuf,
+    /// The input as it was given.
+    pub input: PathBuf,
+}
+
+impl Inputs {
+    /// Adds a file; nothing where there is none.
+    pub fn file(mut self, path: &Path) -> Self {
+        self.files.extend(Identity::of(path).map(|identity| (path.to_owned(), identity)));
+        self
+    }
+
+    /// Adds every frame of a footage that exists; its pattern is relative to `folder`.
+    pub fn footage(mut self, footage: &Footage, folder: &Path) -> Self {
+        let Ok(pattern) = FramePattern::parse(&footage.pattern) else { return self };
+        let frames = pattern.existing(folder).unwrap_or_default();
+        for frame in frames.into_iter().filter(|frame| (footage.first..=footage.last).contains(frame)) {
+            self = self.file(&folder.join(pattern.path(frame)));
+        }
+        self
+    }
+
+    /// An error where `output` is one of the files.
+    pub fn check(&self, output: &Path) -> Result<(), OverwritesInput> {
+        let Some(own) = Identity::of(output) else { return Ok(()) };
+        match self.files.iter().find(|(_, identity)| identity.same(&own)) {
+            Some((input, _)) => Err(OverwritesInput { output: output.to_owned(), input: input.clone() }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// What tells a file from others.
+#[derive(Clone, Debug)]
+struct Identity {
+    path: PathBuf,
+    /// Device and inode.
+    #[cfg(unix)]
+    place: (u64, u64),
+}
+
+impl Identity {
+    /// The identity of the file at a path; `None` where there is no file.
+    fn of(path: &Path) -> Option<Self> {
+        let real = fs::canonicalize(path).ok()?;
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::MetadataExt;
+            let data = fs::metadata(&real).ok()?;
+            // Pipes and devices may be read and written.
+            data.is_file().then(|| Self { path: real, place: (data.dev(), data.ino()) })
+        }
+        #[cfg(not(unix))]
+        real.is_file().then_some(Self { path: real })
+    }
+
+    fn same(&self, other: &Self) -> bool {
+        #[cfg(unix)]
+        if self.place == other.place {
+            return true;
+        }
+        self.path == other.path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn other_names_of_a_file_are_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("frames")).unwrap();
+        for name in ["frames/f_1.png", "frames/f_2.png", "frames/f_9.png", "clips.json"] {
+            fs::write(at(name), name).unwrap();
+        }
+        fs::hard_link(at("frames/f_2.png"), at("hard.png")).unwrap();
+        let footage = Footage { pattern: "frames/f_%d.png".into(), first: 1, last: 5, fps: 12.0, width: 1, height: 1 };
+        let inputs = Inputs::default().file(&at("clips.json")).footage(&footage, folder.path());
+        let refused = ["clips.json", "frames/../clips.json", "frames/f_1.png", "frames/f_2.png", "hard.png"];
+        for name in refused {
+            let error = inputs.check(&at(name)).unwrap_err();
+            assert_eq!(error.output, at(name));
+        }
+        // Frame 9 is not of the footage; the others are no files.
+        for name in ["frames/f_9.png", "frames/f_3.png", "new.json", "frames"] {
+            assert_eq!(inputs.check(&at(name)), Ok(()), "{name}");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn symbolic_links_lead_to_their_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("a.svg"), folder.path().join("b.svg"));
+        fs::write(&file, "").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        assert!(Inputs::default().file(&file).check(&link).is_err());
+        assert!(Inputs::default().file(&link).check(&file).is_err());
+    }
+}
