@@ -1,41 +1,42 @@
-//! Contours from key frames to every frame.
+//! Tracking: carries contours from key frames to every frame.
 //!
-//! The work is cut into **jobs**: one part over one span between two of its keys. A preset decides how jobs are solved, one
-//! by one or together; its solver keeps what it computed, so that after an edit only what the edit touches is solved again.
+//! The work is divided into **jobs**: one part over one span between two of its keys. A preset decides how jobs are
+//! solved, one by one or together. Its solver keeps its results, so that after an edit only the affected jobs are
+//! solved again.
 //!
-//! - [`job`]: what a solver is given and what it returns
-//! - [`tracker`]: what is asked, and who answers
-//! - [`part_by_part`]: order and memory of jobs that are solved singly
-//! - [`weakest`]: where the next key helps most
+//! - [`job`]: the input and output of a solver
+//! - [`tracker`]: presets, options, results and errors
+//! - [`part_by_part`]: order and memory of jobs that are solved one by one
+//! - [`weakest`]: the frame where the next key helps most
 //!
 //! The default preset:
-//! - [`rototoon`]: its pieces joined
-//! - [`features`], [`store`]: what is computed once from pictures, and kept
-//! - [`drawings`]: held frames are worked on once
-//! - [`lattice`]: a part's look at a key on a lattice that bends
-//! - [`stage`]: what a job is solved with
-//! - [`propagate`]: motion from a neighbour
-//! - [`search`]: motion from nowhere, by comparing everywhere
-//! - [`pool`]: the hypotheses of both
-//! - `corrected`: what the artist's corrections add to them
-//! - [`select`]: which hypothesis a part alone follows
-//! - [`joint`]: which hypotheses all parts follow together
-//! - `mend`: what that choice adds to the pools
-//! - `finish`: the chosen poses made into tracks, with [`refine`]: contours brought onto the drawing by its colours
+//! - [`rototoon`]: its steps joined
+//! - [`features`], [`store`]: data computed once per picture, and a cache for it
+//! - [`drawings`]: the distinct drawings of a span; held frames are solved once
+//! - [`lattice`]: a part's appearance at a key, on a lattice that bends
+//! - [`stage`]: the prepared data of a job
+//! - [`propagate`]: poses from a neighbouring drawing
+//! - [`search`]: poses from the complete picture
+//! - [`pool`]: the hypotheses from both
+//! - `corrected`: hypotheses from the artist's corrections
+//! - [`select`]: the path of a single part through its hypotheses
+//! - [`joint`]: the paths of all parts together
+//! - `mend`: hypotheses that follow from the joint choice
+//! - `finish`: tracks from the chosen poses, with [`refine`]: contours moved onto the drawing by its colours
 //! - [`confidence`]: how sure a point is
-//! - [`outward`]: parts with one key, followed until they are lost
-//! - [`mechanisms`]: what can be switched off to measure it
-//! - [`cuts`]: where the footage goes over to another shot
+//! - [`outward`]: parts with a single key, followed until they are lost
+//! - [`mechanisms`]: parts of the method that can be switched off for measurements
+//! - [`cuts`]: where the footage changes to another shot
 //!
 //! The preset of Zhou & Xiao 2011:
-//! - [`zhou2011`]: its pieces joined
-//! - [`edge_maps`]: edges of frames and distances to them, kept
-//! - [`region`]: where a part's centre lies between keys
-//! - [`energy`]: the space-time energy, a file a term
+//! - [`zhou2011`]: its steps joined
+//! - [`edge_maps`]: edges of frames and distances to them, with a cache
+//! - [`region`]: the part's centre between keys
+//! - [`energy`]: the space-time energy, one file per term
 //!
 //! The presets of Agarwala et al. 2004 and Liang et al. 2012:
-//! - [`agarwala2004`], [`liang2012`]: what each chooses
-//! - [`rotoscope`]: the space-time energy of both, a file a term, and its solution
+//! - [`agarwala2004`], [`liang2012`]: the choices of each preset
+//! - [`rotoscope`]: the space-time energy of both, one file per term, and its minimisation
 
 pub mod agarwala2004;
 pub mod confidence;
