@@ -10,8 +10,8 @@
 //! it neither attracts nor repels.
 //!
 //! The derivative is that of the bilinear picture and of the normal. (The authors' system reads gradients smoothed by
-//! σ = 1 and keeps the normal's length fixed. With the exact derivative the decrease predicted by the trust region's
-//! model is the real one.)
+//! σ = 1 and keeps the normal's length fixed. With the exact derivative the decrease that the trust region's model
+//! predicts agrees with the real one.)
 //!
 //! Because the constant has no slope, a step that would move many samples behind a nearer part is rejected as a whole
 //! and not bent. The curve converges early there.

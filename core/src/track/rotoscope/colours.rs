@@ -5,7 +5,8 @@
 //! ribbon on the character's side of the contour has the same colours as at the keys, where the nearer key counts more.
 //!
 //! ```text
-//! E_P = Σ_{0<t<T} Σ_i Σ_α [ (1 − t/T) ‖I_t(p_t(α)) − I_0(p_0(α))‖² + (t/T) ‖I_t(p_t(α)) − I_T(p_T(α))‖² ],   p_t(α) = c_t(s_i) + α n_t(s_i)
+//! E_P = Σ_{0<t<T} Σ_i Σ_α [ (1 − t/T) ‖I_t(p_t(α)) − I_0(p_0(α))‖² + (t/T) ‖I_t(p_t(α)) − I_T(p_T(α))‖² ]
+//! p_t(α) = c_t(s_i) + α n_t(s_i)
 //! ```
 //!
 //! α runs over the inner side of a closed contour and over both sides of an open one. Unlike the image term this term
