@@ -1,7 +1,8 @@
-//! The tracker: it chooses the preset's solver, checks the scene, and keeps the solver from one run to the next.
+//! Presets, options, results and errors of tracking, and the [`Tracker`], which passes the work to the solver of its
+//! preset.
 //!
-//! A solver keeps what it computed, so that after an edit only what the edit touches is solved again. A result depends on
-//! nothing but the scene and the pictures, whatever was solved before and whatever the number of threads.
+//! A solver keeps its results, so that after an edit only the affected jobs are solved again. A result depends only on
+//! the scene and the pictures. It does not depend on earlier runs or on the number of threads.
 
 use crate::contract::error::TrackError;
 use crate::contract::job::SpanSolver;
@@ -15,22 +16,22 @@ use crate::zhou2011::Zhou2011;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, FrameSource, Part, Progress, Scene};
 
-/// Which method tracks.
+/// The tracking method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preset {
-    /// The best that Rototoon knows.
+    /// The default method, the best one of Rototoon (module `rototoon`).
     #[default]
     Rototoon,
-    /// Zhou & Xiao 2011 as printed.
+    /// Zhou & Xiao 2011 as printed (module `zhou2011`).
     Zhou2011,
-    /// Agarwala et al. 2004.
+    /// Agarwala et al. 2004 (module `agarwala2004`).
     Agarwala2004,
-    /// Agarwala et al. 2004 with the ribbon and the colour penalty of Liang et al. 2012.
+    /// Agarwala et al. 2004 with the ribbon and the colour penalty of Liang et al. 2012 (module `liang2012`).
     Liang2012,
 }
 
 impl Preset {
-    /// Every preset with its id in documents, parameters and on the command line.
+    /// Every preset with its id in documents, in parameters and on the command line.
     pub const ALL: [(Self, &str); 4] = [
         (Self::Rototoon, "rototoon"),
         (Self::Zhou2011, "zhou2011"),
@@ -38,7 +39,7 @@ impl Preset {
         (Self::Liang2012, "liang2012"),
     ];
 
-    /// The preset of an id.
+    /// The preset with an id. `None` if there is no such preset.
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.iter().find(|(_, name)| *name == id).map(|(preset, _)| *preset)
     }
@@ -53,12 +54,12 @@ impl Preset {
     }
 }
 
-/// How to track.
+/// Options of tracking.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TrackOptions {
     /// The method.
     pub preset: Preset,
-    /// What the default preset uses; the others do not listen.
+    /// The mechanisms of the default preset. The other presets ignore them.
     pub mechanisms: Mechanisms,
 }
 
@@ -69,20 +70,26 @@ pub struct Tracker {
 }
 
 impl Tracker {
-    /// A tracker that knows nothing yet.
+    /// A tracker without any results yet.
     pub fn new(options: TrackOptions) -> Self {
         Self { solver: options.preset.solver(options.mechanisms), footage: None }
     }
 
-    /// A tracker that solves part by part with a solver of the caller's.
+    /// A tracker that solves part by part with the caller's solver.
     pub fn with_solver(solver: Box<dyn SpanSolver>) -> Self {
         Self { solver: Box::new(PartByPart::new(solver)), footage: None }
     }
 
-    /// Tracks every part of `scene` between its first and its last key. Runs on the caller's rayon pool.
+    /// Tracks every part of `scene` between its first and its last key. It runs on the caller's rayon pool.
     ///
-    /// The default preset follows parts with one key outward, as far as they can be trusted; with the others they have a
-    /// track on that frame only. After an error the tracker still knows what it knew before.
+    /// The default preset follows parts with one key outward, as far as they can be trusted. With the other presets
+    /// such a part has a track on its key frame only. After an error the tracker still has its earlier results.
+    ///
+    /// # Errors
+    ///
+    /// See [`TrackError`]: a picture that cannot be read, cancellation by `progress`, keys with different numbers of
+    /// points, coordinates out of range, a pin of a point that does not exist, or, with the default preset, pictures
+    /// that are too wide.
     pub fn track(
         &mut self,
         scene: &Scene,
@@ -104,20 +111,20 @@ impl Tracker {
         Ok(tracking)
     }
 
-    /// Forgets all results and pictures, since the files of the footage have changed.
+    /// Forgets all results and pictures. Call it if the files of the footage have changed.
     pub fn forget(&mut self) {
         self.solver.forget();
     }
 }
 
-/// Largest coordinate that is still taken for a place: a hundred times the width of an 8k picture.
+/// Largest coordinate that is accepted, in pixels: more than a hundred times the width of an 8k picture.
 const FURTHEST: f64 = 1e6;
 
 fn check(part: &Part) -> Result<(), TrackError> {
     let name = || part.name.clone();
     let expected = part.point_count();
     let in_range = |frame: FrameNumber, points: Vec<Point>| {
-        // A comparison that NaN fails.
+        // Written so that NaN fails the comparison.
         match points.into_iter().find(|p| !(p.abs().max_element() <= FURTHEST && p.is_finite())) {
             Some(found) => Err(TrackError::OutOfRange { part: name(), frame, found, limit: FURTHEST }),
             None => Ok(()),

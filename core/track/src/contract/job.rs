@@ -1,54 +1,54 @@
-//! One part over one span: what a solver is given, and what it returns.
+//! A job: one part over one span. This module defines the input and the output of a solver.
 
 use super::error::TrackError;
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{FrameSource, Progress, Span};
 use std::collections::BTreeMap;
 
-/// What the artist fixed on one frame between the keys.
+/// The artist's corrections on one frame between the keys. Places are in pixels of the picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Correction {
-    /// Control points by index: hard constraints.
+    /// Fixed control points by index. They are hard constraints.
     pub pins: BTreeMap<usize, Point>,
-    /// Where the mean of the control points lies: a hard constraint, but to the default solver a place to look at if the
-    /// part was moved far.
+    /// Corrected centre: the mean of the control points. It is a hard constraint, with one exception: if the artist
+    /// moved the part far, the default solver takes it as the place to search.
     pub center: Option<Point>,
 }
 
-/// One part between two neighbouring keys.
+/// One part between two neighbouring keys. All places are in pixels of the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
     /// Name of the part, for messages.
     pub name: String,
     /// Whether the contour is closed.
     pub closed: bool,
-    /// The frames, keys included.
+    /// The frames, with both keys.
     pub span: Span,
-    /// Control points on the first and the last frame of the span: equal in number.
+    /// Control points on the first and the last frame of the span. Both have the same number.
     pub keys: [Vec<Point>; 2],
-    /// The artist's corrections by index of the frame in the span; none at the keys.
+    /// The artist's corrections by frame index in the span. Keys have none.
     pub corrections: BTreeMap<usize, Correction>,
-    /// By index of the frame in the span: closed contours of the nearer parts, as tracked.
+    /// By frame index in the span: closed contours of the nearer parts, keyed or tracked.
     pub occluders: Vec<Vec<Vec<Point>>>,
-    /// Size of the pictures in pixels.
+    /// Width and height of the pictures in pixels.
     pub size: (usize, usize),
 }
 
-/// What a solver found for a job.
+/// The result of a job.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpanTrack {
-    /// Control points on each frame of the span, keys and corrections kept exactly.
+    /// Control points on each frame of the span, in pixels of the picture. Keys and corrections are exact.
     pub points: Vec<Vec<Point>>,
-    /// By frame and point, 0 to 1; 1 at the keys.
+    /// Confidence by frame and point, 0 to 1. It is 1 at the keys.
     pub confidence: Vec<Vec<f64>>,
-    /// How the solver fared.
+    /// How the solver ended.
     pub summary: SpanSummary,
 }
 
 /// Why a solver stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Termination {
-    /// There is no frame between the keys, or nothing is free to move.
+    /// There is no frame between the keys, or no point is free to move.
     NothingToSolve,
     /// The last step lowered the cost by less than the tolerance.
     CostConverged,
@@ -56,47 +56,53 @@ pub enum Termination {
     StepConverged,
     /// No step lowers the cost, at any damping.
     NoDescent,
-    /// The limit of iterations was reached.
+    /// The solver reached its limit of iterations.
     IterationLimit,
-    /// The best path through the hypotheses was chosen.
+    /// A path of least cost through the hypotheses was chosen.
     PathChosen,
 }
 
-/// How a solver fared on a job.
+/// How a solver ended on a job.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpanSummary {
     /// Why it stopped.
     pub termination: Termination,
-    /// Iterations of the innermost solver, all starts together.
+    /// Iterations of the innermost solver, summed over all starts.
     pub iterations: usize,
     /// Cost at the start.
     pub initial_cost: f64,
-    /// Cost of what is returned.
+    /// Cost of the result.
     pub final_cost: f64,
 }
 
-/// Solves jobs. One solver serves all jobs of a run (from several threads) and may keep what it computes from pictures.
+/// Solves jobs. One solver serves all jobs of a run from several threads. It may keep data that it computed from
+/// pictures.
 pub trait SpanSolver: Send + Sync {
-    /// Tracks the part through the span. The result depends on nothing but the job and the pictures.
+    /// Tracks the part through the span. The result depends only on the job and the pictures.
+    ///
+    /// # Errors
+    ///
+    /// The error of a picture that cannot be read, or the cancellation by `progress`.
     fn solve(&self, job: &Job, frames: &dyn FrameSource, progress: &dyn Progress) -> Result<SpanTrack, TrackError>;
 
-    /// Forgets what was kept of pictures, since the footage is another.
+    /// Forgets all data from pictures, because the footage has changed.
     fn forget_pictures(&self);
 }
 
 impl Correction {
-    /// Without the centre.
+    /// The correction without its centre.
     pub fn pins_only(&self) -> Self {
         Self { center: None, ..self.clone() }
     }
 
-    /// Fixes control points so that the correction holds exactly: pins are set, then the points that are not pinned are
-    /// shifted together until the centre is where the artist put it.
+    /// Moves control points so that the correction is fulfilled exactly. Pinned points are set. Then the other points
+    /// are shifted together until the centre is the corrected one. If all points are pinned, the centre has no effect.
     pub fn enforce(&self, points: &mut [Point]) {
         self.enforce_within(0.0, points);
     }
 
-    /// The same, but a centre that is no further than `reach` from where the artist put it stays.
+    /// The same as [`Correction::enforce`], but the points are not shifted if their centre is at most `reach` from the
+    /// corrected one. Same unit as the points.
     pub fn enforce_within(&self, reach: f64, points: &mut [Point]) {
         for (&j, &p) in &self.pins {
             points[j] = p;
@@ -115,13 +121,13 @@ impl Correction {
 }
 
 impl Job {
-    /// Fixes the points of frame `index` of the span so that the keys and corrections hold exactly: pins are set, then
-    /// the points that are not pinned are shifted together until the centre is where the artist put it.
+    /// Sets the points of frame `index` of the span so that keys and corrections are fulfilled exactly. On a key they
+    /// become the key's points. On other frames see [`Correction::enforce`].
     pub fn enforce(&self, index: usize, points: &mut [Point]) {
         self.enforce_within(0.0, index, points);
     }
 
-    /// The same, but a centre may lie up to `reach` from where the artist put it.
+    /// The same as [`Job::enforce`], but the centre may be up to `reach` from the corrected one.
     pub fn enforce_within(&self, reach: f64, index: usize, points: &mut [Point]) {
         if index == 0 || index + 1 == self.span.len() {
             points.copy_from_slice(&self.keys[usize::from(index != 0)]);

@@ -1,4 +1,4 @@
-//! The work of a scene: each part over each of its spans; what is told of it meanwhile, and its results put together.
+//! The tasks of a scene (each part over each of its spans), their shared progress, and the assembly of their results.
 
 use super::job::{Correction, Job, SpanTrack};
 use crate::contract::tracking::{JobReport, PartTrack, Tracking};
@@ -23,9 +23,11 @@ pub(crate) fn tasks(scene: &Scene) -> Vec<Task> {
     scene.parts.iter().enumerate().flat_map(of_part).collect()
 }
 
-/// The tasks to do next, or none when all are done: of those that wait for no other, the ones that share frames with the
-/// earliest. `waits(t, o)` tells whether task t needs the open task o first; it must be for the nearer part's only, so
-/// that there is always one that is ready.
+/// The tasks to do next: of those that wait for no other, the ones that share frames with the earliest. `None` if all
+/// tasks are done.
+///
+/// `waits(t, o)` says whether task t needs the result of the unfinished task o. It is called only for tasks o of nearer
+/// parts, so there is always a task that waits for none.
 pub(crate) fn next_wave(
     tasks: &[Task],
     is_done: impl Fn(usize) -> bool,
@@ -39,8 +41,8 @@ pub(crate) fn next_wave(
     Some(ready.into_iter().filter(|&t| overlap(tasks[t].span, tasks[earliest].span)).collect())
 }
 
-/// The closed contours nearer than `depth` on a frame: as keyed, else as `tracked` knows them of the task whose span the
-/// frame lies in.
+/// The closed contours nearer than `depth` on a frame: the key if the frame has one, otherwise the result of `tracked`
+/// for the task whose span contains the frame.
 pub(crate) fn nearer_contours(
     scene: &Scene,
     tasks: &[Task],
@@ -60,7 +62,7 @@ pub(crate) fn overlap(a: Span, b: Span) -> bool {
     a.first <= b.last && b.first <= a.last
 }
 
-/// The job of a task; `occluders` as in [`Job`].
+/// The job of a task. `occluders` are those of [`Job`].
 pub(crate) fn job(scene: &Scene, task: Task, occluders: Vec<Vec<Vec<Point>>>) -> Job {
     let Task { part, span, .. } = task;
     let subject = &scene.parts[part];
@@ -81,7 +83,7 @@ pub(crate) fn job(scene: &Scene, task: Task, occluders: Vec<Vec<Vec<Point>>>) ->
     }
 }
 
-/// The tracks of all parts, from those of their spans.
+/// The tracks of all parts, from the tracks of their spans.
 pub(crate) fn assemble(scene: &Scene, tasks: &[Task], done: Vec<Option<(SpanTrack, bool)>>) -> Tracking {
     let mut tracking = Tracking { parts: vec![PartTrack::default(); scene.parts.len()], jobs: Vec::new() };
     for (task, result) in tasks.iter().zip(done) {
@@ -94,7 +96,7 @@ pub(crate) fn assemble(scene: &Scene, tasks: &[Task], done: Vec<Option<(SpanTrac
     tracking
 }
 
-/// Sums the progress of jobs that run side by side; a job weighs as much as it has points and frames.
+/// Adds up the progress of jobs that run in parallel. The weight of a job grows with its number of points and frames.
 pub(crate) struct SharedProgress<'a> {
     listener: &'a dyn Progress,
     weights: Vec<f64>,
@@ -115,7 +117,7 @@ impl<'a> SharedProgress<'a> {
     }
 }
 
-/// The progress of one job among all.
+/// The progress of one of these jobs.
 pub(crate) struct JobProgress<'a> {
     shared: &'a SharedProgress<'a>,
     task: usize,
@@ -123,7 +125,7 @@ pub(crate) struct JobProgress<'a> {
 
 impl Progress for JobProgress<'_> {
     fn report(&self, step: &str, done: f64) -> Result<(), Cancelled> {
-        // The listener is told under the lock, so that it never sees the share fall.
+        // The listener is called under the lock, so that the reported share never decreases.
         let mut all = self.shared.done.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         all[self.task] = all[self.task].max(done.clamp(0.0, 1.0));
         let share: f64 = all.iter().zip(&self.shared.weights).map(|(d, w)| d * w).sum();

@@ -1,16 +1,18 @@
-//! The preset `agarwala2004`: rotoscoping by key frames as a space-time optimisation.
+//! The preset `agarwala2004`: key-frame rotoscoping as a space-time optimisation.
 //!
 //! A. Agarwala, A. Hertzmann, D. H. Salesin, S. M. Seitz: "Keyframe-based tracking for rotoscoping and animation", ACM
-//! Transactions on Graphics 23 (3), 2004. The [energy](super) of shape, image and edges over all frames between two
-//! keys, from coarse to fine ([`solve`]). Weights, window, spacing of the samples, cost of hidden places and the trust region are
-//! those of the authors' published system.
+//! Transactions on Graphics 23 (3), 2004.
 //!
-//! Differences: contours are Catmull–Rom curves through our control points instead of fitted Béziers, and correspond by
-//! these; every part is solved by itself, where theirs may share joints.
+//! The preset minimises the [energy](super::rotoscope) of shape, image and edges over all frames between two keys, from
+//! coarse to fine ([`solve`]). The weights, the window, the sample spacing, the cost of hidden places and the trust
+//! region are those of the authors' published system.
 //!
-//! Limits: the blend must come within reach of the coarsest window (32 px of the picture); the image term compares neighbouring
-//! frames and both sides of the contour, so it follows a textured background where that has more contrast; drawings that
-//! are held and then jump break its presumption of small motion.
+//! Differences: contours are Catmull–Rom curves through our control points, which also give the correspondence. The
+//! paper fits Bézier curves. Every part is solved by itself; in the paper parts may share joints.
+//!
+//! Limits: the linear blend of the keys must be within reach of the coarsest window, which is 32 working pixels. The
+//! image term compares neighbouring frames on both sides of the contour, so it follows a textured background if that
+//! has more contrast than the part. Drawings that are held and then jump violate the assumption of small motion.
 
 use super::appearance::WINDOW;
 use super::energy::{Method, Weights};
@@ -20,7 +22,7 @@ use crate::contract::error::TrackError;
 use crate::contract::job::{Job, SpanSolver, SpanTrack};
 use rototoon_base::scene::{FrameSource, Progress};
 
-/// Solves jobs by Agarwala et al. 2004; keeps the views of frames.
+/// Solves jobs by Agarwala et al. 2004. It keeps the prepared pictures of frames (views).
 pub struct Agarwala2004 {
     method: Method,
     views: Views,

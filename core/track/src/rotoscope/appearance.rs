@@ -4,18 +4,20 @@
 //! E_I = Σ_t Σ_i Σ_k ‖ I_t(c_t(s_i) + k n_t(s_i)) − I_{t+1}(c_{t+1}(s_i) + k n_{t+1}(s_i)) ‖²
 //! ```
 //!
-//! over offsets k in a small window, here −4 to 4 pixels of the level as in the authors' system, three colour channels. Every
-//! 2ˡ-th sample is looked at on level l, so that their distance is the same in pixels of the level. A place that is hidden by a
-//! nearer part, or outside the picture, on either frame costs a constant instead: it neither attracts nor repels.
+//! The offsets k are in a small window, here −4 to 4 pixels of the level as in the authors' system. There are three
+//! colour channels. On level l every 2ˡ-th sample is used, so that the distance of the samples is the same in pixels of
+//! the level. A place that is hidden by a nearer part or outside the picture on either frame costs a constant instead:
+//! it neither attracts nor repels.
 //!
 //! The derivative is that of the bilinear picture and of the normal. (The authors' system reads gradients smoothed by
-//! σ = 1 and keeps the normal's length fixed; with the exact one the trust region meets what its model foretold.)
+//! σ = 1 and keeps the normal's length fixed. With the exact derivative the decrease that the trust region's model
+//! predicts agrees with the real one.)
 //!
-//! Since the constant has no slope, a step that would take many samples behind a nearer part is refused rather than bent: the
-//! curve settles early there.
+//! Because the constant has no slope, a step that would move many samples behind a nearer part is rejected as a whole
+//! and not bent. The curve converges early there.
 //!
-//! Limits: neighbouring frames are compared, never a frame with a key, so a curve that has slipped off stays off; both sides of
-//! the contour count, although the background does not move with the part.
+//! Limits: neighbouring frames are compared, never a frame with a key, so a curve that has slipped off stays off. Both
+//! sides of the contour count, although the background does not move with the part.
 
 use super::curve::Curve;
 use super::pose::Pose;
@@ -29,24 +31,24 @@ use rototoon_image::sample::{Slope, read, read_slope};
 /// Cost of a place that cannot be compared, in squared 8-bit levels: the constant of the authors' system.
 pub const HIDDEN: f64 = 5000.0;
 
-/// The window of Agarwala et al.
+/// The window of Agarwala et al. 2004, in pixels of the level.
 pub const WINDOW: [f64; 9] = [-4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0];
 
 /// The term E_I.
 #[derive(Clone, Copy)]
 pub struct Appearance<'a> {
-    /// Where the samples lie.
+    /// The curve with its samples.
     pub curve: &'a Curve,
-    /// The pictures.
+    /// The pictures of all frames.
     pub scenery: &'a Scenery,
     /// Level of the pyramid.
     pub level: usize,
-    /// Offsets along the normal in pixels of the level.
+    /// Offsets along the normal, in pixels of the level.
     pub offsets: &'a [f64],
 }
 
 impl Appearance<'_> {
-    /// Compared places a step from frame to frame.
+    /// Number of compared places per step from frame to frame.
     pub fn count(&self) -> usize {
         self.curve.places.len().div_ceil(1 << self.level) * self.offsets.len()
     }
@@ -56,7 +58,7 @@ impl Appearance<'_> {
     }
 }
 
-/// The look at a place, with slopes where the sink wants them.
+/// The view's values at a place, with slopes if the sink needs them.
 pub(super) fn colours<S: Sink>(picture: &Raster<Look>, p: Point) -> Slope<Look> {
     if S::SLOPES { read_slope(picture, p) } else { Slope { value: read(picture, p), dx: [0.0; 4], dy: [0.0; 4] } }
 }
@@ -118,7 +120,7 @@ mod tests {
     fn hidden_places_cost_a_constant_and_pull_nowhere() {
         let all = [(0.0, 0.0), (128.0, 0.0), (128.0, 128.0), (0.0, 128.0)].map(|(x, y)| Point::new(x, y)).to_vec();
         let (curve, x) = curve_case(8, true);
-        // Frame 2 is hidden: the steps to it and from it, of three, cannot be compared.
+        // Frame 2 is hidden, so two of the three steps, to it and from it, cannot be compared.
         let scenery = scenery_with(&[vec![], vec![], vec![all], vec![]]);
         let term = Appearance { curve: &curve, scenery: &scenery, level: 0, offsets: &WINDOW };
         let (rows, cost) = residuals(&term, &curve, &x);

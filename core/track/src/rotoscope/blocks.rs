@@ -1,4 +1,5 @@
-//! JᵀJ of residuals that join neighbouring frames: blocks of 2 × 2 for pairs of control points.
+//! JᵀJ of residuals that couple neighbouring frames: a block-tridiagonal matrix with blocks of 2 × 2 for pairs of
+//! control points.
 //!
 //! ```text
 //! D₀  C₀
@@ -6,25 +7,26 @@
 //!     C₁ᵀ D₂  …
 //! ```
 //!
-//! D_t couples the points of a frame, C_t those of frame t with those of the next. Only points that some sample reads together
-//! are coupled: at most [`REACH`] apart along the contour, round its end too. Both D and C therefore keep a band of
-//! 2 [`REACH`] + 1 blocks a point (all points where the contour has no more than that).
+//! D_t couples the points of a frame, and C_t couples those of frame t with those of the next. Two points are coupled
+//! only if some sample reads both: they are at most [`REACH`] apart along the contour, across the end of a closed one
+//! too. So both D and C store a band of 2 [`REACH`] + 1 blocks per point (all points if the contour has no more than
+//! that).
 //!
-//! A [`Link`] is what one step from frame to frame adds. Links are summed in parallel and put together in order, so the sums do
-//! not depend on the number of threads.
+//! A [`Link`] is the contribution of one step from frame to frame. Links are computed in parallel and added in order,
+//! so the sums do not depend on the number of threads.
 
 use super::curve::WIDEST;
 use super::{Handle, MOST_HANDLES, Sink};
 use nalgebra::Matrix2;
 use rototoon_base::geometry::Point;
 
-/// How far apart along the contour coupled points are at the most.
+/// Largest distance along the contour between coupled points, in points.
 pub const REACH: usize = WIDEST - 1;
 
-/// A block by rows: (xx, xy, yx, yy).
+/// A 2 × 2 block by rows: (xx, xy, yx, yy).
 type Block = [f64; 4];
 
-/// Which points a point is coupled with.
+/// The points that each point is coupled with.
 #[derive(Clone, Copy, Debug)]
 pub struct Band {
     points: usize,
@@ -32,7 +34,7 @@ pub struct Band {
 }
 
 impl Band {
-    /// Of a contour of `points` points.
+    /// The band of a contour of `points` points.
     pub fn new(points: usize) -> Self {
         Self { points, width: points.min(2 * REACH + 1) }
     }
@@ -52,7 +54,7 @@ impl Band {
     }
 }
 
-/// The matrix and the gradient.
+/// The matrix JᵀJ and the gradient Jᵀr.
 pub struct Blocks {
     band: Band,
     diagonal: Vec<Vec<Block>>,
@@ -63,7 +65,7 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// Zero, for `frames` frames.
+    /// The zero matrix for `frames` frames.
     pub fn new(frames: usize, points: usize) -> Self {
         let band = Band::new(points);
         Self {
@@ -75,7 +77,7 @@ impl Blocks {
         }
     }
 
-    /// Puts links together, one for each step from frame to frame. Returns the cost.
+    /// Sets the matrix and the gradient to the sum of links, one per step from frame to frame. Returns the cost.
     pub fn assemble(&mut self, links: Vec<Link>) -> f64 {
         let mut cost = 0.0;
         self.gradient.fill(0.0);
@@ -117,7 +119,7 @@ impl Blocks {
         }
     }
 
-    /// Replaces `v` by the product with the inverse of JᵀJ's diagonal of 2 × 2 blocks.
+    /// Preconditions `v`: multiplies it by the inverse of the diagonal 2 × 2 blocks of JᵀJ.
     pub fn precondition(&self, v: &mut [f64]) {
         for (p, [a, b, c, d]) in v.chunks_exact_mut(2).zip(&self.inverses) {
             (p[0], p[1]) = (a * p[0] + b * p[1], c * p[0] + d * p[1]);
@@ -149,7 +151,7 @@ impl Blocks {
     }
 }
 
-/// Of a symmetric block, with a floor on its diagonal; the unit where nothing is known.
+/// Inverse of a symmetric block, with a floor on its diagonal. The unit block if the block has no information.
 fn inverse([a, b, _, d]: Block) -> Block {
     let floor = 1e-9 * (a + d);
     let block = Matrix2::new(a + floor, b, b, d + floor);
@@ -157,7 +159,7 @@ fn inverse([a, b, _, d]: Block) -> Block {
     [inverse.m11, inverse.m12, inverse.m21, inverse.m22]
 }
 
-/// What the residuals between two neighbouring frames add to the matrix: a [`Sink`].
+/// The contribution of the residuals between two neighbouring frames to the matrix. It is a [`Sink`].
 pub struct Link {
     band: Band,
     cost: f64,
@@ -166,13 +168,13 @@ pub struct Link {
     cross: Vec<Block>,
     handles: [(bool, super::curve::Functional); MOST_HANDLES],
     count: usize,
-    /// Lower triangle of the group's JᵀJ by its handles' coordinates.
+    /// Lower triangle of the group's JᵀJ, by the coordinates of its handles.
     squares: [[f64; 2 * MOST_HANDLES]; 2 * MOST_HANDLES],
     products: [f64; 2 * MOST_HANDLES],
 }
 
 impl Link {
-    /// Nothing yet, for contours of `points` points.
+    /// An empty link for contours of `points` points.
     pub fn new(points: usize) -> Self {
         let band = Band::new(points);
         Self {
@@ -188,7 +190,7 @@ impl Link {
         }
     }
 
-    /// Adds the group's block of the handles `a` and `b`, `a` not after `b`, to the matrix.
+    /// Adds the group's block of the handles `a` and `b` to the matrix. `a` must not come after `b`.
     fn spread(&mut self, a: usize, b: usize) {
         let at = |i: usize, j: usize| self.squares[i.max(j)][i.min(j)];
         let (i, j) = (2 * a, 2 * b);
@@ -246,7 +248,7 @@ impl Sink for Link {
                 gradient[2 * point] += weight * product[0];
                 gradient[2 * point + 1] += weight * product[1];
             }
-            // Handles come earlier frame first, so a cross block always has its row in the earlier frame.
+            // Handles of the earlier frame come first, so a cross block always has its row in the earlier frame.
             (k..self.count).for_each(|other| self.spread(k, other));
         }
     }
@@ -256,7 +258,7 @@ impl Sink for Link {
     }
 }
 
-/// The cost alone: a [`Sink`].
+/// Sums the cost alone. It is a [`Sink`].
 #[derive(Default)]
 pub struct Cost(pub f64);
 
@@ -282,7 +284,7 @@ mod tests {
     use super::super::{Term, appearance};
     use super::*;
 
-    /// Compares gradient and products with those of the Jacobian written out.
+    /// Compares gradient and products with those of the explicit Jacobian.
     fn check(points: usize, closed: bool) {
         let scenery = scenery();
         let (curve, x) = curve_case(points, closed);

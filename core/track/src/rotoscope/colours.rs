@@ -1,16 +1,17 @@
 //! The colour penalty of Liang et al. (2012): change of the colours from those at the keys.
 //!
-//! The paper adds to the energy "a color penalty … to bound the searching space. It can be explained by the color configuration of
-//! each character in a sequence remaining unchanged", without an equation. Read here as: what lies along the ribbon on the
-//! character's side of the contour shows the colours that it shows at the keys, the nearer key counting more,
+//! The paper adds to the energy "a color penalty … to bound the searching space. It can be explained by the color
+//! configuration of each character in a sequence remaining unchanged", without an equation. Our interpretation: the
+//! ribbon on the character's side of the contour has the same colours as at the keys, where the nearer key counts more.
 //!
 //! ```text
-//! E_P = Σ_{0<t<T} Σ_i Σ_α [ (1 − t/T) ‖I_t(p_t(α)) − I_0(p_0(α))‖² + (t/T) ‖I_t(p_t(α)) − I_T(p_T(α))‖² ],   p_t(α) = c_t(s_i) + α n_t(s_i)
+//! E_P = Σ_{0<t<T} Σ_i Σ_α [ (1 − t/T) ‖I_t(p_t(α)) − I_0(p_0(α))‖² + (t/T) ‖I_t(p_t(α)) − I_T(p_T(α))‖² ]
+//! p_t(α) = c_t(s_i) + α n_t(s_i)
 //! ```
 //!
-//! with α on the inner side of a closed contour and on both sides of an open one. Unlike the image term it does not drift: every
-//! frame is compared with the keys themselves. A place hidden on the frame or at a key costs that key's share of
-//! [`HIDDEN`].
+//! α runs over the inner side of a closed contour and over both sides of an open one. Unlike the image term this term
+//! does not drift, because every frame is compared with the keys themselves. A place that is hidden on the frame or at
+//! a key costs that key's share of [`HIDDEN`].
 
 use super::appearance::{HIDDEN, colours, gradient};
 use super::curve::Curve;
@@ -27,12 +28,13 @@ pub struct Colours<'a> {
     scenery: &'a Scenery,
     level: usize,
     offsets: Vec<f64>,
-    /// By key, sample looked at and offset: the colours there, where they are shown.
+    /// By key, then sample and offset: the colours there. None where they are not visible.
     keys: [Vec<Option<[f64; 3]>>; 2],
 }
 
 impl<'a> Colours<'a> {
-    /// Reads the colours of the keys, which are the first and the last frame of `pose`. `width` is the ribbon's on one side.
+    /// Reads the colours of the keys, which are the first and the last frame of `pose`. `width` is the width of one
+    /// side of the ribbon, in pixels of the level.
     pub fn new(curve: &'a Curve, scenery: &'a Scenery, level: usize, pose: &Pose, width: usize) -> Self {
         let closed = curve.chords.len() == curve.places.len() && curve.points > 2;
         let area = pose.places.first().map_or(0.0, |places| polygon::signed_area(places));
@@ -59,7 +61,7 @@ impl<'a> Colours<'a> {
         (0..self.curve.places.len()).step_by(1 << self.level)
     }
 
-    /// Compared places a frame.
+    /// Number of compared places per frame.
     pub fn count(&self) -> usize {
         self.samples().count() * self.offsets.len()
     }

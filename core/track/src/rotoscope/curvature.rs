@@ -4,7 +4,7 @@
 //! E_C = Σ_t Σ_i ‖ Δ²c_{t+1}(s_i) − Δ²c_t(s_i) ‖²,   Δ²c(s_i) = c(s_{i−1}) − 2 c(s_i) + c(s_{i+1})
 //! ```
 //!
-//! The difference is one of vectors: a part that turns pays for it, in proportion to its curvature.
+//! The difference is one of vectors, so a part that rotates has a cost in proportion to its curvature.
 
 use super::curve::Curve;
 use super::pose::Pose;

@@ -1,4 +1,4 @@
-//! The contour as a Catmull–Rom curve, and what is read on it as linear functions of the control points.
+//! The contour as a Catmull–Rom curve, with all readings as linear functions of the control points.
 //!
 //! Between the control points P₁ and P₂ with neighbours P₀ and P₃ the curve is
 //!
@@ -6,29 +6,29 @@
 //! c(u) = ½ [(−u³ + 2u² − u) P₀ + (3u³ − 5u² + 2) P₁ + (−3u³ + 4u² + u) P₂ + (u³ − u²) P₃],   0 ≤ u < 1
 //! ```
 //!
-//! It passes through the control points with continuous direction. Agarwala et al. use cubic Béziers that an artist fits;
-//! our contours are points on the contour, and this is the cubic that needs nothing else. Open curves are continued by
-//! reflection, P₋₁ = 2 P₀ − P₁.
+//! It passes through the control points and has a continuous direction. Agarwala et al. use cubic Béziers that an
+//! artist fits. Our contours are given as points on the contour, and this is the cubic that needs nothing else. Open
+//! curves are continued by reflection, P₋₁ = 2 P₀ − P₁.
 //!
-//! Samples lie about [`SPACING`] apart along the mean of both keys, with at least one in every segment, at the same
-//! parameters on every frame: sample i of one frame corresponds to sample i of another.
+//! Samples are about [`SPACING`] apart along the mean of both keys, with at least one in every segment. Their
+//! parameters are the same on every frame, so sample i of one frame corresponds to sample i of another.
 //!
-//! All that the energy's shape terms read of a frame (places, tangents, chords, second differences) is linear in its control
-//! points. A [`Functional`] is such a reading: up to six control points with weights.
+//! Everything that the energy's shape terms read of a frame (places, tangents, chords, second differences) is linear in
+//! its control points. A [`Functional`] is such a reading: up to six control points with weights.
 //!
-//! Limits: the parametrisation is uniform, so segments of very different lengths side by side make the curve bulge; corners
-//! of the drawing are rounded within a segment.
+//! Limits: the parametrisation is uniform, so the curve bulges between segments of very different lengths. Corners of
+//! the drawing are rounded within a segment.
 
 use rototoon_base::geometry::Point;
 
 /// Distance of neighbouring samples in working pixels, as in the authors' system.
 pub const SPACING: f64 = 2.0;
-/// Samples a segment at the most, for keys that lie far outside any picture.
+/// Largest number of samples per segment, for keys far outside any picture.
 const MOST_SAMPLES: f64 = 256.0;
-/// Control points that a functional reads at the most: three neighbouring samples lie in three segments at the most.
+/// Largest number of control points in a functional: three neighbouring samples are in at most three segments.
 pub const WIDEST: usize = 6;
 
-/// A linear reading of a frame's control points, Σ wⱼ Pⱼ.
+/// A linear function of a frame's control points, Σ wⱼ Pⱼ.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Functional {
     points: [u32; WIDEST],
@@ -37,12 +37,12 @@ pub struct Functional {
 }
 
 impl Functional {
-    /// Index and weight of each control point that is read.
+    /// Index and weight of each control point.
     pub fn entries(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.points[..self.count].iter().zip(&self.weights).map(|(&point, &weight)| (point as usize, weight))
     }
 
-    /// The value on a frame's control points.
+    /// The value for the control points of a frame.
     pub fn read(&self, points: &[Point]) -> Point {
         self.entries().map(|(j, weight)| points[j] * weight).sum()
     }
@@ -64,26 +64,26 @@ impl Functional {
     }
 }
 
-/// A curve's samples and what is read at them.
+/// A curve's samples and their functionals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Control points.
+    /// Number of control points.
     pub points: usize,
     /// c at each sample.
     pub places: Vec<Functional>,
-    /// dc/du at each sample: along the curve, of any length.
+    /// dc/du at each sample: a vector along the curve, of any length.
     pub tangents: Vec<Functional>,
-    /// Vectors between neighbouring samples, as long as if these lay [`SPACING`] apart on the keys.
+    /// Vectors between neighbouring samples, scaled as if the samples were [`SPACING`] apart on the keys.
     pub chords: Vec<Functional>,
-    /// Second differences of three neighbouring samples, as if these lay [`SPACING`] apart on the keys.
+    /// Second differences of three neighbouring samples, scaled as if the samples were [`SPACING`] apart on the keys.
     pub seconds: Vec<Functional>,
-    /// For each sample the nearer of the control points that bound its segment.
+    /// For each sample the nearer of the two control points of its segment.
     pub nearest: Vec<usize>,
 }
 
 impl Curve {
-    /// The curve through `closed` or open rows of as many points as the keys have (in working pixels). Fewer than three points
-    /// are never closed.
+    /// The closed or open curve through as many points as the keys have. The keys are in working pixels and have the
+    /// same number of points. A contour of fewer than three points is never closed.
     pub fn new(keys: [&[Point]; 2], closed: bool) -> Self {
         let points = keys[0].len();
         let closed = closed && points > 2;
@@ -133,13 +133,13 @@ impl Curve {
         }
     }
 
-    /// Half the weights on the control points of a segment and its neighbours.
+    /// A functional with half of the `weights` on the control points of a segment and its neighbours.
     fn joined(&self, segment: usize, weights: [f64; 4], closed: bool) -> Functional {
         let n = self.points;
         let mut functional = Functional::default();
         for (k, weight) in weights.into_iter().enumerate() {
             let weight = 0.5 * weight;
-            // Index of the point plus one, so that it is never negative.
+            // `segment + k` is the index of the point plus one, so it is never negative.
             match segment + k {
                 0 if !closed => {
                     functional.add(0, 2.0 * weight);
@@ -159,7 +159,7 @@ impl Curve {
         let n = self.places.len();
         let chord = |i: usize| Functional::default().plus(1.0, &self.places[(i + 1) % n]).plus(-1.0, &self.places[i]);
         let chords: Vec<Functional> = (0..if closed { n } else { n.saturating_sub(1) }).map(chord).collect();
-        // Samples that coincide on the keys say nothing about their distance.
+        // Samples that coincide on the keys do not define a distance, so the scale is limited.
         let length = |chord: &Functional| 0.5 * keys.map(|key| chord.read(key).length()).iter().sum::<f64>();
         let scales: Vec<f64> = chords.iter().map(|chord| SPACING / length(chord).max(0.1 * SPACING)).collect();
         let second = |i: usize| {
@@ -175,7 +175,7 @@ impl Curve {
     }
 }
 
-/// Samples a segment, by its mean length on the keys.
+/// Number of samples per segment, from its mean length on the keys.
 fn counts(keys: [&[Point]; 2], closed: bool) -> Vec<usize> {
     let n = keys[0].len();
     let segments = if closed { n } else { n.saturating_sub(1) };

@@ -4,12 +4,12 @@
 //! E_G = Σ_{0<t<T} Σ_i ( G_t(c_t(s_i)) / M(s_i) )²,   M(s_i) = max(G_0(c_0(s_i)), G_T(c_T(s_i)))
 //! ```
 //!
-//! G is the [edge measure](super::views), small on edges; M that of the key whose edge is weaker there. A sample that lies on
-//! edges at both keys should lie on edges between; where a key has no edge, M is large and the term says little. M is kept
-//! above [`FLOOR`], so that a residual is at most 2. A hidden sample costs 2, a constant, and one that is hidden at a key
-//! has no term, both as in the authors' system.
+//! G is the [edge measure](super::views), which is small on edges. M is that of the key with the weaker edge. A sample
+//! that is on edges at both keys should be on edges between them. If a key has no edge at the sample, M is large and
+//! the term has little effect. M is at least [`FLOOR`], so a residual is at most 2. A hidden sample costs the
+//! constant 2. A sample that is hidden at a key has no term. Both rules are those of the authors' system.
 //!
-//! Limit: any edge will do, whatever its direction and colours.
+//! Limit: every edge is accepted, whatever its direction and colours.
 
 use super::appearance::{colours, gradient};
 use super::curve::Curve;
@@ -20,7 +20,7 @@ use super::{Handle, Sink, Term};
 use rototoon_base::geometry::Point;
 use rototoon_image::sample::read;
 
-/// Least M, half of the largest G: on ink both keys may have G = 0.
+/// Least M, half of the largest G. Without it M could be 0, because on ink both keys may have G = 0.
 pub const FLOOR: f64 = 0.5 * STRONGEST as f64;
 /// Cost of a hidden sample.
 const HIDDEN: f64 = 2.0;
@@ -30,12 +30,12 @@ pub struct Edge<'a> {
     curve: &'a Curve,
     scenery: &'a Scenery,
     level: usize,
-    /// M by sample looked at; none where a key does not show it.
+    /// M by sample used on the level. None where the sample is not visible at a key.
     weakest: Vec<Option<f64>>,
 }
 
 impl<'a> Edge<'a> {
-    /// Reads the edges of the keys, which are the first and the last frame of `pose`.
+    /// Reads the edge measures at the keys, which are the first and the last frame of `pose`.
     pub fn new(curve: &'a Curve, scenery: &'a Scenery, level: usize, pose: &Pose) -> Self {
         let keys = [0, pose.frames() - 1];
         let measure = |key: usize, i: usize| {
@@ -50,7 +50,7 @@ impl<'a> Edge<'a> {
         Self { weakest: weakest.collect(), curve, scenery, level }
     }
 
-    /// Samples a frame.
+    /// Number of samples per frame.
     pub fn count(&self) -> usize {
         self.weakest.iter().flatten().count()
     }

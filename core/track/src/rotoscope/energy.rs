@@ -1,4 +1,7 @@
-//! The terms of one level joined, as an objective for [`trust_region`](rototoon_base::numeric::trust_region).
+//! The terms of one level joined into the energy, as an objective for [`trust_region`](crate::numeric::trust_region).
+//!
+//! The variables are the coordinates of all control points on all frames, in working pixels. Keys, pins and corrected
+//! centres are kept by projection.
 
 use super::appearance::Appearance;
 use super::blocks::{Blocks, Cost, Link};
@@ -15,47 +18,47 @@ use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
 use rototoon_base::numeric::trust_region::Objective;
 
-/// Weights of the terms.
+/// Weights of the terms. 0 switches a term off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
-    /// w_L.
+    /// w_L, of the length term.
     pub length: f64,
-    /// w_C.
+    /// w_C, of the curvature term.
     pub curvature: f64,
-    /// w_V.
+    /// w_V, of the velocity term.
     pub velocity: f64,
-    /// w_I.
+    /// w_I, of the image term.
     pub image: f64,
-    /// w_G.
+    /// w_G, of the edge term.
     pub edge: f64,
-    /// w_P.
+    /// w_P, of the colour penalty.
     pub colours: f64,
 }
 
 impl Default for Weights {
-    /// Those of the authors' system; no colour penalty.
+    /// The weights of the authors' system, without a colour penalty.
     fn default() -> Self {
         Self { length: 500.0, curvature: 40_000.0, velocity: 0.1, image: 1.0, edge: 2000.0, colours: 0.0 }
     }
 }
 
-/// What makes one preset differ from the other.
+/// The differences between the two presets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Method {
     /// Weights of the terms.
     pub weights: Weights,
     /// Offsets along the normals that the image term compares, in pixels of the level.
     pub offsets: Vec<f64>,
-    /// Width of the colour penalty's ribbon on one side, in pixels of the level.
+    /// Width of one side of the colour penalty's ribbon, in pixels of the level.
     pub ribbon: usize,
 }
 
-/// What the curves may not do.
+/// The constraints of the curves.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fixed {
-    /// By frame and point: keys and pins.
+    /// By frame and point: whether it is fixed (a key or pin).
     pub points: Vec<Vec<bool>>,
-    /// By frame: whether the sum of the points is fixed.
+    /// By frame: whether the centre is fixed, that is, the sum of the points.
     pub centers: Vec<bool>,
 }
 
@@ -74,7 +77,8 @@ pub struct Energy<'a> {
 }
 
 impl<'a> Energy<'a> {
-    /// The energy of curves whose first and last frames are the keys, in working pixels.
+    /// The energy of curves on a level. `start` are the control points by frame in working pixels; the first and the
+    /// last frame are the keys.
     pub fn new(
         method: &'a Method,
         curve: &'a Curve,
@@ -106,7 +110,7 @@ impl<'a> Energy<'a> {
     fn walk(&self, frame: usize, pose: &Pose, sink: &mut impl Sink) {
         let steps = (pose.frames() - 1) as f64;
         let mean = |weight: f64, count: usize| weight / count.max(1) as f64;
-        // F times a mean over F steps is a mean over one step; the edge term has no F.
+        // The factor F cancels the mean over the F steps. The edge term has no factor F.
         weighted(&self.length, mean(self.weights.length, self.curve.chords.len()), frame, pose, sink);
         weighted(&self.curvature, mean(self.weights.curvature, self.curve.seconds.len()), frame, pose, sink);
         weighted(&self.velocity, mean(self.weights.velocity, self.curve.places.len()), frame, pose, sink);

@@ -4,8 +4,9 @@
 //! E_L = Σ_t Σ_i ( ‖c_{t+1}(s_{i+1}) − c_{t+1}(s_i)‖² − ‖c_t(s_{i+1}) − c_t(s_i)‖² )²
 //! ```
 //!
-//! Squared distances, so that the derivative needs no division and is defined where samples coincide. The unit is px⁴; the
-//! term and its weight presume samples 2 px apart, and a [chord](super::curve::Curve::chords) is scaled to that.
+//! The distances are squared, so that the derivative needs no division and is defined where samples coincide. The unit
+//! is px⁴. The term and its weight assume samples 2 px apart, and a [chord](super::curve::Curve::chords) is scaled to
+//! that distance.
 
 use super::curve::Curve;
 use super::pose::Pose;

@@ -1,12 +1,16 @@
 //! The preset `liang2012`: rotoscoping with a two-sided ribbon and a colour penalty.
 //!
-//! D. Liang et al.: "Style factorization and character reshaping for 2D cartoons", Journal of Zhejiang University – Science C
-//! 13 (3), 2012, section 3. The [energy](super) of [`agarwala2004`](super::agarwala2004) with two changes: the image
-//! term runs over a [ribbon](super::ribbon) on both sides of the curve (1), and a
-//! [colour penalty](super::colours) holds every frame to the colours of the keys.
+//! D. Liang et al.: "Style factorization and character reshaping for 2D cartoons", Journal of Zhejiang University –
+//! Science C 13 (3), 2012, section 3.
 //!
-//! The paper gives neither the ribbon's width nor the penalty's form and weight; what is chosen here is said there, and the
-//! weight is that of the image term. Limits as for `agarwala2004`, less the drift.
+//! The preset minimises the [energy](super::rotoscope) of [`agarwala2004`](super::agarwala2004) with two changes. The
+//! image term samples a [ribbon](super::rotoscope::ribbon) on both sides of the curve (1). A [colour
+//! penalty](super::rotoscope::colours) compares every frame with the colours of the keys.
+//!
+//! The paper gives neither the width of the ribbon nor the form and weight of the penalty. Our choices are documented
+//! in these two modules; the weight is that of the image term.
+//!
+//! Limits: those of `agarwala2004`, except for the drift.
 
 use super::energy::{Method, Weights};
 use super::ribbon::{WIDTH, offsets};
@@ -19,7 +23,7 @@ use rototoon_base::scene::{FrameSource, Progress};
 /// Weight of the colour penalty: that of the image term.
 const COLOURS: f64 = 1.0;
 
-/// Solves jobs by Liang et al. 2012; keeps the views of frames.
+/// Solves jobs by Liang et al. 2012. It keeps the prepared pictures of frames (views).
 pub struct Liang2012 {
     method: Method,
     views: Views,

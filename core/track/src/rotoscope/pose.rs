@@ -1,23 +1,23 @@
-//! The curves of all frames, read at their samples.
+//! A pose: the curves of all frames, evaluated at their samples.
 
 use super::curve::{Curve, Functional};
 use rototoon_base::geometry::Point;
 
-/// What the terms read of the control points, by frame and sample.
+/// The values of the functionals, by frame and sample, in working pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
     /// Places of the samples.
     pub places: Vec<Vec<Point>>,
-    /// Directions along the curve, of any length.
+    /// Vectors along the curve, of any length.
     pub tangents: Vec<Vec<Point>>,
-    /// Vectors between neighbouring samples.
+    /// Scaled vectors between neighbouring samples.
     pub chords: Vec<Vec<Point>>,
-    /// Second differences.
+    /// Scaled second differences.
     pub seconds: Vec<Vec<Point>>,
 }
 
 impl Pose {
-    /// Reads the control points, frame by frame.
+    /// Evaluates the control points, frame by frame, in working pixels.
     pub fn new<'a>(curve: &Curve, frames: impl Iterator<Item = &'a [Point]> + Clone) -> Self {
         let read = |functionals: &[Functional]| {
             let of_frame = |points: &[Point]| functionals.iter().map(|f| f.read(points)).collect();

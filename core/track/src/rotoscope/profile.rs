@@ -4,26 +4,26 @@
 //! p(α) = c / 2ˡ + α n,   n = d^⊥/‖d‖,   ∂p/∂c = 2⁻ˡ,   ∂p/∂d = −(α/‖d‖) d̂ nᵀ
 //! ```
 //!
-//! c is the sample's place, d the curve's direction there (^⊥ turns x to y), d̂ = d/‖d‖. Offsets α are pixels of the level, so
-//! that the window covers more of the picture on coarse levels. Where the curve has no direction there is no normal: all
-//! offsets read the sample's own place.
+//! c is the sample's place, d is the curve's direction there (^⊥ turns x to y), and d̂ = d/‖d‖. Offsets α are in pixels
+//! of the level, so the window covers more of the picture on coarse levels. Where the curve has no direction it has no
+//! normal: then all offsets read the sample's own place.
 
 use rototoon_base::geometry::Point;
 
-/// A sample's normal on a level.
+/// The normal of a sample on a level.
 #[derive(Clone, Copy, Debug)]
 pub struct Profile {
     place: Point,
     along: Point,
     normal: Point,
-    /// 1/‖d‖; zero without a direction.
+    /// 1/‖d‖; 0 without a direction.
     slowness: f64,
     /// 2⁻ˡ.
     shrink: f64,
 }
 
 impl Profile {
-    /// At a place with a direction, both in working pixels.
+    /// The normal at a place with a direction, both in working pixels.
     pub fn new(place: Point, direction: Point, level: usize) -> Self {
         let shrink = 0.5f64.powi(level as i32);
         let along = direction.normalize_or_zero();
@@ -41,7 +41,8 @@ impl Profile {
         self.at(offset) / self.shrink
     }
 
-    /// Derivatives by place and direction of what has the gradient `slope` (per pixel of the level) at p(α).
+    /// Derivatives by the place and by the direction of a value that has the gradient `slope` (per pixel of the level)
+    /// at p(α).
     pub fn by(&self, offset: f64, slope: Point) -> [Point; 2] {
         [self.shrink * slope, (-offset * self.slowness * slope.dot(self.along)) * self.normal]
     }

@@ -1,16 +1,17 @@
-//! A job from coarse to fine.
+//! Solves a job from coarse to fine.
 //!
-//! 1. The curves start as the keys blended linearly; what the artist corrected is spread to the frames around it.
-//! 2. On each level of the pyramid, the coarsest first, the [energy](super::energy) is minimised over all frames at once by
-//!    [Gauss–Newton in a trust region](rototoon_base::numeric::trust_region): no point moves more than 10 working pixels a step.
+//! 1. The curves start as the linear blend of the keys. The artist's corrections are spread to the frames around them.
+//! 2. On each level of the pyramid, the coarsest first, the [energy](super::energy) is minimised over all frames at
+//!    once by [Gauss–Newton in a trust region](crate::numeric::trust_region). No point moves more than 10 working
+//!    pixels per step.
 //!
 //! The steps come from conjugate gradients, as in the authors' system. JᵀJ is block-tridiagonal with narrow bands and
-//! changes with every step, a step needs no more digits than the region lets through, and constraints and directions without
-//! information (a flat area under weak terms) need no care: a factorisation would be no faster and less forgiving.
-//! Their region bounds the Euclidean length of all variables together, which shrinks the steps as frames and points grow; here
-//! it bounds every point by itself.
+//! changes with every step, and a step needs no more precision than the region allows. Constraints, and directions
+//! without information (a flat area with weak terms), need no special treatment. A factorisation would be no faster and
+//! less robust. The authors' region bounds the Euclidean length of all variables together, which makes the steps
+//! shorter for more frames and points. Here it bounds every point by itself.
 //!
-//! Keys, pins and corrected centres are fixed exactly.
+//! Keys, pins and corrected centres are exact.
 
 use super::curve::Curve;
 use super::energy::{Energy, Fixed, Method, Weights};
@@ -24,10 +25,10 @@ use rototoon_base::numeric::trust_region::{Objective, TrustOptions, TrustSummary
 use rototoon_base::scene::{Cancelled, FrameNumber, FrameSource, Progress};
 use std::ops::ControlFlow;
 
-/// Share of a job's time that reading pictures takes.
+/// Share of a job's progress for reading the pictures.
 const READ: f64 = 0.3;
 
-/// Largest way of a point in a step, in working pixels.
+/// Largest motion of a point in a step, in working pixels.
 const RADIUS: f64 = 10.0;
 
 fn options(level: usize) -> TrustOptions {
@@ -41,7 +42,11 @@ fn options(level: usize) -> TrustOptions {
     }
 }
 
-/// Solves a job by a method.
+/// Solves a job by a method. A job without free frames or points returns the blended keys.
+///
+/// # Errors
+///
+/// The error of a picture that cannot be read, or the cancellation by `progress`.
 pub fn solve(
     method: &Method,
     views: &Views,
@@ -83,7 +88,7 @@ pub fn solve(
     Ok(SpanTrack { points, confidence, summary })
 }
 
-/// Where a level's part of the progress lies.
+/// The section of the progress that belongs to one level.
 struct Report<'a> {
     progress: &'a dyn Progress,
     from: f64,
@@ -130,8 +135,8 @@ fn scenery(
     Ok(Scenery::new(seen, &occluders))
 }
 
-/// The blended keys; where the artist corrected something, what minimises E_C and E_V with the corrections fixed. Both are
-/// quadratic, and without corrections the blend is their minimum.
+/// The blended keys. If the artist corrected something, the curves that minimise E_C and E_V with the corrections
+/// fixed. Both terms are quadratic, and without corrections the blend is their minimum.
 fn start(method: &Method, job: &Job, scenery: &Scenery, fixed: &Fixed, scale: f64) -> Vec<Vec<Point>> {
     let on_frame = |index: usize| {
         let mut points = job.interpolated(index);

@@ -1,4 +1,4 @@
-//! A case for the terms, and the full Jacobian of a term.
+//! Test data for the terms, and the complete Jacobian of a term.
 
 use super::curve::Curve;
 use super::pose::Pose;
@@ -11,7 +11,7 @@ use rototoon_base::scene::Raster;
 use rototoon_image::pyramid::Pyramid;
 use std::sync::Arc;
 
-/// Uneven curves without symmetry: 4 frames of `points` points.
+/// Irregular curves without symmetry: 4 frames of `points` points.
 pub fn curve_case(points: usize, closed: bool) -> (Curve, Vec<Point>) {
     let at = |k: usize| {
         let (frame, j) = (k / points, k % points);
@@ -28,12 +28,13 @@ pub fn pose(curve: &Curve, x: &[Point]) -> Pose {
     Pose::new(curve, x.chunks(curve.points))
 }
 
-/// Four pictures of planes, one a channel, that shift by (2, 1) a frame: bilinear reading is exact and has no creases.
+/// Four pictures of planes, one plane per channel, that shift by (2, 1) per frame. Bilinear reading is exact and has no
+/// creases.
 pub fn scenery() -> Scenery {
     scenery_with(&vec![Vec::new(); 4])
 }
 
-/// The same behind nearer contours, by frame.
+/// The same pictures, hidden by nearer contours, by frame.
 pub fn scenery_with(occluders: &[Vec<Vec<Point>>]) -> Scenery {
     let view = |frame: usize| -> Arc<View> {
         let picture = Raster::from_fn(128, 128, |x, y| {
@@ -45,19 +46,19 @@ pub fn scenery_with(occluders: &[Vec<Vec<Point>>]) -> Scenery {
     Scenery::new((0..4).map(view).collect(), occluders)
 }
 
-/// Number of residuals, and their sum of squares with the constants, over all frames of `x`.
+/// Number of residuals, and the sum of their squares and of the constants, over all frames of `x`.
 pub fn residuals(term: &impl Term, curve: &Curve, x: &[Point]) -> (usize, f64) {
     let mut rows = Rows::new(curve);
     rows.walk(term, x);
     (rows.values.len(), rows.values.iter().map(|v| v * v).sum::<f64>() + rows.constants)
 }
 
-/// The entry of the Jacobian of a term in f64 that differs most from differences.
+/// The entry of a term's Jacobian that differs most from the difference quotient, for a term in f64.
 pub fn worst(term: &impl Term, curve: &Curve, x: &[Point]) -> Option<WorstEntry> {
     worst_with_step(term, curve, x, 1e-5)
 }
 
-/// The same where the term reads f32 pictures: a longer step.
+/// The same for a term that reads f32 pictures, with a longer step.
 pub fn worst_of_pictures(term: &impl Term, curve: &Curve, x: &[Point]) -> Option<WorstEntry> {
     worst_with_step(term, curve, x, 1e-2)
 }
@@ -68,7 +69,7 @@ fn worst_with_step(term: &impl Term, curve: &Curve, x: &[Point], step: f64) -> O
     worst_entry(&whole, &flat, step)
 }
 
-/// Collects residuals and the Jacobian's entries by control points.
+/// Collects residuals and the Jacobian's entries by control point.
 struct Rows<'a> {
     curve: &'a Curve,
     frame: usize,
@@ -138,7 +139,7 @@ impl<T: Term> Whole<'_, T> {
     }
 
     fn start(&self) -> Vec<f64> {
-        // The pattern and the number of rows are the same for every x that no place leaves the picture for.
+        // The pattern and the number of rows are the same for every x for which all places stay in the picture.
         let (_, x) = curve_case(self.curve.points, self.curve.chords.len() == self.curve.places.len());
         x.iter().flat_map(|p| [p.x, p.y]).collect()
     }
@@ -168,7 +169,7 @@ impl<T: Term> Problem for Whole<'_, T> {
     }
 }
 
-/// Residuals, and for each the entries (coordinate, derivative) of its row.
+/// The residuals, and the row of the Jacobian of each as entries (coordinate, derivative).
 pub fn jacobian(term: &impl Term, curve: &Curve, x: &[Point]) -> (Vec<f64>, Vec<Vec<(usize, f64)>>) {
     let mut rows = Rows::new(curve);
     rows.walk(term, x);

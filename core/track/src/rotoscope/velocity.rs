@@ -1,10 +1,10 @@
-//! Way of the samples from frame to frame (Agarwala et al. 2004):
+//! Motion of the samples from frame to frame (Agarwala et al. 2004):
 //!
 //! ```text
 //! E_V = Σ_t Σ_i ‖ c_{t+1}(s_i) − c_t(s_i) ‖²
 //! ```
 //!
-//! Alone it interpolates linearly between what is fixed. It is weak: it only decides where nothing else does.
+//! Alone it interpolates linearly between the fixed points. It is weak and decides only where no other term does.
 
 use super::curve::Curve;
 use super::pose::Pose;

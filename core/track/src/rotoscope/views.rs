@@ -1,17 +1,17 @@
-//! What the rotoscoping energies read of a picture: colours and edge strength on a pyramid.
+//! Views: pictures as the rotoscoping energies read them, with colours and edge strength on a pyramid.
 //!
-//! All lengths are in **working pixels**: pictures of more than 540 lines are reduced to 540 first, since the weights of the
-//! energy were chosen for television frames. Colours are smoothed by a Gaussian of σ = 1.3 before the pyramid is made.
-//! Channel 3 is the **edge measure** of Agarwala et al. (2004), small on edges:
+//! All lengths are in **working pixels**. Pictures of more than 540 lines are reduced to 540 lines first, because the
+//! weights of the energy were chosen for television frames. Colours are smoothed by a Gaussian of σ = 1.3 before the
+//! pyramid is built. Channel 3 is the **edge measure** of Agarwala et al. (2004), which is small on edges:
 //!
 //! ```text
-//! G = K − min(K, 0.30 ‖∇R‖ + 0.59 ‖∇G‖ + 0.11 ‖∇B‖),   K = 70 levels a pixel
+//! G = K − min(K, 0.30 ‖∇R‖ + 0.59 ‖∇G‖ + 0.11 ‖∇B‖),   K = 70 levels per pixel
 //! ```
 //!
-//! with gradients at σ = 1. (Their system lets G fall below zero on the hardest edges, so that its square grows again on
-//! cartoon ink; here it ends at zero.) It goes through the pyramid like a colour.
+//! The gradients are taken at σ = 1. (In the authors' system G is negative on the hardest edges, so its square grows
+//! again on cartoon ink. Here it ends at zero.) The edge measure goes through the pyramid like a colour.
 //!
-//! Colours and G are in 8-bit levels, 0 to 255, the unit of the weights.
+//! Colours and G are in 8-bit levels, 0 to 255, which is the unit of the weights.
 
 use crate::contract::error::TrackError;
 use rototoon_base::geometry::{Point, polygon};
@@ -22,33 +22,33 @@ use rototoon_image::resize::reduce;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard};
 
-/// Levels of the pyramid.
+/// Number of levels of the pyramid.
 pub const LEVELS: usize = 4;
-/// K, the gradient at which an edge is as strong as can be.
+/// K: the gradient of the strongest edge, in levels per pixel.
 pub const STRONGEST: f32 = 70.0;
-/// Lines of a picture in working pixels at the most.
+/// Largest number of lines of a picture in working pixels.
 const WORKING_LINES: f64 = 540.0;
-/// σ of the colours before the pyramid.
+/// σ of the smoothing of the colours before the pyramid, in working pixels.
 const SMOOTHING: f64 = 1.3;
-/// σ of the gradient.
+/// σ of the smoothing before the gradient, in working pixels.
 const GRADIENT_SIGMA: f64 = 1.0;
-/// σ of the pyramid's blur in pixels of the level.
+/// σ of the pyramid's blur, in pixels of the level.
 const SOFTNESS: f64 = 0.9;
 /// Bytes of views kept for the next job.
 const BUDGET: usize = 400 << 20;
 
-/// Picture pixels in one working pixel, at least 1.
+/// Picture pixels per working pixel, at least 1, for a picture of `height` lines.
 pub fn working_scale(height: usize) -> f64 {
     (height as f64 / WORKING_LINES).max(1.0)
 }
 
-/// Colour (0 to 2) and edge measure (3).
+/// Colour (channels 0 to 2) and edge measure (channel 3) at a place.
 pub type Look = [f32; 4];
 
 /// A picture as the energies read it, by level.
 pub type View = Pyramid<Look>;
 
-/// Makes the view of a picture, which must have a pixel.
+/// The view of a picture. The picture must have at least one pixel.
 pub fn view(picture: &Raster<Colour>) -> View {
     let scale = working_scale(picture.height());
     let levels = picture.map(|colour| colour.map(|v| 255.0 * v));
@@ -70,7 +70,7 @@ fn edge_measure(picture: &Raster<Colour>, x: usize, y: usize) -> f32 {
     (STRONGEST - (0.30 * strength(0) + 0.59 * strength(1) + 0.11 * strength(2))).max(0.0)
 }
 
-/// What a job sees: the views of its frames, and what hides its part on each.
+/// The views of a job's frames, and what hides its part on each.
 pub struct Scenery {
     views: Vec<Arc<View>>,
     hidden: Vec<Option<Raster<bool>>>,
@@ -78,7 +78,7 @@ pub struct Scenery {
 }
 
 impl Scenery {
-    /// `occluders` by frame, in working pixels like `size`, the size of the pictures.
+    /// Combines the views of all frames with the contours that hide the part: `occluders` by frame, in working pixels.
     pub fn new(views: Vec<Arc<View>>, occluders: &[Vec<Vec<Point>>]) -> Self {
         let (width, height) = views.first().map_or((0, 0), |v| (v.levels()[0].width(), v.levels()[0].height()));
         let hidden = occluders.iter().map(|contours| {
@@ -91,7 +91,7 @@ impl Scenery {
         Self { hidden: hidden.collect(), views, size: Point::new(width as f64, height as f64) }
     }
 
-    /// Levels that every view has.
+    /// Number of levels that every view has.
     pub fn levels(&self) -> usize {
         self.views.iter().map(|view| view.levels().len()).min().unwrap_or(0)
     }
@@ -101,16 +101,17 @@ impl Scenery {
         &self.views[frame].levels()[level]
     }
 
-    /// Whether the picture shows the part's surroundings at a point (in working pixels): inside, and under no nearer part.
+    /// Whether the picture shows the part's surroundings at `p`, in working pixels: `p` is in the picture and not under
+    /// a nearer part.
     pub fn shows(&self, frame: usize, p: Point) -> bool {
-        // Written so that a point that is no number is not shown.
+        // Written so that NaN is not shown.
         let inside = p.x >= 0.0 && p.y >= 0.0 && p.x < self.size.x && p.y < self.size.y;
         inside && !self.hidden[frame].as_ref().is_some_and(|mask| mask.get(p.x as usize, p.y as usize))
     }
 }
 
-/// Views of frames, kept within a budget of bytes. A view is a pure function of its picture: whether it is kept or made again
-/// is no matter for any result.
+/// Views of frames, kept within a budget of bytes. A view depends on its picture alone, so the cache never changes a
+/// result.
 #[derive(Default)]
 pub struct Views {
     kept: Mutex<Kept>,
@@ -124,6 +125,10 @@ struct Kept {
 
 impl Views {
     /// The view of a frame. An empty picture counts as one black pixel.
+    ///
+    /// # Errors
+    ///
+    /// The error of the picture, if it cannot be read.
     pub fn get(&self, frames: &dyn FrameSource, frame: FrameNumber) -> Result<Arc<View>, TrackError> {
         if let Some(known) = self.known(frame) {
             return Ok(known);
@@ -160,7 +165,7 @@ impl Views {
     }
 
     fn lock(&self) -> MutexGuard<'_, Kept> {
-        // The map is only touched between complete states, so a panic elsewhere cannot have left it half changed.
+        // The map is only changed between complete states, so a panic elsewhere cannot leave it half changed.
         self.kept.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }

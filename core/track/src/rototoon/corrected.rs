@@ -1,10 +1,11 @@
-//! What the artist's corrections add to the pool of hypotheses.
+//! Hypotheses from the artist's corrections.
 //!
 //! Without corrections a pool depends on the keys and the pictures alone, so it is kept when the artist pins a point.
-//! Then, on each corrected drawing, every hypothesis is brought to the corrections and aligned again with them as
-//! constraints; one pin alone leaves the turn open, so turned starts are tried too. The best are carried from there to
-//! the drawings on both sides, while they find something that the pools there do not hold: that is how one pin mends its
-//! neighbours.
+//!
+//! 1. On each corrected drawing every hypothesis is moved to the corrections and aligned again with the corrections as
+//!    constraints. A single pin leaves the rotation open, so rotated starts are tried too.
+//! 2. The best results are carried to the drawings on both sides, as long as they find poses that the pools there do
+//!    not have yet. That is how one pin corrects its neighbours.
 
 use super::pool::{Hypothesis, Pools, hypothesis, is_new};
 use super::pooled::Pooled;
@@ -15,18 +16,20 @@ use crate::shared::drawings::Drawing;
 use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polygon};
 
-/// Turns tried about the corrections' centre, in degrees.
+/// Rotations tried about the corrections' centre, in degrees.
 const TURNS: [f64; 8] = [-90.0, -60.0, -40.0, -20.0, 20.0, 40.0, 60.0, 90.0];
-/// Hypotheses of each model that are kept on a corrected drawing.
+/// Hypotheses of each model kept on a corrected drawing.
 const KEPT: usize = 4;
-/// Hypotheses of a corrected drawing that are carried on.
+/// Hypotheses of a corrected drawing that are carried to its neighbours.
 const CARRIED: usize = 2;
 
-/// A part may come to lie this far from where its centre was put, in sizes of the part, if it was moved by twice as much.
+/// A part may end up this far from its corrected centre, in sizes of the part, if the artist moved it by more than
+/// twice as much.
 const CENTER_REACH: f64 = 0.15;
 
-/// By drawing of a stage: how far the part may lie from where the artist put its centre, in working pixels. Who moves a
-/// part a little means it to the pixel; who moves it far says where to look. `plain` is what is known without corrections.
+/// For each drawing of a stage: how far the part may be from its corrected centre, in working pixels. An artist who
+/// moves a part a little means the exact place, so the reach is 0. An artist who moves it far shows where to look.
+/// `plain` is the result without corrections; it gives the place before the move.
 pub(super) fn center_reach(stage: &Stage, plain: &Pooled) -> Vec<f64> {
     let reach = CENTER_REACH * stage.models[0].texture.mesh.size;
     let of_drawing = |d: usize| {
@@ -38,14 +41,15 @@ pub(super) fn center_reach(stage: &Stage, plain: &Pooled) -> Vec<f64> {
     (0..stage.drawings.len()).map(of_drawing).collect()
 }
 
-/// The pools of a stage with corrections, from those without; `plain` are the drawings of the latter.
+/// The pools of a stage with corrections, from the `pools` without. `plain` are the drawings of the pools without
+/// corrections.
 pub(super) fn extend(stage: &Stage, plain: &[Drawing], pools: &Pools) -> Result<Pools, TrackError> {
     let of = |d: &Drawing| plain.iter().position(|p| p.first <= d.first && d.first <= p.last).unwrap_or(0);
     let last = stage.drawings.len() - 1;
     let mut extended: Pools = (0..=last)
         .into_par_iter()
         .map(|d| {
-            // The keys' drawings come first and last in both groupings.
+            // In both groupings the keys' drawings are the first and the last one.
             let source = if d == last { plain.len() - 1 } else { of(&stage.drawings[d]) };
             let mut pool: Vec<Hypothesis> = pools[source].iter().map(Hypothesis::without_origin).collect();
             if stage.corrected(d) {
@@ -66,7 +70,7 @@ pub(super) fn extend(stage: &Stage, plain: &[Drawing], pools: &Pools) -> Result<
     Ok(extended)
 }
 
-/// The hypotheses of a corrected drawing, made to obey.
+/// The hypotheses of a corrected drawing, moved to the corrections.
 fn constrained(stage: &Stage, d: usize, pool: &[Hypothesis]) -> Result<Vec<Hypothesis>, TrackError> {
     stage.kit.progress.report("Tracking", 0.0)?;
     let by_model: Vec<Vec<Hypothesis>> = [0, 1].par_iter().map(|&model| obeying(stage, d, model, pool)).collect();
@@ -79,7 +83,7 @@ fn constrained(stage: &Stage, d: usize, pool: &[Hypothesis]) -> Result<Vec<Hypot
     Ok(found)
 }
 
-/// Those of one model, the best few starts aligned.
+/// The same for one model: the best few starts, aligned under the constraints.
 fn obeying(stage: &Stage, d: usize, model: usize, pool: &[Hypothesis]) -> Vec<Hypothesis> {
     let scenery = stage.scenery(model, d);
     let settler = stage.models[model].settler(&scenery);
@@ -116,14 +120,14 @@ fn obeying(stage: &Stage, d: usize, model: usize, pool: &[Hypothesis]) -> Vec<Hy
     kept.par_iter().map(aligned).collect()
 }
 
-/// A pose aligned to what is seen, with pins alone. None where that takes the part further from its centre than
-/// [`center_reach`] lets it.
+/// A pose aligned to the visible samples, with the pins as the only constraints. None if that takes the part further
+/// from its corrected centre than [`center_reach`] allows.
 pub(super) fn freed(stage: &Stage, d: usize, model: usize, nodes: &[Point]) -> Option<Hypothesis> {
     let pose = stage.models[model].seen(&stage.released(model, d), nodes);
     Some(hypothesis(stage, d, model, pose, None)).filter(|free| stage.near_center(d, &free.points))
 }
 
-/// What the best hypotheses of a corrected drawing become on the drawings to one side of it.
+/// New hypotheses on the drawings to one side of a corrected drawing, from its best hypotheses.
 fn carried_on(
     stage: &Stage,
     pools: &Pools,

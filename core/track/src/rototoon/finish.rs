@@ -1,5 +1,9 @@
-//! The chosen poses made into tracks: aligned where the part is seen, blended with the other key's model, refined by the
-//! contour's own templates where those fit better after it, made to obey the artist's corrections.
+//! Makes tracks from the chosen poses.
+//!
+//! 1. The chosen pose is aligned to what nearer parts leave visible.
+//! 2. It is blended with the nearest pose of the other key's model.
+//! 3. The contour is refined by its own colour templates, if they fit better afterwards.
+//! 4. The artist's corrections are enforced.
 
 use super::confidence;
 use super::corrected::freed;
@@ -18,22 +22,22 @@ use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::Scene;
 use std::sync::{Arc, OnceLock};
 
-/// Distance in working pixels at which the other key's model is no longer taken to mean the same place.
+/// Distance in working pixels at which the weight of the other key's model in the blend has fallen to 1/e.
 const AGREEMENT: f64 = 4.0;
-/// Nearer contours further away than this from a part (working pixels) do not matter to it.
+/// Nearer contours further away than this from a part (working pixels) are ignored.
 const REACH: f64 = 24.0;
 
-/// What a part's track is made from, apart from its pools and the pictures.
+/// The plan of a part's track: with the pools and the pictures it determines the track.
 #[derive(Clone, PartialEq)]
 pub(super) struct Finish {
     /// The chosen hypothesis of each drawing.
     chosen: Vec<usize>,
-    /// By drawing: contours of nearer parts that reach the part, in working pixels.
+    /// By drawing: contours of nearer parts near the part, in working pixels.
     occluders: Vec<Vec<Vec<Point>>>,
 }
 
 impl Finish {
-    /// The plan of member `m` of a stretch, whose paths are chosen; `hiding` is whether nearer parts hide it.
+    /// The plan of member `m` of a stretch whose paths are chosen. `hiding` says whether nearer parts hide it.
     pub fn of(
         scene: &Scene,
         tasks: &[Task],
@@ -77,8 +81,8 @@ impl Finish {
     }
 }
 
-/// A track, what it was made from, and what is worth keeping for the next one: beside the chosen poses the whole pool
-/// counts, whose other hypotheses are blended in and weigh in the confidence.
+/// A track, its sources, and the intermediate results that the next run may reuse. The sources contain the complete
+/// pools, not only the chosen poses: other hypotheses are blended in and affect the confidence.
 pub(super) struct Finished {
     pub source: Arc<Pooled>,
     pub plan: Finish,
@@ -86,17 +90,19 @@ pub(super) struct Finished {
     pub track: SpanTrack,
 }
 
-/// A drawing's chosen pose as it is seen under what hides it, where that changes it, its control points, and how sure they
-/// are.
+/// The result for one drawing.
 #[derive(Clone)]
 struct Settled {
+    /// The chosen pose aligned to its visible samples; none if nothing hides the part.
     seen: Option<Hypothesis>,
+    /// Control points in working pixels.
     points: Vec<Point>,
+    /// Confidence of each control point, 0 to 1.
     confidence: Vec<f64>,
 }
 
 impl Finished {
-    /// What became of a drawing, if all that it was made from is the same again.
+    /// The settled result of drawing `d`, if everything that it depends on is the same again.
     fn of(&self, source: &Pooled, plan: &Finish, d: usize) -> Option<&Settled> {
         let old = &self.source;
         let same_models = old.models.as_ref().zip(source.models.as_ref()).is_some_and(|(a, b)| Arc::ptr_eq(a, b));
@@ -112,7 +118,7 @@ impl Finished {
     }
 }
 
-/// The track of a part whose path is chosen; `before` is what was made of the part last.
+/// The track of a part whose path is chosen. `before` is the part's result of the last run.
 pub(super) fn finish(
     kit: Kit,
     pooled: &Arc<Pooled>,
@@ -166,7 +172,7 @@ fn settle(stage: &Stage, pooled: &Pooled, plan: &Finish, refiner: &OnceLock<Opti
     Settled { seen, points, confidence }
 }
 
-/// How sure each control point of a drawing is, the chosen pose being as it is seen.
+/// Confidence of each control point of a drawing. If `seen` is given, it replaces the chosen hypothesis.
 fn confidence(stage: &Stage, d: usize, pool: &[Hypothesis], chosen: usize, seen: Option<&Hypothesis>) -> Vec<f64> {
     let replaced = seen.map(|seen| {
         let mut pool = pool.to_vec();
@@ -177,7 +183,7 @@ fn confidence(stage: &Stage, d: usize, pool: &[Hypothesis], chosen: usize, seen:
     confidence::of_drawing(&stage.models, &stage.features[d], &stage.covers[d], pool, chosen)
 }
 
-/// The contour's own templates, where it has a shape.
+/// The contour's colour templates. None for contours without a shape.
 fn refiner(stage: &Stage) -> Option<Refiner> {
     let points = [0, 1].map(|k: usize| stage.job.keys[k].iter().map(|&p| p / stage.scale).collect::<Vec<_>>());
     let key = |k: usize| Key {
@@ -192,15 +198,15 @@ fn refiner(stage: &Stage) -> Option<Refiner> {
     Some(refiner)
 }
 
-/// Refined control points of a drawing, or the rough ones where the templates fit those no worse.
+/// Refined control points of a drawing, or the rough ones if refinement does not improve the fit of the templates.
 fn refined(stage: &Stage, refiner: &Refiner, d: usize, share: f64, rough: Vec<Point>) -> Vec<Point> {
     let pins = stage.correction(d).map(|c| c.pins.iter().map(|(&j, &p)| (j, p / stage.scale)).collect());
     let frame = Frame { picture: &stage.features[d], cover: &stage.covers[d], share, pins: pins.unwrap_or_default() };
     refiner.improved(&frame, rough)
 }
 
-/// The chosen control points of a drawing: those of the other model are blended in where they agree, by how near
-/// its key is.
+/// The control points of the chosen hypothesis, blended with the nearest hypothesis of the other model. The weight of
+/// the other model grows with the nearness of its key and falls with the distance between the two places.
 fn blended(pool: &[Hypothesis], own: &Hypothesis, share: f64) -> Vec<Point> {
     let others = pool.iter().filter(|h| h.model != own.model);
     let Some(other) = others.min_by(|a, b| a.distance(own).total_cmp(&b.distance(own))) else {

@@ -1,31 +1,33 @@
-//! The mechanisms of the default tracker, each of which can be switched off to measure what it is worth.
+//! The mechanisms of the default tracker. Each can be switched off to measure its contribution.
 //!
-//! What a mechanism gives is not what it would give alone: others fill in for it. So each is left out of the whole, and
-//! the whole is measured again (an ablation): `cargo xtask bench-tracking --ablations`. Artists have no use for that; it
-//! tells developers what to keep.
+//! The contribution of a mechanism in the complete tracker differs from its contribution alone, because others
+//! compensate for it. So the measurement is an ablation: one mechanism is left out and the tracker is measured again,
+//! with `cargo xtask bench-tracking --ablations`. It is a tool for developers, who decide with it what to keep. Artists
+//! do not need it.
 
-/// Something that the default tracker does beside carrying each key's lattice from drawing to drawing.
+/// A mechanism that the default tracker has in addition to carrying each key's lattice from drawing to drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mechanism {
-    /// Starts from the dense flow between drawings.
+    /// Dense flow between drawings gives starts.
     Flow,
-    /// The search over the whole picture where the keys' chains disagree.
+    /// The complete picture is searched where the chains from the two keys disagree.
     Search,
-    /// Chosen poses carried on to both neighbours.
+    /// Chosen poses are carried to both neighbouring drawings.
     Sweep,
-    /// The choice of all parts together; without it each part chooses alone.
+    /// All parts choose together. Without it each part chooses alone.
     JointChoice,
     /// Nearer parts hide farther ones.
     Hiding,
-    /// Parts that hang together stay together, and lead each other.
+    /// Connected parts stay together at their joints, and surer parts lead others.
     Joints,
-    /// Parts are soft where the keys bend them.
+    /// Parts are softer where the keys show that they bend.
     Stiffness,
-    /// Samples outside the part cost little where the ground has changed, and move it across its contour only.
+    /// Samples outside the part cost little where the background has changed, and pull the part across its contour
+    /// only.
     FigureAndGround,
-    /// Both keys' poses are mixed where they agree.
+    /// The poses of both keys are blended where they agree.
     Blending,
-    /// Contours are brought onto the drawing by their own colours.
+    /// Contours are refined by their own colour templates.
     Refinement,
 }
 
@@ -44,20 +46,20 @@ impl Mechanism {
         (Self::Refinement, "refinement"),
     ];
 
-    /// The mechanism of an id.
+    /// The mechanism with an id. `None` if there is no such mechanism.
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.iter().find(|(_, name)| *name == id).map(|(mechanism, _)| *mechanism)
     }
 }
 
-/// The mechanisms that are in use: all, or all but one.
+/// The set of mechanisms in use: all, or all but one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mechanisms {
     without: Option<Mechanism>,
 }
 
 impl Mechanisms {
-    /// All but one.
+    /// All mechanisms but one.
     pub fn without(mechanism: Mechanism) -> Self {
         Self { without: Some(mechanism) }
     }

@@ -1,9 +1,9 @@
-//! More hypotheses, once all parts have chosen together.
+//! Adds hypotheses after all parts have chosen together.
 //!
-//! What the joint choice found on one drawing is worth trying on its neighbours, as in [`super::pool`]. And where a part
-//! is in doubt, but the part that it hangs on is not, its joint is known: the part is tried in all directions about it.
-//! That finds limbs that swung too far or bent too much for the chains, in places that the search over the whole picture
-//! finds too poor.
+//! - The chosen poses of the joint choice are tried on the neighbouring drawings, as in [`super::pool`].
+//! - Where a part is in doubt but a part that it is joined to is not, the place of the joint is known. So the part is
+//!   tried in all directions about the joint. That finds limbs that swung too far or bent too much for the chains, also
+//!   in places that the search over the complete picture ranks too low.
 
 use super::joint::tie::Lead;
 use super::pool::{Hypothesis, Pools, hypothesis, is_new, swept};
@@ -14,14 +14,14 @@ use crate::contract::error::TrackError;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
 
-/// Step of the turns tried about a joint, in degrees.
+/// Step of the rotations tried about a joint, in degrees.
 const TURN_STEP: usize = 15;
-/// Hypotheses kept of each model and joint.
+/// Hypotheses kept per model and joint.
 const KEPT: usize = 3;
-/// Mean distance (working pixels) of two starts that are one.
+/// Two starts nearer than this mean distance of their nodes count as one, in working pixels.
 const SAME_PLACE: f64 = 6.0;
 
-/// The pools of a source with what is added by its chosen path and by the parts it hangs on.
+/// The pools of `source` with the hypotheses from its chosen path and from the leads of surer parts.
 pub(super) fn mend(stage: &Stage, source: &Pooled, path: &[usize], leads: &[Lead]) -> Result<Pools, TrackError> {
     let pools = &source.pools;
     let last = pools.len() - 1;
@@ -39,7 +39,7 @@ pub(super) fn mend(stage: &Stage, source: &Pooled, path: &[usize], leads: &[Lead
     Ok(extended)
 }
 
-/// Hypotheses about the joints with surer parts.
+/// New hypotheses about the joints with surer parts.
 fn led(stage: &Stage, pools: &Pools, last: usize, leads: &[Lead]) -> Result<Pools, TrackError> {
     (0..last + 1)
         .into_par_iter()
@@ -58,7 +58,7 @@ fn led(stage: &Stage, pools: &Pools, last: usize, leads: &[Lead]) -> Result<Pool
         .collect()
 }
 
-/// A model turned about its joint, where it fits best.
+/// The best poses of a model rotated about its joint, aligned. `place` is the place of the joint in working pixels.
 fn about(stage: &Stage, d: usize, model: usize, lead: &Lead, place: Point) -> Vec<Hypothesis> {
     let (own, scenery) = (&stage.models[model], stage.scenery(model, d));
     let mut starts: Vec<Pose> = Vec::new();

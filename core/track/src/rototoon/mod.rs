@@ -1,42 +1,31 @@
-//! The default tracker: deformable texture lattices, carried from both keys, chosen for all parts together.
+//! The default tracker: deformable texture lattices, carried from both keys, with a joint choice for all parts.
 //!
-//! 1. **Pools.** Each key gives a [`Model`](propagate::Model): the part's colours on a lattice that bends. Both are
-//!    carried drawing by drawing through the span, one forwards and one backwards, each always compared with its own key;
-//!    where they disagree they are searched for in the whole picture ([`pool`]). The artist's
-//!    corrections add to the pools (`corrected`).
-//! 2. **Choice.** All parts of a stretch of time choose their paths through the pools together ([`joint`]): nearer parts
-//!    hide farther ones, parts that hang together stay together. The choice adds to the pools, and is made again
-//!    (`mend`).
-//! 3. **Finish.** The chosen poses are aligned once more where nearer parts leave them to be seen, and their contours
-//!    refined (`finish`).
-//! 4. **Outward.** Parts with one key are followed from it, once the others are known ([`outward`]).
+//! **Why.** Cartoons have flat colours and hard lines, so a part's appearance at a key identifies it almost completely.
+//! A chain that always compares with the key cannot drift. Two chains in opposite directions cover what appears or is
+//! hidden on one side.
 //!
-//! Why: cartoons have flat colours and hard lines, so that a part's look at a key says nearly everything about it; a
-//! chain that compares with the key cannot drift; going both ways covers what appears or is hidden on one side.
+//! **How.**
 //!
-//! Work is handed to threads piece by piece (`with_max_len`): who is handed several would be waited for at the end.
+//! 1. **Pools.** Each key gives a [`Model`](super::propagate::Model): the part's colours on a lattice that bends. Both
+//!    models are carried drawing by drawing through the span, one forwards and one backwards, and each is always
+//!    compared with its own key. Where they disagree, both are searched in the complete picture ([`pool`]). The
+//!    artist's corrections add to the pools ([`corrected`]).
+//! 2. **Choice.** All parts of a stretch of time choose their paths through the pools together ([`joint`]): nearer
+//!    parts hide farther ones, and connected parts stay together. The choice adds hypotheses to the pools, and is made
+//!    again ([`mend`]).
+//! 3. **Finish.** The chosen poses are aligned once more to what nearer parts leave visible, and their contours are
+//!    refined ([`finish`]).
+//! 4. **Outward.** Parts with a single key are followed from it, after all others ([`outward`]).
 //!
-//! # Files
+//! **Memory.** Each step is a pure function of its input, and its last result is kept. A pin on one part leaves the
+//! pools of all other parts as they are, and everything that the choice does not change.
 //!
-//! - [`mechanisms`]: what can be switched off to measure it
-//! - [`lattice`]: a part's look at a key on a lattice that bends
-//! - [`stage`]: what a job is solved with
-//! - [`propagate`]: motion from a neighbour
-//! - [`search`]: motion from nowhere, by comparing everywhere
-//! - [`pool`]: the hypotheses of both, drawing by drawing
-//! - `pooled`: the hypotheses of a job, and what they were made from
-//! - `corrected`: what the artist's corrections add to the pools
-//! - [`select`]: which hypothesis a part alone follows
-//! - [`joint`]: which hypotheses all parts follow together
-//! - `mend`: what that choice adds to the pools
-//! - `finish`: the chosen poses made into tracks, with [`refine`]: contours brought onto the drawing by its colours
-//! - [`confidence`]: how sure a point is
-//! - [`outward`]: parts with one key, followed until they are lost
+//! Work is handed to threads piece by piece (`with_max_len`): if a thread had several pieces, the others would wait for
+//! it at the end.
 //!
-//! # Memory
-//!
-//! Each step is a pure function of what it is given, and the last result of each is kept: a pin on one part leaves the
-//! pools of all others, and all that the choice does not change.
+//! **Limits.** A part must look similar at its keys and between them. Two-dimensional rotation and bending are
+//! followed; a part that turns its other side to the viewer needs a key. Pictures may be at most [`WIDEST`] times as
+//! wide as high.
 
 pub mod confidence;
 mod corrected;
@@ -75,11 +64,11 @@ use stage::{Kit, Stage};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// How many times as wide as high pictures may be: they are worked on with [540 lines](crate::shared::features), so that a strip of
-/// few lines would be enlarged to hundreds of millions of pixels.
+/// Largest ratio of width to height of a picture. The tracker works on [540 lines](super::features), so a strip of few
+/// lines would be enlarged to hundreds of millions of pixels.
 pub const WIDEST: usize = 32;
 
-/// The default preset's solver.
+/// The solver of the default preset.
 #[derive(Default)]
 pub struct Rototoon {
     store: Store,
@@ -92,10 +81,10 @@ pub struct Rototoon {
     mechanisms: Mechanisms,
 }
 
-/// The pools of a job without and with its corrections, and whether anything was made now.
+/// The pools of a job without and with its corrections, and whether any of them was computed in this run.
 type FoundPools = (Arc<Pooled>, Arc<Pooled>, bool);
 
-/// Pools with what a joint choice added, and what they were made from.
+/// Pools with the hypotheses from a joint choice, and their sources.
 #[derive(Clone)]
 struct Mended {
     source: Arc<Pooled>,
@@ -138,7 +127,7 @@ pub fn too_wide(footage: &Footage) -> bool {
 }
 
 impl Rototoon {
-    /// A solver that knows nothing yet and uses these mechanisms.
+    /// A solver without any results yet, with the mechanisms given.
     pub fn new(mechanisms: Mechanisms) -> Self {
         Self { mechanisms, ..Self::default() }
     }
@@ -177,7 +166,8 @@ impl Rototoon {
         Ok(assemble(scene, tasks, done))
     }
 
-    /// Makes what many tasks need of the pictures before the tasks are shared out to threads, which would wait for it.
+    /// Computes the features and flows that many tasks need, before the tasks are given to threads, which would wait
+    /// for each other.
     fn read(
         &self,
         scene: &Scene,
@@ -211,7 +201,7 @@ impl Rototoon {
         })
     }
 
-    /// Forgets the spans that are no more, since keys were set or taken away.
+    /// Forgets the spans that no longer exist because keys were added or removed.
     fn keep_only(&mut self, pooled: &[Arc<Pooled>]) {
         let present: BTreeSet<(String, Span)> = pooled.iter().map(|p| p.key()).collect();
         self.plain.retain(|key, _| present.contains(key));
@@ -220,7 +210,7 @@ impl Rototoon {
         self.finished.retain(|key, _| present.contains(key));
     }
 
-    /// The pools of all tasks, and whether they were made now.
+    /// The pools of all tasks, and whether they were computed in this run.
     fn pool_all(
         &mut self,
         scene: &Scene,
@@ -229,7 +219,8 @@ impl Rototoon {
         shared: &SharedProgress,
     ) -> Result<(Vec<Arc<Pooled>>, Vec<bool>), TrackError> {
         let mut done: Vec<Option<(Arc<Pooled>, bool)>> = vec![None; tasks.len()];
-        // What nearer parts hide on a task's keys must be known, also where they are in the middle of a span there.
+        // The contours of nearer parts on a task's keys must be known, also where these parts are between two keys of
+        // their own.
         let within = |o: &Task, frame: FrameNumber| o.span.first < frame && frame < o.span.last;
         let waits = |task: &Task, other: &Task| {
             scene.parts[other.part].closed && (within(other, task.span.first) || within(other, task.span.last))
@@ -259,8 +250,9 @@ impl Rototoon {
         Ok(done.into_iter().flatten().unzip())
     }
 
-    /// The paths of the members of a stretch, chosen together from the ones given, and what leads each member. `ties` are
-    /// found where none are given: they lie in the keys, and are the same for every choice of a stretch.
+    /// The paths of the members of a stretch, chosen together from the `start` paths, and the leads of each member.
+    /// `ties` are computed if they are not given. They depend only on the keys, so they are the same for every choice
+    /// of a stretch.
     fn chosen(
         &mut self,
         (scene, tasks, stretch): (&Scene, &[Task], &[usize]),
@@ -300,7 +292,7 @@ impl Rototoon {
         (paths, all_leads)
     }
 
-    /// The pools of a stretch's members with what their joint choice adds.
+    /// The pools of a stretch's members with the hypotheses that their joint choice adds.
     fn mend_all(
         &mut self,
         stretch: &[usize],
@@ -338,8 +330,8 @@ impl Rototoon {
         Ok(results)
     }
 
-    /// The tracks of a stretch's members on their chosen paths, and whether they were solved now: what was solved before
-    /// from the same pools by the same plan is taken as it was.
+    /// The tracks of a stretch's members on their chosen paths, and whether they were computed in this run. A track
+    /// with the same pools and the same plan as before is reused.
     fn finish_all(
         &mut self,
         stretch: &[usize],
@@ -374,7 +366,7 @@ impl Rototoon {
         Ok(tracks)
     }
 
-    /// The pools of a job without and with its corrections, and whether anything was made.
+    /// The pools of a job without and with its corrections, and whether any of them was computed in this run.
     fn pool(&self, kit: Kit, job: &Job) -> Result<FoundPools, TrackError> {
         let key = (job.name.clone(), job.span);
         let bare = Job { corrections: BTreeMap::new(), ..job.clone() };
@@ -443,7 +435,7 @@ fn mended_pools(kit: Kit, source: &Pooled, path: &[usize], leads: &[Lead]) -> Re
     Ok(Pooled { job, drawings, models, pools, carried, path, steps: *steps, center_reach })
 }
 
-/// Tasks that share frames between their keys, directly or by others, in the order of time.
+/// Groups of tasks whose spans share more than a key frame, directly or through others, in the order of time.
 fn stretches(tasks: &[Task]) -> Vec<Vec<usize>> {
     let mut order: Vec<usize> = (0..tasks.len()).collect();
     order.sort_by_key(|&t| (tasks[t].span, t));
@@ -461,7 +453,8 @@ fn stretches(tasks: &[Task]) -> Vec<Vec<usize>> {
     stretches.into_iter().map(|(_, members)| members).collect()
 }
 
-/// What hides a task's part on its keys; parts between keys of their own are where they track by themselves.
+/// The contours that hide a task's part on its keys. A nearer part between two keys of its own is where its own choice
+/// puts it.
 fn occluders(scene: &Scene, tasks: &[Task], done: &[Option<(Arc<Pooled>, bool)>], t: usize) -> Vec<Vec<Vec<Point>>> {
     let Task { span, depth, .. } = tasks[t];
     let on = |frame: FrameNumber| {

@@ -1,9 +1,9 @@
-//! The pool of hypotheses on each drawing of a span, and the path through them.
+//! The pool of hypotheses on each drawing of a span, and a first path through it.
 //!
 //! 1. Each key's model is carried through the span from its own key.
-//! 2. Where the two chains disagree, both models are searched over the whole picture.
-//! 3. A path is chosen; each chosen pose is carried to its neighbours once more, since what the search found on one
-//!    drawing is worth trying on the next, unless both keys agree there already; the path is chosen again.
+//! 2. Where these two chains disagree, both models are searched in the complete picture.
+//! 3. A path is chosen. Each chosen pose is carried to its neighbours once more, unless both keys agree there already:
+//!    a pose that the search found on one drawing is worth trying on the next. Then the path is chosen again.
 
 use super::mechanisms::Mechanism;
 use super::propagate::{Pose, chain, mean_distance};
@@ -15,32 +15,33 @@ use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallel
 use rototoon_base::geometry::Point;
 use std::collections::BTreeMap;
 
-/// Mean distance of the chains' control points (working pixels) from which on both models are searched for.
+/// Mean distance of the two chains' control points (working pixels) from which on both models are searched.
 const DISAGREEMENT: f64 = 6.0;
-/// Hypotheses of each model kept of those that a search has found.
+/// Number of hypotheses kept per model and search.
 const FOUND: usize = 2;
-/// Mean distance (working pixels) below which a carried pose adds nothing to the pool.
+/// A carried pose is new if its mean distance (working pixels) from every known one of the same model exceeds this.
 const KNOWN_PLACE: f64 = 1.0;
-/// Mean distance (working pixels) up to which a chosen pose is confirmed by one of the other key's model: neither has
-/// anything to learn from the neighbours.
+/// A chosen pose is confirmed if the other key's model has a pose within this mean distance (working pixels). Then the
+/// neighbours have nothing to add.
 const CONFIRMED: f64 = 2.0;
 
-/// A hypothesis of the pool of a drawing.
+/// A hypothesis about a part on a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hypothesis {
-    /// Which key's model it poses: 0 or 1.
+    /// Index of the key whose model it poses: 0 or 1.
     pub model: usize,
     /// The pose.
     pub pose: Pose,
-    /// Where it puts the control points, in working pixels.
+    /// Places of the control points, in working pixels.
     pub points: Vec<Point>,
-    /// Colour difference of each sample that measures it.
+    /// Cost of each sample that measures the pose, as a squared colour difference.
     pub differences: Vec<f32>,
-    /// Index of the neighbouring drawing's hypothesis that it was carried from, and whether that is the drawing before.
+    /// Index of the neighbouring drawing's hypothesis from which this one was carried, and whether that is the drawing
+    /// before.
     origin: Option<(usize, bool)>,
 }
 
-/// The hypotheses of each drawing. Those of the keys are single.
+/// The hypotheses of each drawing. On the keys' drawings there is one each.
 pub type Pools = Vec<Vec<Hypothesis>>;
 
 impl Hypothesis {
@@ -53,22 +54,22 @@ impl Hypothesis {
         Candidate { cost: self.pose.energy.max(0.0).sqrt(), points: &self.points }
     }
 
-    /// The same, but no longer said to be carried from another.
+    /// The same hypothesis without its origin.
     pub fn without_origin(&self) -> Self {
         Self { origin: None, ..self.clone() }
     }
 
-    /// Mean distance of the control points.
+    /// Mean distance of the control points, in working pixels.
     pub fn distance(&self, other: &Self) -> f64 {
         mean_distance(&self.points, &other.points)
     }
 }
 
-/// What came of carrying a hypothesis to a neighbouring drawing: by that drawing, the hypothesis' index, and whether time
-/// went forwards. Pools only grow, so that what was carried once is not carried again.
+/// Results of carrying hypotheses to neighbouring drawings. The key is the target drawing, the index of the source
+/// hypothesis, and whether time goes forwards. Pools only grow, so no hypothesis must be carried twice.
 pub(super) type Carried = BTreeMap<(usize, usize, bool), Hypothesis>;
 
-/// The hypotheses of all drawings, the index of the chosen one on each, and what was carried on the way.
+/// The hypotheses of all drawings, the index of the chosen one on each, and the carried hypotheses.
 pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>, Carried), TrackError> {
     let mut pools = chains(stage)?;
     let found: Vec<Vec<Hypothesis>> = searched(stage, &pools)?;
@@ -86,9 +87,10 @@ pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>, Carried), TrackE
     Ok((pools, path, carried))
 }
 
-/// What comes of carrying the chosen hypotheses to their neighbours, both ways: to all of them, or to those where the
-/// chosen one is not confirmed by the other key. (What other parts say may speak against what both keys say.) `known` is what
-/// was carried before; what is carried now comes back beside the new hypotheses.
+/// New hypotheses from carrying the chosen ones to their neighbours, in both directions. With `all` they are carried to
+/// all drawings, otherwise only to drawings whose chosen hypothesis the other key does not confirm. (`all` is for the
+/// joint choice: other parts may contradict what both keys agree on.) `known` is what was carried before. The second
+/// result is what was carried now.
 pub(super) fn swept(
     stage: &Stage,
     pools: &Pools,
@@ -122,13 +124,14 @@ pub(super) fn hypothesis(
     Hypothesis { model, pose, points, differences, origin }
 }
 
+/// The path of least cost through the pools, for this part alone.
 pub(super) fn choose(stage: &Stage, pools: &Pools) -> Vec<usize> {
     let candidates: Vec<Vec<Candidate>> =
         pools.iter().map(|pool| pool.iter().map(Hypothesis::candidate).collect()).collect();
     best_path(&candidates, Smoothness::new(stage.models[0].texture.mesh.size))
 }
 
-/// The poses of both models, carried from their keys: two hypotheses on each drawing, the first key's first.
+/// The poses of both models, carried from their keys: two hypotheses on each drawing, the first key's one first.
 fn chains(stage: &Stage) -> Result<Pools, TrackError> {
     let (forwards, backwards) = rayon::join(|| carried(stage, 0), || carried(stage, 1));
     let at_key = |model: usize| {
@@ -162,7 +165,7 @@ fn carried(stage: &Stage, model: usize) -> Result<Vec<Pose>, TrackError> {
     Ok(poses)
 }
 
-/// Hypotheses from searching the whole picture, on each drawing where the chains disagree.
+/// Hypotheses from searching the complete picture, on each drawing where the chains disagree.
 fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
     let lost: Vec<bool> =
         pools.iter().map(|pool| matches!(&pool[..], [a, b] if a.distance(b) >= DISAGREEMENT)).collect();
@@ -198,11 +201,11 @@ fn searched(stage: &Stage, pools: &Pools) -> Result<Pools, TrackError> {
         .collect()
 }
 
-/// New hypotheses of the drawings, and all that was carried.
+/// New hypotheses by drawing, and everything that was carried.
 type Swept = (Vec<Option<Hypothesis>>, Carried);
 
-/// Carries the chosen poses to the next drawing (or the one before) where that is wanted, and what comes of it further
-/// while it is better than what was chosen there. `known` is what was carried before.
+/// Carries the chosen poses one way to the neighbouring drawings in `wanted`. A result that is better than the chosen
+/// pose there is carried further. `known` is what was carried before.
 fn sweep(
     stage: &Stage,
     pools: &Pools,
@@ -244,12 +247,13 @@ fn sweep(
     Ok((found, all))
 }
 
-/// Whether the other key's model says the same as a hypothesis.
+/// Whether the other key's model has a pose at the same place as the chosen one.
 fn confirmed(pool: &[Hypothesis], chosen: usize) -> bool {
     let chosen = &pool[chosen];
     pool.iter().any(|h| h.model != chosen.model && h.distance(chosen) < CONFIRMED)
 }
 
+/// Whether no hypothesis of the pool with the same model is at the same place as `new`.
 pub(super) fn is_new(pool: &[Hypothesis], new: &Hypothesis) -> bool {
     pool.iter().filter(|h| h.model == new.model).all(|h| h.distance(new) > KNOWN_PLACE)
 }

@@ -1,9 +1,11 @@
-//! Motion from a neighbour: a pose carried from one drawing to the next.
+//! Motion from a neighbour: carries a pose from one drawing to the next.
 //!
-//! A pose starts on the next drawing from where it was, shifted by the flow below it (node by node, and as a whole by
-//! the median), and shifted by what it moved last. Each start that is not where another one is already is aligned coarsely,
-//! kept with its unaligned self, and the best two are polished. The colours are always those of the key, so nothing drifts
-//! from drawing to drawing.
+//! The starts on the next drawing are the pose itself, the pose moved by the dense flow below it (node by node, and as
+//! a whole by the median), and the pose moved by its last motion. Starts that are too near to an earlier one are
+//! dropped. Each start is aligned on the coarsest level. Of the aligned and the unaligned starts the best two are
+//! aligned on the finer levels.
+//!
+//! The colours are always those of the key, so nothing drifts from drawing to drawing.
 
 use super::lattice::align::{Aligner, Settler, Target, draw, settle};
 use super::lattice::anchors::Anchors;
@@ -14,46 +16,48 @@ use crate::shared::store::FLOW_LEVEL;
 use rototoon_base::geometry::Point;
 use rototoon_image::flow::Flow;
 
-/// Weight of a node's samples below which the flow of the samples says nothing about it.
+/// Least sample weight at a node for its flow to be known. Other nodes take the flow of the nearest known node.
 const LEAST_FLOW_WEIGHT: f64 = 0.3;
 
-/// Colour difference at which a sample no longer says that its place is right.
+/// Colour difference at which the evidence that a sample is in its right place has fallen to 1/e.
 const FITS: f32 = 0.01;
-/// Mean distance of the nodes (working pixels) of two poses that come to the same when they are aligned further.
+/// Two poses with a smaller mean distance of their nodes (working pixels) become the same pose on finer levels.
 const SAME_POSE: f64 = 1.0;
-/// Mean distance of the nodes (working pixels) of two starts that come to one pose: the step at which the coarsest level
-/// of an alignment ends.
+/// Two starts with a smaller mean distance of their nodes (working pixels) become the same pose. It is the step length
+/// at which the coarsest level of an alignment ends.
 const SAME_START: f64 = 2.4;
-/// Weight of a place that is right, beside the lattice's stiffness.
+/// Weight that holds a node whose samples fit, relative to the lattice's stiffness.
 const HOLD: f64 = 0.3;
 
-/// A part's texture at one key, ready to be aligned.
+/// A part's appearance at one key, ready to be aligned. Lengths are in working pixels.
 pub struct Model {
     /// The key's colours on the lattice.
     pub texture: Texture,
-    /// Aligns it.
+    /// Aligns poses of the lattice.
     pub aligner: Aligner,
-    /// What hides the part at the key.
+    /// The cover of the key's picture: what hides the part there.
     pub cover: Cover,
-    /// The lattice at the other key.
+    /// The nodes of the lattice, moved to the other key's contour.
     pub there: Vec<Point>,
-    /// The lattice in the shape of the other key, where the part would be if it only bent.
+    /// The nodes in the shape of the other key, moved rigidly with scale onto this key's contour: the part if it only
+    /// bent.
     pub bent: Vec<Point>,
 }
 
-/// A drawing that poses are looked for on.
+/// A drawing on which poses are searched.
 pub struct Scenery<'a> {
-    /// Its picture.
+    /// Features of its picture.
     pub features: &'a Features,
-    /// What hides the part: what is aligned leaves it out.
+    /// What hides the part. The alignment leaves hidden samples out.
     pub cover: &'a Cover,
-    /// Whether samples under the cover count as unseen when a pose is measured; else the picture's edges alone hide.
+    /// Whether samples under the cover count as unseen when a pose is measured. If not, only samples outside the
+    /// picture do.
     pub weighed: bool,
-    /// The artist's corrections, for the lattice of the model in use.
+    /// The artist's corrections, as constraints on the model's lattice.
     pub anchors: &'a Anchors,
 }
 
-/// Where a model may be on a drawing, and how badly that explains the picture.
+/// A possible pose of a model on a drawing, with its energy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
     /// Places of the lattice's nodes, in working pixels.
@@ -63,7 +67,7 @@ pub struct Pose {
 }
 
 impl Model {
-    /// Aligns each start on the coarsest level, and polishes the best two.
+    /// Aligns each start on the coarsest level, then the best two on the finer levels, and returns the best pose.
     pub fn best_of(&self, scenery: &Scenery, starts: Vec<Vec<Point>>) -> Pose {
         let (target, settler) = (scenery.target(), self.settler(scenery));
         let mut poses = Vec::new();
@@ -87,15 +91,15 @@ impl Model {
         self.measured(scenery, self.aligner.align(&self.texture, target, &nodes, &[2]))
     }
 
-    /// A rough pose, brought to its anchors and aligned on the two finer levels.
+    /// A rough pose moved to its anchors and aligned on the two finer levels.
     pub fn polished(&self, scenery: &Scenery, start: &[Point]) -> Pose {
         let start = settle(&self.texture.mesh, start, scenery.anchors);
         let nodes = self.aligner.align(&self.texture, scenery.target(), &start, &[1, 2]);
         self.measured(scenery, nodes)
     }
 
-    /// The best `count` of some rough poses, brought to their anchors and aligned on the two finer levels. Which are best
-    /// is seen after the first of these; two that come to the same are one.
+    /// The best `count` of some rough poses, moved to their anchors and aligned on the two finer levels. They are
+    /// ranked after the first of these levels. Poses that become the same count as one.
     pub fn best_polished(&self, scenery: &Scenery, starts: &[Vec<Point>], count: usize) -> Vec<Pose> {
         let align = |start: &[Point], level: usize| {
             self.measured(scenery, self.aligner.align(&self.texture, scenery.target(), start, &[level]))
@@ -112,12 +116,12 @@ impl Model {
         best.iter().map(|pose| align(&pose.nodes, 2)).collect()
     }
 
-    /// Brings poses to the anchors of a drawing.
+    /// A settler that moves poses to the anchors of a drawing.
     pub fn settler<'a>(&'a self, scenery: &Scenery<'a>) -> Settler<'a> {
         Settler::new(&self.texture.mesh, scenery.anchors)
     }
 
-    /// A pose drawn to its anchors; what fits the picture stays where it is. `differences` as of
+    /// A pose moved to its anchors, while its samples that fit the picture stay in place. `differences` are those of
     /// [`Texture::differences`].
     pub fn drawn(&self, scenery: &Scenery, start: &[Point], differences: &[f32]) -> Pose {
         let mut hold = vec![(0.0, 1e-9); start.len()];
@@ -131,7 +135,7 @@ impl Model {
         self.measured(scenery, draw(&self.texture.mesh, start, scenery.anchors, &hold))
     }
 
-    /// A pose aligned on all levels.
+    /// A pose aligned on all levels, or only on the two finer levels if that gives less energy.
     pub fn realigned(&self, scenery: &Scenery, start: &[Point]) -> Pose {
         let first = self.aligner.align(&self.texture, scenery.target(), start, &[0]);
         let coarse = self.aligner.align(&self.texture, scenery.target(), &first, &[1, 2]);
@@ -143,13 +147,13 @@ impl Model {
         if coarse.energy < fine.energy { coarse } else { fine }
     }
 
-    /// A pose aligned on the two finer levels from where it is, to what of it is seen.
+    /// A pose aligned on the two finer levels to its visible samples, from where it is.
     pub fn seen(&self, scenery: &Scenery, start: &[Point]) -> Pose {
         let nodes = self.aligner.align(&self.texture, scenery.target(), start, &[1, 2]);
         self.measured(scenery, nodes)
     }
 
-    /// A pose with a rough energy: what is only compared with others before it is aligned further.
+    /// A pose with a rough energy, which is only used to rank poses before they are aligned further.
     pub fn ranked(&self, scenery: &Scenery, nodes: Vec<Point>) -> Pose {
         let seen = |p| if scenery.weighed { !scenery.cover.hides(p) } else { in_picture(p, scenery.cover.width()) };
         Pose { energy: self.texture.rough_energy_where(scenery.features, &nodes, seen), nodes }
@@ -165,7 +169,7 @@ impl Model {
         Pose { energy, nodes }
     }
 
-    /// Colour difference of each sample that measures a pose.
+    /// Cost of each sample that measures a pose.
     pub fn differences(&self, scenery: &Scenery, nodes: &[Point]) -> Vec<f32> {
         if scenery.weighed {
             self.texture.differences_where(scenery.features, nodes, |p| !scenery.cover.hides(p))
@@ -174,7 +178,7 @@ impl Model {
         }
     }
 
-    /// Carries `pose` to another drawing; `flow` leads there, `moved` is what its nodes moved by last.
+    /// Carries `pose` to another drawing. `flow` leads to it; `moved` is the last motion of the nodes.
     pub fn carry(&self, pose: &[Point], flow: Option<&Flow>, moved: Option<&[Point]>, scenery: &Scenery) -> Pose {
         let add = |shift: &dyn Fn(usize) -> Point| (0..pose.len()).map(|n| pose[n] + shift(n)).collect();
         let mut starts: Vec<Vec<Point>> = vec![pose.to_vec()];
@@ -188,7 +192,8 @@ impl Model {
         self.best_of(scenery, starts)
     }
 
-    /// The flow below a pose: its mean at each node, and its median over the part. Nothing where no sample is inside.
+    /// The flow below a pose: its mean at each node, and its median over the part. None if three samples or fewer are
+    /// inside the contour.
     fn flow_below(&self, pose: &[Point], flow: &Flow) -> Option<(Vec<Point>, Point)> {
         let pixel = crate::shared::features::LEVELS[FLOW_LEVEL] as f64;
         let inside: Vec<_> = self.texture.texels[1].iter().filter(|texel| texel.weight == 1.0).collect();
@@ -222,13 +227,13 @@ impl Model {
 }
 
 impl Scenery<'_> {
-    /// What the aligner needs of the drawing.
+    /// The drawing as the aligner needs it.
     pub fn target(&self) -> Target<'_> {
         Target { picture: self.features, cover: self.cover, anchors: self.anchors }
     }
 }
 
-/// The starts that no earlier one stands for.
+/// The starts without those that are too near to an earlier one.
 fn distinct(starts: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
     let mut kept: Vec<Vec<Point>> = Vec::with_capacity(starts.len());
     for start in starts {
@@ -239,7 +244,7 @@ fn distinct(starts: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
     kept
 }
 
-/// Mean distance of the points of two poses.
+/// Mean distance of the points of two poses of the same model.
 pub(super) fn mean_distance(a: &[Point], b: &[Point]) -> f64 {
     a.iter().zip(b).map(|(p, q)| p.distance(*q)).sum::<f64>() / a.len().max(1) as f64
 }
@@ -254,7 +259,12 @@ fn median(shifts: &[Point]) -> Point {
     Point::new(along(0), along(1))
 }
 
-/// Carries a pose through drawings in the order given; the pose on each, by `step(pose, moved, position)`.
+/// Carries a pose through `count` drawings in order, with `step(pose, moved, position)`. Returns the pose on each
+/// drawing. `moved` is the last motion of the nodes.
+///
+/// # Errors
+///
+/// The first error of `step`.
 pub fn chain(
     start: Vec<Point>,
     count: usize,

@@ -1,12 +1,13 @@
-//! Motion from nowhere: a part's look searched over the whole picture, in all positions and many directions.
+//! Search for a part's appearance in the complete picture, at all places and in many directions.
 //!
-//! The key's colours, turned all round in steps of 15°, are compared with every place of a coarse level by the
-//! masked squared difference Σ m (I − t)² / Σ m, expanded into correlations (I² with m, I with m t) that the fast Fourier
-//! transform gives for all places at once. The best places start alignments. This finds what a chain from neighbour to
-//! neighbour has lost: jumps larger than a limb's width, and parts that come back from behind others.
+//! The key's colours, rotated in steps of 15°, are compared with every place of a coarse level. The measure is the
+//! masked squared difference Σ m (I − t)² / Σ m, with the mask m, the picture I and the template t. It expands into
+//! correlations (I² with m, and I with m t), which the fast Fourier transform computes for all places at once. The best
+//! places are starts of alignments. The search finds what a chain from neighbour to neighbour has lost: jumps larger
+//! than a limb's width, and parts that come back from behind others.
 //!
-//! Limits: one scale, no bending while searching: long thin parts that bend are found by their larger half at best (the
-//! alignment then starts from the shape of either key or halfway between them, whichever fits best).
+//! Limits: one scale, and no bending during the search. A long thin part that bends is at best found by its larger
+//! half. The alignment then starts from the shape of either key or halfway between them, whichever fits best.
 
 use super::lattice::texture::Cover;
 use super::propagate::Model;
@@ -17,22 +18,23 @@ use rototoon_base::numeric::vector::vectorised;
 use rototoon_base::scene::Raster;
 use rototoon_image::correlation::{Correlator, Spectrum};
 
-/// Step of the turns tried, in degrees.
+/// Step of the rotations, in degrees.
 const TURN_STEP: usize = 15;
 /// Places taken of each turn, and of all turns together.
 const PLACES_OF_A_TURN: usize = 2;
 const PLACES: usize = 4;
-/// Parts of this size (working pixels) and smaller are searched on the middle level.
+/// Parts of at most this size (working pixels) are searched on the middle level.
 const SMALL: f64 = 50.0;
-/// Parts larger than this share of the lines fill the picture: nothing to search.
+/// Parts larger than this share of the lines are not searched, because they fill the picture.
 const LARGEST: f64 = 0.45;
-/// Two places are one if they are nearer than this share of the part's size, and turned by less than this (radians).
+/// Two places count as one if their distance is at most this share of the part's size and their rotations differ by at
+/// most the second value, in radians.
 const SAME_PLACE: f64 = 0.25;
 const SAME_TURN: f64 = 0.4;
 /// Weight of the mask in the band around the contour.
 const BAND_WEIGHT: f32 = 0.6;
 
-/// The turned templates of a model, ready to be searched for.
+/// The rotated templates of a model, prepared for the search.
 pub struct Templates {
     level: usize,
     correlator: Correlator,
@@ -40,7 +42,7 @@ pub struct Templates {
     turned: Vec<Pair>,
 }
 
-/// Two turns, which are transformed together, and the spectra of their masks and of −2 × mask × colour.
+/// Two rotations that are transformed together, with the spectra of their masks and of −2 × mask × colour.
 struct Pair {
     templates: Vec<Template>,
     spectra: Vec<Spectrum>,
@@ -57,7 +59,7 @@ struct Template {
     weight: f32,
 }
 
-/// A place where a template fits.
+/// A place where a template fits. `center` is in working pixels, `angle` in radians.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     difference: f32,
@@ -66,7 +68,8 @@ struct Place {
 }
 
 impl Templates {
-    /// Templates from the key's picture; `None` for parts that are too large to be searched, or hidden at the key.
+    /// Templates from the key's picture; `contour` and `width` are in working pixels. `None` for parts that are too
+    /// large for the search or hidden at the key.
     pub fn new(model: &Model, key: &Features, cover: &Cover, contour: &[Point], width: f64) -> Option<Self> {
         let size = model.texture.mesh.size;
         if size > LARGEST * WORKING_LINES {
@@ -85,12 +88,12 @@ impl Templates {
         (!turned.is_empty()).then_some(Self { level, turned, correlator, size })
     }
 
-    /// The level (index in [`LEVELS`]) to search on.
+    /// The level (index in [`LEVELS`]) of the search.
     pub fn level(&self) -> usize {
         self.level
     }
 
-    /// Poses of the model's lattice at the places of a picture where its templates fit best.
+    /// Poses of the model's lattice, in working pixels, at the places of a picture where its templates fit best.
     pub fn find(&self, picture: &Features, sought: &Sought, model: &Model, contour: &[Point]) -> Vec<Vec<Point>> {
         let mut places = Vec::new();
         for pair in &self.turned {
@@ -105,7 +108,7 @@ impl Templates {
         self.distinct(&places).iter().map(pose).collect()
     }
 
-    /// Adds the best places of one template, suppressing what is near one taken already.
+    /// Adds the best places of one template. Places near one that was already taken are skipped.
     fn minima(&self, t: &Template, mut map: Raster<f32>, sought: &Sought, places: &mut Vec<Place>) {
         let (across, down) = (sought.columns - t.width + 1, sought.rows - t.height + 1);
         let reach = ((t.width.min(t.height) as f64 * 0.3) as usize).max(2);
@@ -159,7 +162,7 @@ fn lowest(values: &[f32]) -> f32 {
     runs.into_iter().chain(rest.iter().copied()).fold(f32::INFINITY, less)
 }
 
-/// The lattice of a model at a place: in the shape of either key or halfway between them, whichever fits best.
+/// The nodes of a model at a place: in the shape of either key or halfway between them, whichever fits best.
 fn posed(model: &Model, picture: &Features, center: Point, place: &Place) -> Vec<Point> {
     let turn = Point::from_angle(place.angle);
     let placed = |share: f64| -> Vec<Point> {
@@ -171,18 +174,18 @@ fn posed(model: &Model, picture: &Features, center: Point, place: &Place) -> Vec
     shapes.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, nodes)| nodes).unwrap_or_default()
 }
 
-/// What templates are cut from.
+/// The source of templates.
 struct Cut<'a> {
     model: &'a Model,
     source: &'a Level,
     center: Point,
-    /// Weight of the key's places, from `corner` on in squares of `step`.
+    /// Mask weights at the key, from `corner` on in squares with the side `step`.
     mask: Raster<f32>,
     corner: Point,
     step: f64,
 }
 
-/// Colour and mask weight.
+/// Colour (0 to 2) and mask weight (3).
 type Masked = [f32; 4];
 
 impl<'a> Cut<'a> {
@@ -204,7 +207,8 @@ impl<'a> Cut<'a> {
         Self { model, source, center, mask, corner, step }
     }
 
-    /// The part turned by `angle`: its corner relative to the centre in pixels of the level, and its pixels.
+    /// The part rotated by `angle`: the angle, its corner relative to the centre in pixels of the level, and its
+    /// pixels. None if almost nothing of it is visible.
     fn turned(&self, angle: f64, contour: &[Point]) -> Option<(f64, Point, Raster<Masked>)> {
         let (pixel, turn) = (self.source.pixel(), Point::from_angle(angle));
         let around: Vec<Point> = contour.iter().map(|&p| turn.rotate(p - self.center)).collect();
@@ -238,7 +242,7 @@ impl<'a> Cut<'a> {
     }
 }
 
-/// One or two turns transformed together.
+/// One or two rotations, transformed together.
 fn pair(correlator: &Correlator, cuts: &[(f64, Point, Raster<Masked>)]) -> Pair {
     let both = |value: &dyn Fn(Masked) -> f32| {
         let planes: Vec<Raster<f32>> = cuts.iter().map(|(_, _, pixels)| pixels.map(value)).collect();

@@ -1,56 +1,56 @@
-//! Which of several hypotheses to follow: a path of least cost through the drawings of a span.
+//! Chooses a path of least cost through the hypotheses of a span's drawings, for a single part.
 //!
-//! States are pairs of neighbouring drawings' hypotheses, so that the path can be smooth in velocity (second-order
-//! Viterbi). The cost of a path is Σ √E + 0.005 min(|Δ|/z, 3) + 0.05 min(|Δ²|/z, 3): E a hypothesis' energy, Δ and Δ²
-//! first and second differences of the control points (mean length over the points), z = √(40 size) px. The caps let a
-//! part jump once it must.
+//! The states are pairs of hypotheses of neighbouring drawings, so the path can be smooth in velocity (second-order
+//! Viterbi). The cost of a path is Σ √E + 0.005 min(|Δ|/z, 3) + 0.05 min(|Δ²|/z, 3). E is the energy of a hypothesis, Δ
+//! and Δ² are first and second differences of the control points (mean length over the points), and z = √(40 size) px.
+//! The upper limits allow a part to jump where it must.
 
 use rototoon_base::geometry::Point;
 
-/// Cost of speed and of change of speed, and the cap of either, in units of z.
+/// Cost of speed, cost of change of speed, and the upper limit of both lengths, in units of z.
 const SPEED: f64 = 0.005;
 const ACCELERATION: f64 = 0.05;
 const CAP: f64 = 3.0;
 
-/// What the selection weighs of a hypothesis.
+/// A hypothesis as the selection sees it.
 #[derive(Clone, Copy)]
 pub struct Candidate<'a> {
-    /// What it costs by itself: √E.
+    /// Cost of the hypothesis by itself: √E.
     pub cost: f64,
-    /// Where it puts the control points, in working pixels.
+    /// Places of the control points, in working pixels.
     pub points: &'a [Point],
 }
 
-/// The cost of motion of one part.
+/// The motion cost of one part.
 #[derive(Clone, Copy, Debug)]
 pub struct Smoothness {
     unit: f64,
 }
 
 impl Smoothness {
-    /// For a part of this size in working pixels.
+    /// The motion cost of a part of this size, in working pixels.
     pub fn new(size: f64) -> Self {
         Self { unit: (40.0 * size).sqrt() }
     }
 
-    /// Cost of moving from one drawing to the next.
+    /// Cost of the motion from one drawing to the next.
     pub fn speed(&self, a: &[Point], b: &[Point]) -> f64 {
         SPEED * (mean_length(a.len(), |k| b[k] - a[k]) / self.unit).min(CAP)
     }
 
-    /// Cost of moving otherwise than before, over three drawings.
+    /// Cost of a change of the motion over three drawings.
     pub fn acceleration(&self, a: &[Point], b: &[Point], c: &[Point]) -> f64 {
         ACCELERATION * (mean_length(c.len(), |k| c[k] - 2.0 * b[k] + a[k]) / self.unit).min(CAP)
     }
 
-    /// Cost of a whole path.
+    /// Motion cost of a complete path.
     pub fn of_path(&self, points: &[&[Point]]) -> f64 {
         points.windows(2).map(|w| self.speed(w[0], w[1])).sum::<f64>()
             + points.windows(3).map(|w| self.acceleration(w[0], w[1], w[2])).sum::<f64>()
     }
 }
 
-/// Index of the hypothesis to follow on each drawing; no drawing may be without one.
+/// Index of the chosen hypothesis on each drawing. Each drawing must have at least one.
 pub fn best_path(candidates: &[Vec<Candidate>], smoothness: Smoothness) -> Vec<usize> {
     let own = |i: usize, h: usize| candidates[i][h].cost;
     let count = |i: usize| candidates[i].len();
@@ -60,7 +60,7 @@ pub fn best_path(candidates: &[Vec<Candidate>], smoothness: Smoothness) -> Vec<u
     }
     let points = |i: usize, h: usize| candidates[i][h].points;
     let speed = |i: usize, g: usize, h: usize| smoothness.speed(points(i - 1, g), points(i, h));
-    // costs[g][h]: least cost of a path that ends with hypothesis g, then h.
+    // costs[g][h]: least cost of the paths that end with hypothesis g, then h.
     let mut costs: Vec<Vec<f64>> =
         (0..count(0)).map(|g| (0..count(1)).map(|h| own(0, g) + own(1, h) + speed(1, g, h)).collect()).collect();
     let mut origins: Vec<Vec<Vec<usize>>> = Vec::new();
@@ -73,7 +73,7 @@ pub fn best_path(candidates: &[Vec<Candidate>], smoothness: Smoothness) -> Vec<u
             for h in 0..count(i) {
                 let step = own(i, h) + speed(i, g, h);
                 for &f in &order {
-                    // A change of speed costs nothing at the least: none of those that follow can do better.
+                    // A change of speed costs at least 0, so none of the following can be better.
                     if costs[f][g] + step >= next[g][h] {
                         break;
                     }

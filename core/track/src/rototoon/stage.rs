@@ -1,4 +1,5 @@
-//! What a job of the default tracker is solved with: drawings, pictures, occluders, models of both keys.
+//! A stage: the prepared data of a job of the default tracker. It contains the drawings, pictures, occluders and the
+//! models of both keys.
 
 use super::lattice::align::{Aligner, settle};
 use super::lattice::anchors::Anchors;
@@ -20,17 +21,17 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Where pictures come from, and who is told of the progress.
+/// Access to the pictures, and the listener for the progress.
 #[derive(Clone, Copy)]
 pub(super) struct Kit<'a> {
     pub store: &'a Store,
     pub frames: &'a dyn FrameSource,
     pub progress: &'a dyn Progress,
-    /// What is in use.
+    /// The mechanisms in use.
     pub mechanisms: Mechanisms,
 }
 
-/// Everything that a job is solved with.
+/// Everything that is needed to solve a job. Indices of drawings refer to `drawings`.
 pub(super) struct Stage<'a> {
     pub job: &'a Job,
     pub kit: Kit<'a>,
@@ -39,16 +40,20 @@ pub(super) struct Stage<'a> {
     pub features: Vec<Arc<Features>>,
     pub covers: Vec<Cover>,
     pub models: Arc<[Model; 2]>,
-    /// By drawing: how far the part may lie from where the artist put its centre, in working pixels.
+    /// By drawing: how far the part may be from its corrected centre, in working pixels.
     pub center_reach: Vec<f64>,
     anchors: [Vec<Anchors>; 2],
-    /// As `anchors`, without centres.
+    /// Like `anchors`, but without centres.
     pins: [Vec<Anchors>; 2],
     pub steps_done: AtomicUsize,
 }
 
 impl<'a> Stage<'a> {
-    /// Reads the pictures, and builds the models where none are given. Nothing hides the part between the keys.
+    /// Reads the pictures, and builds the models if none are given. At first nothing hides the part between the keys.
+    ///
+    /// # Errors
+    ///
+    /// The error of a picture that cannot be read, or the cancellation by the progress listener.
     pub fn set(kit: Kit<'a>, job: &'a Job, models: Option<Arc<[Model; 2]>>) -> Result<Self, TrackError> {
         let scale = working_scale(job.size.1);
         let width = job.size.0 as f64 / scale;
@@ -77,7 +82,7 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// A drawing as the model of one key sees it.
+    /// A drawing as input for the model of one key.
     pub fn scenery(&self, model: usize, drawing: usize) -> Scenery<'_> {
         Scenery {
             features: &self.features[drawing],
@@ -87,18 +92,19 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// The same with pins as the only corrections.
+    /// The same as [`Stage::scenery`], with pins as the only corrections.
     pub fn released(&self, model: usize, drawing: usize) -> Scenery<'_> {
         Scenery { anchors: &self.pins[model][drawing], ..self.scenery(model, drawing) }
     }
 
-    /// Whether control points (working pixels) are about where the artist put their centre.
+    /// Whether the centre of control points (working pixels) is within reach of the corrected centre. True if there is
+    /// none.
     pub fn near_center(&self, drawing: usize, points: &[Point]) -> bool {
         let center = self.correction(drawing).and_then(|c| c.center);
         center.is_none_or(|c| polygon::center(points).distance(c / self.scale) <= self.center_reach[drawing])
     }
 
-    /// What the artist corrected on a drawing.
+    /// The artist's correction of a drawing.
     pub fn correction(&self, drawing: usize) -> Option<&Correction> {
         let Drawing { first, last } = self.drawings[drawing];
         (first..=last).find_map(|i| self.job.corrections.get(&i))
@@ -109,7 +115,8 @@ impl<'a> Stage<'a> {
         !self.anchors[0][drawing].is_empty()
     }
 
-    /// The key whose drawing this is, as the artist drew it: frames held from a key have its very points.
+    /// The artist's control points if the drawing is that of a key, in pixels of the picture. Frames held from a key
+    /// get these exact points.
     pub fn key_of(&self, drawing: usize) -> Option<Vec<Point>> {
         let last = self.drawings.len() - 1;
         (drawing == 0 || drawing == last).then(|| self.job.keys[usize::from(drawing != 0)].clone())
@@ -188,7 +195,7 @@ fn model(job: &Job, key: usize, features: &Features, (scale, width): (f64, f64),
     let cover = Cover::new(&contours, width);
     let (own, other) = (working(&job.keys[key]), working(&job.keys[1 - key]));
     let mut mesh = Mesh::new(&own, job.closed);
-    // The other key's contour, moved onto this one's as a whole: what is left is bending.
+    // The other key's contour, moved onto this one by a similarity: the remaining difference is bending.
     let motion = Similarity::fit(&other, &own);
     let places: BTreeMap<usize, Point> = other.iter().map(|&p| motion.apply(p) * scale).enumerate().collect();
     let anchors = Anchors::new(&mesh, &Correction { pins: places, center: None }, scale);

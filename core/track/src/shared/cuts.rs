@@ -1,11 +1,11 @@
-//! Cuts: where the footage goes over to another shot.
+//! Finds cuts: where the footage changes to another shot.
 //!
-//! From one drawing to the next of a shot most of the picture stays, or moves a little with the camera; at a cut hardly
-//! anything finds its like nearby. So each pixel of the coarsest level is compared with the pixels around its place in
-//! the other picture, and a cut is where more than half of them have no like there, in both directions: what a part
-//! uncovers or covers is missed in one only.
+//! From one drawing to the next of the same shot most of the picture stays, or moves a little with the camera. At a cut
+//! almost no pixel has a similar one nearby. So each pixel of the coarsest level is compared with the pixels around its
+//! place in the other picture. It is a cut if more than half of the pixels have no similar one there, in both
+//! directions: what a part covers or uncovers is missing in one direction only.
 //!
-//! Limits: a whip pan or a flash looks like a cut; two shots before one plain background do not.
+//! Limits: a whip pan or a flash looks like a cut. Two shots with the same plain background do not.
 
 use super::features::{Features, Level, Padded, difference};
 use rototoon_base::geometry::Point;
@@ -13,20 +13,20 @@ use rototoon_base::numeric::vector::vectorised;
 
 /// Level (index in `LEVELS`) that is compared.
 const LEVEL: usize = 0;
-/// Pixels around a place that are searched for its like.
+/// Pixels around a place that are searched for a similar one.
 const REACH: isize = 2;
-/// Largest squared colour difference (three channels of 0 to 1) of what is alike.
+/// Largest squared colour difference (three channels of 0 to 1) of similar pixels.
 const ALIKE: f32 = 0.02;
-/// Share of pixels without a like that makes a cut.
+/// Share of pixels without a similar one above which it is a cut.
 const MOST: f64 = 0.5;
 
-/// Whether two neighbouring pictures are of different shots.
+/// Whether two neighbouring pictures belong to different shots.
 pub fn is_cut(a: &Features, b: &Features) -> bool {
     let (a, b) = (a.level(LEVEL), b.level(LEVEL));
     a.dimensions() != b.dimensions() || changed(a, b).min(changed(b, a)) > MOST
 }
 
-/// Share of the pixels of one picture that have no like around their place in another of the same size.
+/// Share of the pixels of one picture that have no similar pixel around their place in another of the same size.
 fn changed(from: &Level, to: &Level) -> f64 {
     let (width, height) = from.dimensions();
     let (seen, known) = (colours(from), colours(to));
@@ -54,7 +54,7 @@ mod tests {
     use super::*;
     use rototoon_base::scene::Raster;
 
-    /// Stripes of many colours, shifted.
+    /// Stripes of many colours, shifted by `shift` px.
     fn stripes(shift: f32, turned: bool) -> Features {
         Features::new(&Raster::from_fn(160, 120, |x, y| {
             let t = (if turned { y } else { x }) as f32 + shift;

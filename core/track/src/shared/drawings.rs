@@ -1,9 +1,10 @@
-//! The distinct drawings of a span: held frames are worked on once.
+//! The distinct drawings of a span. Animation often holds a drawing for two or three frames; the tracker solves it
+//! once.
 
 use super::features::Features;
 use crate::contract::job::Job;
 
-/// Neighbouring frames of a span that show one drawing, as indices in the span; never empty.
+/// Neighbouring frames of a span that show one drawing, as frame indices in the span. A drawing has at least one frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Drawing {
     /// Index of the first frame.
@@ -12,10 +13,11 @@ pub struct Drawing {
     pub last: usize,
 }
 
-/// Groups the frames of a job; `same(i)` tells whether frame i + 1 shows the drawing of frame i.
+/// Groups the frames of a job into drawings. `same(i)` says whether frame i + 1 shows the same drawing as frame i.
 ///
-/// Both keys are in groups of their own or with the frames held from them. A frame that the artist corrected otherwise
-/// than the frames before it begins a group of its own.
+/// The first key is in the first group and the second key in the last, each with the frames held from it. A corrected
+/// frame begins a group of its own if the group before has a different correction or contains the first key. The second
+/// key begins a group of its own if the group before is corrected or contains the first key.
 pub fn group(job: &Job, same: impl Fn(usize) -> bool) -> Vec<Drawing> {
     let last = job.span.len() - 1;
     let mut drawings = vec![Drawing { first: 0, last: 0 }];
@@ -37,8 +39,8 @@ pub fn group(job: &Job, same: impl Fn(usize) -> bool) -> Vec<Drawing> {
     drawings
 }
 
-/// Largest change of a smoothed colour (0 to 1) between two frames of a hold. The noise of compression stays below it;
-/// ink that moves by a tenth of a working pixel does not.
+/// Largest change of a smoothed colour (0 to 1) between two frames of a hold. Compression noise stays below it. Ink
+/// that moves by a tenth of a working pixel exceeds it.
 const HELD: f32 = 0.012;
 
 /// Whether two pictures show the same drawing: no colour of the finest level differs by more than noise.
@@ -85,7 +87,7 @@ mod tests {
     #[test]
     fn corrections_begin_drawings_of_their_own() {
         assert_eq!(sizes(&job(&[(1, 5.0)]), |i| i % 2 == 0), [1, 1, 2, 2, 1]);
-        // The same correction on both frames of a hold is one drawing, different ones are two.
+        // The same correction on both frames of a hold makes one drawing, different corrections make two.
         assert_eq!(sizes(&job(&[(2, 5.0), (3, 5.0)]), |i| i % 2 == 0), [2, 2, 2, 1]);
         assert_eq!(sizes(&job(&[(2, 5.0), (3, 6.0)]), |i| i % 2 == 0), [2, 1, 1, 2, 1]);
     }

@@ -1,14 +1,15 @@
 //! Edge maps of frames and their distance transforms, kept within a budget of bytes.
 //!
-//! A frame's edges cost a mean-shift filter and a Canny detector, far more than all else that is done with a frame; as one
-//! bit a pixel they take a quarter of a megabyte at 1920 × 1080. Distances, 16 bits a pixel, are made from them in
-//! milliseconds. So edges are kept for long, distances for a while, each in a store of its own that drops what was not
-//! used for longest. What the stores hold never changes a result.
+//! A frame's edges need a mean-shift filter and a Canny detector. That takes far more time than all other work on a
+//! frame. Stored as one bit per pixel, the edges of a 1920 × 1080 picture take a quarter of a megabyte. Distances take
+//! 16 bits per pixel but are computed from the edges in milliseconds. So edges are kept for long and distances for a
+//! while. Each kind has its own store, which drops the least recently used frame. The content of the stores never
+//! changes a result.
 //!
-//! Several threads may work on parts over the same frames. A thread first takes frames that no other works on
-//! ([`EdgeMaps::prepare`]); what is still missing afterwards it computes itself. It never waits for another thread: the
-//! filters hand pieces of their work to the thread pool, and a thread that waits there under a lock may be given the very
-//! job that waits for that lock.
+//! Several threads may work on parts over the same frames. A thread first takes frames that no other thread works on
+//! ([`EdgeMaps::prepare`]), and then computes what is still missing itself. It never waits for another thread. The
+//! filters hand pieces of their work to the thread pool, and a thread that waits there while it holds a lock may be
+//! given the very job that waits for that lock.
 
 use rototoon_base::scene::{Colour, FrameError, FrameNumber, FrameSource, Raster};
 use rototoon_image::canny::{CannyOptions, canny};
@@ -22,12 +23,12 @@ const EDGE_BUDGET: usize = 64 << 20;
 /// Bytes kept as distances, all frames together.
 const DISTANCE_BUDGET: usize = 128 << 20;
 
-/// How edges are found.
+/// How edges are detected.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeOptions {
-    /// The filter before.
+    /// The filter before the detector.
     pub mean_shift: MeanShiftOptions,
-    /// The detector.
+    /// The edge detector.
     pub canny: CannyOptions,
 }
 
@@ -41,7 +42,7 @@ impl Default for EdgeOptions {
     }
 }
 
-/// Edge maps by frame. Shared by threads.
+/// Edge maps by frame. Threads share one object.
 #[derive(Debug, Default)]
 pub struct EdgeMaps {
     options: EdgeOptions,
@@ -56,12 +57,17 @@ struct Stores {
 }
 
 impl EdgeMaps {
-    /// No frames yet.
+    /// Edge maps without any frames yet.
     pub fn new(options: EdgeOptions) -> Self {
         Self { options, stores: Mutex::default() }
     }
 
-    /// Finds the edges of a frame unless they are known or another thread is at it. Says whether they are known now.
+    /// Finds the edges of a frame unless they are known or another thread is computing them. Returns whether they are
+    /// known now.
+    ///
+    /// # Errors
+    ///
+    /// The error of the picture, if it cannot be read.
     pub fn prepare(&self, frames: &dyn FrameSource, frame: FrameNumber) -> Result<bool, FrameError> {
         {
             let mut stores = self.lock();
@@ -81,7 +87,12 @@ impl EdgeMaps {
         Ok(true)
     }
 
-    /// Manhattan distances in pixels to the nearest edge of a frame; width + height where there is none (at most 65535).
+    /// Manhattan distances in pixels to the nearest edge of a frame; width + height where the frame has no edge (at
+    /// most 65535).
+    ///
+    /// # Errors
+    ///
+    /// The error of the picture, if it cannot be read.
     pub fn distances(&self, frames: &dyn FrameSource, frame: FrameNumber) -> Result<Arc<Raster<u16>>, FrameError> {
         let known = {
             let mut stores = self.lock();
@@ -120,13 +131,13 @@ impl EdgeMaps {
         canny(&mean_shift(picture, &self.options.mean_shift), &self.options.canny)
     }
 
-    /// The stores hold whole values only, so they are sound even where a thread panicked.
+    /// The stores only ever contain complete values, so they are valid even after a thread panicked.
     fn lock(&self) -> MutexGuard<'_, Stores> {
         self.stores.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// Yes or no for each pixel, one bit each.
+/// A boolean per pixel, one bit each.
 #[derive(Debug)]
 struct BitRaster {
     width: usize,
@@ -158,7 +169,7 @@ impl BitRaster {
     }
 }
 
-/// Values by frame; drops those not used for longest where they exceed a budget.
+/// Values by frame. If they exceed a budget, the least recently used ones are dropped.
 #[derive(Debug)]
 struct Store<T> {
     entries: BTreeMap<FrameNumber, Entry<T>>,
@@ -219,7 +230,7 @@ mod tests {
         store.put(2, Arc::new(5), 25, 30);
         assert_eq!((store.entries.keys().copied().collect::<Vec<_>>(), store.bytes), (vec![2], 25));
         store.put(9, Arc::new(9), 99, 30);
-        assert_eq!(store.entries.keys().copied().collect::<Vec<_>>(), [9], "the newest stays, however large");
+        assert_eq!(store.entries.keys().copied().collect::<Vec<_>>(), [9], "the newest stays, even if it is too large");
     }
 
     proptest! {
@@ -231,7 +242,7 @@ mod tests {
         }
     }
 
-    /// A dark left half that widens by a column a frame; counts how often it is asked.
+    /// A dark left half that widens by a column per frame. It counts the requests.
     struct Curtain(AtomicUsize);
 
     impl FrameSource for Curtain {
@@ -266,7 +277,7 @@ mod tests {
     fn a_frame_that_fails_can_be_asked_for_again() {
         let (maps, frames) = (EdgeMaps::default(), Curtain(AtomicUsize::new(0)));
         assert!(maps.prepare(&frames, 7).is_err());
-        assert!(maps.prepare(&frames, 7).is_err(), "not taken for being in work");
+        assert!(maps.prepare(&frames, 7).is_err(), "a failed frame is not in work any more");
         assert!(maps.distances(&frames, 7).is_err());
     }
 }

@@ -1,11 +1,12 @@
-//! What the tracker computes once from a picture: a pyramid of colours with their gradients.
+//! Features of a picture: a pyramid of colours with their gradients, computed once per picture.
 //!
-//! All lengths of the tracker are in **working pixels**: the picture scaled to 540 lines. A level l of the pyramid has
-//! pixels of l × l working pixels. It is smoothed by a Gaussian of σ = l/2 before it is reduced; its gradients are
-//! Scharr's (weights 3, 10, 3; divided by 32), which turn with the picture better than plain differences.
+//! All lengths of the default tracker are in **working pixels**: the picture scaled to 540 lines. A pixel of level l of
+//! the pyramid is l × l working pixels. A level is smoothed by a Gaussian of σ = l/2 before it is reduced. The
+//! gradients use Scharr's filter (weights 3, 10, 3; divided by 32), which is closer to rotation invariant than plain
+//! differences.
 //!
-//! Values are kept as 16-bit fractions of ±1: colours lie in 0 to 1 and a Scharr gradient of such colours within ±0.5,
-//! so the step of 3e-5 is far below the noise of 8-bit pictures, and a frame needs 4 MB instead of 8.
+//! Values are stored as 16-bit fractions of ±1. Colours are within 0 to 1 and Scharr gradients of such colours within
+//! ±0.5. The quantisation step of 3e-5 is far below the noise of 8-bit pictures, and a frame needs 4 MB instead of 8.
 
 use rototoon_base::geometry::Point;
 use rototoon_base::numeric::lanes::{LANES, Lanes};
@@ -14,30 +15,30 @@ use rototoon_base::scene::{Colour, Raster};
 use rototoon_image::gaussian::{self, Border};
 use rototoon_image::resize;
 
-/// Lines of the picture in working pixels.
+/// Lines of a picture in working pixels.
 pub const WORKING_LINES: f64 = 540.0;
 
-/// Working pixels in a pixel of each level, from coarse to fine.
+/// Working pixels per pixel of each level, from coarse to fine.
 pub const LEVELS: [usize; 3] = [8, 4, 2];
 
-/// Three values of a colour, and a zero behind them: four are worked on at once.
+/// The three values of a colour and a zero: four values are processed at once.
 pub type Padded = glam::Vec4;
 
-/// What is read at a place.
+/// Colour and slopes at a place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
-    /// Colour.
+    /// Colour, with channels 0 to 1.
     pub colour: Padded,
     /// Its derivatives along x and y, per working pixel.
     pub slopes: [Padded; 2],
 }
 
-/// Colour and both slopes of a pixel, each with a zero behind.
+/// Colour and both slopes of a pixel, each followed by a zero.
 type Pixel = [i16; 12];
 
 const UNIT: f32 = 32767.0;
 
-/// Picture pixels in one working pixel.
+/// Picture pixels per working pixel, for a picture of `height` lines.
 pub fn working_scale(height: usize) -> f64 {
     height as f64 / WORKING_LINES
 }
@@ -45,13 +46,14 @@ pub fn working_scale(height: usize) -> f64 {
 /// One level of the pyramid.
 #[derive(Clone, Debug)]
 pub struct Level {
-    /// Working pixels in a pixel, across and down: the last row and column reach over the picture's edge.
+    /// Working pixels per pixel. The last row and column may reach beyond the picture's edge.
     size: f64,
-    /// One by that.
+    /// 1 / `size`.
     inverse: f32,
-    /// What one of a pixel's numbers is as a slope, by working pixel.
+    /// Factor from a stored number to a slope per working pixel.
     slope: f32,
-    /// The pixels, the last of each row and of each column twice: every place has four around it.
+    /// The pixels. The last pixel of each row and column is stored twice, so that every place has four pixels around
+    /// it.
     raster: Raster<Pixel>,
 }
 
@@ -62,10 +64,11 @@ pub struct Features {
 }
 
 impl Features {
-    /// Builds the pyramid of a picture of any size.
+    /// Builds the pyramid of a picture of any size with at least one pixel.
     pub fn new(picture: &Raster<Colour>) -> Self {
         let scale = working_scale(picture.height());
-        // Each level is made from the finer one: of the wanted variance (l/2)², half of it squared is there already.
+        // A level needs the variance (l/2)². The finer level has a quarter of it, (l/4)²; 3/4 of its own squared pixels
+        // is missing.
         let fine = reduce(&blur(picture, scale), 2.0 * scale);
         let again = 0.75f64.sqrt();
         let middle = reduce(&blur(&fine, again), 2.0);
@@ -73,12 +76,12 @@ impl Features {
         Self { levels: [Level::new(&coarse, 8.0), Level::new(&middle, 4.0), Level::new(&fine, 2.0)] }
     }
 
-    /// The level of index `index` in [`LEVELS`].
+    /// The level at index `index` of [`LEVELS`].
     pub fn level(&self, index: usize) -> &Level {
         &self.levels[index]
     }
 
-    /// Bytes kept.
+    /// Bytes of memory.
     pub fn bytes(&self) -> usize {
         self.levels.iter().map(|level| size_of_val(level.raster.data())).sum()
     }
@@ -106,7 +109,7 @@ impl Level {
         Self { size, inverse, slope: inverse / UNIT, raster }
     }
 
-    /// Bilinear reading at `p` in working pixels; outside the picture the nearest edge is read.
+    /// Reads colour and slopes bilinearly at `p` in working pixels. Outside the picture it reads the nearest edge.
     #[inline(always)]
     pub fn sample(&self, p: Point) -> Sample {
         let ([above, below], weights) = self.around(p);
@@ -119,7 +122,7 @@ impl Level {
         Sample { colour: colour * (1.0 / UNIT), slopes: [along * self.slope, down * self.slope] }
     }
 
-    /// The values of the two pixels above and of the two below `p`, and the bilinear weights of the four.
+    /// The values of the two pixels above and the two below `p`, and the bilinear weights of the four.
     #[inline(always)]
     fn around(&self, p: Point) -> ([&[i16]; 2], [f32; 4]) {
         let (width, height) = self.dimensions();
@@ -139,8 +142,8 @@ impl Level {
         mixed(above, below, &weights, 0) * (1.0 / UNIT)
     }
 
-    /// Colours at places in a straight line, `step` apart from `first` on (working pixels), into a plane for each of red,
-    /// green and blue.
+    /// Colours at equidistant places on a straight line, from `first` on with the step `step` (working pixels), into
+    /// one plane each for red, green and blue. The planes have one value per place.
     #[inline(always)]
     pub fn colours_along(&self, first: Point, step: Point, [red, green, blue]: [&mut [f32]; 3]) {
         let (width, height) = self.dimensions();
@@ -163,7 +166,7 @@ impl Level {
         }
     }
 
-    /// Working pixels in a pixel of this level.
+    /// Working pixels per pixel of this level.
     pub fn pixel(&self) -> f64 {
         self.size
     }
@@ -173,7 +176,7 @@ impl Level {
         (self.raster.width() - 1, self.raster.height() - 1)
     }
 
-    /// The largest difference of a colour value to another picture's level; infinite where their sizes differ.
+    /// The largest difference of a colour value from another picture's level; infinite if their sizes differ.
     pub fn largest_colour_change(&self, other: &Self) -> f32 {
         if self.dimensions() != other.dimensions() {
             return f32::INFINITY;
@@ -194,14 +197,15 @@ impl Level {
     }
 }
 
-/// From here on neighbouring numbers are 1 apart: to add it rounds, and leaves a whole number in the lower bits. (To convert
-/// would also care for what is no number or too large.)
+/// 2²³: from here on neighbouring f32 numbers are 1 apart. Adding it rounds a number to a whole one, which is then in
+/// the lower bits. (A conversion would also handle NaN and overflow, and is slower.)
 const WHOLE: f32 = 8_388_608.0;
-/// Those bits.
+/// Mask of these bits.
 const WHOLE_BITS: u32 = 0x7f_ffff;
 
-/// The pixel (of `count`) at whose centre or after it a place lies, and how far after, in pixels: 0 to 1. The place is given
-/// from the picture's edge; one outside is moved to the nearest centre.
+/// Index of the pixel (of `count`) with the last centre at or before a place, and the distance of the place after that
+/// centre, 0 to 1 pixel. The place is measured in pixels from the picture's edge. A place outside is moved to the
+/// nearest centre.
 #[inline(always)]
 fn split(at: f32, count: usize) -> (usize, f32) {
     let at = (at - 0.5).clamp(0.0, (count - 1) as f32);
@@ -209,7 +213,7 @@ fn split(at: f32, count: usize) -> (usize, f32) {
     ((low.to_bits() & WHOLE_BITS) as usize, at - (low - WHOLE))
 }
 
-/// The same of several places.
+/// The same as [`split`] for several places.
 #[inline(always)]
 fn split_lanes(at: Lanes, count: usize) -> ([usize; LANES], [f32; LANES]) {
     let (zero, whole) = (Lanes::splat(0.0), Lanes::splat(WHOLE));
@@ -222,7 +226,7 @@ fn split_lanes(at: Lanes, count: usize) -> ([usize; LANES], [f32; LANES]) {
     (pixels, (at - (low - whole)).to_array())
 }
 
-/// Four values of the pixels around a place, from the `first` of each pixel on, in their bilinear mixture.
+/// Bilinear mix of the four pixels around a place, for the four values of each pixel from index `first` on.
 #[inline(always)]
 fn mixed(above: &[i16], below: &[i16], weights: &[f32; 4], first: usize) -> Padded {
     let value = |row: &[i16], first: usize| {
@@ -239,19 +243,19 @@ pub fn total(values: Padded) -> f32 {
     (values.x + values.y) + (values.z + values.w)
 }
 
-/// Squared difference of two colours.
+/// Squared difference of two colours, summed over the channels.
 #[inline(always)]
 pub fn difference(a: Padded, b: Padded) -> f32 {
     total((a - b) * (a - b))
 }
 
-/// The values of a row of pixels, its first and last pixel twice.
+/// The values of a row of pixels, with its first and last pixel repeated.
 fn bordered(row: &[Colour]) -> Vec<f32> {
     let (first, last) = (row.first().copied().unwrap_or_default(), row.last().copied().unwrap_or_default());
     [&[first], row, &[last]].concat().into_flattened()
 }
 
-/// Colours and slopes (Scharr's) of the middle one of three bordered rows, value by value.
+/// Colours and Scharr slopes of the middle one of three bordered rows, value by value.
 #[inline(always)]
 fn quantise([above, here, below]: [&[f32]; 3], [colours, along, down]: &mut [Vec<i16>; 3]) {
     let count = colours.len();
@@ -266,14 +270,14 @@ fn quantise([above, here, below]: [&[f32]; 3], [colours, along, down]: &mut [Vec
     }
 }
 
-/// Rounded half away from zero; `round` itself would be a call for each value.
+/// Rounds half away from zero. The standard `round` would be a function call per value.
 #[inline(always)]
 fn fraction(value: f32) -> i16 {
     let scaled = value * UNIT;
     (scaled + 0.5f32.copysign(scaled)) as i16
 }
 
-/// The pixels of a row from their values, the last one twice.
+/// The pixels of a row from their values, with the last one repeated.
 #[inline(always)]
 fn interleave(planes: &[Vec<i16>; 3], pixels: &mut [Pixel]) {
     let [colours, along, down] = planes.each_ref().map(|plane| plane.as_chunks::<3>().0);
@@ -289,7 +293,7 @@ fn blur(picture: &Raster<Colour>, sigma: f64) -> Raster<Colour> {
     gaussian::blur(picture, sigma, Border::Replicate)
 }
 
-/// A picture with pixels `factor` times as large. One of few lines is enlarged.
+/// A picture with pixels `factor` times as large. A factor below 1 enlarges the picture, which happens for few lines.
 fn reduce(picture: &Raster<Colour>, factor: f64) -> Raster<Colour> {
     if factor >= 1.0 {
         return resize::reduce(picture, factor);
@@ -318,7 +322,7 @@ mod tests {
         }
     }
 
-    /// As the levels are read, written as it is said.
+    /// A plain version of how a level is read.
     fn read_naively(level: &Level, p: Point) -> [f64; 12] {
         let (width, height) = level.dimensions();
         let at = |length: f64, count: usize| (length / level.size - 0.5).clamp(0.0, (count - 1) as f64);

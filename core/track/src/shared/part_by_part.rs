@@ -1,10 +1,10 @@
-//! Parts tracked one after the other, the nearer ones first, since they hide the farther ones.
+//! Tracks parts one after the other, the nearer ones first, because they hide the farther ones.
 //!
-//! A job of a part needs the tracks of all nearer parts on its frames, so jobs run in waves: of the jobs whose occluders
-//! are known, those that share frames with the earliest of them. A wave works on one stretch of time, which bounds the
-//! memory that pictures take by the span in work, not by the length of the footage.
+//! A job needs the tracks of all nearer parts on its frames, so jobs run in waves. A wave contains the jobs whose
+//! occluders are known and that share frames with the earliest of them. So a wave works on one stretch of time, and the
+//! memory for pictures depends on the spans in work, not on the length of the footage.
 //!
-//! A job that equals the one solved before for the same part and span is not solved again.
+//! A job that equals the last solved job of the same part and span is not solved again.
 
 use crate::contract::error::TrackError;
 use crate::contract::job::{Job, SpanSolver, SpanTrack};
@@ -15,7 +15,7 @@ use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, FrameSource, Progress, Scene, Span};
 use std::collections::BTreeMap;
 
-/// Solves job by job with one solver, and remembers the results.
+/// Solves job by job with one solver, and keeps the results.
 pub struct PartByPart {
     solver: Box<dyn SpanSolver>,
     known: BTreeMap<(String, Span), (Job, SpanTrack)>,
@@ -60,7 +60,7 @@ impl SceneSolver for PartByPart {
 }
 
 impl PartByPart {
-    /// A solver that knows nothing yet.
+    /// A part-by-part tracker without any results yet.
     pub fn new(solver: Box<dyn SpanSolver>) -> Self {
         Self { solver, known: BTreeMap::new() }
     }
@@ -78,7 +78,7 @@ impl PartByPart {
     }
 }
 
-/// What hides a task's part on each frame of its span.
+/// The contours that hide a task's part, for each frame of its span.
 fn occluders(scene: &Scene, tasks: &[Task], done: &[Option<(SpanTrack, bool)>], t: usize) -> Vec<Vec<Vec<Point>>> {
     let on = |frame: FrameNumber| {
         nearer_contours(scene, tasks, (tasks[t].depth, frame), |o| {

@@ -1,8 +1,8 @@
-//! What was computed from pictures, kept for the next job within a budget of bytes.
+//! A store of data computed from pictures, kept for the next job within a budget of bytes.
 //!
-//! Features and flows are pure functions of the pictures, so it is no matter for the result whether they are kept or
-//! made again. Values are made without holding the lock. Features are made by many threads together, so two callers may
-//! make the same ones; [`Store::read`] makes those of a whole scene before anything asks for them.
+//! Features and flows depend on the pictures alone, so the store never changes a result. Values are computed without
+//! holding the lock. Features are computed by many threads together, so two callers may compute the same ones.
+//! [`Store::read`] computes those of a complete scene before they are requested.
 
 use super::drawings::same_drawing;
 use super::features::Features;
@@ -14,13 +14,13 @@ use rototoon_image::flow::{Flow, Pyramid, dense_flow};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-/// Bytes of features and flows kept at the most: a hundred frames of 16:9.
+/// Largest number of bytes kept: the features of about a hundred frames of 16:9.
 const BUDGET: usize = 400 << 20;
 
-/// Index in `LEVELS` of the level whose luma the flow is computed on, and with it the flow's resolution.
+/// Index in `LEVELS` of the level on whose luma the flow is computed. The flow has the resolution of this level.
 pub const FLOW_LEVEL: usize = 1;
 
-/// Features by frame, flows by pair of frames.
+/// Features by frame, flows by pair of frames, and other data of pictures.
 #[derive(Default)]
 pub struct Store {
     kept: Mutex<Kept>,
@@ -59,7 +59,7 @@ struct Entry {
     value: Value,
 }
 
-/// A value being made; when it is done, or given up by a panic, those who wait for it look again.
+/// Marks a value that is being computed. When it is finished, or given up by a panic, the waiting threads look again.
 struct Making<'a> {
     store: &'a Store,
     key: Key,
@@ -93,7 +93,7 @@ impl Store {
         Ok(made)
     }
 
-    /// Makes the features of frames, each once, as far as they can be kept together.
+    /// Computes the features of several frames, each once, as far as they fit into half of the budget.
     pub fn read(
         &self,
         frames: &dyn FrameSource,
@@ -126,7 +126,7 @@ impl Store {
         }
     }
 
-    /// The picture of a frame, to compute flow on.
+    /// The luma pyramid of a frame, for the flow.
     fn pyramid(&self, frames: &dyn FrameSource, frame: FrameNumber) -> Result<Arc<Pyramid>, TrackError> {
         let key = Key::Pyramid(frame);
         if let Some(Value::Pyramid(known)) = self.get(key) {
@@ -143,7 +143,7 @@ impl Store {
         }
     }
 
-    /// The picture of a frame, to be searched on a level (index in `LEVELS`).
+    /// The picture of a frame prepared for the search on a level (index in `LEVELS`).
     pub fn sought(
         &self,
         frames: &dyn FrameSource,
@@ -184,13 +184,14 @@ impl Store {
     }
 
     fn lock(&self) -> MutexGuard<'_, Kept> {
-        // The map is only touched between complete states, so a panic elsewhere cannot have left it half changed.
+        // The map is only changed between complete states, so a panic elsewhere cannot leave it half changed.
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The value of a key, made now if it is not kept and no other thread is making it; then this one waits for that.
+    /// The value of a key. If it is not kept and no other thread is computing it, it is computed now. If another thread
+    /// is computing it, this thread waits.
     ///
-    /// `make` must not hand work to other threads: a waiting thread does none.
+    /// `make` must not hand work to other threads, because a waiting thread does no work.
     fn once(&self, key: Key, make: impl FnOnce() -> (usize, Value)) -> Value {
         let mut kept = self.lock();
         loop {

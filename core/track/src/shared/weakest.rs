@@ -1,31 +1,32 @@
-//! Where the next key helps most.
+//! Finds the frame where the next key helps most.
 //!
 //! The doubt about a part on a frame is the mean of 1 − confidence over its points. Doubt comes in stretches: once the
-//! tracker has lost a part it stays lost until the next key, and a key in the middle of such a stretch mends most of it.
-//! So each part's doubt is smoothed over time within a span before the parts are added up, which draws the maximum from a
-//! single bad frame towards the middle of a bad stretch. A part says nothing on its keys and on the frames beside them,
-//! since a further key there would mend almost nothing.
+//! tracker has lost a part, it stays lost until the next key. A key in the middle of such a stretch corrects most of
+//! it. So each part's doubt is smoothed over time within a span, and then the parts are added up. Smoothing moves the
+//! maximum from a single bad frame towards the middle of a bad stretch. The keys of a part and the frames beside them
+//! are not proposed for it, because another key there would correct almost nothing.
 //!
-//! The kernel is the binomial 1 4 6 4 1, about two drawings wide for animation on twos; where it reaches beyond the keys
-//! it meets zeros, as nothing is in doubt there.
+//! The kernel is the binomial 1 4 6 4 1. It is about two drawings wide for animation on twos. Beyond the keys it meets
+//! zeros, because nothing is in doubt there.
 
 use rototoon_base::scene::{FrameNumber, Part, Span};
 use std::collections::BTreeMap;
 
-/// Binomial weights around a frame; they add up to one.
+/// Binomial weights around a frame. Their sum is 1.
 const KERNEL: [f64; 5] = [1.0 / 16.0, 4.0 / 16.0, 6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0];
 
-/// A frame and how much is in doubt on it.
+/// A frame with its doubt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeakestFrame {
     /// The frame.
     pub frame: FrameNumber,
-    /// Sum over the parts of the smoothed mean of 1 − confidence: 0 where all is sure, at most the number of parts.
+    /// Sum over the parts of the smoothed mean of 1 − confidence: from 0, if everything is sure, to the number of
+    /// parts.
     pub score: f64,
 }
 
-/// The frame with the most doubt, the earliest of equals; `None` where nothing was tracked or every frame is at or next
-/// to a key.
+/// The frame with the most doubt, the earliest of equals. `None` if nothing was tracked or every frame is a key or
+/// beside one.
 pub fn weakest_frame(parts: &[Part]) -> Option<WeakestFrame> {
     let mut doubts = BTreeMap::<FrameNumber, f64>::new();
     for part in parts {
@@ -57,7 +58,7 @@ mod tests {
     use super::*;
     use rototoon_base::geometry::Point;
 
-    /// A part of one point, keyed at the first and last frame, with the given confidence from frame 0 on.
+    /// A part of one point, keyed on the first and last frame, with the given confidence from frame 0 on.
     fn part(confidence: &[f64]) -> Part {
         let last = confidence.len() as FrameNumber - 1;
         Part {

@@ -4,22 +4,22 @@ use super::scene::{Drawn, LAST, Shape, WIDTH, limb_and_ball, track};
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::FrameNumber;
 
-/// Distances of the nearest part from the truth on a frame: of the points in the picture from the contour, and of the
-/// others from their places.
+/// Distances of the nearest part from the truth on a frame. For points in the picture it is the distance from the
+/// contour, for the others the distance from their true places.
 fn errors(drawn: &Drawn, frame: FrameNumber, found: &[Point]) -> [Vec<f64>; 2] {
     let truth = drawn.0[drawn.0.len() - 1].contour(frame);
     let mut errors = [Vec::new(), Vec::new()];
     for (p, q) in found.iter().zip(&truth) {
         let inside = q.x >= 0.0 && q.y >= 0.0 && q.x < WIDTH as f64;
-        // An ellipse of one colour may turn in itself unseen: what is seen is its contour.
+        // An ellipse of one colour may rotate without a visible change: only its contour is visible.
         let apart = if inside { polyline::distance(*p, &truth, true) } else { p.distance(*q) };
         errors[usize::from(!inside)].push(apart);
     }
     errors
 }
 
-/// Tracks the nearest shape of a scene, keyed at both ends, and holds every point to what may be missed inside and
-/// outside the picture.
+/// Tracks the nearest shape of a scene, keyed at both ends, and checks every point: its error must be below `inside` in
+/// the picture and below `outside` outside of it.
 fn holds(drawn: &Drawn, inside: f64, outside: f64) {
     let nearest = drawn.0.len() - 1;
     let tracking = track(drawn, &drawn.scene(vec![drawn.0[nearest].part("part", 1.0)]));
@@ -42,9 +42,9 @@ fn a_part_that_walks_in_from_a_key_outside_is_followed() {
 
 #[test]
 fn a_part_that_goes_out_between_its_keys_comes_back() {
-    // Half of it is outside on the second drawing, all of it on the third.
+    // On the second drawing half of it is outside, on the third all of it.
     let places = |t: f64| (Point::new([40.0, 2.0, -20.0, 25.0][(t / 2.0) as usize], 100.0), 0.0);
-    // Unseen it is only kept near its way: it moves by 22 and by 45 px from drawing to drawing there.
+    // While it is not visible it is only kept near its path: it moves by 22 and by 45 px from drawing to drawing there.
     holds(&with(places), 4.0, 40.0);
 }
 

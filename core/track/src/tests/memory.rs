@@ -1,4 +1,4 @@
-//! Which jobs are solved, in which order, and what is told meanwhile.
+//! Which jobs are solved, in which order, and the progress that is reported.
 
 use crate::{Job, SpanSolver, SpanTrack, TrackError, Tracker};
 use rototoon_base::geometry::Point;
@@ -8,7 +8,7 @@ use rototoon_base::scene::{
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
-/// Interpolates, and records the jobs in the order in which they came.
+/// Interpolates, and records the jobs in the order of their arrival.
 #[derive(Clone, Default)]
 struct Recorder(Arc<Mutex<Vec<Job>>>);
 
@@ -56,10 +56,10 @@ fn only_touched_spans_are_solved_again() {
 
     scene.parts[0].pins.insert(4, BTreeMap::from([(1, Point::new(30.0, 2.0))]));
     assert_eq!(solved(&mut tracker, &scene), [(0, 0)]);
-    // What hides the far part has moved, in one span.
+    // The occluder of the far part has moved, in one span.
     scene.parts[1].pins.insert(11, BTreeMap::from([(1, Point::new(30.0, 2.0))]));
     assert_eq!(solved(&mut tracker, &scene), [(0, 8), (1, 8)]);
-    // A key in the middle of a span replaces it by two.
+    // A key in the middle of a span replaces it by two spans.
     let key = scene.parts[0].keys[&8].clone();
     scene.parts[0].keys.insert(12, key);
     assert_eq!(solved(&mut tracker, &scene), [(0, 8), (0, 12)]);
@@ -104,7 +104,7 @@ fn bad_parts_are_named() {
     assert!(track(&|p| p.keys.get_mut(&5).unwrap()[1].x = f64::NAN).starts_with("part \"arm\", frame 5: "));
     assert!(track(&|p| p.keys.get_mut(&0).unwrap()[1].y = 1e9).starts_with("part \"arm\", frame 0: "));
     let pinned = |p: &mut Part| p.pins = BTreeMap::from([(3, BTreeMap::from([(3, Point::ZERO)]))]);
-    assert_eq!(track(&pinned), "part \"arm\", frame 3: pin of point 3, but the part has 3 points");
+    assert_eq!(track(&pinned), "part \"arm\", frame 3: found a pin of point 3, expected an index below 3");
     assert!(track(&|p| p.centers = BTreeMap::from([(2, Point::NAN)])).starts_with("part \"arm\", frame 2: "));
 }
 
@@ -129,7 +129,7 @@ fn progress_rises_to_the_end_and_a_cancelled_run_leaves_what_was_known() {
     assert_eq!(tracker.track(&scene, &NoFrames, &stopped), Err(TrackError::Cancelled(Cancelled)));
     let listener = Listener { told: Mutex::default(), stop_after: usize::MAX };
     let tracking = tracker.track(&scene, &NoFrames, &listener).unwrap();
-    assert!(tracking.jobs.iter().any(|job| !job.solved), "finished jobs of the stopped run are remembered");
+    assert!(tracking.jobs.iter().any(|job| !job.solved), "the finished jobs of the stopped run are kept");
     let told = listener.told.lock().unwrap();
     assert!(told.windows(2).all(|pair| pair[0] <= pair[1]));
     assert!((told.last().unwrap() - 1.0).abs() < 1e-9);

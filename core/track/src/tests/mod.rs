@@ -1,5 +1,5 @@
-//! The tracker as a whole: order and memory of jobs with a solver that only records, and the default solver on a small
-//! drawn scene of known motion.
+//! Tests of the complete tracker: order and memory of jobs with a solver that only records, and the default solver on
+//! small drawn scenes of known motion.
 
 mod borders;
 mod memory;

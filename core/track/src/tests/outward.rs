@@ -13,7 +13,7 @@ fn single(shape: &Shape, name: &str, depth: f64, frame: FrameNumber) -> Part {
     Part { name: name.into(), closed: true, depth, keys, ..Part::default() }
 }
 
-/// The largest distance of a track from the truth, on the frames that it has.
+/// The largest distance of a track from the truth, on the frames of the track.
 fn worst(shape: &Shape, track: &PartTrack) -> f64 {
     let on = |(frame, found): (&FrameNumber, &Vec<Point>)| {
         let truth = shape.contour(*frame);
@@ -26,7 +26,7 @@ fn frames(track: &PartTrack) -> Vec<FrameNumber> {
     track.tracks.keys().copied().collect()
 }
 
-/// Drawn pictures of which some are others.
+/// Drawn pictures that are replaced from a frame on.
 struct Changed<'a> {
     drawn: &'a Drawn,
     from: FrameNumber,
@@ -100,7 +100,7 @@ fn a_part_that_leaves_the_picture_wants_no_key() {
     let tracking = track(&drawn, &drawn.scene(vec![single(&drawn.0[0], "ball", 0.0, 0)]));
     let found = &tracking.parts[0];
     assert_eq!(found.ends, [TrackEnd { frame: 6, reason: Ending::Left }], "{:?}", found.tracks.keys());
-    // On frame 4 half of it is outside.
+    // On frame 4 half of the ball is outside.
     assert!(frames(found).len() >= 4);
     let center = |frame| polygon::center(&drawn.0[0].contour(frame));
     assert!(found.tracks.iter().all(|(&f, p)| polygon::center(p).distance(center(f)) < 4.0), "{:?}", found.tracks);

@@ -1,4 +1,4 @@
-//! The presets `agarwala2004` and `liang2012` on an easy sequence, and at the edges of what they may be given.
+//! The presets `agarwala2004` and `liang2012` on an easy sequence and on extreme inputs.
 
 use crate::contract::error::TrackError;
 use crate::contract::job::{Correction, Job, SpanSolver, SpanTrack, Termination};
@@ -17,7 +17,7 @@ fn presets() -> [(&'static str, Box<dyn SpanSolver>); 2] {
     [("agarwala2004", Box::new(Agarwala2004::default())), ("liang2012", Box::new(Liang2012::default()))]
 }
 
-/// Place and turn of the shape: along a bow of 16 px height, turning by 0.4.
+/// Place and rotation of the shape: along a bow of 16 px height, rotating by 0.4 radians.
 fn pose(frame: FrameNumber) -> (Point, Point) {
     let share = f64::from(frame) / f64::from(SPAN.last);
     let bow = 16.0 * (share * std::f64::consts::PI).sin();
@@ -38,7 +38,7 @@ fn outline(frame: FrameNumber) -> Vec<Point> {
     (0..14).map(point).collect()
 }
 
-/// The shape with stripes on it before a plain wall; `wall` hides the columns from 95 to 112.
+/// The shape with stripes on it in front of a plain wall. `wall` hides the columns from 95 to 112.
 struct Egg {
     wall: bool,
 }
@@ -59,7 +59,7 @@ impl FrameSource for Egg {
             }
         };
         Ok(Arc::new(Raster::from_fn(SIZE.0, SIZE.1, |x, y| {
-            // Four samples a pixel: edges as a renderer would smooth them.
+            // Four samples per pixel give antialiased edges.
             let at = |k: usize| {
                 colour(Point::new(x as f64 + 0.25 + 0.5 * (k % 2) as f64, y as f64 + 0.25 + 0.5 * (k / 2) as f64))
             };

@@ -10,10 +10,10 @@ pub(super) const WIDTH: usize = 240;
 pub(super) const HEIGHT: usize = 180;
 pub(super) const LAST: FrameNumber = 6;
 
-/// Half the width of an outline.
+/// Half the width of an outline, in pixels.
 const OUTLINE: f64 = 1.0;
 
-/// An outlined shape of one colour, and where it is on each frame.
+/// An outlined shape of one colour, with its motion. `motion` gives shift and rotation in degrees by time in frames.
 pub(super) struct Shape {
     pub(super) rest: Vec<Point>,
     pub(super) colour: Colour,
@@ -34,11 +34,11 @@ impl Shape {
     }
 }
 
-/// Later shapes are nearer.
+/// Shapes in the order of depth: later shapes are nearer.
 pub(super) struct Drawn(pub(super) Vec<Shape>);
 
 impl Drawn {
-    /// What a picture shows on a frame, the nearest shape first: contour, its bounds with the outline, and fill.
+    /// The shapes of a frame, the nearest first: contour, its bounds with the outline, and fill colour.
     fn shown(&self, frame: FrameNumber) -> Vec<(Vec<Point>, (Point, Point), Colour)> {
         let one = |shape: &Shape| {
             let contour = shape.contour(frame);
@@ -55,7 +55,7 @@ impl Drawn {
     }
 }
 
-/// Colour at a point: the fill of the nearest shape, its outline 2 px wide, or paper.
+/// Colour at a point: the fill of the nearest shape, its outline of 2 px, or paper.
 fn colour_at(shown: &[(Vec<Point>, (Point, Point), Colour)], p: Point) -> Colour {
     let near = shown.iter().filter(|(_, (low, high), _)| p.cmpge(*low).all() && p.cmple(*high).all());
     for (contour, _, colour) in near {
@@ -91,7 +91,7 @@ pub(super) fn points(list: &[(f64, f64)]) -> Vec<Point> {
     list.iter().map(|&(x, y)| Point::new(x, y)).collect()
 }
 
-/// A limb that turns by 90° while it travels, and a ball that passes in front of it.
+/// A limb that rotates by 90° while it moves, and a ball that passes in front of it.
 pub(super) fn limb_and_ball() -> Drawn {
     let limb = Shape {
         rest: points(&[(-30.0, -8.0), (0.0, -10.0), (34.0, -6.0), (36.0, 8.0), (0.0, 9.0), (-30.0, 8.0)]),
@@ -106,7 +106,7 @@ pub(super) fn limb_and_ball() -> Drawn {
     Drawn(vec![limb, ball])
 }
 
-/// Two legs of one look that swing past each other below a body, the second one nearer.
+/// Two legs of the same appearance that swing past each other below a body. The second one is nearer.
 fn twins() -> Drawn {
     let leg = |motion: fn(f64) -> (Point, f64)| Shape {
         rest: points(&[(-7.0, -6.0), (7.0, -6.0), (7.0, 32.0), (6.0, 68.0), (-6.0, 68.0), (-7.0, 32.0)]),
@@ -181,7 +181,7 @@ fn an_edit_solves_no_more_than_it_touches_and_gives_what_a_new_run_gives() {
     assert_eq!(warm.parts, cold.parts);
 }
 
-/// Tracks a scene on 1, 2 and 8 threads.
+/// Tracks a scene on 1, 2 and 8 threads and compares the results.
 pub(super) fn same_on_any_threads(drawn: &Drawn, scene: &Scene) {
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -213,7 +213,7 @@ fn pins_and_small_moves_hold_exactly_and_neighbours_follow() {
     assert_eq!(tracks[&3][2], pin);
     assert_eq!(tracking.parts[0].confidence[&3][2], 1.0);
     assert!(polygon::center(&tracks[&4]).distance(center) < 1e-9);
-    // Frame 2 holds the drawing of frame 3: the correction is the drawing's.
+    // Frames 2 and 3 show the same drawing, so the correction is for both.
     assert!(tracks[&2][2].distance(pin) < 0.5);
 }
 

@@ -1,20 +1,20 @@
 //! The preset `zhou2011`: key-frame based contour tracking by space-time optimisation.
 //!
-//! J. Zhou, J. Xiao: "Cartoon capture by key-frame based contour tracking", 2011. Between two keys the control points of
-//! every frame are found together:
+//! J. Zhou, J. Xiao: "Cartoon capture by key-frame based contour tracking", 2011. The control points of all frames
+//! between two keys are found together:
 //!
-//! 1. the [region search](region) finds the part's centre on each frame from the colours of both keys,
-//! 2. the curves start as the keys blended linearly, each shifted to the centre found,
-//! 3. Levenberg–Marquardt minimises the [six-term energy](energy) over all frames at once.
+//! 1. The [region search](super::region) finds the part's centre on each frame from the colours of both keys.
+//! 2. The curves start as the linear blend of the keys, each shifted to the centre that was found.
+//! 3. Levenberg–Marquardt minimises the [six-term energy](super::energy) over all frames at once.
 //!
-//! Keys, pins and corrected centres hold exactly. The paper leaves open where the minimisation starts; from the found
-//! centres it needs fewer iterations and falls into fewer wrong edges than from the plain blend.
+//! Keys, pins and corrected centres are exact. The paper does not say where the minimisation starts. From the centres
+//! that were found it needs fewer iterations and converges to wrong edges less often than from the plain blend.
 //!
-//! Limits are the paper's: the curvature term punishes turning, the search knows shifts only, the edge term takes any edge.
-//! Long swings need more keys than the default preset does. What hides the part is not taken into account.
+//! The limits are those of the paper: the curvature term penalises rotation, the search knows translations only, and
+//! the edge term accepts every edge. Long swings need more keys than with the default preset. Occlusion is ignored.
 //!
-//! The confidence of a point comes from what the method measures: the colour difference of the part at the centre found
-//! and the distance of the point's segments from the drawn edges (`confidence`).
+//! The confidence of a point comes from the method's own measurements: the colour difference of the part at the centre
+//! that was found, and the distance of the point's segments from the drawn edges ([`confidence`]).
 
 pub mod energy;
 pub mod region;
@@ -31,22 +31,24 @@ use rototoon_base::numeric::sparse_least_squares::{LmOptions, LmSummary, LmTermi
 use rototoon_base::scene::{Cancelled, FrameSource, Progress, Raster};
 use std::ops::ControlFlow;
 
-/// Pixels around a curve's start that its distance field reaches; beyond, the edges pull no more.
+/// Pixels by which the distance field of a frame extends beyond the start of its curve. Further away the edges have no
+/// pull.
 const FIELD_MARGIN: f64 = 96.0;
-/// Shares of a job's time: edges, then region search, then optimisation.
+/// Shares of a job's progress: where edge detection ends and where the region search ends. The optimisation is the
+/// rest.
 const EDGES_DONE: f64 = 0.45;
 const REGIONS_DONE: f64 = 0.9;
 
-/// How to track.
+/// Options of the preset.
 #[derive(Clone, Copy, Debug)]
 pub struct Zhou2011Options {
-    /// Weights of the energy's terms (1).
+    /// Weights of the energy's terms in eq. 1.
     pub weights: Weights,
-    /// Samples a segment of the edge term (7); the paper tried 3 to 10.
+    /// Samples per segment of the edge term (7). The paper tried 3 to 10.
     pub samples: usize,
-    /// How edges are found.
+    /// How edges are detected.
     pub edges: EdgeOptions,
-    /// The minimiser.
+    /// Options of the minimisation.
     pub solver: LmOptions,
 }
 
@@ -61,7 +63,7 @@ impl Default for Zhou2011Options {
     }
 }
 
-/// Solves jobs by Zhou & Xiao 2011; keeps the edges of frames.
+/// Solves jobs by Zhou & Xiao 2011. It keeps the edges of frames.
 #[derive(Debug, Default)]
 pub struct Zhou2011 {
     options: Zhou2011Options,
@@ -69,12 +71,12 @@ pub struct Zhou2011 {
 }
 
 impl Zhou2011 {
-    /// A solver without any edges yet.
+    /// A solver without the edges of any frame yet.
     pub fn new(options: Zhou2011Options) -> Self {
         Self { edges: EdgeMaps::new(options.edges), options }
     }
 
-    /// Distance fields around the curves' start, by frame of the span; none at the keys.
+    /// Distance fields around the start of the curves, by frame of the span. The keys have none.
     fn fields(
         &self,
         job: &Job,
@@ -88,7 +90,7 @@ impl Zhou2011 {
         Ok(fields)
     }
 
-    /// Edges of all frames between the keys, those first that no other job is at.
+    /// Finds the edges of all frames between the keys. Frames on which another job is working are skipped.
     fn prepare_edges(&self, job: &Job, frames: &dyn FrameSource, progress: &dyn Progress) -> Result<(), TrackError> {
         let count = job.span.len() - 2;
         for (done, frame) in job.span.between().enumerate() {
@@ -174,7 +176,7 @@ fn search_regions(
     Ok(found)
 }
 
-/// The blended keys, each shifted to its centre: the artist's where there is one, else the one found.
+/// The blended keys, each shifted to its centre: to the artist's if there is one, otherwise to the one that was found.
 fn start_at_centers(job: &Job, found: &[Option<Found>]) -> Vec<Vec<Point>> {
     let start = found.iter().enumerate().map(|(index, found)| {
         let mut curve = job.interpolated(index);
@@ -189,7 +191,7 @@ fn start_at_centers(job: &Job, found: &[Option<Found>]) -> Vec<Vec<Point>> {
     start.collect()
 }
 
-/// Keys and pins, frame by frame.
+/// Which points are keys or pins, frame by frame.
 fn fixed_points(job: &Job) -> Vec<bool> {
     let (count, points) = (job.span.len(), job.keys[0].len());
     let fixed = |index: usize, j: usize| {
@@ -200,13 +202,13 @@ fn fixed_points(job: &Job) -> Vec<bool> {
     (0..count).flat_map(|index| (0..points).map(move |j| (index, j))).map(|(index, j)| fixed(index, j)).collect()
 }
 
-/// Frames whose centre the artist set.
+/// Which frames have a centre set by the artist.
 fn corrected_frames(job: &Job) -> Vec<bool> {
     let corrected = |index| job.corrections.get(&index).is_some_and(|correction| correction.center.is_some());
     (0..job.span.len()).map(corrected).collect()
 }
 
-/// The distances around a curve; `None` where the picture is empty or the curve is nowhere.
+/// The distances around a curve. `None` if the picture is empty or the curve has no finite bounds.
 fn crop(distances: &Raster<u16>, curve: &[Point]) -> Option<DistanceField> {
     let (low, high) = polygon::bounds(curve)?;
     if distances.data().is_empty() || !low.is_finite() || !high.is_finite() {
@@ -244,10 +246,11 @@ fn confidences(job: &Job, index: usize, curve: &[Point], energy: &Energy, found:
     sums.iter().enumerate().map(point).collect()
 }
 
-/// The confidence of a point whose part differs by `difference` (root mean square of colours, 0 to 1) at the centre found,
-/// and whose segments lie `distance` px from edges on average, at 540 lines. Logistic regression of "within 2 px of the
-/// true contour" on six animated sequences with known truth, each of equal weight; in every tenth from 0 to 1 the share of
-/// such points is within 0.09 of the confidence given.
+/// The confidence of a point whose part differs by `difference` (root mean square of colours, 0 to 1) at the centre
+/// that was found, and whose segments are on average `distance` px from edges, at 540 lines.
+///
+/// It is a logistic regression of "within 2 px of the true contour" on six animated sequences with known truth and
+/// equal weights. In every tenth from 0 to 1 the share of such points is within 0.09 of the confidence.
 fn confidence(difference: f64, distance: f64) -> f64 {
     let z = 3.87 - 4.58 * difference.sqrt() - 2.47 * distance.ln_1p();
     1.0 / (1.0 + (-z).exp())
@@ -277,7 +280,7 @@ mod tests {
 
     const SIZE: (usize, usize) = (160, 120);
 
-    /// A box with a bright corner that goes along a bow from (40, 60) to (110, 60).
+    /// A box with a bright corner that moves along a bow from (40, 60) to (110, 60).
     struct Bow;
 
     fn middle(frame: FrameNumber) -> Point {
@@ -359,7 +362,7 @@ mod tests {
         }
         assert_eq!(track.points[4], outline(4));
         let free = solve(&Job { corrections: BTreeMap::new(), ..job.clone() });
-        assert!(free.points[1][0].distance(track.points[1][0]) > 0.5, "a pin draws the neighbouring frames");
+        assert!(free.points[1][0].distance(track.points[1][0]) > 0.5, "a pin affects the neighbouring frames");
     }
 
     #[test]
@@ -396,7 +399,7 @@ mod tests {
         assert_eq!(solver.solve(&job, &Bow, &Silent).unwrap(), first);
     }
 
-    /// Stops at the `at`-th report; holds that reports never fall.
+    /// Stops at the report number `at`, and checks that the reported share never decreases.
     struct StopAt {
         at: usize,
         reports: AtomicUsize,

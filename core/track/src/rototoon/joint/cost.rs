@@ -1,4 +1,4 @@
-//! What a choice of hypotheses costs: looks, given who hides whom, and torn joints.
+//! The cost of a choice of hypotheses: their fit given what hides them, and torn joints.
 
 use super::contender::{Contender, Paths, State};
 use super::shadow::Shadows;
@@ -6,18 +6,19 @@ use super::tie::Tie;
 use crate::rototoon::select::Smoothness;
 use rototoon_base::geometry::Point;
 
-/// The parts, who hides whom, and who hangs on whom.
+/// The parts of a joint choice, their occlusions and their joints.
 pub struct Scene<'a> {
     /// The parts with their hypotheses.
     pub contenders: &'a [Contender<'a>],
-    /// Who hides whom.
+    /// Which hypotheses hide which samples.
     pub shadows: &'a Shadows,
-    /// Who hangs on whom.
+    /// The joints between parts.
     pub ties: &'a [Tie],
 }
 
 impl Scene<'_> {
-    /// √U of a state of contender `c`, given the choices of the others; `instead` replaces one of those.
+    /// √U of a state of contender `c`: its fit given the choices of the contenders that may hide it. `instead` is
+    /// (contender, hypothesis) and replaces that contender's choice.
     pub fn look(&self, c: usize, (d, h): State, paths: &Paths, instead: Option<(usize, usize)>) -> f64 {
         let frame = self.contenders[c].frame_of(d);
         let mut hidden = vec![0u64; self.shadows.words(c, d, h)];
@@ -32,7 +33,7 @@ impl Scene<'_> {
         self.shadows.cost(c, (d, h), &hidden)
     }
 
-    /// What the parts behind `c` cost if it is in a state; `but` is left out.
+    /// Cost of the fit of all contenders behind `c` if `c` is in the state given. The contender `but` is left out.
     pub fn look_behind(&self, c: usize, (d, h): State, paths: &Paths, but: Option<usize>) -> f64 {
         let mut sum = 0.0;
         for &far in self.shadows.behind(c).iter().filter(|&&far| Some(far) != but) {
@@ -45,7 +46,7 @@ impl Scene<'_> {
         sum
     }
 
-    /// What the joints of `c` cost if it is in a state; those with `but` are left out.
+    /// Cost of the joints of `c` if `c` is in the state given. The joint with the contender `but` is left out.
     pub fn joints(&self, c: usize, state: State, paths: &Paths, but: Option<usize>) -> f64 {
         let cost = |tie: &Tie| {
             let other = tie.other(c).filter(|&(other, _)| Some(other) != but)?.0;
@@ -55,7 +56,7 @@ impl Scene<'_> {
         self.ties.iter().filter_map(cost).sum()
     }
 
-    /// What one joint costs between two contenders in their states.
+    /// Cost of one joint between two contenders in their states.
     pub fn joint(&self, tie: &Tie, (a, state_a): (usize, State), (b, state_b): (usize, State)) -> f64 {
         let place = |c: usize, (d, h): State| {
             let hypothesis = &self.contenders[c].pools[d][h];
@@ -67,7 +68,7 @@ impl Scene<'_> {
         }
     }
 
-    /// The joint between two contenders.
+    /// The joint between two contenders, if they have one.
     pub fn tie_of(&self, a: usize, b: usize) -> Option<&Tie> {
         self.ties.iter().find(|tie| tie.other(a).is_some_and(|(other, _)| other == b))
     }
@@ -77,7 +78,7 @@ impl Scene<'_> {
         Smoothness::new(self.contenders[c].models[0].texture.mesh.size)
     }
 
-    /// The part of the joint energy that the choices of the contenders in `who` touch.
+    /// The part of the joint energy that depends on the choices of the contenders in `who`.
     pub fn energy(&self, who: &[usize], paths: &Paths) -> f64 {
         let mut seen: Vec<usize> = who.to_vec();
         who.iter().for_each(|&c| seen.extend(self.shadows.behind(c)));
@@ -95,7 +96,7 @@ impl Scene<'_> {
         seen.iter().map(looks).sum::<f64>() + who.iter().map(smooth).sum::<f64>() + self.torn(who, paths)
     }
 
-    /// What the joints of some contenders cost; a joint between two of them counts once.
+    /// Cost of the joints of the contenders in `who`. A joint between two of them counts once.
     fn torn(&self, who: &[usize], paths: &Paths) -> f64 {
         let touched = self.ties.iter().filter(|tie| who.iter().any(|&c| tie.other(c).is_some()));
         let cost = |tie: &Tie| {

@@ -1,16 +1,19 @@
-//! Which hypothesis each part follows, decided for all parts together.
+//! Chooses the hypothesis of each part on each drawing, for all parts together.
 //!
-//! A part alone cannot know that the leg it fits so well is another part's. What is said by all: nearer parts hide
-//! farther ones. A sample of a part that lies under a nearer part is unseen, and costs [`shadow::HIDDEN`], less than a
-//! wrong colour, more than a right one. So of two equal legs, both on one drawn leg is dearer than one on each, and a
-//! part that is really hidden is not driven out to where its colour happens to be.
+//! A part alone cannot know that the leg it fits so well is another part's leg. Occlusion tells them apart. A sample of
+//! a part under a nearer part is unseen. It costs [`shadow::HIDDEN`], which is less than a wrong colour and more than a
+//! right one. So if two equal legs both choose the same drawn leg, that costs more than one on each. And a part that is
+//! really hidden is not pulled out to a place that happens to have its colour.
 //!
-//! E = Σ_parts [ Σ_drawings √U + smoothness ], U the visible energy of a hypothesis given the nearer parts' choices, the
-//! smoothness as in [`super::select`], plus what torn joints cost ([`tie`]). It is lowered by moves, each found by dynamic
-//! programming and taken only if E falls: all drawings of one part, or all drawings of two parts of which one hides the
-//! other. Moves of two are what lets crossing twins change places.
+//! The energy is E = Σ_parts [ Σ_drawings √U + smoothness ] plus the cost of torn joints ([`tie`]). U is the visible
+//! energy of a hypothesis, given the choices of the nearer parts. The smoothness is that of [`super::select`].
 //!
-//! Limits: a local minimum of moves of two; parts that are keyed on different frames move singly only.
+//! E is lowered by moves. A move changes the paths of one part, or of two parts of which one hides the other, on all
+//! drawings. Dynamic programming finds the best paths of a move, and the move is made only if E falls. Moves of two
+//! parts let crossing twins swap places.
+//!
+//! Limits: the result is a local minimum with respect to these moves. Parts that are keyed on different frames move
+//! singly only.
 
 mod contender;
 pub mod cost;
@@ -28,9 +31,9 @@ use shadow::{Memory, Shadows};
 use std::collections::BTreeMap;
 use tie::Tie;
 
-/// Rounds over all parts and pairs at the most.
+/// Largest number of rounds over all parts and pairs.
 const ROUNDS: usize = 4;
-/// Moves found at once.
+/// Number of moves computed in parallel.
 const AT_ONCE: usize = 8;
 
 /// The hypothesis that each contender follows on each of its drawings; `ties` are their hinges ([`tie::find`]), `paths` is
@@ -65,8 +68,8 @@ pub fn choose(
     paths
 }
 
-/// Tries all moves in their order. Most gain nothing, so that the next few are found at once; what sees a change that one
-/// of these few has just made is found anew.
+/// Tries all moves in their order. Most moves gain nothing, so the next few are computed in parallel. If one of these
+/// few changes a path, the moves of the few that depend on it are computed again.
 fn round(scene: &cost::Scene, moves: &mut [Move], paths: &mut [Vec<usize>], changed: &mut Changes) {
     let mut next = 0;
     while next < moves.len() {
@@ -88,14 +91,15 @@ fn round(scene: &cost::Scene, moves: &mut [Move], paths: &mut [Vec<usize>], chan
     }
 }
 
-/// When the contenders' paths changed, counted in changes.
+/// When each contender's path last changed, as a count of changes.
 struct Changes {
     count: usize,
     last: Vec<usize>,
 }
 
 impl Changes {
-    /// Whether something that a move sees has changed since a moment. If not, it would find the same again.
+    /// Whether a path that a move depends on has changed after the change number `since`. If not, the move would give
+    /// the same result again.
     fn seen(&self, by: &Move, since: usize) -> bool {
         by.seen.iter().any(|&c| self.last[c] > since)
     }
@@ -109,11 +113,11 @@ impl Changes {
     }
 }
 
-/// A move to try: new paths for one contender or for two.
+/// A move: new paths for one contender or for two.
 struct Move {
     who: Vec<usize>,
-    /// Those whose choices its outcome depends on, itself included.
+    /// The contenders whose choices the result depends on, with those of the move itself.
     seen: Vec<usize>,
-    /// The number of changes before it was tried last.
+    /// The number of changes when the move was last tried.
     tried: Option<usize>,
 }

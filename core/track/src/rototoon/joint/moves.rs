@@ -1,22 +1,22 @@
-//! Moves that lower the joint energy: the whole path of one part, or of two parts at once.
+//! Moves that lower the joint energy: new paths for one part, or for two parts at once.
 //!
-//! With the other parts held, the energy of one part's path is a sum over drawings and over pairs and triples of
-//! neighbouring drawings, so that its best path is found exactly ([`best_path`]). Of two parts the state of a drawing is
-//! a pair of hypotheses; its motion cost is the sum of both parts' ([`pairs`](super::pairs)).
+//! With the other parts fixed, the energy of one part's path is a sum over drawings and over pairs and triples of
+//! neighbouring drawings. So its best path is found exactly ([`best_path`]). For two parts the state of a drawing is a
+//! pair of hypotheses, and its motion cost is the sum of both parts' motion costs ([`pairs`](super::pairs)).
 
 use super::contender::{Paths, State};
 use super::cost::Scene;
 use super::pairs::{PairProblem, best_pair};
 use crate::rototoon::select::{Candidate, best_path};
 
-/// Hypotheses of each part that a move of two weighs on a drawing.
+/// Hypotheses per part and drawing that a move of two parts considers.
 const STATES: usize = 6;
-/// A smaller gain is rounding.
+/// Smaller gains are rounding errors.
 const LEAST_GAIN: f64 = 1e-9;
 
 impl Scene<'_> {
-    /// New paths of one contender, or of a far and a near one of the same drawings, the others held; none where they
-    /// gain nothing.
+    /// New paths of one contender, or of a far and a near one with the same drawings, while the others are fixed. None
+    /// if they do not lower the energy.
     pub fn proposal(&self, who: &[usize], paths: &Paths) -> Option<Vec<(usize, Vec<usize>)>> {
         let new = match *who {
             [c] => self.single(c, paths),
@@ -26,8 +26,8 @@ impl Scene<'_> {
         self.gains(&new, paths).then_some(new)
     }
 
-    /// The contenders whose choices a move of some depends on: those that hide them, that they hide, that hide what they
-    /// hide, and that they hang on.
+    /// The contenders whose choices a move of `who` depends on: the contenders that hide them, that they hide, that
+    /// hide the same contenders as they do, and that they are joined to.
     pub fn seen_by(&self, who: &[usize]) -> Vec<usize> {
         let mut seen: Vec<usize> = who.to_vec();
         for &c in who {
@@ -43,7 +43,7 @@ impl Scene<'_> {
         seen
     }
 
-    /// The best path of one contender, the others held.
+    /// The best path of one contender while the others are fixed.
     fn single(&self, c: usize, paths: &Paths) -> Vec<(usize, Vec<usize>)> {
         let pools = self.contenders[c].pools;
         let candidates: Vec<Vec<Candidate>> = (0..pools.len())
@@ -55,7 +55,7 @@ impl Scene<'_> {
         vec![(c, best_path(&candidates, self.smoothness(c)))]
     }
 
-    /// The best paths of a far and a near contender of the same drawings, the others held.
+    /// The best paths of a far and a near contender with the same drawings while the others are fixed.
     fn pair(&self, far: usize, near: usize, paths: &Paths) -> Vec<(usize, Vec<usize>)> {
         let drawings = self.contenders[far].pools.len();
         let states = |c: usize| -> Vec<Vec<usize>> { (0..drawings).map(|d| self.states(c, d, paths)).collect() };
@@ -77,9 +77,10 @@ impl Scene<'_> {
         vec![(far, path(0)), (near, path(1))]
     }
 
-    /// Costs of all pairs of states of a far and a near contender on a drawing, the near one's states innermost.
+    /// Costs of all pairs of states of a far and a near contender on a drawing. The near one's state is the inner
+    /// index.
     fn pair_costs(&self, [far, near]: [usize; 2], d: usize, states: &[Vec<Vec<usize>>; 2], paths: &Paths) -> Vec<f64> {
-        // What hides the far one depends on the pair, so that its own look is left to the table.
+        // The samples of the far one that are hidden depend on the pair, so its own fit is added in the table below.
         let far_alone =
             |&f: &usize| self.look_behind(far, (d, f), paths, Some(near)) + self.joints(far, (d, f), paths, Some(near));
         let far_costs: Vec<f64> = states[0][d].iter().map(far_alone).collect();
@@ -96,12 +97,12 @@ impl Scene<'_> {
         table
     }
 
-    /// What a state costs, but for motion; nothing of `but` is counted.
+    /// Cost of a state without motion. The contender `but` does not count.
     fn alone(&self, c: usize, state: State, paths: &Paths, but: Option<usize>) -> f64 {
         self.look(c, state, paths, None) + self.look_behind(c, state, paths, but) + self.joints(c, state, paths, but)
     }
 
-    /// The hypotheses of a drawing that a move of two weighs: those of least energy and the present one.
+    /// The hypotheses of a drawing that a move of two parts considers: those of least energy and the present one.
     fn states(&self, c: usize, d: usize, paths: &Paths) -> Vec<usize> {
         let pool = &self.contenders[c].pools[d];
         let mut order: Vec<usize> = (0..pool.len()).filter(|&h| h != paths[c][d]).collect();
@@ -111,7 +112,7 @@ impl Scene<'_> {
         order
     }
 
-    /// Whether the energy falls with new paths.
+    /// Whether the energy is lower with the new paths.
     fn gains(&self, new: &[(usize, Vec<usize>)], paths: &Paths) -> bool {
         if new.iter().all(|(c, path)| paths[*c] == *path) {
             return false;

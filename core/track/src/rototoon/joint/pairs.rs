@@ -1,15 +1,17 @@
-//! The best paths of two parts at once: second-order dynamic programming over pairs of states.
+//! The best paths of two parts at once, by second-order dynamic programming over pairs of states.
 //!
-//! The cost of motion is a sum of both parts', so that it is tabulated for each part alone, and the least over the pairs of
-//! the drawing two before is taken over one part's states and then over the other's: 2 s⁵ operations a drawing for s
-//! states of each part, not the s⁶ of triples of pairs.
+//! The motion cost is the sum of both parts' costs, so it is tabulated for each part alone. The minimum over the pairs
+//! of states two drawings before is taken over one part's states first and then over the other's. For s states per part
+//! this needs 2 s⁵ operations per drawing, instead of the s⁶ for all triples of pairs.
+//!
+//! Source: our own; the path search for a single part is in `select`.
 
 use crate::rototoon::select::{Smoothness, trace_back};
 use rototoon_base::geometry::Point;
 
-/// Two parts with some states on each drawing.
+/// Two parts with some states on each drawing. Places are in working pixels.
 pub struct PairProblem<'a> {
-    /// By drawing: costs of all pairs of states, the second part's innermost.
+    /// By drawing: costs of all pairs of states. The second part's state is the inner index.
     pub costs: Vec<Vec<f64>>,
     /// By part, drawing and state: the control points.
     pub points: [Vec<Vec<&'a [Point]>>; 2],
@@ -17,7 +19,7 @@ pub struct PairProblem<'a> {
     pub smoothness: [Smoothness; 2],
 }
 
-/// Costs of motion of one part between its states on neighbouring drawings, the last drawing's states innermost.
+/// Motion costs of one part between its states on neighbouring drawings. The last drawing's state is the inner index.
 struct Motion {
     counts: [usize; 3],
     speed: Vec<f64>,
@@ -25,7 +27,7 @@ struct Motion {
 }
 
 impl Motion {
-    /// To drawing `d` from the two before it, of which only one may be there.
+    /// Costs of the motion to drawing `d` from the two drawings before it, or from one if `d` is 1.
     fn new(problem: &PairProblem, part: usize, d: usize) -> Self {
         let (points, smoothness) = (&problem.points[part], problem.smoothness[part]);
         let (mut speed, mut acceleration) = (Vec::new(), Vec::new());
@@ -50,13 +52,13 @@ impl Motion {
     }
 }
 
-/// For one pair of states on the drawing before: least costs of coming from each state of the second part, for each state
-/// that the first part goes to.
+/// For one pair of states on the previous drawing: the least cost of arriving there from each state of the second part,
+/// for each next state of the first part.
 struct Arrivals {
     inner: usize,
     targets: usize,
-    /// By the second part's state two drawings before, then by the first part's now: cost and the first part's state
-    /// two drawings before.
+    /// The least cost, and the first part's state two drawings before. Outer index: the second part's state two
+    /// drawings before. Inner index: the first part's state on the present drawing.
     table: Vec<(f64, usize)>,
 }
 
@@ -77,7 +79,7 @@ impl Arrivals {
         Self { inner, targets, table }
     }
 
-    /// Least cost of coming to a pair, and the pair two drawings before.
+    /// Least cost of arriving at a pair of states, and the pair two drawings before.
     fn least(&self, motion: &[Motion; 2], [_, g1]: [usize; 2], [h0, h1]: [usize; 2]) -> (f64, usize) {
         let mut best = (f64::INFINITY, 0);
         for f1 in 0..self.inner {
@@ -91,7 +93,7 @@ impl Arrivals {
     }
 }
 
-/// The states of both parts on each drawing along their paths of least cost.
+/// The states of both parts on each drawing, along their paths of least total cost.
 pub fn best_pair(problem: &PairProblem) -> Vec<[usize; 2]> {
     let split = |d: usize, pair: usize| {
         let inner = problem.points[1][d].len();
@@ -107,7 +109,7 @@ pub fn best_pair(problem: &PairProblem) -> Vec<[usize; 2]> {
         let (from, to) = (split(d - 1, g), split(d, h));
         problem.costs[d][h] + motion[0].speed(from[0], to[0]) + motion[1].speed(from[1], to[1])
     };
-    // least[g][h]: least cost of paths that end with the pair g, then h.
+    // least[g][h]: least cost of the paths that end with the pair g, then the pair h.
     let mut least: Vec<Vec<f64>> =
         (0..count(0)).map(|g| (0..count(1)).map(|h| problem.costs[0][g] + step(&motion, 1, g, h)).collect()).collect();
     let mut origins: Vec<Vec<Vec<usize>>> = Vec::new();
@@ -135,7 +137,7 @@ mod tests {
 
     type Pool = Vec<(f64, f64)>;
 
-    /// Cost of one way to go, added up term by term.
+    /// Cost of one pair of paths, added up term by term.
     fn cost_of(way: &[[usize; 2]], problem: &PairProblem) -> f64 {
         let mut cost = 0.0;
         for (d, pair) in way.iter().enumerate() {

@@ -1,4 +1,10 @@
-//! What of each hypothesis the hypotheses of nearer parts hide.
+//! Shadows: which samples of each hypothesis are hidden by the hypotheses of nearer parts.
+//!
+//! For every pair of a far and a near part, on every drawing, and for every pair of their hypotheses there is a bit
+//! mask of the far part's hidden samples. The near part hides the inside of its contour. The masks make the cost of a
+//! choice of hypotheses quick to compute. They are kept for the next call as long as the pools are the same.
+//!
+//! Limit: the contours are drawn with pixels of 3 × 3 working pixels.
 
 use super::contender::{Contender, State};
 use crate::rototoon::lattice::texture::UNSEEN;
@@ -12,19 +18,19 @@ use std::sync::Arc;
 /// Cost of a sample that a nearer part hides, as a squared colour difference.
 pub const HIDDEN: f32 = UNSEEN;
 
-/// Side of the pixels that shadows are drawn in, in working pixels.
+/// Side of the pixels in which shadows are drawn, in working pixels.
 const PIXEL: f64 = 3.0;
 
-/// Samples of a hypothesis under one of a nearer part: a bit each, none where no sample is.
+/// Samples of a hypothesis that a nearer hypothesis hides, one bit per sample. `None` if it hides no sample.
 pub type Mask = Option<Box<[u64]>>;
 
-/// Masks on a contender by a nearer one: by far drawing, far hypothesis, near hypothesis.
+/// Masks of one far and one near contender, by the far one's drawing, its hypothesis, and the near one's hypothesis.
 type Masks = Vec<Vec<Vec<Mask>>>;
 
-/// What the samples of a contender's hypotheses cost, by drawing and hypothesis.
+/// Sample costs of a contender's hypotheses, by drawing and hypothesis.
 type Costs = Vec<Vec<SampleCosts>>;
 
-/// Which samples are hidden, by (far contender, near contender).
+/// Hidden samples of all pairs of contenders, with the costs of the samples.
 pub struct Shadows {
     masks: BTreeMap<(usize, usize), Arc<Masks>>,
     costs: Vec<Arc<Costs>>,
@@ -32,15 +38,15 @@ pub struct Shadows {
     behind: Vec<Vec<usize>>,
 }
 
-/// What the samples of a hypothesis cost, seen and hidden.
+/// Costs of the samples of a hypothesis.
 struct SampleCosts {
     seen: f64,
-    /// What hiding a sample adds.
+    /// Change of the cost if a sample is hidden, by sample.
     hiding: Vec<f32>,
     bending: f64,
 }
 
-/// The inside of a contour in its bounding box.
+/// The inside of a contour, as a raster in its bounding box.
 struct Silhouette {
     corner: Point,
     pixels: Raster<bool>,
@@ -84,28 +90,29 @@ impl Silhouette {
     }
 }
 
-/// Shadows cast before: those between pools that are the same still need not be cast again.
+/// Shadows of the last call. Shadows between pools that are still the same need not be computed again.
 #[derive(Default)]
 pub struct Memory {
     before: Casts,
     now: Casts,
 }
 
-/// What was cast, by the addresses of the pools, which are kept so that the addresses stay theirs.
+/// Computed shadows by the addresses of the pools. The pools are kept too, so that no other pool can get the same
+/// address.
 #[derive(Default)]
 struct Casts {
     masks: BTreeMap<(usize, usize), PairCast>,
     costs: BTreeMap<usize, (Arc<Pools>, Arc<Costs>)>,
 }
 
-/// A far and a near contender, and the masks, where there are any.
+/// A far and a near contender, and their masks. `None` if the near one hides no sample.
 type Fresh = ((usize, usize), Option<Arc<Masks>>);
 
-/// A far and a near contender's pools, and the masks, where there are any.
+/// The pools of a far and a near contender, and their masks. `None` if the near one hides no sample.
 type PairCast = ([Arc<Pools>; 2], Option<Arc<Masks>>);
 
 impl Memory {
-    /// Forgets what was not asked for since the last call of this.
+    /// Forgets the shadows that were not used since the last call of this function.
     pub fn turn(&mut self) {
         self.before = std::mem::take(&mut self.now);
     }
@@ -116,7 +123,7 @@ fn address(pools: &Arc<Pools>) -> usize {
 }
 
 impl Shadows {
-    /// Casts the shadows of all hypotheses on all farther ones.
+    /// Computes the shadows of all hypotheses on all hypotheses of farther parts.
     pub fn cast(contenders: &[Contender], memory: &mut Memory) -> Self {
         let index: Vec<usize> = (0..contenders.len()).collect();
         let pair = |&(f, n): &(usize, usize)| (address(contenders[f].pools), address(contenders[n].pools));
@@ -159,17 +166,17 @@ impl Shadows {
         Self { masks, costs, in_front, behind }
     }
 
-    /// Whether nothing hides anything.
+    /// Whether no part hides another.
     pub fn none(&self) -> bool {
         self.masks.is_empty()
     }
 
-    /// The pairs (far, near) of contenders of which one may hide the other.
+    /// The pairs (far, near) of contenders in which the near one hides some sample of the far one.
     pub fn pairs(&self) -> Vec<(usize, usize)> {
         self.masks.keys().copied().collect()
     }
 
-    /// The samples of a far hypothesis that a near one hides.
+    /// The samples of a far hypothesis that a near hypothesis hides, as a bit mask. `parts` is (far, near).
     pub fn mask(&self, parts: (usize, usize), (drawing, hypothesis): State, near_hypothesis: usize) -> Option<&[u64]> {
         self.masks.get(&parts)?[drawing][hypothesis].get(near_hypothesis)?.as_deref()
     }
@@ -184,12 +191,12 @@ impl Shadows {
         &self.behind[contender]
     }
 
-    /// Number of words of a mask.
+    /// Number of words of a mask of a hypothesis.
     pub fn words(&self, contender: usize, drawing: usize, hypothesis: usize) -> usize {
         self.costs[contender][drawing][hypothesis].hiding.len().div_ceil(64)
     }
 
-    /// √U of a hypothesis of which the samples in `hidden` are unseen.
+    /// √U of a hypothesis whose samples in the mask `hidden` are unseen.
     pub fn cost(&self, contender: usize, (drawing, hypothesis): State, hidden: &[u64]) -> f64 {
         let costs = &self.costs[contender][drawing][hypothesis];
         let mut sum = costs.seen;
@@ -204,7 +211,7 @@ impl Shadows {
     }
 }
 
-/// By drawing and hypothesis.
+/// Silhouettes by drawing and hypothesis.
 type Silhouettes = Vec<Vec<Option<Silhouette>>>;
 
 fn silhouettes(c: &Contender) -> Silhouettes {
@@ -212,13 +219,13 @@ fn silhouettes(c: &Contender) -> Silhouettes {
     c.pools.iter().map(of_pool).collect()
 }
 
-/// Whether the second contender lies before the first one.
+/// Whether the second contender of the pair is nearer than the first one, shares frames with it and can hide others.
 fn may_hide(contenders: &[Contender], (far, near): (usize, usize)) -> bool {
     let (far, near) = (&contenders[far], &contenders[near]);
     near.hides && near.depth > far.depth && near.span.first < far.span.last && far.span.first < near.span.last
 }
 
-/// The masks on one contender by the nearer ones of the pairs it is the far one of.
+/// The masks on the contender `f` by the nearer contenders, for the pairs in which it is the far one.
 fn masks_on(contenders: &[Contender], silhouettes: &[Silhouettes], pairs: &[(usize, usize)], f: usize) -> Vec<Fresh> {
     let far = &contenders[f];
     let nearer: Vec<usize> = pairs.iter().filter(|pair| pair.0 == f).map(|pair| pair.1).collect();

@@ -13,7 +13,7 @@ use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Raster, Span};
 use std::sync::Arc;
 
-/// A bar of 20 × 80 working pixels whose upper end's middle is the origin.
+/// A bar of 20 × 80 working pixels. The origin is the middle of its upper end.
 fn bar() -> Vec<Point> {
     [(-10.0, 0.0), (10.0, 0.0), (10.0, 80.0), (-10.0, 80.0)].map(|(x, y)| Point::new(x, y)).to_vec()
 }
@@ -23,7 +23,7 @@ fn turned(shape: &[Point], degrees: f64, to: Point) -> Vec<Point> {
     shape.iter().map(|&p| turn.rotate(p) + to).collect()
 }
 
-/// A model of a shape on plain paper, that is at `there` at the other key.
+/// A model of a shape on plain paper. `there` is its rotation and shift to the other key.
 fn model(shape: &[Point], there: (f64, Point)) -> Model {
     let paper = Features::new(&Raster::new(540, 540, [0.5f32; 3]));
     let mesh = Mesh::new(shape, true);
@@ -53,7 +53,7 @@ fn two_parts_do_not_stand_in_one_place() {
     let near_models = [model(&at(200.0), still), model(&at(200.0), still)];
     let drawings = three_drawings();
     let key = |models: &[Model; 2]| vec![hypothesis(&models[0], 0.0, Point::ZERO, 0.0)];
-    // On the middle drawing the far part fits the near one's place so well that alone it would go there.
+    // On the middle drawing the far part fits at the near one's place so well that alone it would go there.
     let aside = hypothesis(&far_models[0], 0.0, Point::new(-40.0, 0.0), 0.0005);
     let home = hypothesis(&far_models[0], 0.0, Point::ZERO, 0.02);
     let far: Arc<Pools> = Arc::new(vec![key(&far_models), vec![aside, home], key(&far_models)]);
@@ -66,10 +66,10 @@ fn two_parts_do_not_stand_in_one_place() {
         let both = [contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)];
         choose(&both, &tie::find(&both), vec![vec![0, 0, 0]; 2], memory)
     };
-    // Parts of one depth hide nothing of each other.
+    // Parts of the same depth do not hide each other.
     assert_eq!(chosen(0.0, &mut memory), [[0, 0, 0], [0, 0, 0]]);
     assert_eq!(chosen(1.0, &mut memory), [[0, 1, 0], [0, 0, 0]]);
-    // Shadows that are remembered are the ones that were cast, and depths may change.
+    // Remembered shadows equal the computed ones, and depths may change.
     memory.turn();
     assert_eq!(chosen(1.0, &mut memory), [[0, 1, 0], [0, 0, 0]]);
     assert_eq!(chosen(-1.0, &mut memory), [[0, 1, 0], [0, 0, 0]]);

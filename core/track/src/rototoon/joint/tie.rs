@@ -1,50 +1,52 @@
-//! Parts that hang together: a hinge is a place that both parts carry along.
+//! Joints: parts that are connected stay together at a hinge, a place that both parts carry along.
 //!
-//! Between two keys each part has a motion of its own (its lattice brought from one contour to the other). Where the
-//! parts overlap, the place that both motions take to the same spot, or nearly so, is where they are joined: for a limb
-//! that turned against the body that is its pivot; for parts that moved alike, any place of the overlap, and the middle
-//! is taken. Hypotheses that tear a joint cost more than such that keep it, up to a limit, since the joint is a guess.
+//! Between two keys each part has a motion of its own: its lattice moved from one contour to the other. In the overlap
+//! of two parts, the place that both motions take to nearly the same spot is their joint. For a limb that rotates
+//! against the body it is the pivot. For parts that move alike every place of the overlap fits, and the place nearest
+//! to the middle is taken. Hypotheses that tear a joint cost more than hypotheses that keep it. The cost has an upper
+//! limit, because the joint is a guess.
 //!
-//! Limits: a joint shows only where both parts are keyed on the same frames.
+//! Limit: a joint is found only between parts that are keyed on the same frames.
 
 use super::contender::Contender;
 use crate::rototoon::lattice::mesh::Binding;
 use rototoon_base::geometry::{Point, polygon, polyline};
 
-/// Distance from a part within which a place still belongs to it, in working pixels.
+/// A place within this distance of a part's contour still belongs to the part, in working pixels.
 const MARGIN: f64 = 6.0;
-/// Cost of a joint that is torn by [`TORN`] working pixels or more.
+/// Cost of a joint that is torn by [`TORN`] working pixels or more. Below that the cost is proportional.
 const COST_OF_TORN: f64 = 0.06;
 const TORN: f64 = 25.0;
 
-/// A hinge between two contenders.
+/// A joint between two contenders.
 pub struct Tie {
-    /// The contenders.
+    /// Indices of the contenders.
     pub parts: [usize; 2],
     /// The hinge in the lattice of each model (second index) of each part (first index).
     bindings: [[Binding; 2]; 2],
 }
 
 impl Tie {
-    /// The contender at the other end, and which end `c` is.
+    /// The contender at the other end of the joint, and the end (0 or 1) at which `c` is. `None` if the joint is not
+    /// one of `c`.
     pub fn other(&self, c: usize) -> Option<(usize, usize)> {
         let end = self.parts.iter().position(|&p| p == c)?;
         Some((self.parts[1 - end], end))
     }
 
-    /// Where a pose of contender `c` puts the hinge.
+    /// Where a pose of contender `c` puts the hinge, in working pixels. `nodes` are the nodes of the pose.
     pub fn place(&self, c: usize, model: usize, nodes: &[Point]) -> Option<Point> {
         let (_, end) = self.other(c)?;
         Some(self.bindings[end][model].at(nodes))
     }
 
-    /// Cost of a joint whose ends lie at these places.
+    /// Cost of a joint whose two ends are at these places, in working pixels.
     pub fn cost(a: Point, b: Point) -> f64 {
         COST_OF_TORN * (a.distance(b) / TORN).min(1.0)
     }
 }
 
-/// The hinges of all contenders: of each part, the one that tears least.
+/// The joints of all contenders: for each part the joint that fits best.
 pub fn find(contenders: &[Contender]) -> Vec<Tie> {
     let mut ties: Vec<Tie> = Vec::new();
     for c in 0..contenders.len() {
@@ -60,7 +62,7 @@ pub fn find(contenders: &[Contender]) -> Vec<Tie> {
     ties
 }
 
-/// The place at both keys where two parts are joined, and a measure of how badly they are.
+/// The place at both keys where two parts are joined, and a score that is smaller for a better joint.
 fn hinge(a: &Contender, b: &Contender) -> Option<(f64, [Point; 2])> {
     let (mesh_a, mesh_b) = (&a.models[0].texture.mesh, &b.models[0].texture.mesh);
     let belongs = |c: &Contender, key: usize, p: Point| {
@@ -85,19 +87,21 @@ fn hinge(a: &Contender, b: &Contender) -> Option<(f64, [Point; 2])> {
     fits.then_some((score, places))
 }
 
-/// Where a part's joint lies, on the drawings on which the part is in doubt and the one it hangs on is surer.
+/// Places of a part's joint on the drawings on which the part is in doubt and the part at the other end is surer. They
+/// lead the part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lead {
     /// The joint in the lattices of the part's models.
     pub bindings: [Binding; 2],
-    /// Its place by drawing of the part.
+    /// Place of the joint in working pixels, by drawing of the part.
     pub places: Vec<Option<Point>>,
 }
 
-/// Distance of the models' first hypotheses, or of the torn joint's ends, from which on a part is in doubt.
+/// A part is in doubt if the first hypotheses of its two models, or the ends of its torn joint, are further apart than
+/// this, in working pixels.
 const DOUBT: f64 = 4.0;
 
-/// The leads of each contender.
+/// The leads of each contender. `paths` are the present choices.
 pub fn leads(contenders: &[Contender], ties: &[Tie], paths: &[Vec<usize>]) -> Vec<Vec<Lead>> {
     let of = |c: usize| {
         let lead = |tie: &Tie| {

@@ -1,18 +1,23 @@
-//! The pose of a lattice that explains a picture best, by Gauss–Newton from a start nearby.
+//! Finds the pose of a lattice that explains a picture best, by Gauss–Newton from a start nearby.
 //!
-//! Minimises (cells / samples) Σ w ρ(‖I(y) − C‖²) + λ Σ shape over the nodes; y is where the pose puts a sample, C the
-//! key's colour there. ρ is Geman & McClure's: its weight 1 / (1 + e/σ²)² lets go of samples that are covered or
-//! recoloured. The picture's slope is the mean of what the picture has at y and of what the key has there, turned with
-//! the lattice: to second order exact at the solution (Benhimane & Malis 2004), and worth 2 points of 100 over the
-//! picture's own. Cells turn freely: their best turns are refitted in each iteration (local / global steps), and the key's
-//! slope is turned with its cell.
+//! It minimises (cells / samples) Σ w ρ(‖I(y) − C‖²) + λ Σ shape over the nodes. y is the place of a sample in the
+//! pose, C is the key's colour of the sample, and `shape` is the energy of the cells (module `shape`).
 //!
-//! On the two coarser levels nodes move together with their neighbours ([`super::unknowns`]): one cell says too little there.
+//! - ρ is the robust function of Geman & McClure. Its weight 1 / (1 + e/σ²)² reduces the effect of samples that are
+//!   covered or recoloured.
+//! - The slope of the picture is the mean of the frame's slope at y and the key's slope, rotated with the lattice. At
+//!   the solution this is exact to second order (Benhimane & Malis 2004). It gains 2 points of 100 over the frame's
+//!   slope alone.
+//! - Cells rotate freely. Their best rotations are computed again in each iteration (local/global steps), and the key's
+//!   slope is rotated with its cell.
+//! - On the two coarser levels nodes move together with their neighbours ([`super::unknowns`]), because one cell has
+//!   too little information there.
+//! - For a sample outside the part only the slope across the contour counts. Changes along the contour out there belong
+//!   to the background. Example: where the outline of a head meets the outline of an ear in front of it, the corner is
+//!   not a fixed place on the ear, and a lattice that follows it is pulled along its part. This gains 0.7 points of 100
+//!   over fourteen sequences, and 5 points where parts slide over others of the same colour.
 //!
-//! Of a sample outside the part only the slope across the contour counts. What changes along the contour out there belongs
-//! to the ground: where the outline of a head meets that of an ear before it, the corner is no place on the ear, and a
-//! lattice that follows it is drawn along its part. It is worth 0.7 points of 100 over fourteen sequences, 5 where parts
-//! slide over others of their own colour.
+//! Limit: it finds a local minimum near the start. Larger motions get their starts from dense flow and from `search`.
 
 use super::anchors::Anchors;
 use super::equations::Equations;
@@ -25,49 +30,49 @@ use rototoon_base::numeric::banded::BandMatrix;
 use rototoon_base::numeric::lanes::Lanes;
 use rototoon_base::numeric::vector::vectorised;
 
-/// Weight of the shape energy.
+/// λ: weight of the shape energy.
 const STIFFNESS: f64 = 0.05;
 /// σ of ρ by level, in colour units.
 const TOLERANCE: [f32; 3] = [0.35, 0.25, 0.18];
-/// Iterations by level.
+/// Largest number of iterations by level.
 const ITERATIONS: [usize; 3] = [6, 5, 4];
-/// Longest step of a node, in pixels of the level.
+/// Longest step of a node along an axis, in pixels of the level.
 const LONGEST_STEP: f64 = 2.0;
-/// A step shorter than this ends the level, in pixels of the level.
+/// A step shorter than this ends the iteration on a level, in pixels of the level.
 const SHORTEST_STEP: f64 = 0.3;
-/// Samples below which a level says too little about a pose.
+/// Least number of samples of a level. With fewer the level is skipped.
 const FEWEST_SAMPLES: usize = 6;
-/// Steps that the equations' matrix serves: it changes slowly, and to factor it is half of the work.
+/// Number of steps that use the same matrix. The matrix changes slowly, and its factorisation is half of the work.
 const EACH_SERVES: usize = 2;
-/// Added to the diagonal: cells without contrast keep their place.
+/// Added to the diagonal, so that cells without contrast keep their place.
 const RIDGE: f64 = 1e-7;
-/// Local / global steps that bring a bare lattice to its anchors.
+/// Local/global steps that move a lattice without texture to its anchors.
 const SETTLING: usize = 8;
 
-/// Steps in which a pose is drawn to its anchors, and local / global iterations of each.
+/// Number of partial moves in which a pose approaches its anchors, and local/global iterations of each.
 const DRAWS: usize = 6;
 const DRAW_ITERATIONS: usize = 3;
 
-/// What a lattice is aligned to.
+/// The frame that a lattice is aligned to.
 #[derive(Clone, Copy)]
 pub struct Target<'a> {
     /// The frame's picture.
     pub picture: &'a Features,
-    /// What hides the part on the frame: samples below it are left out.
+    /// What hides the part on the frame. Samples under it are left out.
     pub cover: &'a Cover,
-    /// What the artist fixed on the frame.
+    /// The artist's corrections on the frame.
     pub anchors: &'a Anchors,
 }
 
-/// What does not change from step to step: the weighted matrix of the shape term over the unknowns of each level. Made once
-/// a lattice.
+/// The constant part of the equations: the weighted matrix of the shape term over the unknowns of each level. It is
+/// built once per lattice.
 #[derive(Clone, Debug)]
 pub struct Aligner {
     constants: [BandMatrix; LEVELS.len()],
 }
 
 impl Aligner {
-    /// For the lattice of a texture.
+    /// Builds the constant matrices for the lattice of a texture.
     pub fn new(mesh: &Mesh) -> Self {
         let mut constant = mesh.matrix();
         constant.add_scaled(&shape::stiffness(mesh), STIFFNESS);
@@ -75,7 +80,8 @@ impl Aligner {
         Self { constants: std::array::from_fn(|level| mesh.unknowns(level).restricted_matrix(&constant)) }
     }
 
-    /// Improves a pose on the levels of the indices given (in [`LEVELS`]), in that order.
+    /// Improves the pose `start` (nodes in working pixels) on the levels given, as indices in [`LEVELS`], in their
+    /// order.
     pub fn align(&self, texture: &Texture, target: Target, start: &[Point], levels: &[usize]) -> Vec<Point> {
         let mut nodes = start.to_vec();
         for &level in levels {
@@ -96,8 +102,8 @@ impl Aligner {
         nodes
     }
 
-    /// One Gauss–Newton step, with the equations given or with new ones; its length in working pixels. None where they
-    /// have no solution.
+    /// One Gauss–Newton step, with the given equations or with new ones. Returns its length in working pixels, or
+    /// `None` if the equations have no solution.
     fn step(
         &self,
         texture: &Texture,
@@ -128,7 +134,8 @@ impl Aligner {
     }
 }
 
-/// Brings a bare lattice to its anchors with as little bending as possible. The equations are the same for every start.
+/// Moves a lattice without texture to its anchors with as little bending as possible. The equations are the same for
+/// every start.
 pub struct Settler<'a> {
     mesh: &'a Mesh,
     anchors: &'a Anchors,
@@ -136,7 +143,7 @@ pub struct Settler<'a> {
 }
 
 impl<'a> Settler<'a> {
-    /// For one lattice and what is fixed of it.
+    /// Prepares the equations for one lattice and its anchors.
     pub fn new(mesh: &'a Mesh, anchors: &'a Anchors) -> Self {
         let equations = || {
             let mut matrix = shape::stiffness(mesh);
@@ -146,7 +153,7 @@ impl<'a> Settler<'a> {
         Self { mesh, anchors, equations: if anchors.is_empty() { None } else { equations() } }
     }
 
-    /// The nodes from `start`; those of the start where nothing is fixed.
+    /// The nodes after settling from `start`. Without anchors the start is returned.
     pub fn settle(&self, start: &[Point]) -> Vec<Point> {
         if self.anchors.is_empty() {
             return start.to_vec();
@@ -166,15 +173,16 @@ impl<'a> Settler<'a> {
     }
 }
 
-/// One pose settled.
+/// Settles one pose with [`Settler`].
 pub fn settle(mesh: &Mesh, start: &[Point], anchors: &Anchors) -> Vec<Point> {
     Settler::new(mesh, anchors).settle(start)
 }
 
-/// A pose drawn to its anchors, while its nodes are held to where they are by the weights in `hold` (beside a lattice's
-/// own stiffness of about 1): what fits the picture stays, and what does not follows the anchors.
+/// Moves a pose to its anchors while its nodes are held in place by the weights in `hold`. The lattice's own stiffness
+/// is about 1 on the same scale. So the nodes that fit the picture stay, and the others follow the anchors.
 ///
-/// The anchors are approached in several steps, so that a limb turns on its way and is not torn through itself.
+/// The pose approaches the anchors in several partial moves, so that a limb rotates on its way and does not pass
+/// through itself.
 pub fn draw(mesh: &Mesh, start: &[Point], anchors: &Anchors, hold: &[f64]) -> Vec<Point> {
     let mut nodes = start.to_vec();
     let inverse = 1.0 / (mesh.side * mesh.side);
@@ -205,7 +213,8 @@ fn points(coordinates: &[f64]) -> Vec<Point> {
     coordinates.as_chunks().0.iter().copied().map(Point::from_array).collect()
 }
 
-/// Moves the nodes by a step, shortened to `longest`. Its length before; none, and no move, where it is not finite.
+/// Moves the nodes by a step, shortened to at most `longest` along an axis. Returns the length before shortening. If
+/// the step is not finite the nodes stay and the result is `None`.
 fn moved(step: &[Point], nodes: &mut [Point], longest: f64) -> Option<f64> {
     if !step.iter().all(|d| d.is_finite()) {
         return None;
@@ -218,8 +227,8 @@ fn moved(step: &[Point], nodes: &mut [Point], longest: f64) -> Option<f64> {
     Some(length)
 }
 
-/// Sums of one of the unknowns' cells: second derivatives (xx, xy, yy) for each of [`PAIRS`] of its nodes, first derivatives
-/// for each node, by x and then by y.
+/// Sums over the samples of one cell of the unknowns: second derivatives (xx, xy, yy) for each of [`PAIRS`] of its
+/// nodes, and first derivatives by x and then by y for each node.
 struct CellSums {
     pairs: [[f32; PAIRS.len()]; 3],
     nodes: Lanes,
@@ -231,7 +240,7 @@ impl CellSums {
         Self { pairs: [[0.0; PAIRS.len()]; 3], nodes: Lanes::splat(0.0) }
     }
 
-    /// Adds a sample's 3 second derivatives.
+    /// Adds a sample's three second derivatives.
     #[inline(always)]
     fn add_second(&mut self, texel: &Texel, second: [f32; 3]) {
         for (sums, value) in self.pairs.iter_mut().zip(second) {
@@ -241,7 +250,7 @@ impl CellSums {
         }
     }
 
-    /// Adds a sample's 2 first derivatives.
+    /// Adds a sample's two first derivatives.
     #[inline(always)]
     fn add_first(&mut self, texel: &Texel, [x, y]: [f32; 2]) {
         self.nodes = texel.moved_by.mul_add(Lanes::of_fours(x, y), self.nodes);
@@ -268,7 +277,7 @@ impl CellSums {
     }
 }
 
-/// Adds the picture term's normal equations; those of second order where a matrix is given.
+/// Adds the normal equations of the picture term. The second derivatives are added if a matrix is given.
 #[inline(always)]
 fn add_look(
     texture: &Texture,
@@ -310,8 +319,8 @@ fn add_look(
     }
 }
 
-/// Slopes along x and y that a sample is moved by: the mean of the picture's and of the key's, `turn`ed with its cell (cosine
-/// and sine); outside the part what of them leads across the contour.
+/// Slopes of the colour along x and y at a sample: the mean of the frame's and of the key's slopes, the latter rotated
+/// by the cosine and sine of its cell's rotation. For a sample outside the part, only the component across the contour.
 #[inline(always)]
 fn slopes(seen: &Sample, texel: &Texel, [cos, sin]: [f32; 2]) -> (Padded, Padded) {
     let ([sx, sy], [kx, ky]) = (seen.slopes, texel.key.slopes);
@@ -330,7 +339,7 @@ mod tests {
 
     const WIDTH: f64 = 300.0;
 
-    /// An upright bar of one colour, before a wall above and a floor below `line`, working pixels.
+    /// An upright bar of one colour. Behind it is a wall above `line` and a floor below it, in working pixels.
     fn picture(line: usize) -> Features {
         let colour = |x: usize, y: usize| -> Colour {
             match ((130..170).contains(&x) && (150..390).contains(&y), y < line) {
@@ -360,7 +369,8 @@ mod tests {
         let mut plain = bar();
         let held = moved(&plain);
         plain.forget_figure();
-        // What is left is the blur of the coarsest level, through which the ground shows inside the part too.
+        // The remaining motion comes from the blur of the coarsest level, which mixes the background into the part's
+        // inside.
         assert!(held < 2.5 && moved(&plain) > 2.5 * held, "{held} px, {} without", moved(&plain));
     }
 
@@ -377,7 +387,7 @@ mod tests {
             let along = turn.rotate(Point::new(f64::from(across[0]), f64::from(across[1]))).perp();
             let rest = [0, 1, 2].map(|k| along.dot(Point::new(f64::from(gx[k]), f64::from(gy[k]))));
             assert!(rest.iter().all(|v| v.abs() < 1e-6), "{rest:?}");
-            assert!(!texture.mesh.region(texel.binding.at(&texture.mesh.rest)).1, "it lies outside");
+            assert!(!texture.mesh.region(texel.binding.at(&texture.mesh.rest)).1, "it is outside");
         }
         assert!(texture.texels[1].iter().any(|texel| texel.across.is_some()));
     }

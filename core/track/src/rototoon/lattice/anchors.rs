@@ -1,11 +1,14 @@
-//! Places that the artist fixed, as linear constraints on a lattice's nodes.
+//! Anchors: the artist's corrections as linear constraints on a lattice's nodes.
+//!
+//! A pin fixes a control point, which is a weighted sum of the four nodes of a cell. A corrected centre fixes the mean
+//! of all control points, which is a weighted sum of many nodes.
 
 use super::mesh::Mesh;
 use super::unknowns::Unknowns;
 use crate::contract::job::Correction;
 use rototoon_base::geometry::{Point, similarity::Similarity};
 
-/// One constraint: a weighted sum of nodes lies at a place.
+/// One constraint: a weighted sum of nodes is at a place.
 #[derive(Clone, Debug)]
 struct Anchor {
     terms: Vec<(usize, f64)>,
@@ -25,7 +28,7 @@ pub struct Anchors {
 }
 
 impl Anchors {
-    /// The constraints of a correction; `scale` is the number of picture pixels in a working pixel.
+    /// The constraints of a correction. `scale` is the number of picture pixels per working pixel.
     pub fn new(mesh: &Mesh, correction: &Correction, scale: f64) -> Self {
         let pin = |(&j, &p): (&usize, &Point)| {
             let binding = mesh.control[j];
@@ -50,19 +53,19 @@ impl Anchors {
         self.anchors.is_empty()
     }
 
-    /// The same constraints, but only a share of the way from where the nodes are.
+    /// The same constraints, with their places moved back to the share `share` of the way from the present nodes.
     pub fn toward(&self, nodes: &[Point], share: f64) -> Self {
         let nearer = |a: &Anchor| Anchor { terms: a.terms.clone(), place: a.place - a.missing(nodes) * (1.0 - share) };
         Self { anchors: self.anchors.iter().map(nearer).collect() }
     }
 
-    /// What they ask of the shifts of an alignment's unknowns, when the nodes are at `nodes`.
+    /// The constraints on the shifts of an alignment's unknowns, if the nodes are at `nodes`.
     pub fn of_shifts(&self, nodes: &[Point], unknowns: &Unknowns) -> Self {
         let of_shifts = |a: &Anchor| Anchor { terms: unknowns.terms(&a.terms), place: a.missing(nodes) };
         Self { anchors: self.anchors.iter().map(of_shifts).collect() }
     }
 
-    /// A pose turned by `angle` about the mean of its anchored places.
+    /// A pose rotated by `angle` radians about the mean of its anchored places.
     pub fn turned(&self, nodes: &[Point], angle: f64) -> Vec<Point> {
         let from: Point = self.anchors.iter().map(|a| a.place - a.missing(nodes)).sum();
         let center = from / self.anchors.len().max(1) as f64;
@@ -70,7 +73,7 @@ impl Anchors {
         nodes.iter().map(|&p| turn.rotate(p - center) + center).collect()
     }
 
-    /// Moves a pose as a whole so that it comes near its anchors: one anchor shifts it, several shift and turn it.
+    /// Moves a pose rigidly towards its anchors: one anchor shifts it, several shift and rotate it.
     pub fn approach(&self, nodes: &[Point]) -> Vec<Point> {
         let from: Vec<Point> = self.anchors.iter().map(|a| a.place - a.missing(nodes)).collect();
         let to: Vec<Point> = self.anchors.iter().map(|a| a.place).collect();
@@ -79,12 +82,12 @@ impl Anchors {
         nodes.iter().map(|&p| motion.apply(p)).collect()
     }
 
-    /// The constraints' rows, one for each anchor and axis: node coordinates and their weights.
+    /// The rows of the constraints, one per anchor and axis: node coordinates and their weights.
     pub fn rows(&self) -> impl Iterator<Item = impl Iterator<Item = (usize, f64)> + Clone + '_> + Clone + '_ {
         self.anchors.iter().flat_map(|a| [0, 1].map(|axis| a.terms.iter().map(move |&(n, w)| (2 * n + axis, w))))
     }
 
-    /// By how much each of the [`Anchors::rows`] is missed.
+    /// The residual of each of the [`Anchors::rows`].
     pub fn missing(&self, nodes: &[Point]) -> impl Iterator<Item = f64> {
         self.anchors.iter().flat_map(|a| a.missing(nodes).to_array())
     }

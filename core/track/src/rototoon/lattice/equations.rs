@@ -1,18 +1,18 @@
 //! Linear equations of a lattice's nodes, solved under the artist's constraints.
 //!
-//! Among all steps x with C x = c the one of least energy ½ xᵀH x − bᵀx is x₀ + H⁻¹Cᵀ (C H⁻¹ Cᵀ)⁻¹ (c − C x₀), where
-//! H x₀ = b: beside the band matrix a small dense one with a row for each anchor and axis. Both are factored once, and
-//! serve every right-hand side.
+//! Of all steps x with C x = c, the one of least energy ½ xᵀH x − bᵀx is x₀ + H⁻¹Cᵀ (C H⁻¹ Cᵀ)⁻¹ (c − C x₀), where H
+//! x₀ = b. So beside the band matrix H there is a small dense matrix with one row per anchor and axis. Both are
+//! factored once and serve every right-hand side.
 
 use super::anchors::Anchors;
 use rototoon_base::geometry::Point;
 use rototoon_base::numeric::banded::{BandCholesky, BandMatrix};
 
-/// Stiffness left to a constraint: several control points in one cell may contradict its bilinear map, and then all
-/// give way a little. Against the lattice's own stiffness (about 1) the constraints are hard.
+/// Compliance of a constraint. Several control points in one cell may contradict its bilinear map; then each of them
+/// gives way a little. Compared with the lattice's own stiffness (about 1) the constraints are hard.
 const YIELD: f64 = 1e-4;
 
-/// Factored equations.
+/// Factored equations with their constraints.
 pub struct Equations {
     factor: BandCholesky,
     constraints: Option<Constraints>,
@@ -26,7 +26,7 @@ struct Constraints {
 }
 
 impl Equations {
-    /// From the matrix H and what is to be constrained; none where they have no solution.
+    /// Factors the matrix H and the constraints of `anchors`. `None` if one of them is not positive definite.
     pub fn new(matrix: BandMatrix, anchors: &Anchors) -> Option<Self> {
         let size = matrix.size();
         let factor = matrix.factor().ok()?;
@@ -34,8 +34,8 @@ impl Equations {
         Some(Self { factor, constraints })
     }
 
-    /// Solves for the step from `nodes` that has the right-hand side `b`, and makes the anchors hold after it. They are
-    /// those the equations were made for, but may have moved.
+    /// Solves for the step from `nodes` with the right-hand side `b`, in place. After the step the anchors are
+    /// fulfilled. `anchors` must have the same rows as those given to [`Equations::new`]; their places may differ.
     pub fn solve(&self, b: &mut [f64], nodes: &[Point], anchors: &Anchors) {
         self.factor.solve_in_place(b);
         let Some(Constraints { responses, small }) = &self.constraints else { return };

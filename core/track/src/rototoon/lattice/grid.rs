@@ -1,20 +1,21 @@
-//! Squares of a grid of which some are taken, numbered so that the equations of their corners have a narrow band.
+//! A grid of squares of which some are taken. Their corners are numbered so that the equations of the corners have a
+//! narrow band.
 
-/// The taken squares of a grid: cells; and their corners: nodes.
+/// The taken squares of a grid are cells, and their corners are nodes.
 #[derive(Clone, Debug)]
 pub struct Numbered {
-    /// Column and row of each node, line by line across the shorter side.
+    /// Column and row of each node. Nodes are numbered line by line, along the shorter side of the grid.
     pub nodes: Vec<(usize, usize)>,
     /// The nodes of each cell: top left, top right, bottom left, bottom right.
     pub cells: Vec<[usize; 4]>,
     /// The cell of each square, row by row.
     pub cell_of: Vec<Option<usize>>,
-    /// How far apart the numbers of two nodes of a cell are at the most.
+    /// Largest difference of the numbers of two nodes of one cell.
     pub reach: usize,
 }
 
 impl Numbered {
-    /// For a grid of `columns` × `rows` squares; `taken` says which are cells, row by row.
+    /// Numbers a grid of `columns` × `rows` squares. `taken` says which squares are cells, row by row.
     pub fn new(columns: usize, rows: usize, taken: &[bool]) -> Self {
         let mut numbered = Self { nodes: Vec::new(), cells: Vec::new(), cell_of: vec![None; taken.len()], reach: 0 };
         let node_of = numbered.number_nodes(columns, rows, taken);
@@ -29,7 +30,7 @@ impl Numbered {
         numbered
     }
 
-    /// Numbers the corners of cells; the number of each corner of the grid, row by row.
+    /// Numbers the corners of the cells. Returns the number of each corner of the grid, row by row.
     fn number_nodes(&mut self, columns: usize, rows: usize, taken: &[bool]) -> Vec<usize> {
         let is_taken = |c: usize, r: usize| c < columns && r < rows && taken[r * columns + c];
         let mut node_of = vec![usize::MAX; (columns + 1) * (rows + 1)];

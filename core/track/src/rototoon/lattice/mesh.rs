@@ -1,21 +1,25 @@
-//! The lattice of a part at a key: square cells over its region, and points bound to them.
+//! The lattice of a part at a key: square cells over the part's region, and points bound to them.
+//!
+//! The region is the inside of the contour plus a band around it. A larger part has larger cells, between 6 and 28
+//! working pixels, so that the number of unknowns stays small. A point is bound to the four nodes of its cell
+//! bilinearly and moves with them.
 
 use super::grid::Numbered;
 use super::unknowns::Unknowns;
 use rototoon_base::geometry::{Point, polygon, polyline};
 use rototoon_base::numeric::banded::BandMatrix;
 
-/// Where a point lies in the lattice: bilinear weights of the four nodes of a cell.
+/// Place of a point in the lattice, as bilinear weights of the four nodes of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Binding {
     /// The cell's nodes: top left, top right, bottom left, bottom right.
     pub nodes: [usize; 4],
-    /// Their weights; the sum is 1. Outside its cell a point is extrapolated, some weights are then negative.
+    /// Their weights, with sum 1. A point outside its cell is extrapolated, with some negative weights.
     pub weights: [f64; 4],
 }
 
 impl Binding {
-    /// Place of the point when the nodes are at `nodes`.
+    /// Place of the point if the nodes are at `nodes`.
     #[inline(always)]
     pub fn at(&self, nodes: &[Point]) -> Point {
         let [a, b, c, d] = self.nodes;
@@ -24,22 +28,23 @@ impl Binding {
     }
 }
 
-/// Square cells that touch the region of a part: its inside and a band around its contour. Working pixels.
+/// Square cells that touch the region of a part: its inside and a band around its contour. All lengths are in working
+/// pixels.
 #[derive(Clone, Debug)]
 pub struct Mesh {
-    /// Places of the nodes at the key, numbered along the longer side of the region.
+    /// Places of the nodes at the key. They are numbered along the longer side of the region.
     pub rest: Vec<Point>,
     /// The nodes of each cell, as in [`Binding`].
     pub cells: Vec<[usize; 4]>,
-    /// How stiff each cell is: 1, less where the part bends between the keys.
+    /// Stiffness of each cell: 1 at first, then as learned from the bend between the keys (`shape::learn_stiffness`).
     pub stiffness: Vec<f64>,
     /// Side of a cell.
     pub side: f64,
-    /// Control points of the part.
+    /// The part's control points, bound to the lattice.
     pub control: Vec<Binding>,
-    /// √area of the part, plus 1: its size.
+    /// Size of the part: the square root of its area, plus 1.
     pub size: f64,
-    /// Reach of the region beyond the contour.
+    /// Width of the band around the contour.
     pub band: f64,
     contour: Vec<Point>,
     closed: bool,
@@ -73,17 +78,17 @@ impl Grid {
     }
 }
 
-/// Cells of a lattice at the most; a larger part has larger cells.
+/// Approximate largest number of cells of a lattice. A larger part has larger cells.
 const MOST_CELLS: f64 = 900.0;
-/// Levels of the pyramid, from the coarsest on, on which neighbouring nodes move together.
+/// Number of levels of the pyramid, from the coarsest on, on which neighbouring nodes move together.
 const COARSE_LEVELS: usize = 2;
 
 impl Mesh {
-    /// The lattice of a contour; `control` in working pixels, at least one point.
+    /// The lattice of a contour. `control` are its control points in working pixels, at least one.
     pub fn new(control: &[Point], closed: bool) -> Self {
         let length = polyline::length(control, closed);
         let inside = if closed { polygon::signed_area(control).abs() } else { 0.0 };
-        // A line has no area of its own: what is known of it is the band.
+        // An open line has no area; its length counts instead.
         let area = inside.max(length);
         let size = area.sqrt() + 1.0;
         let band = (0.12 * size).clamp(3.0, 8.0);
@@ -113,42 +118,43 @@ impl Mesh {
         mesh
     }
 
-    /// Whether a point belongs to the region, and whether it lies inside the contour.
+    /// Whether a point is in the region, and whether it is inside the contour.
     pub fn region(&self, p: Point) -> (bool, bool) {
         let inside = self.closed && polygon::contains(&self.contour, p);
         (inside || polyline::distance(p, &self.contour, self.closed) <= self.band, inside)
     }
 
-    /// The place as far inside a closed contour as `p` is outside; none where the part is too thin for that.
+    /// The mirror image of `p`, which is outside a closed contour, at the nearest point of the contour. None if it is
+    /// not inside, because the part is too thin.
     pub fn across(&self, p: Point) -> Option<Point> {
         let across = self.nearest(p)? * 2.0 - p;
         self.region(across).1.then_some(across)
     }
 
-    /// The direction, of length 1, in which `p` lies from the contour; none for a line, and on the contour itself.
+    /// Unit vector from the contour towards `p`. None for an open line and for a point on the contour.
     pub fn outward(&self, p: Point) -> Option<Point> {
         if self.closed { (p - self.nearest(p)?).try_normalize() } else { None }
     }
 
-    /// The nearest place on the contour.
+    /// The point of the contour nearest to `p`.
     fn nearest(&self, p: Point) -> Option<Point> {
         let on_segment = |(a, b)| polyline::nearest_on_segment(p, a, b);
         (polyline::segments(&self.contour, self.closed).map(on_segment))
             .min_by(|a, b| a.distance_squared(p).total_cmp(&b.distance_squared(p)))
     }
 
-    /// Area of the cells, an upper bound of the region's.
+    /// Area of the cells: an upper bound of the region's area.
     pub fn area(&self) -> f64 {
         self.cells.len() as f64 * self.side * self.side
     }
 
-    /// Corners of the box around the region.
+    /// Corners of the box around the grid.
     pub fn bounds(&self) -> (Point, Point) {
         let extent = Point::new(self.grid.columns as f64, self.grid.rows as f64) * self.side;
         (self.grid.origin, self.grid.origin + extent)
     }
 
-    /// Index of the cell that holds `p`, or of the cell nearest to it, and the binding of `p` to it.
+    /// Index of the cell that contains `p`, or of the nearest cell, and the binding of `p` to it.
     pub fn bind_in_cell(&self, p: Point) -> (usize, Binding) {
         let cell = match self.cell_of[self.grid.index(p)] {
             Some(cell) => cell,
@@ -165,18 +171,18 @@ impl Mesh {
         self.bind_in_cell(p).1
     }
 
-    /// The zero matrix over the nodes' coordinates: unknown 2 n is x of node n, 2 n + 1 its y.
+    /// The zero matrix over the nodes' coordinates. Unknown 2 n is x of node n, and 2 n + 1 is its y.
     pub fn matrix(&self) -> BandMatrix {
         let [_, every] = &self.unknowns;
         every.matrix()
     }
 
-    /// What an alignment solves for on a level of the pyramid (index in [`LEVELS`](crate::shared::features::LEVELS)).
+    /// The unknowns of an alignment on a level of the pyramid (index in [`LEVELS`](crate::track::features::LEVELS)).
     pub fn unknowns(&self, level: usize) -> &Unknowns {
         &self.unknowns[usize::from(level >= COARSE_LEVELS)]
     }
 
-    /// The places of the control points when the nodes are at `nodes`.
+    /// Places of the control points if the nodes are at `nodes`.
     pub fn control_points(&self, nodes: &[Point]) -> Vec<Point> {
         self.control.iter().map(|binding| binding.at(nodes)).collect()
     }
@@ -188,8 +194,8 @@ impl Mesh {
         nearest.unwrap_or(0)
     }
 
-    /// Takes the cells that the region touches: those within the band of the contour (measured along the axes) and
-    /// those with their centre inside.
+    /// Takes the cells that the region touches: those within the band of the contour (measured along the axes), and
+    /// those whose centre is inside.
     fn occupy(&mut self) {
         let Grid { columns, rows, side, .. } = self.grid;
         let mut taken = vec![false; columns * rows];

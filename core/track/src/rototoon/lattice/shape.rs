@@ -1,8 +1,8 @@
-//! How much a lattice is bent: as-rigid-as-possible, with a free scale between 0.9 and 1.12 in each cell.
+//! The bending energy of a lattice: as-rigid-as-possible, with a free scale between 0.9 and 1.12 in each cell.
 //!
-//! A cell's energy is Σ |x̃ − r q̃|² / h² over its four nodes, where a tilde means "minus the cell's mean", q are the nodes
-//! at the key, h is the side, and the complex number r is the best turn and scale of the cell, its length kept within
-//! bounds: a drawn limb may swell or foreshorten a little without cost.
+//! A cell's energy is Σ |x̃ − r q̃|² / h² over its four nodes. A tilde means "minus the cell's mean", q are the nodes
+//! at the key, and h is the side of a cell. The complex number r is the best rotation and scale of the cell, with its
+//! length kept within the bounds. So a drawn limb may swell or foreshorten a little without cost.
 
 use super::mesh::Mesh;
 use rototoon_base::geometry::Point;
@@ -11,14 +11,14 @@ use rototoon_base::numeric::banded::BandMatrix;
 /// Bounds of a cell's free scale.
 const SCALE: (f64, f64) = (0.9, 1.12);
 
-/// Bounds of what a cell's stiffness is learned to be.
+/// Bounds of a cell's learned stiffness.
 const SOFTEST: f64 = 0.1;
 const STIFFEST: f64 = 4.0;
-/// Bend of a cell at which it is halfway between them: root mean square of its nodes' distances from the best similar
-/// square, in sides.
+/// Bend at which a cell's stiffness is halfway between the bounds: root mean square distance of its nodes from the best
+/// similar square, in sides of a cell.
 const HALFWAY: f64 = 0.03;
 
-/// The best turn and scale of each cell, as complex numbers.
+/// The best rotation and scale of each cell, as complex numbers.
 pub fn rotations(mesh: &Mesh, nodes: &[Point]) -> Vec<Point> {
     let rest = rest_cell(mesh);
     let norm: f64 = rest.iter().map(|q| q.length_squared()).sum();
@@ -31,7 +31,7 @@ pub fn rotations(mesh: &Mesh, nodes: &[Point]) -> Vec<Point> {
     mesh.cells.iter().map(best).collect()
 }
 
-/// Mean energy of the cells.
+/// Mean energy of the cells, weighted with their stiffness.
 pub fn energy(mesh: &Mesh, nodes: &[Point]) -> f64 {
     let rest = rest_cell(mesh);
     let rotations = rotations(mesh, nodes);
@@ -39,7 +39,7 @@ pub fn energy(mesh: &Mesh, nodes: &[Point]) -> f64 {
     sum / (mesh.side * mesh.side * mesh.cells.len() as f64)
 }
 
-/// Squared distance of each cell's nodes from its best similar square.
+/// Sum of the squared distances of each cell's nodes from its best similar square.
 fn residuals<'a>(
     mesh: &'a Mesh,
     nodes: &'a [Point],
@@ -52,8 +52,9 @@ fn residuals<'a>(
     })
 }
 
-/// Sets the stiffness of the cells by how much each is bent in `shape`, a shape that the part is known to take: what keeps
-/// its shape from one key to the other will keep it between them, and what bends may bend.
+/// Sets the stiffness of each cell by its bend in `shape`, which are the nodes of a shape that the part is known to
+/// take. A cell that keeps its shape from one key to the other stays stiff between them. A cell that bends becomes
+/// soft.
 pub fn learn_stiffness(mesh: &mut Mesh, shape: &[Point]) {
     let (rest, rotations) = (rest_cell(mesh), rotations(mesh, shape));
     let half = 4.0 * (HALFWAY * mesh.side).powi(2);
@@ -61,7 +62,7 @@ pub fn learn_stiffness(mesh: &mut Mesh, shape: &[Point]) {
     mesh.stiffness = residuals(mesh, shape, &rotations, &rest).map(of_cell).collect();
 }
 
-/// Second derivative (halved) of the sum of the cells' energies, for fixed turns.
+/// Half of the second derivative of the sum of the cells' energies, for fixed rotations.
 pub fn stiffness(mesh: &Mesh) -> BandMatrix {
     let mut matrix = mesh.matrix();
     let inverse = 1.0 / (mesh.side * mesh.side);
@@ -79,7 +80,7 @@ pub fn stiffness(mesh: &Mesh) -> BandMatrix {
     matrix
 }
 
-/// Adds to `gradient` the halved gradient of the sum of the cells' energies times `weight`, for the turns given.
+/// Adds half of the gradient of the sum of the cells' energies, times `weight`, to `gradient`, for the rotations given.
 pub fn add_gradient(mesh: &Mesh, nodes: &[Point], rotations: &[Point], weight: f64, gradient: &mut [f64]) {
     let rest = rest_cell(mesh);
     let factor = weight / (mesh.side * mesh.side);
@@ -93,7 +94,7 @@ pub fn add_gradient(mesh: &Mesh, nodes: &[Point], rotations: &[Point], weight: f
     }
 }
 
-/// The nodes of a cell at the key around its centre: every cell is the same square.
+/// The nodes of a cell at the key, relative to its centre. Every cell is the same square.
 fn rest_cell(mesh: &Mesh) -> [Point; 4] {
     let half = 0.5 * mesh.side;
     [(-half, -half), (half, -half), (-half, half), (half, half)].map(|(x, y)| Point::new(x, y))
@@ -153,8 +154,8 @@ mod tests {
                 nodes[k / 2][k % 2] += d;
                 energy(&mesh, &nodes) * cells
             };
-            // The turns are the best ones (a clamped length has no first-order effect across the turn), so they may
-            // be held; the length bound makes the derivative one-sided only at the bound itself.
+            // The rotations are the best ones, so they may be fixed: a clamped length has no first-order effect across
+            // the rotation. The length bound makes the derivative one-sided only at the bound itself.
             let slope = (moved(1e-5) - moved(-1e-5)) / 2e-5;
             assert!((2.0 * gradient[k] - slope).abs() < 1e-6, "{k}: {} for {slope}", 2.0 * gradient[k]);
         }

@@ -1,4 +1,8 @@
-//! A part's colours at a key, sampled over its lattice, and how well a pose of the lattice explains a picture.
+//! A part's colours at a key, sampled over its lattice, and the energy of a pose: how badly it explains a picture.
+//!
+//! The energy is the weighted mean over the samples of the squared colour difference, limited to [`WORST`], plus a
+//! little for bending. A sample outside the part shows background, which may change between the frames; its cost has
+//! special rules (see [`UNSEEN`] and the cost of a texel).
 
 use super::mesh::{Binding, Mesh};
 use super::shape;
@@ -9,30 +13,31 @@ use rototoon_base::numeric::lanes::Lanes;
 use rototoon_base::numeric::vector::vectorised;
 use rototoon_base::scene::Raster;
 
-/// Weight of samples in the band around the contour. They hold the ink line's outer side; being background in part,
-/// they count for less than the inside.
+/// Weight of samples in the band around the contour. They contain the outer side of the ink line. They are partly
+/// background, so they count less than the inside.
 const BAND_WEIGHT: f32 = 0.6;
-/// Samples of a level at the most.
+/// Largest number of samples of a level.
 const MOST_SAMPLES: usize = 700;
-/// Samples of the finer levels that a region is divided into.
+/// Divisor of the area that gives the sample spacing on the coarsest level.
 const FINE_SAMPLES: f64 = 1200.0;
-/// Squared colour difference (three channels of 0 to 1) beyond which a sample is simply wrong.
+/// Squared colour difference (three channels of 0 to 1) from which on all colours are equally wrong.
 pub const WORST: f32 = 0.15;
-/// Cost of a sample that cannot be seen, as a squared colour difference: more than a right colour, less than a wrong one.
+/// Cost of a sample that is not visible, as a squared colour difference. It is more than a right colour and less than a
+/// wrong one.
 pub const UNSEEN: f32 = 0.03;
-/// Cost of a sample outside the part where the ground is another than at the key, as a squared colour difference: less
-/// than the part's own colour there, more than the same ground.
+/// Cost of a sample outside the part where the background differs from that at the key, as a squared colour difference.
+/// It is more than the same background and less than the part's own colour.
 const OTHER_GROUND: f32 = 0.015;
-/// Squared colour difference at which a colour is no longer much like another.
+/// Squared colour difference at which the similarity of two colours has fallen to 1/e.
 const ALIKE: f32 = 0.02;
-/// Squared colour difference of a part from its ground, at the key, above which they are told apart.
+/// Squared colour difference between a part and its background at the key, above which the two are distinguished.
 pub const CONTRAST: f32 = 0.02;
-/// Weight of the shape energy beside the mean colour difference, and the shape energy beyond which it stops to count.
+/// Weight of the shape energy relative to the mean colour difference, and the upper limit of the shape energy.
 const SHAPE: (f64, f64) = (0.02, 2.0);
-/// Level (index in [`LEVELS`]) whose samples measure a pose.
+/// Level (index in [`LEVELS`]) whose samples measure the energy of a pose.
 const MEASURED_LEVEL: usize = 1;
 
-/// Where nearer parts hide the picture, by working pixels of 2 × 2, and where it ends: what lies beyond its edges is
+/// Where the picture is hidden by nearer parts, in pixels of 2 × 2 working pixels. Places outside the picture count as
 /// hidden too.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cover {
@@ -63,18 +68,20 @@ impl Cover {
         self.width
     }
 
-    /// Nothing is hidden.
+    /// A cover that hides nothing.
     pub fn none(width: f64) -> Self {
         Self::new(&[], width)
     }
 
-    /// Whether nothing of the part can be seen at `p`: a nearer part hides it there, or the picture has ended.
+    /// Whether the part is not visible at `p`, in working pixels: a nearer part hides it there, or `p` is outside the
+    /// picture.
     #[inline(always)]
     pub fn hides(&self, p: Point) -> bool {
         !in_picture(p, self.width) || self.under(p)
     }
 
-    /// Whether a nearer part hides the picture at `p`; outside the picture, what its nearest edge says.
+    /// Whether a nearer part hides the picture at `p`. For a place outside the picture, the nearest place on its edge
+    /// decides.
     #[inline(always)]
     pub fn under(&self, p: Point) -> bool {
         if !self.any {
@@ -85,7 +92,7 @@ impl Cover {
     }
 }
 
-/// Whether a place in working pixels lies in a picture of `width` working pixels.
+/// Whether a place in working pixels is in a picture of `width` working pixels.
 #[inline(always)]
 pub fn in_picture(p: Point, width: f64) -> bool {
     p.x >= 0.0 && p.y >= 0.0 && p.x < width && p.y < WORKING_LINES
@@ -94,28 +101,29 @@ pub fn in_picture(p: Point, width: f64) -> bool {
 /// One sample of the key.
 #[derive(Clone, Debug)]
 pub struct Texel {
-    /// Where it lies in the lattice.
+    /// Its place in the lattice.
     pub binding: Binding,
-    /// Colour and gradients of the key.
+    /// Colour and slopes at the key.
     pub key: Sample,
     /// 1 inside the contour, less in the band.
     pub weight: f32,
-    /// Direction across the contour at the key, of length 1, for a sample outside a closed part: along the contour the
-    /// ground changes by itself, and says nothing of where the part is.
+    /// Unit vector across the contour at the key, for a sample outside a closed part. Along the contour the background
+    /// changes by itself, and that says nothing about the place of the part.
     pub across: Option<[f32; 2]>,
-    /// The part's colour across the contour, for a sample outside that measures a pose and differs from it.
+    /// The part's colour at the mirror place inside the contour, for a sample outside that measures a pose. None if the
+    /// two colours are alike.
     pub own: Option<Padded>,
-    /// The cell it lies in.
+    /// Index of its cell.
     pub cell: usize,
     /// The weights of the cell's nodes.
     pub weights: [f32; 4],
-    /// The weights of the nodes that an alignment moves it by, twice.
+    /// Weights of the nodes of the unknowns' cell, stored twice.
     pub(crate) moved_by: Lanes,
-    /// Their products in pairs, in the order of [`PAIRS`].
+    /// Products of these weights in pairs, in the order of [`PAIRS`].
     pub products: [f32; PAIRS.len()],
 }
 
-/// The pairs of a cell's nodes, and two that stay empty: their number fills the processor's vectors.
+/// The pairs of a cell's nodes, and two empty entries: their number fills the processor's vectors.
 pub const PAIRS: [Option<(usize, usize)>; 12] = [
     Some((0, 0)),
     Some((1, 0)),
@@ -136,36 +144,38 @@ pub const PAIRS: [Option<(usize, usize)>; 12] = [
 pub struct Texture {
     /// The lattice.
     pub mesh: Mesh,
-    /// Samples by level, from coarse to fine; those of a cell, and of a cell of the level's unknowns, are together.
+    /// Samples by level, from coarse to fine. The samples of a cell are together, and so are those of a cell of the
+    /// level's unknowns.
     pub texels: [Vec<Texel>; 3],
-    /// Width of the picture in working pixels: what lies outside is unseen.
+    /// Width of the picture in working pixels. Places outside the picture are not visible.
     width: f64,
 }
 
 impl Texture {
-    /// Samples the key's picture over the lattice, but where a nearer part hides it or the picture ends.
+    /// Samples the key's picture over the lattice, except where a nearer part hides it or the picture ends.
     pub fn new(mesh: Mesh, key: &Features, cover: &Cover, width: f64) -> Self {
         let texels = std::array::from_fn(|level| sample_level(&mesh, key, cover, width, level));
         Self { mesh, texels, width }
     }
 
-    /// Forgets what tells the part from its ground: every wrong colour is just wrong, and pulls whichever way.
+    /// Forgets the difference between part and background, for measurements without it: outside samples are treated
+    /// like inside samples.
     pub fn forget_figure(&mut self) {
         self.texels.iter_mut().flatten().for_each(|texel| (texel.own, texel.across) = (None, None));
     }
 
-    /// How badly a pose explains a picture: mean colour difference (at most [`WORST`]; [`UNSEEN`] outside the picture)
-    /// plus a little for bending.
+    /// How badly a pose explains a picture: mean colour difference (at most [`WORST`] per sample, [`UNSEEN`] outside
+    /// the picture) plus a little for bending. `nodes` are in working pixels.
     pub fn energy(&self, picture: &Features, nodes: &[Point]) -> f64 {
         self.energy_where(picture, nodes, |p| in_picture(p, self.width))
     }
 
-    /// The same; what is not `seen` costs [`UNSEEN`].
+    /// The same as [`Texture::energy`], with [`UNSEEN`] for every place that is not `seen`.
     pub fn energy_where(&self, picture: &Features, nodes: &[Point], seen: impl Fn(Point) -> bool) -> f64 {
         self.energy_of::<1>(picture, nodes, seen)
     }
 
-    /// The same by every other sample of a cell: enough to see which of some poses are worth more.
+    /// The same as [`Texture::energy_where`], by every other sample of a cell. It is precise enough to compare poses.
     pub fn rough_energy_where(&self, picture: &Features, nodes: &[Point], seen: impl Fn(Point) -> bool) -> f64 {
         self.energy_of::<2>(picture, nodes, seen)
     }
@@ -179,7 +189,7 @@ impl Texture {
         look + self.bending(nodes)
     }
 
-    /// Weighted colour differences of each `STEP`-th sample of those that measure a pose, cell by cell, and their weights.
+    /// Sum of the weighted costs of every `STEP`-th measuring sample of each cell, and the sum of their weights.
     #[inline(always)]
     fn look<const STEP: usize>(&self, picture: &Features, nodes: &[Point], seen: impl Fn(Point) -> bool) -> (f64, f64) {
         let level = picture.level(MEASURED_LEVEL);
@@ -196,7 +206,7 @@ impl Texture {
         (sum, weights)
     }
 
-    /// The part of [`Texture::energy`] that a pose's shape costs.
+    /// The bending part of [`Texture::energy`].
     pub fn bending(&self, nodes: &[Point]) -> f64 {
         SHAPE.0 * shape::energy(&self.mesh, nodes).min(SHAPE.1)
     }
@@ -206,12 +216,12 @@ impl Texture {
         &self.texels[MEASURED_LEVEL]
     }
 
-    /// Colour difference of each of the [`Texture::measured`] samples, at most [`WORST`]; [`UNSEEN`] outside the picture.
+    /// Cost of each of the [`Texture::measured`] samples, at most [`WORST`], and [`UNSEEN`] outside the picture.
     pub fn differences(&self, picture: &Features, nodes: &[Point]) -> Vec<f32> {
         self.differences_where(picture, nodes, |p| in_picture(p, self.width))
     }
 
-    /// The same; what is not `seen` is [`UNSEEN`].
+    /// The same as [`Texture::differences`], with [`UNSEEN`] for every place that is not `seen`.
     pub fn differences_where(&self, picture: &Features, nodes: &[Point], seen: impl Fn(Point) -> bool) -> Vec<f32> {
         let level = picture.level(MEASURED_LEVEL);
         let mut differences = Vec::with_capacity(self.measured().len());
@@ -230,7 +240,7 @@ impl Texture {
         differences
     }
 
-    /// Where a pose puts the corners of a cell.
+    /// Places of the corners of a cell in a pose.
     #[inline(always)]
     pub fn corners(&self, cell: usize, nodes: &[Point]) -> Corners {
         let [a, b, c, d] = self.mesh.cells[cell];
@@ -238,22 +248,23 @@ impl Texture {
     }
 }
 
-/// Where a pose puts the corners of a cell: what is done once for all its samples.
+/// Places of the corners of a cell in a pose. They are read once for all samples of the cell.
 pub struct Corners([Vec2; 4]);
 
 impl Texel {
-    /// Where it is when its cell's corners are there.
+    /// Place of the sample if the corners of its cell are the ones given.
     #[inline(always)]
     pub fn place(&self, Corners([a, b, c, d]): &Corners) -> Point {
         let [wa, wb, wc, wd] = self.weights;
         ((*a * wa + *b * wb) + (*c * wc + *d * wd)).as_dvec2()
     }
 
-    /// What it costs where the picture has the colour `seen`: the squared difference, at most [`WORST`].
+    /// Cost of the sample where the picture has the colour `seen`: the squared difference, at most [`WORST`].
     ///
-    /// Outside the part the ground may have changed since the key, as it does when a limb swings from before the hair to
-    /// before the sky: any other colour costs no more than [`OTHER_GROUND`], but the part's own colour costs as much as it
-    /// is like it. A contour that has slid inwards along its part shows just that.
+    /// Outside the part the background may have changed since the key, as when a limb swings from in front of the hair
+    /// to in front of the sky. So any other colour costs at most [`OTHER_GROUND`]. But the part's own colour costs
+    /// more, the more similar it is, up to [`WORST`]: it appears there if the contour has slipped inwards along its
+    /// part.
     #[inline(always)]
     fn cost(&self, seen: Padded) -> f32 {
         let wrong = difference(seen, self.key.colour).min(WORST);
@@ -293,13 +304,13 @@ fn sample_level(mesh: &Mesh, key: &Features, cover: &Cover, width: f64, level: u
     texels
 }
 
-/// The colour inside the part across the contour from `p`, where it differs from the sample there.
+/// The colour at the mirror place of `p` inside the part. None if it is like the sample's own colour.
 fn own_colour(mesh: &Mesh, key: &Features, p: Point, sample: &Sample) -> Option<Padded> {
     let own = key.level(MEASURED_LEVEL).colour(mesh.across(p)?);
     Some(own).filter(|own| difference(*own, sample.colour) > CONTRAST)
 }
 
-/// Every k-th sample, so that at most [`MOST_SAMPLES`] are left.
+/// At most [`MOST_SAMPLES`] of the samples, evenly spread over the list.
 fn thin(texels: Vec<Texel>) -> Vec<Texel> {
     let count = texels.len();
     if count <= MOST_SAMPLES {
@@ -328,9 +339,9 @@ mod tests {
         assert_eq!(outside.cost(same), 0.0);
         assert_eq!(outside.cost(other), OTHER_GROUND);
         assert_eq!(outside.cost(own), WORST);
-        // Inside, and where the part was like its ground, a wrong colour is just wrong.
+        // Inside, and where part and background are alike, every wrong colour costs the same.
         assert_eq!(texel(None).cost(other), WORST);
-        // A ground that has changed a little costs what it has changed by.
+        // A background that has changed a little costs the amount of its change.
         assert!((outside.cost(Padded::new(0.9, 0.9, 0.8, 0.0)) - 0.01).abs() < 1e-6);
     }
 
@@ -340,6 +351,6 @@ mod tests {
         let mesh = Mesh::new(&square, true);
         assert!(mesh.across(Point::new(30.0, 6.0)).unwrap().distance(Point::new(30.0, 14.0)) < 1e-9);
         assert_eq!(Mesh::new(&square, false).across(Point::new(30.0, 6.0)), None, "a line has no inside");
-        assert_eq!(mesh.across(Point::new(30.0, -35.0)), None, "it comes out on the other side");
+        assert_eq!(mesh.across(Point::new(30.0, -35.0)), None, "the mirror place is beyond the other side");
     }
 }

@@ -1,37 +1,41 @@
-//! What an alignment solves for: how the nodes of a lattice are shifted, all of them, or together with their neighbours.
+//! The unknowns of an alignment: all nodes of a lattice, or a coarser lattice that moves them together with their
+//! neighbours.
 //!
-//! The pyramid's coarser levels hardly tell neighbouring nodes apart: a cell is one to three pixels wide on the coarsest.
-//! On them the nodes are shifted by a lattice of twice the side, bilinearly; x = x₀ + P δ. P are the weights of the coarse
-//! nodes at each node, δ their shifts, and the normal equations become PᵀHP δ = Pᵀb (Galerkin's coarse equations; Briggs,
-//! Henson & McCormick, *A Multigrid Tutorial*, ch. 10). What a pose has of finer bends it keeps. A quarter of the unknowns
-//! and half of the band: the equations cost a sixteenth, and less noise is fitted (over fourteen sequences 0.1 points of
-//! 100 more are right).
+//! The coarse levels of the pyramid hardly distinguish neighbouring nodes, because a cell is only one to three pixels
+//! wide on the coarsest level. So on these levels the nodes are moved by a lattice with cells of twice the side,
+//! bilinearly: x = x₀ + P δ. P contains the weights of the coarse nodes at each node, and δ are the shifts of the
+//! coarse nodes. The normal equations become PᵀHP δ = Pᵀb (Galerkin's coarse equations; Briggs, Henson & McCormick, *A
+//! Multigrid Tutorial*, ch. 10). Finer bends that a pose already has stay.
 //!
-//! The cells of the lattice lie whole in those of the coarse one, so a place in a cell is shifted by the four nodes of one
-//! coarse cell, bilinearly too.
+//! There are a quarter of the unknowns and half of the bandwidth, so the equations take a sixteenth of the time. Less
+//! noise is fitted too: over fourteen sequences 0.1 points of 100 more are right.
+//!
+//! Each cell of the lattice is completely inside one cell of the coarse one. So a place in a cell is moved by the four
+//! nodes of one coarse cell, bilinearly too.
 
 use super::grid::Numbered;
 use rototoon_base::geometry::Point;
 use rototoon_base::numeric::banded::BandMatrix;
 
-/// Weights of the unknowns' nodes by their numbers, four always: a node may be named again, or weigh nothing.
+/// Nodes of the unknowns with their weights. There are always four entries; a node may be named twice or have the
+/// weight 0.
 type Shares = [(usize, f64); 4];
 
-/// The nodes whose shifts are solved for, and how they shift those of a lattice.
+/// The nodes whose shifts are the unknowns, and their effect on the nodes of a lattice.
 #[derive(Clone, Debug)]
 pub struct Unknowns {
-    /// The nodes of each of their cells: top left, top right, bottom left, bottom right.
+    /// The nodes of each cell of the unknowns: top left, top right, bottom left, bottom right.
     pub cells: Vec<[usize; 4]>,
-    /// In which of these each cell of the lattice lies.
+    /// For each cell of the lattice the cell of the unknowns that contains it.
     pub cell_of: Vec<usize>,
-    /// P: what each of the lattice's nodes is shifted by.
+    /// P: for each node of the lattice the nodes that move it.
     shares: Vec<Shares>,
     count: usize,
     half: usize,
 }
 
 impl Unknowns {
-    /// Every node of a lattice on a grid by itself.
+    /// Every node of the lattice is an unknown by itself.
     pub fn every(lattice: &Numbered) -> Self {
         Self {
             cells: lattice.cells.clone(),
@@ -42,8 +46,8 @@ impl Unknowns {
         }
     }
 
-    /// The nodes of the grid of `columns` × `rows` squares together with their neighbours: those of a lattice of twice the
-    /// side, of all cells that hold one of `lattice`.
+    /// The nodes of a lattice with cells of twice the side. `lattice` is on a grid of `columns` × `rows` squares; a
+    /// coarse cell exists if it contains one of its cells.
     pub fn coarse(lattice: &Numbered, columns: usize, rows: usize) -> Self {
         let (wide, high) = (columns.div_ceil(2), rows.div_ceil(2));
         let mut taken = vec![false; wide * high];
@@ -56,7 +60,7 @@ impl Unknowns {
         let coarse = Numbered::new(wide, high, &taken);
         let mut node_of = vec![0; (wide + 1) * (high + 1)];
         coarse.nodes.iter().enumerate().for_each(|(n, &(c, r))| node_of[r * (wide + 1) + c] = n);
-        // Between two coarse lines both count half.
+        // A node between two coarse lines gets half of its weight from each.
         let along = |at: usize| [at / 2, at.div_ceil(2)];
         let shares = |&(c, r): &(usize, usize)| {
             let ([c0, c1], [r0, r1]) = (along(c), along(r));
@@ -71,21 +75,21 @@ impl Unknowns {
         }
     }
 
-    /// The zero matrix over the unknowns' coordinates: 2 n is x of node n, 2 n + 1 its y.
+    /// The zero matrix over the unknowns' coordinates. Unknown 2 n is x of node n, and 2 n + 1 is its y.
     pub fn matrix(&self) -> BandMatrix {
         BandMatrix::zeros(2 * self.count, self.half)
     }
 
-    /// PᵀAP of a matrix over the coordinates of the lattice's nodes.
+    /// PᵀAP of a matrix A over the coordinates of the lattice's nodes.
     pub fn restricted_matrix(&self, matrix: &BandMatrix) -> BandMatrix {
         let mut restricted = self.matrix();
         for i in 0..matrix.size() {
-            // What does not meet in a cell may lie outside of the unknowns' band.
+            // Nodes that share no cell have zero entries, which may be outside the band of the unknowns.
             for (j, value) in matrix.row_range(i).map(|j| (j, matrix.get(i, j))).filter(|(_, value)| *value != 0.0) {
                 for (a, share_a) in self.shares[i / 2] {
                     for (b, share_b) in self.shares[j / 2] {
                         let (row, column) = (2 * a + i % 2, 2 * b + j % 2);
-                        // An entry stands for its mirror image too.
+                        // An entry represents its mirror image too.
                         if row <= column {
                             restricted.add(row, column, share_a * share_b * value);
                         }
@@ -96,7 +100,7 @@ impl Unknowns {
         restricted
     }
 
-    /// Pᵀ of values of the coordinates of the lattice's nodes.
+    /// Pᵀv of a vector v over the coordinates of the lattice's nodes.
     pub fn restricted(&self, values: &[f64]) -> Vec<f64> {
         let mut restricted = vec![0.0; 2 * self.count];
         for (shares, value) in self.shares.iter().zip(values.as_chunks::<2>().0) {
@@ -108,13 +112,13 @@ impl Unknowns {
         restricted
     }
 
-    /// Shift of each of the lattice's nodes from the shifts of the unknowns.
+    /// P δ: shift of each node of the lattice, from the shifts of the unknowns.
     pub fn spread(&self, shifts: &[f64]) -> Vec<Point> {
         let shift = |n: usize| Point::new(shifts[2 * n], shifts[2 * n + 1]);
         self.shares.iter().map(|shares| shares.iter().map(|&(n, share)| shift(n) * share).sum()).collect()
     }
 
-    /// A weighted sum of the lattice's nodes as one of the unknowns, in their order.
+    /// A weighted sum of the lattice's nodes as a weighted sum of the unknowns' nodes, ordered by node.
     pub fn terms(&self, terms: &[(usize, f64)]) -> Vec<(usize, f64)> {
         let mut weights = vec![0.0; self.count];
         for &(n, weight) in terms {
@@ -123,7 +127,8 @@ impl Unknowns {
         weights.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0).collect()
     }
 
-    /// The weights of a point in a cell of the lattice, moved to the nodes of the unknowns' cell: `nodes` are the cell's.
+    /// The weights of a point in a cell of the lattice, converted to the nodes of the unknowns' cell. `nodes` are the
+    /// nodes of the lattice's cell.
     pub fn weights(&self, cell: usize, nodes: &[usize; 4], weights: &[f64; 4]) -> [f64; 4] {
         let of_node = |u: usize| {
             let share = |n: usize| self.shares[n].iter().filter(|s| s.0 == u).map(|s| s.1).sum::<f64>();
@@ -138,7 +143,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A lattice on 5 × 4 squares, without those of the numbers given.
+    /// A lattice on 5 × 4 squares without the squares given.
     fn lattice(missing: &[usize]) -> Numbered {
         let taken: Vec<bool> = (0..20).map(|square| !missing.contains(&square)).collect();
         Numbered::new(5, 4, &taken)
@@ -163,7 +168,7 @@ mod tests {
             let shift = |p: Point| Point::new(by[0] * p.x - by[1] * p.y, by[2] * p.x + by[3]);
             for (lattice, unknowns) in both(&missing) {
                 let at = |(c, r): (usize, usize)| Point::new(c as f64, r as f64);
-                // Where the unknowns' nodes are is told by where they take the lattice's.
+                // The places of the unknowns' nodes follow from the cells of the lattice that they move.
                 let mut places = vec![Point::NAN; unknowns.count];
                 let side = if unknowns.count == lattice.nodes.len() { 1.0 } else { 2.0 };
                 for (cell, nodes) in lattice.cells.iter().enumerate() {
@@ -198,7 +203,7 @@ mod tests {
                 let shifts = &values[..2 * unknowns.count];
                 let (got, want) = (form(&unknowns.restricted_matrix(&matrix), shifts), form(&matrix, &spread(shifts)));
                 prop_assert!((got - want).abs() < 1e-9, "{got} for {want}");
-                // Pᵀ is what its name says, and a sum of nodes is the same sum.
+                // `restricted` is the transpose of `spread`, and `terms` gives the same sum of nodes.
                 let fine: Vec<f64> = (0..matrix.size()).map(|i| values[79 - i]).collect();
                 let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
                 prop_assert!((dot(&unknowns.restricted(&fine), shifts) - dot(&fine, &spread(shifts))).abs() < 1e-9);

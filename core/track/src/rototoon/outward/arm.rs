@@ -1,15 +1,15 @@
-//! One direction from a single key: the drawings one after the other, and hypotheses on each.
+//! An arm: one direction from a single key. It visits the drawings one after the other and builds hypotheses on each.
 //!
-//! 1. The pose that the path holds on the drawing before is carried on, with what it moved last, and the best of the other
-//!    hypotheses there too: two chains are more than one, at twice the price.
-//! 2. Where all that fits much worse than it used to, or the part is not trusted, the key's look is searched for in the
-//!    whole picture.
-//! 3. Where the artist corrected the drawing, every hypothesis is brought to the corrections.
-//! 4. The path of least cost is chosen afresh over the last drawings; it tells whether the part is still trusted.
+//! 1. The chosen pose of the drawing before is carried on, together with its last motion. The best of the other
+//!    hypotheses there is carried on too: two chains find more than one, at twice the cost.
+//! 2. If all of these fit much worse than usual, or the part is not trusted, the key's appearance is searched in the
+//!    complete picture.
+//! 3. If the artist corrected the drawing, every hypothesis is moved to the corrections.
+//! 4. The path of least cost over the last drawings is chosen again. It shows whether the part is still trusted.
 //!
-//! When the end is reached, what was found late is carried back: each drawing's chosen pose to the drawing before, while
-//! it finds something new that fits better. That closes the gap between the loss of a part and where the search found it
-//! again, and lets one pin mend its neighbours.
+//! At the end, late findings are carried back: the chosen pose of each drawing goes to the drawing before, as long as
+//! it gives a new and better pose. That closes the gap between the loss of a part and the place where the search found
+//! it again. It also lets one pin correct its neighbours.
 
 use super::OutwardJob;
 use super::trust::{LEAST_INSIDE, PATIENCE, Sureness};
@@ -31,43 +31,43 @@ use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::FrameNumber;
 use std::sync::Arc;
 
-/// Drawings over which the path is chosen while the arm grows.
+/// Number of drawings over which the path is chosen while the arm grows.
 const WINDOW: usize = 10;
-/// The search begins where the least energy is this many times the usual one, and this much more.
+/// The search begins where the least energy exceeds the usual one times the first number plus the second.
 const WORSE: (f64, f64) = (2.0, 0.004);
-/// What a pose found by searching costs more than one that was carried (√E): a jump must be worth it.
+/// Additional cost (in √E) of a pose found by searching: a jump must be worth it.
 const JUMP: f64 = 0.02;
-/// Share of the energy of the key's nearest rival below which a pose found by searching is taken for the part.
+/// A pose found by searching is accepted if its energy is below this share of the energy of the key's nearest rival.
 const RIVALLED: f64 = 0.7;
-/// Energy that a part is thought to have while nothing is known but the key.
+/// Energy that stands for the key's drawing when the usual energy is computed.
 const ORDINARY: f64 = 0.006;
-/// Share of the samples below which a part is also thought to move on as it did.
+/// Share of visible samples below which continuing the last motion is tried too.
 const HARDLY_SEEN: f64 = 0.5;
-/// Turns tried about the corrections' centre, in degrees.
+/// Rotations tried about the corrections' centre, in degrees.
 const TURNS: [f64; 8] = [-90.0, -60.0, -40.0, -20.0, 20.0, 40.0, 60.0, 90.0];
-/// Starts that are aligned on a corrected drawing, and their least distance in working pixels.
+/// Number of starts that are aligned on a corrected drawing, and their least mean distance in working pixels.
 const STARTS: (usize, f64) = (5, 4.0);
 
-/// A drawing, and where the part may be on it.
+/// A drawing with the hypotheses about the part on it.
 pub struct Seen {
     /// The frame nearest to the key that shows it.
     pub near: FrameNumber,
     /// The frame farthest from the key that shows it.
     pub far: FrameNumber,
-    /// Its picture.
+    /// Features of its picture.
     pub features: Arc<Features>,
     /// What hides the part.
     pub cover: Cover,
-    /// What the artist corrected.
+    /// The artist's correction of the drawing.
     pub correction: Option<Correction>,
-    /// The hypotheses; on the key one.
+    /// The hypotheses; a single one on the key's drawing.
     pub pool: Vec<Hypothesis>,
-    /// What each costs beside its look.
+    /// Additional cost of each hypothesis, in √E.
     dear: Vec<f64>,
     anchors: Anchors,
 }
 
-/// What an arm needs beside its direction.
+/// The data that both arms of a part share.
 pub(super) struct Ground<'a> {
     pub kit: Kit<'a>,
     pub job: &'a OutwardJob,
@@ -76,19 +76,19 @@ pub(super) struct Ground<'a> {
     pub key: &'a [Point],
     pub scale: f64,
     pub width: f64,
-    /// The key's look, ready to be searched for.
+    /// The key's appearance, prepared for the search.
     pub templates: Option<&'a Templates>,
     /// See [`rival`].
     pub rival: f64,
 }
 
-/// The least energy of the key's model anywhere in the key's own picture but where the part is: how well a wrong place
-/// can fit. Infinite where no other place was found.
+/// Energy of the key's nearest rival: the least energy of the key's model at any other place in the key's own picture.
+/// It shows how well a wrong place can fit. Infinite if no other place was found.
 pub(super) fn rival(model: &Model, templates: Option<&Templates>, key: &[Point], picture: &Features) -> f64 {
     let Some(templates) = templates else { return f64::INFINITY };
     let (anchors, mesh) = (Anchors::default(), &model.texture.mesh);
     let scenery = Scenery { features: picture, cover: &model.cover, weighed: true, anchors: &anchors };
-    // A round part turned about itself is no other place.
+    // A round part rotated about itself is not another place.
     let center = polygon::center(key);
     let apart = |nodes: &[Point]| polygon::center(&mesh.control_points(nodes)).distance(center);
     let sought = Sought::new(picture.level(templates.level()));
@@ -97,13 +97,14 @@ pub(super) fn rival(model: &Model, templates: Option<&Templates>, key: &[Point],
     others.map(|pose| pose.energy).fold(f64::INFINITY, f64::min)
 }
 
-/// A grown arm.
+/// A finished arm.
 pub(super) struct Arm {
     pub drawings: Vec<Seen>,
     /// The chosen hypothesis of each drawing.
     pub path: Vec<usize>,
+    /// Confidence of the chosen pose of each drawing.
     pub sure: Vec<Sureness>,
-    /// The first frame beyond the drawings, and why it is beyond; none at the end of the footage.
+    /// The first frame beyond the drawings, and why the arm ends there. None if it reaches the end of the footage.
     pub beyond: Option<(FrameNumber, Ending)>,
     pub steps: usize,
 }
@@ -119,7 +120,7 @@ struct Growing<'a> {
 }
 
 impl Arm {
-    /// Follows the part from the key; `step` is 1 forwards and −1 backwards.
+    /// Follows the part from the key. `step` is 1 forwards and −1 backwards.
     pub fn grow(ground: &Ground, step: FrameNumber) -> Result<Self, TrackError> {
         let mut growing =
             Growing { ground, step, drawings: Vec::new(), path: Vec::new(), sure: Vec::new(), pending: None, steps: 0 };
@@ -165,12 +166,12 @@ impl Growing<'_> {
         Ok(Some((frame, kit.store.features(kit.frames, frame)?)))
     }
 
-    /// Whether the artist corrected a frame at or beyond one.
+    /// Whether the artist corrected `frame` or a frame beyond it.
     fn corrected_from(&self, frame: FrameNumber) -> bool {
         self.ground.job.corrections.keys().any(|&f| (f - frame) * self.step >= 0)
     }
 
-    /// The next drawing with all frames that are held from it, without hypotheses.
+    /// The next drawing with all frames held from it, still without hypotheses.
     fn next_drawing(&mut self) -> Result<Option<Seen>, TrackError> {
         let Some((near, features)) = self.pending.take() else { return Ok(None) };
         let job = self.ground.job;
@@ -213,7 +214,7 @@ impl Growing<'_> {
         Hypothesis::new(0, pose, points, differences)
     }
 
-    /// The hypotheses of the drawing after those known.
+    /// The hypotheses of the next drawing, each with its additional cost.
     fn proposed(&mut self, seen: &Seen, doubtful: bool) -> Result<Vec<(Hypothesis, f64)>, TrackError> {
         let model = self.ground.model;
         if self.drawings.is_empty() {
@@ -239,7 +240,7 @@ impl Growing<'_> {
         Ok(pool.into_iter().enumerate().map(|(i, h)| (h, price(i))).collect())
     }
 
-    /// What comes of the hypotheses of the drawing before.
+    /// Hypotheses carried from the drawing before.
     fn carried(&mut self, seen: &Seen) -> Result<Vec<Hypothesis>, TrackError> {
         let last = self.drawings.len() - 1;
         let before = &self.drawings[last];
@@ -277,7 +278,7 @@ impl Growing<'_> {
         Ok(self.ground.model.carry(&from.pose.nodes, Some(&flow), moved, &to.scenery()))
     }
 
-    /// Median energy of the chosen hypotheses of the last drawings.
+    /// Median energy of the chosen hypotheses of the last five drawings.
     fn usual_energy(&self) -> f64 {
         let mut known: Vec<f64> = (self.drawings.iter().zip(&self.path).rev().take(5))
             .map(|(seen, &h)| if seen.near == self.ground.job.frame { ORDINARY } else { seen.pool[h].pose.energy })
@@ -294,7 +295,7 @@ impl Growing<'_> {
         Ok(templates.find(&seen.features, &sought, model, key))
     }
 
-    /// The hypotheses of a corrected drawing, made to obey.
+    /// The hypotheses of a corrected drawing, moved to the corrections.
     fn constrained(&self, seen: &Seen, pool: &[Hypothesis]) -> Vec<Hypothesis> {
         let (model, scenery) = (self.ground.model, seen.scenery());
         let settler = model.settler(&scenery);
@@ -324,7 +325,7 @@ impl Growing<'_> {
         found
     }
 
-    /// Chooses the path over the last drawings, and says how sure the last one is.
+    /// Chooses the path over the last drawings, and returns the confidence on the last one.
     fn judge(&mut self) -> Sureness {
         let from = self.drawings.len().saturating_sub(WINDOW);
         let path = self.best(from);
@@ -335,8 +336,8 @@ impl Growing<'_> {
         last
     }
 
-    /// Whether the part reached over the picture's edge on the drawing before the last, or would have after moving once
-    /// more as it did. Else it was not on its way out, and a pose outside only hides that it is lost.
+    /// Whether the part reached beyond the picture's edge on the drawing before the last, or would have after one more
+    /// step of its motion. If not, it was not about to leave, and a pose outside only hides that the part is lost.
     fn was_leaving(&self) -> bool {
         let Some(before) = self.drawings.len().checked_sub(2) else { return false };
         let points = |d: usize| &self.drawings[d].pool[self.path[d]].points;
@@ -355,7 +356,7 @@ impl Growing<'_> {
         Sureness::of(self.ground.model, self.ground.rival, &seen.scenery(), &seen.pool[self.path[d]])
     }
 
-    /// Carries what was chosen late back towards the key.
+    /// Carries late findings back towards the key.
     fn carry_back(&mut self) -> Result<(), TrackError> {
         self.path = self.best(0);
         let mut fresh: Option<Hypothesis> = None;
@@ -363,7 +364,7 @@ impl Growing<'_> {
             let (to, from) = (&self.drawings[d - 1], &self.drawings[d]);
             let source = fresh.take().unwrap_or_else(|| from.pool[self.path[d]].clone());
             let known = &to.pool[self.path[d - 1]];
-            // Where the path is smooth and fits on both sides there is nothing to mend.
+            // Where the path is smooth and fits on both sides, nothing needs correction.
             let smooth = known.distance(&source) < 0.5 * self.ground.model.texture.mesh.size
                 && known.pose.energy < WORSE.0 * source.pose.energy + WORSE.1;
             if to.correction.is_some() || (smooth && from.correction.is_none()) {
@@ -387,7 +388,7 @@ impl Seen {
         priced.map(|(h, dear)| Candidate { cost: h.pose.energy.max(0.0).sqrt() + dear, points: &h.points }).collect()
     }
 
-    /// The drawing as the key's model sees it.
+    /// The drawing as input for the key's model.
     pub fn scenery(&self) -> Scenery<'_> {
         Scenery { features: &self.features, cover: &self.cover, weighed: true, anchors: &self.anchors }
     }

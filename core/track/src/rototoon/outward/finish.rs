@@ -1,5 +1,5 @@
-//! The chosen poses of both arms made into a track: refined by the contour's own colours, cut off where the part is no
-//! longer trusted, made to obey the artist's corrections.
+//! Makes a track from the chosen poses of both arms. The contours are refined by their own colours, the track is cut
+//! off where the part is no longer trusted, and the artist's corrections are enforced.
 
 use super::arm::{Arm, Ground, Seen, rival};
 use super::trust::{Sureness, last_trusted};
@@ -20,6 +20,10 @@ use rototoon_base::scene::FrameNumber;
 use std::collections::BTreeMap;
 
 /// Follows a part outward from its only key.
+///
+/// # Errors
+///
+/// The error of a picture that cannot be read, or the cancellation by the progress listener.
 pub(super) fn track(kit: Kit, job: &OutwardJob) -> Result<OutwardTrack, TrackError> {
     if job.key.is_empty() || job.size.0 == 0 || job.size.1 == 0 {
         return Ok(key_alone(job));
@@ -67,14 +71,14 @@ fn key_alone(job: &OutwardJob) -> OutwardTrack {
     }
 }
 
-/// Index of the last drawing to keep.
+/// Index of the last drawing of an arm that is kept.
 fn kept(arm: &Arm) -> usize {
     let corrected = arm.drawings.iter().rposition(|seen| seen.correction.is_some()).unwrap_or(0);
     let trusted: Vec<bool> = arm.sure.iter().map(Sureness::trusted).collect();
     last_trusted(&trusted, corrected)
 }
 
-/// The first frame beyond what is kept, and why.
+/// The first frame beyond the kept drawings, and the reason. None at the end of the footage.
 fn end(arm: &Arm, last: usize) -> Option<TrackEnd> {
     let (beyond, reason) = arm.beyond.unwrap_or((0, Ending::Lost));
     match arm.drawings.get(last + 1) {
@@ -85,7 +89,7 @@ fn end(arm: &Arm, last: usize) -> Option<TrackEnd> {
     }
 }
 
-/// Writes the drawings of an arm, up to the last to keep.
+/// Adds the drawings of an arm, up to the index `last`, to the track.
 fn write(
     ground: &Ground,
     arm: &Arm,
@@ -116,14 +120,15 @@ fn write(
     Ok(())
 }
 
-/// Control points in picture pixels and their confidence on a frame of drawing `d`, as the artist's corrections want it.
+/// Control points in picture pixels and their confidence on a frame of drawing `d`, with the artist's corrections
+/// enforced.
 fn on_frame(
     ground: &Ground,
     (d, frame): (usize, FrameNumber),
     points: &[Point],
     sure: &[f64],
 ) -> (Vec<Point>, Vec<f64>) {
-    // Frames held from the key have its very points.
+    // Frames held from the key get its exact points.
     let mut points: Vec<Point> =
         if d == 0 { ground.job.key.clone() } else { points.iter().map(|&p| p * ground.scale).collect() };
     let mut sure = sure.to_vec();
@@ -134,7 +139,7 @@ fn on_frame(
     (points, sure)
 }
 
-/// Refined control points, or the rough ones where the templates fit those no worse.
+/// Refined control points, or the rough ones if refinement does not improve the fit of the templates.
 fn refined(ground: &Ground, refiner: &Refiner, seen: &Seen, rough: &[Point]) -> Vec<Point> {
     let pins = seen.correction.as_ref().map(|c| c.pins.iter().map(|(&j, &p)| (j, p / ground.scale)).collect());
     let frame = Frame { picture: &seen.features, cover: &seen.cover, share: 0.0, pins: pins.unwrap_or_default() };

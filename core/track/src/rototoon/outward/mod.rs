@@ -1,29 +1,30 @@
-//! Contours keyed on one frame only, followed outward from it.
+//! Follows parts with a single key outward from it.
 //!
-//! Between two keys a tracker knows where it has to arrive. From a single key it can only go on, and the question is less
-//! where the part goes than how long that is believed. So a part is followed backwards and forwards, one drawing after
-//! the other, until it is lost, the shot ends, or the part leaves the picture; and where it was lost a key is wanted.
+//! Between two keys a tracker knows where it must arrive. From a single key it can only continue, and the main question
+//! is how long the result can be trusted. So a part is followed backwards and forwards, drawing by drawing, until it is
+//! lost, the shot ends, or the part leaves the picture. Where it is lost, a key is needed.
 //!
-//! - [`plan`]: which parts, in which order, and what is remembered of them
-//! - [`arm`]: one direction: hypotheses drawing by drawing, the path through them
+//! - [`plan`]: which parts, in which order, and the memory of results
+//! - [`arm`]: one direction: hypotheses on each drawing, and the path through them
 //! - [`trust`]: how sure a point is with one key, and when a part is lost
-//! - `finish`: the chosen poses made into a track
+//! - `finish`: the track from the chosen poses
 //!
-//! What is believed of each drawing comes from the key alone: its lattice and its colours ([`super::lattice`]) are
-//! carried along ([`super::propagate`]), always compared with the key, so that nothing drifts; where that fits much worse
-//! than before the whole picture is searched ([`super::search`]); the path over time is chosen as between keys
-//! ([`super::select`]). Reading ends a few drawings behind the last one that is trusted: footage of any length costs no
-//! more than what is found in it.
+//! The key is the only source for the part's appearance. Its lattice and its colours ([`super::lattice`]) are carried
+//! along ([`super::propagate`]) and always compared with the key, so nothing drifts. Where the fit becomes much worse
+//! than before, the complete picture is searched ([`super::search`]). The path over time is chosen as between keys
+//! ([`super::select`]). Reading ends a few drawings after the last trusted one, so long footage takes no more time than
+//! the found part of it.
 //!
-//! **Occlusion.** Parts are followed from the nearest to the farthest, after the parts with two keys or more; what those
-//! hide is unseen and says nothing. The reverse does not hold: what is followed outward hides nothing of parts between
-//! keys but on its key frame (as any key does), so that a single-key part changes nothing of the others.
+//! **Occlusion.** Parts are followed from the nearest to the farthest, after the parts with two keys or more. Samples
+//! under these parts are unseen and have no effect. The reverse is not true: a part that is followed outward hides
+//! nothing of parts between keys, except on its key frame (like any key). So a part with a single key does not change
+//! the other parts.
 //!
-//! **Corrections** on any frame outside the key are hard constraints, and a frame that the artist corrected is trusted:
-//! the part is followed at least so far, through cuts too.
+//! **Corrections** on any frame other than the key are hard constraints. A corrected frame is trusted: the part is
+//! followed at least to it, also through cuts.
 //!
-//! Limits: parts choose one by one, so equal limbs that cross are told apart by what hides them alone; a part that turns
-//! its other side to the viewer is lost there, and rightly.
+//! **Limits.** Parts choose one by one, so only occlusion distinguishes equal limbs that cross. A part that turns its
+//! other side to the viewer is lost there; it needs a new key.
 
 pub mod arm;
 mod finish;
@@ -49,24 +50,25 @@ pub struct OutwardJob {
     pub key: Vec<Point>,
     /// First and last frame of the footage.
     pub footage: [FrameNumber; 2],
-    /// The artist's corrections; none on the key.
+    /// The artist's corrections by frame. The key has none.
     pub corrections: BTreeMap<FrameNumber, Correction>,
-    /// Closed contours of the nearer parts on each frame, as keyed or tracked.
+    /// By frame: closed contours of the nearer parts, keyed or tracked.
     pub occluders: BTreeMap<FrameNumber, Vec<Vec<Point>>>,
     /// Size of the pictures in pixels.
     pub size: (usize, usize),
 }
 
-/// What was found for a part with a single key.
+/// The result for a part with a single key.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutwardTrack {
-    /// Control points on every frame from the first trusted one to the last, the key and corrections exactly.
+    /// Control points on every frame from the first trusted one to the last, in pixels of the picture. The key and the
+    /// corrections are exact.
     pub tracks: BTreeMap<FrameNumber, Vec<Point>>,
-    /// By frame and point, 0 to 1; 1 on the key.
+    /// Confidence by frame and point, 0 to 1. It is 1 on the key.
     pub confidence: BTreeMap<FrameNumber, Vec<f64>>,
-    /// Where it ends before the footage does, backwards first.
+    /// Ends of the track that are not ends of the footage, the backward one first.
     pub ends: Vec<TrackEnd>,
-    /// Poses aligned.
+    /// Number of aligned poses.
     pub steps: usize,
     /// Mean energy of the chosen poses.
     pub cost: f64,

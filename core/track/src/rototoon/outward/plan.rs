@@ -1,7 +1,8 @@
-//! Which parts are followed outward, in which order, and what is remembered of them.
+//! Plans the parts that are followed outward: which ones, in which order, and which results are reused.
 //!
-//! A part's result depends on its key, its corrections, the pictures, and where nearer parts are. So parts go from the
-//! nearest to the farthest, those of one depth side by side, and a result is taken again where its job is the same.
+//! A part's result depends on its key, its corrections, the pictures, and the places of nearer parts. So the parts go
+//! from the nearest to the farthest, and parts of the same depth run in parallel. A result is reused if its job is the
+//! same as before.
 
 use super::finish::track;
 use super::{OutwardJob, OutwardTrack};
@@ -17,13 +18,13 @@ use rototoon_base::scene::{Cancelled, FrameNumber, FrameSource, Part, Progress, 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
-/// What was found for the parts with one key, by name.
+/// The results of the parts with one key, by the name of the part.
 #[derive(Default)]
 pub struct Memory {
     known: BTreeMap<String, (OutwardJob, OutwardTrack)>,
 }
 
-/// Indices of the parts with one key that can be followed.
+/// Indices of the parts with exactly one key and at least one point.
 pub fn subjects(scene: &Scene) -> Vec<usize> {
     let single = |part: &Part| part.keys.len() == 1 && part.point_count() > 0;
     (0..scene.parts.len()).filter(|&p| single(&scene.parts[p])).collect()
@@ -70,7 +71,7 @@ impl Memory {
     }
 }
 
-/// Parts of one depth together, the nearest first.
+/// Groups of parts of the same depth, the nearest first.
 fn waves(scene: &Scene, subjects: &[usize]) -> Vec<Vec<usize>> {
     let depth = |p: usize| scene.parts[p].depth;
     let mut order = subjects.to_vec();
@@ -124,7 +125,7 @@ fn put(tracking: &mut Tracking, part: usize, found: &OutwardTrack, solved: bool)
     tracking.jobs.push(JobReport { part, span: Span { first, last }, summary, solved });
 }
 
-/// Counts parts: how far one comes is not known before.
+/// Counts finished parts. It cannot measure the share within a part, because the length of a track is not known before.
 struct Counter<'a> {
     listener: &'a dyn Progress,
     done: Mutex<usize>,
@@ -137,7 +138,7 @@ impl Counter<'_> {
     }
 
     fn tell(&self, step: &str, more: usize) -> Result<(), Cancelled> {
-        // The listener is told under the lock, so that it never sees the share fall.
+        // The listener is called under the lock, so that the reported share never decreases.
         let mut done = self.done.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         *done += more;
         self.listener.report(step, *done as f64 / self.all.max(1) as f64)
@@ -154,7 +155,7 @@ impl Progress for Counter<'_> {
 pub(crate) struct Portion<'a> {
     /// Who is told of the whole.
     pub listener: &'a dyn Progress,
-    /// Shares of the whole at the stretch's beginning and end.
+    /// Share of the complete work at the beginning and at the end of the section.
     pub range: [f64; 2],
 }
 

@@ -1,20 +1,22 @@
-//! How sure a point is when there is one key, and whether a part can be trusted on a drawing.
+//! Confidence of a point with a single key, and whether a part can be trusted on a drawing.
 //!
-//! Between two keys the models of both keys contradict each other where one is wrong ([`crate::rototoon::confidence`]). Here
-//! there is one. What tells instead: how well the key's colours fit around the point (e, mean squared colour difference),
-//! and how well they fit over the whole part (E) beside how well they can fit where the part is not (R, the least energy
-//! of any other place in the key's own picture, at most [`WORST`]): a leg that its twin resembles is not known by its
-//! look. So
+//! Between two keys the models of both keys disagree if one of them is wrong ([`crate::track::confidence`]). With a
+//! single key three other measurements are used:
 //!
-//! logit p = β₀ + β₁ ln(e + 0.001) + β₂ ln((E + 0.001) / (R + 0.001)).
+//! - e, the mean squared colour difference around the point: how well the key's colours fit there.
+//! - E, the energy of the complete part.
+//! - R, the least energy of any other place in the key's own picture, at most [`WORST`]: how well a wrong place can
+//!   fit. A leg that looks like its twin cannot be identified by its appearance.
 //!
-//! β is fitted by maximum likelihood to "within 2 px of the contour at 540 lines", each of seven sequences counting the
-//! same. Fitted to six and tried on the seventh the mean loss is 0.385 a point; without R it is 0.395. The distance of a
-//! point from where dense flow would put it, the number of drawings from the key, and the largest jump so far were tried
-//! too: they help some sequences and cost others more (0.40 to 0.43).
+//! The model is logit p = β₀ + β₁ ln(e + 0.001) + β₂ ln((E + 0.001) / (R + 0.001)).
 //!
-//! A part is trusted on a drawing by the mean of p over its points that are seen; it is lost where it is not trusted on
-//! [`PATIENCE`] drawings in a row. A part of which next to nothing is seen cannot be trusted.
+//! β is fitted by maximum likelihood to "within 2 px of the contour at 540 lines" on seven sequences of equal weight.
+//! In cross-validation (six to fit, one to test) the mean loss is 0.385 per point; without R it is 0.395. Three more
+//! inputs were tried: the distance of a point from its place by dense flow, the number of drawings from the key, and
+//! the largest jump so far. They help some sequences and harm others more (0.40 to 0.43).
+//!
+//! A part is trusted on a drawing if the mean of p over its visible points is large enough. It is lost if it is not
+//! trusted on [`PATIENCE`] drawings in a row. A part of which almost nothing is visible is not trusted.
 
 use crate::rototoon::confidence::local_errors;
 use crate::rototoon::lattice::texture::{Texel, WORST, in_picture};
@@ -25,25 +27,25 @@ use rototoon_base::geometry::Point;
 /// β of the module's formula.
 const BETA: [f64; 3] = [-3.71, -1.0, -0.595];
 
-/// Mean probability from which on a part is trusted.
+/// Least mean probability of a trusted part.
 pub const TRUSTED: f64 = 0.5;
-/// Drawings in a row that are not trusted before a part is lost.
+/// Number of untrusted drawings in a row after which a part is lost.
 pub const PATIENCE: usize = 4;
-/// Share of the samples that must be seen.
+/// Least share of visible samples of a trusted part.
 pub const LEAST_SEEN: f64 = 0.1;
-/// Share of the samples in the picture below which a part has left it.
+/// Share of samples in the picture below which the part has left the picture.
 pub const LEAST_INSIDE: f64 = 0.08;
 
-/// How sure a part is on a drawing.
+/// Confidence of a part on a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sureness {
-    /// By point, 0 to 1.
+    /// Confidence by point, 0 to 1.
     pub points: Vec<f64>,
-    /// Mean over the points that are seen.
+    /// Mean confidence of the visible points; 0 if too few samples are visible.
     pub trust: f64,
-    /// Share of the samples that are seen.
+    /// Share of visible samples.
     pub seen: f64,
-    /// Share of the samples in the picture.
+    /// Share of samples in the picture.
     pub inside: f64,
 }
 
@@ -62,7 +64,7 @@ impl Sureness {
         Self { points, trust, seen: seen_share, inside: share(&|p| in_picture(p, seen.cover.width())) }
     }
 
-    /// Whether the part is trusted.
+    /// Whether the part is trusted on the drawing.
     pub fn trusted(&self) -> bool {
         self.trust >= TRUSTED
     }
@@ -74,7 +76,7 @@ fn probability(error: f64, whole: f64, rival: f64) -> f64 {
     1.0 / (1.0 + (-logit).exp())
 }
 
-/// Weighted share of samples whose places fulfil a condition.
+/// Weighted share of the samples whose places meet the condition `is`.
 fn share_of(texels: &[Texel], nodes: &[Point], is: &dyn Fn(Point) -> bool) -> f64 {
     let (mut sum, mut weights) = (0.0, 1e-9);
     for texel in texels {
@@ -85,8 +87,8 @@ fn share_of(texels: &[Texel], nodes: &[Point], is: &dyn Fn(Point) -> bool) -> f6
     sum / weights
 }
 
-/// Index of the last of some drawings to keep: the last trusted one before the part is lost, at least `least`.
-/// `trusted` begins with the key's drawing.
+/// Index of the last drawing to keep: the last trusted one before the part is lost, and at least `least`. `trusted`
+/// begins with the key's drawing.
 pub fn last_trusted(trusted: &[bool], least: usize) -> usize {
     let mut last = 0;
     for (index, &is) in trusted.iter().enumerate() {

@@ -1,31 +1,34 @@
-//! Links between neighbouring control points, which hold the shape of the keys.
+//! Links between neighbouring control points, which preserve the shape of the keys.
 //!
-//! Points j and j + 1, j + 2, j + 4 are linked (weights 1, ½, ¼). The wanted edge between two is the mean, weighted by
-//! time, over the keys of the key's edge, turned and scaled as the ±3 neighbours of either end are between the key and
-//! now. A link is loosened by what its edge misses under the same fit from one key to the other: what bends between the
-//! keys may bend.
+//! Points j and j + 1, j + 2, j + 4 are linked, with the weights 1, ½, ¼. Each link has a desired edge vector. For each
+//! key it is the key's edge, rotated and scaled like the neighbourhood (±3 points) of either end between the key and
+//! now. The two keys' vectors are averaged, weighted by time.
+//!
+//! A link has less weight if its edge does not fit the same rotation and scale from one key to the other: what bends
+//! between the keys may bend.
 
 use rototoon_base::geometry::Point;
 
-/// Steps along the contour, and their weights.
+/// Steps along the contour between linked points, and the weights of the links.
 const STEPS: [(usize, f64); 3] = [(1, 1.0), (2, 0.5), (4, 0.25)];
-/// Neighbours on either side that a similarity is fitted to.
+/// Neighbours on either side to which a similarity is fitted.
 const NEIGHBOURS: isize = 3;
-/// Weight that a link keeps however much it bends, and the bend that halves the rest, in working pixels.
+/// Least share of the weight that a link keeps however much it bends, and the bend at which the rest is halved, in
+/// working pixels.
 const LOOSEST: f64 = 0.05;
 const BENDING: f64 = 2.0;
-/// Bounds of a neighbourhood's scale.
+/// Bounds of the scale of a neighbourhood.
 const SCALE: (f64, f64) = (0.5, 2.0);
 
 /// The links of a contour.
 pub struct Links {
-    /// Both ends and the weight.
+    /// Indices of both ends, and the weight.
     pub all: Vec<(usize, usize, f64)>,
     closed: bool,
 }
 
 impl Links {
-    /// From the control points of both keys.
+    /// Links from the control points of both keys, in working pixels.
     pub fn new(keys: &[Vec<Point>; 2], closed: bool) -> Self {
         let count = keys[0].len();
         let turns = turns(&keys[0], &keys[1], closed);
@@ -44,7 +47,8 @@ impl Links {
         Self { all, closed }
     }
 
-    /// The wanted edges of all links, for control points near `points`.
+    /// The desired edges of all links, for control points near `points`. `share` is the share of the time from the
+    /// first key to the second.
     pub fn wanted(&self, keys: &[Vec<Point>; 2], points: &[Point], share: f64) -> Vec<Point> {
         let turns = [0, 1].map(|k: usize| turns(&keys[k], points, self.closed));
         let edge = |&(i, j, _): &(usize, usize, f64)| {
@@ -55,7 +59,7 @@ impl Links {
     }
 }
 
-/// Turn and scale (as complex numbers) of the neighbourhood of each point from one contour to another.
+/// Rotation and scale (as complex numbers) of the neighbourhood of each point from one contour to another.
 fn turns(from: &[Point], to: &[Point], closed: bool) -> Vec<Point> {
     let count = from.len() as isize;
     let around = |j: isize| -> Vec<usize> {

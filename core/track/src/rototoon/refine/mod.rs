@@ -1,17 +1,25 @@
-//! Roughly placed contours brought onto the drawing by the colours around them at both keys.
+//! Refinement: moves a roughly placed contour onto the drawing by the colours around it at both keys.
 //!
-//! Every control point, and a point between each two, is a **sample**. Around it each key gives a template of colours in
-//! the contour's own frame (tangent and normal), inside and outside ([`template`]). On a frame the templates are tried
-//! over a window around the sample ([`response`]): what comes back is a little map of costs, from which a step of mean
-//! shift takes the place that it speaks for and how surely, along either axis: an edge pulls along its normal only, a
-//! corner both ways, a flat area not at all ([`pull`]). Links between neighbouring control points hold the shape of the
-//! keys, each turned and scaled as its neighbourhood is, softer where the keys themselves bend ([`links`]); both make a
-//! linear least squares for all points of a frame ([`solve`]). A few rounds of that, then windows and colours anew.
+//! Every control point and a point between each two of them is a **sample**.
 //!
-//! It is a constrained local model (Cristinacce & Cootes 2006; regularised mean shift: Saragih, Lucey & Cohn 2011) whose
-//! shape model is what two keys say. From within about 10 px it converges nearly everywhere; a contour in a wrong place
-//! it cannot mend, and a part that slides under others it may drag along. So the result is kept only where the templates
-//! fit better than they did before: [`Refiner::cost`].
+//! 1. Around a sample each key gives a template of colours in the contour's own frame (tangent and normal), inside and
+//!    outside the part ([`template`]).
+//! 2. On a frame the templates are compared with the picture over a window around the sample. The result is a small map
+//!    of costs ([`response`]).
+//! 3. A step of mean shift over this map gives a target place and a weight for each axis. An edge pulls along its
+//!    normal only, a corner in both directions, a flat area not at all ([`pull`]).
+//! 4. Links between neighbouring control points preserve the shape of the keys, rotated and scaled like their
+//!    neighbourhood. They are softer where the keys themselves bend ([`links`]).
+//! 5. Targets and links give a linear least-squares problem for all points of a frame ([`solve`]).
+//!
+//! Steps 3 to 5 are repeated for a few rounds. Then the maps are computed again over a smaller window.
+//!
+//! The method is a constrained local model (Cristinacce & Cootes 2006; regularised mean shift: Saragih, Lucey & Cohn
+//! 2011). Its shape model comes from the two keys.
+//!
+//! Limits: it converges nearly everywhere from within about 10 px. It cannot correct a contour at a wrong place, and it
+//! may pull along a part that slides under others. So the result is kept only if the templates fit better than before
+//! ([`Refiner::cost`]).
 
 pub mod links;
 pub mod pull;
@@ -32,14 +40,15 @@ use rototoon_base::geometry::Point;
 use samples::Samples;
 use template::Templates;
 
-/// The windows of the passes, and for each its rounds: reach of the pull (working pixels) and weight of the links.
+/// The windows of the passes. Each has three rounds, with the reach of the pull (working pixels) and the weight of the
+/// links.
 const PASSES: [(Window, [(f64, f64); 3]); 2] = [
     (Window { reach: [5, 6] }, [(6.0, 0.5), (4.0, 0.3), (3.0, 0.2)]),
     (Window { reach: [2, 3] }, [(3.0, 0.2), (2.0, 0.15), (2.0, 0.1)]),
 ];
-/// Fall of the templates' cost that makes a refined contour worth taking.
+/// Least decrease of the templates' cost for which a refined contour is used.
 const WORTH: f64 = 0.01;
-/// A cost counts at most this much: a sample cannot be worse than lost.
+/// Upper limit of the cost of a sample.
 const LOST: f64 = 0.5;
 
 /// A part's templates and links. Made once a span.
@@ -51,7 +60,7 @@ pub struct Refiner {
 }
 
 impl Refiner {
-    /// From both keys; `None` for contours of fewer than three points, which have no shape.
+    /// Builds templates and links from both keys. `None` for contours of fewer than three points, which have no shape.
     pub fn new(keys: [Key; 2], closed: bool) -> Option<Self> {
         let count = keys[0].points.len();
         if count < 3 {
@@ -64,18 +73,20 @@ impl Refiner {
         Some(Self { samples, keys: points, templates, links })
     }
 
-    /// Forgets what tells the part from its ground: every wrong colour is just wrong.
+    /// Forgets the difference between part and background, for measurements without it: outside samples are treated
+    /// like inside samples.
     pub fn forget_figure(&mut self) {
         self.templates.forget_figure();
     }
 
-    /// Refined control points, or the rough ones where the templates fit those no worse.
+    /// Refined control points, or the rough ones if refinement does not lower the cost enough. All places are in
+    /// working pixels.
     pub fn improved(&self, frame: &Frame, rough: Vec<Point>) -> Vec<Point> {
         let (fine, before) = self.refine(frame, &rough);
         if self.cost(frame, &fine) < before - WORTH { fine } else { rough }
     }
 
-    /// Refined control points, from rough ones, and how badly the templates fit at those, as [`Refiner::cost`] says it.
+    /// Refined control points from rough ones, and the cost of the rough ones as in [`Refiner::cost`].
     fn refine(&self, frame: &Frame, start: &[Point]) -> (Vec<Point>, f64) {
         let mut before = None;
         let mut points = start.to_vec();
@@ -100,7 +111,8 @@ impl Refiner {
         (points, before.unwrap_or(LOST))
     }
 
-    /// How badly the templates fit at control points: mean of each sample's cost, by how much of it a key shows.
+    /// How badly the templates fit at control points: the mean of the samples' costs, weighted by how much of each
+    /// sample the keys show.
     pub fn cost(&self, frame: &Frame, points: &[Point]) -> f64 {
         let window = Window { reach: [0, 0] };
         let (places, angles) = self.samples.frames(points);
@@ -112,7 +124,7 @@ impl Refiner {
     }
 }
 
-/// Mean of the samples' costs where they are, by how much of each a key shows.
+/// Mean of the samples' costs in the middle of their maps, weighted by how much of each sample the keys show.
 fn mean_cost(maps: &[response::Map]) -> f64 {
     let (mut sum, mut weights) = (0.0, 1e-6);
     for map in maps {

@@ -1,34 +1,39 @@
-//! Where a map of costs pulls its sample, and how surely along which axes: a step of regularised mean shift.
+//! The pull of a map of costs on its sample: a target and a weight along two axes, by a step of regularised mean shift.
 //!
-//! p(d) ∝ exp(−C(d)/τ − |d − u|²/2ρ²) over the window, u the present displacement; mean μ and covariance Σ. The window is
-//! a part of that and is taken out again: P = (Σ + s² I)⁻¹, π = 1/(ρ² + s²), Λ = P − π I, target = Λ⁻¹ (P μ − π u) on
-//! the axes of Λ, at most 2ρ from u. Along an edge Λ vanishes: nothing is known there.
+//! The probability of a displacement d in the window is p(d) ∝ exp(−C(d)/τ − |d − u|²/2ρ²), where u is the present
+//! displacement, C the cost and ρ the reach. Its mean is μ and its covariance Σ. The Gaussian around u is a part of
+//! this probability and is removed again: P = (Σ + s² I)⁻¹, π = 1/(ρ² + s²), Λ = P − π I, target = Λ⁻¹ (P μ − π u).
+//! This is done on the eigenvector axes of Λ, and the target is at most 2ρ from u. Along an edge Λ is zero, so there is
+//! no pull.
+//!
+//! Source: regularised mean shift, Saragih, Lucey & Cohn 2011.
 
 use super::response::Map;
 use nalgebra::{Matrix2, Vector2};
 use rototoon_base::geometry::Point;
 
-/// Temperature of the costs.
+/// τ: temperature of the costs.
 const TAU: f64 = 0.007;
-/// Smallest spread of a place, in working pixels: s of the module's formula.
+/// s: least spread of a place, in working pixels.
 const SPREAD: f64 = 0.7;
-/// A place whose probability is smaller than the largest one's by the exponential of this counts for nothing.
+/// A place is skipped if its probability is smaller than the largest one by more than a factor exp of this.
 const NEGLIGIBLE: f64 = 25.0;
-/// Least costs at which a sample counts fully, and not at all.
+/// Least cost of a map up to which a sample has its full weight, and from which on it has none.
 const GOOD: f64 = 0.15;
 const BAD: f64 = 0.55;
 
-/// A pull along two axes across each other.
+/// A pull along two perpendicular axes.
 pub struct Pull {
     /// Unit axes in the picture.
     pub axes: [Point; 2],
-    /// Weight along each.
+    /// Weight along each axis.
     pub weights: [f64; 2],
-    /// Wanted place along each: axis · place.
+    /// Target along each axis: the scalar product of the axis with the target place, in working pixels.
     pub targets: [f64; 2],
 }
 
-/// The pull on a sample that is at `now`; the map is around `place` with the unit tangent given.
+/// The pull on a sample that is now at `now`. The map is around `place`, with the unit vector `tangent` as its first
+/// axis. `reach` is ρ in working pixels, and `trust` scales the weights.
 pub fn pull(map: &Map, (place, tangent): (Point, Point), now: Point, reach: f64, trust: f64) -> Pull {
     let back = Point::new(tangent.x, -tangent.y);
     let u = back.rotate(now - place);
@@ -52,7 +57,7 @@ pub fn pull(map: &Map, (place, tangent): (Point, Point), now: Point, reach: f64,
     Pull { axes: [a.0, b.0], weights: [a.1, b.1], targets: [a.2, b.2] }
 }
 
-/// Mean, covariance (xx, xy, yy), and the least cost within twice the reach.
+/// Mean and covariance (xx, xy, yy) of the displacement, and the least cost within twice the reach of `u`.
 fn moments(map: &Map, u: Point, reach: f64) -> (Point, [f64; 3], f64) {
     let inverse = 0.5 / (reach * reach);
     let columns = 2 * map.reach[1] as usize + 1;

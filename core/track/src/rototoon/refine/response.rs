@@ -1,9 +1,12 @@
 //! How badly a sample's templates fit at each displacement of a window.
 //!
-//! C_k = Σ w c / Σ w over the template's offsets, c = r / (r + σ²), r the squared colour difference; C = min over the keys
-//! that show enough of the sample's inside. An offset under a nearer part costs a constant. Outside the part the ground may
-//! have changed since the key: any other colour costs a little at the most, but the part's own colour as much as it is
-//! like it (1 − c of the difference from that), since a contour that has slid inwards shows just that.
+//! The cost of key k is C_k = Σ w c / Σ w over the offsets of its template, where c = r / (r + σ²) and r is the squared
+//! colour difference. C is the smaller of the two costs, of those keys that show enough of the sample's inside.
+//!
+//! Two kinds of offsets have other costs. An offset under a nearer part costs a constant. Outside the part the
+//! background may have changed since the key: any other colour costs at most a small constant. But the part's own
+//! colour costs more the more similar it is (1 − c of the difference from that colour), because it appears there if the
+//! contour has slipped inwards.
 
 use super::template::{Cell, HALF, LEVEL, Template, offsets};
 use super::view::Frame;
@@ -14,39 +17,39 @@ use rototoon_base::scene::Colour;
 
 /// σ² of the robust colour difference (three channels of 0 to 1).
 const TOLERANCE: f32 = 0.06;
-/// Cost of an offset that a nearer part hides.
+/// Cost of an offset under a nearer part.
 const HIDDEN: f32 = 0.35;
-/// Cost, at the most, of an offset outside the part whose ground has changed and is not like the part.
+/// Largest cost of an offset outside the part, if the background has changed and is not like the part.
 const OTHER_GROUND: f32 = 0.15;
-/// Share of a sample's inside that a key must show.
+/// Share of a sample's inside that a key must show to be used.
 const SHOWN: f64 = 0.35;
 
 /// A window of displacements, in working pixels along tangent and normal.
 pub struct Window {
-    /// Largest displacement.
+    /// Largest displacement along tangent and normal.
     pub reach: [i32; 2],
 }
 
-/// Costs over a window.
+/// Costs over a window of displacements.
 pub struct Map {
-    /// Largest displacement along tangent and normal.
+    /// Largest displacement along tangent and normal, in working pixels.
     pub reach: [i32; 2],
-    /// Costs, those along the normal innermost.
+    /// Costs at steps of one working pixel. The displacement along the normal is the inner index.
     pub costs: Vec<f32>,
-    /// How much of the sample the keys show: 0 to 1.
+    /// How much of the sample the keys show, 0 to 1: twice the larger visible share, at most 1.
     pub shown: f64,
 }
 
-/// What the window and the templates around it show.
+/// The picture under the window and the templates around it.
 struct Seen {
-    /// Planes of one value a place, along the normal innermost: red, green, blue, and 1 where a nearer part hides the
-    /// place, else 0.
+    /// Planes with one value per place: red, green, blue, and 1 where a nearer part hides the place, otherwise 0. The
+    /// normal is the inner index.
     planes: [Vec<f32>; 4],
     any_hidden: bool,
     stride: usize,
 }
 
-/// The costs of a sample at a place with a unit tangent.
+/// The costs of a sample at a place with a unit tangent. If no key shows enough of the sample, both keys are used.
 pub fn map(frame: &Frame, window: &Window, (place, tangent): (Point, Point), templates: [&Template; 2]) -> Map {
     let [rows, columns] = window.reach.map(|reach| 2 * reach as usize + 1);
     let padded = columns.next_multiple_of(LANES);
@@ -77,7 +80,7 @@ pub fn map(frame: &Frame, window: &Window, (place, tangent): (Point, Point), tem
     Map { reach: window.reach, costs, shown: (2.0 * shown).min(1.0) }
 }
 
-/// Reads the picture wherever an offset of a template may come to lie, and `padding` places beyond.
+/// Reads the picture at every place that an offset of a template can reach, and `padding` places beyond.
 #[inline(always)]
 fn seen(frame: &Frame, window: &Window, (place, tangent): (Point, Point), padding: usize) -> Seen {
     let size = [0, 1].map(|axis: usize| 2 * (window.reach[axis] + HALF[axis]) as usize + 1);
@@ -103,7 +106,7 @@ fn seen(frame: &Frame, window: &Window, (place, tangent): (Point, Point), paddin
     Seen { planes, any_hidden, stride }
 }
 
-/// Adds the weighted cost of each of the template's offsets at all displacements, `lanes` groups a row.
+/// Adds the weighted cost of each of the template's offsets at all displacements. A row has `lanes` groups.
 #[inline(always)]
 fn add_costs(template: &Template, seen: &Seen, sums: &mut [Lanes], lanes: usize) {
     let mut cells = template.cells.iter();
@@ -122,7 +125,7 @@ fn add_costs(template: &Template, seen: &Seen, sums: &mut [Lanes], lanes: usize)
 }
 
 impl Seen {
-    /// What an offset costs at some displacements; `at` is the place in the planes at the first of them.
+    /// Cost of an offset at several displacements. `at` is its index in the planes at the first of them.
     #[inline(always)]
     fn cost(&self, cell: &Cell, at: usize) -> Lanes {
         let [r, g, b, hidden] = &self.planes;
@@ -139,7 +142,7 @@ impl Seen {
     }
 }
 
-/// Robust difference of some colours to one, 0 to 1.
+/// Robust difference of some colours from one colour, 0 to 1.
 #[inline(always)]
 fn wrong([r, g, b]: &[Lanes; 3], colour: &Colour) -> Lanes {
     let (r, g, b) = (*r - Lanes::splat(colour[0]), *g - Lanes::splat(colour[1]), *b - Lanes::splat(colour[2]));

@@ -1,10 +1,11 @@
-//! The places along a contour at which it is compared with the picture: control points and one point between each two.
+//! The samples of a contour, the places at which it is compared with the picture: control points and one point between
+//! each two.
 
 use rototoon_base::geometry::Point;
 
 /// Weights of the four control points around a segment for its Catmull–Rom midpoint.
 const MIDPOINT: [f64; 4] = [-1.0 / 16.0, 9.0 / 16.0, 9.0 / 16.0, -1.0 / 16.0];
-/// How much a midpoint's pull counts beside a control point's.
+/// Weight of a midpoint's pull relative to a control point's.
 const MIDPOINT_TRUST: f64 = 0.5;
 
 /// Each sample as a weighted sum of control points, in the order of the contour.
@@ -14,7 +15,7 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// For a contour of `count` control points.
+    /// The samples of a contour with `count` control points.
     pub fn new(count: usize, closed: bool) -> Self {
         let mut terms = Vec::new();
         for j in 0..count {
@@ -45,17 +46,17 @@ impl Samples {
         self.terms.len()
     }
 
-    /// How much a sample's pull counts.
+    /// Weight of a sample's pull.
     pub fn trust(&self, s: usize) -> f64 {
         if self.terms[s].len() == 1 { 1.0 } else { MIDPOINT_TRUST }
     }
 
-    /// Where the samples of control points lie.
+    /// Places of the samples for the control points given.
     pub fn places(&self, points: &[Point]) -> Vec<Point> {
         self.terms.iter().map(|terms| terms.iter().map(|&(j, w)| points[j] * w).sum()).collect()
     }
 
-    /// Places and unit tangents.
+    /// Places and unit tangents of the samples. A tangent is the direction from the sample before to the sample after.
     pub fn frames(&self, points: &[Point]) -> (Vec<Point>, Vec<Point>) {
         let places = self.places(points);
         let count = places.len();

@@ -1,8 +1,8 @@
-//! The control points of one frame that follow the pulls and the links best: a linear least squares.
+//! The control points of one frame that fit the pulls and the links best, by linear least squares.
 //!
-//! Σ weights (axis · sample − target)² + λ Σ w |x_j − x_i − edge|² + ε |x − now|², pins as heavy rows. Both coordinates are
-//! coupled by the pulls' axes. Points are numbered from both ends of the contour towards its middle, so that a closed
-//! contour too has a narrow band.
+//! It minimises Σ weights (axis · sample − target)² + λ Σ w |x_j − x_i − edge|² + ε |x − now|². Pins are rows with a
+//! large weight. The axes of the pulls couple both coordinates. The points are numbered from both ends of the contour
+//! towards its middle, so that the matrix of a closed contour has a narrow band too.
 
 use super::links::Links;
 use super::pull::Pull;
@@ -11,14 +11,16 @@ use rototoon_base::geometry::Point;
 use rototoon_base::numeric::banded::BandMatrix;
 use std::collections::BTreeMap;
 
-/// Weight of staying: keeps the system definite.
+/// ε: weight of the present place. It keeps the system definite.
 const STAY: f64 = 1e-3;
 /// Weight of a pin.
 const PIN: f64 = 1e4;
-/// Largest distance of two coupled points in the numbering: links of 4 steps, from both ends in turn.
+/// Largest difference of the numbers of two coupled points: links reach 4 points, and the numbers alternate between
+/// both ends.
 const REACH: usize = 9;
 
-/// The solution; `None` where the system is not definite (coordinates that are no numbers).
+/// The new control points. `now` and `pins` are in working pixels, and `weight` is λ. `None` if the system is not
+/// positive definite, for example because of NaN.
 pub fn solve(
     samples: &Samples,
     pulls: &[Pull],
@@ -57,12 +59,12 @@ pub fn solve(
     Some((0..count).map(|j| Point::new(right[2 * place(j)], right[2 * place(j) + 1])).collect())
 }
 
-/// Adds weight (Σ a x − wanted)² to the normal equations. A control point may come more than once in a row.
+/// Adds weight (Σ a x − wanted)² to the normal equations. A control point may occur more than once in a row.
 fn add_row(matrix: &mut BandMatrix, right: &mut [f64], row: &[(usize, f64)], weight: f64, wanted: f64) {
     for (k, &(i, a)) in row.iter().enumerate() {
         right[i] += weight * a * wanted;
         for &(j, b) in &row[..k] {
-            // The pair and its mirror are one entry, but on the diagonal they are two.
+            // A pair and its mirror image are one entry of the matrix; on the diagonal they are two.
             matrix.add(i, j, weight * a * b * if i == j { 2.0 } else { 1.0 });
         }
         matrix.add(i, i, weight * a * a);

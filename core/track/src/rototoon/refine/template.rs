@@ -1,4 +1,7 @@
-//! The colours around each sample at a key, in the frame of the contour there.
+//! Templates: the colours around each sample at a key, in the frame of the contour there.
+//!
+//! A cell outside the part shows the background, which may be different on other frames. So it has less weight, and it
+//! also stores the part's own colour at the mirror place inside, which shows a contour that slipped inwards.
 
 use super::samples::Samples;
 use super::view::Key;
@@ -9,36 +12,37 @@ use rototoon_base::scene::Colour;
 
 /// Half sizes along tangent and normal, in working pixels.
 pub const HALF: [i32; 2] = [4, 6];
-/// Steps along either.
+/// Steps along tangent and normal, in working pixels.
 const STEP: [i32; 2] = [2, 1];
-/// Weight of what lies outside the part: it may be another thing on other frames.
+/// Weight of an offset outside the part: it may show something else on other frames.
 const OUTSIDE: f32 = 0.5;
-/// Weight of what lies outside and under a nearer part.
+/// Weight of an offset that is outside and under a nearer part.
 const OUTSIDE_HIDDEN: f32 = 0.1;
-/// The part reaches this far beyond its contour, in working pixels.
+/// An offset this near to the contour still counts as inside, in working pixels.
 const REACH: f64 = 2.0;
-/// Level (index in `LEVELS`) whose colours are taken.
+/// Level (index in `LEVELS`) from which the colours are read.
 pub const LEVEL: usize = 2;
 
-/// What a template has at one offset.
+/// One offset of a template.
 #[derive(Clone)]
 pub struct Cell {
     /// Colour at the key.
     pub colour: Colour,
-    /// How much it counts.
+    /// Weight of the offset.
     pub weight: f32,
-    /// The part's colour across the contour, for an offset outside that differs from it.
+    /// The part's colour at the mirror place inside the contour, for an offset outside. None if the two colours are
+    /// alike.
     pub own: Option<Colour>,
 }
 
 /// The template of one sample at one key.
 #[derive(Clone)]
 pub struct Template {
-    /// Its cells, those along the normal innermost.
+    /// Its cells. The offset along the normal is the inner index.
     pub cells: Vec<Cell>,
     /// Sum of the weights.
     pub weight: f32,
-    /// Share of the inside that no nearer part hides.
+    /// Share of the inside offsets that no nearer part hides.
     pub shown: f64,
 }
 
@@ -53,23 +57,23 @@ pub fn offsets(axis: usize) -> impl Iterator<Item = i32> + Clone {
 }
 
 impl Templates {
-    /// Cuts the templates of all samples.
+    /// Reads the templates of all samples.
     pub fn new(keys: &[Key; 2], samples: &Samples, closed: bool) -> Self {
         Self { of_key: [0, 1].map(|k: usize| of_key(&keys[k], samples, closed)) }
     }
 
-    /// Forgets what tells the part from its ground: every wrong colour is just wrong.
+    /// Forgets the difference between part and background, for measurements without it.
     pub fn forget_figure(&mut self) {
         self.of_key.iter_mut().flatten().flat_map(|template| &mut template.cells).for_each(|cell| cell.own = None);
     }
 
-    /// The templates of a sample.
+    /// The templates of a sample, one per key.
     pub fn of(&self, s: usize) -> [&Template; 2] {
         [&self.of_key[0][s], &self.of_key[1][s]]
     }
 }
 
-/// The three values of a colour.
+/// A colour without its padding.
 fn bare(colour: Padded) -> Colour {
     colour.truncate().to_array()
 }

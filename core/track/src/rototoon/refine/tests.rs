@@ -1,4 +1,4 @@
-//! Rough contours on a drawn shape.
+//! Refinement of rough contours on a drawn shape.
 
 use super::{Frame, Key, Refiner};
 use crate::rototoon::lattice::texture::Cover;

@@ -4,9 +4,10 @@
 //! E_A = Σ_i ( f_S(p_{i+1}) − f_S(p_i) )²
 //! ```
 //!
-//! The paper does not say in which unit f_S is. In px² a large part's area would drown every other term; divided by the
-//! square root of the part's area at the keys it is a length like the rest, and the energy keeps its balance whatever the
-//! resolution. A part with less than a pixel of area is divided by one pixel. An open curve encloses nothing: no term.
+//! The paper does not state the unit of f_S. In px² the area of a large part would dominate every other term. Divided
+//! by the square root of the part's area at the keys it is a length like the other terms, so the balance of the energy
+//! does not depend on the resolution. The area has a lower limit of one pixel. An open curve encloses no area and has
+//! no such term.
 
 use super::term::{Curves, Sink, Term};
 use rototoon_base::geometry::{Point, polygon};
@@ -19,7 +20,7 @@ pub struct Area {
 }
 
 impl Area {
-    /// Takes the scale from the first and the last frame.
+    /// Takes the scale from the first and the last frame, which are the keys.
     pub fn new(curves: Curves<'_>) -> Self {
         let last = curves.layout.frames.saturating_sub(1);
         let area = [0, last].map(|frame| polygon::signed_area(curves.frame(frame)).abs());
@@ -35,7 +36,7 @@ impl Term for Area {
         }
         let by_coordinate = |frame: usize, sign: f64| {
             layout.neighbours().flat_map(move |(previous, j, next)| {
-                // ∂f_S/∂c(j) is half the chord between the neighbours, turned by a quarter.
+                // ∂f_S/∂c(j) is half the vector between the neighbours of c(j), turned by a quarter turn.
                 let chord: Point = curves.at(frame, next) - curves.at(frame, previous);
                 let coordinate = layout.coordinate(frame, j);
                 let factor = 0.5 * sign * self.scale;

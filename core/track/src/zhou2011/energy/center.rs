@@ -1,4 +1,4 @@
-//! Distance of the part's centre, the mean of its control points, from where it should be (Zhou & Xiao 2011, eq. 9):
+//! Distance of the part's centre, the mean of its control points, from its target (Zhou & Xiao 2011, eq. 9):
 //!
 //! ```text
 //! E_R = Σ_i ‖ pc_i − pc*_i ‖²
@@ -10,7 +10,7 @@ use rototoon_base::geometry::{Point, polygon};
 /// The term E_R.
 #[derive(Clone, Debug)]
 pub struct Center {
-    /// pc* by frame; no residual where there is none.
+    /// Target pc* by frame, in pixels. A frame without one has no residual.
     pub centers: Vec<Option<Point>>,
 }
 

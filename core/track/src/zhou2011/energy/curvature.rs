@@ -4,8 +4,8 @@
 //! E_C = Σ_i Σ_j ‖ f_C(c_{i+1}(j)) − f_C(c_i(j)) ‖²,   f_C(c) = (c_prev − c) − (c − c_next)
 //! ```
 //!
-//! The difference is one of vectors, so a part that turns is punished although its shape stays: a limit of the printed
-//! method. The ends of an open curve have no second difference.
+//! The difference is one of vectors. So a part that rotates has a cost although its shape stays the same: a limit of
+//! the printed method. The ends of an open curve have no second difference.
 
 use super::term::{Curves, Sink, Term};
 

@@ -4,16 +4,16 @@
 //! E_E = Σ_i Σ_j f_Segdist(s_i(j))²,   f_Segdist = (1/t) Σ_k D_i(x_k, y_k)
 //! ```
 //!
-//! D_i is the Manhattan distance of each pixel from the nearest edge pixel of frame i, read bilinearly between pixel
-//! centres so that it has derivatives. The t samples lie in the middle of t equal pieces of the segment.
+//! D_i is the Manhattan distance of each pixel from the nearest edge pixel of frame i. It is read bilinearly between
+//! pixel centres so that it has derivatives. The t samples are the middles of t equal pieces of the segment.
 //!
-//! Beyond the part of the picture that a [`DistanceField`] holds, D is continued without slope.
+//! Outside the rectangle of a [`DistanceField`], D is constant along the outward direction.
 
 use super::term::{Curves, Sink, Term, by_point};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;
 
-/// Manhattan distances in pixels over a rectangle of a picture.
+/// Manhattan distances in pixels over a rectangle of the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DistanceField {
     left: usize,
@@ -22,7 +22,12 @@ pub struct DistanceField {
 }
 
 impl DistanceField {
-    /// `distance(x, y)` in whole pixels at the pixels of the rectangle with the given top-left pixel, at least 1 × 1.
+    /// A field from `distance(x, y)`, the distance in whole pixels at a pixel of the picture. The rectangle has the
+    /// top-left pixel (`left`, `top`).
+    ///
+    /// # Panics
+    ///
+    /// If the rectangle has no pixel.
     pub fn from_fn(
         (left, top): (usize, usize),
         width: usize,
@@ -33,7 +38,8 @@ impl DistanceField {
         Self { left, top, distances: Raster::from_fn(width, height, |x, y| distance(left + x, top + y)) }
     }
 
-    /// The distance at a point and its derivatives by x and y (eq. 11, 12, pixel centres at +0.5).
+    /// The distance at `p` (pixels of the picture) and its derivatives by x and y. Eq. 11 and 12, with pixel centres at
+    /// +0.5.
     pub fn read(&self, p: Point) -> (f64, Point) {
         let x = Cell::of(p.x - 0.5 - self.left as f64, self.distances.width());
         let y = Cell::of(p.y - 0.5 - self.top as f64, self.distances.height());
@@ -48,7 +54,7 @@ impl DistanceField {
     }
 }
 
-/// Between which two pixels of a row a place lies.
+/// The two pixels of a row or column between which a place is.
 struct Cell {
     low: usize,
     high: usize,
@@ -67,14 +73,14 @@ impl Cell {
 /// The term E_E.
 #[derive(Clone, Debug)]
 pub struct Edge {
-    /// D by frame; no residual where there is none.
+    /// D by frame. A frame without one has no residual.
     pub distances: Vec<Option<DistanceField>>,
-    /// t: samples a segment.
+    /// t: samples per segment.
     pub samples: usize,
 }
 
 impl Edge {
-    /// f_Segdist of the segment `a`–`b` on a frame, and its derivatives by `a` and by `b`.
+    /// f_Segdist of the segment `a`–`b` on a frame, in pixels, and its derivatives by `a` and by `b`.
     pub(super) fn segment(&self, field: &DistanceField, a: Point, b: Point) -> (f64, Point, Point) {
         let mut sum = (0.0, Point::ZERO, Point::ZERO);
         for k in 0..self.samples {
@@ -139,7 +145,7 @@ mod tests {
             y in 0.6f64..4.4,
         ) {
             let h = 1e-6;
-            // Away from the creases between cells.
+            // Stay away from the creases between cells.
             prop_assume!([x, y].iter().all(|v| ((v - 0.5).fract() - 0.5).abs() < 0.5 - 2.0 * h));
             let field = DistanceField::from_fn((0, 0), 5, 5, |x, y| values[5 * y + x]);
             let at = |dx: f64, dy: f64| field.read(Point::new(x + dx, y + dy)).0;

@@ -4,8 +4,8 @@
 //! E_L = Σ_i Σ_j ( |s_{i+1}(j)| − |s_i(j)| )²
 //! ```
 //!
-//! The derivative of |b − a| by b is the unit vector u along the segment, by a it is −u. A segment without length has
-//! none; it is taken as zero there, so that coincident points get no push in an arbitrary direction.
+//! The derivative of |b − a| by b is the unit vector u along the segment; by a it is −u. A segment of length zero has
+//! no direction. Its derivative is set to zero, so that coincident points are not pushed in an arbitrary direction.
 
 use super::term::{Curves, Sink, Term, by_point};
 

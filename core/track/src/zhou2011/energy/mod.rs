@@ -1,4 +1,4 @@
-//! The space-time energy of Zhou & Xiao 2011 (eq. 1) of one part over one span:
+//! The space-time energy of Zhou & Xiao 2011 (eq. 1) for one part over one span:
 //!
 //! ```text
 //! E = 8 E_L + 9 E_C + 3 E_A + 4 E_V + 4 E_E + 32 E_R
@@ -12,13 +12,13 @@
 //! - [`center`]: distance of the part's centre from where the region search found it (9)
 //! - [`term`]: what a term reads and where its residuals go
 //!
-//! Every term is a sum of squares, so E is ‖r‖² of one long residual r and [`Energy`] is a
-//! [`Problem`] for Levenberg–Marquardt. A term is written once, as a walk over its residuals with
-//! their derivatives; pattern, values and Jacobian come from the same walk into different [`Sink`]s.
+//! Every term is a sum of squares. So E is ‖r‖² of one long residual vector r, and [`Energy`] is a [`Problem`] for
+//! Levenberg–Marquardt. Each term is written once, as a walk over its residuals with their derivatives. The sparsity
+//! pattern, the values and the Jacobian come from the same walk into different [`Sink`]s.
 //!
-//! The energy has no term that joins two parts: each part is solved by itself.
+//! No term couples two parts, so each part is solved by itself.
 //!
-//! Keys and pins are no variables: their derivatives are dropped, which is exact elimination. A corrected centre becomes
+//! Keys and pins are not variables. Their derivatives are dropped, which eliminates them exactly. A corrected centre is
 //! an equality constraint on the free points of its frame and replaces (9) there.
 
 pub mod area;
@@ -35,7 +35,7 @@ use edge::DistanceField;
 use rototoon_base::geometry::Point;
 use rototoon_base::numeric::sparse_least_squares::Problem;
 
-/// The weights of (1).
+/// The weights of eq. 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
     /// Of the length term.
@@ -62,25 +62,25 @@ impl Default for Weights {
 /// What is given and what is fixed.
 #[derive(Clone, Debug)]
 pub struct Given {
-    /// Shape of the problem.
+    /// Order of the coordinates.
     pub layout: Layout,
-    /// All points at the start, keys and pins in place.
+    /// All points at the start. Keys and pins are in their places.
     pub start: Vec<Point>,
     /// Which points are fixed (keys and pins), in the order of `start`.
     pub fixed: Vec<bool>,
-    /// Edge distances by frame; `None` at the keys and where there is no picture to hold to.
+    /// Edge distances by frame. `None` at the keys and where there is no picture to compare with.
     pub distances: Vec<Option<DistanceField>>,
-    /// Where the region search found the part's centre, by frame.
+    /// Centre of the part by frame, where the region search found one.
     pub centers: Vec<Option<Point>>,
-    /// Centres that the artist set, by frame: the start must have them.
+    /// Whether the artist set the centre, by frame. The start must have this centre already.
     pub corrected: Vec<bool>,
-    /// Samples a segment in (7).
+    /// Samples per segment in eq. 7.
     pub samples: usize,
-    /// Weights of (1).
+    /// Weights of eq. 1.
     pub weights: Weights,
 }
 
-/// The energy as a least-squares problem in the coordinates that are free.
+/// The energy as a least-squares problem in the free coordinates.
 pub struct Energy {
     given: Given,
     length: length::Length,
@@ -89,9 +89,9 @@ pub struct Energy {
     velocity: velocity::Velocity,
     edge: edge::Edge,
     center: center::Center,
-    /// For each coordinate its variable, or `FIXED`.
+    /// Variable of each coordinate, or `FIXED`.
     variable: Vec<u32>,
-    /// For each variable its coordinate.
+    /// Coordinate of each variable.
     coordinate: Vec<usize>,
     residuals: usize,
 }
@@ -99,7 +99,7 @@ pub struct Energy {
 const FIXED: u32 = u32::MAX;
 
 impl Energy {
-    /// The energy of a part.
+    /// Builds the energy of a part.
     pub fn new(mut given: Given) -> Self {
         let layout = given.layout;
         let mut variable = vec![FIXED; layout.coordinates()];
@@ -129,12 +129,12 @@ impl Energy {
         energy
     }
 
-    /// The free coordinates of the start: where the solver begins.
+    /// The free coordinates at the start, from which the solver begins.
     pub fn initial(&self) -> Vec<f64> {
         self.coordinate.iter().map(|&c| self.given.start[c / 2][c % 2]).collect()
     }
 
-    /// All points, frame by frame, for values of the free coordinates.
+    /// All points, frame by frame, for the values `x` of the free coordinates.
     pub fn points(&self, x: &[f64]) -> Vec<Point> {
         let mut points = self.given.start.clone();
         for (&c, &value) in self.coordinate.iter().zip(x) {
@@ -143,7 +143,7 @@ impl Energy {
         points
     }
 
-    /// f_Segdist (7) of the segment `a`–`b` on a frame, in pixels; `None` where the frame has no distances.
+    /// f_Segdist (7) of the segment `a`–`b` on a frame, in pixels. `None` where the frame has no distances.
     pub fn edge_distance(&self, frame: usize, a: Point, b: Point) -> Option<f64> {
         let field = self.edge.distances[frame].as_ref()?;
         Some(self.edge.segment(field, a, b).0)
@@ -205,7 +205,7 @@ impl Problem for Energy {
     }
 }
 
-/// Walks a term with residuals and derivatives scaled by the root of its weight.
+/// Walks a term with residuals and derivatives scaled by the square root of its weight.
 fn weighted(term: &impl Term, weight: f64, curves: Curves<'_>, sink: &mut impl Sink) {
     term.walk(curves, &mut Scaled { scale: weight.sqrt(), sink });
 }
@@ -284,7 +284,7 @@ pub(crate) mod tests {
     use super::*;
     use rototoon_base::numeric::gradient_check::{WorstEntry, worst_entry};
 
-    /// Uneven curves without symmetry, far from any coincidence: 4 frames of `points` points.
+    /// Irregular curves without symmetry or coincident points: 4 frames of `points` points.
     pub(crate) fn wobbly(points: usize, closed: bool) -> (Layout, Vec<Point>) {
         let layout = Layout::new(4, points, closed);
         let all = (0..4 * points).map(|k| {
@@ -296,7 +296,7 @@ pub(crate) mod tests {
         (layout, all.collect())
     }
 
-    /// An energy with one weight only.
+    /// An energy with the weights given. Point 1 of frame 1 is pinned, and the first and last frame are keys.
     pub(crate) fn only(weights: Weights, points: usize, closed: bool) -> Energy {
         let (layout, start) = wobbly(points, closed);
         let fixed = (0..start.len()).map(|k| k < points || k >= 3 * points || k == points + 1).collect();
@@ -314,11 +314,12 @@ pub(crate) mod tests {
         })
     }
 
-    /// No term but those set.
+    /// All weights zero.
     pub(crate) const NONE: Weights =
         Weights { length: 0.0, curvature: 0.0, area: 0.0, velocity: 0.0, edge: 0.0, center: 0.0 };
 
-    /// The entry of the Jacobian that differs most from differences, over closed and open curves of several sizes.
+    /// The entry of the Jacobian that differs most from the difference quotient, over closed and open curves of several
+    /// sizes.
     pub(crate) fn worst(weights: Weights) -> WorstEntry {
         [(7, true), (6, false), (3, true), (2, true)]
             .into_iter()

@@ -45,7 +45,7 @@ mod tests {
         let mut x = energy.initial();
         minimise(&energy, &mut x, &LmOptions::default(), |_, _| ControlFlow::Continue(()));
         let points = energy.points(&x);
-        // Point 1 is pinned on frame 1, the others are free on frames 1 and 2.
+        // Point 1 is pinned on frame 1; the others are free on frames 1 and 2.
         for j in [0, 2, 3, 4] {
             for (frame, share) in [(1, 1.0 / 3.0), (2, 2.0 / 3.0)] {
                 assert!(points[5 * frame + j].distance(points[j].lerp(points[15 + j], share)) < 1e-4);

@@ -1,13 +1,15 @@
-//! Affine colouring (Zhou & Xiao 2011, Algorithm 1): a polygon takes its pixels' colours from another polygon of the same
-//! vertices.
+//! Affine colouring (Zhou & Xiao 2011, Algorithm 1): a polygon B takes its pixels' colours from another polygon A with
+//! the same vertices.
 //!
-//! 1. The affine map T that takes the vertices of B to those of A is fitted by least squares.
-//! 2. A pixel of B whose image under T lies in A takes the colour there, read bilinearly.
+//! 1. The affine map T from the vertices of B to those of A is fitted by least squares.
+//! 2. A pixel of B whose image under T is inside A takes the colour there, read bilinearly.
 //! 3. Every other pixel takes the colour of the nearest pixel that has one.
 //!
-//! Vertices on a line (or fewer than three) leave T open across the line; a similarity is fitted then.
-//! "Nearest" is found by propagating offsets in two sweeps (Danielsson, "Euclidean distance mapping", 1980), which can be
-//! off by a fraction of a pixel.
+//! If the vertices are on a line, or fewer than three, T is not determined across the line. Then a similarity is
+//! fitted.
+//!
+//! The nearest pixel is found by two sweeps that propagate offsets (Danielsson, "Euclidean distance mapping", 1980).
+//! The result can be off by a fraction of a pixel.
 
 use nalgebra::{Matrix2, Vector2};
 use rototoon_base::geometry::similarity::Similarity;
@@ -15,7 +17,7 @@ use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{Colour, Raster};
 use rototoon_image::sample;
 
-/// q = M (p − source) + target, the columns of M being `x` and `y`.
+/// An affine map q = M (p − source) + target. The columns of M are `x` and `y`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine {
     /// Image of the x direction.
@@ -29,7 +31,7 @@ pub struct Affine {
 }
 
 impl Affine {
-    /// The map that best takes `from` to `to` (paired by index, equal in number).
+    /// The least-squares map from `from` to `to`, which are paired by index and have the same number of points.
     pub fn fit(from: &[Point], to: &[Point]) -> Self {
         let (source, target) = (polygon::center(from), polygon::center(to));
         // M = (Σ q pᵀ)(Σ p pᵀ)⁻¹ with both sets centred.
@@ -71,7 +73,7 @@ pub struct Run {
     pub colours: Vec<f32>,
 }
 
-/// A polygon with the colours of a key, made ready to colour others.
+/// A polygon with the colours of a key, prepared to colour other polygons.
 #[derive(Clone, Debug)]
 pub struct Source<'a> {
     picture: &'a Raster<Colour>,
@@ -80,7 +82,7 @@ pub struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// The polygon A on its picture.
+    /// Prepares the polygon A (pixels) on its picture.
     pub fn new(picture: &'a Raster<Colour>, polygon: &'a [Point]) -> Self {
         let mut inside = Raster::new(picture.width(), picture.height(), false);
         polygon::for_each_span(polygon, picture.width(), picture.height(), |y, x0, x1| {
@@ -89,8 +91,9 @@ impl<'a> Source<'a> {
         Self { picture, polygon, inside }
     }
 
-    /// The pixels of the polygon `target` (B), coloured; rows from the top, runs from the left. Pixels further than
-    /// `margin` outside the picture are left out. Empty where B holds no pixel or none of them meets A.
+    /// The coloured pixels of the polygon `target` (B), with rows from the top and runs from the left. Pixels more than
+    /// `margin` pixels outside the picture are left out. Empty if B contains no pixel or no pixel of B has an image in
+    /// A.
     pub fn colour(&self, target: &[Point], margin: usize) -> Vec<Run> {
         let Some(canvas) = Canvas::around(target, self.picture, margin) else { return Vec::new() };
         let map = Affine::fit(target, self.polygon);
@@ -116,7 +119,7 @@ impl<'a> Source<'a> {
             .collect()
     }
 
-    /// The colour at `q` where it lies in A and in the picture.
+    /// The colour at `q`, if `q` is in A and in the picture.
     fn read(&self, q: Point) -> Option<Colour> {
         let (width, height) = (self.picture.width() as f64, self.picture.height() as f64);
         let within = q.x >= 0.0 && q.y >= 0.0 && q.x < width && q.y < height;
@@ -124,7 +127,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// The pixels that a polygon may cover, as a rectangle.
+/// A rectangle around the pixels that a polygon may cover.
 struct Canvas {
     left: isize,
     top: isize,
@@ -139,7 +142,7 @@ impl Canvas {
         let low = low.floor().max(Point::splat(-margin));
         let size = Point::new(picture.width() as f64, picture.height() as f64);
         let high = high.ceil().min(size + Point::splat(margin));
-        // Written so that bounds that are not numbers give nothing.
+        // Written so that NaN bounds give nothing.
         if !(low.x < high.x && low.y < high.y) {
             return None;
         }
@@ -152,7 +155,7 @@ impl Canvas {
     }
 }
 
-/// Each member's own colour, or that of the nearest pixel that has one. `None` where no pixel has.
+/// Each member's own colour, or that of the nearest pixel that has one. `None` if no pixel has a colour.
 fn fill_from_nearest(colours: &Raster<Option<Colour>>, member: &Raster<bool>) -> Option<Raster<Colour>> {
     let (width, height) = (colours.width(), colours.height());
     if colours.data().iter().all(Option::is_none) {
@@ -162,7 +165,7 @@ fn fill_from_nearest(colours: &Raster<Option<Colour>>, member: &Raster<bool>) ->
     if complete {
         return Some(colours.map(|colour| colour.unwrap_or_default()));
     }
-    // Offset to the nearest coloured pixel known so far.
+    // Offset to the nearest coloured pixel found so far.
     let mut offsets: Raster<Option<(i32, i32)>> = colours.map(|colour| colour.map(|_| (0, 0)));
     let relax = |offsets: &mut Raster<Option<(i32, i32)>>, x: usize, y: usize, dx: isize, dy: isize| {
         let (nx, ny) = (x as isize + dx, y as isize + dy);
@@ -240,7 +243,7 @@ mod tests {
 
     #[test]
     fn pixels_without_a_counterpart_take_the_nearest_colour() {
-        // The key's polygon hangs over the picture's left border by two pixels.
+        // The key's polygon extends two pixels beyond the picture's left border.
         let picture = Raster::from_fn(6, 2, |x, _| [x as f32, 0.0, 0.0]);
         let a = points([(-2.0, 0.0), (2.0, 0.0), (2.0, 2.0), (-2.0, 2.0)]);
         let b = a.map(|p| p + Point::new(3.0, 0.0));

@@ -1,16 +1,17 @@
-//! Where a part's centre lies on a frame between keys (Zhou & Xiao 2011, §2.2.1, "region term").
+//! Finds a part's centre on a frame between keys (Zhou & Xiao 2011, §2.2.1, "region term").
 //!
-//! The part's polygon, blended linearly between the keys, is coloured from the first and from the last key
-//! ([affine colouring](affine)). Each coloured polygon is slid over a window around its place on the frame; the place with
-//! the least sum of squared colour differences is its candidate, and the better candidate of the two keys wins. Of equal
-//! places the one nearest to the blended place is taken, so that a flat surrounding moves nothing.
+//! The keys' polygons are blended linearly. The blended polygon is coloured from the first and from the last key
+//! ([affine colouring](affine)). Each coloured polygon is moved over a window around its place on the frame. Its
+//! candidate is the place with the least sum of squared colour differences, and the better candidate of the two keys
+//! wins. Of equal places the one nearest to the blended place is taken, so that flat surroundings move nothing.
 //!
-//! **Fast and exact.** Places are visited from the middle outwards, rows of the polygon in a scattered order; a place is
-//! given up as soon as its sum exceeds the least sum so far. The second key starts with the first key's least sum.
-//! Beyond the border the frame is continued by its outermost pixels.
+//! **Fast and exact.** Places are visited from the middle outwards, and rows of the polygon in a scattered order. The
+//! sum at a place stops as soon as it reaches the least sum so far. The second key starts with the first key's least
+//! sum. Beyond the border the frame is continued by its outermost pixels.
 //!
-//! Limits, the paper's own: shifts only, each frame for itself, within 50 px of the blended place, and what hides a part is
-//! not known. Of parts larger than [`MAX_PIXELS`] every second, third, … row is compared.
+//! **Limits**, which are those of the paper: the search knows translations only, treats each frame by itself, reaches
+//! 50 px from the blended place, and ignores occlusion. For parts larger than [`MAX_PIXELS`] only every second, third,
+//! … row is compared.
 
 pub mod affine;
 
@@ -18,22 +19,22 @@ use affine::{Run, Source};
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{Colour, Raster};
 
-/// Half the side of the search window in pixels: the paper's example is a 100 × 100 rectangle.
+/// Half the side of the search window in pixels. The paper's example is a window of 100 × 100 pixels.
 pub const WINDOW: usize = 50;
-/// Pixels of a part that are compared, about; keeps the search on large frames affordable.
+/// Approximate number of a part's pixels that are compared. It limits the time on large frames.
 pub const MAX_PIXELS: usize = 40_000;
 
-/// What the search found on a frame.
+/// The result of the search on a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
     /// The part's centre (mean of the vertices), in pixels.
     pub center: Point,
-    /// Root mean square colour difference there, a channel, 0 to 1.
+    /// Root mean square colour difference per channel at this place, 0 to 1.
     pub difference: f64,
 }
 
-/// Searches on `frame` for the part that has the polygon `blended` between the keys. `None` where the polygon holds no pixel
-/// that could be coloured.
+/// Searches on `frame` for the part, which has the polygon `blended` (pixels) between the keys. `sources` are the
+/// prepared keys. `None` if the polygon has no pixel that could be coloured.
 pub fn find_center(sources: &[Source<'_>], blended: &[Point], frame: &Raster<Colour>) -> Option<Found> {
     let offsets = offsets_outwards(WINDOW as isize);
     let mut best: Option<(f64, (isize, isize), usize)> = None;
@@ -54,22 +55,22 @@ pub fn find_center(sources: &[Source<'_>], blended: &[Point], frame: &Raster<Col
     })
 }
 
-/// All offsets of the window, nearest to the middle first; of equal distance in the order of rows.
+/// All offsets of the window, nearest to the middle first. Offsets of equal distance are in row order.
 fn offsets_outwards(reach: isize) -> Vec<(isize, isize)> {
     let mut offsets: Vec<_> = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy))).collect();
     offsets.sort_by_key(|&(dx, dy)| (dx * dx + dy * dy, dy, dx));
     offsets
 }
 
-/// A coloured polygon ready to be slid.
+/// A coloured polygon ready to be compared.
 struct Template {
     /// Runs in the order of comparison.
     runs: Vec<Run>,
-    /// Colour values compared.
+    /// Number of colour values that are compared.
     values: usize,
 }
 
-/// The frame's colours around the template, wide enough for every offset.
+/// The frame's colours around the template, large enough for every offset.
 struct Patch {
     left: isize,
     top: isize,
@@ -86,7 +87,7 @@ impl Template {
         Self { values: runs.iter().map(|run| run.colours.len()).sum(), runs }
     }
 
-    /// `None` where there is nothing to compare.
+    /// The frame's colours for this template. `None` if the template has no pixels.
     fn patch(&self, frame: &Raster<Colour>) -> Option<Patch> {
         let reach = WINDOW as isize;
         let left = self.runs.iter().map(|run| run.x).min()? - reach;
@@ -99,7 +100,7 @@ impl Template {
         Some(Patch { left, top, colours })
     }
 
-    /// Sum of squared differences at an offset, where it is below `limit`.
+    /// Sum of squared differences at an offset, if it is below `limit`.
     fn difference_below(&self, patch: &Patch, (dx, dy): (isize, isize), limit: f64) -> Option<f64> {
         let mut sum = 0.0;
         for run in &self.runs {
@@ -115,7 +116,7 @@ impl Template {
     }
 }
 
-/// Σ (a − b)² in eight interleaved sums, an order that vector units can keep.
+/// Σ (a − b)² in eight interleaved sums, which vector units can compute without a change of order.
 fn squared_difference(a: &[f32], b: &[f32]) -> f32 {
     const LANES: usize = 8;
     let mut sums = [0.0f32; LANES];
@@ -130,8 +131,8 @@ fn squared_difference(a: &[f32], b: &[f32]) -> f32 {
     sums.iter().sum::<f32>() + rest
 }
 
-/// The numbers 0 to `count` − 1 so that each beginning of the list is spread over the whole: steps of the golden section,
-/// made coprime to `count`.
+/// The numbers 0 to `count` − 1 in an order in which each beginning of the list is spread over the range. The step is
+/// that of the golden section, made coprime to `count`.
 fn scattered(count: usize) -> Vec<usize> {
     let gcd = |mut a: usize, mut b: usize| {
         while b > 0 {
@@ -150,7 +151,7 @@ fn scattered(count: usize) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    /// A speckled disc of radius 9 on grey, its middle at (`x`, `y`).
+    /// A speckled disc of radius 9 on grey with its middle at (`x`, `y`).
     fn disc(x: f64, y: f64) -> Raster<Colour> {
         Raster::from_fn(120, 90, |px, py| {
             let (dx, dy) = (px as f64 + 0.5 - x, py as f64 + 0.5 - y);
