@@ -3,10 +3,10 @@
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Cancelled, FrameError, FrameNumber};
 
-/// Why tracking failed. Nothing was changed.
+/// Why tracking failed. The scene is not changed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TrackError {
-    /// A picture could not be had.
+    /// A picture could not be read.
     #[error(transparent)]
     Frame(#[from] FrameError),
     /// The caller asked to stop.
@@ -17,14 +17,14 @@ pub enum TrackError {
     UnequalKeys {
         /// Name of the part.
         part: String,
-        /// Frame of the differing key.
+        /// Frame of the key that differs.
         frame: FrameNumber,
         /// Its number of points.
         found: usize,
-        /// The number on the first key.
+        /// The number of points of the first key.
         expected: usize,
     },
-    /// A coordinate is no number, or far from any picture.
+    /// A coordinate is NaN, infinite, or far outside any picture.
     #[error("part {part:?}, frame {frame}: found the point {found}, expected pixel coordinates within ±{limit}")]
     OutOfRange {
         /// Name of the part.
@@ -37,7 +37,7 @@ pub enum TrackError {
         limit: f64,
     },
     /// A pin names a control point that the part does not have.
-    #[error("part {part:?}, frame {frame}: pin of point {index}, but the part has {count} points")]
+    #[error("part {part:?}, frame {frame}: found a pin of point {index}, expected an index below {count}")]
     NoSuchPoint {
         /// Name of the part.
         part: String,
@@ -48,14 +48,14 @@ pub enum TrackError {
         /// Number of points of the part.
         count: usize,
     },
-    /// Pictures of a shape that no scene has: scaled to the lines that the tracker works on they would fill the memory.
+    /// The pictures are too wide for their height. Scaled to the lines of the tracker they would fill the memory.
     #[error("footage: found pictures of {width}x{height} pixels, expected at most {limit} times as wide as high")]
     TooWide {
         /// Width of the footage.
         width: usize,
         /// Height of the footage.
         height: usize,
-        /// The largest quotient of both.
+        /// The largest allowed ratio of width to height.
         limit: usize,
     },
 }

@@ -6,52 +6,53 @@ use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, FrameSource, Progress, Scene, Span};
 use std::collections::BTreeMap;
 
-/// What tracking found, in the order of the scene's parts.
+/// The result of tracking.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tracking {
-    /// One entry a part.
+    /// One entry per part, in the order of the scene.
     pub parts: Vec<PartTrack>,
-    /// One entry a job, in the order of parts, then spans.
+    /// One entry per job, ordered by part, then by span.
     pub jobs: Vec<JobReport>,
 }
 
-/// How one part fared over one span.
+/// Report on one part over one span.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JobReport {
     /// Index of the part in the scene.
     pub part: usize,
-    /// The frames, keys included.
+    /// The frames, with both keys.
     pub span: Span,
-    /// What the solver says.
+    /// The solver's summary.
     pub summary: SpanSummary,
-    /// Whether it was solved in this run, not remembered from one before.
+    /// Whether the job was solved in this run, and not reused from an earlier one.
     pub solved: bool,
 }
 
 /// The track of one part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PartTrack {
-    /// Control points by frame, from the first key to the last; of a part with one key, as far as it is trusted.
+    /// Control points by frame, from the first key to the last, in pixels of the picture. For a part with one key, as
+    /// far as it is trusted.
     pub tracks: BTreeMap<FrameNumber, Vec<Point>>,
     /// Confidence by frame and point, 0 to 1.
     pub confidence: BTreeMap<FrameNumber, Vec<f64>>,
-    /// Where the track of a part with one key ends before the footage does, backwards first.
+    /// Ends of the track of a part with one key that are not ends of the footage, the backward one first.
     pub ends: Vec<TrackEnd>,
 }
 
 impl PartTrack {
-    /// Frames on which the part wants a key, since it was lost there.
+    /// Frames on which the part needs a key, because it was lost there.
     pub fn wants_key(&self) -> Vec<FrameNumber> {
         self.ends.iter().filter(|end| end.reason == Ending::Lost).map(|end| end.frame).collect()
     }
 }
 
-/// Why a track that goes outward from a single key ends before the footage does.
+/// Why a track from a single key ends before the footage does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// The part was lost: it wants a key.
+    /// The part was lost and needs a key.
     Lost,
-    /// The footage goes over to another shot.
+    /// The footage changes to another shot.
     Cut,
     /// The part left the picture.
     Left,
@@ -67,21 +68,25 @@ impl Ending {
     }
 }
 
-/// The end of a track, where it is not the footage's.
+/// The end of a track that ends before the footage does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TrackEnd {
-    /// The first frame beyond the track: where a key is wanted if the part was lost.
+    /// The first frame beyond the track. If the part was lost it needs a key there.
     pub frame: FrameNumber,
     /// Why it ends there.
     pub reason: Ending,
 }
 
-/// Tracks all parts of a scene, and may keep what it computed for the next time.
+/// Tracks all parts of a scene. A solver may keep its results for the next run.
 pub trait SceneSolver: Send {
     /// Tracks every part between its first and its last key.
     ///
-    /// The scene was checked; its footage is that of the last call, or the solver was told to forget. After an error the
-    /// solver still knows what it knew before.
+    /// The caller has checked the scene. Its footage is that of the last call, unless the caller has called
+    /// [`SceneSolver::forget`]. After an error the solver still has its earlier results.
+    ///
+    /// # Errors
+    ///
+    /// See [`TrackError`].
     fn track(
         &mut self,
         scene: &Scene,

@@ -15,12 +15,12 @@ pub(super) struct Pooled {
     pub drawings: Vec<Drawing>,
     pub models: Option<Arc<[Model; 2]>>,
     pub pools: Arc<Pools>,
-    /// What was carried from drawing to drawing when the pools were made.
+    /// The hypotheses that were carried from drawing to drawing when the pools were filled.
     pub carried: Arc<Carried>,
-    /// The part's own choice, before others are heard.
+    /// The choice of the part alone, before the joint choice.
     pub path: Vec<usize>,
     pub steps: usize,
-    /// By drawing: how far the part may lie from where the artist put its centre, in working pixels.
+    /// By drawing: how far the part may be from its corrected centre, in working pixels.
     pub center_reach: Vec<f64>,
 }
 

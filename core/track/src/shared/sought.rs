@@ -18,7 +18,7 @@ pub struct Sought {
 }
 
 impl Sought {
-    /// Of a level's picture, with its margin.
+    /// Prepares a level's picture, with its margin.
     pub fn new(level: &Level) -> Self {
         let (columns, rows) = searched_size(level);
         let pixel = level.pixel();
@@ -36,7 +36,7 @@ impl Sought {
         Self { spectra, columns, rows }
     }
 
-    /// Bytes kept.
+    /// Bytes of memory.
     pub fn bytes(&self) -> usize {
         self.spectra.iter().map(Spectrum::bytes).sum()
     }

@@ -6,30 +6,30 @@ use crate::shared::drawings::Drawing;
 use rototoon_base::scene::{FrameNumber, Span};
 use std::sync::Arc;
 
-/// The hypothesis that each contender follows on each of its drawings.
+/// For each contender the index of the hypothesis that it follows on each of its drawings.
 pub type Paths = [Vec<usize>];
 
-/// A hypothesis on a drawing.
+/// A hypothesis on a drawing: (index of the drawing, index of the hypothesis).
 pub type State = (usize, usize);
 
-/// One part over one span, with its hypotheses.
+/// One part over one span with its hypotheses, as the joint choice reads it.
 pub struct Contender<'a> {
-    /// The frames, keys included.
+    /// The frames, with both keys.
     pub span: Span,
-    /// Larger is nearer.
+    /// Depth of the part. Larger is nearer.
     pub depth: f64,
-    /// Whether the contour is closed and can hide anything.
+    /// Whether the part can hide others: its contour is closed.
     pub hides: bool,
     /// The span's drawings.
     pub drawings: &'a [Drawing],
     /// The hypotheses of each drawing.
     pub pools: &'a Arc<Pools>,
-    /// What the hypotheses pose.
+    /// The models of both keys that the hypotheses pose.
     pub models: &'a [Model; 2],
 }
 
 impl Contender<'_> {
-    /// Index of the drawing that a frame shows, where the frame lies in the span.
+    /// Index of the drawing that a frame shows. `None` if the frame is outside the span.
     pub fn drawing_at(&self, frame: FrameNumber) -> Option<usize> {
         if frame < self.span.first || frame > self.span.last {
             return None;

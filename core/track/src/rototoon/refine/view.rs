@@ -5,7 +5,7 @@ use crate::shared::features::Features;
 use rototoon_base::geometry::Point;
 use std::collections::BTreeMap;
 
-/// One key as the refiner sees it.
+/// One key as input of the refinement.
 pub struct Key<'a> {
     /// Control points in working pixels.
     pub points: &'a [Point],
@@ -15,7 +15,7 @@ pub struct Key<'a> {
     pub cover: &'a Cover,
 }
 
-/// A frame to refine on.
+/// A frame as input of the refinement.
 pub struct Frame<'a> {
     /// Its picture.
     pub picture: &'a Features,
@@ -23,6 +23,6 @@ pub struct Frame<'a> {
     pub cover: &'a Cover,
     /// Share of the time from the first key to the second.
     pub share: f64,
-    /// Control points that the artist fixed.
+    /// Control points that the artist fixed, by index, in working pixels.
     pub pins: BTreeMap<usize, Point>,
 }

@@ -2,25 +2,25 @@
 
 use rototoon_base::geometry::Point;
 
-/// Where control points lie in the list of all coordinates: frame by frame, point by point, x before y.
+/// The order of the control points in the list of all coordinates: frame by frame, point by point, x before y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// Frames of the span, keys included.
+    /// Frames of the span, with both keys.
     pub frames: usize,
-    /// Control points a frame.
+    /// Control points per frame.
     pub points: usize,
-    /// Whether the last point joins the first. Fewer than three points are never closed here: the way back would be the
-    /// way there.
+    /// Whether the last point is joined to the first. A contour of fewer than three points is never closed here: its
+    /// closing segment would be a segment that it already has.
     pub closed: bool,
 }
 
 impl Layout {
-    /// A layout; `closed` counts from three points on.
+    /// A layout. `closed` has an effect from three points on.
     pub fn new(frames: usize, points: usize, closed: bool) -> Self {
         Self { frames, points, closed: closed && points > 2 }
     }
 
-    /// Index of the x coordinate; y follows.
+    /// Index of the x coordinate of a point; its y coordinate follows.
     pub fn coordinate(&self, frame: usize, point: usize) -> usize {
         2 * (frame * self.points + point)
     }
@@ -49,10 +49,10 @@ impl Layout {
     }
 }
 
-/// The control points of all frames, as the terms read them.
+/// The control points of all frames, in the form that the terms read.
 #[derive(Clone, Copy, Debug)]
 pub struct Curves<'a> {
-    /// Where a point lies in `points`.
+    /// The order of `points`.
     pub layout: Layout,
     /// All points, frame by frame.
     pub points: &'a [Point],
@@ -70,16 +70,16 @@ impl Curves<'_> {
     }
 }
 
-/// Takes the residuals of a term in order.
+/// Receives the residuals of a term in order.
 pub trait Sink {
-    /// A residual and its derivatives by coordinate (index of the layout). A term names the same coordinates in the same
-    /// order whatever the points; a coordinate may be named more than once, the derivatives then add up.
+    /// A residual and its derivatives by coordinate (index of the layout). A term must name the same coordinates in the
+    /// same order for all points. If it names a coordinate more than once the derivatives add up.
     fn residual(&mut self, value: f64, derivatives: impl IntoIterator<Item = (usize, f64)>);
 }
 
-/// A sum of squares over the curves.
+/// A sum of squares over the curves of all frames.
 pub trait Term {
-    /// Hands every residual to the sink.
+    /// Passes every residual to the sink.
     fn walk(&self, curves: Curves<'_>, sink: &mut impl Sink);
 }
 
