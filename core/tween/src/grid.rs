@@ -1,4 +1,8 @@
-//! Nearest places among many, by a grid of square cells.
+//! Search for the nearest places among many, with a grid of square cells.
+//!
+//! A cell has [`PER_CELL`] places on average. A search visits the cell of the given place first, then the rings of
+//! cells around it. It ends when no cell further out can have a nearer place. Evenly spread places need constant time
+//! per search. Places that crowd in few cells need more.
 
 use rototoon_base::geometry::{Point, polygon};
 
@@ -14,7 +18,7 @@ pub(super) struct Grid<'a> {
     sorted: Vec<usize>,
 }
 
-/// Places a cell holds on average.
+/// Average number of places in a cell.
 const PER_CELL: f64 = 2.0;
 
 impl<'a> Grid<'a> {
@@ -22,7 +26,7 @@ impl<'a> Grid<'a> {
         let (low, high) = polygon::bounds(places).unwrap_or((Point::ZERO, Point::ZERO));
         let extent = (high - low).max(Point::splat(1e-9));
         let cells = (places.len() as f64 / PER_CELL).max(1.0);
-        // Of a long thin picture neither side has more cells than there should be in all.
+        // For a long thin picture this keeps the cells of each side below the intended number of all cells.
         let cell = (extent.x * extent.y / cells).sqrt().max(extent.max_element() / cells);
         let (columns, rows) = ((extent.x / cell) as i64 + 1, (extent.y / cell) as i64 + 1);
         let mut grid =
@@ -46,8 +50,8 @@ impl<'a> Grid<'a> {
         (y * self.columns + x) as usize
     }
 
-    /// Indices of the `count` places nearest to `p`, the nearest first, of equally near ones that of smaller index;
-    /// those of a smaller index are `skip`ped where asked for.
+    /// Indices of the `count` places nearest to `p`, the nearest first. Among equally near places the smaller index
+    /// comes first. The list is shorter where there are fewer places.
     pub fn nearest(&self, p: Point, count: usize) -> Vec<usize> {
         let (x, y) = self.cell_of(p);
         let mut found: Vec<(f64, usize)> = Vec::new();
@@ -55,7 +59,7 @@ impl<'a> Grid<'a> {
             self.ring((x, y), ring, |i| found.push((self.places[i].distance_squared(p), i)));
             found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             found.truncate(count);
-            // What lies beyond the ring is at least so far away from the clamped place, thus from p.
+            // Every place outside the ring is at least this far from `p`.
             let beyond = self.beyond(p, (x, y), ring);
             if found.len() == count && found.last().is_none_or(|last| last.0 <= beyond * beyond) {
                 break;
@@ -64,8 +68,8 @@ impl<'a> Grid<'a> {
         found.into_iter().map(|(_, i)| i).collect()
     }
 
-    /// Distance of `p` from the nearest cell that is not within `ring` cells of its own; 0 where p lies outside the
-    /// grid.
+    /// Distance of `p` from the nearest cell outside the square of cells that reaches `ring` cells from cell (x, y). It
+    /// is 0 where `p` is outside that square.
     fn beyond(&self, p: Point, (x, y): (i64, i64), ring: i64) -> f64 {
         let at = (p - self.origin) / self.cell;
         let sides = [

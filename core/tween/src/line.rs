@@ -1,10 +1,10 @@
-//! A stroke by shares of its length.
+//! A stroke parametrised by shares of its length: 0 at its first point, 1 at its end.
 
 use super::stroke::Stroke;
 use rototoon_base::geometry::{Point, polyline};
 
-/// Shares of the length at the points of a stroke, those of a closed one followed by 1. Of one without length, even
-/// ones.
+/// The share of the length at each point of a stroke, 0 to 1. A closed stroke has one entry more, 1 for the return to
+/// its first point. A stroke without length gets even shares.
 pub(super) fn vertex_shares(stroke: &Stroke) -> Vec<f64> {
     let mut walked = vec![0.0];
     for (a, b) in polyline::segments(&stroke.points, stroke.closed) {
@@ -19,26 +19,27 @@ pub(super) fn vertex_shares(stroke: &Stroke) -> Vec<f64> {
     walked
 }
 
-/// A stroke by shares of its length.
+/// A stroke that can be read at any share of its length.
 pub(super) struct Line<'a> {
     stroke: &'a Stroke,
     shares: Vec<f64>,
 }
 
 impl<'a> Line<'a> {
-    /// A stroke that has points.
+    /// Takes a stroke that has at least one point.
     pub fn new(stroke: &'a Stroke) -> Self {
         Self { stroke, shares: vertex_shares(stroke) }
     }
 
-    /// The place at a share.
+    /// The place, in pixels, at a share of the length.
     pub fn at(&self, share: f64) -> Point {
         let points = &self.stroke.points;
         let (k, next, within) = self.between(share);
         points[k].lerp(points[next], within)
     }
 
-    /// The points of the stroke around the place at a share, and how far it is from the one to the other, 0 to 1.
+    /// The indices of the two points around the place at a share, and the place's fraction of the way from the first to
+    /// the second, 0 to 1.
     pub fn between(&self, share: f64) -> (usize, usize, f64) {
         let k = self.shares.partition_point(|&s| s <= share).clamp(1, self.shares.len().max(2) - 1);
         let (Some(&from), Some(&to)) = (self.shares.get(k - 1), self.shares.get(k)) else { return (0, 0, 0.0) };

@@ -1,24 +1,24 @@
-//! A stroke of a drawing.
+//! A stroke of a drawing, and the check that its points are usable.
 
 use rototoon_base::geometry::{Point, polyline};
 
-/// A line or outline as it was drawn.
+/// A line or outline as the artist drew it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stroke {
-    /// Its points in pixels, in the order of drawing.
+    /// Points in pixels (x to the right, y down), in the order of drawing.
     pub points: Vec<Point>,
     /// Whether the last point joins the first.
     pub closed: bool,
-    /// Its colour, sRGB-encoded, 0 to 1; compared where both strokes have one.
+    /// Colour, sRGB-encoded, 0 to 1. Matching compares colours where both strokes have one.
     pub colour: Option<[f32; 3]>,
-    /// Number of its material; compared where both strokes have one.
+    /// Number of the material. Matching compares materials where both strokes have one.
     pub material: Option<u32>,
-    /// Number of its layer; strokes of two layers never match.
+    /// Number of the layer. Matching adds a cost where both strokes have a layer and the layers differ.
     pub layer: Option<u32>,
 }
 
 impl Stroke {
-    /// A stroke of these points, and nothing known beside.
+    /// A stroke of these points without colour, material and layer.
     pub fn new(points: Vec<Point>, closed: bool) -> Self {
         Self { points, closed, ..Self::default() }
     }
@@ -37,13 +37,17 @@ pub struct BadPoint {
     pub stroke: usize,
     /// Index of the point.
     pub point: usize,
-    /// What was found.
+    /// The x found.
     pub x: f64,
-    /// What was found.
+    /// The y found.
     pub y: f64,
 }
 
-/// The first point of the strokes that is no place.
+/// Checks all points of the strokes.
+///
+/// # Errors
+///
+/// The first point with a coordinate that is not a number or outside −1e9 to 1e9.
 pub(super) fn checked(strokes: &[Stroke]) -> Result<(), BadPoint> {
     for (stroke, points) in strokes.iter().map(|s| &s.points).enumerate() {
         if let Some(point) = polyline::first_unusable(points) {

@@ -1,10 +1,10 @@
-//! One line against one shape in front of it: which of its stretches are inside, and which run along the border.
+//! One line against one shape in front of it: the stretches of the line inside the shape, and those along its border.
 //!
-//! 1. All meetings of the line with the outline cut it into stretches on each of which it stays on one side.
-//! 2. A stretch whose end keeps within the border's width of the outline for a while runs along it there; the place
-//!    where it departs is found by steps along the line and halving.
-//! 3. What is left is inside or outside by the winding number of three of its points. Should they disagree, a meeting
-//!    was missed (two crossings within rounding of each other, of which one shows): it is found by halving.
+//! 1. All meetings with the outline cut the line into stretches. On each stretch the line stays on one side.
+//! 2. A stretch may run along the outline, within the border's width, at one of its ends. Steps along the line and
+//!    halving find the place where it departs.
+//! 3. The winding numbers of three points decide whether the rest of the stretch is inside. If they disagree, a meeting
+//!    was missed (two crossings so close that rounding shows only one). Halving finds it.
 
 use super::cover::Shape;
 use super::intervals::Interval;
@@ -12,33 +12,33 @@ use super::path::Path;
 use super::tree::meet;
 use rototoon_base::curve::Meeting;
 
-/// Meetings closer in the parameter are one cut.
+/// Meetings closer than this in the parameter are one cut.
 const SAME: f64 = 1e-9;
 
-/// Where along a stretch its side is looked at.
+/// The shares of a stretch at which its side is tested.
 const SAMPLES: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
 
-/// What became of a line.
+/// The stretches of a line relative to one shape.
 #[derive(Default)]
 pub(super) struct Found {
-    /// Stretches inside.
+    /// Stretches inside the shape.
     pub(super) inside: Vec<Interval>,
-    /// Stretches along the border.
+    /// Stretches along its border.
     pub(super) border: Vec<Interval>,
-    /// All parameters where the line meets the outline, and its ends; rising.
+    /// All parameters where the line meets the outline, and the line's ends; rising.
     pub(super) cuts: Vec<f64>,
 }
 
-/// Distances that decide, in pixels.
+/// The deciding distances, in pixels.
 #[derive(Clone, Copy)]
 pub(super) struct Widths {
-    /// What is no farther from the outline lies on it.
+    /// A point at most this far from the outline is on the border.
     pub(super) border: f64,
-    /// Stretches along the border that are shorter count as crossings.
+    /// Stretches along the border shorter than this count as crossings.
     pub(super) sliver: f64,
 }
 
-/// The line `path` against `shape`.
+/// Compares the line `path` with `shape`.
 pub(super) fn against(path: &Path, shape: &Shape, widths: Widths) -> Found {
     let (cuts, shared) = meetings(path, shape);
     let mut found = Found::default();
@@ -55,7 +55,8 @@ pub(super) fn against(path: &Path, shape: &Shape, widths: Widths) -> Found {
     found
 }
 
-/// Parameters of the line where it meets the outline, and its ends; and the stretches that it shares with the outline.
+/// The parameters of the line where it meets the outline, with the line's ends, and the stretches that it shares with
+/// the outline.
 fn meetings(path: &Path, shape: &Shape) -> (Vec<f64>, Vec<Interval>) {
     let mut cuts = vec![0.0, path.end()];
     let mut shared = Vec::new();
@@ -78,7 +79,7 @@ fn meetings(path: &Path, shape: &Shape) -> (Vec<f64>, Vec<Interval>) {
         });
     }
     cuts.sort_by(f64::total_cmp);
-    // Of meetings that are one the first counts, but the end of the line stays its end.
+    // Among meetings that are the same the first counts, but the end of the line stays its end.
     cuts.dedup_by(|next, kept| *next - *kept < SAME);
     if let Some(last) = cuts.last_mut() {
         *last = path.end();
@@ -86,7 +87,7 @@ fn meetings(path: &Path, shape: &Shape) -> (Vec<f64>, Vec<Interval>) {
     (cuts, shared)
 }
 
-/// A stretch between two meetings: its ends that keep to the border, and the side of what is between.
+/// Sorts a stretch between two meetings: its ends along the border, and the side of the rest.
 fn stretch(path: &Path, shape: &Shape, widths: Widths, (from, to): Interval, found: &mut Found) {
     let left = departure(path, shape, widths, from, to);
     if left >= to {
@@ -105,15 +106,15 @@ fn stretch(path: &Path, shape: &Shape, widths: Widths, (from, to): Interval, fou
     }
 }
 
-/// How far from `start` towards `end` the line keeps to the border: `start` where it only crosses, `end` if all the
-/// way.
+/// The parameter up to which the line keeps to the border, from `start` towards `end`. It is `start` where the line
+/// only crosses, and `end` where it never leaves the border.
 fn departure(path: &Path, shape: &Shape, widths: Widths, start: f64, end: f64) -> f64 {
     let near = |t: f64| shape.is_near(path.point(t), widths.border);
     let mut step = widths.sliver.max(widths.border);
     let mut last = start;
     let mut next = advanced(path, start, end, step);
     if next == end {
-        // A stretch shorter than a step: by its middle.
+        // The middle decides for a stretch shorter than a step.
         return if near(0.5 * (start + end)) { end } else { start };
     }
     if !near(next) {
@@ -134,21 +135,21 @@ fn departure(path: &Path, shape: &Shape, widths: Widths, start: f64, end: f64) -
     last
 }
 
-/// The parameter that lies `distance` pixels from `t` towards `end`, or the end of the piece if that comes first.
+/// The parameter `distance` pixels from `t` towards `end`, or the end of the piece if that comes first.
 fn advanced(path: &Path, t: f64, end: f64, distance: f64) -> f64 {
     let forward = end > t;
-    // At a joint, the piece that lies ahead.
+    // At a joint, the next piece in the direction of travel.
     let ahead = if forward { t.floor() } else { t.ceil() - 1.0 };
     let i = (ahead.max(0.0) as usize).min(path.pieces().len() - 1);
     let (piece, start) = (&path.pieces()[i], i as f64);
     let length = piece.length_to(t - start);
-    // At most a quarter of a piece, so that no bend is passed over.
+    // A step covers at most a quarter of a piece, so that it does not skip a bend.
     let (quarter, total) = (0.25, piece.length());
     let wanted = if forward { length + distance } else { length - distance };
     let edge = if forward { start + 1.0 } else { start };
     let reached = if wanted <= 0.0 || wanted >= total { edge } else { start + piece.parameter_at(wanted) };
     let limited = if forward { reached.min(t + quarter).min(end) } else { reached.max(t - quarter).max(end) };
-    // Rounding must not stop the march.
+    // Rounding must not stop the progress.
     if limited == t { if forward { edge.min(end) } else { edge.max(end) } } else { limited }
 }
 
@@ -171,7 +172,7 @@ fn sides(path: &Path, shape: &Shape, (from, to): Interval, inside: &mut Vec<Inte
     }
 }
 
-/// Where between two parameters the state changes.
+/// The parameter between `a` and `b` where the state changes.
 fn change(state: impl Fn(f64) -> bool, mut a: f64, mut b: f64) -> f64 {
     let before = state(a);
     for _ in 0..50 {

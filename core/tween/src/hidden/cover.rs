@@ -1,10 +1,10 @@
-//! A filled shape: what is inside of it, and what lies on its border.
+//! A filled shape: the points inside it, and the points on its border.
 //!
-//! **Inside** is told by the winding number, the number of times that the outline goes round a point: crossings of a
-//! ray to the right, counted +1 where the outline falls and −1 where it rises. Each piece is parted where it turns in
-//! y; a part counts if one of its ends lies on or above the ray and the other one below it. Neighbours share the very
-//! same end, so that no rounding makes the outline leak: the number is right for every point that is not on the border
-//! itself, and one of the neighbouring values there.
+//! The winding number decides what is **inside**: the number of times that the outline goes round a point. It is the
+//! sum of the crossings of the outline with a ray to the right, +1 where the outline runs down and −1 where it runs up.
+//! Each piece is split where it turns in y. A part crosses the ray if one of its ends is on or above the ray and the
+//! other one is below it. Neighbouring parts share exactly the same end, so rounding cannot make the outline leak. The
+//! number is exact for every point off the border. On the border it is one of the neighbouring values.
 
 use super::path::Path;
 use super::tree::{Bounds, Tree, meet};
@@ -12,13 +12,13 @@ use rototoon_base::curve::Quadratic;
 use rototoon_base::geometry::Point;
 use rototoon_base::numeric::roots::roots_in;
 
-/// Which points an outline that crosses itself, or several outlines, enclose.
+/// The rule for the points that an outline which crosses itself, or several outlines, enclose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FillRule {
-    /// All that the outline goes round, whichever way: both loops of an eight, all of a doubly wound ring.
+    /// A point is inside if the winding number is not zero: both loops of a figure eight, all of a doubly wound ring.
     #[default]
     NonZero,
-    /// What is enclosed an odd number of times: an outline within another one is a hole, whichever way it runs.
+    /// A point is inside if the winding number is odd: an outline within another one is a hole, whichever way it runs.
     EvenOdd,
 }
 
@@ -30,7 +30,7 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    /// The shape within outlines; open ones are closed by a straight line.
+    /// The shape enclosed by outlines. Open ones are closed by a straight line.
     pub(super) fn new(outlines: &[Path], rule: FillRule) -> Self {
         let mut pieces = Vec::new();
         for outline in outlines {
@@ -72,7 +72,7 @@ impl Shape {
     }
 }
 
-/// Signed crossings of a piece with the ray from `p` to the right.
+/// Signed number of crossings of a piece with the ray from `p` to the right.
 fn crossings(piece: &Quadratic, p: Point) -> i32 {
     let (a, b) = piece.coefficients();
     let turn = -b.y / a.y;
@@ -83,7 +83,8 @@ fn crossings(piece: &Quadratic, p: Point) -> i32 {
     crossing(piece, (0.0, piece.p0.y), (1.0, piece.p2.y), p)
 }
 
-/// The same of a part of the piece that does not turn in y, between a parameter with its y and another one.
+/// The same for a part of the piece that does not turn in y. `(u, from)` and `(v, to)` are the parameter and the y at
+/// its ends.
 fn crossing(piece: &Quadratic, (u, from): (f64, f64), (v, to): (f64, f64), p: Point) -> i32 {
     let sign = match (from <= p.y, to <= p.y) {
         (true, false) => 1,
@@ -99,7 +100,7 @@ fn crossing(piece: &Quadratic, (u, from): (f64, f64), (v, to): (f64, f64), p: Po
     }
     let (a, b) = piece.coefficients();
     let found = roots_in(&[piece.p0.y - p.y, 2.0 * b.y, a.y], u, v);
-    // The sign has changed, so there is one; where rounding hides it, it is the end that is nearer to the ray.
+    // The sign changes, so there is a root. If rounding hides it, the end nearer to the ray stands for it.
     let nearer_end = if (from - p.y).abs() < (to - p.y).abs() { u } else { v };
     let at = found.first().copied().unwrap_or(nearer_end);
     if piece.point(at).x > p.x { sign } else { 0 }
@@ -165,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_without_area_hold_nothing() {
+    fn shapes_without_area_contain_nothing() {
         for points in [&[(1.0, 1.0)][..], &[(0.0, 0.0), (4.0, 4.0)], &[(2.0, 2.0); 5]] {
             let shape = shape(points, FillRule::NonZero);
             for p in [(1.0, 1.0), (2.0, 2.0), (3.0, 3.0), (0.0, 0.0)] {
@@ -182,7 +183,7 @@ mod tests {
             let spline = Spline::new(guides.into_iter().map(Point::from).collect(), true).unwrap();
             let p = Point::new(x, y);
             prop_assume!(spline.nearest(p).distance > 0.01);
-            // Naive reference: how far the direction from the point to the outline turns in one round.
+            // Naive reference: the angle by which the direction from the point to the outline turns in one round.
             let flat = spline.flattened(2000);
             let turned: f64 = (0..flat.len()).map(|i| (flat[i] - p).angle_to(flat[(i + 1) % flat.len()] - p)).sum();
             let winding = (turned / std::f64::consts::TAU).round() as i64;

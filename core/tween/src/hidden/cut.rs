@@ -1,12 +1,12 @@
-//! The points of a part of a stroke as blends of the stroke's own points, so that whatever the points carry (a radius,
-//! a third coordinate) is cut by the same weights.
+//! The points of a part of a stroke as blends of the stroke's own points. Whatever else the points carry (a radius, a
+//! third coordinate) can then be cut with the same weights.
 
 use super::intervals::Interval;
 use super::path::{Path, PathError};
 use rototoon_base::curve::{Quadratic, Spline};
 use rototoon_base::geometry::Point;
 
-/// What the points of a stroke mean.
+/// The meaning of the points of a stroke.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Form {
     /// Corners of straight lines.
@@ -14,22 +14,26 @@ pub enum Form {
     Polyline,
     /// Guiding points of a uniform quadratic B-spline.
     Spline,
-    /// A chain of Bézier parabolas: start, middle, joint, middle, joint, …; a closed one ends with a middle.
+    /// A chain of Bézier parabolas: start, middle, joint, middle, joint, … A closed one ends with a middle.
     Chain,
 }
 
-/// A point as a weighted sum of three points of the stroke, by index; the weights sum to one.
+/// A point as a weighted sum of at most three points of the stroke: index and weight of each. The weights sum to 1.
 pub type Blend = [(usize, f64); 3];
 
 impl Form {
-    /// The path of a stroke's points.
+    /// The path through or along a stroke's points.
+    ///
+    /// # Errors
+    ///
+    /// No points; a point that cannot be used.
     pub fn path(self, points: &[Point], closed: bool) -> Result<Path, PathError> {
         match self {
             Self::Polyline => Path::of_polyline(points, closed),
             Self::Spline if points.is_empty() => Err(PathError::Empty),
             Self::Spline => match Spline::new(points.to_vec(), closed) {
                 Ok(spline) => Path::of_spline(&spline),
-                // The reason, in a path's words.
+                // Reports the reason in the words of a path.
                 Err(_) => Path::of_polyline(points, closed),
             },
             Self::Chain => {
@@ -45,7 +49,7 @@ impl Form {
         }
     }
 
-    /// Number of pieces of the path of so many points; at least one.
+    /// Number of pieces of the path of this many points; at least one.
     fn piece_count(self, points: usize, closed: bool) -> usize {
         match (self, closed) {
             (Self::Polyline, true) if points > 1 => points,
@@ -57,7 +61,7 @@ impl Form {
         }
     }
 
-    /// The Bézier control points of piece `i`.
+    /// The Bézier control points of piece `i`, as blends of the stroke's points.
     fn controls(self, i: usize, points: usize, closed: bool) -> [Blend; 3] {
         let wrapped = |k: usize| if closed { k % points } else { k.min(points - 1) };
         let only = |k: usize| [(wrapped(k), 1.0), (wrapped(k), 0.0), (wrapped(k), 0.0)];
@@ -76,12 +80,13 @@ impl Form {
         }
     }
 
-    /// What the points of a cut stroke mean: a part of a uniform spline is not uniform.
+    /// The meaning of the points of a cut stroke. A part of a uniform spline is not uniform, so it becomes a chain.
     pub fn of_cut(self) -> Self {
         if self == Self::Polyline { self } else { Self::Chain }
     }
 
-    /// The points of the open stroke between two parameters of a stroke of so many points (at least one).
+    /// The points of the open stroke between two parameters. `points` is the number of points of the complete stroke,
+    /// at least one.
     pub fn cut(self, points: usize, closed: bool, (from, to): Interval) -> Vec<Blend> {
         let count = self.piece_count(points, closed);
         let mut found = Vec::new();
@@ -108,7 +113,7 @@ impl Form {
     }
 }
 
-/// The weighted sum of blends of the same three points at most.
+/// The weighted sum of blends. Together they use at most three different points.
 fn blended(controls: &[Blend; 3], weights: [f64; 3]) -> Blend {
     let mut sum: Blend = [(controls[0][0].0, 0.0); 3];
     let mut used = 0;

@@ -1,19 +1,19 @@
-//! What lies in front of what.
+//! The order of depth, and its changes over time.
 
-/// Place in the order of depth. Larger is nearer: first by layer, within a layer by stroke.
+/// A place in the order of depth. Larger is nearer: the layer decides first, the stroke within a layer next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Depth {
-    /// Of the layer, or of whatever is moved to the front or back as a whole.
+    /// Depth of the layer, or of anything that moves to the front or back as a unit.
     pub layer: i32,
-    /// Of the stroke within it.
+    /// Depth of the stroke within it.
     pub stroke: i32,
 }
 
-/// A depth over time: constant but for the frames at which it changes.
+/// A depth over time. It is constant except for the frames at which it changes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DepthOrder {
     first: i32,
-    /// Rising by frame.
+    /// Pairs of frame and depth, rising by frame.
     changes: Vec<(i32, i32)>,
 }
 
@@ -23,7 +23,7 @@ impl DepthOrder {
         Self { first: depth, changes: Vec::new() }
     }
 
-    /// Another depth from `frame` on, until the next change; replaces a change at the same frame.
+    /// Sets another depth from `frame` on, until the next change. It replaces a change at the same frame.
     pub fn change_at(&mut self, frame: i32, depth: i32) {
         match self.changes.binary_search_by_key(&frame, |change| change.0) {
             Ok(i) => self.changes[i].1 = depth,

@@ -5,10 +5,10 @@ use super::path::Path;
 /// From a parameter to a larger one.
 pub type Interval = (f64, f64);
 
-/// Unrolling an interval rounds: what is closer than this meets.
+/// Unrolling an interval rounds. Ends closer than this are equal.
 const SAME: f64 = 1e-9;
 
-/// The union of intervals in any order; what is closer than `gap` in the parameter is joined.
+/// The union of intervals in any order. Intervals closer than `gap` in the parameter are joined.
 pub(super) fn union(mut intervals: Vec<Interval>, gap: f64) -> Vec<Interval> {
     intervals.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let mut joined: Vec<Interval> = Vec::with_capacity(intervals.len());
@@ -21,14 +21,15 @@ pub(super) fn union(mut intervals: Vec<Interval>, gap: f64) -> Vec<Interval> {
     joined
 }
 
-/// What is left of `0..end`.
+/// The part of `0..end` outside the intervals.
 pub(super) fn complement(intervals: &[Interval], end: f64) -> Vec<Interval> {
     let starts = std::iter::once(0.0).chain(intervals.iter().map(|i| i.1));
     let ends = intervals.iter().map(|i| i.0).chain([end]);
     starts.zip(ends).filter(|(from, to)| to > from).collect()
 }
 
-/// Joins the last interval with the first where a closed path's run over its seam; the result may reach beyond `end`.
+/// Joins the last interval of a closed path with the first where they meet at the seam. The result may reach beyond
+/// `end`.
 pub(super) fn over_seam(mut intervals: Vec<Interval>, end: f64) -> Vec<Interval> {
     let (Some(first), Some(last)) = (intervals.first().copied(), intervals.last().copied()) else { return intervals };
     if intervals.len() > 1 && first.0 == 0.0 && last.1 == end {
@@ -40,8 +41,8 @@ pub(super) fn over_seam(mut intervals: Vec<Interval>, end: f64) -> Vec<Interval>
     intervals
 }
 
-/// Hidden intervals without slivers: of what is left, visible stretches shorter than `sliver` pixels are hidden, and
-/// then hidden ones shorter than that are shown. A path that is all hidden or all visible stays so.
+/// Removes slivers from hidden intervals. First, visible stretches shorter than `sliver` pixels become hidden. Then
+/// hidden stretches shorter than that become visible. A path that is entirely hidden or visible stays so.
 pub(super) fn without_slivers(path: &Path, hidden: Vec<Interval>, sliver: f64) -> Vec<Interval> {
     let end = path.end();
     let short = |path: &Path, (from, to): Interval| path.length_between(from, to) < sliver;
@@ -58,7 +59,7 @@ pub(super) fn without_slivers(path: &Path, hidden: Vec<Interval>, sliver: f64) -
     union(kept.flat_map(|interval| unrolled(interval, end)).collect(), SAME)
 }
 
-/// An interval that may run over the seam, as one or two that do not.
+/// Splits an interval that may run over the seam into one or two that do not.
 fn unrolled((from, to): Interval, end: f64) -> impl Iterator<Item = Interval> {
     let over = to > end;
     [Some((from, to.min(end))), over.then_some((0.0, to - end))].into_iter().flatten()
@@ -87,7 +88,7 @@ mod tests {
         assert_eq!(clean(&[(0.2, 0.4), (0.405, 0.6)]), [(0.2, 0.6)]);
         assert_eq!(clean(&[(0.2, 0.205)]), []);
         assert_eq!(clean(&[(0.005, 0.5)]), [(0.0, 0.5)]);
-        // Many slivers that make one line are one line.
+        // Many slivers next to each other make one line.
         assert_eq!(clean(&[(0.2, 0.205), (0.206, 0.21), (0.211, 0.216)]), [(0.2, 0.216)]);
     }
 

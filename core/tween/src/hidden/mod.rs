@@ -1,35 +1,41 @@
-//! Hidden lines: of each line, what a filled shape in front of it covers (Yang et al. 1986, §4 and Appendix E).
+//! Hidden lines: the parts of each line that a filled shape in front of it covers (Yang et al. 1986, §4 and Appendix
+//! E).
 //!
-//! [`hidden_lines`] takes lines and covers, each with its [`Depth`], and gives for each line the parameters between
-//! which it is visible and hidden. Nothing is cut or moved here: a line stays the line that it is, with intervals of
-//! its own parameter ([`Path::part`] gives their shape, [`Form::cut`] their points), so that whatever is made of them
-//! still knows where it came from.
+//! [`hidden_lines`] takes lines and covers, each with its [`Depth`]. For each line it gives the parameter intervals in
+//! which the line is visible and hidden. It does not cut or move anything: a line keeps its shape, and the intervals
+//! refer to its own parameter. [`Path::part`] gives the shape of an interval, [`Form::cut`] gives its points. Whatever
+//! is made of the intervals therefore still knows where it came from.
 //!
 //! # What is hidden
 //!
-//! A point of a line is hidden if a cover with a larger depth holds it; what an outline that crosses itself holds says
-//! the [`FillRule`]. A line on the border of a cover is visible, as it is drawn half beside it. If both of its sides
-//! are covered (it runs between two shapes that adjoin) it is hidden.
+//! A point of a line is hidden if it is inside a cover with a larger depth. The [`FillRule`] decides what is inside an
+//! outline that crosses itself. A line on the border of a cover is visible, because half of its drawn width is beside
+//! the cover. If both sides of the line are covered (it runs between two adjoining shapes), it is hidden.
 //!
 //! # How
 //!
-//! Meetings of the pieces are exact ([`rototoon_base::curve::intersect`]); between two of them the winding number decides
-//! (`cover`, `against`). Trees of boxes (`tree`) find the pieces and shapes that are near each other, so that
-//! many strokes cost little more each than few.
+//! The meetings of the pieces are computed exactly ([`crate::curve::intersect`]). Between two meetings the winding
+//! number decides ([`cover`], [`against`]). Trees of bounding boxes ([`tree`]) find the pieces and shapes that are near
+//! each other, so the cost per stroke grows little with the number of strokes.
 //!
-//! # Between frames
+//! # From frame to frame
 //!
-//! Frames are told apart from each other by nothing: there is no memory that could flicker. What is found is right for
-//! covers that differ by no more than [`Options::border`] from those given, hence an outline that is drawn twice, once
-//! as a line and once as a fill, and rounded, is not torn to pieces. Crossings move as continuously as the curves do:
-//! where a line grazes an outline its hidden stretch begins as a point and grows. Stretches shorter than
-//! [`Options::sliver`] take after their surroundings; nothing appears or goes that is longer than that, unless the
-//! drawings jump or a line lies down on a border at once.
+//! Each frame is computed by itself; there is no memory. The result tolerates outlines that differ by up to
+//! [`Options::border`]: an outline that is drawn twice, once as a line and once as a fill, and rounded, is not torn to
+//! pieces. Crossings move as continuously as the curves. Where a line begins to graze an outline, its hidden stretch
+//! starts as a point and grows. Stretches shorter than [`Options::sliver`] take the state of their surroundings.
+//! Nothing longer than that appears or disappears suddenly, unless the drawings jump or a line comes to lie on a border
+//! all at once.
 //!
 //! # Limits
 //!
-//! Lines have no width here: a broad line whose middle is visible is visible in its full width. Two crossings that are
-//! closer together than the crossing test can tell (1e-6 of a piece) count as none.
+//! Lines have no width here: a broad line whose middle is visible counts as visible in its full width. Two crossings
+//! closer together than the crossing test can resolve (1e-6 of a piece) count as none.
+//!
+//! # Source
+//!
+//! M. C. K. Yang et al., "Automatic curve fitting with quadratic B-spline functions and its application to
+//! computer-assisted animation", 1986, §4 and Appendix E.
 
 mod against;
 mod cover;
@@ -55,29 +61,30 @@ use tree::Tree;
 /// A line that may be hidden.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// Its shape.
+    /// Shape, in pixels.
     pub path: Path,
-    /// Its depth.
+    /// Depth; covers with a larger depth hide the line.
     pub depth: Depth,
 }
 
-/// A filled shape, which hides the lines of a lesser depth; those of its own depth it does not.
+/// A filled shape. It hides the lines of a smaller depth, but not those of its own depth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cover {
-    /// Its outlines; open ones are closed by a straight line.
+    /// Outlines, in pixels. Open ones are closed by a straight line.
     pub outlines: Vec<Path>,
-    /// What they enclose.
+    /// Decides which points the outlines enclose.
     pub rule: FillRule,
-    /// Its depth.
+    /// Depth.
     pub depth: Depth,
 }
 
-/// Distances below which lines are not told apart, in pixels; zero or more, finite.
+/// Distances below which differences do not count, in pixels; finite, zero or more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// What is no farther from the outline of a cover lies on it. It should be above the rounding of the points.
+    /// A point at most this far from the outline of a cover is on its border. It should exceed the rounding of the
+    /// points.
     pub border: f64,
-    /// Visible and hidden stretches shorter than this take after their surroundings.
+    /// Visible and hidden stretches shorter than this take the state of their surroundings.
     pub sliver: f64,
 }
 
@@ -87,29 +94,35 @@ impl Default for Options {
     }
 }
 
-/// Options that are no distances.
+/// An option that is not a distance.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{name} of {found} px, expected a number that is not negative")]
 pub struct OptionsError {
-    /// Which option.
+    /// Name of the option.
     pub name: &'static str,
-    /// What was found.
+    /// The value found.
     pub found: f64,
 }
 
-/// What is seen of a line, in its own parameter; both together are the whole line.
+/// The visible and hidden intervals of a line, in its own parameter. Together they are the complete line.
 ///
-/// Intervals rise and are apart from each other. That of a closed line which runs over its seam comes last, and its end
-/// is greater than [`Path::end`]. A closed line that is all visible or hidden has one interval, from 0 to its end.
+/// Intervals rise and do not touch each other. An interval of a closed line that runs over the seam comes last, and its
+/// end is greater than [`Path::end`]. A closed line that is entirely visible or hidden has one interval, from 0 to its
+/// end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visibility {
-    /// What is seen.
+    /// Visible intervals.
     pub visible: Vec<Interval>,
-    /// What is covered.
+    /// Hidden intervals.
     pub hidden: Vec<Interval>,
 }
 
-/// What is seen of each line. The same on any number of threads.
+/// The visible and hidden intervals of each line, in the order of `lines`. Lines and covers are in the same coordinate
+/// frame, in pixels. The result does not depend on the number of threads.
+///
+/// # Errors
+///
+/// An option that is negative or not finite.
 pub fn hidden_lines(lines: &[Line], covers: &[Cover], options: &Options) -> Result<Vec<Visibility>, OptionsError> {
     for (name, found) in [("border", options.border), ("sliver", options.sliver)] {
         if !(found >= 0.0 && found.is_finite()) {
@@ -132,7 +145,7 @@ pub fn hidden_lines(lines: &[Line], covers: &[Cover], options: &Options) -> Resu
     Ok(seen.collect())
 }
 
-/// What is seen of a line behind some shapes.
+/// The visible and hidden intervals of a line behind some shapes.
 fn visibility(path: &Path, front: &[&Shape], options: &Options) -> Visibility {
     let end = path.end();
     let hidden = intervals::without_slivers(path, hidden(path, front, options), options.sliver);
@@ -141,7 +154,7 @@ fn visibility(path: &Path, front: &[&Shape], options: &Options) -> Visibility {
     Visibility { visible: rounded(visible), hidden: rounded(hidden) }
 }
 
-/// The stretches of a line that some shapes cover.
+/// The intervals of a line that some shapes cover.
 fn hidden(path: &Path, front: &[&Shape], options: &Options) -> Vec<Interval> {
     let widths = Widths { border: options.border, sliver: options.sliver };
     let (mut covered, mut borders, mut cuts) = (Vec::new(), Vec::new(), Vec::new());
@@ -160,7 +173,7 @@ fn hidden(path: &Path, front: &[&Shape], options: &Options) -> Vec<Interval> {
     intervals::union(covered, 0.0)
 }
 
-/// Of stretches along borders, those with a cover on either side.
+/// The stretches along borders that have a cover on both sides.
 fn covered_on_both_sides(
     path: &Path,
     front: &[&Shape],

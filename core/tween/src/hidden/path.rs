@@ -1,30 +1,32 @@
-//! A line as parabola pieces: what splines, polylines and Bézier chains have in common.
+//! A line as a sequence of parabola pieces: the common form of splines, polylines and Bézier chains.
 
 use super::tree::{Bounds, around};
 use rototoon_base::curve::{Quadratic, Spline};
 use rototoon_base::geometry::{Point, polyline};
 
-/// Points that make no path.
+/// Points that cannot make a path.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PathError {
-    /// There are none.
+    /// There are no points.
     #[error("no points, expected at least one")]
     Empty,
-    /// One is not a place, or too far away to compute with.
+    /// A coordinate is not a number, or outside −1e9 to 1e9.
     #[error("point {index} is ({x}, {y}), expected numbers between -1e9 and 1e9")]
     Point {
-        /// Its index: of the points of a polyline, the guides of a spline, the control points of pieces in turn.
+        /// Its index among the points of a polyline, the guiding points of a spline, or the control points of the
+        /// pieces in turn.
         index: usize,
-        /// What was found.
+        /// The x found.
         x: f64,
-        /// What was found.
+        /// The y found.
         y: f64,
     },
 }
 
-/// A line of parabola pieces, each beginning where the one before ends; at least one, all finite.
+/// A line of parabola pieces, in pixels. Each piece begins where the one before it ends. There is at least one piece,
+/// and all are finite.
 ///
-/// The parameter t runs from 0 to the number of pieces: piece ⌊t⌋ at u = t − ⌊t⌋.
+/// The parameter t runs from 0 to the number of pieces. It means piece ⌊t⌋ at u = t − ⌊t⌋.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
     pieces: Vec<Quadratic>,
@@ -32,14 +34,22 @@ pub struct Path {
 }
 
 impl Path {
-    /// The pieces of a spline, at the same parameters.
+    /// The pieces of a spline, with the same parameter.
+    ///
+    /// # Errors
+    ///
+    /// A guiding point that cannot be used.
     pub fn of_spline(spline: &Spline) -> Result<Self, PathError> {
         checked(spline.guides())?;
         Ok(Self { pieces: spline.pieces().collect(), closed: spline.is_closed() })
     }
 
-    /// Straight pieces between points: at t = i + u the point (1 − u) pᵢ + u pᵢ₊₁. A closed one returns to its first
-    /// point.
+    /// Straight pieces between points: at t = i + u the point (1 − u) pᵢ + u pᵢ₊₁. A closed polyline returns to its
+    /// first point.
+    ///
+    /// # Errors
+    ///
+    /// No points; a point that cannot be used.
     pub fn of_polyline(points: &[Point], closed: bool) -> Result<Self, PathError> {
         checked(points)?;
         let line = |a: Point, b: Point| Quadratic::new(a, 0.5 * (a + b), b);
@@ -50,7 +60,12 @@ impl Path {
         Ok(Self { pieces, closed })
     }
 
-    /// A chain of Bézier parabolas; where one does not begin at the end of the one before, it is moved to begin there.
+    /// A chain of Bézier parabolas. A piece that does not begin at the end of the one before it is changed to begin
+    /// there.
+    ///
+    /// # Errors
+    ///
+    /// No pieces; a control point that cannot be used.
     pub fn of_pieces(mut pieces: Vec<Quadratic>, closed: bool) -> Result<Self, PathError> {
         let points: Vec<_> = pieces.iter().flat_map(|piece| [piece.p0, piece.p1, piece.p2]).collect();
         checked(&points)?;
@@ -65,7 +80,7 @@ impl Path {
         Ok(Self { pieces, closed })
     }
 
-    /// The pieces.
+    /// The pieces, in order.
     pub fn pieces(&self) -> &[Quadratic] {
         &self.pieces
     }
@@ -80,7 +95,7 @@ impl Path {
         self.pieces.len() as f64
     }
 
-    /// The piece of a parameter and the place on it.
+    /// The index of the piece at a parameter, and the parameter on that piece, 0 to 1.
     pub fn locate(&self, t: f64) -> (usize, f64) {
         let end = self.end();
         let t = if self.closed && t > end { t - end } else { t }.clamp(0.0, end);
@@ -88,19 +103,19 @@ impl Path {
         (i, t - i as f64)
     }
 
-    /// The point at a parameter.
+    /// The point at a parameter, in pixels.
     pub fn point(&self, t: f64) -> Point {
         let (i, u) = self.locate(t);
         self.pieces[i].point(u)
     }
 
-    /// Unit direction of travel; zero where a piece is a point.
+    /// Unit direction of travel at a parameter; zero where a piece is a point.
     pub fn direction(&self, t: f64) -> Point {
         let (i, u) = self.locate(t);
         self.pieces[i].direction(u)
     }
 
-    /// The pieces between two parameters, those of no length in the parameter left out. Of a closed path `to` may lie
+    /// The pieces between two parameters, without those of zero length in the parameter. On a closed path `to` may be
     /// up to one round beyond the end.
     pub fn part(&self, from: f64, to: f64) -> Vec<Quadratic> {
         let mut found = Vec::new();
@@ -174,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_path_is_refused() {
+    fn points_that_make_no_path_are_refused() {
         assert_eq!(Path::of_polyline(&[], true), Err(PathError::Empty));
         assert_eq!(Path::of_pieces(vec![], true), Err(PathError::Empty));
         let error = Path::of_polyline(&[Point::ZERO, Point::new(f64::NAN, 2.0)], false).unwrap_err();

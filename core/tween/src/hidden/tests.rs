@@ -1,4 +1,4 @@
-//! Whole scenes: exact cases, a raster at 16 times the resolution, and scenes that move.
+//! Complete scenes: exact cases, a comparison with a raster at 16 times the resolution, and scenes that move.
 
 use super::*;
 use proptest::prelude::*;
@@ -64,13 +64,13 @@ fn an_outline_is_visible_on_its_own_border_and_hidden_between_two_shapes() {
     assert_eq!(seen(&edge, &[cover(vec![left.clone()], 1)]).hidden, []);
     let found = seen(&edge, &[cover(vec![left.clone()], 1), cover(vec![right], 2)]);
     assert_eq!(found.hidden, [(0.25, 0.75)]);
-    // What enters the shape from its border is hidden from there.
+    // A line that enters the shape from its border is hidden from there.
     let enters = polyline(&[(8.0, 0.0), (8.0, 8.0), (2.0, 8.0)], false);
     assert_eq!(seen(&enters, &[cover(vec![left], 1)]).hidden, [(1.0, 2.0)]);
 }
 
 #[test]
-fn touching_from_either_side_hides_nothing_that_is_seen() {
+fn a_line_that_touches_from_outside_stays_visible() {
     let ball = disc(Point::new(20.0, 20.0), 10.0);
     let low = ball.pieces().iter().map(|p| p.bounds().1.y).fold(0.0, f64::max);
     let tangent = polyline(&[(0.0, low), (40.0, low)], false);
@@ -82,7 +82,7 @@ fn touching_from_either_side_hides_nothing_that_is_seen() {
 }
 
 #[test]
-fn holes_and_eights() {
+fn holes_and_figures_of_eight() {
     let path = polyline(&[(0.0, 8.0), (16.0, 8.0)], false);
     let ring = |rule| Cover { rule, ..cover(vec![square(0.0, 16.0), square(4.0, 12.0)], 1) };
     assert_eq!(seen(&path, &[ring(FillRule::EvenOdd)]).visible, [(0.25, 0.75)]);
@@ -108,7 +108,7 @@ fn points_lines_and_empty_covers() {
 }
 
 #[test]
-fn distances_that_are_none_are_refused() {
+fn options_that_are_no_distances_are_refused() {
     let options = Options { border: -1.0, ..Options::default() };
     let error = hidden_lines(&[], &[], &options).unwrap_err();
     assert_eq!(error.to_string(), "border of -1 px, expected a number that is not negative");
@@ -117,7 +117,7 @@ fn distances_that_are_none_are_refused() {
 }
 
 #[test]
-fn an_outline_drawn_twice_and_rounded_stays_whole() {
+fn an_outline_drawn_twice_and_rounded_is_not_torn() {
     let mut state = 7u64;
     let mut noise = || {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -137,7 +137,7 @@ fn an_outline_drawn_twice_and_rounded_stays_whole() {
     }
 }
 
-/// What a cover holds, at 16 times the resolution: pixel centres by scan lines over the flattened outlines.
+/// The inside of a cover at 16 times the resolution: pixel centres, by scan lines over the flattened outlines.
 struct Mask {
     inside: Vec<bool>,
 }
@@ -171,7 +171,7 @@ impl Mask {
         Self { inside }
     }
 
-    /// The state at a point within the picture, where all pixels around agree.
+    /// The state at a point of the picture, where all pixels around it agree.
     fn at(&self, p: Point) -> Option<bool> {
         let (x, y) = ((p.x * FINE as f64).floor(), (p.y * FINE as f64).floor());
         let last = SIDE as f64 - 1.0;
@@ -185,7 +185,7 @@ impl Mask {
     }
 }
 
-/// Marks, on each row of pixel centres that an edge crosses, the first pixel to the right of it.
+/// Marks the first pixel to the right of an edge, on each row of pixel centres that the edge crosses.
 fn edge(windings: &mut [i32], a: Point, b: Point) {
     let (top, bottom, sign) = if a.y <= b.y { (a, b, 1) } else { (b, a, -1) };
     let first = (top.y - 0.5).ceil().max(0.0);
@@ -215,7 +215,7 @@ fn any_guides(count: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Point>
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
     #[test]
-    fn what_is_seen_is_what_a_raster_shows(
+    fn visible_parts_agree_with_a_raster(
         outlines in prop::collection::vec(any_guides(1..9), 1..4),
         guides in prop::collection::vec((any_guides(1..9), any::<bool>(), any::<bool>()), 1..6),
         even: bool,
@@ -247,7 +247,7 @@ proptest! {
                 let states: Option<Vec<bool>> = front.map(|(_, mask)| mask.at(p)).collect();
                 let Some(states) = states else { continue };
                 let within = |set: &[Interval]| set.iter().any(|&(a, b)| (a <= t && t <= b) || (a <= t + end && t + end <= b));
-                // Slivers that the raster sees are a matter of the options, and small.
+                // The options decide about slivers that the raster shows; they are small.
                 let near_cut = seen.hidden.iter().chain(&seen.visible).flat_map(|&(a, b)| [a, b]).any(|cut| {
                     line.path.point(cut).distance(p) < 0.15
                 });
@@ -261,7 +261,7 @@ proptest! {
     }
 
     #[test]
-    fn visible_and_hidden_are_the_whole_line(
+    fn visible_and_hidden_parts_make_the_complete_line(
         outlines in prop::collection::vec(any_guides(1..9), 0..4), guides in any_guides(1..9), closed: bool,
     ) {
         let covers: Vec<Cover> = outlines.into_iter().map(|guides| cover(vec![smooth(guides, true)], 1)).collect();
@@ -272,7 +272,7 @@ proptest! {
         let mut ends: Vec<Interval> = found.visible.iter().chain(&found.hidden).copied().collect();
         ends.sort_by(|a, b| a.0.total_cmp(&b.0));
         prop_assert!(ends.windows(2).all(|pair| pair[0].1 == pair[1].0), "{:?}", ends);
-        // Backwards it is the same.
+        // The reversed line gives the same result.
         let back = Path::of_pieces(path.pieces().iter().rev().map(|q| q.reversed()).collect(), closed).unwrap();
         let length = |path: &Path, set: &[Interval]| set.iter().map(|&(a, b)| path.length_between(a, b)).sum::<f64>();
         let (there, again) = (length(&path, &found.hidden), length(&back, &seen(&back, &covers).hidden));
@@ -280,7 +280,7 @@ proptest! {
     }
 }
 
-/// Blobs that drift, turn and breathe; time in seconds.
+/// Blobs that drift, turn and change size. `time` is in seconds.
 fn moving(time: f64) -> Vec<Cover> {
     (0..4)
         .map(|i| {
@@ -298,7 +298,7 @@ fn moving(time: f64) -> Vec<Cover> {
         .collect()
 }
 
-/// Hidden stretches of the parameter, sampled.
+/// Whether each of 4000 samples of the parameter is hidden.
 fn sampled(path: &Path, seen: &Visibility) -> Vec<bool> {
     const COUNT: usize = 4000;
     let end = path.end();
@@ -309,7 +309,7 @@ fn sampled(path: &Path, seen: &Visibility) -> Vec<bool> {
 }
 
 #[test]
-fn what_is_seen_moves_continuously() {
+fn visible_parts_move_continuously() {
     let paths = [
         polyline(&[(2.0, 10.0), (62.0, 54.0)], false),
         smooth([(4.0, 4.0), (60.0, 8.0), (30.0, 70.0), (6.0, 40.0)].map(Point::from).into(), true),
@@ -330,13 +330,13 @@ fn what_is_seen_moves_continuously() {
             before = now;
         }
     }
-    // Nothing moves faster than 60 px a second: where lines cross at an angle a step of 1e-2 s cuts 0.6 px elsewhere. A
-    // stretch that is grazed begins with the root of the step: for a hundredth of it a tenth.
+    // Nothing moves faster than 60 px a second. Where lines cross at an angle, a step of 1e-2 s moves the cut by 0.6
+    // px. A grazed stretch grows with the root of the step: a hundredth of the step gives a tenth of the stretch.
     assert!(jumps[0] < 12.0 && jumps[1] < 1.2 && jumps[0] > jumps[1], "{jumps:?}");
 }
 
 #[test]
-fn thousands_of_strokes_and_any_number_of_threads() {
+fn thousands_of_strokes_on_any_number_of_threads() {
     let strokes = 2000;
     let place = |i: usize| {
         Point::new(1900.0 * (i as f64 * 0.618).fract(), 1050.0 * (i as f64 * 0.7549 + 1e-4 * (i * i) as f64).fract())
@@ -354,7 +354,7 @@ fn thousands_of_strokes_and_any_number_of_threads() {
     };
     let found = run(1);
     assert_eq!(found, run(3));
-    // The nearest of all is whole.
+    // The nearest line is completely visible.
     assert_eq!(found[strokes - 1].hidden, []);
     assert!(found.iter().filter(|seen| !seen.hidden.is_empty()).count() > strokes / 4);
 }

@@ -1,12 +1,13 @@
-//! Boxes found by place: a static binary tree of bounding boxes, each split at the median of the longer side of its
-//! centres (a bounding volume hierarchy). Building costs n log² n, a query log n for each box that it finds.
+//! Search for boxes by place: a static binary tree of bounding boxes (a bounding volume hierarchy). Each node is split
+//! at the median of its centres, along the longer side. Building costs n log² n. A query costs log n for each box that
+//! it finds.
 
 use rototoon_base::geometry::Point;
 
-/// Smallest and largest coordinates.
+/// The smallest and the largest coordinates of a box.
 pub(super) type Bounds = (Point, Point);
 
-/// Boxes that are in a leaf together.
+/// Largest number of boxes in a leaf.
 const LEAF: usize = 4;
 
 /// Whether two closed boxes share a point.
@@ -14,7 +15,7 @@ pub(super) fn meet(a: Bounds, b: Bounds) -> bool {
     a.0.cmple(b.1).all() && b.0.cmple(a.1).all()
 }
 
-/// The box of several boxes; an inverted one of none.
+/// The box around several boxes; an inverted box where there are none.
 pub(super) fn around(boxes: impl IntoIterator<Item = Bounds>) -> Bounds {
     let nothing = (Point::INFINITY, Point::NEG_INFINITY);
     boxes.into_iter().fold(nothing, |(low, high), (l, h)| (low.min(l), high.max(h)))
@@ -22,13 +23,13 @@ pub(super) fn around(boxes: impl IntoIterator<Item = Bounds>) -> Bounds {
 
 struct Node {
     bounds: Bounds,
-    /// Items of a leaf: a range of `order`. An inner node's left child is the next node.
+    /// The items of a leaf: a range of `order`. The left child of an inner node is the next node.
     items: (u32, u32),
-    /// The right child; 0 of a leaf.
+    /// The right child; 0 for a leaf.
     right: u32,
 }
 
-/// The tree.
+/// The tree of boxes.
 pub(super) struct Tree {
     nodes: Vec<Node>,
     order: Vec<u32>,
@@ -44,7 +45,7 @@ impl Tree {
         tree
     }
 
-    /// The box of everything.
+    /// The box around all boxes.
     pub(super) fn bounds(&self) -> Bounds {
         self.nodes.first().map_or_else(|| around([]), |root| root.bounds)
     }
@@ -59,7 +60,7 @@ impl Tree {
             let spread = around(self.order[from..to].iter().map(|&i| (centre(i), centre(i))));
             let axis = usize::from((spread.1 - spread.0).y > (spread.1 - spread.0).x);
             let middle = (to - from) / 2;
-            // Ties by index, so that the tree is the same on every machine.
+            // The index breaks ties, so that the tree is the same on every machine.
             let key = |i: &u32, j: &u32| centre(*i)[axis].total_cmp(&centre(*j)[axis]).then(i.cmp(j));
             self.order[from..to].select_nth_unstable_by(middle, key);
             self.build(from, from + middle);
@@ -68,7 +69,7 @@ impl Tree {
         node as u32
     }
 
-    /// Calls `found` with the index of each box that meets `wanted`, in an order that depends on the boxes alone.
+    /// Calls `found` with the index of each box that meets `wanted`. The order depends on the boxes alone.
     pub(super) fn query(&self, wanted: Bounds, mut found: impl FnMut(usize)) {
         let mut open = [0u32; 64];
         let mut count = usize::from(!self.nodes.is_empty());
@@ -83,7 +84,7 @@ impl Tree {
                 let items = &self.order[node.items.0 as usize..node.items.1 as usize];
                 items.iter().map(|&i| i as usize).filter(|&i| meet(self.boxes[i], wanted)).for_each(&mut found);
             } else {
-                // Halved each time, the tree is never deeper than half of this.
+                // Each level halves the items, so the depth never exceeds half of this array.
                 open[count] = node.right;
                 open[count + 1] = at + 1;
                 count += 2;
@@ -104,7 +105,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_found_is_what_meets(boxes in prop::collection::vec(any_box(), 0..60), wanted in any_box()) {
+        fn a_query_finds_exactly_the_boxes_that_meet(boxes in prop::collection::vec(any_box(), 0..60), wanted in any_box()) {
             let tree = Tree::new(boxes.clone());
             let mut found = Vec::new();
             tree.query(wanted, |i| found.push(i));

@@ -1,4 +1,8 @@
-//! The likely counterparts of each stroke, and what each costs under the movement that is expected there.
+//! The likely counterparts of each stroke, and the cost of each under the movement expected there.
+//!
+//! A cost adds up differences in shape, turn, size, length, place, colour, material, layer and closedness. Some parts
+//! do not depend on the movement. They and the ways to lay one stroke on another are computed once and remembered while
+//! the drawings are small. In large drawings only the strokes nearest to the expected place are compared.
 
 use super::super::grid::Grid;
 use super::super::stroke::Stroke;
@@ -9,49 +13,50 @@ use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIter
 use rototoon_base::geometry::similarity::Similarity;
 use rototoon_base::geometry::{Point, polygon};
 
-/// Weight of the unexplained share of the shape.
+/// Weight of the share of the shape's variance that the best similarity does not explain.
 const SHAPE: f64 = 2.0;
-/// Weight of the squared turn, in rad², of a stroke against the drawing around it.
+/// Weight of the squared turn, in rad², of a stroke relative to the drawing around it.
 const TURN: f64 = 0.06;
-/// Weight of the squared logarithm of a stroke's growth against that around it.
+/// Weight of the squared logarithm of a stroke's growth relative to the drawing around it.
 const SIZE: f64 = 1.0;
-/// Weight of the squared logarithm of a length's growth against the size's.
+/// Weight of the squared logarithm of the growth in length relative to the growth in size.
 const LENGTH: f64 = 0.5;
 /// Weight of the squared distance from the expected place, in units of the drawing's radius.
 const POSITION: f64 = 2.0;
-/// Squared distance, in those units, from which on farther costs little more.
+/// Squared distance, in the same units, beyond which more distance adds little cost.
 const FAR: f64 = 2.0;
-/// Cost of quite another colour.
+/// Cost of an entirely different colour.
 const COLOUR: f64 = 2.0;
-/// Colour difference (root of the summed squares) that costs half of it: drawings are painted in few flat colours.
+/// Colour difference (root of the summed squares, sRGB 0 to 1) that costs half of [`COLOUR`]. It is small because
+/// drawings have few flat colours.
 const HALF_COLOUR: f64 = 0.06;
-/// Cost of another material.
+/// Cost of a different material.
 const MATERIAL: f64 = 0.7;
-/// Cost of another layer.
+/// Cost of a different layer.
 const LAYER: f64 = 2.5;
-/// Cost of an open stroke drawn closed.
+/// Cost of a pair of an open and a closed stroke.
 const CLOSEDNESS: f64 = 0.4;
-/// Pairs of strokes up to which all are looked at.
+/// Up to this number of pairs of strokes, every pair is compared.
 const ALL_PAIRS: usize = 40_000;
-/// Pairs of strokes up to which the ways to lay one upon the other are remembered.
+/// Up to this number of pairs of strokes, the ways to lay one on the other are remembered.
 const REMEMBERED: usize = 4_000;
-/// The same, with places for strokes that are left out.
+/// The same limit, counted with the empty places of strokes that are left out.
 const MOST_SLOTS: usize = 1_000_000;
-/// Counterparts looked at for each stroke where there are more.
+/// Number of counterparts compared for each stroke in larger drawings.
 const NEAREST: usize = 24;
-/// Counterparts that are kept for each stroke.
+/// Number of counterparts kept for each stroke.
 const KEPT: usize = 10;
 
-/// The strokes of a drawing as they are compared.
+/// The strokes of a drawing in the form in which they are compared.
 pub(super) struct Figure<'a> {
     pub strokes: &'a [Stroke],
-    /// By stroke; `None` without points.
+    /// One entry for each stroke; `None` where it has no points.
     pub outlines: Vec<Option<Outline>>,
-    /// Open strokes taken as closed.
+    /// Open strokes taken as closed, for comparison with closed ones.
     rings: Vec<Option<Outline>>,
     /// Mean of the outlines' centres.
     pub middle: Point,
-    /// Root mean square distance of the samples from the middle; at least 1.
+    /// Root mean square distance of the samples from the middle, in pixels; at least 1.
     pub radius: f64,
 }
 
@@ -62,7 +67,7 @@ impl<'a> Figure<'a> {
         Self::of_outlines(strokes, outlines, rings)
     }
 
-    /// The same drawing with no other strokes than those named.
+    /// The same drawing with the named strokes only. Indices and radius stay.
     pub fn only(&self, named: &[usize]) -> Self {
         let pick = |list: &[Option<Outline>]| {
             let mut kept = vec![None; list.len()];
@@ -79,14 +84,14 @@ impl<'a> Figure<'a> {
         figure
     }
 
-    /// Root mean square distance of the strokes' samples from the middle; at least 1.
+    /// Root mean square distance of the strokes' samples from the middle, in pixels; at least 1.
     pub fn spread(&self) -> f64 {
         let squares =
             self.outlines.iter().flatten().map(|o| o.centre.distance_squared(self.middle) + o.radius * o.radius);
         (squares.sum::<f64>() / self.outlines.iter().flatten().count().max(1) as f64).sqrt().max(1.0)
     }
 
-    /// The outlines of two strokes in a form in which they can be laid upon each other.
+    /// The outlines of two strokes, both closed or both open, so that one can be laid on the other.
     pub fn comparable<'b>(&'b self, i: usize, other: &'b Self, j: usize) -> Option<(&'b Outline, &'b Outline)> {
         let (a, b) = (self.outlines[i].as_ref()?, other.outlines[j].as_ref()?);
         Some(match (a.closed, b.closed) {
@@ -97,13 +102,14 @@ impl<'a> Figure<'a> {
     }
 }
 
-/// How the strokes of two drawings can be laid upon each other, remembered where they are few.
+/// The ways to lay the strokes of one drawing on those of another. They are remembered if there are few strokes,
+/// otherwise computed anew each time.
 pub(super) struct Ways {
     columns: usize,
     known: Vec<Option<Known>>,
 }
 
-/// What is known of two strokes whatever the movement.
+/// The comparison of two strokes as far as it does not depend on the movement.
 struct Known {
     ways: Vec<Vec<Way>>,
     unlike: Unlike,
@@ -124,12 +130,12 @@ impl Ways {
         Self { columns, known: (0..rows * columns).into_par_iter().map(pair).collect() }
     }
 
-    /// Whether they are remembered.
+    /// Whether the ways are remembered.
     pub fn are_known(&self) -> bool {
         !self.known.is_empty()
     }
 
-    /// The least of the costs of all ways to lay stroke `i` upon `j`.
+    /// The least cost among all ways to lay stroke `i` on `j`.
     fn least(&self, a: &Figure, i: usize, b: &Figure, j: usize, cost: impl Fn(&Way) -> f64) -> f64 {
         let least = |all: &[Vec<Way>]| all.iter().flatten().map(&cost).fold(f64::INFINITY, f64::min);
         match self.known.get(i * self.columns + j) {
@@ -138,7 +144,7 @@ impl Ways {
         }
     }
 
-    /// The likely ways to lay stroke `i` upon `j` for an expected turn.
+    /// The likely ways to lay stroke `i` on `j` for an expected turn.
     pub fn likely(&self, a: &Figure, i: usize, b: &Figure, j: usize, expected: f64, stiffness: f64) -> Vec<Way> {
         if let Some(known) = self.known.get(i * self.columns + j) {
             return known.as_ref().map_or_else(Vec::new, |known| likely(&known.ways, expected, stiffness));
@@ -154,7 +160,7 @@ impl Ways {
     }
 }
 
-/// A counterpart, and a way to lay the stroke upon it.
+/// A possible counterpart, and a way to lay the stroke on it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Label {
     pub to: usize,
@@ -163,7 +169,7 @@ pub(super) struct Label {
     pub cost: f64,
 }
 
-/// The likely counterparts of each stroke of the first drawing.
+/// The likely counterparts of all strokes of the first drawing.
 pub(super) struct Rows {
     pub labels: Vec<Vec<Label>>,
     /// Whether the stroke must take one of its labels.
@@ -224,7 +230,8 @@ fn cheapest(
         .filter(|(base, _)| *base < max_cost)
         .collect();
     near.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
-    // The cheapest so far, by their cost; what costs more at least than the last of them is none of them.
+    // Cheapest first. `base` is a lower bound, so once it exceeds the last of the kept costs no later one can be
+    // cheaper.
     let mut found: Vec<Vec<Label>> = Vec::with_capacity(KEPT + 1);
     for (base, j) in near {
         if found.len() == KEPT && base > found[KEPT - 1][0].cost {
@@ -239,7 +246,7 @@ fn cheapest(
     found.concat()
 }
 
-/// The ways to lay stroke `i` upon `j`, the cheapest first.
+/// The ways to lay stroke `i` on `j` with their costs, the most likely first.
 fn labels((a, b): (&Figure, &Figure), ways: &Ways, (i, j): (usize, usize), around: &Movement) -> Vec<Label> {
     let (Some(unlike), Some((p, q))) = (ways.unlike(a, i, b, j), a.comparable(i, b, j)) else { return Vec::new() };
     let base = unlike.under(&Expected::new(a, i, around));
@@ -251,14 +258,14 @@ fn labels((a, b): (&Figure, &Figure), ways: &Ways, (i, j): (usize, usize), aroun
     ways.collect()
 }
 
-/// What two strokes differ in, whatever the movement.
+/// The difference of two strokes as far as it does not depend on the movement.
 #[derive(Clone, Copy)]
 struct Unlike {
-    /// The cost of it.
+    /// Cost of the differences in length, colour, material, layer and closedness.
     cost: f64,
-    /// Logarithm of the growth from one to the other.
+    /// Logarithm of the growth from the first stroke to the second.
     growth: f64,
-    /// Where the other one is.
+    /// Centre of the second stroke.
     centre: Point,
 }
 
@@ -267,7 +274,7 @@ struct Expected {
     centre: Point,
     /// Logarithm of the growth.
     growth: f64,
-    /// The drawing's radius.
+    /// The drawing's radius after the movement, in pixels.
     radius: f64,
 }
 
@@ -287,7 +294,7 @@ impl Unlike {
         Some(Self { cost, growth, centre: b.outlines[j].as_ref()?.centre })
     }
 
-    /// What taking one for the other costs before it is known how they are laid upon each other.
+    /// A lower bound of the cost of this pair: everything but the fit of the shapes and the turn.
     fn under(&self, expected: &Expected) -> f64 {
         let size = self.growth - expected.growth;
         let square = expected.centre.distance_squared(self.centre) / (expected.radius * expected.radius);
@@ -295,7 +302,8 @@ impl Unlike {
     }
 }
 
-/// What all strokes cost at least under a movement: each takes its best counterpart, though others may want it too.
+/// A lower bound of the cost of all strokes under a movement: each takes its best counterpart, even if others take it
+/// too.
 pub(super) fn bound((a, b): (&Figure, &Figure), ways: &Ways, movement: &Movement, options: &Options) -> f64 {
     let there = |figure: &Figure| -> Vec<usize> {
         (0..figure.outlines.len()).filter(|&i| figure.outlines[i].is_some()).collect()
@@ -309,7 +317,7 @@ pub(super) fn bound((a, b): (&Figure, &Figure), ways: &Ways, movement: &Movement
             let way = |way: &Way| SHAPE * way.residual + TURN * wrap(way.turn - movement.turn).powi(2);
             bases[k] + ways.least(a, i, b, columns[k], way)
         };
-        // The likeliest first, so that most need no look at all.
+        // Trying the likeliest counterpart first spares the look at most of the others.
         let first = (0..bases.len()).min_by(|&x, &y| bases[x].total_cmp(&bases[y]));
         let least = first.filter(|&k| bases[k] < options.max_cost).map_or(options.max_cost, &whole);
         let least = least.min(options.max_cost);
@@ -318,7 +326,7 @@ pub(super) fn bound((a, b): (&Figure, &Figure), ways: &Ways, movement: &Movement
     there(a).into_iter().map(of).sum()
 }
 
-/// What differs beside the geometry.
+/// Cost of the differences other than geometry.
 fn likeness(a: &Stroke, b: &Stroke) -> f64 {
     let differ = |a: Option<u32>, b: Option<u32>| a.zip(b).is_some_and(|(a, b)| a != b);
     let squares = |(a, b): ([f32; 3], [f32; 3])| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum();

@@ -1,22 +1,27 @@
-//! Which stroke of one drawing is which of another.
+//! Correspondence: which stroke of one drawing is which of another.
 //!
-//! Nothing is assumed of the order, direction, starting point or number of points. Strokes look alike (arms, eyes,
-//! lines of a shade), and the drawing has moved; therefore the pairs are found together:
+//! The method assumes nothing about the order, direction, starting point or number of points of the strokes. Many
+//! strokes look alike (arms, eyes, hatching), and the drawing has moved. A stroke alone therefore does not show its
+//! counterpart. All pairs are found together:
 //!
-//! 1. `outline`: how well two shapes can be laid upon each other, and how.
-//! 2. `movement`: movements of the whole drawing are proposed and tried on its largest strokes.
-//! 3. `costs`: for each stroke the likely counterparts under the movement expected around it, and what each would cost.
-//! 4. `relaxation`: strokes that lie close together stay so. Graduated assignment (Gold & Rangarajan 1996): all choices
-//!    are kept, weighted, and each supports the choices of its neighbours that fit to it, while the weights sharpen.
-//! 5. An exact assignment ([`rototoon_base::numeric::sparse_assignment`]) on the costs that result, in which a stroke may stay
-//!    without counterpart at a price; from its pairs the movement around each stroke is fitted anew, and 3 to 5
-//!    repeated.
-//! 6. `pieces`: what is left over may be a piece of a stroke that was drawn in one go on the other drawing.
+//! 1. `outline` measures how well one shape can be laid on another, and in which ways.
+//! 2. `movement` proposes movements of the complete drawing and tries them on its largest strokes.
+//! 3. `costs` lists the likely counterparts of each stroke under the movement expected around it, with their costs.
+//! 4. `relaxation` prefers choices that keep neighbouring strokes together. It is graduated assignment (Gold &
+//!    Rangarajan 1996): every choice keeps a weight, each choice supports the choices of its neighbours that fit it,
+//!    and the weights sharpen from round to round.
+//! 5. An exact assignment ([`crate::numeric::sparse_assignment`]) takes the resulting costs. A stroke may stay without
+//!    counterpart at a price. The pairs give a new movement around each stroke. Steps 3 to 5 run up to three times.
+//! 6. `pieces` examines the strokes that are left over. Such a stroke may be a piece of a stroke that was drawn in one
+//!    go on the other drawing.
 //!
-//! Pairs made by hand are kept as they are, and count as neighbours for the others.
+//! Pairs made by hand stay as they are. They also count as neighbours of the other strokes.
 //!
-//! Limits: two equal limbs that have changed places are told apart by what hangs on them, their layers and colours
-//! only. A disc does not show its turn: it is taken to have turned as what is around it.
+//! Limits: two equal limbs that have changed places can only be told apart by the strokes attached to them, by their
+//! layers and by their colours. A disc does not show its turn. It is assumed to turn with its surroundings.
+//!
+//! Source: S. Gold and A. Rangarajan, "A graduated assignment algorithm for graph matching", IEEE PAMI 1996, for step
+//! 4.
 
 mod costs;
 mod movement;
@@ -33,18 +38,19 @@ use relaxation::Chosen;
 use rototoon_base::scene::{Cancelled, Progress};
 use similarity::Movement;
 
-/// Rounds of matching and fitting of the movement around each stroke.
+/// Rounds of matching. After each round the movement around each stroke is fitted anew.
 const ROUNDS: usize = 3;
 
-/// How to match.
+/// Limits of the matching.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Cost from which on a stroke stays without counterpart. It has no unit: unequal shapes, a place wrong by 0.7 of
-    /// the drawing's radius, a size wrong by 2.7, and neighbours that went elsewhere cost about 1 each.
+    /// Cost above which a stroke stays without counterpart. It has no unit. Each of these costs about 1: different
+    /// shapes, a place wrong by 0.7 of the drawing's radius, a size wrong by a factor of 2.7, neighbours that went
+    /// elsewhere.
     pub max_cost: f64,
-    /// Farthest turn of the whole drawing, in radians.
+    /// Largest turn of the complete drawing, in radians.
     pub max_turn: f64,
-    /// Greatest growth of the whole drawing, and 1 over its greatest shrinking; at least 1.
+    /// Largest growth of the complete drawing. Its inverse limits the shrinking. At least 1.
     pub max_scale: f64,
 }
 
@@ -59,47 +65,47 @@ impl Default for Options {
 pub struct HandPair {
     /// Index of the stroke of the first drawing.
     pub from: usize,
-    /// Index of its counterpart in the second; `None` for a stroke that is to have none.
+    /// Index of its counterpart in the second drawing; `None` for a stroke that must not have one.
     pub to: Option<usize>,
 }
 
-/// Two strokes that are the same.
+/// A stroke and its counterpart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     /// Index of the stroke of the first drawing.
     pub from: usize,
-    /// Index of its counterpart.
+    /// Index of its counterpart in the second drawing.
     pub to: usize,
-    /// Whether the counterpart is walked backwards.
+    /// Whether the counterpart runs in the opposite direction.
     pub reversed: bool,
-    /// Of closed strokes the share of the counterpart's length, walked forwards from its first point, at which the
-    /// first point of the other lies; 0 for open ones.
+    /// For two closed strokes: the position of the first stroke's first point on the counterpart, as a share of the
+    /// counterpart's length from its first point forwards. 0 for open strokes.
     pub start: f64,
-    /// How sure the pair is, 0 to 1; 1 for those made by hand.
+    /// How sure the pair is, 0 to 1. A pair made by hand has 1.
     pub confidence: f64,
     /// Whether it was made by hand.
     pub by_hand: bool,
 }
 
-/// A stroke that was drawn in pieces on the other drawing. Its pair is that with the longest piece.
+/// A stroke that was drawn in one go on one drawing and in pieces on the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InPieces {
-    /// Index of the whole stroke.
+    /// Index of the stroke drawn in one go.
     pub whole: usize,
-    /// Indices of its pieces in the order along the whole, each with whether it is walked backwards.
+    /// Indices of its pieces in their order along the stroke, each with whether it runs in the opposite direction.
     pub pieces: Vec<(usize, bool)>,
 }
 
-/// The strokes of two drawings side by side. Every stroke of the first stands in exactly one of `pairs`, `vanished` and
-/// `split` or is a piece in `joined`; every stroke of the second in one of `pairs`, `appeared` and `joined`, or is a
-/// piece in `split`.
+/// The correspondence of two drawings. Each stroke of the first drawing is in exactly one of `pairs`, `vanished` and
+/// `split`, or is a piece in `joined`. Each stroke of the second drawing is in exactly one of `pairs`, `appeared` and
+/// `joined`, or is a piece in `split`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Matching {
-    /// One to one, by the index in the first drawing.
+    /// Pairs of one stroke with one stroke, ordered by the index in the first drawing.
     pub pairs: Vec<Pair>,
-    /// Strokes of the first drawing that are several in the second.
+    /// Strokes of the first drawing that are in several pieces in the second.
     pub split: Vec<InPieces>,
-    /// Strokes of the second drawing that were several in the first.
+    /// Strokes of the second drawing that were in several pieces in the first.
     pub joined: Vec<InPieces>,
     /// Strokes of the first drawing without counterpart.
     pub vanished: Vec<usize>,
@@ -110,32 +116,32 @@ pub struct Matching {
 /// Why drawings were not matched.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MatchingError {
-    /// A point of the first drawing is no place.
+    /// A point of the first drawing cannot be used.
     #[error("first drawing: {0}")]
     First(BadPoint),
-    /// A point of the second drawing is no place.
+    /// A point of the second drawing cannot be used.
     #[error("second drawing: {0}")]
     Second(BadPoint),
-    /// A pair made by hand names a stroke that is not there.
+    /// A pair made by hand names a stroke that does not exist.
     #[error("pair {pair}: found stroke {found} of the {drawing} drawing, expected less than {count}")]
     Missing {
         /// Index of the pair made by hand.
         pair: usize,
         /// "first" or "second".
         drawing: &'static str,
-        /// The stroke.
+        /// Index of the stroke that was named.
         found: usize,
-        /// Strokes of the drawing.
+        /// Number of strokes of the drawing.
         count: usize,
     },
     /// Two pairs made by hand name the same stroke.
     #[error("pair {pair}: stroke {stroke} of the {drawing} drawing has a pair made by hand already")]
     Twice {
-        /// Index of the second of them.
+        /// Index of the second of the two pairs.
         pair: usize,
         /// "first" or "second".
         drawing: &'static str,
-        /// The stroke.
+        /// Index of the stroke.
         stroke: usize,
     },
     /// The caller asked to stop.
@@ -143,13 +149,14 @@ pub enum MatchingError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Finds which stroke of `first` is which of `second`. Pairs in `by_hand` are kept.
+/// Finds the counterpart in `second` of each stroke of `first`. Pairs in `by_hand` are kept.
 ///
-/// Strokes without points have no counterpart.
+/// Points are in pixels; both drawings use the same coordinate frame. Strokes without points have no counterpart.
 ///
 /// # Errors
 ///
-/// The first point that is no place; pairs made by hand of strokes that are not there, or of one stroke twice.
+/// A point that cannot be used; a pair made by hand that names a stroke that does not exist; two pairs made by hand
+/// that name the same stroke; cancellation by `progress`.
 pub fn match_strokes(
     first: &[Stroke],
     second: &[Stroke],
@@ -170,7 +177,8 @@ pub fn match_strokes(
     Ok(matching)
 }
 
-/// Of each stroke its counterpart, if it has one, and how its surroundings move: found from each other in turn.
+/// The counterpart of each stroke, if it has one, and the movement around each stroke. Each is found from the other in
+/// turn.
 fn chosen(
     a: &Figure,
     b: &Figure,
@@ -192,7 +200,7 @@ fn chosen(
             relaxation::relaxed(&neighbours, b, &rows, options).chosen
         });
         let last = std::mem::replace(&mut found, next);
-        // The same pairs move their surroundings the same way again.
+        // Equal pairs would give equal movements again, so the loop has converged.
         if round > 0 && found == last {
             break;
         }
@@ -201,7 +209,7 @@ fn chosen(
     Ok((found, around))
 }
 
-/// The pairs, and the strokes that have none.
+/// Sorts the strokes into pairs, vanished and appeared strokes.
 fn laid_out(first: &[Stroke], second: &[Stroke], found: &[Option<Chosen>], fixed: &[Fixed]) -> Matching {
     let mut matching = Matching::default();
     let mut taken = vec![false; second.len()];
@@ -225,12 +233,12 @@ fn laid_out(first: &[Stroke], second: &[Stroke], found: &[Option<Chosen>], fixed
     matching
 }
 
-/// Where a stroke's first point lies on its counterpart.
+/// The position of a stroke's first point on its counterpart, as [`Pair::start`] has it.
 fn started(stroke: &Stroke, other: &Stroke, way: &Way) -> f64 {
     if stroke.closed && other.closed { start::refined(stroke, other, way.start, way.reversed) } else { 0.0 }
 }
 
-/// What is decided by hand of a stroke of the first drawing.
+/// The user's decision about a stroke of the first drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fixed {
     Free,

@@ -1,4 +1,12 @@
-//! The movement of the whole drawing, and that around each stroke.
+//! The movement of the complete drawing, and the movement around each stroke.
+//!
+//! Movements are similarities: shift, turn and scale. Proposals for the complete drawing are rest, turns in steps of
+//! 15° about the middle, and the similarities between single pairs of strokes that resemble each other. A lower bound
+//! of the matching cost ranks the proposals. The best of them are tried by matching the strokes. A small preference for
+//! drawings that turned and shifted little decides between equals.
+//!
+//! The movement around a stroke is a weighted least-squares similarity of the strokes matched near it. The movement of
+//! the complete drawing enters as one more observation, so that few neighbours do not distort it.
 
 use super::super::grid::Grid;
 use super::costs::{Figure, Rows, Ways, bound};
@@ -10,44 +18,45 @@ use rototoon_base::geometry::Point;
 
 /// Step in radians of the proposed turns of the whole drawing.
 const TURN_STEP: f64 = std::f64::consts::PI / 12.0;
-/// Strokes on which movements are tried: the largest.
+/// Number of strokes on which movements are tried in a large drawing: the largest ones.
 const TRIED_ON: usize = 48;
-/// Strokes up to which movements are tried on all: what is known of their pairs is remembered anyway.
+/// Up to this number of strokes, movements are tried on all of them: the comparisons of their pairs are remembered
+/// anyway.
 const FEW: usize = 63;
-/// Movements proposed by pairs, at most.
+/// Largest number of movements proposed by pairs of strokes.
 const MOST_PROPOSALS: usize = 120;
-/// Unexplained share of the shape up to which a pair proposes a movement.
+/// A pair proposes a movement if the unexplained share of its shape is below this.
 const PROPOSING: f64 = 0.15;
-/// Movements that are tried by matching the strokes.
+/// Number of movements that are tried by matching the strokes.
 const FINALISTS: usize = 6;
-/// Difference in turn (rad), growth (logarithm) and place (in units of the drawing's radius) below which two movements
-/// are one.
+/// Two movements count as one if they differ by less than this in turn (rad), in the logarithm of the scale, and in
+/// place (in units of the drawing's radius).
 const SAME: f64 = 1e-3;
-/// Preference, for each stroke and rad², for drawings that have turned little.
+/// Cost for each stroke and rad² of the drawing's turn: drawings that turned little are preferred.
 const STILLNESS: f64 = 0.02;
-/// The same for each stroke and squared shift in units of the drawing's radius.
+/// Cost for each stroke and squared shift, in units of the drawing's radius.
 const RESTING: f64 = 0.02;
-/// Distance, in units of the drawing's radius, within which neighbours weigh alike.
+/// Distance, in units of the drawing's radius, at which a neighbour has half the weight of one at distance zero.
 const NEIGHBOURHOOD: f64 = 0.4;
-/// Neighbours from which the movement around a stroke is fitted, at most.
+/// Largest number of neighbours from which the movement around a stroke is fitted.
 const NEIGHBOURS: usize = 24;
 
 /// The movement of the whole drawing, and what matching under it found.
 pub(super) struct Whole {
     pub movement: Movement,
-    /// The counterparts under that movement, and under those around each stroke which follow from them; `None` where
-    /// the movement was tried on some strokes only.
+    /// The counterparts under that movement, then those under the movements around each stroke that follow from them.
+    /// `None` where the movement was tried on some strokes only.
     pub found: Option<[Vec<Option<Chosen>>; 2]>,
 }
 
-/// The movement of the whole drawing.
+/// Finds the movement of the complete drawing.
 pub(super) fn of_whole(a: &Figure, b: &Figure, ways: &Ways, fixed: &[Fixed], options: &Options) -> Whole {
     let pinned = fixed.iter().enumerate().filter_map(|(i, f)| if let Fixed::To(j) = f { Some((i, *j)) } else { None });
     let (rows, columns): (Vec<usize>, Vec<usize>) = pinned.unzip();
     let there = |figure: &Figure| figure.outlines.iter().flatten().count();
     let all = there(a).max(there(b)) <= FEW;
     let (a, b) = (a.only(&largest(a, &rows)), b.only(&largest(b, &columns)));
-    // The strokes keep their numbers, so what is known of them holds.
+    // The strokes keep their indices, so the remembered ways stay valid.
     let own = (!ways.are_known()).then(|| Ways::new(&a, &b));
     let ways = own.as_ref().unwrap_or(ways);
     let scored = |movement: Movement| (bound((&a, &b), ways, &movement, options) + prior(&a, &movement), movement);
@@ -65,7 +74,7 @@ pub(super) fn of_whole(a: &Figure, b: &Figure, ways: &Ways, fixed: &[Fixed], opt
     };
     let mut best: Option<(f64, Whole)> = None;
     for (score, movement) in scores {
-        // What costs more at least than another one does indeed is none.
+        // The score is a lower bound of the energy. This movement and all later ones cannot be better.
         if best.as_ref().is_some_and(|(least, _)| score >= *least) {
             break;
         }
@@ -92,7 +101,7 @@ fn prior(a: &Figure, movement: &Movement) -> f64 {
     count * (STILLNESS * movement.turn * movement.turn + RESTING * shift.min(2.0).powi(2))
 }
 
-/// The strokes on which movements are tried: those named, and the largest.
+/// The strokes on which movements are tried: the named ones and the largest.
 fn largest(figure: &Figure, named: &[usize]) -> Vec<usize> {
     let radius = |i: usize| figure.outlines[i].as_ref().map_or(0.0, |o| o.radius);
     let mut order: Vec<usize> = (0..figure.outlines.len()).filter(|&i| figure.outlines[i].is_some()).collect();
@@ -106,7 +115,7 @@ fn largest(figure: &Figure, named: &[usize]) -> Vec<usize> {
     order
 }
 
-/// Movements that may be the drawing's.
+/// Movements that the drawing may have made.
 fn proposals(a: &Figure, b: &Figure, ways: &Ways, options: &Options) -> Vec<Movement> {
     let most = options.max_scale.max(1.0);
     let scale = (b.spread() / a.spread()).clamp(1.0 / most, most);
@@ -145,7 +154,8 @@ fn proposals(a: &Figure, b: &Figure, ways: &Ways, options: &Options) -> Vec<Move
     result
 }
 
-/// The movement that the matched neighbours of each stroke make, held by the whole drawing's.
+/// The movement around each stroke, fitted to its matched neighbours and held by the movement `held` of the complete
+/// drawing.
 pub(super) fn around_each(a: &Figure, b: &Figure, chosen: &[Option<Chosen>], held: &Movement) -> Vec<Movement> {
     let mut known = Vec::new();
     for (outline, choice) in a.outlines.iter().zip(chosen) {
@@ -170,7 +180,7 @@ pub(super) fn around_each(a: &Figure, b: &Figure, chosen: &[Option<Chosen>], hel
     a.outlines.par_iter().map(fitted).collect()
 }
 
-/// The movement of weighted pairs of places, held by another that counts as one pair at the drawing's radius.
+/// Fits a movement to weighted pairs of places. `held` counts as one pair at distance `radius` from the centre.
 fn fit(pairs: &[(f64, Point, Point)], held: &Movement, radius: f64) -> Movement {
     if pairs.len() < 2 {
         return *held;

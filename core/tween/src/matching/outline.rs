@@ -1,24 +1,28 @@
-//! A stroke reduced to what shapes are compared by, and the ways to lay one upon another.
+//! A stroke reduced to the data by which shapes are compared, and the ways to lay one shape on another.
 //!
-//! Both curves are sampled evenly by arc length and centred; as complex numbers p and q of unit mean square, the best
-//! similarity is r = mean(conj(p) q), and 1 − |r|² of the variance remains. It does not see size, place, turn or number
-//! of points; all starting points of closed curves and both directions are tried. A closed curve turns the same way
-//! round on both drawings, hence its direction follows from the sign of the area where it has one.
+//! Both curves are sampled evenly by arc length and centred. Their samples are read as complex numbers p and q of unit
+//! mean square. The best similarity from p to q has the factor r = mean(conj(p) q). It leaves the share 1 − |r|² of the
+//! variance unexplained. This measure does not depend on size, place, turn or number of points.
+//!
+//! Both directions are tried, and for closed curves all starting points. A closed curve keeps its sense of rotation
+//! from drawing to drawing. The sign of the area therefore decides the direction, unless the curve is too thin to have
+//! a clear sign.
 
 use super::super::stroke::Stroke;
 use rototoon_base::geometry::similarity::Similarity;
 use rototoon_base::geometry::{Point, polygon, polyline};
 
-/// Samples of a curve.
+/// Number of samples of a curve.
 pub(super) const SAMPLES: usize = 32;
-/// Smallest size, in pixels, that is told apart: a dot counts as that large.
+/// Smallest size, in pixels, that is distinguished. A dot counts as this large.
 const LEAST_RADIUS: f64 = 0.5;
-/// Area relative to the squared length from which on a closed curve has a direction of turning (a circle has 0.08).
+/// Share of the squared length that the area must exceed to give a closed curve a sense of rotation (a circle has
+/// 0.08).
 const LEAST_AREA: f64 = 0.005;
-/// Ways that are kept of a pair of closed curves.
+/// Number of ways kept for a pair of curves.
 const WAYS: usize = 3;
 
-/// A stroke as it is compared.
+/// A stroke in the form in which it is compared.
 #[derive(Clone, Debug)]
 pub(super) struct Outline {
     /// Mean of the samples.
@@ -29,28 +33,29 @@ pub(super) struct Outline {
     pub length: f64,
     /// Samples in pixels.
     pub places: Vec<Point>,
-    /// Samples, centred and divided by the radius.
+    /// Samples relative to the centre, divided by the radius.
     shape: Vec<Point>,
-    /// Sign of the area: 0 for open and for thin curves.
+    /// Sign of the area; 0 for open and for thin curves.
     turning: i8,
     pub closed: bool,
 }
 
-/// One way to lay a curve upon another.
+/// One way to lay a curve on another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Way {
-    /// Unexplained share of the variance, 0 to 1.
+    /// Share of the variance that the similarity does not explain, 0 to 1.
     pub residual: f64,
     /// Turn in radians, from x towards y.
     pub turn: f64,
-    /// Whether the other curve is walked backwards.
+    /// Whether the other curve is read backwards.
     pub reversed: bool,
-    /// Share of the other curve's length (walked forwards) at which this one's first sample lies.
+    /// Position of this curve's first sample on the other curve, as a share of that curve's length from its first point
+    /// forwards.
     pub start: f64,
 }
 
 impl Outline {
-    /// The outline of a stroke that is taken as closed or open; `None` where it has no points.
+    /// The outline of a stroke taken as closed or open; `None` where it has no points.
     pub fn new(stroke: &Stroke, closed: bool) -> Option<Self> {
         let places = polyline::resample(&stroke.points, closed, SAMPLES);
         if places.is_empty() {
@@ -66,7 +71,8 @@ impl Outline {
         Some(Self { centre, radius, length, places, shape, turning, closed })
     }
 
-    /// All ways to lay this curve upon `other`, which is closed as this one is: by direction, all starts in order.
+    /// All ways to lay this curve on `other`. Both must be closed or both open. The outer list is by direction, the
+    /// inner one by start.
     pub fn all_ways(&self, other: &Self) -> Vec<Vec<Way>> {
         let mut found = Vec::new();
         for reversed in [false, true] {
@@ -79,7 +85,7 @@ impl Outline {
         found
     }
 
-    /// The ways to lay this closed curve upon another one, by the start, all starts side by side for vector
+    /// The ways to lay this closed curve on another one, by start. All starts are computed side by side for vector
     /// instructions.
     fn around(&self, other: &Self, reversed: bool) -> Vec<Way> {
         let twice = |axis: fn(&Point) -> f64| -> Vec<f64> {
@@ -99,13 +105,13 @@ impl Outline {
         (0..SAMPLES).map(way).collect()
     }
 
-    /// The most likely ways to lay this curve upon `other`, when a turn is expected that is worth `stiffness` residual
-    /// for each rad².
+    /// The most likely ways to lay this curve on `other`. A turn away from the expected one costs `stiffness` in units
+    /// of the residual for each rad².
     pub fn ways(&self, other: &Self, expected: f64, stiffness: f64) -> Vec<Way> {
         likely(&self.all_ways(other), expected, stiffness)
     }
 
-    /// The way to lay this open curve upon another one.
+    /// The way to lay this open curve on another one in a direction.
     fn lay(&self, other: &Self, reversed: bool) -> Way {
         let first = if reversed { SAMPLES - 1 } else { 0 };
         let mut factor = Point::ZERO;
@@ -116,24 +122,25 @@ impl Outline {
         self.way(other, factor, first, reversed)
     }
 
-    /// The way whose products add up to `sum`.
+    /// The way that belongs to `sum`, the sum of conj(p) q over the samples.
     fn way(&self, other: &Self, sum: Point, first: usize, reversed: bool) -> Way {
         let factor = sum / SAMPLES as f64;
-        // Two dots have nothing that could disagree.
+        // Two dots have no shape that could differ.
         let flat = |outline: &Self| outline.shape.iter().all(|p| *p == Point::ZERO);
         let residual = if flat(self) && flat(other) { 0.0 } else { (1.0 - factor.length_squared()).clamp(0.0, 1.0) };
         let steps = if self.closed { SAMPLES } else { SAMPLES - 1 };
         Way { residual, turn: factor.to_angle(), reversed, start: first as f64 / steps as f64 }
     }
 
-    /// The similarity that lays this curve upon `other` in a way.
+    /// The similarity that lays this curve on `other` in the given way.
     pub fn movement(&self, other: &Self, way: &Way) -> Similarity {
         let factor = Point::from_angle(way.turn) * (other.radius / self.radius);
         Similarity { factor, source: self.centre, target: other.centre }
     }
 }
 
-/// The most likely of all ways, when a turn is expected that is worth `stiffness` residual for each rad².
+/// The most likely of all ways, cheapest first. A turn away from the expected one costs `stiffness` in units of the
+/// residual for each rad². Of neighbouring starts only the cheapest counts.
 pub(super) fn likely(all: &[Vec<Way>], expected: f64, stiffness: f64) -> Vec<Way> {
     let mut found: Vec<(f64, Way)> = Vec::new();
     for ways in all {
@@ -147,7 +154,7 @@ pub(super) fn likely(all: &[Vec<Way>], expected: f64, stiffness: f64) -> Vec<Way
     found.into_iter().take(WAYS).map(|(_, way)| way).collect()
 }
 
-/// The angle as the equivalent one from −π to π.
+/// The equivalent angle from −π to π.
 pub(super) fn wrap(angle: f64) -> f64 {
     let turn = std::f64::consts::TAU;
     angle - turn * (angle / turn).round()

@@ -1,9 +1,11 @@
 //! Strokes that were drawn in one go on one drawing and in pieces on the other.
 //!
-//! What has no counterpart may be a piece of a stroke that has one already: where an end of it lies by an end of the
-//! counterpart, and both put together are more like the stroke than the counterpart alone is, the two are pieces of it.
-//! So on until nothing is won; strokes without any counterpart are tried with two pieces that have none. Pieces are
-//! open.
+//! The search begins with a pair: a stroke and its counterpart. A stroke without counterpart is added to the
+//! counterpart if one of its ends is near an end of the counterpart, and if both together resemble the stroke clearly
+//! more than the counterpart alone. This repeats until nothing more can be gained. Strokes without any counterpart are
+//! tried in the same way, beginning with each free piece near their expected place.
+//!
+//! Limits: pieces are open strokes. A free piece belongs to one stroke at most; the first stroke that uses it keeps it.
 
 use super::super::grid::Grid;
 use super::super::stroke::Stroke;
@@ -13,24 +15,24 @@ use super::{Fixed, InPieces, Matching};
 use rototoon_base::geometry::Point;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Widest gap between two pieces, as a share of their length together.
+/// Widest gap between two pieces, as a share of their joint length.
 const GAP: f64 = 0.1;
-/// Gap in pixels that is always allowed.
+/// Gap, in pixels, that is always allowed.
 const LEAST_GAP: f64 = 3.0;
-/// How much less the whole must cost than the piece alone.
+/// A longer chain of pieces must cost this much less than the chain before.
 const GAIN: f64 = 0.15;
-/// Cost above which pieces are no whole.
+/// A chain for a stroke without counterpart must cost less than this.
 const MOST: f64 = 0.6;
-/// Ends that are looked at around an end.
+/// Number of free ends examined around an end of a chain.
 const NEAR: usize = 8;
-/// Weight of the unexplained share of the shape.
+/// Weight of the share of the shape's variance that the best similarity does not explain.
 const SHAPE: f64 = 2.0;
-/// Weight of the squared logarithm of the length's growth.
+/// Weight of the squared logarithm of the growth in length.
 const LENGTH: f64 = 1.5;
 /// Weight of the squared distance from the expected place, in units of the stroke's radius.
 const POSITION: f64 = 0.2;
 
-/// Finds strokes in pieces and moves them from the matching's pairs and leftovers.
+/// Finds strokes in pieces. It moves them from `pairs`, `vanished` and `appeared` to `split` and `joined`.
 pub(super) fn find(first: &[Stroke], second: &[Stroke], around: &[Movement], fixed: &[Fixed], matching: &mut Matching) {
     let free = |i: usize| fixed[i] == Fixed::Free;
     let pairs: BTreeMap<usize, usize> = matching.pairs.iter().filter(|p| !p.by_hand).map(|p| (p.from, p.to)).collect();
@@ -63,11 +65,12 @@ pub(super) fn find(first: &[Stroke], second: &[Stroke], around: &[Movement], fix
 struct Search<'a, E: Fn(usize, Point) -> (Point, f64)> {
     whole: &'a [Stroke],
     pieces: &'a [Stroke],
-    /// Where a whole's centre is expected on the other drawing, and the growth.
+    /// Maps a stroke's index and centre to the centre expected on the other drawing, in pixels, and the expected
+    /// growth.
     expected: &'a E,
 }
 
-/// Pieces put together.
+/// Pieces put together end to end.
 #[derive(Clone)]
 struct Chain {
     pieces: Vec<(usize, bool)>,
@@ -76,7 +79,8 @@ struct Chain {
 }
 
 impl<E: Fn(usize, Point) -> (Point, f64)> Search<'_, E> {
-    /// `pairs` by the whole's index; `loose` wholes and `free` pieces have no counterpart.
+    /// Finds the strokes in pieces. `pairs` maps a stroke to its counterpart; the strokes in `loose` and the pieces in
+    /// `free` have none.
     fn run(&self, pairs: &BTreeMap<usize, usize>, loose: &[usize], free: &[usize]) -> Vec<InPieces> {
         let open = |&&j: &&usize| !self.pieces[j].closed && self.pieces[j].length() > 0.0;
         let free: Vec<usize> = free.iter().filter(open).copied().collect();
@@ -110,7 +114,7 @@ impl<E: Fn(usize, Point) -> (Point, f64)> Search<'_, E> {
         result
     }
 
-    /// The chain with free pieces added while they make it more like the whole.
+    /// Adds free pieces to a chain as long as each addition makes it resemble stroke `i` more.
     fn grown(&self, i: usize, mut chain: Chain, grid: &Grid, free: &[usize], taken: &BTreeSet<usize>) -> Option<Chain> {
         loop {
             let mut best: Option<Chain> = None;
@@ -134,10 +138,11 @@ impl<E: Fn(usize, Point) -> (Point, f64)> Search<'_, E> {
         }
     }
 
-    /// A chain with a piece put to one of its ends by one of the piece's.
+    /// The chain with one more piece, added behind or before it. `by_last` says that the piece's last point meets the
+    /// chain.
     fn joined(&self, i: usize, chain: &Chain, behind: bool, piece: usize, by_last: bool) -> Option<Chain> {
         let added = &self.pieces[piece].points;
-        // Behind the chain a piece walks on from the end that meets it; before it, towards that end.
+        // Behind the chain a piece runs away from the end that meets it. Before the chain it runs towards that end.
         let reversed = behind == by_last;
         let walked: Vec<Point> = if reversed { added.iter().rev().copied().collect() } else { added.clone() };
         let (points, gap) = if behind {
@@ -154,7 +159,7 @@ impl<E: Fn(usize, Point) -> (Point, f64)> Search<'_, E> {
         Some(Chain { cost: self.cost(i, &points)?, pieces, points })
     }
 
-    /// How unlike the whole a line of points is.
+    /// How much a line of points differs from stroke `i`, without unit.
     fn cost(&self, i: usize, points: &[Point]) -> Option<f64> {
         let closed = self.whole[i].closed;
         let (whole, line) =
@@ -166,7 +171,7 @@ impl<E: Fn(usize, Point) -> (Point, f64)> Search<'_, E> {
         Some(SHAPE * way.residual + LENGTH * length * length + POSITION * (away * away).min(4.0))
     }
 
-    /// The pieces of a chain in the order and direction of the whole.
+    /// The pieces of a chain in the order and direction of stroke `i`.
     fn along(&self, i: usize, chain: Chain) -> Vec<(usize, bool)> {
         let closed = self.whole[i].closed;
         let outlines =

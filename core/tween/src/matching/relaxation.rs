@@ -1,11 +1,15 @@
 //! Choices that support each other: graduated assignment (Gold & Rangarajan 1996).
 //!
-//! Each stroke holds a weight for each of its labels and one for having no counterpart. What lies next to it in the
-//! first drawing should lie next to it in the second: a point where two strokes (nearly) touch is taken by both labels'
-//! maps, and the distance of the two images is the cost of choosing both. The weights follow from the costs under the
-//! neighbours' present weights, β sharpening from round to round; between rounds they are normalised so that no stroke
-//! of the second drawing is taken more than once (Sinkhorn). The last word has an exact assignment, repeated while it
-//! lowers the energy.
+//! Each stroke has a weight for each of its labels (a counterpart and a way to lie on it) and one for having no
+//! counterpart. Strokes that are neighbours in the first drawing should be neighbours in the second. A place where two
+//! strokes touch, or nearly touch, is mapped by the labels of both. The distance of the two images is the cost of
+//! choosing both labels.
+//!
+//! The weights follow from the costs under the present weights of the neighbours. β makes them sharper from round to
+//! round. Between rounds they are normalised so that no stroke of the second drawing is taken more than once
+//! (Sinkhorn). Exact assignments come last. They repeat as long as they lower the energy.
+//!
+//! Limits: the result is a local minimum. Only the nearest neighbours of a stroke support it.
 
 use super::super::grid::Grid;
 use super::Options;
@@ -15,28 +19,28 @@ use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallel
 use rototoon_base::geometry::Point;
 use rototoon_base::numeric::sparse_assignment::{Choice, assign_sparse};
 
-/// Neighbours of a stroke.
+/// Largest number of neighbours of a stroke.
 const NEIGHBOURS: usize = 6;
-/// Strokes with near centres among which the neighbours are looked for.
+/// Number of strokes with near centres among which the neighbours are chosen.
 const LOOKED_AT: usize = 24;
-/// Weight of all neighbours together.
+/// Weight of all neighbours of a stroke together.
 const SUPPORT: f64 = 2.0;
-/// Gap, in units of the two strokes' mean radius, within which neighbours count as touching.
+/// Gap, in units of the geometric mean of the two radii, at which a neighbour has half the weight of a touching one.
 const TOUCHING: f64 = 0.15;
-/// Distance, in units of the two strokes' mean radius, of two images that costs all of a neighbour's weight.
+/// Distance of two images, in units of the mean of the two radii, that costs the full weight of a neighbour.
 const TORN: f64 = 1.0;
 /// Cost of a neighbour that has no counterpart.
 const MISSING: f64 = 0.4;
 /// β of the first and of the last round.
 const BETA: (f64, f64) = (1.5, 30.0);
 const ROUNDS: usize = 12;
-/// Weight of a choice that no further round would change.
+/// A stroke with a weight above this has settled; further rounds do not change it.
 const SETTLED: f64 = 1.0 - 1e-5;
-/// Normalisations in each round.
+/// Number of normalisations in each round.
 const SINKHORN: usize = 4;
-/// Exact assignments at the end, at most.
+/// Largest number of exact assignments at the end.
 const EXACT: usize = 6;
-/// Difference of cost that makes a pair about as sure as it can be.
+/// Difference of cost to the next best counterpart that makes a pair nearly certain.
 const SURE: f64 = 0.5;
 
 /// The counterpart of a stroke.
@@ -47,14 +51,14 @@ pub(super) struct Chosen {
     pub confidence: f64,
 }
 
-/// What was found.
+/// The choices of all strokes and their total cost.
 pub(super) struct Relaxed {
     pub chosen: Vec<Option<Chosen>>,
     pub energy: f64,
 }
 
-/// Where the labels take the places of the links: `own[l]` those of the stroke (all x, then all y), `other[l][k]` label
-/// `k` of the neighbour.
+/// The images of the links' places under the labels. `own[l]` has those of the stroke for link `l`, all x and then all
+/// y. `other[l][k]` is that of the neighbour's label `k`.
 struct Images {
     own: Vec<(Vec<f64>, Vec<f64>)>,
     other: Vec<Vec<Point>>,
@@ -72,7 +76,8 @@ impl Images {
     }
 }
 
-/// A neighbour, the place where it nearly touches, its weight, and the distance that tears the two apart.
+/// A neighbour, the place where the two strokes nearly touch, its weight, and the distance of images that counts as
+/// torn apart. Pixels.
 struct Link {
     to: usize,
     place: Point,
@@ -80,21 +85,21 @@ struct Link {
     torn: f64,
 }
 
-/// Weights of a stroke's labels, and of having no counterpart.
+/// Weights of a stroke's labels, and of having no counterpart. They sum to 1.
 #[derive(Clone)]
 struct Weights {
     labels: Vec<f64>,
     none: f64,
 }
 
-/// The links of all strokes, and their images.
+/// The links of all strokes and their images.
 #[derive(Clone, Copy)]
 struct Links<'a> {
     links: &'a [Vec<Link>],
     images: &'a [Images],
 }
 
-/// Choices for the rows, `neighbours` being those of the first drawing.
+/// Chooses a label for each row. `neighbours` are those of the first drawing.
 pub(super) fn relaxed(neighbours: &Neighbours, b: &Figure, rows: &Rows, options: &Options) -> Relaxed {
     let links = &neighbours.0;
     let images: Vec<Images> = (0..links.len()).into_par_iter().map(|i| Images::new(i, rows, &links[i])).collect();
@@ -131,7 +136,7 @@ fn softened(costs: &[f64], none: f64, beta: f64) -> Weights {
     Weights { labels: raw.into_iter().map(|w| w / total).collect(), none: none / total }
 }
 
-/// What each label costs under the neighbours' weights.
+/// The cost of each label under the weights of the neighbours.
 fn supported(rows: &Rows, links: Links, weights: &[Weights]) -> Vec<Vec<f64>> {
     let of_stroke = |i: usize| {
         let mut costs: Vec<f64> = vec![0.0; rows.labels[i].len()];
@@ -153,9 +158,9 @@ fn supported(rows: &Rows, links: Links, weights: &[Weights]) -> Vec<Vec<f64>> {
     (0..rows.labels.len()).into_par_iter().with_min_len(16).map(of_stroke).collect()
 }
 
-/// Adds what a neighbour's label of some weight, which takes the link's place to `there`, costs each label that takes
-/// it to `own`: the squared distance in units of that which tears, at most 1. All labels side by side, for vector
-/// instructions.
+/// Adds the cost of one of a neighbour's labels to each label of the stroke. The neighbour's label maps the link's
+/// place to `there`, the stroke's labels map it to `own`. The cost is the squared distance in units of the tearing
+/// distance, at most 1, times `weight`. All labels are computed side by side for vector instructions.
 fn add_torn(torn: &mut [f64], own: &(Vec<f64>, Vec<f64>), there: Point, weight: f64, scale: f64) {
     for ((torn, x), y) in torn.iter_mut().zip(&own.0).zip(&own.1) {
         let (dx, dy) = (x - there.x, y - there.y);
@@ -184,10 +189,11 @@ fn normalised(mut weights: Vec<Weights>, rows: &Rows, columns: usize) -> Vec<Wei
     weights
 }
 
-/// Energy, label of each stroke, and what each label costs under the labels of the others.
+/// The energy, the label of each stroke, and the cost of each label under the labels of the others.
 type Assigned = (f64, Vec<Option<usize>>, Vec<Vec<f64>>);
 
-/// Exact assignments under the costs that the weights, then the assignments themselves, imply.
+/// Turns weights into exact assignments. The first follows from the weights, each later one from the assignment before
+/// it.
 fn harden(rows: &Rows, links: Links, soft: Vec<Weights>, columns: usize, options: &Options) -> Relaxed {
     let mut weights = soft;
     let mut best: Option<Assigned> = None;
@@ -204,7 +210,7 @@ fn harden(rows: &Rows, links: Links, soft: Vec<Weights>, columns: usize, options
             .collect();
         let under = supported(rows, links, &weights);
         let of = |(i, pick): (usize, &Option<usize>)| match *pick {
-            // Both sides of a link count it.
+            // Both strokes of a link count its cost, so each counts half.
             Some(k) => 0.5 * (rows.labels[i][k].cost + under[i][k]),
             None => none_cost(rows, i, options).min(options.max_cost),
         };
@@ -224,7 +230,7 @@ fn harden(rows: &Rows, links: Links, soft: Vec<Weights>, columns: usize, options
     Relaxed { chosen: chosen.collect(), energy }
 }
 
-/// The label of each stroke that an exact assignment takes.
+/// The label of each stroke in an exact assignment.
 fn assigned(rows: &Rows, costs: &[Vec<f64>], columns: usize, options: &Options) -> Vec<Option<usize>> {
     let mut choices = Vec::with_capacity(costs.len());
     let mut labels = Vec::with_capacity(costs.len());
@@ -249,7 +255,7 @@ fn assigned(rows: &Rows, costs: &[Vec<f64>], columns: usize, options: &Options) 
     found.into_iter().enumerate().map(label_of).collect()
 }
 
-/// How sure a choice is: by how much the next best counterpart costs more, and how cheap it is itself.
+/// How sure a choice is, 0 to 1: by how much the next best counterpart costs more, and how cheap the choice itself is.
 fn sureness(rows: &Rows, costs: &[Vec<f64>], i: usize, k: usize, options: &Options) -> f64 {
     let (own, to) = (costs[i][k], rows.labels[i][k].to);
     let others = rows.labels[i].iter().zip(&costs[i]).filter(|(label, _)| label.to != to).map(|(_, &cost)| cost);
@@ -259,7 +265,7 @@ fn sureness(rows: &Rows, costs: &[Vec<f64>], i: usize, k: usize, options: &Optio
     margin * fit.sqrt()
 }
 
-/// The neighbours of each stroke of a drawing.
+/// The neighbours of each stroke of the first drawing.
 pub(super) struct Neighbours(Vec<Vec<Link>>);
 
 impl Neighbours {
@@ -279,7 +285,7 @@ fn links(a: &Figure) -> Vec<Vec<Link>> {
         links.sort_by(|x, y| y.weight.total_cmp(&x.weight).then(x.to.cmp(&y.to)));
         links.truncate(NEIGHBOURS);
         let total: f64 = links.iter().map(|l| l.weight).sum::<f64>().max(1e-9);
-        // A lonely stroke is not bound to what is far away.
+        // A stroke whose neighbours are far away is bound to them less.
         let share = SUPPORT * total / (total + 0.2) / total;
         links.iter_mut().for_each(|l| l.weight *= share);
         links

@@ -1,16 +1,19 @@
-//! Where a closed stroke's first point lies on its counterpart, to a finer step than that of the samples by which they
-//! were found: the start at which the best similarity explains most.
+//! Position of a closed stroke's first point on its counterpart, finer than the samples of `outline` allow.
+//!
+//! Several starts around the rough one are tried. The best start is the one at which the best similarity explains most
+//! of the shape. The reach of 8/256 of the length is one step of the rough search.
 
 use super::super::line::Line;
 use super::super::stroke::Stroke;
 use rototoon_base::geometry::Point;
 
-/// Samples of a stroke.
+/// Number of samples of a stroke.
 const SAMPLES: usize = 64;
-/// Starting points that are tried to each side, and how far apart they lie as a share of the length.
+/// Number of starts tried on each side, and the distance between them as a share of the length.
 const STARTS: (i32, f64) = (8, 1.0 / 256.0);
 
-/// The share of the other stroke's length at which the stroke's first point lies, near a rough one; both are closed.
+/// The position of `stroke`'s first point on `other`, as a share of `other`'s length, near a rough one. Both are
+/// closed.
 pub(super) fn refined(stroke: &Stroke, other: &Stroke, rough: f64, reversed: bool) -> f64 {
     if stroke.points.is_empty() || other.points.is_empty() {
         return rough;

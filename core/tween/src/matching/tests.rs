@@ -12,7 +12,7 @@ fn arc(centre: (f64, f64), radius: f64, from: f64, to: f64, count: usize) -> Vec
     (0..count).map(|k| Point::from(centre) + Point::from_angle(at(k)) * radius).collect()
 }
 
-/// A figure: body, head, two equal arms and legs of two bones each.
+/// A figure of a body, a head, two equal arms and two equal legs of two bones each.
 fn figure(shift: Point, turn: f64, arms: f64, legs: f64) -> Vec<Stroke> {
     let mut strokes = vec![
         Stroke::new(
@@ -40,7 +40,8 @@ fn figure(shift: Point, turn: f64, arms: f64, legs: f64) -> Vec<Stroke> {
     strokes
 }
 
-/// Another order, direction, start and number of points; the index that each stroke had.
+/// The strokes of a drawing in another order, with other directions, starts and numbers of points. `order[k]` is the
+/// old index of stroke `k`.
 fn redrawn(strokes: &[Stroke], order: &[usize]) -> Vec<Stroke> {
     let again = |(k, &i): (usize, &usize)| {
         let mut points = polyline::resample(&strokes[i].points, strokes[i].closed, 17 + 5 * (k % 4));
@@ -87,7 +88,7 @@ fn the_start_of_a_closed_curve_is_found() {
 
 #[test]
 fn hand_made_pairs_are_kept_and_lead_the_others() {
-    // Two equal dots side by side, each with an equal line: without a hint they stay, with one they cross.
+    // Two equal dots are side by side, each with an equal line. Without a hint they stay; with a hint they cross.
     let line = |x: f64| Stroke::new(vec![Point::new(x, 0.0), Point::new(x, 30.0)], false);
     let dot = |x: f64| Stroke::new(arc((x, 36.0), 5.0, 0.0, 6.0, 12), true);
     let frame = Stroke::new(arc((20.0, 20.0), 150.0, 0.0, 6.0, 60), true);
@@ -168,7 +169,7 @@ fn bad_strokes_are_named_or_left_alone() {
 }
 
 #[test]
-fn ten_thousand_strokes() {
+fn ten_thousand_strokes_are_matched() {
     let strokes: Vec<Stroke> = (0..10_000)
         .map(|k| {
             let (x, y) = ((k % 100) as f64 * 20.0, (k / 100) as f64 * 20.0);
@@ -189,7 +190,7 @@ fn ten_thousand_strokes() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
     #[test]
-    fn every_stroke_stands_in_one_place(
+    fn every_stroke_has_one_place_in_the_matching(
         sizes in prop::collection::vec((0usize..6, 0usize..6, any::<bool>()), 0..9),
         values in prop::collection::vec((-20.0f64..20.0, -20.0f64..20.0), 110),
     ) {

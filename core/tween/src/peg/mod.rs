@@ -1,21 +1,22 @@
-//! Pegs: a tree of pivots that shift, turn and scale over time, on which strokes hang (Yang et al. 1986, section 4).
+//! Pegs: a tree of pivots that shift, turn and scale over time. Strokes hang on them (Yang et al. 1986, section 4).
 //!
-//! A peg's pivot is given on the screen with everything at rest. At time t it takes a point p of what hangs on it to
+//! The pivot of a peg is given in screen coordinates (pixels) with everything at rest. At time t the peg moves a point
+//! p of its strokes by
 //!
 //! ```text
 //! p ↦ α(t) A(t) (p − O) + O + S(t)
 //! ```
 //!
-//! with the pivot O, shift S, turn A and scale α, and the pegs above it then move the result on. Under a parent that
-//! does not turn, the point relative to its centre is α₀ (α A P + S), equation (11). The paper leaves the turn of a
-//! parent out; here a peg turns all that hangs on it.
+//! with the pivot O, the shift S, the turn A and the scale α. The pegs above it then move the result. Under a parent
+//! that does not turn, the point relative to the parent's centre is α₀ (α A P + S), equation (11). The paper omits the
+//! turn of a parent; here a peg turns everything that hangs on it.
 //!
-//! Between keys a [`Timing`] says how far a movement has come.
+//! Between keys a [`Timing`] gives the progress of the movement.
 //!
-//! - *Theorem 1* says that with scaling and shifts of constant speed a point moves along a straight line at constant
-//!   speed. As printed it holds where nothing hangs on a peg that scales; scalings that are multiplied bend the speed.
-//!   (Equation (12) is printed with x₂ − x₁ in place of x₂.)
-//! - *Theorem 2*: moving the guiding points of a B-spline moves its curve, as for every affine map.
+//! - *Theorem 1* says that scaling and shifts of constant speed move a point along a straight line at constant speed.
+//!   As printed it is only true where nothing hangs on a peg that scales: the product of two scalings does not have
+//!   constant speed. (Equation (12) is printed with x₂ − x₁ in place of x₂.)
+//! - *Theorem 2*: moving the guiding points of a B-spline moves its curve. This is true for every affine map.
 //!
 //! [`propose`] finds pegs from strokes that moved.
 
@@ -29,21 +30,21 @@ use rototoon_base::geometry::Point;
 use rototoon_base::geometry::polyline::FARTHEST;
 use rototoon_base::geometry::similarity::Similarity;
 
-/// Scales nearer to zero than this are refused: nothing that hangs on such a peg could be seen.
+/// Smallest scale that is accepted. Strokes on a peg with a smaller scale would be invisible.
 pub const LEAST_SCALE: f64 = 1e-6;
 
-/// Where a peg is on a key frame, against its rest.
+/// Position of a peg on a key frame, relative to its rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PegKey {
     /// The frame.
     pub frame: i32,
-    /// S: shift in pixels of the rest.
+    /// S: shift in pixels, in the coordinates of the rest.
     pub shift: Point,
-    /// Turn in radians, from x towards y; whole turns count.
+    /// Turn in radians, from x towards y. Full turns count.
     pub turn: f64,
-    /// α: scale; negative values are refused.
+    /// α: scale, from [`LEAST_SCALE`] to 1e9.
     pub scale: f64,
-    /// How the movement to the next key runs.
+    /// Timing of the movement to the next key.
     pub timing: Timing,
 }
 
@@ -59,23 +60,23 @@ impl PegKey {
 pub struct Peg {
     /// Unique name.
     pub name: String,
-    /// Index of the peg that it hangs on.
+    /// Index of the peg on which it hangs.
     pub parent: Option<usize>,
-    /// O: the pivot on the screen, with everything at rest.
+    /// O: the pivot in screen coordinates (pixels), with everything at rest.
     pub pivot: Point,
-    /// Its keys, frames rising.
+    /// Keys, with rising frames.
     pub keys: Vec<PegKey>,
 }
 
-/// Why pegs are no tree.
+/// The reason why pegs do not form a tree.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PegError {
-    /// A parent is not there.
+    /// A parent does not exist.
     #[error("peg {name:?}: found parent {parent}, expected less than {count}")]
     Parent {
         /// Name of the peg.
         name: String,
-        /// What was found.
+        /// Index of the parent found.
         parent: usize,
         /// Number of pegs.
         count: usize,
@@ -86,17 +87,17 @@ pub enum PegError {
         /// Name of a peg of the loop.
         name: String,
     },
-    /// A pivot is no place.
+    /// A coordinate of a pivot is not a number or too large.
     #[error("peg {name:?}: the pivot is ({x}, {y}), expected numbers between -1e9 and 1e9")]
     Pivot {
         /// Name of the peg.
         name: String,
-        /// What was found.
+        /// The x found.
         x: f64,
-        /// What was found.
+        /// The y found.
         y: f64,
     },
-    /// A key's number is of no use.
+    /// A number of a key is not usable.
     #[error("peg {name:?}, frame {frame}: {field} is {found}, expected {expected}")]
     Key {
         /// Name of the peg.
@@ -105,48 +106,49 @@ pub enum PegError {
         frame: i32,
         /// "shift", "turn" or "scale".
         field: &'static str,
-        /// What was found.
+        /// The value found.
         found: f64,
-        /// What was expected.
+        /// The values accepted.
         expected: &'static str,
     },
-    /// Keys do not follow each other.
+    /// The frames of keys do not rise.
     #[error("peg {name:?}: found a key on frame {frame} after one on frame {before}, expected a later frame")]
     Order {
         /// Name of the peg.
         name: String,
         /// Frame of the key.
         frame: i32,
-        /// Frame of the one before it.
+        /// Frame of the key before it.
         before: i32,
     },
-    /// A movement is described wrongly.
+    /// The timing of a key is not valid.
     #[error("peg {name:?}, frame {frame}: {source}")]
     Timing {
         /// Name of the peg.
         name: String,
         /// Frame of the key.
         frame: i32,
-        /// What is wrong.
+        /// The reason.
         source: TimingError,
     },
 }
 
-/// Pegs that are a tree (or several).
+/// Pegs that form one or several trees.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PegTree {
     pegs: Vec<Peg>,
-    /// Indices, every parent before its children.
+    /// Indices of the pegs, every parent before its children.
     order: Vec<usize>,
 }
 
 impl PegTree {
-    /// The tree of these pegs.
+    /// Makes a tree of these pegs.
     ///
     /// # Errors
     ///
-    /// What makes them none: parents that are not there or form a loop; pivots, shifts and turns that are no finite
-    /// numbers within ±1e9; scales below [`LEAST_SCALE`]; keys that do not rise; see [`PegError`].
+    /// The first of the [`problems`]: a parent that does not exist; parents that form a loop; a pivot, shift or turn
+    /// that is not a number within ±1e9; a scale outside [`LEAST_SCALE`] to 1e9; frames that do not rise; a timing that
+    /// is not valid. See [`PegError`].
     pub fn new(pegs: Vec<Peg>) -> Result<Self, PegError> {
         if let Some((_, error)) = problems(&pegs).into_iter().next() {
             return Err(error);
@@ -155,12 +157,12 @@ impl PegTree {
         Ok(Self { pegs, order })
     }
 
-    /// The pegs as they were given.
+    /// The pegs in the order in which they were given.
     pub fn pegs(&self) -> &[Peg] {
         &self.pegs
     }
 
-    /// Where each peg takes the points that hang on it, at a time in frames.
+    /// The map of each peg from rest to screen coordinates, its parents included. `time` is in frames.
     pub fn at(&self, time: f64) -> Vec<Similarity> {
         let mut maps = vec![Similarity::IDENTITY; self.pegs.len()];
         for &i in &self.order {
@@ -172,7 +174,7 @@ impl PegTree {
 }
 
 impl Peg {
-    /// The peg's own movement, without its parents'. Before the first key and after the last one it rests there.
+    /// The peg's own map, without its parents'. Before the first key and after the last one the peg rests at that key.
     pub fn local(&self, time: f64) -> Similarity {
         let next = self.keys.partition_point(|key| f64::from(key.frame) <= time);
         let (shift, turn, scale) = match (next.checked_sub(1).map(|k| &self.keys[k]), self.keys.get(next)) {
@@ -184,13 +186,14 @@ impl Peg {
             }
             (Some(key), None) | (None, Some(key)) => (key.shift, key.turn, key.scale),
         };
-        // A movement that overshoots must not turn what it shrinks inside out.
+        // A timing that overshoots must not make the scale negative.
         let factor = Point::from_angle(turn) * scale.max(LEAST_SCALE);
         Similarity { factor, source: self.pivot, target: self.pivot + shift }
     }
 }
 
-/// All that makes these pegs none or no tree, with the index of the peg; of a loop its first peg.
+/// All reasons why these pegs do not form a tree, each with the index of its peg. A loop is reported once, for the peg
+/// with the smallest index.
 pub fn problems(pegs: &[Peg]) -> Vec<(usize, PegError)> {
     let mut found = Vec::new();
     for (k, peg) in pegs.iter().enumerate() {
@@ -201,11 +204,11 @@ pub fn problems(pegs: &[Peg]) -> Vec<(usize, PegError)> {
     found
 }
 
-/// Indices, every parent before its children; and the first peg of each loop.
+/// Indices of the pegs, every parent before its children; and for each loop the peg with the smallest index.
 fn ordered(pegs: &[Peg]) -> (Vec<usize>, Vec<usize>) {
     let mut order = Vec::with_capacity(pegs.len());
     let mut loops = Vec::new();
-    // By which start a peg was met.
+    // The start from which each peg was reached.
     let mut met = vec![usize::MAX; pegs.len()];
     for start in 0..pegs.len() {
         let mut chain = Vec::new();
@@ -224,7 +227,7 @@ fn ordered(pegs: &[Peg]) -> (Vec<usize>, Vec<usize>) {
     (order, loops)
 }
 
-/// Calls `wrong` for all that is wrong with a peg by itself, one of `count`.
+/// Calls `wrong` for each problem of one peg by itself. `count` is the number of pegs.
 fn check(peg: &Peg, count: usize, wrong: &mut impl FnMut(PegError)) {
     let name = || peg.name.clone();
     if let Some(parent) = peg.parent.filter(|&parent| parent >= count) {

@@ -1,60 +1,64 @@
 //! Pegs found from strokes that moved: rigid groups, and the hinges between them.
 //!
-//! For each stroke and each pair of neighbouring keys the sums from which a least-squares similarity follows are kept
-//! ([`rototoon_base::geometry::similarity`]); those of two groups added are the sums of both together, so that the residual of
-//! a joint movement costs nothing to know. From single strokes on, the two groups are joined whose joint movement
-//! explains both best, until a join would leave more than a small share of their size unexplained. The largest group is
-//! the root; the others hang on the one that they stay nearest to. Where a group turns against its parent, its hinge is
-//! the fixed point of that relative turn, if it lies near the strokes of both; otherwise the place where they meet.
+//! Each stroke and each pair of neighbouring keys keeps the sums from which a least-squares similarity follows
+//! ([`crate::geometry::similarity`]). The sums of two groups add up to the sums of both together, so the residual of a
+//! joint movement is cheap to compute. The search begins with single strokes. It repeatedly joins the two groups whose
+//! joint movement explains both best. It ends when every join would leave more than a small share of their size
+//! unexplained.
 //!
-//! Limits: strokes that happen to move alike are one group, however far apart they lie, where there are few; among more
-//! than [`ALL_PAIRS`] only those near to each other are joined.
+//! The largest group is the root. Every other group hangs on the larger group to which it stays nearest. If a group
+//! turns relative to its parent, its hinge is the fixed point of this relative turn, provided that the point is near
+//! the strokes of both. Otherwise the hinge is the place where the two groups meet, or the middle of the group if they
+//! are far apart.
+//!
+//! Limits: among few strokes, those that happen to move alike become one group, however far apart they are. With more
+//! than [`ALL_PAIRS`] strokes only near ones are joined.
 
 use super::{Peg, PegKey, PegTree, Timing};
 use rototoon_base::geometry::similarity::Similarity;
 use rototoon_base::geometry::{Point, polyline};
 use std::collections::{BTreeSet, BinaryHeap};
 
-/// Samples of a stroke.
+/// Number of samples of a stroke.
 const SAMPLES: usize = 16;
-/// Strokes up to which any two may be joined.
+/// Up to this number of strokes, any two may be joined.
 pub const ALL_PAIRS: usize = 200;
-/// Neighbours that a stroke may be joined with where there are more.
+/// Number of neighbours with which a stroke may be joined in larger drawings.
 const NEAREST: usize = 8;
-/// Groups that a group may hang on: the nearest.
+/// Number of nearest larger groups that are tried as a parent.
 const PARENTS: usize = 16;
-/// Samples of a group by which its distance from others is told, at most.
+/// Largest number of samples of a group from which its distance from others is computed.
 const MOST_PLACES: usize = 640;
-/// Root mean square in pixels that a join may leave unexplained.
+/// Root mean square, in pixels, that a join may always leave unexplained.
 const LEAST_TOLERANCE: f64 = 1.0;
-/// The same as a share of the smaller group's radius.
+/// Root mean square that a join may leave unexplained, as a share of the smaller group's radius.
 const TOLERANCE: f64 = 0.06;
-/// Least turn in radians that shows a hinge.
+/// Smallest turn, in radians, that shows a hinge.
 const HINGE_TURN: f64 = 0.1;
-/// Farthest distance of a hinge from the strokes of the two groups, in radii of the child.
+/// Largest distance of a hinge from the strokes of the two groups, in radii of the child.
 const HINGE_REACH: f64 = 0.7;
 
-/// A stroke on several keys: by key its points, the same number on each; `None` where it is not there.
+/// A stroke on several keys. It has the same number of points on each key; `None` where it does not exist.
 #[derive(Clone, Copy, Debug)]
 pub struct Moving<'a> {
-    /// By key.
+    /// Its points on each key, in pixels.
     pub places: &'a [Option<Vec<Point>>],
     /// Whether the last point joins the first.
     pub closed: bool,
 }
 
-/// Strokes that move as one.
+/// Strokes that move together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
     /// Indices of the strokes, rising.
     pub members: Vec<usize>,
-    /// Index of the group that it hangs on.
+    /// Index of the group on which it hangs.
     pub parent: Option<usize>,
-    /// Its hinge on the parent, or its middle, in pixels of the first key.
+    /// Its hinge on the parent, or its middle, in pixels on the first key.
     pub pivot: Point,
 }
 
-/// What a least-squares similarity follows from.
+/// The sums from which a least-squares similarity from places p to places q follows.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     count: f64,
@@ -90,14 +94,14 @@ impl Sums {
         }
     }
 
-    /// Centred sums: conj(p) q, |p|² and |q|².
+    /// Centred sums of conj(p) q, |p|² and |q|².
     fn centred(&self) -> (Point, f64, f64) {
         let n = self.count.max(1.0);
         let pq = self.pq - Point::new(self.p.dot(self.q), self.p.perp_dot(self.q)) / n;
         (pq, (self.pp - self.p.length_squared() / n).max(0.0), (self.qq - self.q.length_squared() / n).max(0.0))
     }
 
-    /// Sum of the squared distances that the best similarity leaves.
+    /// Sum of the squared distances that remain after the best similarity.
     fn unexplained(&self) -> f64 {
         let (pq, pp, qq) = self.centred();
         if pp > 1e-12 { (qq - pq.length_squared() / pp).max(0.0) } else { qq }
@@ -114,11 +118,11 @@ impl Sums {
     }
 }
 
-/// A group while groups are joined.
+/// A group during the joining.
 #[derive(Clone, Debug)]
 struct Growing {
     members: Vec<usize>,
-    /// By span.
+    /// One entry for each pair of neighbouring keys.
     sums: Vec<Sums>,
     neighbours: BTreeSet<usize>,
     length: f64,
@@ -129,14 +133,14 @@ impl Growing {
         self.sums.iter().find(|sums| sums.count > 0.0).map_or(0.0, Sums::radius)
     }
 
-    /// Distance of a place from the samples on the first key that has them.
+    /// Distance of a place from the group's samples, each stroke on the first key that has it.
     fn distance(&self, p: Point, samples: &[Vec<Option<Vec<Point>>>]) -> f64 {
         let places = self.members.iter().filter_map(|&i| samples[i].iter().flatten().next()).flatten();
         places.map(|q| q.distance(p)).fold(f64::INFINITY, f64::min)
     }
 }
 
-/// A join that may be made: how much it leaves unexplained, relative to what may be.
+/// A possible join. `excess` is the share of the tolerance that it uses.
 #[derive(PartialEq)]
 struct Join {
     excess: f64,
@@ -146,7 +150,7 @@ struct Join {
 impl Eq for Join {}
 impl Ord for Join {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        // The heap gives the greatest first.
+        // The heap returns the greatest element first, so the order is reversed.
         other.excess.total_cmp(&self.excess).then(other.pair.cmp(&self.pair))
     }
 }
@@ -156,7 +160,7 @@ impl PartialOrd for Join {
     }
 }
 
-/// The groups of strokes that move rigidly together, as trees; parents may stand after their children.
+/// The groups of strokes that move rigidly together, as trees. Each parent comes before its children.
 pub fn groups(strokes: &[Moving]) -> Vec<Group> {
     let samples: Vec<Vec<Option<Vec<Point>>>> = strokes.iter().map(sampled).collect();
     let keys = strokes.iter().map(|s| s.places.len()).max().unwrap_or(0);
@@ -170,7 +174,7 @@ pub fn groups(strokes: &[Moving]) -> Vec<Group> {
 }
 
 fn sampled(stroke: &Moving) -> Vec<Option<Vec<Point>>> {
-    // Samples by index, not by length: the same points on every key.
+    // Samples are taken by index, not by length, so they are the same points on every key.
     let pick = |points: &Vec<Point>| {
         let n = points.len();
         (0..SAMPLES).filter_map(|k| points.get(if n < 2 { 0 } else { k * (n - 1) / (SAMPLES - 1) }).copied()).collect()
@@ -208,7 +212,8 @@ fn link_neighbours(all: &mut [Growing], samples: &[Vec<Option<Vec<Point>>>]) {
     }
 }
 
-/// How much the worst span of a join leaves unexplained, relative to what it may; `None` without a common span.
+/// The unexplained root mean square of a join relative to the tolerance, on the worst pair of keys. `None` where the
+/// groups share no pair of keys.
 fn excess(a: &Growing, b: &Growing) -> Option<f64> {
     let spans = a.sums.iter().zip(&b.sums).filter(|(x, y)| x.count > 0.0 && y.count > 0.0);
     let of = |(x, y): (&Sums, &Sums)| {
@@ -255,7 +260,7 @@ fn join_all(all: &mut [Growing]) {
     }
 }
 
-/// Where two groups come nearest on a key: the distance and the place.
+/// The place where two groups are nearest on a key, with their distance.
 fn meeting(a: &[usize], b: &[usize], samples: &[Vec<Option<Vec<Point>>>], key: usize) -> Option<(f64, Point)> {
     let places = |members: &[usize]| -> Vec<Point> {
         let step = (members.len() * SAMPLES).div_ceil(MOST_PLACES);
@@ -274,7 +279,7 @@ fn meeting(a: &[usize], b: &[usize], samples: &[Vec<Option<Vec<Point>>>], key: u
     best.map(|(d, place)| (d.sqrt(), place))
 }
 
-/// Hangs every group on the one, among larger ones before it, that it stays nearest to.
+/// Makes each group hang on one of the larger groups before it: the one to which it stays nearest.
 fn hung(all: &[Growing], samples: &[Vec<Option<Vec<Point>>>]) -> Vec<Group> {
     let keys = samples.iter().map(Vec::len).max().unwrap_or(0);
     let middles: Vec<Point> = all
@@ -312,14 +317,14 @@ fn hung(all: &[Growing], samples: &[Vec<Option<Vec<Point>>>]) -> Vec<Group> {
     groups
 }
 
-/// The fixed point of a group's turn against its parent.
+/// The fixed point of a group's turn relative to its parent.
 fn hinge(child: &Growing, parent: &Growing) -> Option<Point> {
     let (own, on) = child.sums.iter().zip(&parent.sums).find(|(a, b)| a.count > 0.0 && b.count > 0.0)?;
     let relative = on.similarity().inverse().after(&own.similarity());
     if relative.angle().abs() < HINGE_TURN { None } else { relative.fixed_point() }
 }
 
-/// Groups as pegs with keys on the frames of the drawings, the first at rest.
+/// Turns groups into pegs with keys on the frames of the drawings. On the first key all pegs are at rest.
 pub fn pegs(strokes: &[Moving], frames: &[i32], groups: &[Group], timing: &Timing) -> Vec<Peg> {
     let samples: Vec<Vec<Option<Vec<Point>>>> = strokes.iter().map(sampled).collect();
     let mut worlds: Vec<Vec<(Similarity, f64)>> = Vec::new();
@@ -355,7 +360,7 @@ pub fn pegs(strokes: &[Moving], frames: &[i32], groups: &[Group], timing: &Timin
     groups.iter().enumerate().map(peg).collect()
 }
 
-/// A similarity whose scale is neither near zero nor huge.
+/// The similarity with its scale limited to 1/20 to 20.
 fn bounded(mut map: Similarity) -> Similarity {
     const MOST: f64 = 20.0;
     let scale = map.scale();
@@ -363,7 +368,7 @@ fn bounded(mut map: Similarity) -> Similarity {
     map
 }
 
-/// The pegs of strokes on several drawings; see [`groups`] and [`pegs`].
+/// The pegs of strokes on several drawings. See [`groups`] and [`pegs`].
 pub fn proposed(strokes: &[Moving], frames: &[i32], timing: &Timing) -> PegTree {
     PegTree::new(pegs(strokes, frames, &groups(strokes), timing)).unwrap_or_default()
 }
@@ -379,7 +384,7 @@ mod tests {
             .collect()
     }
 
-    /// A body of three strokes, and an arm of two bones, in a pose.
+    /// A body of three strokes and an arm of two bones in a pose.
     fn pose(shift: Point, arm: f64, hand: f64) -> Vec<Vec<Point>> {
         let (shoulder, reach) = (Point::new(40.0, 0.0) + shift, 50.0);
         let elbow = shoulder + Point::from_angle(arm) * reach;
@@ -414,7 +419,7 @@ mod tests {
                 }
             }
         }
-        // Half way the elbow is where the half turned arm ends.
+        // Half way, the elbow is at the end of the half-turned arm.
         let half = tree.at(14.0)[1].apply(shoulder + Point::from_angle(0.3) * 50.0);
         let expected = shoulder + Point::new(6.0, -2.5) + Point::from_angle(0.7) * 50.0;
         assert!(half.distance(expected) < 0.5, "{half} {expected}");

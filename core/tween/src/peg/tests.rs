@@ -27,7 +27,7 @@ fn a_child_moves_as_equation_11_says() {
 }
 
 proptest! {
-    /// Theorem 1, where only the last peg of the chain scales.
+    /// Theorem 1, for chains in which only the last peg scales.
     #[test]
     fn scaling_and_even_shifts_move_points_evenly_along_lines(
         shifts in prop::collection::vec((-50.0f64..50.0, -50.0f64..50.0), 1..5),
@@ -67,7 +67,7 @@ proptest! {
     }
 
     #[test]
-    fn children_may_stand_before_their_parents(turn in -3.0f64..3.0, t in 0.0f64..10.0) {
+    fn children_may_come_before_their_parents(turn in -3.0f64..3.0, t in 0.0f64..10.0) {
         let (parent, child) = (moving("p", None, p(1.0, 2.0), p(9.0, 9.0), turn, 1.2), |on| moving("c", Some(on), p(5.0, 5.0), p(0.0, 1.0), 1.0, 0.9));
         let a = PegTree::new(vec![parent.clone(), child(0)]).unwrap().at(t);
         let b = PegTree::new(vec![child(1), parent]).unwrap().at(t);
@@ -85,7 +85,7 @@ fn before_and_after_its_keys_a_peg_rests() {
 }
 
 #[test]
-fn what_is_no_tree_is_named() {
+fn pegs_that_form_no_tree_are_refused() {
     let peg = |name: &str, parent| moving(name, parent, Point::ZERO, Point::ZERO, 0.0, 1.0);
     let said = |pegs: Vec<Peg>| PegTree::new(pegs).unwrap_err().to_string();
     let wrong = said(vec![peg("a", Some(1)), peg("b", Some(2)), peg("c", Some(1))]);

@@ -1,6 +1,7 @@
-//! How far a movement has come: functions from 0..1 to shares of the way.
+//! Timing: functions from time, 0 to 1, to the share of a movement that is done.
 
-/// A movement function. All start at 0 and end at 1, except [`Timing::Constant`], which stays until the end.
+/// A timing function. It starts at 0 and ends at 1. [`Timing::Constant`] stays at 0 until the end; [`Timing::Custom`]
+/// may give its own ends.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Timing {
     /// Stays, and jumps at the end: a hold.
@@ -8,46 +9,47 @@ pub enum Timing {
     /// Constant speed.
     #[default]
     Linear,
-    /// From rest, faster and faster (quadratic).
+    /// Starts from rest and becomes faster (quadratic).
     EaseIn,
-    /// Slower and slower, into rest (quadratic).
+    /// Becomes slower and ends at rest (quadratic).
     EaseOut,
-    /// From rest into rest (cubic).
+    /// Starts and ends at rest (cubic).
     EaseInOut,
-    /// From rest into rest, half a cosine wave (Parke 1972, for faces).
+    /// Starts and ends at rest, half a cosine wave (Parke 1972, for faces).
     Cosine,
-    /// Through given places (time, share), both from 0 to 1 in time; a share may leave 0..1. Between them a smooth
-    /// curve that overshoots none (Fritsch & Carlson 1980). The ends (0, 0) and (1, 1) need not be given.
+    /// A smooth curve through given places (time, share). Times are from 0 to 1; shares may leave that range. The curve
+    /// does not overshoot the places (Fritsch & Carlson 1980). The ends (0, 0) and (1, 1) are added where they are
+    /// missing.
     Custom(Vec<(f64, f64)>),
-    /// Falls like a ball, and bounces so many times, each a quarter as high as the one before.
+    /// Falls like a ball and bounces this many times, at most 30. Each bounce is a quarter as high as the one before.
     Bounce(u32),
 }
 
-/// Why a movement function is none.
+/// The reason why a timing function is not valid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum TimingError {
-    /// A place of a custom curve is not within time, or no number.
+    /// A place of a custom curve has a time outside 0 to 1, or is not finite.
     #[error("place {index} of the curve is ({time}, {share}), expected a time from 0 to 1 and a finite share")]
     Place {
         /// Index of the place.
         index: usize,
-        /// What was found.
+        /// The time found.
         time: f64,
-        /// What was found.
+        /// The share found.
         share: f64,
     },
-    /// Times of a custom curve do not rise.
-    #[error("place {index} of the curve is at time {time}, not after the one before it")]
+    /// The times of a custom curve do not rise.
+    #[error("place {index} of the curve is at time {time}, expected a later time than that before it")]
     Order {
         /// Index of the place.
         index: usize,
-        /// What was found.
+        /// The time found.
         time: f64,
     },
 }
 
 impl Timing {
-    /// The share of the way at time `u`, which is taken into 0..1.
+    /// The share of the way at time `u`. Times outside 0 to 1 count as 0 or 1.
     pub fn at(&self, u: f64) -> f64 {
         let u = if u > 0.0 { u.min(1.0) } else { 0.0 };
         match self {
@@ -62,7 +64,11 @@ impl Timing {
         }
     }
 
-    /// Whether the function is one.
+    /// Checks the places of a custom curve.
+    ///
+    /// # Errors
+    ///
+    /// The first place that is outside the time, is not finite, or does not come after the one before it.
     pub fn check(&self) -> Result<(), TimingError> {
         let Self::Custom(places) = self else { return Ok(()) };
         for (index, &(time, share)) in places.iter().enumerate() {
@@ -76,7 +82,7 @@ impl Timing {
         Ok(())
     }
 
-    /// The function of a name, where it has no further numbers.
+    /// The function with a name; `None` for an unknown name. `"bounce"` has three bounces.
     pub fn from_id(id: &str) -> Option<Self> {
         Some(match id {
             "constant" => Self::Constant,
@@ -90,7 +96,7 @@ impl Timing {
         })
     }
 
-    /// Its name; `None` of a custom curve.
+    /// The name of the function; `None` for a custom curve.
     pub fn id(&self) -> Option<&'static str> {
         Some(match self {
             Self::Constant => "constant",
@@ -142,8 +148,8 @@ fn through(places: &[(f64, f64)], u: f64) -> f64 {
     hermite(all[k - 1].1, all[k].1, (h * slope(k - 1), h * slope(k)), (u - all[k - 1].0) / h)
 }
 
-/// A fall of duration 1, then bounces of durations 1, ½, ¼, …, all in 0..1: a bounce of half the time is a quarter as
-/// high.
+/// A fall of duration 1, then bounces of durations 1, ½, ¼, …, all scaled to 0..1. A bounce of half the duration is a
+/// quarter as high.
 fn bounced(count: u32, u: f64) -> f64 {
     let count = count.min(30);
     let total: f64 = 1.0 + (0..count).map(|k| 0.5f64.powi(k as i32)).sum::<f64>();
@@ -177,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn all_start_at_nothing_and_end_at_all() {
+    fn all_start_at_zero_and_end_at_one() {
         for timing in all() {
             for (u, expected) in [(-1.0, 0.0), (0.0, 0.0), (1.0, 1.0), (7.0, 1.0), (f64::NAN, 0.0)] {
                 assert_eq!(timing.at(u), expected, "{timing:?} {u}");
@@ -194,7 +200,7 @@ mod tests {
         assert_eq!(at(Timing::EaseInOut, 0.25), 0.15625);
         assert!((at(Timing::Cosine, 1.0 / 3.0) - 0.25).abs() < 1e-15);
         assert_eq!(at(Timing::Custom(vec![(0.3, 0.8), (0.6, 0.7)]), 0.3), 0.8);
-        // One bounce takes as long as the fall, and turns a quarter of the way up.
+        // One bounce takes as long as the fall. It turns a quarter of the way up.
         assert_eq!(at(Timing::Bounce(1), 0.5), 1.0);
         assert_eq!(at(Timing::Bounce(1), 0.75), 0.75);
     }
