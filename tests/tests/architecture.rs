@@ -1,9 +1,10 @@
-//! Holds the direction of dependencies in the core:
+//! Checks the direction of dependencies in the core:
 //!
 //! `numeric ← geometry ← curve ← fit` and
-//! `numeric ← geometry ← scene ← {image, track, snap, tween, style, reshape, render, export, import, project} ← pipeline`,
-//! where track, snap, tween and render may use image, tween curves and their fitting too, and track, snap, tween and
-//! style never import each other.
+//! `numeric ← geometry ← scene ← {image, track, snap, tween, style, reshape, render, export, import, project} ← pipeline`.
+//!
+//! Track, snap, tween and render may also use image. Tween may also use curve and fit, and reshape may use curve. Track,
+//! snap, tween and style never use each other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -46,9 +47,9 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The core's modules that the source of a file names, by `crate::` or by `super::` beyond its own module.
+/// The core's modules that the source of a file uses, by `crate::` or by `super::` out of its own top module.
 ///
-/// `module` is the file's own path of modules (`["track", "job"]`). Comments are left out.
+/// `module` is the module path of the file (`["track", "job"]`). Comments are ignored.
 fn used_modules(source: &str, module: &[String]) -> BTreeSet<String> {
     let code: String = source.lines().map(|line| line.split("//").next().unwrap_or("").to_owned() + "\n").collect();
     let mut used = BTreeSet::new();
@@ -63,7 +64,7 @@ fn used_modules(source: &str, module: &[String]) -> BTreeSet<String> {
             levels += 1;
             rest = next;
         }
-        // In the file of a module itself one level leads to its parent; in the inline tests it leads to the file.
+        // In the file of a module one level leads to its parent. In inline tests it leads to the file itself.
         if levels >= module.len() {
             used.extend(first_names(rest));
         }
@@ -71,7 +72,7 @@ fn used_modules(source: &str, module: &[String]) -> BTreeSet<String> {
     used
 }
 
-/// The names right after a path: one, or those of a braced group at its outermost level.
+/// The names right after a path: one name, or the outermost names of a braced group.
 fn first_names(rest: &str) -> Vec<String> {
     let name = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
     let Some(group) = rest.strip_prefix('{') else { return vec![name(rest)] };
@@ -122,7 +123,7 @@ fn dependencies_point_one_way() {
             continue;
         }
         let Some(may_use) = allowed.get(module[0].as_str()) else {
-            wrong.push(format!("{}: module {} has no place in the picture", file.display(), module[0]));
+            wrong.push(format!("{}: module {} is not in the list of modules", file.display(), module[0]));
             continue;
         };
         for used in used_modules(&fs::read_to_string(file).unwrap(), &module) {
@@ -133,7 +134,7 @@ fn dependencies_point_one_way() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(checked > files.len(), "found only {checked} uses in {} files", files.len());
+    assert!(checked > files.len(), "found {checked} uses in {} files, expected more", files.len());
 }
 
 #[test]

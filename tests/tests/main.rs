@@ -1,9 +1,9 @@
-//! The cross-crate tests, one module a topic.
+//! The cross-crate tests, with one module for each topic.
 //!
 //! - `documents`: reading and writing project documents, good and bad
-//! - `architecture`: which module may use which
-//! - `features`: nothing that packages share is compiled twice
-//! - `style`: from the sample cartoon's contours to another character's drawing in another manner
+//! - `architecture`: the dependencies between modules of the core
+//! - `features`: shared dependencies are not compiled twice
+//! - `style`: the sample cartoon's motion in another style, performed by another drawn character
 //! - `bench_tracking`: the benchmark of tracking on a small scene
 
 mod architecture;

@@ -1,7 +1,7 @@
 //! Writes the sample cartoon and the jointed doll into a folder, for tests that are not written in Rust.
 //!
-//! `sample FOLDER` leaves `FOLDER/sample` (footage, `project.json` with the artist's keys and limbs, `truth.json`) and `FOLDER/doll`
-//! (`doll.json`, one drawing with limbs and marks, and its footage).
+//! `sample FOLDER` writes `FOLDER/sample` (footage, `project.json` with the artist's keys and limbs, `truth.json`) and
+//! `FOLDER/doll` (`doll.json`, one drawing with limbs and marks, and its footage).
 
 use anyhow::Result;
 use clap::Parser;
