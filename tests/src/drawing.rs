@@ -125,7 +125,7 @@ fn write_mark(out: &mut String, mark: &Mark) -> std::fmt::Result {
                 Anchor::End => "end",
             };
             let turn = if *turned { format!(" transform=\"rotate(-90 {x:.2} {y:.2})\"") } else { String::new() };
-            // Capitals of common sans-serif fonts are about 0.72 of the font's size high.
+            // The height of capitals is about 0.72 of the font size in common sans-serif fonts.
             let size = size / 0.72;
             let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
             writeln!(

@@ -11,7 +11,7 @@ use tiny_skia::Pixmap;
 pub const FOLDER: &str = "tests/golden";
 /// Allowed difference of a channel, of 255. Mathematical functions of two systems may differ in their last bit.
 const STEP: u8 = 2;
-/// The share of pixels that may differ by more than [`STEP`].
+/// Allowed share of pixels that differ by more than [`STEP`].
 const SHARE: f64 = 1e-4;
 
 /// Fails if `picture` differs from the accepted picture `name`, or if there is none.

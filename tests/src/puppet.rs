@@ -156,7 +156,7 @@ impl Puppet {
         json!({"parts": parts.collect::<Vec<_>>()})
     }
 
-    /// All pictures in memory, as the tracker reads them.
+    /// All pictures in memory, for the tracker.
     pub fn pictures(&self) -> Result<Pictures> {
         let drawings = (0..self.frames.div_ceil(HOLD)).into_par_iter();
         let drawn = drawings.map(|drawing| Ok(Arc::new(raster(&self.picture((HOLD * drawing) as FrameNumber)?))));
@@ -174,7 +174,7 @@ fn tone(part: usize, light: f32) -> Color {
     Color::from_rgba(r, g, b, 1.0).unwrap_or(Color::BLACK)
 }
 
-/// An opaque picture as the core reads one from a file.
+/// Converts an opaque picture to the form in which the core reads pictures from files.
 fn raster(picture: &Pixmap) -> Raster<Colour> {
     let width = picture.width() as usize;
     Raster::from_fn(width, picture.height() as usize, |x, y| {

@@ -7,7 +7,7 @@ use tiny_skia::{Color, FillRule, Mask, Paint, Path, PathBuilder, Pixmap, Transfo
 /// A picture on which outlines are painted, with antialiasing.
 #[derive(Clone, Debug)]
 pub struct Canvas {
-    /// The pixels so far.
+    /// The pixels.
     pub pixels: Pixmap,
 }
 

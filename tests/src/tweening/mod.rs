@@ -133,7 +133,7 @@ fn commonest(colours: &[[f32; 3]]) -> Option<[f32; 3]> {
     colours.iter().min_by(|a, b| among(a).total_cmp(&among(b))).copied()
 }
 
-/// Places a little inside a polygon, along it.
+/// Points inside a polygon, near its vertices.
 fn inset(points: &[Point], depth: f64) -> impl Iterator<Item = Point> {
     let side = polygon::signed_area(points).signum() * depth;
     let n = points.len();

@@ -79,7 +79,7 @@ fn view(text: &str) -> Result<View, String> {
     })
 }
 
-/// Runs it.
+/// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let to = arguments::path(given, "output");
     check_writable(to)?;

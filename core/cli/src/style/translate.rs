@@ -88,7 +88,7 @@ pub fn command() -> Command {
         .args(arguments::of_stage(Stage::Run))
 }
 
-/// Runs it.
+/// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "clips"), arguments::path(given, "output"));
     let text = |id: &str| arguments::choice(given, id);
