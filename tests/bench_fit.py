@@ -1,25 +1,27 @@
 #!/usr/bin/env python3
-"""Curve fitting beside its peers: pieces, true largest error and time on six outlines (bench_fit_outlines.py).
+"""Compares curve fitting with other libraries: pieces, true largest error and time on six outlines (bench_fit_outlines.py).
 
     cargo xtask bench-fit
 
-builds what is needed and runs this. By hand, with NumPy, SciPy and cu2qu, and Node.js with fit-curve and paper:
+builds the program and the environments and runs this script. To run it by hand, with NumPy, SciPy and cu2qu, and Node.js
+with fit-curve and paper:
 
     python3 tests/bench_fit.py --own target/release/bench-fit [--node FOLDER] [--tolerance 1] [--svg FILE]
 
---node is the folder in whose node_modules fit-curve and paper are; without it they are left out, and cu2qu too, whose
-cubics come from fit-curve.
+--node is the folder whose node_modules contains fit-curve and paper. Without it these are left out, and so is cu2qu, whose
+input are the cubics of fit-curve.
 
-What is compared, each at the fewest pieces with which its true error keeps the tolerance:
-- Rototoon: called with the tolerance, nothing tuned.
-- SciPy's FITPACK (splprep, k = 2, periodic where closed): the largest smoothing found by bisection whose error keeps it; the
-  time is that of the whole search, since the smoothing is not known beforehand ("one call" is the last call alone).
-- paper.js Path.simplify, fit-curve (Schneider 1990): the largest tolerance parameter found by bisection; the time is that of
-  the one call with it. Their pieces are cubic.
-- cu2qu (quadratics from cubics): on fit-curve's cubics, half of the tolerance for each of the two; the same bisection.
+Each method is measured with the fewest pieces with which its true error keeps the tolerance:
+- Rototoon is called with the tolerance. Nothing is tuned.
+- SciPy's FITPACK (splprep, k = 2, periodic for closed outlines): bisection finds the largest smoothing whose error keeps the
+  tolerance. The time is that of all bisection steps, because the smoothing is not known in advance. "One call" is the time of
+  the chosen call.
+- paper.js Path.simplify and fit-curve (Schneider 1990): of 90 values of their tolerance parameter the one with the fewest
+  pieces is used. The time is that of the one call with it. Their pieces are cubic.
+- cu2qu (quadratics from cubics) works on fit-curve's cubics. Each of the two gets half of the tolerance parameter.
 
-The true error is the same measure for all: each curve is sampled every hundredth of a pixel; of the distances from all given
-points to the samples' polyline, and from all samples to the polyline of the points, the largest.
+The true error is measured in the same way for all. Each curve is sampled every hundredth of a pixel. The error is the
+largest distance from a given point to the polyline of the samples, or from a sample to the polyline of the points.
 """
 import os
 
@@ -56,7 +58,7 @@ def quadratics_of(guides, closed):
 
 
 def sampled(beziers):
-    """Samples of Bézier pieces of any degree, at most SPACING apart, as one polyline."""
+    """Samples of Bézier pieces of any degree as one polyline. Neighbouring samples are at most SPACING apart."""
     parts = []
     for control in np.asarray(beziers, float):
         hull = np.hypot(*np.diff(control, axis=0).T)
@@ -70,7 +72,7 @@ def sampled(beziers):
 
 
 def to_polyline(points, line, closed):
-    """Distances of points to a polyline: by the segments at the nearest vertices of a densely cut copy."""
+    """Distances of points to a polyline, by the segments at the nearest vertices of a densely sampled copy."""
     ends = np.vstack([line, line[:1]]) if closed else line
     steps = np.maximum(1, np.ceil(np.hypot(*np.diff(ends, axis=0).T) / 0.25).astype(int))
     owner = np.repeat(np.arange(len(steps)), steps)
@@ -102,7 +104,7 @@ def own(program, outline, tolerance):
 
 
 def spline_beziers(tck):
-    """Bézier pieces of a quadratic spline: end points and, from the end tangents' values, the middle control point."""
+    """Bézier pieces of a quadratic spline. Values at both ends and in the middle of a piece give its control points."""
     knots = np.unique(tck[0])
     knots = knots[(knots >= 0) & (knots <= 1)]
     middle = 0.5 * (knots[:-1] + knots[1:])
@@ -139,7 +141,7 @@ def fitpack(outline, tolerance):
 
 
 def true_error_quick(pieces, points, closed):
-    """The same measure at coarser samples, for searches."""
+    """The same error with coarser samples, for searches."""
     global SPACING
     SPACING, fine = 0.1, SPACING
     try:
@@ -158,7 +160,7 @@ def node(folder, method, outline, tolerances, repeats=5):
 
 
 def searched(outline, tolerance, run):
-    """The fewest pieces over a fine ladder of a method's own tolerance, then the best one timed."""
+    """Finds the fewest pieces over many values of a method's own tolerance, then measures the time of the best one."""
     ladder = tolerance * np.geomspace(0.05, 6.0, 90)
     best = None
     for parameter, pieces in zip(ladder, run(ladder, 1)):
@@ -204,7 +206,7 @@ def through_cu2qu(folder):
 
 
 def picture(path, shown):
-    """Each outline's points with our curve, its joints and guides, as SVG."""
+    """Draws each outline's points with Rototoon's curve and the joints of its pieces, as SVG."""
     parts, top = [], 0.0
     for outline, pieces in shown:
         points = outline["points"]
@@ -226,9 +228,9 @@ def picture(path, shown):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--own", required=True, help="the program bench-fit")
-    parser.add_argument("--node", help="folder whose node_modules holds fit-curve and paper")
-    parser.add_argument("--tolerance", type=float, default=1.0)
-    parser.add_argument("--svg", help="where to draw our curves")
+    parser.add_argument("--node", help="folder whose node_modules contains fit-curve and paper")
+    parser.add_argument("--tolerance", type=float, default=1.0, help="largest distance between line and curve, in pixels")
+    parser.add_argument("--svg", help="SVG file for a picture of Rototoon's curves")
     given = parser.parse_args()
     print(f"| outline | method | pieces | true error, px | ms |\n| --- | --- | ---: | ---: | ---: |")
     shown = []
@@ -239,7 +241,7 @@ def main():
         shown.append((outline, pieces))
         error = true_error(pieces, points, closed)
         if error > said + 1e-6:
-            sys.exit(f"{outline['name']}: the true error is {error}, above the {said} that was promised")
+            sys.exit(f"{outline['name']}: found the true error {error}, expected at most the reported {said}")
         rows.append(("Rototoon", pieces, f"{ms:.1f}"))
         pieces, whole, one = fitpack(outline, given.tolerance)
         rows.append(("SciPy FITPACK", pieces, f"{whole:.0f} (one call {one:.1f})"))

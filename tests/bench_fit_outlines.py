@@ -1,7 +1,7 @@
-"""Six outlines of different character, for the comparison of curve fitting. Seeded: always the same points.
+"""Six different outlines, for the comparison of curve fitting. The seed is fixed, so the points are always the same.
 
-Each is a dict with `name`, `closed` and `points` (pixels). "Rounded" ones are sampled every pixel
-and rounded to pixel centres, as a tracer of bitmaps leaves them; none has two equal points in a row.
+Each outline is a dict with `name`, `closed` and `points` (in pixels). All but the noisy stroke are sampled about every pixel
+and rounded to pixel centres, like the output of a bitmap tracer. So neighbouring points may be equal.
 """
 import numpy as np
 
@@ -17,7 +17,7 @@ def _by_length(points, step):
 
 
 def _rounded(points, count=None):
-    """Samples of a dense polyline, about one a pixel of its length or this many, rounded to pixel centres."""
+    """Samples of a dense polyline, rounded to pixel centres: `count` of them, or about one per pixel of its length."""
     length = np.hypot(*np.diff(points, axis=0).T).sum()
     return np.floor(_by_length(points, length / (count or round(length)))) + 0.5
 
@@ -29,7 +29,7 @@ def _harmonics(angle, terms):
 def cartoon():
     """A smooth closed outline with two corners, about 1200 px long."""
     t = np.linspace(0, 1, 20001)
-    # Two smooth sides between the corners at t = 0 and t = 1/2, each with bends of its own.
+    # Two smooth sides between two corners, each with bends of its own.
     corners = np.array([[150.0, 60.0], [420.0, 330.0]])
     sides = []
     for (a, b), waves in (((0, 1), ((1, 135.0), (2, 38.0), (3, -22.0), (5, 9.0))), ((1, 0), ((1, 150.0), (2, -46.0), (4, 13.0)))):
@@ -42,7 +42,7 @@ def cartoon():
 
 
 def star():
-    """A star with nine points and slightly bent sides: eighteen corners."""
+    """A star with nine points and slightly bent sides, which has eighteen corners."""
     angles = np.arange(18) * np.pi / 9 + 0.13
     radii = np.where(np.arange(18) % 2 == 0, 190.0, 95.0)
     tips = 220 + radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
@@ -71,7 +71,7 @@ def limb():
 
 
 def stroke(random):
-    """A stroke as a hand draws it on a tablet: uneven spacing, jitter of a quarter pixel."""
+    """A stroke like one drawn by hand on a tablet, with uneven spacing and jitter of a quarter pixel."""
     t = np.linspace(0, 1, 4000)
     x = 60 + 520 * t + 55 * np.sin(9.5 * t)
     y = 200 + 90 * np.sin(7.0 * t + 0.4) * (1 - 0.5 * t) + 24 * np.sin(23 * t)

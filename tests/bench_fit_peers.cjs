@@ -1,7 +1,7 @@
 // Fits the curves on standard input with fit-curve and paper.js, for tests/bench_fit.py.
 //
 // Input: {"method": "fit-curve" | "paper", "repeats": n, "points": [[x, y], …], "closed": bool, "tolerances": [e, …]}.
-// Output: for each tolerance {"cubics": [[[x, y] × 4], …], "ms": best of the repeats}. Run where both are installed.
+// Output: for each tolerance {"cubics": [[[x, y] × 4], …], "ms": the fastest of the repeats}. NODE_PATH must contain both.
 const { performance } = require("node:perf_hooks");
 
 function fitCurve(job, tolerance) {

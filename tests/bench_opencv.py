@@ -1,10 +1,11 @@
-"""Times of Rototoon's image stage beside OpenCV's, on the same picture with the same parameters.
+"""Compares the times of Rototoon's image operations with OpenCV's, on the same picture with the same parameters.
 
     pip install opencv-python-headless
-    python tests/bench_opencv.py              # runs the criterion benchmark, then OpenCV, prints one table
-    python tests/bench_opencv.py --measured   # takes the figures of the benchmark's last run
+    python tests/bench_opencv.py              # runs the criterion benchmark, then OpenCV, and prints one table
+    python tests/bench_opencv.py --measured   # uses the figures of the benchmark's last run
 
-Milliseconds for one megapixel, medians, each on one thread and on all. Canny includes the grey picture and the blur.
+The table gives medians in milliseconds per megapixel, each on one thread and on all. Canny includes the conversion to grey
+and the blur.
 """
 
 import argparse
@@ -23,15 +24,15 @@ ROOT = Path(__file__).resolve().parent.parent
 PICTURE = ROOT / "target/bench/image.png"
 CRITERION = ROOT / "target/criterion/image"
 
-# Least time and least number of calls a figure is taken from.
+# Least total time and least number of calls of a measurement.
 SECONDS = 1.0
 CALLS = 10
 
 
 def operations(picture):
-    """Name in the benchmark, title, and the call that does the same in OpenCV."""
+    """For each operation its name in the benchmark, its title, and the equivalent call of OpenCV."""
     light = picture.astype(np.float32) / 255
-    # The kernel that σ = 1 gives at a reach of 3 σ.
+    # The kernel for σ = 1 with a reach of 3 σ.
     blurred = lambda source: cv2.GaussianBlur(source, (7, 7), 1.0)
     canny = lambda: cv2.Canny(blurred(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)), 50, 100)
     no_edge = 255 - canny()
@@ -47,7 +48,7 @@ def operations(picture):
 
 
 def milliseconds(call):
-    """Median time of a call."""
+    """The median time of a call in milliseconds."""
     call()
     times = []
     while len(times) < CALLS or sum(times) < SECONDS:
@@ -58,19 +59,19 @@ def milliseconds(call):
 
 
 def benchmarked(name, threads):
-    """Median that criterion found, in milliseconds."""
+    """The median of the criterion benchmark in milliseconds."""
     file = CRITERION / f"{name}_{threads}" / "new/estimates.json"
     return json.loads(file.read_text())["median"]["point_estimate"] / 1e6
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--measured", action="store_true", help="take the figures of the benchmark's last run")
+    parser.add_argument("--measured", action="store_true", help="use the figures of the benchmark's last run")
     if not parser.parse_args().measured:
         subprocess.run(["cargo", "bench", "-p", "rototoon", "--bench", "image"], cwd=ROOT, check=True)
     picture = cv2.imread(str(PICTURE))
     if picture is None:
-        sys.exit(f"{PICTURE}: no picture; run the benchmark first (leave out --measured)")
+        sys.exit(f"{PICTURE}: found no picture; run without --measured first")
     megapixels = picture.shape[0] * picture.shape[1] / 1e6
     processors = os.cpu_count()
     print(f"\nms per megapixel, OpenCV {cv2.__version__}, {processors} processors\n")

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Time of SciPy's sparse solvers on the normal equations of the tracker's energy, beside our own.
+"""Compares SciPy's sparse solver with Rototoon's on the normal equations of the tracker's energy.
 
     ROTOTOON_DUMP=$PWD/target cargo bench -p rototoon --bench solver
     python3 tests/bench_scipy.py target/12x20.mtx target/25x100.mtx
 
-Reads the MatrixMarket files that the bench wrote, solves each with scipy.sparse.linalg.spsolve (SuperLU, with the
-ordering that does best on this matrix) and prints the median time beside the bench's own median of "factor and solve",
-which criterion left in target/criterion. Needs NumPy and SciPy. One thread each.
+The script reads the MatrixMarket files that the benchmark has written and solves each with scipy.sparse.linalg.spsolve
+(SuperLU) with three orderings. It prints the median times, and the median of the benchmark's "factor and solve", which
+criterion has written to target/criterion. Both use one thread. The script needs NumPy and SciPy.
 """
 import os
 
@@ -32,7 +32,7 @@ def right_hand_side(path):
         for line in lines:
             if line.startswith("%rhs "):
                 return np.array(line.split()[1:], float)
-    raise SystemExit(f"{path}: no line that starts with '%rhs '")
+    raise SystemExit(f"{path}: found no line that starts with '%rhs '")
 
 
 def median_time(solve):
@@ -63,7 +63,8 @@ def main(paths):
         print(f"{path.stem}: {matrix.shape[0]} variables, {matrix.nnz} non-zeros")
         print("  SciPy spsolve   " + ", ".join(f"{o} {1e3 * t:.2f} ms" for o, t in times.items()) + f"; residual {residual:.1e}")
         if own is not None:
-            print(f"  Rototoon        {1e3 * own:.2f} ms: {times[best] / own:.1f} times as fast as SciPy at its best")
+            speed = f"{times[best] / own:.1f} times as fast as SciPy with its best ordering"
+            print(f"  Rototoon        {1e3 * own:.2f} ms: {speed}")
 
 
 if __name__ == "__main__":

@@ -1,19 +1,21 @@
 #!/usr/bin/env python3
-"""The style part's numeric kernels beside their peers: factorisation beside scikit-learn, reshaping beside libigl.
+"""Compares numeric kernels with other libraries: factorisation with scikit-learn, reshaping with libigl.
 
     cargo xtask bench-style [--clips FILE]
 
-builds what is needed and runs this. By hand, with NumPy, scikit-learn and libigl:
+builds the program and the environment and runs this script. To run it by hand, with NumPy, scikit-learn and libigl:
 
     python3 tests/bench_style.py --own target/release/bench-style [--clips FILE]
 
-- Factorisation: 2455 postures of 34 numbers (or those of a clips document), 200 rounds without early end, ranks 34 and 10;
-  scikit-learn's multiplicative NMF from random starts, double precision. Relative error of the product, median time.
-- Reshaping: a bar of 800 vertices bent by handles at both ends; "prepare" is what is done once for a set of handles, "frame"
-  what is done when they move. libigl's ARAP iterates (20 times a frame); Rototoon solves two linear systems. Checked here: a
-  rigid move of the handles moves the whole mesh rigidly, and the kept solver agrees with the one-shot function.
+- Factorisation of 2455 postures of 34 numbers (or of the postures of a file of clips), with 200 rounds without early end and
+  ranks 34 and 10. The other library is scikit-learn's multiplicative NMF from random starts, in double precision. The table
+  gives the relative error of the product and the median time.
+- Reshaping of a bar of 800 vertices, bent by handles at both ends. "Prepare" is the work for a new set of handles, "frame"
+  the work for new positions of the handles. libigl's ARAP iterates (20 times per frame). Rototoon solves two linear systems.
+  The script checks that a rigid move of the handles moves the mesh rigidly, and that the reused solver agrees with the
+  one-shot function.
 
-Both use as many threads as they choose to. Fails where a check of the second kind does not hold; times are only shown.
+Both libraries choose their number of threads. The script fails if a check fails. It only prints times.
 """
 import argparse
 import importlib.metadata
@@ -33,7 +35,7 @@ ITERATIONS = 20
 
 
 def own(program, **job):
-    """What the program answers to a job."""
+    """Runs the program with a job and returns its result."""
     job["repetitions"] = REPETITIONS
     said = subprocess.run([program], input=json.dumps(job), capture_output=True, text=True, check=False)
     if said.returncode:
@@ -42,7 +44,7 @@ def own(program, **job):
 
 
 def median_time(work):
-    """Median time of a function in seconds, and what it returned last."""
+    """The median time of a function in seconds, and its last result."""
     times = []
     for _ in range(REPETITIONS):
         start = time.perf_counter()
@@ -52,7 +54,7 @@ def median_time(work):
 
 
 def synthetic_postures(rows=2455, points=17):
-    """Smooth gaits of made-up characters: each coordinate swings with its own amplitude, phase and overtones."""
+    """Smooth gaits of synthetic characters. Each coordinate swings with its own amplitudes, phases and overtones."""
     random = np.random.default_rng(7)
     clips, left = [], rows
     while left > 0:
@@ -65,7 +67,7 @@ def synthetic_postures(rows=2455, points=17):
 
 
 def postures(path):
-    """Rows without negative entries."""
+    """The postures as rows, shifted so that no number is negative."""
     if path is None:
         rows = synthetic_postures()
     else:
@@ -109,13 +111,13 @@ def bar():
 
 
 def turned(points, degrees, about):
-    """Points turned about one."""
+    """Points turned about a point."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     return (points - about) @ np.array([[c, s], [-s, c]]) + about
 
 
 def reshaping(program):
-    """Prints the table of reshaping, after its checks."""
+    """Prints the table of reshaping, and checks the results."""
     vertices, triangles, ends = bar()
     job = {"vertices": vertices.tolist(), "triangles": triangles.tolist(), "handles": ends.tolist()}
     rigid = turned(vertices, 37, [10, 20]) + [5, -3]
@@ -142,7 +144,7 @@ def reshaping(program):
     print(f"| prepare | {1e3 * np.median(ours['prepare']):.2f} ms | {1e3 * once:.2f} ms |")
     print(f"| frame | {1e3 * np.median(ours['frame']):.2f} ms | {1e3 * each:.2f} ms |")
     print(f"\nA rigid move of the handles moves the mesh rigidly to {off:.1e} px; "
-          f"the kept solver and the one-shot function differ by {max(ours['apart'], moved['apart']):.1e} px.")
+          f"the reused solver and the one-shot function differ by {max(ours['apart'], moved['apart']):.1e} px.")
     if off > 1e-9 or max(ours["apart"], moved["apart"]) > 1e-9:
         raise SystemExit("expected both below 1e-9 px")
 
@@ -150,7 +152,7 @@ def reshaping(program):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--own", required=True, help="the program bench-style")
-    parser.add_argument("--clips", help="a clips document whose postures are factored")
+    parser.add_argument("--clips", help="a file of clips whose postures are factored")
     arguments = parser.parse_args()
     factorisation(arguments.own, arguments.clips)
     reshaping(arguments.own)

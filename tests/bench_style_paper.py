@@ -1,25 +1,27 @@
 #!/usr/bin/env python3
-"""The experiments of Liang et al. 2012 (their section 6), with Rototoon's models and their peers.
+"""Repeats the experiments of Liang et al. 2012 (their section 6) with Rototoon's models and with those of other libraries.
 
     cargo xtask bench-style [DIR…]
 
-builds what is needed, runs this for the `clips.json` of each DIR (for made-up gaits where there is none), and draws the plots. By
-hand, with NumPy, SciPy and scikit-learn:
+builds the program and the environment, runs this script for the `clips.json` of each DIR (or for synthetic gaits if there is
+none), and draws the plots. To run it by hand, with NumPy, SciPy and scikit-learn:
 
     python3 tests/bench_style_paper.py --own target/release/bench-style --out target/style [--clips FILE]
 
-- **Class separability**: the character of a posture told from its features by its five nearest neighbours, ten-fold
-  cross-validation. Features: the 34 numbers themselves, principal components, the codes of our factorisation and of scikit-learn's.
-  Folds of postures, as in the paper, have nearly the same posture (the next frame) on both sides; folds of whole motions do not.
-- **Intrinsic dimension**: residual variance 1 - R² of ISOMAP embeddings (scikit-learn, from 8 neighbours, at most 1000 postures)
-  over dimension 1 to 40, of the postures and of the codes; beside it that of principal components. Neighbours are added until all
-  postures hang together.
+- **Class separability**: five nearest neighbours classify the character of a posture by its features, with ten-fold
+  cross-validation. The features are the 34 numbers themselves, principal components, and the codes of Rototoon's and of
+  scikit-learn's factorisation. Folds of postures, as in the paper, have nearly equal postures (of neighbouring frames) in
+  training and test. Folds of motions do not.
+- **Intrinsic dimension**: residual variance 1 - R² of ISOMAP embeddings (scikit-learn, from 8 neighbours on, at most 1000
+  postures) for dimensions 1 to 40, of the postures and of the codes, and the same of principal components. The number of
+  neighbours is the smallest one that connects all postures.
 - **Precision against rank**: error of translation by preset and rank, and relative error of reconstruction by rank.
-- **Limbs**: width, roughness and place of bent limbs with 0 to 8 sub-key points a bone, five of them also as the paper prints it;
-  0 is plain manipulation by key points.
-- **Overlap order**: share of crossing pairs in the right order against the share that is marked.
+- **Limbs**: width, roughness and place of bent limbs with 0 to 8 sub-key points per bone, and with five sub-key points and
+  the rule printed in the paper. 0 is plain manipulation by key points.
+- **Overlap order**: share of crossing pairs in the right order, by the share of marked pairs.
 
-Tables go to standard output, the numbers of the plots to OUT/*.plot.json. User-edit ratios of tracking are `bench-tracking`'s business.
+The script prints tables to standard output and writes the numbers of the plots to OUT/*.plot.json. `bench-tracking` measures
+the user-edit ratios of tracking.
 """
 import argparse
 import json
@@ -48,7 +50,7 @@ STANDING = [[0, 0], [0, -0.6], [0, -1], [0, -1.15], [0, -1.5], [0.05, -0.9], [0.
 
 
 def own(program, **job):
-    """What the program answers to a job."""
+    """Runs the program with a job and returns its result."""
     said = subprocess.run([program], input=json.dumps(job), capture_output=True, text=True, check=False)
     if said.returncode:
         raise SystemExit(f"{program}: {said.stderr.strip()}")
@@ -56,7 +58,7 @@ def own(program, **job):
 
 
 def made_up(path, characters=6, motions=8, frames=32):
-    """Writes gaits of made-up characters: each motion swings in its own way, each character leans and swings more or less."""
+    """Writes gaits of synthetic characters. Each motion swings in its own way. Each character has its own lean and swing."""
     random = np.random.default_rng(7)
     standing = np.asarray(STANDING)
     waves = random.normal(0, 0.12, (motions, 3, 17, 2)) * np.linspace(0.2, 1.5, 17)[None, None, :, None] ** 2
@@ -74,7 +76,7 @@ def made_up(path, characters=6, motions=8, frames=32):
 
 
 class Postures:
-    """The postures of a clips document as rows, with who makes them and in which motion."""
+    """The postures of a file of clips as rows, with the character and the motion of each."""
 
     def __init__(self, path):
         document = json.loads(path.read_text(encoding="utf-8"))
@@ -85,14 +87,14 @@ class Postures:
         self.positive = self.rows - self.rows.min()
 
     def components(self, rank):
-        """Principal components, and the relative error of what they leave out (of the positive rows, mean kept)."""
+        """Principal components, and the relative error of a reconstruction from them and the mean (of the positive rows)."""
         mean = self.positive.mean(0)
         u, s, vt = np.linalg.svd(self.positive - mean, full_matrices=False)
         rest = np.sqrt((s[rank:] ** 2).sum()) / np.linalg.norm(self.positive)
         return u[:, :rank] * s[:rank], float(rest)
 
     def factored(self, program, rank):
-        """Codes of our factorisation, and its relative error."""
+        """Codes of Rototoon's factorisation, and its relative error."""
         job = {"rows": self.positive.tolist(), "rank": rank, "rounds": ROUNDS, "codes": True}
         made = own(program, factor=job)
         return np.asarray(made["codes"]), made["error"]
@@ -107,7 +109,10 @@ class Postures:
 
 
 def plot(out, name, title, x, panels, note=""):
-    """Writes the numbers of a plot: x is (label, low, high, logarithmic), a panel (label, low, high, {series: (points, dashed)})."""
+    """Writes the numbers of a plot.
+
+    x is (label, low, high, logarithmic). A panel is (label, low, high, {name: (points, dashed)}).
+    """
     panels = [{"label": label, "low": low, "high": high,
                "series": [{"name": key, "points": [[float(a), float(b)] for a, b in points], "dashed": dashed}
                           for key, (points, dashed) in series.items()]} for label, low, high, series in panels]
@@ -117,20 +122,20 @@ def plot(out, name, title, x, panels, note=""):
 
 
 def weighed(codes, rows):
-    """Codes, each component in the size of what it contributes: the scale of a code by itself means nothing."""
+    """Codes, with each component scaled by its contribution to the rows, because the scale of a code alone has no meaning."""
     basis = np.linalg.lstsq(codes, rows, rcond=None)[0]
     return codes * np.linalg.norm(basis, axis=1)
 
 
 def together(rows):
-    """The least number of neighbours with which all rows hang together."""
+    """The smallest number of neighbours with which all rows are connected."""
     pieces = lambda count: connected_components(kneighbors_graph(rows, count), directed=False)[0]
     return next((count for count in NEIGHBOURS if pieces(count) == 1), NEIGHBOURS[-1])
 
 
 def separability(data, program):
-    """Prints how well characters are told apart."""
-    print(f"\nClass separability: {len(set(data.characters))} characters told apart by 5 nearest neighbours, {FOLDS}-fold\n")
+    """Prints how well the features separate the characters."""
+    print(f"\nClass separability: {len(set(data.characters))} characters classified by 5 nearest neighbours, {FOLDS}-fold\n")
     print("| features | folds of postures | folds of motions |\n| --- | ---: | ---: |")
     features = {"raw, 34": data.rows}
     for rank in FEATURE_RANKS:
@@ -146,7 +151,7 @@ def separability(data, program):
 
 
 def residuals(geodesic, embedding, dimensions):
-    """1 - R² between distances along the manifold and in the first dimensions of an embedding."""
+    """1 - R² between distances along the manifold and distances in the first dimensions of an embedding."""
     upper = np.triu_indices(len(geodesic), 1)
     wanted, squares, found = geodesic[upper], np.zeros(len(upper[0])), []
     for d in range(dimensions):
@@ -180,7 +185,7 @@ def dimension(data, program, out):
     for name, values in table.items():
         if name.startswith("ISOMAP"):
             enough = next(d + 1 for d, value in enumerate(values) if value <= min(values) + 0.01)
-            print(f"\n{name}: within 0.01 of its least from {enough} dimensions on")
+            print(f"\n{name}: within 0.01 of its smallest value from {enough} dimensions on")
     plot(out, "dimension", "Residual variance of ISOMAP embeddings", ("dimension", 0, DIMENSIONS, False),
          [("residual variance", 0, max(0.1, np.ceil(10 * max(max(v) for v in table.values())) / 10), series)], f"least {low:.3f}")
 
@@ -265,13 +270,13 @@ def order(program, out):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--own", required=True, help="the program bench-style")
-    parser.add_argument("--out", required=True, type=pathlib.Path, help="a folder for the plots' numbers")
-    parser.add_argument("--clips", type=pathlib.Path, help="a clips document; made-up gaits where none is given")
+    parser.add_argument("--out", required=True, type=pathlib.Path, help="the folder for the numbers of the plots")
+    parser.add_argument("--clips", type=pathlib.Path, help="a file of clips; synthetic gaits by default")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
     path = arguments.clips or made_up(arguments.out / "made_up.json")
     data = Postures(path)
-    print(f"\n## {path.name if arguments.clips else 'made-up gaits'}: {len(data.rows)} postures of {len(set(data.characters))} characters, "
+    print(f"\n## {path.name if arguments.clips else 'synthetic gaits'}: {len(data.rows)} postures of {len(set(data.characters))} characters, "
           f"{len(set(data.motions))} motions")
     separability(data, arguments.own)
     dimension(data, arguments.own, arguments.out)

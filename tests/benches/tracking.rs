@@ -1,6 +1,6 @@
-//! Tracking drawn scenes: after a pin, a whole short shot from files, and high definition.
+//! Times of tracking synthetic scenes: after a pin, of a short shot from files, and in high definition.
 //!
-//! Aims on two cores: 50 ms after a pin, 1.0 s for the short shot, 0.15 s a frame in high definition.
+//! The goals on two cores are 50 ms after a pin, 1.0 s for the short shot, and 0.15 s per frame in high definition.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use rototoon::geometry::Point;
@@ -16,10 +16,10 @@ use std::path::Path;
 const SPAN: Puppet = Puppet { width: 540, height: 540, frames: 12, step: usize::MAX, parts: 10, points: 16 };
 /// 192 points on 15 frames.
 const SHOT: Puppet = Puppet { width: 420, height: 540, frames: 15, step: usize::MAX, parts: 12, points: 16 };
-/// High definition.
+/// 192 points on 13 frames in high definition.
 const HD: Puppet = Puppet { width: 1920, height: 1080, frames: 13, step: usize::MAX, parts: 12, points: 16 };
 
-/// The scene with a pin on the middle frame of one part, moved a little more with each number.
+/// The scene with a pin on the middle frame of one part. Each number moves the pin a little farther.
 fn pinned(part: usize, number: u32) -> Scene {
     let mut scene = SPAN.scene();
     let (frame, point) = (6, (number % 16) as usize);
@@ -72,7 +72,7 @@ fn high_definition(c: &mut Criterion) {
     HD.write(folder.path()).unwrap();
     let mut group = c.benchmark_group("track");
     group.sample_size(10);
-    // Elements are frames: their inverse is the time a frame.
+    // The elements are frames, so the inverse of the throughput is the time per frame.
     group.throughput(Throughput::Elements(HD.frames as u64));
     group.bench_function("13 frames of 1920x1080, 192 points, from files", |b| b.iter(|| from_files(folder.path())));
 }

@@ -1,12 +1,12 @@
-//! A simulated artist: how many corrections tracking still needs.
+//! A simulated artist, who measures how many corrections tracks still need.
 //!
-//! The artist sees the truth and adjusts the tracks in rounds until [`Rules::enough`] of the points are good
-//! ([`crate::measure`]). In each round the worst quarter of the frames gets one adjustment each, no two of them
-//! neighbours (an artist expects that a correction helps the frames around it): of the part whose bad points are off by
-//! most in sum, the centre is put right where it is off by more than 8 px and a quarter of the part's size and
-//! was not put right before, else the worst of its bad points that has no pin yet. Then the tracker runs again. The
-//! number of adjustments as a share of all control points of the frames between keys is the measure of Zhou & Xiao 2011
-//! (Table 1: 3.6 %, 5.8 % and 9.3 %).
+//! The artist knows the truth and corrects the tracks in rounds until [`Rules::enough`] of the points are good
+//! ([`crate::measure`]). In each round at most a quarter of the frames get one correction each: those with most bad points,
+//! but no two neighbouring frames, because a correction also helps the frames around it. On each of these frames the artist
+//! takes the part whose bad points have the largest sum of distances. If the part's centre is off by more than 8 px and more
+//! than a quarter of the part's size, and is not fixed yet, the artist fixes the centre. Otherwise the artist pins the worst
+//! of the part's bad points that has no pin. Then the tracker runs again. The measure is that of Zhou & Xiao 2011: the
+//! number of corrections as a share of all control points of the frames between keys (Table 1: 3.6 %, 5.8 % and 9.3 %).
 //!
 //! Of equally bad frames and parts the first one is taken.
 
@@ -19,15 +19,15 @@ use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A centre that is off by less, in pixels, is not adjusted as such.
+/// Least error of a centre, in pixels, at which the artist fixes it.
 const CENTER_OFF: f64 = 8.0;
 
 /// When the artist stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
-    /// Share of good points that is enough.
+    /// Share of good points at which the artist stops.
     pub enough: f64,
-    /// Adjustments as a share of all control points between keys after which no further round begins.
+    /// Share of corrections at which no further round begins, of all control points between keys.
     pub cap: f64,
     /// Most rounds.
     pub rounds: usize,
@@ -39,39 +39,39 @@ impl Default for Rules {
     }
 }
 
-/// What the artist did.
+/// The artist's corrections, and the figures before and after.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Work {
-    /// Centres that were put right.
+    /// Number of fixed centres.
     pub centers: usize,
-    /// Points that were put right.
+    /// Number of pins.
     pub pins: usize,
-    /// Control points of the frames between keys, hidden ones included.
+    /// Number of control points of the frames between keys, with hidden ones.
     pub total: usize,
-    /// Rounds of adjusting and tracking again.
+    /// Rounds of correcting and tracking again.
     pub rounds: usize,
-    /// Figures before the first adjustment.
+    /// Figures before the first correction.
     pub first: Figures,
     /// Figures after the last one.
     pub last: Figures,
 }
 
 impl Work {
-    /// All adjustments.
+    /// The number of corrections.
     pub fn edits(&self) -> usize {
         self.centers + self.pins
     }
 
-    /// All adjustments as a share of all control points of the frames between keys.
+    /// The corrections as a share of all control points of the frames between keys.
     pub fn share(&self) -> f64 {
         self.edits() as f64 / self.total as f64
     }
 }
 
-/// Corrects a scene until the rules say to stop. `track` fills in the tracks of the scene as it is, first without any
-/// correction, then once a round; `told` hears how things stand after each.
+/// Corrects a scene until the rules say to stop. `track` tracks the scene, first without corrections, then once per round.
+/// `told` is called after each track.
 ///
-/// Errors are those of `track`, and what [`rows`] says where the truth does not fit the scene.
+/// Errors are those of `track`, and those of [`rows`] if the truth does not fit the scene.
 pub fn correct(
     scene: &mut Scene,
     truth: &Truth,
@@ -104,7 +104,7 @@ pub fn correct(
     Ok(work)
 }
 
-/// The frames with most bad points, no two of them neighbours, at most a quarter of all.
+/// The frames with most bad points, but no two neighbouring ones, at most a quarter of all.
 fn chosen_frames(rows: &[Row], height: f64) -> Vec<FrameNumber> {
     let mut counts = BTreeMap::<FrameNumber, usize>::new();
     rows.iter().filter(|row| row.bad(height)).for_each(|row| *counts.entry(row.frame).or_default() += 1);
@@ -121,7 +121,7 @@ fn chosen_frames(rows: &[Row], height: f64) -> Vec<FrameNumber> {
     chosen
 }
 
-/// One adjustment on a frame, of its worst part; none where all bad points of the part have pins.
+/// Makes one correction on a frame, of its worst part. Does nothing if all bad points of the part have pins.
 fn adjust(scene: &mut Scene, truth: &Truth, rows: &[Row], frame: FrameNumber, work: &mut Work) {
     let height = scene.footage.height as f64;
     let mut bad: Vec<&Row> = rows.iter().filter(|row| row.frame == frame && row.bad(height)).collect();
@@ -144,7 +144,7 @@ fn adjust(scene: &mut Scene, truth: &Truth, rows: &[Row], frame: FrameNumber, wo
     }
 }
 
-/// The part whose points are off by most in sum; the first of equal ones.
+/// The part whose bad points have the largest sum of distances; the first of equal ones.
 fn worst_part(bad: &[&Row]) -> Option<usize> {
     let mut sums: BTreeMap<usize, f64> = BTreeMap::new();
     bad.iter().for_each(|row| *sums.entry(row.part).or_default() += row.point);
@@ -164,7 +164,7 @@ mod tests {
         [(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 100.0)].map(|(x, y)| Point::new(x, y)).to_vec()
     }
 
-    /// Two squares that rest, keyed on frames 0 and 11, with ten frames of four points each between.
+    /// Two squares at rest with keys on frames 0 and 11. Between these are ten frames of four points each.
     fn still() -> (Scene, Truth) {
         let keys = BTreeMap::from([0, LAST].map(|frame| (frame, square())));
         let part = |name: &str| Part { name: name.into(), closed: true, keys: keys.clone(), ..Part::default() };
@@ -176,8 +176,8 @@ mod tests {
         (Scene { footage, parts: vec![part("a"), part("b")] }, Truth { parts: vec![named("a"), named("b")] })
     }
 
-    /// A tracker that puts every point of part 0 off by `off` on the frames for which it says so, and keeps pins and
-    /// centres as they are told, each on its own frame only.
+    /// A tracker that moves every point of part 0 by `off` on the frames that `on` selects. It obeys pins and centres, each
+    /// on its own frame only.
     fn off_by(off: Point, on: impl Fn(FrameNumber) -> bool) -> impl FnMut(&mut Scene) -> Result<()> {
         move |scene| {
             for (k, part) in scene.parts.iter_mut().enumerate() {
@@ -222,7 +222,7 @@ mod tests {
 
     #[test]
     fn the_worst_frames_come_first() {
-        // Along the upper edge: on frame 6 all points are bad, elsewhere only the one that leaves the contour.
+        // On frame 6 all points are bad. On other frames the shift is along the upper edge, so only two points are bad.
         let mut base = off_by(Point::new(-7.0, 0.0), |_| true);
         let track = |scene: &mut Scene| {
             base(scene)?;
@@ -235,7 +235,7 @@ mod tests {
 
     #[test]
     fn a_part_that_is_far_off_gets_its_centre_once() {
-        // The size is 100: a quarter of it is 25.
+        // A quarter of the size is 25.
         let near =
             work(Rules { enough: 1.0, rounds: 1, ..Rules::default() }, off_by(Point::new(24.0, 0.0), |f| f == 4));
         assert_eq!((near.0.pins, near.0.centers), (1, 0));
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn it_ends_where_nothing_is_left_to_adjust() {
+    fn it_ends_when_nothing_is_left_to_correct() {
         let all = Rules { enough: 1.0, cap: 1.0, rounds: 200 };
         let mut deaf = off_by(Point::new(-7.0, -7.0), |frame| frame == 2);
         let track = |scene: &mut Scene| {

@@ -1,9 +1,9 @@
-//! Line charts: panels above each other with one x axis, linear or logarithmic, and a legend.
+//! Line charts: one or more panels with a shared x axis, linear or logarithmic, and a legend.
 
 use crate::drawing::{Anchor, Drawing, Ink, Mark};
 use crate::lettering;
 
-/// Colours of series that can be told apart with any colour vision (Okabe & Ito 2008, without yellow).
+/// Colours of series that differ for any kind of colour vision (Okabe & Ito 2008, without yellow).
 pub const INKS: [Ink; 7] =
     [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [86, 180, 233], [230, 159, 0], [0, 0, 0]];
 
@@ -14,7 +14,7 @@ const TOP: f32 = 62.0;
 const BOTTOM: f32 = 46.0;
 /// Space between panels.
 const GAP: f32 = 22.0;
-/// Height of capitals.
+/// Height of capital letters.
 const LETTERS: f32 = 8.0;
 const GREY: Ink = [110, 110, 116];
 const GRID: Ink = [228, 228, 232];
@@ -23,63 +23,63 @@ const BLACK: Ink = [20, 20, 24];
 /// An axis from `low` to `high`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What it shows.
+    /// The quantity and its unit.
     pub label: String,
     /// Value at the left or lower end; above 0 on a logarithmic axis.
     pub low: f64,
     /// Value at the right or upper end, larger than `low`.
     pub high: f64,
-    /// Whether equal steps are equal ratios.
+    /// Whether the scale is logarithmic.
     pub logarithmic: bool,
 }
 
 /// A line of a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// Name in the legend; the first series of a name is shown there.
+    /// Name in the legend. Of series with the same name the legend shows the first one; an empty name is not shown.
     pub name: String,
     /// Colour.
     pub ink: Ink,
     /// Whether the line is dashed and without dots.
     pub dashed: bool,
-    /// Places (x, y) in order; each run is a line of its own.
+    /// Points (x, y) in order. Each run is a line of its own.
     pub runs: Vec<Vec<(f64, f64)>>,
 }
 
-/// Series over one y axis.
+/// Series with one y axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// Its y axis.
     pub y: Axis,
     /// Height of its field.
     pub height: f32,
-    /// Later ones lie above earlier ones.
+    /// The series. Later ones cover earlier ones.
     pub series: Vec<Series>,
 }
 
-/// Panels over one x axis.
+/// Panels with one x axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    /// Written above.
+    /// The title above the panels.
     pub title: String,
-    /// Written at the end of the legend.
+    /// A note at the end of the legend.
     pub note: String,
     /// The x axis of all panels.
     pub x: Axis,
     /// The panels from the top.
     pub panels: Vec<Panel>,
-    /// Values of x that are marked through all panels, each with whether it is marked strongly.
+    /// Values of x that are marked in all panels, each with whether the mark is strong.
     pub marked: Vec<(f64, bool)>,
 }
 
 impl Axis {
-    /// Where a value lies, 0 to 1; values beyond an end lie at the end.
+    /// The position of a value on the axis, 0 to 1. Values beyond an end are at the end.
     pub fn place(&self, value: f64) -> f64 {
         let scale = |v: f64| if self.logarithmic { v.max(f64::MIN_POSITIVE).ln() } else { v };
         ((scale(value) - scale(self.low)) / (scale(self.high) - scale(self.low))).clamp(0.0, 1.0)
     }
 
-    /// Round values between the ends, about `count` of them: 1, 2 and 5 times powers of ten.
+    /// About `count` round values between the ends: 1, 2 or 5 times powers of ten.
     pub fn ticks(&self, count: usize) -> Vec<f64> {
         if self.logarithmic {
             let powers = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
@@ -100,7 +100,7 @@ impl Axis {
 }
 
 impl Chart {
-    /// The chart as a drawing.
+    /// Draws the chart.
     pub fn draw(&self) -> Drawing {
         let fields: f32 = self.panels.iter().map(|panel| panel.height + GAP).sum::<f32>() - GAP;
         let mut drawing = Drawing { size: [WIDTH, TOP + fields + BOTTOM], marks: Vec::new() };
@@ -182,7 +182,7 @@ fn text(marks: &mut Vec<Mark>, at: [f32; 2], size: f32, ink: Ink, anchor: Anchor
     marks.push(Mark::Text { at, size, ink, anchor, turned: false, text: text.to_owned() });
 }
 
-/// A value without digits that say nothing.
+/// A value without trailing zeros.
 fn number(value: f64) -> String {
     let text = format!("{value:.3}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -1,7 +1,7 @@
-//! A second drawn character: a jointed wooden doll, drawn once, with other proportions than the sample character's.
+//! A second drawn character: a jointed wooden doll, drawn once, with other proportions than the sample character.
 //!
-//! It has ten parts that go with the sample's limbs by name, and all its depths are 0: which part is in front follows from nine
-//! marks ([`MARKS`]) alone.
+//! It has ten parts, and limbs of the same names as the sample's. All its depths are 0, so only nine marks ([`MARKS`]) decide
+//! which part is in front.
 
 use crate::sample::background;
 use crate::sample::ink::Canvas;
@@ -39,7 +39,7 @@ pub const PARTS: [(&str, u32); 10] = [
     ("far boot", 0x5d332b),
 ];
 
-/// In front, behind.
+/// Pairs of parts, of which the first is in front of the second.
 pub const MARKS: [(&str, &str); 9] = [
     ("near mitten", "near arm"),
     ("near arm", "head"),
@@ -52,7 +52,7 @@ pub const MARKS: [(&str, &str); 9] = [
     ("far mitten", "far arm"),
 ];
 
-/// The doll's parts from the farthest to the nearest, as on the sample character.
+/// The doll's parts from the farthest to the nearest, in the order of the sample character's parts.
 pub const TRUE_ORDER: [&str; 10] = [
     "far arm",
     "far mitten",
@@ -98,7 +98,7 @@ pub fn contours() -> Vec<Vec<Point>> {
     ]
 }
 
-/// The doll's document: one key on frame 0, limbs, and marks.
+/// The doll's document, with one key per part on frame 0, limbs, and marks.
 pub fn document() -> Result<Document> {
     let contours = contours();
     let points = |list: &[Point]| -> Value { list.iter().map(|p| json!([p.x, p.y])).collect() };
@@ -121,7 +121,7 @@ pub fn document() -> Result<Document> {
     Document::parse(&text.to_string(), "doll").context("the doll's own document")
 }
 
-/// The doll's limbs, as documents write them.
+/// The doll's limbs, in the form of documents.
 pub fn limbs() -> Vec<Value> {
     let mut limbs = vec![
         limb("pelvis", "chest", [("body", 2.5, 5.5), ("body", 8.5, 15.5)], json!(["body"])),
@@ -149,7 +149,7 @@ pub fn order(document: &Document, frame: FrameNumber) -> Vec<usize> {
     order
 }
 
-/// Paints a doll's document on a frame in its own depth order, over what is there.
+/// Paints a doll's document on a frame over a picture, in the document's depth order.
 pub fn paint(pixels: Pixmap, document: &Document, frame: FrameNumber) -> Pixmap {
     let mut canvas = Canvas { pixels };
     for index in order(document, frame) {
@@ -169,7 +169,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_doll_s_document_is_whole() {
+    fn the_doll_s_document_is_valid() {
         let document = document().unwrap();
         assert_eq!(document.problems().error_count(), 0);
         assert_eq!(document.limbs().unwrap().limbs.len(), 12);

@@ -1,8 +1,7 @@
-//! A drawing as a list of marks, written as SVG or painted as PNG.
+//! A drawing as a list of marks, which is written as SVG or painted as PNG.
 //!
-//! Own code of a few dozen lines stands here instead of a plotting crate: such crates paint text by a font file or by
-//! the system's fonts (and bring a dozen dependencies along), and there is no font in this repository; what the two
-//! writers below need is lines, dots and [`crate::lettering`].
+//! A plotting crate would paint text with a font file or with the system's fonts, and have a dozen dependencies. This
+//! repository has no font. The two writers below need only lines, dots and [`crate::lettering`].
 
 use crate::lettering;
 use anyhow::{Context, Result};
@@ -15,18 +14,18 @@ pub type Ink = [u8; 3];
 /// Pixels of the PNG for one unit of the drawing.
 const SCALE: f32 = 2.0;
 
-/// Where a text lies relative to its place.
+/// The position of a text relative to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// It begins there.
+    /// The text begins at the point.
     Start,
-    /// Its middle is there.
+    /// The middle of the text is at the point.
     Middle,
-    /// It ends there.
+    /// The text ends at the point.
     End,
 }
 
-/// Something drawn; places in units from the top left.
+/// A mark of a drawing. Positions are in units from the top left corner.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
     /// A polyline.
@@ -37,7 +36,7 @@ pub enum Mark {
         ink: Ink,
         /// Width.
         width: f32,
-        /// Lengths of dashes and gaps; none for a solid line.
+        /// Lengths of dashes and gaps; `None` for a solid line.
         dash: Option<[f32; 2]>,
     },
     /// A filled circle.
@@ -51,32 +50,32 @@ pub enum Mark {
     },
     /// A text on one line.
     Text {
-        /// The end or middle of the line it stands on.
+        /// A point of the baseline.
         at: [f32; 2],
         /// Height of capitals.
         size: f32,
         /// Colour.
         ink: Ink,
-        /// Which end `at` is.
+        /// Which point of the text is at `at`.
         anchor: Anchor,
-        /// Whether it is written upwards.
+        /// Whether the text runs upwards.
         turned: bool,
         /// The text.
         text: String,
     },
 }
 
-/// Marks on white.
+/// Marks on a white ground.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawing {
     /// Width and height.
     pub size: [f32; 2],
-    /// Later ones lie above earlier ones.
+    /// The marks. Later ones cover earlier ones.
     pub marks: Vec<Mark>,
 }
 
 impl Drawing {
-    /// The drawing as SVG, text as text.
+    /// The drawing as SVG. Texts stay texts.
     pub fn svg(&self) -> String {
         let [w, h] = self.size;
         let mut out = format!(
@@ -90,7 +89,7 @@ impl Drawing {
         out + "</svg>\n"
     }
 
-    /// The drawing as PNG, two pixels a unit.
+    /// The drawing as PNG, with two pixels per unit.
     pub fn png(&self) -> Result<Vec<u8>> {
         let [w, h] = self.size.map(|s| (s * SCALE).ceil() as u32);
         let mut picture = Pixmap::new(w, h).with_context(|| format!("no picture of {w}x{h} pixels"))?;
@@ -126,7 +125,7 @@ fn write_mark(out: &mut String, mark: &Mark) -> std::fmt::Result {
                 Anchor::End => "end",
             };
             let turn = if *turned { format!(" transform=\"rotate(-90 {x:.2} {y:.2})\"") } else { String::new() };
-            // Capitals of common sans-serif fonts are about 0.72 of the font's size high.
+            // The height of capitals is about 0.72 of the font size in common sans-serif fonts.
             let size = size / 0.72;
             let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
             writeln!(
@@ -204,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn svg_says_what_is_drawn() {
+    fn svg_has_every_mark() {
         let svg = drawing().svg();
         assert!(
             svg.contains(r##"<polyline points="0.00,5.00 20.00,5.00" fill="none" stroke="#ff0000" stroke-width="2""##)
@@ -214,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn png_shows_it_at_twice_the_size() {
+    fn png_has_twice_the_size() {
         let picture = Pixmap::decode_png(&drawing().png().unwrap()).unwrap();
         assert_eq!((picture.width(), picture.height()), (40, 40));
         let at = |x: u32, y: u32| {

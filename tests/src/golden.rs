@@ -1,24 +1,24 @@
-//! Golden pictures: what a picture looked like when somebody last looked at it and accepted it.
+//! Golden pictures: pictures that somebody has looked at and accepted.
 //!
-//! [`compare`] writes the picture as it is now to `target/golden/<name>.png` and holds it against
-//! `tests/golden/<name>.png`. After looking at the new ones, `cargo xtask bless` accepts them.
+//! [`compare`] writes the present picture to `target/golden/<name>.png` and compares it with `tests/golden/<name>.png`. Look
+//! at the new pictures first; `cargo xtask bless` then accepts them.
 
 use anyhow::{Context, Result, bail, ensure};
 use std::path::{Path, PathBuf};
 use tiny_skia::Pixmap;
 
-/// Where the accepted pictures are, below the workspace's folder.
+/// The folder of the accepted pictures, below the workspace's folder.
 pub const FOLDER: &str = "tests/golden";
 /// Where the generated pages of the documentation are, below the workspace's folder.
 pub const PAGES: &str = "docs/src/generated";
 /// A channel may differ by so much of 255: mathematical functions of two systems may differ in their last bit.
 const STEP: u8 = 2;
-/// The share of pixels that may differ by more than [`STEP`].
+/// Allowed share of pixels that differ by more than [`STEP`].
 const SHARE: f64 = 1e-4;
 
-/// Fails where `picture` does not look like the accepted picture `name`, or where there is none.
+/// Fails if `picture` differs from the accepted picture `name`, or if there is none.
 pub fn compare(name: &str, picture: &Pixmap) -> Result<()> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().context("the tests lie in the workspace")?;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().context("the tests are in the workspace")?;
     compare_in(&root.join(FOLDER), &current_folder(root), name, picture)
 }
 
@@ -43,16 +43,21 @@ fn current_folder(root: &Path) -> PathBuf {
 fn compare_in(kept: &Path, drawn: &Path, name: &str, picture: &Pixmap) -> Result<()> {
     let file = format!("{name}.png");
     let (kept, drawn) = (kept.join(&file), drawn.join(&file));
-    std::fs::create_dir_all(drawn.parent().context("a file lies in a folder")?)?;
+    std::fs::create_dir_all(drawn.parent().context("a file is in a folder")?)?;
     std::fs::write(&drawn, picture.encode_png()?).with_context(|| format!("cannot write {drawn:?}"))?;
     let advice = format!("look at {drawn:?}; `cargo xtask bless` accepts it");
-    let Ok(bytes) = std::fs::read(&kept) else { bail!("there is no {kept:?}: {advice}") };
+    let Ok(bytes) = std::fs::read(&kept) else { bail!("{kept:?} does not exist: {advice}") };
     let golden = Pixmap::decode_png(&bytes).with_context(|| format!("cannot read {kept:?}"))?;
     let size = |p: &Pixmap| (p.width(), p.height());
-    ensure!(size(&golden) == size(picture), "{name}: {:?}, expected {:?}: {advice}", size(picture), size(&golden));
+    ensure!(
+        size(&golden) == size(picture),
+        "{name}: found {:?}, expected {:?}: {advice}",
+        size(picture),
+        size(&golden)
+    );
     let differing = golden.pixels().iter().zip(picture.pixels()).filter(|(a, b)| differ(**a, **b)).count();
     let allowed = (SHARE * golden.pixels().len() as f64) as usize;
-    ensure!(differing <= allowed, "{name}: {differing} pixels differ, at most {allowed} may: {advice}");
+    ensure!(differing <= allowed, "{name}: {differing} pixels differ, expected at most {allowed}: {advice}");
     Ok(())
 }
 

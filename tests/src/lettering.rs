@@ -1,11 +1,11 @@
-//! Lettering for plots and sheets: strokes of our own, so that pictures need no font and look alike everywhere.
+//! Lettering for plots and sheets. Characters are made of strokes, so pictures need no font and look the same everywhere.
 //!
-//! Each character is a few polylines on a grid of 5 columns and 9 rows, written as pairs of digits (column, row). Capitals
-//! stand on rows 0 to 6, small letters on rows 2 to 6, descenders reach row 8. A polyline of one place is a dot.
+//! Each character is a few polylines on a grid of 5 columns and 9 rows. A polyline is written as pairs of digits (column,
+//! row). Capitals use rows 0 to 6, small letters rows 2 to 6, and descenders reach row 8. A polyline of one point is a dot.
 
 use tiny_skia::{Color, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
 
-/// Rows from the top of a capital to the line it stands on.
+/// Rows from the top of a capital to the baseline.
 const CAPITAL: f32 = 6.0;
 /// Columns between characters.
 const SPACE: f32 = 2.0;
@@ -14,14 +14,14 @@ const BLANK: f32 = 2.0;
 /// Width of a stroke in rows.
 const STROKE: f32 = 0.8;
 
-/// Width of a text in pixels whose capitals are `size` pixels high.
+/// The width in pixels of a text whose capitals are `size` pixels high.
 pub fn width(text: &str, size: f32) -> f32 {
     let columns: f32 = text.chars().map(|c| columns(c) + SPACE).sum();
     (columns - SPACE).max(0.0) * size / CAPITAL
 }
 
-/// Draws a text whose first character begins at `at` (the left end of the line it stands on), its capitals `size` pixels
-/// high. `turned` writes it upwards.
+/// Draws a text with capitals of `size` pixels. `at` is the left end of the baseline, in pixels. If `turned`, the text runs
+/// upwards.
 pub fn draw(picture: &mut Pixmap, text: &str, at: [f32; 2], size: f32, colour: Color, turned: bool) {
     let Some(path) = path(text) else { return };
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
@@ -33,7 +33,7 @@ pub fn draw(picture: &mut Pixmap, text: &str, at: [f32; 2], size: f32, colour: C
     picture.stroke_path(&path, &paint, &stroke, place, None);
 }
 
-/// The strokes of a text, in rows, from the left end of the line it stands on.
+/// The strokes of a text, in rows, with the left end of the baseline as origin.
 fn path(text: &str) -> Option<Path> {
     let mut builder = PathBuilder::new();
     let mut left = 0.0;
@@ -52,13 +52,13 @@ fn path(text: &str) -> Option<Path> {
     builder.finish()
 }
 
-/// Columns that a character takes.
+/// The width of a character in columns.
 fn columns(c: char) -> f32 {
     let places = strokes(c).split_whitespace().flat_map(|line| line.bytes().step_by(2));
     places.max().map_or(BLANK, |column| f32::from(column - b'0'))
 }
 
-/// The polylines of a character; a box for one that is not known.
+/// The polylines of a character; a box for an unknown one.
 fn strokes(c: char) -> &'static str {
     match c {
         ' ' => "",
@@ -152,7 +152,7 @@ mod tests {
     const KNOWN: &str = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz.,:;'-–_%/()+=<>·×";
 
     #[test]
-    fn every_stroke_lies_on_the_grid_and_no_two_characters_look_alike() {
+    fn strokes_are_on_the_grid_and_characters_differ() {
         let mut seen: Vec<(char, &str)> = Vec::new();
         for c in KNOWN.chars() {
             for line in strokes(c).split(' ') {
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_is_as_wide_as_it_says() {
+    fn a_text_has_its_stated_width() {
         assert_eq!(width("", 12.0), 0.0);
         assert_eq!(width("I", 12.0), 0.0);
         assert_eq!(width("HH", 12.0), 20.0);
@@ -186,7 +186,7 @@ mod tests {
         let mut picture = Pixmap::new(40, 60).unwrap();
         draw(&mut picture, "HH", [30.0, 50.0], 12.0, Color::BLACK, true);
         let inked = |x: u32, y: u32| picture.pixel(x, y).unwrap().alpha() > 128;
-        assert!((19..30).all(|x| inked(x, 49)), "the first stroke lies");
+        assert!((19..30).all(|x| inked(x, 49)), "the first stroke is horizontal");
         assert!((0..40).all(|x| !inked(x, 55) && !inked(x, 20)));
     }
 }

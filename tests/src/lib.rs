@@ -1,16 +1,17 @@
-//! What the test suites and the development commands share.
+//! Code that the test suites and the development commands share.
 //!
 //! - [`sample`]: the sample cartoon with exact truth
 //! - [`doll`]: a second drawn character
-//! - [`puppet`]: drawn footage of any size for measuring speed and memory
+//! - [`puppet`]: synthetic footage of any size, for measuring speed and memory
 //! - [`truth`]: truth documents
-//! - [`measure`]: how near tracked contours come to the truth
-//! - [`artist`]: how many corrections they still need
-//! - [`benchmark`]: every preset over sets with truth, tables and pictures of it
+//! - [`measure`]: the errors of tracked contours
+//! - [`artist`]: how many corrections tracks still need
+//! - [`benchmark`]: the benchmark of tracking, with tables and pictures
 //! - [`memory`]: peak memory of a process
-//! - [`golden`]: pictures that somebody accepted
+//! - [`golden`]: comparison with accepted pictures
 //! - [`sheet`]: contact sheets
-//! - [`stylebench`]: limbs, overlap order and translation measured
+//! - [`stylebench`]: measurements of limbs, overlap order and translation
+//! - [`tweening`]: measurements of matching and in-betweens
 //! - [`chart`], [`drawing`], [`lettering`]: plots as SVG and PNG
 
 pub mod artist;

@@ -1,7 +1,7 @@
-//! How near tracked contours come to the truth.
+//! The errors of tracked contours.
 //!
-//! Over the *scored* points (seen, and the picture changes colour across the contour there) of the frames between a
-//! part's first and last key that are not keys themselves:
+//! Errors are measured on the frames between a part's first and last key that are not keys themselves. Only *scored* points
+//! count: they are visible, and the picture's colour changes across the contour there.
 //!
 //! - `contour`: distance from the tracked control point to the true contour of its part, in pixels
 //! - `point`: distance from the tracked control point to its own true position, in pixels
@@ -32,7 +32,7 @@ pub struct Row {
     pub scored: bool,
 }
 
-/// Figures over many points. Of no scored point, `points` is 0 and the rest is NaN.
+/// Figures over many points. If no point is scored, `points` is 0 and all others are NaN.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Figures {
     /// Number of scored points.
@@ -55,15 +55,15 @@ pub fn measure(tracked: &Value, truth: &Value) -> Result<Vec<Row>> {
     rows(&document.scene, &Truth::deserialize(truth).context("the truth document")?)
 }
 
-/// Compares a tracked scene with the truth: by part, then frame, then point.
+/// Compares a tracked scene with the truth. The rows are ordered by part, frame and point.
 ///
-/// Errors name the part and the frame where something is missing, not finite, or of another number of points.
+/// It is an error if something is missing or not finite, or if numbers of points differ. The error names part and frame.
 pub fn rows(tracked: &Scene, truth: &Truth) -> Result<Vec<Row>> {
     let (parts, truths) = (&tracked.parts, &truth.parts);
-    ensure!(parts.len() == truths.len(), "{} parts tracked, {} expected", parts.len(), truths.len());
+    ensure!(parts.len() == truths.len(), "found {} tracked parts, expected {}", parts.len(), truths.len());
     let mut rows = Vec::new();
     for (k, (part, truth)) in parts.iter().zip(truths).enumerate() {
-        ensure!(part.name == truth.name, "part {:?}, but the truth of {:?}", part.name, truth.name);
+        ensure!(part.name == truth.name, "found the truth of part {:?}, expected that of {:?}", truth.name, part.name);
         for frame in between_keys(part, &tracked.footage) {
             part_rows(part, truth, k, frame, &mut rows)
                 .with_context(|| format!("part {:?}, frame {frame}", part.name))?;
@@ -83,9 +83,9 @@ fn part_rows(part: &Part, truth: &TruePart, k: usize, frame: FrameNumber, rows: 
     let want = truth.points.get(&frame).context("no true points")?;
     let contour = truth.contour.get(&frame).context("no true contour")?;
     let scored = truth.scored.get(&frame).context("no scored points in the truth")?.as_bytes();
-    ensure!(got.len() == want.len(), "{} tracked points, {} expected", got.len(), want.len());
-    ensure!(scored.len() == want.len(), "{} marks of scored points, {} expected", scored.len(), want.len());
-    ensure!(got.iter().all(|p| p.is_finite()), "tracked points that are not finite");
+    ensure!(got.len() == want.len(), "found {} tracked points, expected {}", got.len(), want.len());
+    ensure!(scored.len() == want.len(), "found {} marks of scored points, expected {}", scored.len(), want.len());
+    ensure!(got.iter().all(|p| p.is_finite()), "found tracked points that are not finite");
     rows.extend(got.iter().zip(want).zip(scored).enumerate().map(|(index, ((&g, &w), &mark))| Row {
         part: k,
         frame,
@@ -97,24 +97,24 @@ fn part_rows(part: &Part, truth: &TruePart, k: usize, frame: FrameNumber, rows: 
     Ok(())
 }
 
-/// The distance to the contour up to which a point is good, in pixels, in frames of this height.
+/// Largest distance in pixels from the contour at which a point is good, for frames of this height.
 pub fn tolerance(height: f64) -> f64 {
     height / 270.0
 }
 
 impl Row {
-    /// Whether the point is good, in frames of this height.
+    /// Whether the point is good, for frames of this height.
     pub fn good(&self, height: f64) -> bool {
         self.contour <= tolerance(height) && self.point <= 5.0 * tolerance(height)
     }
 
-    /// Whether the picture shows the point and it is not good.
+    /// Whether the point is scored and not good.
     pub fn bad(&self, height: f64) -> bool {
         self.scored && !self.good(height)
     }
 }
 
-/// Figures over the scored ones of some rows, for frames of this height.
+/// Figures over the scored rows, for frames of this height.
 pub fn figures<'a>(rows: impl IntoIterator<Item = &'a Row>, height: f64) -> Figures {
     let rows: Vec<&Row> = rows.into_iter().filter(|row| row.scored).collect();
     let n = rows.len() as f64;
@@ -131,7 +131,7 @@ pub fn figures<'a>(rows: impl IntoIterator<Item = &'a Row>, height: f64) -> Figu
     }
 }
 
-/// The percentile `q` (0 to 1), linear between neighbouring values; NaN of none.
+/// The percentile `q` (0 to 1), interpolated linearly between neighbouring values. It is NaN if there are no values.
 pub fn percentile(mut values: Vec<f64>, q: f64) -> f64 {
     if values.is_empty() {
         return f64::NAN;
@@ -192,10 +192,10 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_named() {
+    fn errors_name_part_and_frame() {
         let (mut tracked, truth) = documents(json!([[0.0, 0.0]]));
         let error = |tracked: &Value| format!("{:#}", measure(tracked, &truth).unwrap_err());
-        assert_eq!(error(&tracked), "part \"a\", frame 1: 1 tracked points, 4 expected");
+        assert_eq!(error(&tracked), "part \"a\", frame 1: found 1 tracked points, expected 4");
         tracked["parts"][0]["tracks"] = json!({});
         assert_eq!(error(&tracked), "part \"a\", frame 1: no tracked points");
     }

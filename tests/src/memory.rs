@@ -1,9 +1,9 @@
 //! Peak memory of this process.
 //!
-//! The kernel keeps the largest resident size that a process ever had (`VmHWM` in `/proc/self/status`). It never falls,
-//! so that a figure for one piece of work needs a process of its own: [`crate::benchmark`] starts one for each.
+//! The kernel records the largest resident size that a process has had (`VmHWM` in `/proc/self/status`). It never falls, so
+//! measuring one piece of work needs a process of its own. `cargo xtask bench-tracking` starts one for each measurement.
 
-/// The largest resident size so far, in MB of 10⁶ bytes; `None` where the system does not tell.
+/// The largest resident size so far, in MB of 10⁶ bytes. `None` if the system does not report it.
 pub fn peak_mb() -> Option<f64> {
     of_status(&std::fs::read_to_string("/proc/self/status").ok()?)
 }
@@ -26,7 +26,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn the_peak_holds_what_was_used() {
+    fn the_peak_includes_used_memory() {
         let before = peak_mb().unwrap();
         let block = vec![1_u8; 60 << 20];
         let with = peak_mb().unwrap();

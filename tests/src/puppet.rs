@@ -1,9 +1,9 @@
-//! Drawn footage of any size for measuring speed and memory: a crowd of limbs that swing and cross, with exact truth.
+//! Synthetic footage of any size for measuring speed and memory: a crowd of limbs that swing and cross, with exact truth.
 //!
-//! The sample cartoon ([`crate::sample`]) shows how good tracking is; here frames, parts, points and pixels can be set
-//! one by one. Each part is a bent, outlined limb of one colour with a band of another across; the parts hang in rows,
-//! overlap their neighbours, swing by up to 35° and drift. Drawn on twos. The motion from drawing to drawing is the same
-//! however long the footage is.
+//! The sample cartoon ([`crate::sample`]) shows how good tracking is. Here the numbers of frames, parts, points and pixels
+//! can be set one by one. Each part is a bent limb with an outline, of one colour with a band of another colour. The parts
+//! are in rows, overlap their neighbours, swing by up to 35° and drift. The footage is drawn on twos. The motion from
+//! drawing to drawing does not depend on the length of the footage.
 
 use crate::sample::ink::Canvas;
 use crate::sample::outline::Outline;
@@ -19,12 +19,12 @@ use std::path::Path;
 use std::sync::Arc;
 use tiny_skia::{Color, Pixmap};
 
-/// Frames that each drawing is held.
+/// Number of frames that each drawing is held.
 const HOLD: usize = 2;
-/// Frames in which a limb swings there and back.
+/// Number of frames in which a limb swings out and back.
 const SWING: f64 = 28.0;
 
-/// What is drawn.
+/// The size of the footage and the numbers of its parts and points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Puppet {
     /// Width of a frame in pixels.
@@ -73,7 +73,7 @@ impl Puppet {
         (0..self.parts).map(|part| self.outline(part, frame)).collect()
     }
 
-    /// The picture of a frame; later parts are nearer. An error where there is no picture of this size.
+    /// The picture of a frame. Later parts are nearer. It is an error if no picture can have this size.
     pub fn picture(&self, frame: FrameNumber) -> Result<Pixmap> {
         let (w, h) = (self.width as f64, self.height as f64);
         let pixels = Pixmap::new(self.width as u32, self.height as u32);
@@ -97,7 +97,7 @@ impl Puppet {
         Ok(canvas.pixels)
     }
 
-    /// The scene with the artist's keys only, its frames in `frames/`.
+    /// The scene with the artist's keys only. Its frames are in `frames/`.
     pub fn scene(&self) -> Scene {
         let last = self.frames.saturating_sub(1) as FrameNumber;
         let keys: Vec<FrameNumber> = (0..last).step_by(self.step.max(1)).chain([last]).collect();
@@ -119,8 +119,8 @@ impl Puppet {
         Scene { footage, parts: (0..self.parts).map(part).collect() }
     }
 
-    /// Writes `frames/frame_0000.png` and so on, `project.json` (key frames only) and `truth.json` into `folder`, which
-    /// is made if it isn't there.
+    /// Writes `frames/frame_0000.png` and so on, `project.json` (key frames only) and `truth.json` into `folder`, and makes
+    /// the folder if needed.
     pub fn write(&self, folder: &Path) -> Result<()> {
         std::fs::create_dir_all(folder.join("frames")).with_context(|| format!("cannot make the folder {folder:?}"))?;
         let drawings = self.frames.div_ceil(HOLD);
@@ -138,7 +138,7 @@ impl Puppet {
         write_file(&folder.join("truth.json"), self.truth(&scored).to_string().as_bytes())
     }
 
-    /// The truth document; `scored` by drawing, part and point.
+    /// The truth document. `scored` is indexed by drawing, part and point.
     fn truth(&self, scored: &[Vec<Vec<bool>>]) -> Value {
         let parts = (0..self.parts).map(|part| {
             let every = |value: &dyn Fn(&Outline, usize) -> Value| -> Value {
@@ -156,7 +156,7 @@ impl Puppet {
         json!({"parts": parts.collect::<Vec<_>>()})
     }
 
-    /// All pictures in memory, as the tracker reads them.
+    /// All pictures in memory, for the tracker.
     pub fn pictures(&self) -> Result<Pictures> {
         let drawings = (0..self.frames.div_ceil(HOLD)).into_par_iter();
         let drawn = drawings.map(|drawing| Ok(Arc::new(raster(&self.picture((HOLD * drawing) as FrameNumber)?))));
@@ -168,13 +168,13 @@ fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     std::fs::write(path, bytes).with_context(|| format!("cannot write {path:?}"))
 }
 
-/// The colour of a part, made darker by a factor.
+/// The colour of a part, times a factor.
 fn tone(part: usize, light: f32) -> Color {
     let [r, g, b] = palette::distinct(part).map(|c| (0.15 + 0.85 * c) * light);
     Color::from_rgba(r, g, b, 1.0).unwrap_or(Color::BLACK)
 }
 
-/// An opaque picture as the core reads one from a file.
+/// Converts an opaque picture to the form in which the core reads pictures from files.
 fn raster(picture: &Pixmap) -> Raster<Colour> {
     let width = picture.width() as usize;
     Raster::from_fn(width, picture.height() as usize, |x, y| {
@@ -183,7 +183,7 @@ fn raster(picture: &Pixmap) -> Raster<Colour> {
     })
 }
 
-/// Footage that is held in memory.
+/// Footage in memory.
 #[derive(Clone, Debug)]
 pub struct Pictures {
     drawings: Vec<Arc<Raster<Colour>>>,
@@ -206,7 +206,7 @@ mod tests {
     const SMALL: Puppet = Puppet { width: 120, height: 90, frames: 5, step: 2, parts: 3, points: 8 };
 
     #[test]
-    fn files_and_memory_hold_the_same() {
+    fn files_and_memory_have_the_same_pictures() {
         let folder = tempfile::tempdir().unwrap();
         SMALL.write(folder.path()).unwrap();
         let document = Document::load(&folder.path().join("project.json")).unwrap();
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn nearly_all_points_lie_in_the_picture_and_most_are_seen() {
+    fn most_points_are_visible() {
         let folder = tempfile::tempdir().unwrap();
         let puppet = Puppet { width: 320, height: 240, frames: 6, step: 5, parts: 12, points: 16 };
         puppet.write(folder.path()).unwrap();

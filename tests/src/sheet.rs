@@ -1,4 +1,4 @@
-//! Contact sheets: rendered strokes over the frames they were tracked in, side by side.
+//! Contact sheets: pictures side by side, such as rendered strokes over their frames.
 
 use crate::lettering;
 use anyhow::{Context, Result, ensure};
@@ -9,7 +9,7 @@ use tiny_skia::{Color, Pixmap};
 
 /// Width of one picture on the sheet in pixels.
 const CELL: u32 = 480;
-/// Pictures in a row.
+/// Number of pictures in a row.
 const COLUMNS: u32 = 4;
 /// Space between pictures in pixels.
 const GAP: u32 = 4;
@@ -19,15 +19,15 @@ const BAR: u32 = 28;
 /// One picture of a sheet.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// The frame's number, written above.
+    /// The frame's number, which is the caption.
     pub frame: i32,
     /// The footage's picture.
     pub footage: PathBuf,
-    /// What is laid over it: straight alpha, stretched to the footage's size.
+    /// The picture over it, with straight alpha. It is stretched to the footage's size.
     pub strokes: PathBuf,
 }
 
-/// Path of a frame by a pattern with one `%d` or `%0Nd`.
+/// The path of a frame, from a pattern with one `%d` or `%0Nd`.
 pub fn frame_path(pattern: &str, frame: i32) -> String {
     let Some(start) = pattern.find('%') else { return pattern.to_owned() };
     let Some(length) = pattern[start..].find('d') else { return pattern.to_owned() };
@@ -41,9 +41,9 @@ pub fn write(pictures: &[Picture], path: &Path) -> Result<()> {
     arrange(&cells)?.save(path).with_context(|| format!("cannot write {path:?}"))
 }
 
-/// Cells side by side in their order, the first at the top left.
+/// Arranges cells in rows, beginning at the top left.
 pub fn arrange(cells: &[RgbaImage]) -> Result<RgbaImage> {
-    ensure!(!cells.is_empty(), "a contact sheet needs a picture");
+    ensure!(!cells.is_empty(), "found no pictures, but a contact sheet needs at least one");
     let width = cells.iter().map(RgbaImage::width).max().unwrap_or(1);
     let height = cells.iter().map(RgbaImage::height).max().unwrap_or(1);
     let rows = (cells.len() as u32).div_ceil(COLUMNS);
@@ -57,13 +57,13 @@ pub fn arrange(cells: &[RgbaImage]) -> Result<RgbaImage> {
     Ok(sheet)
 }
 
-/// A picture of the footage in the size of a cell.
+/// Scales a picture to the width of a cell.
 pub fn shrunk(footage: &RgbaImage) -> RgbaImage {
     let height = (CELL * footage.height()).div_ceil(footage.width());
     resize(footage, CELL, height, FilterType::Triangle)
 }
 
-/// The cell under a bar on which `text` is written.
+/// Puts a bar with the caption `text` above a cell.
 pub fn captioned(cell: &RgbaImage, text: &str) -> Result<RgbaImage> {
     let mut bar = Pixmap::new(cell.width(), BAR).context("a cell without pixels")?;
     bar.fill(Color::from_rgba8(30, 30, 34, 255));
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn strokes_lie_over_the_footage() {
+    fn strokes_are_drawn_over_the_footage() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         RgbaImage::from_pixel(960, 540, Rgba([0, 0, 255, 255])).save(at("footage.png")).unwrap();

@@ -1,12 +1,12 @@
-//! Truth documents: where the control points and contours of each part really are.
+//! Truth documents: the true control points and contours of each part.
 //!
 //! ```json
 //! {"parts": [{"name": "arm", "points": {"1": [[x, y], …]}, "contour": {"1": [[x, y], …]}, "scored": {"1": "1101"}}]}
 //! ```
 //!
-//! Frames are the keys; `points` are the control points in the order of the project document, `contour` a dense
-//! polyline, `scored` a digit a control point: 1 where the picture shows it. Pixels, as in the project document. Other
-//! fields are not read.
+//! The keys are frame numbers. `points` are the control points in the order of the project document. `contour` is a dense
+//! polyline. `scored` has one digit per control point, which is 1 if the picture shows the point. Coordinates are in pixels,
+//! as in the project document. Other fields are not read.
 
 use anyhow::{Context, Result};
 use rototoon::geometry::Point;
@@ -17,7 +17,7 @@ use std::path::Path;
 /// The truth of a project document, its parts in the document's order.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 pub struct Truth {
-    /// One entry a part.
+    /// One entry per part.
     pub parts: Vec<TruePart>,
 }
 
@@ -28,17 +28,17 @@ pub struct TruePart {
     pub name: String,
     /// Control points by frame.
     pub points: BTreeMap<i32, Vec<Point>>,
-    /// Dense contour by frame; of a closed part the last point is not the first again.
+    /// Dense contour by frame. The contour of a closed part does not repeat its first point.
     pub contour: BTreeMap<i32, Vec<Point>>,
-    /// By frame `1` for each control point that the picture shows, `0` for the others.
+    /// For each frame a text with `1` for each control point that the picture shows, and `0` for the others.
     pub scored: BTreeMap<i32, String>,
 }
 
 impl Truth {
-    /// Reads a truth document; an error names the file.
+    /// Reads a truth document. The error names the file.
     pub fn load(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {path:?}"))?;
-        serde_json::from_str(&text).with_context(|| format!("{path:?} is no truth document"))
+        serde_json::from_str(&text).with_context(|| format!("{path:?} is not a truth document"))
     }
 }
 
@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_are_numbers_and_other_fields_are_left_out() {
+    fn frames_are_numbers_and_other_fields_are_ignored() {
         let json = r#"{"source": "x", "parts": [{"name": "a", "depth": 1, "points": {"-1": [[1, 2.5]]},
             "contour": {"-1": [[1, 2], [3, 4]]}, "scored": {"-1": "1"}}]}"#;
         let truth: Truth = serde_json::from_str(json).unwrap();
@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_none_is_named() {
+    fn errors_name_the_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("truth.json");
         assert!(format!("{:#}", Truth::load(&path).unwrap_err()).contains("truth.json"));

@@ -1,4 +1,4 @@
-//! The benchmark of tracking from end to end on a small drawn scene: its program, its table and its pictures.
+//! Tests of the benchmark of tracking on a small synthetic scene: its program, its table and its pictures.
 
 use rototoon_tests::benchmark::growth::Sample;
 use rototoon_tests::benchmark::run::Outcome;
@@ -24,7 +24,7 @@ fn outcome(folder: &Path, preset: &str, more: &[&str]) -> Outcome {
 }
 
 #[test]
-fn every_preset_gets_a_row_a_line_and_a_sheet() {
+fn every_preset_has_a_row_a_line_and_a_sheet() {
     let folder = tempfile::tempdir().unwrap();
     SMALL.write(&folder.path().join("set")).unwrap();
     let outcomes: Vec<Outcome> = presets().iter().map(|id| outcome(folder.path(), id, &[])).collect();
@@ -32,7 +32,7 @@ fn every_preset_gets_a_row_a_line_and_a_sheet() {
     let table = std::fs::read_to_string(folder.path().join("table.md")).unwrap();
     let svg = std::fs::read_to_string(folder.path().join("limbs.errors.svg")).unwrap();
     for (outcome, id) in outcomes.iter().zip(presets()) {
-        // Keys on frames 0, 3 and 6: four frames between, three parts of eight points.
+        // Keys are on frames 0, 3 and 6, so there are four frames between them, with three parts of eight points.
         assert_eq!((outcome.work.total, outcome.threads, outcome.preset.as_str()), (96, 1, id));
         assert!(outcome.corrected && outcome.work.edits() <= 96 && outcome.seconds > 0.0);
         assert_eq!(outcome.again.len(), outcome.work.rounds, "a track after each round");
@@ -49,7 +49,7 @@ fn every_preset_gets_a_row_a_line_and_a_sheet() {
 }
 
 #[test]
-fn the_default_is_good_and_needs_no_artist_to_say_so() {
+fn the_default_preset_is_measured_without_the_artist() {
     let folder = tempfile::tempdir().unwrap();
     SMALL.write(&folder.path().join("set")).unwrap();
     let outcome = outcome(folder.path(), "rototoon", &["--no-edits"]);
@@ -86,7 +86,7 @@ fn errors_name_what_is_wrong() {
 }
 
 #[test]
-fn what_is_left_out_is_left_out_and_said() {
+fn a_mechanism_can_be_left_out() {
     let folder = tempfile::tempdir().unwrap();
     SMALL.write(&folder.path().join("set")).unwrap();
     let whole = outcome(folder.path(), "rototoon", &["--no-edits"]);

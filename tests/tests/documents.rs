@@ -1,4 +1,4 @@
-//! Project documents: what is kept, what is refused and how it is said.
+//! Tests of project documents: fields that are kept, documents that are refused, and their messages.
 
 use proptest::prelude::*;
 use rototoon::geometry::Point;
@@ -10,7 +10,7 @@ use std::fs;
 const FOOTAGE: &str = r#"{"pattern": "f_%03d.png", "first": 0, "last": 20, "fps": 12.5, "width": 64, "height": 48}"#;
 const TRIANGLE: &str = "[[1, 2], [30.5, 4], [7, 40]]";
 
-/// A document of one part with these fields besides its name.
+/// A document of one part with a name and these fields.
 fn with_part(fields: &str) -> String {
     format!(r#"{{"rototoon": 1, "footage": {FOOTAGE}, "parts": [{{"name": "arm", {fields}}}]}}"#)
 }
@@ -106,7 +106,7 @@ fn all_errors_are_reported_at_once() {
 }
 
 #[test]
-fn footage_that_cannot_be_is_refused() {
+fn impossible_footage_is_refused() {
     for (field, value, message) in [
         ("\"f_%03d.png\"", "\"%d/%d.png\"", "pattern \"%d/%d.png\" has 2 frame numbers: expected one %d or %0Nd"),
         ("12.5", "-1", "footage.fps: found -1, expected more than 0"),
@@ -134,7 +134,7 @@ fn a_later_version_is_refused_and_named() {
 }
 
 #[test]
-fn text_that_is_no_document_says_where_it_breaks() {
+fn errors_of_broken_text_name_the_place() {
     let whole = with_part(&format!(r#""keys": {{"0": {TRIANGLE}}}"#));
     let cut = &whole[..whole.find("30.5").unwrap()];
     let place = "parts[0] \"arm\".keys.\"0\"[1][0]: the document ends too early: it was cut short";
@@ -151,7 +151,7 @@ fn text_that_is_no_document_says_where_it_breaks() {
 }
 
 #[test]
-fn what_has_no_effect_is_kept_with_a_warning() {
+fn corrections_without_effect_are_kept_with_a_warning() {
     assert_eq!(
         warnings(&with_part(r#""keys": {}, "pins": {"3": {"9": [0, 0]}}"#)),
         [
@@ -182,7 +182,7 @@ fn odd_contours_are_valid_with_a_warning() {
         assert!(texts.iter().all(|text| text.contains(warning)) && !texts.is_empty(), "{points}: {texts:?}");
     }
     let one = warnings(&with_part(&format!(r#""keys": {{"0": {TRIANGLE}}}"#)));
-    assert_eq!(one, [""; 0], "a part with one key is followed from it");
+    assert_eq!(one, [""; 0], "a part with one key is tracked outward from it");
 }
 
 #[test]
@@ -265,7 +265,7 @@ fn point() -> impl Strategy<Value = Point> + Clone {
     (-1e6..1e6, -1e6..1e6).prop_map(|(x, y)| Point::new(x, y))
 }
 
-/// Valid parts with everything in them; computed coordinates lie on the grid that is written.
+/// Valid parts with all fields. Computed coordinates have the decimals that are written.
 fn part() -> impl Strategy<Value = Part> {
     let grid = |p: Point| (p * 1e4).round() / 1e4;
     (0usize..6, any::<bool>(), -1e3..1e3).prop_flat_map(move |(count, closed, depth)| {
@@ -294,7 +294,7 @@ fn part() -> impl Strategy<Value = Part> {
 
 proptest! {
     #[test]
-    fn what_is_written_is_read_again(parts in prop::collection::vec(part(), 0..4), name in ".{0,8}") {
+    fn written_documents_are_read_again(parts in prop::collection::vec(part(), 0..4), name in ".{0,8}") {
         let mut document = parse(&with_footage(FOOTAGE)).unwrap();
         document.scene.parts = parts;
         for (i, part) in document.scene.parts.iter_mut().enumerate() {

@@ -1,10 +1,10 @@
-//! Dependencies have the same features in whatever set of packages is built: else cargo compiles them again, and all
-//! that depends on them, in every run of `cargo xtask test`.
+//! Checks that dependencies have the same features in every set of packages that is built. Otherwise Cargo compiles them
+//! again in every run of `cargo xtask test`, with all packages that depend on them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
 
-/// The sets of features with which each dependency is compiled when cargo is given `selection`.
+/// The sets of features with which each dependency is compiled for the packages that `selection` selects.
 fn features(selection: &[&str]) -> BTreeMap<String, BTreeSet<String>> {
     let tree = Command::new(env!("CARGO"))
         .args(["tree", "--quiet", "--locked", "--prefix", "none", "--no-dedupe", "--format", "{p}|{f}"])
@@ -16,13 +16,13 @@ fn features(selection: &[&str]) -> BTreeMap<String, BTreeSet<String>> {
     let mut sets: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     let tree = String::from_utf8(tree.stdout).expect("names are UTF-8");
     for line in tree.lines().filter(|line| !line.is_empty()) {
-        let (package, features) = line.split_once('|').expect("the format that was asked for");
+        let (package, features) = line.split_once('|').expect("the lines have the given format");
         sets.entry(package.to_owned()).or_default().insert(features.to_owned());
     }
     sets
 }
 
-/// What `selection` would compile that `all` has compiled with other features.
+/// The dependencies that `selection` compiles with other features than `all`.
 fn compiled_again(all: &BTreeMap<String, BTreeSet<String>>, selection: &[&str]) -> Vec<String> {
     let again = |(package, sets): (String, BTreeSet<String>)| {
         let there = all.get(&package)?;

@@ -1,8 +1,8 @@
-//! The whole way of a motion: the sample cartoon's contours, tracked; their limbs, as a clip; that motion in another character's
-//! manner; a second drawn character reshaped to it.
+//! Tests all steps of a motion: the sample cartoon's contours are tracked, their limbs give a clip, the motion is made in
+//! another character's style, and a second drawn character follows it.
 //!
-//! Leaves `target/style/sheet.png`: the sample's drawings, the doll that follows the captured clip, and the doll that follows it in the
-//! old man's manner.
+//! The test writes `target/style/sheet.png`: the sample's drawings, the doll that follows the captured clip, and the doll that
+//! follows the clip in the old man's style.
 
 use rototoon::geometry::{Point, polygon};
 use rototoon::pipeline::{self, ClipJob, ReshapeJob};
@@ -19,10 +19,10 @@ use std::path::Path;
 use std::sync::LazyLock;
 use tiny_skia::Pixmap;
 
-/// Frames of the sample's walk; what follows is the jump.
+/// Number of frames of the sample's walk. The frames after it are the jump.
 const WALK: usize = 12;
 
-/// Drawings of the jump in the air, keyed beside the project's own keys: both legs change places there within two drawings.
+/// Further key frames in the air, because both legs swap places there within two drawings.
 const IN_THE_AIR: [FrameNumber; 2] = [14, 16];
 
 /// The sample cartoon tracked from its keys.
@@ -44,7 +44,7 @@ fn captured(document: &Document, motion: &str, frames: std::ops::RangeInclusive<
     pipeline::clip(document, &job).unwrap().clips.clips.remove(0)
 }
 
-/// The true key points: the same limbs on the true contours.
+/// A clip of the true key points: the same limbs on the true contours.
 fn true_clip(motion: &str, frames: std::ops::RangeInclusive<FrameNumber>) -> Clip {
     let mut document = TRACKED.clone();
     let drawings = sample::draw().unwrap();
@@ -54,7 +54,7 @@ fn true_clip(motion: &str, frames: std::ops::RangeInclusive<FrameNumber>) -> Cli
     captured(&document, motion, frames)
 }
 
-/// An old man's version of a clip: bent forward from the hips, knees and arms hanging back.
+/// An old man's version of a clip: the upper body with head and arms leans by 0.45 rad about the pelvis.
 fn aged(clip: &Clip) -> Clip {
     let turned = |posture: &Posture| -> Posture {
         let lean = Point::from_angle(0.45);
@@ -82,13 +82,13 @@ fn reshaped(clip: &Clip, marks: bool) -> Document {
     document
 }
 
-/// How far the torso leans to the right, in radians, on average.
+/// The mean lean of the torso to the right, in radians.
 fn lean(clip: &Clip) -> f64 {
     let angle = |p: &Posture| (p[2] - p[0]).x.atan2((p[0] - p[2]).y);
     clip.postures.iter().map(angle).sum::<f64>() / clip.postures.len() as f64
 }
 
-/// The index of the nearest part at every pixel, for parts in an order from the farthest to the nearest.
+/// The index of the nearest part at every pixel. `order` lists the parts from the farthest to the nearest.
 fn topmost(document: &Document, frame: FrameNumber, order: &[usize]) -> Vec<usize> {
     let mut ids = vec![usize::MAX; (WIDTH * HEIGHT) as usize];
     for &index in order {
@@ -101,7 +101,7 @@ fn topmost(document: &Document, frame: FrameNumber, order: &[usize]) -> Vec<usiz
     ids
 }
 
-/// Pixels on which another part is in front than on the sample character, and pixels where limbs lie over each other.
+/// The number of pixels on which another part is in front than in the true order, and of pixels on which parts overlap.
 fn order_errors(document: &Document) -> (usize, usize) {
     let index = |name: &str| document.scene.parts.iter().position(|part| part.name == name).unwrap();
     let truth: Vec<usize> = doll::TRUE_ORDER.iter().map(|name| index(name)).collect();
@@ -131,16 +131,16 @@ fn a_tracked_character_s_clip_is_near_the_true_one() {
 }
 
 #[test]
-fn a_walk_is_given_to_a_doll_in_an_old_man_s_manner() {
+fn a_doll_performs_a_walk_in_an_old_man_s_style() {
     let last = FRAMES as FrameNumber - 1;
     let walk = captured(&TRACKED, "walk", 0..=WALK as FrameNumber - 1);
     let jump = captured(&TRACKED, "jump", WALK as FrameNumber..=last);
     let library = Clips { clips: vec![walk.clone(), jump.clone(), aged(&jump)], fps: 24.0 };
     let request = Request { style: "old", motion: "walk", content: "boy", keys: &[] };
-    // One other motion says little, so the most probable manner is a faint one: it is laid on thicker.
+    // One other motion gives little information, so the most probable style is weak. A higher strength compensates for that.
     let options = Options { strength: 2.5, ..Options::default() };
     let made = pipeline::translate(&library, &request, &options, &Silent).unwrap().clips.remove(0);
-    println!("lean: {:.3} as captured, {:.3} in the old man's manner", lean(&walk), lean(&made));
+    println!("lean: {:.3} as captured, {:.3} in the old man's style", lean(&walk), lean(&made));
     assert!(lean(&made) > lean(&walk) + 0.15, "{} {}", lean(&made), lean(&walk));
 
     let whole = captured(&TRACKED, "all", 0..=last);
@@ -153,7 +153,7 @@ fn a_walk_is_given_to_a_doll_in_an_old_man_s_manner() {
     }
     assert!(order_errors(&reshaped(&whole, false)).0 > 1000, "without marks the order is not found");
 
-    // The doll performs the clip: its own limbs keep the lengths that the clip's have in its proportions.
+    // The lengths of the doll's limbs are its own, times the relative changes of length in the clip.
     let performed = captured(&in_manner, "walk", 0..=WALK as FrameNumber - 1);
     let rest = captured(&doll::document().unwrap(), "rest", 0..=0);
     let (own, theirs) =
@@ -185,7 +185,7 @@ fn write_sheet(as_captured: &Document, in_manner: &Document) -> anyhow::Result<(
     }
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/style");
     std::fs::create_dir_all(&folder)?;
-    // The doll as a project of its own, to try the same in Blender.
+    // The doll is also written as a project of its own, to try the same in Blender.
     std::fs::write(folder.join("doll.json"), doll::document()?.to_json())?;
     std::fs::write(folder.join("doll_0.png"), doll::paint(ground.clone(), &doll::document()?, 0).encode_png()?)?;
     sample::write(&folder.join("sample"))?;

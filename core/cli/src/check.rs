@@ -15,7 +15,7 @@ pub fn command() -> Command {
         .args(arguments::of_stage(Stage::Run))
 }
 
-/// Runs it.
+/// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let path = arguments::path(given, "project");
     let document = Document::load(path)?;

@@ -49,7 +49,7 @@ fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Runs it.
+/// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "curves"), arguments::path(given, "output"));
     let id = arguments::choice(given, "fit_preset");

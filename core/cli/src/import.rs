@@ -31,7 +31,7 @@ pub fn command() -> Command {
         )
 }
 
-/// Runs it.
+/// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let [from, shapes, to] = ["project", "shapes", "output"].map(|id| arguments::path(given, id));
     let extension = shapes.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();

@@ -14,7 +14,7 @@ pub fn load(path: &Path) -> Result<Document, Failure> {
     Ok(document)
 }
 
-/// The folder that a document's footage is relative to.
+/// The folder of a document, to which its footage is relative.
 pub fn folder(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }

@@ -38,7 +38,7 @@ pub fn command() -> Command {
         .args(arguments::of_stage(Stage::Run))
 }
 
-/// Runs it.
+/// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let from = arguments::path(given, "project");
     let output = arguments::path(given, "output");

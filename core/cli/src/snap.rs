@@ -18,7 +18,7 @@ pub fn command() -> Command {
         .args(arguments::of_stage(Stage::Run))
 }
 
-/// Runs it.
+/// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let options = options(given)?;

@@ -159,7 +159,7 @@ fn a_document_written_elsewhere_finds_its_frames() {
     good(&["export", text(&other.join("p.json")), "-o", text(&back)]);
     assert_eq!(read(&back)["footage"]["pattern"], "other/100%%d/frames/f_%03d.png");
     assert_eq!(good(&["check", text(&back)]), "");
-    // From a working directory beside the document.
+    // With a path relative to the working directory.
     let here = command(&["check", "back.json"]).current_dir(cartoon.folder.path()).output().unwrap();
     assert_eq!(here.status.code(), Some(0), "{}", said(&here));
 }
@@ -433,7 +433,7 @@ fn an_interrupt_leaves_no_incomplete_files() {
     }
 }
 
-/// A file of curves in a folder of its own.
+/// A new folder with a file of curves, and the paths of that file and of an output file.
 fn curves(text: &str) -> (tempfile::TempDir, PathBuf, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let (from, to) = (folder.path().join("curves.json"), folder.path().join("out.json"));

@@ -237,7 +237,7 @@ impl Item {
     }
 }
 
-/// The lists with this first word, at any depth.
+/// Finds the lists with this first word, at any depth.
 fn named<'a>(items: &'a [Item], name: &str, found: &mut Vec<&'a [Item]>) {
     for item in items {
         if let Item::List(list) = item {

@@ -54,8 +54,8 @@ impl Region {
     }
 }
 
-// SAFETY: OpenFX lets render and the actions around it run on several threads, and its suites be called from them; the
-// effect's handle is an address that only the host reads.
+// SAFETY: OpenFX runs render and the actions around it on several threads, which may call its suites. The effect's handle is
+// an address that only the host reads.
 unsafe impl Send for Effect<'_> {}
 // SAFETY: as above.
 unsafe impl Sync for Effect<'_> {}

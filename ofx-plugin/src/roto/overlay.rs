@@ -128,7 +128,7 @@ fn draw(view: &View, dragged: Option<Drag>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes a dragged point into the document.
+/// Stores a dragged point in the document.
 fn keep(view: &View, shown: &Shown, drag: Drag) -> Result<(), Failure> {
     let mut document = Document::clone(&shown.document);
     let part = document.scene.parts.get_mut(drag.part).ok_or(Failure::Default)?;

@@ -184,7 +184,7 @@ fn each(pixels: &mut Raster<Pixel>, mask: &Raster<f32>, mut change: impl FnMut(&
     }
 }
 
-/// Lays a colour over a premultiplied pixel.
+/// Composites a colour over a premultiplied pixel.
 fn over(pixel: &mut Pixel, colour: [f32; 3], alpha: f32) {
     if alpha > 0.0 {
         let [r, g, b] = colour;

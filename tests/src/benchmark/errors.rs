@@ -1,15 +1,15 @@
-//! Errors over the frames of one set, a line a preset.
+//! A plot of errors over the frames of one set, with a line for each preset.
 
 use super::run::{FrameErrors, Outcome};
 use crate::chart::{Axis, Chart, INKS, Panel, Series};
 use rototoon::scene::FrameNumber;
 
-/// Least distance shown, in pixels: less is as good as none.
+/// Least distance shown, in pixels. Smaller distances are negligible.
 const LEAST: f64 = 0.05;
 
-/// Above, the distance to the contour: median (solid) and 90th percentile (dashed), logarithmic. Below, the share of
-/// good points. Lines end at frames where all parts are keyed; key frames are marked, strongly where all parts have one.
-/// `None` without outcomes.
+/// The upper panel shows the distance to the contour: median (solid) and 90th percentile (dashed), logarithmic. The lower
+/// panel shows the share of good points. Lines are interrupted at frames on which all parts are keyed. Key frames are
+/// marked, and marked strongly if all parts have a key there. `None` if there are no outcomes.
 pub fn chart(set: &str, outcomes: &[&Outcome]) -> Option<Chart> {
     let frames = outcomes.iter().flat_map(|o| o.keys.iter().map(|(frame, _)| *frame));
     let (first, last) = (frames.clone().min()?, frames.max()?);
@@ -30,7 +30,7 @@ pub fn chart(set: &str, outcomes: &[&Outcome]) -> Option<Chart> {
     }
     Some(Chart {
         title: format!("{set}: errors over frames"),
-        note: "solid: median, dashed: 90th percentile; upright: key frames".into(),
+        note: "solid: median, dashed: 90th percentile; vertical: key frames".into(),
         x,
         panels: vec![
             Panel { y: axis("distance to contour, px", LEAST, 1.2 * largest, true), height: 250.0, series: distances },
@@ -44,7 +44,7 @@ fn axis(label: &str, low: f64, high: f64, logarithmic: bool) -> Axis {
     Axis { label: label.into(), low, high, logarithmic }
 }
 
-/// The values in runs of frames that follow each other.
+/// The values, divided into runs of consecutive frames.
 fn runs(outcome: &Outcome, value: fn(&FrameErrors) -> f64) -> Vec<Vec<(f64, f64)>> {
     let mut runs: Vec<Vec<(f64, f64)>> = Vec::new();
     let mut before: Option<FrameNumber> = None;

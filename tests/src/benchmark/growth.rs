@@ -1,27 +1,28 @@
-//! How seconds and memory of a track grow with frames, parts, points and pixels.
+//! Measures how the time and memory of tracking grow with frames, parts, points and pixels.
 //!
-//! One of the four is doubled at a time from a base scene ([`crate::puppet`]); the others stay. Frames are counted that
-//! show other drawings than the keys; more parts are smaller ones; more points lie closer together on the same contours.
-//! The exponent of a growth is the slope of the least-squares line through the logarithms: 1 is linear.
+//! Starting from a base scene ([`crate::puppet`]), one of the four is doubled repeatedly while the others stay the same.
+//! Only frames that show other drawings than the keys are counted. More parts are smaller, and more points are closer
+//! together on the same contours. The exponent of the growth is the slope of the least-squares line through the logarithms;
+//! 1 is linear.
 
 use crate::chart::{Axis, Chart, INKS, Panel, Series};
 use crate::puppet::Puppet;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
-/// The scene from which each series starts: the size of a shot at 540 lines, one span.
+/// The base scene: the size of a shot at 540 lines, one span.
 const BASE: Puppet = Puppet { width: 420, height: 540, frames: 12, step: usize::MAX, parts: 6, points: 8 };
-/// Frames that show the drawings of the keys: nothing is tracked there.
+/// Number of frames that show the drawings of the keys, on which nothing is tracked.
 const KEYED: usize = 4;
-/// Times that each quantity is doubled.
+/// How often each quantity is doubled.
 const DOUBLINGS: u32 = 3;
 
-/// The scene whose memory is measured: a shot in high definition, keyed on its first and last frame only.
+/// The scene for measuring memory: a shot in high definition, keyed on its first and last frame only.
 pub const SHOT: Puppet = Puppet { width: 1920, height: 1080, frames: 100, step: usize::MAX, parts: 16, points: 12 };
-/// The same, keyed on five frames.
+/// The same scene, keyed on five frames.
 pub const KEYED_SHOT: Puppet = Puppet { step: 25, ..SHOT };
 
-/// One measured track.
+/// The measurement of one track.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Sample {
     /// Seconds, from opening the document on.
@@ -35,11 +36,11 @@ pub struct Sample {
 pub struct Quantity {
     /// Its name.
     pub name: &'static str,
-    /// Its value and the scene, from the base on.
+    /// Its values with their scenes, beginning with the base scene.
     pub scenes: Vec<(usize, Puppet)>,
 }
 
-/// What was measured of a quantity: its values with their samples.
+/// A quantity's name, and its values with their measurements.
 pub type Measured = (&'static str, Vec<(usize, Sample)>);
 
 /// The four quantities.
@@ -50,7 +51,7 @@ pub fn quantities() -> Vec<Quantity> {
     };
     let between = BASE.frames - KEYED;
     let larger = |factor: usize| {
-        // Pixels double where each side grows by the square root; even sides.
+        // The sides grow with the square root of the number of pixels, and are even.
         let side = |base: usize| (base as f64 * (factor as f64).sqrt() / 2.0).round() as usize * 2;
         let puppet = Puppet { width: side(BASE.width), height: side(BASE.height), ..BASE };
         (puppet.width * puppet.height, puppet)
@@ -63,7 +64,7 @@ pub fn quantities() -> Vec<Quantity> {
     ]
 }
 
-/// The exponent with which `value` grows; NaN of fewer than two samples.
+/// The exponent with which the second numbers grow with the first ones. It is NaN for fewer than two samples.
 pub fn exponent(samples: &[(usize, f64)]) -> f64 {
     let logs: Vec<(f64, f64)> = samples.iter().map(|&(x, y)| ((x as f64).ln(), y.ln())).collect();
     let n = logs.len() as f64;
@@ -82,7 +83,7 @@ pub fn markdown(measured: &[Measured]) -> String {
             let _ = writeln!(text, "| {name} | {value} | {:.3} | {peak} |", sample.seconds);
         }
     }
-    text += "\nSeconds grow with the power";
+    text += "\nThe seconds grow with the power";
     for (i, (name, samples)) in measured.iter().enumerate() {
         let seconds: Vec<_> = samples.iter().map(|(value, sample)| (*value, sample.seconds)).collect();
         let _ = write!(text, "{} {:.2} of {name}", if i > 0 { "," } else { "" }, exponent(&seconds));
@@ -90,14 +91,15 @@ pub fn markdown(measured: &[Measured]) -> String {
     let Puppet { width, height, frames, parts, points, .. } = BASE;
     let _ = writeln!(
         text,
-        ".\n\nThe base is a drawn scene of {frames} frames of {width}×{height} in one span, {parts} parts, {} points. \
-         Frames are those that show other drawings than the keys. More parts are smaller ones; more points lie closer together.",
+        ".\n\nThe base is a synthetic scene of {frames} frames of {width}×{height} in one span, with {parts} parts and {} \
+         points. Only frames that show other drawings than the keys are counted. More parts are smaller, and more points are \
+         closer together.",
         parts * points
     );
     text
 }
 
-/// Seconds and memory over the factor by which a quantity grew, both logarithmic.
+/// A chart of seconds and memory over the factor by which a quantity has grown, both logarithmic.
 pub fn chart(measured: &[Measured]) -> Chart {
     let most = f64::from(1_u32 << DOUBLINGS);
     let panel = |label: &str, named: bool, value: &dyn Fn(&Sample) -> Option<f64>| {
@@ -124,7 +126,7 @@ pub fn chart(measured: &[Measured]) -> Chart {
         Panel { y: axis(label, 0.85 * low, 1.2 * high), height: 240.0, series }
     };
     Chart {
-        title: "One track, as one quantity grows".into(),
+        title: "Time and memory of one track while one quantity grows".into(),
         note: String::new(),
         x: axis("times the base scene", 1.0, most),
         panels: vec![

@@ -1,15 +1,15 @@
-//! The benchmark of tracking: every preset over project documents with truth.
+//! The benchmark of tracking: measures every preset on project documents with truth.
 //!
-//! - [`run`]: one preset on one set, tracked, corrected by the simulated artist and timed
-//! - [`table`]: what came out as Markdown and JSON
-//! - [`errors`]: how errors go over the frames, as a plot
-//! - [`overlay`]: tracked and true contours over the footage, as a contact sheet
+//! - [`run`]: tracks one set with one preset, lets the simulated artist correct it, and measures times
+//! - [`table`]: the results as Markdown and JSON
+//! - [`errors`]: a plot of errors over frames
+//! - [`overlay`]: a contact sheet of tracked and true contours
 //! - [`own`]: sets that this package draws
-//! - [`growth`]: seconds and memory by frames, parts, points and pixels
+//! - [`growth`]: time and memory by frames, parts, points and pixels
 //!
 //! A **set** is a folder with `project.json` (key frames only) and `truth.json` ([`crate::truth`]). The command
-//! (`cargo xtask bench-tracking`) gives each set and preset an optimised process of its own, so that its peak memory is
-//! the run's alone and nothing is warm that should be cold.
+//! (`cargo xtask bench-tracking`) runs each set and preset in an optimised process of its own, so that all start with cold
+//! caches and peak memory is measured separately.
 
 pub mod errors;
 pub mod growth;
@@ -25,7 +25,7 @@ use run::Outcome;
 use std::path::Path;
 use table::Failure;
 
-/// The ids of the default preset's mechanisms that can be left out.
+/// The ids of the mechanisms of the default preset. Each can be left out.
 pub fn mechanisms() -> Vec<&'static str> {
     Mechanism::ALL.iter().map(|(_, id)| *id).collect()
 }
@@ -35,8 +35,8 @@ pub fn presets() -> Vec<&'static str> {
     Preset::ALL.iter().map(|(_, id)| *id).collect()
 }
 
-/// Writes what is known of some runs into `folder`: `table.md`, `table.json`, and for each set `SET.errors.svg` and
-/// `.png`. Each file appears whole.
+/// Writes the results of some runs into `folder`: `table.md`, `table.json`, and for each set `SET.errors.svg` and `.png`.
+/// Each file is written completely or not at all.
 pub fn write_files(folder: &Path, outcomes: &[Outcome], failures: &[Failure]) -> Result<()> {
     write_whole(&folder.join("table.md"), table::markdown(outcomes, failures).as_bytes())?;
     write_whole(&folder.join("table.json"), &serde_json::to_vec_pretty(&table::json(outcomes, failures))?)?;

@@ -1,9 +1,8 @@
-//! Tracked and true contours over the footage, as a contact sheet.
+//! A contact sheet of tracked and true contours over the footage.
 //!
-//! The frames between keys, evenly chosen, the worst one always among them, cut to where the contours are. The footage is
-//! paled. The true contour is a
-//! thin dark line; the tracked control points are joined by straight lines in the part's colour; a bad point is a red
-//! dot with a line to its true place. Parts that are keyed on the frame are not drawn.
+//! It shows evenly chosen frames between keys, always with the worst one, cropped to the contours. The footage is pale. The
+//! true contour is a thin dark line. The tracked control points are joined by straight lines in the part's colour. A bad
+//! point is a red dot with a line to its true position. Parts with a key on the frame are not drawn.
 
 use super::run::{FrameErrors, Run};
 use crate::measure::Row;
@@ -17,11 +16,11 @@ use tiny_skia::{Color, IntSize, LineJoin, Paint, PathBuilder, Pixmap, Stroke, Tr
 
 /// Most pictures on a sheet.
 const PICTURES: usize = 12;
-/// How much of the footage's contrast is left.
+/// Share of the footage's contrast that is left.
 const CONTRAST: f32 = 0.55;
 /// Space around the contours, as a share of the footage's height.
 const MARGIN: f64 = 0.04;
-/// Most height of a picture for its width.
+/// Largest ratio of a picture's height to its width.
 const TALLEST: f64 = 1.25;
 /// Widths of lines in pixels of the sheet.
 const TRUE_WIDTH: f32 = 1.0;
@@ -30,9 +29,9 @@ const TRACKED_WIDTH: f32 = 1.8;
 const GOOD_RADIUS: f32 = 1.8;
 const BAD_RADIUS: f32 = 3.4;
 
-/// The sheet of a run; an error where it has no frame to show.
+/// The sheet of a run. It is an error if the run has no frame to show.
 pub fn sheet(run: &Run) -> Result<RgbaImage> {
-    let worst = worst(&run.outcome.frames).context("no frame between keys")?;
+    let worst = worst(&run.outcome.frames).context("found no frame between keys")?;
     let shown = chosen(&run.outcome.frames, worst);
     let cut = cut(run, &shown);
     let cells = shown.into_iter().map(|errors| {
@@ -43,13 +42,13 @@ pub fn sheet(run: &Run) -> Result<RgbaImage> {
     sheet::arrange(&cells.collect::<Result<Vec<_>>>()?)
 }
 
-/// The frame with the smallest share of good points; of equal ones that with the largest errors.
+/// The frame with the smallest share of good points. Of equal ones it is that with the largest errors.
 fn worst(frames: &[FrameErrors]) -> Option<FrameNumber> {
     let order = |a: &&FrameErrors, b: &&FrameErrors| a.good.total_cmp(&b.good).then(b.p90.total_cmp(&a.p90));
     frames.iter().min_by(order).map(|errors| errors.frame)
 }
 
-/// Up to [`PICTURES`] frames in even steps; the nearest one makes room for the worst.
+/// Up to [`PICTURES`] frames in even steps. The worst frame replaces the one nearest to it.
 fn chosen(frames: &[FrameErrors], worst: FrameNumber) -> Vec<FrameErrors> {
     let count = frames.len().min(PICTURES);
     let steps = count.saturating_sub(1).max(1);
@@ -65,7 +64,7 @@ fn chosen(frames: &[FrameErrors], worst: FrameNumber) -> Vec<FrameErrors> {
 /// A rectangle of whole pixels of the footage: left, top, width, height.
 type Cut = [u32; 4];
 
-/// What the contours of the frames take, tracked and true, with a margin, within the picture and not narrow.
+/// The rectangle of the tracked and true contours of the frames, with a margin, inside the picture and not too narrow.
 fn cut(run: &Run, shown: &[FrameErrors]) -> Cut {
     let parts = run.tracked.parts.iter().zip(&run.truth.parts);
     let contours = parts.flat_map(|(part, truth)| {
@@ -116,7 +115,7 @@ fn cell(run: &Run, frame: FrameNumber, [left, top, width, height]: Cut) -> Resul
             if rows.get(&(k, index)).is_some_and(|row| row.bad(height)) {
                 let red = Color::from_rgba8(215, 0, 40, 255);
                 pen.line(&[point, truth.points[&frame][index]], false, red, 1.2);
-                // The white rim tells it from contours in red.
+                // The white rim distinguishes the dot from red contours.
                 pen.dot(point, BAD_RADIUS + 1.4, Color::WHITE);
                 pen.dot(point, BAD_RADIUS, red);
             } else {
@@ -136,14 +135,14 @@ fn paled(footage: &Raster<Colour>) -> RgbaImage {
     })
 }
 
-/// What a cell shows of the footage.
+/// The part of the footage that a cell shows.
 #[derive(Clone, Copy)]
 struct View {
     origin: Point,
     scale: f64,
 }
 
-/// Draws in pixels of the footage.
+/// Draws on a picture, with positions in pixels of the footage.
 struct Pen<'a> {
     picture: &'a mut Pixmap,
     view: View,
@@ -204,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn of_many_the_worst_is_among_those_shown() {
+    fn the_worst_of_many_frames_is_shown() {
         assert_eq!(numbers(23, 1), [1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23]);
         assert_eq!(numbers(23, 8), [1, 3, 5, 8, 9, 11, 13, 15, 17, 19, 21, 23]);
         for bad in 1..=40 {
@@ -214,18 +213,18 @@ mod tests {
     }
 
     #[test]
-    fn the_cut_holds_the_contours_and_lies_in_the_picture() {
+    fn the_crop_contains_the_contours_and_is_in_the_picture() {
         let size = Point::new(1000.0, 500.0);
         let of = |low: (f64, f64), high: (f64, f64)| around(&[low.into(), high.into()], size);
         assert_eq!(of((300.0, 200.0), (500.0, 300.0)), [280, 180, 240, 140]);
         assert_eq!(of((-50.0, 100.0), (2000.0, 900.0)), [0, 80, 1000, 420], "beyond the picture");
-        assert_eq!(of((10.0, 20.0), (30.0, 480.0)), [0, 0, 400, 500], "as wide as its height demands");
+        assert_eq!(of((10.0, 20.0), (30.0, 480.0)), [0, 0, 400, 500], "as wide as its height needs");
         assert_eq!(around(&[], size), [0, 0, 1000, 500]);
         assert_eq!(of((3000.0, 3000.0), (3001.0, 3001.0)), [999, 499, 1, 1], "nothing is seen");
     }
 
     #[test]
-    fn of_equally_bad_frames_the_larger_errors_are_worst() {
+    fn of_equally_bad_frames_that_with_larger_errors_is_worst() {
         let mut frames = frames(5, 9);
         frames[3].p90 = 7.0;
         assert_eq!(worst(&frames), Some(4));

@@ -1,8 +1,8 @@
-//! One preset on one set.
+//! Measures one preset on one set.
 //!
-//! The first track is cold: it includes reading the document and decoding the pictures. One tracker lives through the
-//! rounds of corrections, so that a track after corrections is what an artist waits for who presses Track again. Tracks
-//! are rounded as a saved document rounds them before they are measured: the figures are those of the files.
+//! The first track starts with cold caches: it includes reading the document and decoding the pictures. All rounds of
+//! corrections use the same tracker, so the time of a later track is the time that an artist waits after pressing Track
+//! again. Tracks are rounded as in a saved document before they are measured.
 
 use crate::artist::{Rules, Work, correct};
 use crate::measure::{Row, percentile, rows};
@@ -20,18 +20,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::time::Instant;
 
-/// What a run found.
+/// The results of a run.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Outcome {
     /// Name of the set.
     pub set: String,
-    /// Id of the preset, and what it was run without.
+    /// Id of the preset, and the mechanism that was left out.
     pub preset: String,
-    /// Threads that tracked.
+    /// Number of threads.
     pub threads: usize,
-    /// Figures and the artist's work.
+    /// The figures and the artist's corrections.
     pub work: Work,
-    /// Whether the artist corrected.
+    /// Whether the artist made corrections.
     pub corrected: bool,
     /// Seconds of the first track, from opening the document on.
     pub seconds: f64,
@@ -39,15 +39,15 @@ pub struct Outcome {
     pub again: Vec<f64>,
     /// Peak memory of the first track in MB.
     pub peak_mb: Option<f64>,
-    /// Peak memory of the whole run in MB, the artist's bookkeeping included.
+    /// Peak memory of the complete run in MB, with the artist's data.
     pub peak_all_mb: Option<f64>,
     /// Errors of the first track by frame.
     pub frames: Vec<FrameErrors>,
-    /// Frames with keys, each with the share of the parts that are keyed there.
+    /// Frames with keys, each with the share of parts that have a key there.
     pub keys: Vec<(FrameNumber, f64)>,
 }
 
-/// Errors on one frame, of the scored points of the parts that are not keyed there.
+/// Errors on one frame, over the scored points of the parts without a key there.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct FrameErrors {
     /// The frame.
@@ -62,7 +62,7 @@ pub struct FrameErrors {
     pub good: f64,
 }
 
-/// A run with what pictures of it need.
+/// A run with the data that pictures of it need.
 pub struct Run {
     /// The figures.
     pub outcome: Outcome,
@@ -76,8 +76,8 @@ pub struct Run {
     pub frames: Box<dyn FrameSource>,
 }
 
-/// Tracks the set in `folder` (`id` names the way in the results), and lets the artist correct it where there are rules for that. `told` hears how things
-/// stand after each track. Runs on the caller's rayon pool.
+/// Tracks the set in `folder`, and lets the artist correct it if there are rules. `id` names the preset in the results.
+/// `told` is called after each track. Runs on the caller's rayon pool.
 pub fn run(
     set: &str,
     folder: &Path,
@@ -94,7 +94,7 @@ pub fn run(
     let tracked = scene.clone();
     let mut times = Vec::new();
     let again = |scene: &mut Scene| {
-        // The first track is the one above.
+        // Without corrections the scene already has the tracks of the first track.
         let corrected = scene.parts.iter().any(|part| !part.pins.is_empty() || !part.centers.is_empty());
         if corrected {
             times.push(track(&mut tracker, scene, &pictures)?);
@@ -128,7 +128,7 @@ fn first(tracker: &mut Tracker, folder: &Path) -> Result<(Scene, Sequence)> {
     Ok((document.scene, pictures))
 }
 
-/// Tracks the scene and fills in the tracks; the seconds of the tracking alone.
+/// Tracks the scene and stores the tracks. Returns the seconds of tracking only.
 fn track(tracker: &mut Tracker, scene: &mut Scene, pictures: &dyn FrameSource) -> Result<f64> {
     let start = Instant::now();
     let tracking = tracker.track(&in_effect(scene), pictures, &Silent)?;
@@ -173,7 +173,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_have_figures_of_their_own() {
+    fn each_frame_has_its_own_figures() {
         let row =
             |frame: i32, contour: f64, scored: bool| Row { part: 0, frame, index: 0, contour, point: contour, scored };
         let rows = [row(1, 0.0, true), row(1, 4.0, true), row(1, 99.0, false), row(2, 99.0, false), row(3, 1.0, true)];

@@ -1,4 +1,4 @@
-//! The table of a benchmark.
+//! The table of the benchmark's results.
 
 use super::run::Outcome;
 use crate::measure::percentile;
@@ -12,12 +12,12 @@ const HEAD: &str = "| set | preset | good | contour px, mean / 95 % | point px, 
 | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
 ";
 
-/// Median seconds of a track after corrections; none without any.
+/// Median seconds of a track after corrections; `None` if there are none.
 pub fn again(outcome: &Outcome) -> Option<f64> {
     (!outcome.again.is_empty()).then(|| percentile(outcome.again.clone(), 0.5))
 }
 
-/// The table as Markdown: a row for each outcome, then means by preset where there is more than one set.
+/// The table as Markdown: a row for each outcome, then a row of means for each preset with more than one set.
 pub fn markdown(outcomes: &[Outcome], failures: &[Failure]) -> String {
     let mut text = HEAD.to_owned();
     for outcome in outcomes {
@@ -37,20 +37,20 @@ pub fn markdown(outcomes: &[Outcome], failures: &[Failure]) -> String {
 }
 
 const NOTES: &str = "\
-Good: share of the visible control points of the frames between keys within 2 px of the true contour and 10 px of their
-own true place, at 540 lines. Edits: adjustments of a simulated artist until 95 % are good, as a share of all control
-points of the frames between keys; no new round begins beyond 10 %. First track: from opening the document, pictures read
-from files. Again: median of the tracks after a round of adjustments, in the same tracker. Peak: largest resident memory
-of a process that does nothing but the first track.
+Good: share of the visible control points of the frames between keys that are within 2 px of the true contour and within
+10 px of their true position, at 540 lines. Edits: corrections by a simulated artist until 95 % are good, as a share of all
+control points of the frames between keys; no new round begins beyond 10 %. First track: time from opening the document,
+with pictures read from files. Again: median time of the tracks after a round of corrections, with the same tracker. Peak:
+largest resident memory of the process up to the end of the first track.
 ";
 
-/// What was measured, for other programs: the outcomes as they are, and the failures.
+/// The outcomes and the failures as JSON, for other programs.
 pub fn json(outcomes: &[Outcome], failures: &[Failure]) -> Value {
     let failed = failures.iter().map(|(set, preset, reason)| json!({"set": set, "preset": preset, "failed": reason}));
     json!({"outcomes": outcomes, "failures": failed.collect::<Vec<_>>()})
 }
 
-/// The distinct ones in the order of their first appearance.
+/// The distinct names in the order of their first appearance.
 pub fn in_order<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut found: Vec<&str> = Vec::new();
     for name in names {
@@ -128,7 +128,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_row_holds_the_figures() {
+    fn a_row_has_the_figures() {
         let text = markdown(&[outcome("a", "x", 0.5)], &[]);
         let line = text.lines().nth(2).unwrap();
         let expected = "| a | x | 50.0 % | 1.00 / 4.0 | 2.00 / 8.0 | 4/80 = 5.0 % | 96.0 % | 1.23 | 0.200 | 123 |";
@@ -137,7 +137,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn means_go_by_preset() {
+    fn means_are_by_preset() {
         let outcomes = [outcome("a", "x", 0.5), outcome("a", "y", 0.1), outcome("b", "x", 1.0)];
         let text = markdown(&outcomes, &[("b".into(), "y".into(), "no file".into())]);
         assert!(text.contains("| **mean of 2** | x | 75.0 % | 1.00 | 2.00 | 5.00 % | 96.0 % | 1.23 | | |"), "{text}");
@@ -146,7 +146,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn without_corrections_nothing_is_said_of_them() {
+    fn without_corrections_their_columns_are_empty() {
         let mut one = outcome("a", "x", 0.5);
         (one.corrected, one.again, one.peak_mb) = (false, vec![], None);
         let text = markdown(&[one], &[]);

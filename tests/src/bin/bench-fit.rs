@@ -1,7 +1,7 @@
-//! Times the default fit, for `tests/bench_fit.py`.
+//! Measures the time of the default fit, for `tests/bench_fit.py`.
 //!
-//! `bench-fit TOLERANCE` reads a file of curves from standard input and writes, as a JSON list, for each curve its
-//! guides, corners and error, and the milliseconds of the fastest of [`ROUNDS`] fits on one thread.
+//! `bench-fit TOLERANCE` reads a file of curves from standard input and writes a JSON list. Each entry has a curve's guiding
+//! points, corners and error, and the milliseconds of the fastest of [`ROUNDS`] fits on one thread.
 
 use anyhow::{Context, Result};
 use clap::Parser;
@@ -11,11 +11,11 @@ use serde_json::json;
 use std::io::Read;
 use std::time::Instant;
 
-/// Fits of each curve.
+/// Number of fits of each curve.
 const ROUNDS: usize = 40;
 
 #[derive(Parser)]
-#[command(about = "Times the default fit on curves from standard input")]
+#[command(about = "Measures the time of the default fit on curves from standard input")]
 struct Arguments {
     /// Tolerance in pixels.
     tolerance: f64,

@@ -1,8 +1,8 @@
-//! Measures for `tests/bench_style.py` and `tests/bench_style_paper.py`: the factorisation of postures, as-rigid-as-possible
-//! manipulation, bent limbs, overlap order, translation.
+//! Makes measurements for `tests/bench_style.py` and `tests/bench_style_paper.py`: the factorisation of postures,
+//! as-rigid-as-possible manipulation, bent limbs, overlap order, translation.
 //!
-//! Reads one job from standard input and writes its result to standard output, both JSON; times are in seconds, of every
-//! repetition.
+//! It reads one job from standard input and writes the result to standard output, both as JSON. Times are in seconds, one
+//! per repetition.
 
 use anyhow::{Context, Result, bail};
 use faer::Mat;
@@ -33,7 +33,7 @@ enum What {
     Translate {
         /// A file of clips.
         clips: PathBuf,
-        /// Whose motions are re-made; "normal" or the first character where none is given.
+        /// The character whose motions are used; by default "normal" or else the first character.
         content: Option<String>,
     },
 }
@@ -44,11 +44,11 @@ fn once() -> usize {
 
 #[derive(Deserialize)]
 struct Postures {
-    /// A posture a row.
+    /// One row per posture.
     rows: Vec<Vec<f64>>,
     rank: usize,
     rounds: usize,
-    /// Whether the codes are wanted.
+    /// Whether to return the codes.
     #[serde(default)]
     codes: bool,
 }
@@ -58,7 +58,7 @@ struct Reshaping {
     vertices: Vec<[f64; 2]>,
     triangles: Vec<[usize; 3]>,
     handles: Vec<usize>,
-    /// Where the handles go.
+    /// The new positions of the handles.
     places: Vec<[f64; 2]>,
 }
 
@@ -74,13 +74,13 @@ struct Factored {
 struct Reshaped {
     prepare: Vec<f64>,
     frame: Vec<f64>,
-    /// Largest distance between the kept solver's vertices and those of the function that keeps nothing.
+    /// Largest distance between vertices of the reused solver and of the one-shot function.
     apart: f64,
     vertices: Vec<[f64; 2]>,
 }
 
 fn main() -> Result<()> {
-    let job: Job = serde_json::from_reader(std::io::stdin().lock()).context("standard input is no job")?;
+    let job: Job = serde_json::from_reader(std::io::stdin().lock()).context("standard input: expected a job")?;
     if job.repetitions == 0 {
         bail!("repetitions: found 0, expected at least 1");
     }
@@ -100,7 +100,7 @@ fn main() -> Result<()> {
 fn factored(job: &Postures, repetitions: usize) -> Result<Factored> {
     let columns = job.rows.first().map_or(0, Vec::len);
     if job.rows.iter().any(|row| row.len() != columns) {
-        bail!("rows: expected rows of {columns} numbers");
+        bail!("rows: found rows of different lengths, expected {columns} numbers in each");
     }
     let x = Mat::from_fn(job.rows.len(), columns, |i, j| job.rows[i][j]);
     let options = Options { rank: job.rank, rounds: job.rounds, tolerance: 0.0, ..Options::default() };

@@ -1,4 +1,4 @@
-//! One measurement of `cargo xtask bench-tracking`, in a process of its own.
+//! Makes one measurement for `cargo xtask bench-tracking`, in a process of its own.
 
 use anyhow::{Context, Result, ensure};
 use clap::{Parser, Subcommand};
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 #[derive(Parser)]
-#[command(about = "One measurement of `cargo xtask bench-tracking`")]
+#[command(about = "Makes one measurement for `cargo xtask bench-tracking`")]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -24,7 +24,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Run one preset on one set; writes OUT.json and the overlay sheet OUT.png.
+    /// Run one preset on one set, and write OUT.json and the overlay sheet OUT.png.
     Run {
         /// Folder with project.json and truth.json.
         folder: PathBuf,
@@ -37,21 +37,21 @@ enum Command {
         /// Id of a mechanism to leave out of the default preset.
         #[arg(long)]
         without: Option<String>,
-        /// Path of the results without an ending.
+        /// Path of the results, without file extension.
         #[arg(long)]
         out: PathBuf,
-        /// Leave the simulated artist out.
+        /// Leave out the simulated artist.
         #[arg(long)]
         no_edits: bool,
-        /// Threads; 0 for one a core.
+        /// Number of threads; 0 for one per core.
         #[arg(long, default_value_t = 0)]
         threads: usize,
     },
-    /// Track a document with the default preset; prints seconds and peak memory as JSON.
+    /// Track a document with the default preset, and print seconds and peak memory as JSON.
     Time {
         /// Folder with project.json.
         folder: PathBuf,
-        /// Threads; 0 for one a core.
+        /// Number of threads; 0 for one per core.
         #[arg(long, default_value_t = 0)]
         threads: usize,
     },
@@ -59,7 +59,7 @@ enum Command {
     Draw {
         /// The folder to make.
         folder: PathBuf,
-        /// Width, height, frames, frames from key to key, parts, points of a part.
+        /// Width, height, frames, frames from key to key, parts, points per part.
         #[arg(num_args = 6)]
         numbers: Vec<usize>,
     },
@@ -83,7 +83,7 @@ fn pool(threads: usize) -> Result<rayon::ThreadPool> {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads")
 }
 
-/// How to track, and what that is called in the results.
+/// The options of tracking, and their name in the results.
 fn options(preset: &str, without: Option<&str>) -> Result<(TrackOptions, String)> {
     let known = Preset::from_id(preset).with_context(|| format!("no preset {preset:?}"))?;
     let Some(id) = without else {

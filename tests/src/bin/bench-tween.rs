@@ -1,4 +1,4 @@
-//! Matching and in-betweens on sets with known truth, for `cargo xtask bench-tween`.
+//! Measures matching and in-betweens on sets with known truth, for `cargo xtask bench-tween`.
 //!
 //! `bench-tween OUT DIR…` prints tables and writes a sheet of in-betweens for each set to the folder OUT.
 
@@ -13,7 +13,7 @@ use rototoon_tests::tweening::{GAPS, Set, sheet};
 use std::path::{Path, PathBuf};
 
 #[derive(Parser)]
-#[command(about = "Matching and in-betweens on sets with known truth")]
+#[command(about = "Measures matching and in-betweens on sets with known truth")]
 struct Arguments {
     /// The folder to write to.
     out: PathBuf,
@@ -28,8 +28,8 @@ fn main() -> Result<()> {
     matching(&sets, true)?;
     places(&sets)?;
     between(&sets, "all strokes, one chart for all of them", measure_between)?;
-    between(&sets, "strokes that move one way, a chart for each", measure_one_way)?;
-    println!("charted: with the shares of the way that suit best; ratio to plain linear in brackets");
+    between(&sets, "strokes that move in one direction, a chart for each", measure_one_way)?;
+    println!("charted: with the best shares of the way; in brackets the ratio to linear without a chart");
     for (set, folder) in sets.iter_mut().zip(&folders) {
         set.capture(folder)?;
     }
@@ -41,7 +41,7 @@ fn main() -> Result<()> {
 }
 
 fn matching(sets: &[Set], painted: bool) -> Result<()> {
-    println!("matching, {}", if painted { "strokes with their paint" } else { "shape and place alone" });
+    println!("matching, {}", if painted { "strokes with their paint" } else { "only shape and place" });
     println!(
         "{:22}{:>6}{:>8}{:>9}{:>8}{:>11}{:>10}",
         "", "spans", "pairs", "right %", "wrong", "by index %", "starts %"
@@ -71,7 +71,9 @@ fn matching_row(name: &str, spans: usize, s: &Score) {
 }
 
 fn places(sets: &[Set]) -> Result<()> {
-    println!("points on the next key, 6 to 14 frames on, drawn with other points: mean distance from the truth in px");
+    println!(
+        "points on the next key, 6 to 14 frames later, drawn with other points: mean distance from the truth in px"
+    );
     println!("{:22}{:>8}{:>8}{:>8}{:>10}{:>8}", "", "length", "ours", "ratio", "better %", "worse %");
     for set in sets {
         let mut all = PlaceErrors::default();
@@ -94,7 +96,7 @@ fn places(sets: &[Set]) -> Result<()> {
     Ok(())
 }
 
-/// Errors at some keys of a set.
+/// Measures the errors between some keys of a set.
 type Measure = fn(&Set, &[i32], &Options) -> Result<Errors>;
 
 fn between(sets: &[Set], title: &str, measure: Measure) -> Result<()> {

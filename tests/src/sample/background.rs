@@ -1,14 +1,14 @@
 //! The painted background: sky, clouds, hills, trees and a path, in soft dabs of a dry brush.
 //!
-//! Everything is laid down in layers from far to near. Each layer is a flat shape, then some thousand thin, transparent
-//! dabs in neighbouring colours clipped to it, then a slight blur that is weaker the nearer the layer: so the background
-//! has texture and soft edges everywhere and no ink anywhere, as in cel animation.
+//! The layers are painted from far to near. Each layer is a flat shape with about a thousand thin, transparent dabs in
+//! similar colours, clipped to the shape, and slightly blurred. Nearer layers are blurred less. So the background has
+//! texture and soft edges everywhere, but no ink, as in cel animation.
 
 use super::ink::polygon_path;
 use rototoon::geometry::Point;
 use tiny_skia::{Color, FillRule, Mask, Paint, PathBuilder, Pixmap, PixmapPaint, Transform};
 
-/// A small deterministic generator of evenly spread numbers (splitmix64, Steele, Lea & Flood 2014).
+/// A small deterministic generator of uniform numbers (SplitMix64, Steele, Lea & Flood 2014).
 struct Dice(u64);
 
 impl Dice {
@@ -22,7 +22,7 @@ impl Dice {
     }
 }
 
-/// How a layer is brushed.
+/// The brush of a layer.
 struct Brush {
     /// Base colour.
     colour: [f64; 3],
@@ -213,7 +213,7 @@ fn flowers(canvas: &mut Pixmap, dice: &mut Dice) {
     }
 }
 
-/// A shape with its dabs, blurred and laid over the canvas.
+/// Paints a shape with its dabs, blurs it and draws it over the canvas.
 fn layer(canvas: &mut Pixmap, dice: &mut Dice, shape: &[Point], brush: &Brush) -> Option<()> {
     let mut sheet = Pixmap::new(canvas.width(), canvas.height())?;
     let mut mask = Mask::new(canvas.width(), canvas.height())?;
@@ -274,7 +274,7 @@ fn lay(canvas: &mut Pixmap, sheet: &Pixmap) {
     canvas.draw_pixmap(0, 0, sheet.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
 }
 
-/// Two box blurs of the given radius along each axis, on premultiplied bytes; the border pixel goes on outside.
+/// Applies two box blurs of the given radius along each axis, on premultiplied bytes. Border pixels are repeated outside.
 fn blur(sheet: &mut Pixmap, radius: usize) {
     let (w, h) = (sheet.width() as usize, sheet.height() as usize);
     for _ in 0..2 {

@@ -1,4 +1,4 @@
-//! The character's parts, their colours, and what is drawn on them: face, buttons, stripes.
+//! The character's parts, their colours, and the details on them: face, buttons, stripes.
 
 use super::ink::Canvas;
 use super::outline::Outline;
@@ -13,7 +13,7 @@ pub struct Paint {
     pub name: &'static str,
     /// Its colour, 0xRRGGBB.
     pub colour: u32,
-    /// The colour of its shadow side; the same where there is none.
+    /// The colour of its shadow side, or the same colour if it has none.
     pub shade: u32,
 }
 
@@ -24,7 +24,7 @@ const fn paint(name: &'static str, colour: u32, shade: u32) -> Paint {
 const INK: u32 = 0x2b1a22;
 const WHITE: u32 = 0xfffdf6;
 
-/// The parts in the order they are painted, the farthest first; the depth of a part is its number here.
+/// The parts in the order in which they are painted, the farthest first. The depth of a part is its index here.
 pub const PARTS: [Paint; 16] = [
     paint("far arm", 0x25688f, 0x25688f),
     paint("far mitten", 0xb8402e, 0xb8402e),
@@ -123,7 +123,7 @@ fn cuff(canvas: &mut Canvas, outline: &Outline) {
     canvas.line(&line, 1.8, colour(INK), Some(outline));
 }
 
-/// Eyes, brows, nose, mouth and cheeks, on a ball that turns.
+/// Paints eyes, brows, nose, mouth and cheeks on a ball that turns.
 fn face(canvas: &mut Canvas, rig: &Rig, outline: &Outline) {
     let yaw = 0.62 * rig.pose.facing;
     let on_ball = |longitude: f64, y: f64| {

@@ -1,13 +1,13 @@
-//! Painting outlines: flat fill, a second tone on the shadow side, ink of varying width.
+//! Paints outlines: flat fill, a second tone on the shadow side, and ink of varying width.
 
 use super::outline::Outline;
 use rototoon::geometry::{Point, polygon};
 use tiny_skia::{Color, FillRule, Mask, Paint, Path, PathBuilder, Pixmap, Transform};
 
-/// A picture that outlines are painted on, antialiased.
+/// A picture on which outlines are painted, with antialiasing.
 #[derive(Clone, Debug)]
 pub struct Canvas {
-    /// The pixels so far.
+    /// The pixels.
     pub pixels: Pixmap,
 }
 
@@ -17,7 +17,8 @@ impl Canvas {
         self.paint(polygon_path(&outline.line()), colour, None);
     }
 
-    /// The second tone: all of the shape, less the shape moved towards the light (upper left).
+    /// Paints two tones. `lit` fills the part of the shape that a copy moved towards the light (upper left) covers, `shade`
+    /// the rest.
     pub fn shade(&mut self, outline: &Outline, lit: Color, shade: Color) {
         let line = outline.line();
         let Some((low, high)) = polygon::bounds(&line) else { return };
@@ -27,13 +28,13 @@ impl Canvas {
         self.paint(polygon_path(&line.iter().map(|p| *p - shift).collect::<Vec<_>>()), lit, mask.as_ref());
     }
 
-    /// The outline's own ink.
+    /// Paints the outline's ink.
     pub fn ink(&mut self, outline: &Outline, colour: Color) {
         let samples: Vec<_> = outline.dense().iter().map(|s| (s.at, s.ink)).collect();
         self.paint(brush_path(&samples, outline.closed), colour, None);
     }
 
-    /// A line of even width, thinner at its open ends, within the inside of `clip`.
+    /// Paints a line of even width, which is thinner at open ends. It is clipped to the inside of `clip`.
     pub fn line(&mut self, outline: &Outline, width: f64, colour: Color, clip: Option<&Outline>) {
         let line = outline.line();
         let n = line.len() as f64 - 1.0;
@@ -44,12 +45,12 @@ impl Canvas {
         self.paint(brush_path(&samples, outline.closed), colour, mask.as_ref());
     }
 
-    /// A filled circle within the inside of `clip`.
+    /// Paints a filled circle, clipped to the inside of `clip`.
     pub fn disc(&mut self, at: Point, radius: f64, colour: Color, clip: Option<&Outline>) {
         self.ellipse(at, Point::splat(radius), colour, clip);
     }
 
-    /// A filled ellipse of half-axes `size` within the inside of `clip`.
+    /// Paints a filled ellipse with half-axes `size`, clipped to the inside of `clip`.
     pub fn ellipse(&mut self, at: Point, size: Point, colour: Color, clip: Option<&Outline>) {
         let line: Vec<Point> =
             (0..48).map(|i| at + size * Point::from_angle(f64::from(i) * std::f64::consts::TAU / 48.0)).collect();
@@ -86,7 +87,7 @@ fn add_polygon(builder: &mut PathBuilder, line: &[Point]) {
     builder.close();
 }
 
-/// The union of all discs along a line, as one nonzero-filled path: every piece runs the same way round.
+/// The union of discs along a line, as one path for nonzero filling. All pieces have the same orientation.
 fn brush_path(samples: &[(Point, f64)], closed: bool) -> Option<Path> {
     let mut builder = PathBuilder::new();
     let n = samples.len();

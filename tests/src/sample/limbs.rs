@@ -1,13 +1,13 @@
-//! Limbs of the sample character on its contours: what an artist would mark once.
+//! Limbs of the sample character on its contours, as an artist would mark them once.
 //!
-//! Sleeves and trouser legs are strips of twelve points ([`super::outline::strip`]): 0 to 4 run down one side, 10 to 6 up the other,
-//! so that (0, 10), (2, 8) and (4, 6) lie across shoulder, elbow and wrist. The near limbs are the right ones: the character first
-//! walks to the right. It goes on being drawn near when the character has turned round, as if seen in a mirror; so its sides do
-//! not change places.
+//! Sleeves and trouser legs are strips of twelve points ([`super::outline::strip`]). Points 0 to 4 run down one side, 6 to 10
+//! up the other, so the pairs (0, 10), (2, 8) and (4, 6) are across shoulder, elbow and wrist. The near limbs are the right
+//! ones, because the character first walks to the right. After it has turned round, the same limbs are still drawn near, as
+//! in a mirror, so left and right never swap.
 
 use serde_json::{Value, json};
 
-/// Depth order of the sample's parts that matter to limbs, said by "in front" and "behind".
+/// The depth order of the sample's parts that matter to limbs: pairs of a part in front and a part behind.
 pub const IN_FRONT: [(&str, &str); 6] = [
     ("near arm", "coat"),
     ("near mitten", "near arm"),
@@ -17,13 +17,13 @@ pub const IN_FRONT: [(&str, &str); 6] = [
     ("head", "coat"),
 ];
 
-/// A limb between two pairs of places on one part, as documents write it.
+/// A limb in the form of documents. Each of its ends is a pair of places on a part.
 pub fn limb(from: &str, to: &str, ends: [(&str, f64, f64); 2], carries: Value) -> Value {
     let end = |(part, a, b): (&str, f64, f64)| json!({"points": [{"part": part, "at": a}, {"part": part, "at": b}]});
     json!({"from": from, "to": to, "start": end(ends[0]), "end": end(ends[1]), "carries": carries})
 }
 
-/// Both limbs of an arm or a leg on a strip, with what hangs on its end and the share of the turn that this takes.
+/// Both limbs of an arm or a leg on a strip. The part `hanging` is at its end and takes the share `turn` of the turn.
 pub fn two_limbs(joints: [&str; 3], part: &str, hanging: &str, turn: f64) -> [Value; 2] {
     let across = [(part, 0.0, 10.0), (part, 2.0, 8.0), (part, 4.0, 6.0)];
     [

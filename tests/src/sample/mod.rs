@@ -1,19 +1,20 @@
-//! The sample cartoon: 24 frames of a character drawn by our own code, with exact truth.
+//! The sample cartoon: 24 frames of a character that this code draws, with exact truth.
 //!
-//! A boy in cap and scarf walks along a path, crouches, jumps, turns round in the air, lands and goes back. Drawn on twos
-//! (each drawing is held for two frames) over a still, painted background, with limbs that cross before and behind the
-//! body and jumps between drawings that are larger than a limb is wide: what makes contour capture in cartoons hard.
+//! A boy in cap and scarf walks along a path, crouches, jumps, turns round in the air, lands and goes back. The cartoon is
+//! drawn on twos (each drawing is held for two frames) over a still, painted background. It has the difficulties of contour
+//! capture in cartoons: limbs cross in front of the body and behind it, and they move by more than their width from drawing
+//! to drawing.
 //!
-//! - [`pose`]: the twelve drawings as an animator would note them
-//! - [`rig`]: from a pose to the outlines of the sixteen parts
-//! - [`limbs`]: its limbs on their contours
-//! - [`outline`]: control points, corners, ink; the curve through them
+//! - [`pose`]: the poses of the twelve drawings
+//! - [`rig`]: makes the outlines of the sixteen parts from a pose
+//! - [`limbs`]: the character's limbs on its contours
+//! - [`outline`]: the curve through control points, with corners and ink
 //! - [`character`]: colours, face and other details
-//! - [`ink`]: painting an outline
+//! - [`ink`]: paints an outline
 //! - [`background`]: sky, hills and trees
-//! - [`truth`]: which control points can be seen
+//! - [`truth`]: finds the control points that are visible
 //!
-//! The same bytes come out on every run.
+//! Every run gives the same bytes.
 
 pub mod background;
 pub mod character;
@@ -42,19 +43,19 @@ pub const WIDTH: u32 = 960;
 pub const HEIGHT: u32 = 540;
 /// Number of frames; the first is frame 0.
 pub const FRAMES: usize = 24;
-/// Frames that each drawing is held.
+/// Number of frames that each drawing is held.
 pub const HOLD: usize = 2;
 /// Frames on which the artist has keyed the body: start, crouch, landing and end.
 const BODY_KEYS: [usize; 4] = [0, 12, 18, 23];
-/// Frames on which the artist has keyed what swings: the body's, and the other contact of the walk.
+/// Frames on which the artist has keyed swinging parts: those of the body, and the other contact of the walk.
 const LIMB_KEYS: [usize; 5] = [0, 6, 12, 18, 23];
 
-/// One drawing: its picture and the outlines in it, from the farthest part to the nearest.
+/// One drawing: its picture and its outlines.
 #[derive(Clone, Debug)]
 pub struct Drawn {
     /// The picture.
     pub picture: Pixmap,
-    /// The parts' outlines, in the order of [`PARTS`].
+    /// The outlines of the parts, in the order of [`PARTS`]: from the farthest to the nearest.
     pub outlines: Vec<Outline>,
     /// For each part and control point whether the picture shows it.
     pub scored: Vec<Vec<bool>>,
@@ -77,12 +78,12 @@ pub fn draw() -> Result<Vec<Drawn>> {
 }
 
 /// Writes `frames/frame_000.png` to `frames/frame_023.png`, `project.json` (key frames only) and `truth.json` into
-/// `folder`, which is made if it isn't there.
+/// `folder`, and makes the folder if needed.
 pub fn write(folder: &Path) -> Result<()> {
     write_keyed(folder, key_frames)
 }
 
-/// The same with other frames keyed.
+/// Writes the same files with keys on other frames.
 pub fn write_keyed(folder: &Path, key_frames: KeyFrames) -> Result<()> {
     let drawings = draw()?;
     let frames = folder.join("frames");
@@ -105,12 +106,12 @@ pub fn key_frames(part: &str) -> &'static [usize] {
     if swings.iter().any(|word| part.contains(word)) { &LIMB_KEYS } else { &BODY_KEYS }
 }
 
-/// Fewer frames than an artist would key: every part on the first, the crouching and the last one.
+/// Fewer key frames than an artist would set: the first, the crouching and the last frame, for every part.
 pub fn far_key_frames(_part: &str) -> &'static [usize] {
     &[0, 12, 23]
 }
 
-/// The frames that are keyed, by a part's name.
+/// Gives the key frames of a part by its name.
 pub type KeyFrames = fn(&str) -> &'static [usize];
 
 /// The project document with the artist's keys only.
@@ -155,7 +156,7 @@ pub fn truth_document(drawings: &[Drawn]) -> Value {
     json!({"source": "drawn by Rototoon's own code", "licence": "Apache-2.0", "parts": parts})
 }
 
-/// Points as JSON, to a thousandth of a pixel.
+/// Points as JSON, rounded to a thousandth of a pixel.
 fn points(points: &[Point]) -> Value {
     let round = |v: f64| (1000.0 * v).round() / 1000.0;
     points.iter().map(|p| json!([round(p.x), round(p.y)])).collect()
@@ -204,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn control_points_lie_on_the_contour_and_keep_their_number() {
+    fn control_points_are_on_the_contour_and_keep_their_number() {
         for drawing in DRAWN.iter() {
             assert_eq!(drawing.outlines.len(), PARTS.len());
             for (k, outline) in drawing.outlines.iter().enumerate() {
@@ -217,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn ink_lies_under_scored_points() {
+    fn scored_points_are_on_ink() {
         let luma = |p: &Pixmap, at: Point| {
             let c = p.pixel(at.x as u32, at.y as u32).unwrap();
             u32::from(c.red()) + u32::from(c.green()) + u32::from(c.blue())
@@ -240,7 +241,7 @@ mod tests {
         assert!((0.55..0.9).contains(&(seen as f64 / all as f64)), "{seen} of {all}");
         let hat = PARTS.iter().position(|p| p.name == "hat").unwrap();
         for drawing in DRAWN.iter() {
-            // Under the brim.
+            // This point is under the brim.
             assert!(!drawing.scored[hat][13]);
         }
     }
@@ -272,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn every_part_is_keyed_on_the_frames_that_are_asked_for() {
+    fn every_part_is_keyed_on_the_given_frames() {
         let document = project(&DRAWN, far_key_frames);
         for part in document["parts"].as_array().unwrap() {
             let keys: Vec<_> = part["keys"].as_object().unwrap().keys().cloned().collect();

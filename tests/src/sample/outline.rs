@@ -1,23 +1,23 @@
-//! Outlines: a smooth curve through control points, with corners and a varying ink width.
+//! Outlines: smooth curves through control points, with corners and a varying ink width.
 //!
 //! The curve is the centripetal Catmull–Rom spline (Barry & Goldman 1988, "A recursive evaluation algorithm for a class
-//! of Catmull–Rom splines"): it passes through every control point, so the control points are exact truth for points of
-//! the drawn line, and the centripetal parameter keeps unevenly spaced points from making loops. At a corner the spline
-//! is cut: each side goes on as if its neighbour were mirrored.
+//! of Catmull–Rom splines"). It passes through every control point, so the control points are exact truth for points of the
+//! drawn line. The centripetal parameter prevents loops between unevenly spaced points. At a corner the spline is cut: each
+//! side continues with a mirrored neighbour.
 
 use rototoon::geometry::Point;
 
-/// Samples of one segment between neighbouring control points: enough that the polyline stays within 0.05 px of the curve.
+/// Number of samples of one segment between neighbouring control points. The polyline stays within 0.05 px of the curve.
 const SAMPLES: usize = 10;
 
-/// A contour: control points in order, which of them are corners, and the ink's width there.
+/// A contour: its control points in order, which of them are corners, and the ink's width at each.
 #[derive(Clone, Debug)]
 pub struct Outline {
     /// Control points in pixels of the picture.
     pub points: Vec<Point>,
     /// Whether the line turns sharply at each control point.
     pub corners: Vec<bool>,
-    /// Width of the ink in pixels at each control point; 0 where no line is drawn.
+    /// Width of the ink in pixels at each control point; 0 for no line.
     pub ink: Vec<f64>,
     /// Whether the last control point joins the first.
     pub closed: bool,
@@ -26,7 +26,7 @@ pub struct Outline {
 /// A point of the dense line and the ink's width there, both in pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// Where.
+    /// Position.
     pub at: Point,
     /// Width of the ink.
     pub ink: f64,
@@ -44,7 +44,7 @@ impl Outline {
         Self { closed: false, ..Self::closed(points) }
     }
 
-    /// The same with sharp turns at the control points of these numbers.
+    /// Makes the control points of these indices corners.
     pub fn with_corners(mut self, corners: &[usize]) -> Self {
         for &i in corners {
             self.corners[i] = true;
@@ -52,7 +52,7 @@ impl Outline {
         self
     }
 
-    /// The dense line: control points are sample 0, 10, 20, …; a closed one does not repeat its first point.
+    /// The dense line. Samples 0, 10, 20, … are the control points. A closed line does not repeat its first point.
     pub fn dense(&self) -> Vec<Sample> {
         let n = self.points.len();
         let segments = if self.closed { n } else { n - 1 };
@@ -99,11 +99,11 @@ fn catmull_rom([p0, p1, p2, p3]: [Point; 4], t: f64) -> Point {
     mix(b1, b2, t1, t2)
 }
 
-/// A limb or ribbon: the boundary of a bent strip around the quadratic Bézier curve through `joints`' ends, pulled
-/// towards the middle joint, with half-width `radius(t)`.
+/// The boundary of a limb or ribbon: a strip of half-width `radius(t)` around a quadratic Bézier curve. The curve goes from
+/// the first to the last joint and is pulled towards the middle joint. `caps` are the lengths of the round ends.
 ///
-/// `2 * sides + 2` control points when both ends are round: the left side (seen along the strip) from start to end,
-/// the end's cap, the right side back, the start's cap.
+/// The boundary has `2 * sides + 2` control points: the left side (seen along the strip) from start to end, the end's cap,
+/// the right side back, the start's cap.
 pub fn strip(joints: [Point; 3], sides: usize, caps: [f64; 2], radius: impl Fn(f64) -> f64) -> Vec<Point> {
     let [a, b, c] = joints;
     let control = b + 0.45 * (b - (a + c) / 2.0);

@@ -1,38 +1,38 @@
-//! The twelve drawings: what an animator decides by hand on each.
+//! The poses of the twelve drawings, which an animator decides by hand.
 //!
-//! Units are those of the character's model sheet (see [`super::rig`]): x to the right along the ground, heights upwards
-//! from the ground. Angles in degrees.
+//! Lengths are in units of the character's model sheet (see [`super::rig`]). x is to the right along the ground, heights are
+//! upwards from the ground. Angles are in degrees.
 
-/// One drawing of the sequence, held for two frames.
+/// The pose of one drawing. Each drawing is held for two frames.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawing {
-    /// The hips: place along the ground and height.
+    /// The hips: x and height.
     pub hip: [f64; 2],
-    /// Height of body and head relative to the model sheet; what is lost in height is gained in width.
+    /// Height of body and head, as a factor on the model sheet. A lower body is wider.
     pub squash: f64,
-    /// Where the body faces: 1 right, 0 the viewer, -1 left.
+    /// Direction that the body faces: 1 right, 0 the viewer, -1 left.
     pub facing: f64,
-    /// The body's lean, to the right.
+    /// Lean of the body to the right.
     pub lean: f64,
-    /// The head's tilt against the body, to the right.
+    /// Tilt of the head to the right, relative to the body.
     pub tilt: f64,
-    /// The ankle of the near leg: place, height of the sole's middle, turn (clockwise).
+    /// The foot of the near leg: x, height of the middle of the sole, clockwise turn.
     pub near_foot: [f64; 3],
-    /// The ankle of the far leg.
+    /// The foot of the far leg.
     pub far_foot: [f64; 3],
-    /// The near arm: upper arm's and forearm's angle from straight down, towards the right.
+    /// The near arm: angles of upper arm and forearm from straight down, towards the right.
     pub near_arm: [f64; 2],
     /// The far arm.
     pub far_arm: [f64; 2],
-    /// The scarf's tail: angles from straight down, towards the right, of its upper and lower half.
+    /// The scarf's tail: angles of its upper and lower half from straight down, towards the right.
     pub scarf: [f64; 2],
-    /// The hat: angles from straight up, towards the right, of its lower and upper half.
+    /// The hat: angles of its lower and upper half from straight up, towards the right.
     pub hat: [f64; 2],
-    /// How far the mouth is open, 0 to 1.
+    /// Opening of the mouth, 0 to 1.
     pub mouth: f64,
-    /// How far the eyes are open, 0 to 1.
+    /// Opening of the eyes, 0 to 1.
     pub eyes: f64,
-    /// How far the coat's hem swings to the right.
+    /// Swing of the coat's hem to the right.
     pub sway: f64,
 }
 

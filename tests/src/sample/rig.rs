@@ -1,18 +1,18 @@
-//! From a drawing's pose to the outlines of all parts: the character's model sheet.
+//! The character's model sheet: makes the outlines of all parts from a drawing's pose.
 //!
-//! Every outline is a formula of the pose, so a control point keeps its meaning (a heel, a cuff, the left of the jaw) on
-//! every drawing: that is what makes the truth exact. Round bodies turn like round bodies: the silhouette stays and what
-//! is drawn on it slides (yaw); only what sticks out (toes, belly, cheek) grows on the side the character faces.
+//! Every outline is a formula of the pose. So a control point keeps its meaning (a heel, a cuff, the left of the jaw) on
+//! every drawing, which makes the truth exact. When a round body turns, its silhouette stays, and the details on it slide
+//! (yaw). Only parts that stick out (toes, belly, cheek) grow on the side that the character faces.
 
 use super::outline::{Outline, strip};
 use super::pose::Drawing;
 use rototoon::geometry::Point;
 
-/// Pixels in a unit of the model sheet.
+/// Pixels per unit of the model sheet.
 const SCALE: f64 = 0.93;
-/// Row of the ground, in pixels.
+/// y of the ground, in pixels.
 pub const GROUND: f64 = 478.0;
-/// Column of the ground's origin, in pixels.
+/// x of the ground's origin, in pixels.
 const ORIGIN: f64 = 228.0;
 /// Length of thigh and of shin.
 const LEG: [f64; 2] = [66.0, 62.0];
@@ -21,7 +21,7 @@ const ARM: [f64; 2] = [50.0, 42.0];
 /// Height of the ankle over the sole.
 const ANKLE: f64 = 20.0;
 
-/// A frame of reference on a drawing: origin and the directions of its x axis and its y axis (down).
+/// A coordinate frame on a drawing: its origin, x axis and y axis (down).
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     origin: Point,
@@ -35,7 +35,7 @@ impl Place {
         Self { origin, x: scale.x * x, y: scale.y * x.perp() }
     }
 
-    /// Picture coordinates of a point of this place.
+    /// Converts a point of this frame to picture coordinates.
     pub fn at(&self, x: f64, y: f64) -> Point {
         self.origin + x * self.x + y * self.y
     }
@@ -45,12 +45,12 @@ impl Place {
     }
 }
 
-/// The outlines of one drawing, and where face and coat details go.
+/// The outlines of one drawing, and the frames for details of face and coat.
 #[derive(Clone, Debug)]
 pub struct Rig {
-    /// The head: origin at its centre.
+    /// The frame of the head, with its origin at the centre.
     pub head: Place,
-    /// The body: origin at the hips.
+    /// The frame of the body, with its origin at the hips.
     pub body: Place,
     /// The drawing's pose.
     pub pose: Drawing,
@@ -59,12 +59,12 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// Solves a pose.
+    /// Makes the outlines of a pose.
     pub fn new(pose: &Drawing) -> Self {
         let wide = pose.squash.powf(-0.7);
         let hip = ground(pose.hip[0], pose.hip[1]);
         let body = Place::new(hip, pose.lean, SCALE * Point::new(wide, pose.squash));
-        // The head is firmer than the body.
+        // The head is squashed less than the body.
         let firm = pose.squash.powf(0.6);
         let head_scale = SCALE * Point::new(firm.powf(-0.7), firm);
         let neck = body.at(3.0 * pose.facing, -104.0);
@@ -103,7 +103,7 @@ impl Rig {
         ]
     }
 
-    /// Sleeve and mitten. `thumb` is the side the thumb is on.
+    /// Sleeve and mitten. `thumb` is the side of the thumb, 1 or -1.
     fn arm(&self, shoulder: f64, angles: [f64; 2], thumb: f64) -> (Outline, Outline) {
         let across = shoulder - 4.0 * self.pose.facing;
         let shoulder = self.body.at(across, -86.0);
@@ -111,7 +111,7 @@ impl Rig {
         let wrist = elbow + SCALE * ARM[1] * hanging(angles[1]);
         let mut sleeve = Outline::closed(strip([shoulder, elbow, wrist], 5, [9.0, 1.0], |t| SCALE * (14.5 + 2.5 * t)));
         sleeve = sleeve.with_corners(&[4, 6]);
-        // The sleeve grows out of the coat: no line across the shoulder.
+        // There is no line across the shoulder, because the sleeve continues the coat.
         let ends = [0, 10, 11];
         let hand = Place::new(wrist, -angles[1], Point::splat(SCALE));
         let mitten = hand.all(
@@ -137,13 +137,13 @@ impl Rig {
         (sleeve, mitten)
     }
 
-    /// Trouser leg and boot, by two-bone inverse kinematics from hip to ankle, the knee to the front.
+    /// Trouser leg and boot, by two-bone inverse kinematics from hip to ankle, with the knee to the front.
     fn leg(&self, side: f64, [x, height, turn]: [f64; 3]) -> (Outline, Outline) {
         let facing = self.pose.facing;
         let hip = self.body.at(side * (1.0 - 0.45 * facing.abs()), -6.0);
         let boot = Place::new(ground(x, height + ANKLE), turn, Point::splat(SCALE));
         let ankle = boot.origin;
-        // Knees point forward; in a crouch they part.
+        // Knees point forward. In a crouch each knee points to its own side.
         let forward = if self.pose.squash < 0.85 { ankle.x - hip.x } else { facing };
         let bend = if forward >= 0.0 { 1.0 } else { -1.0 };
         let knee = knee(hip, ankle, LEG.map(|l| SCALE * l), bend);
@@ -209,7 +209,7 @@ impl Rig {
         let facing = self.pose.facing;
         let mut head = Outline::closed(self.head.all((0..16).map(|i| {
             let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 16.0).sin_cos();
-            // Full cheeks: widest below the middle, and fuller on the side the face looks to.
+            // The cheeks are widest below the middle, and wider on the side that the face looks to.
             let cheek = (-((sin - 0.45) / 0.45).powi(2)).exp();
             let side = 5.0 * cheek * (facing * cos).max(0.0) - 3.0 * cheek * (-facing * cos).max(0.0);
             let x = 64.0 * cos + 7.0 * cheek * cos + side * cos.signum();
@@ -219,7 +219,7 @@ impl Rig {
         head
     }
 
-    /// A fringe of four spikes under the brim; it slides over the forehead as the head turns.
+    /// A fringe of four spikes under the brim. It slides over the forehead when the head turns.
     fn hair(&self) -> Outline {
         let yaw = 0.55 * self.pose.facing;
         let place = |longitude: f64, y: f64| {
@@ -258,7 +258,7 @@ impl Rig {
         let profile = |t: f64| SCALE * wide * (9.0 + 51.0 * (1.0 - t).powf(0.85));
         let mut hat = Outline::closed(strip([base, middle, tip], 6, [0.0, 3.0], profile)).with_corners(&[0, 12]);
         ink(&mut hat, 1.1, &[13]);
-        // Six tufts: the notches between them are corners.
+        // Six tufts. The notches between them are corners.
         let tufts = (0..12).map(|i| {
             let angle = f64::from(i) * std::f64::consts::TAU / 12.0 + upper.to_radians();
             tip + SCALE * if i % 2 == 0 { 19.5 } else { 16.5 } * Point::from_angle(angle)
@@ -276,18 +276,18 @@ impl Rig {
     }
 }
 
-/// Pixels of a place on or over the ground.
+/// Converts x along the ground and height above it to picture coordinates.
 fn ground(x: f64, height: f64) -> Point {
     Point::new(ORIGIN + SCALE * x, GROUND - SCALE * height)
 }
 
-/// Direction of something that hangs, swung by `degrees` from straight down towards the right.
+/// The direction at `degrees` from straight down towards the right.
 fn hanging(degrees: f64) -> Point {
     let (sin, cos) = degrees.to_radians().sin_cos();
     Point::new(sin, cos)
 }
 
-/// The joint between two bones; an ankle out of reach stretches the leg.
+/// The joint between two bones. An ankle out of reach stretches the leg.
 fn knee(hip: Point, ankle: Point, [thigh, shin]: [f64; 2], bend: f64) -> Point {
     let span = ankle - hip;
     let d = span.length().clamp(1.0, thigh + shin);
@@ -297,7 +297,7 @@ fn knee(hip: Point, ankle: Point, [thigh, shin]: [f64; 2], bend: f64) -> Point {
     hip + along / d * span.length() * direction - bend * out * direction.perp()
 }
 
-/// Sets the ink: heavier below and to the right, as if light came from the upper left; none at `bare` points.
+/// Sets the ink's width. It is larger below and to the right, as if light came from the upper left, and 0 at `bare` points.
 fn ink(outline: &mut Outline, weight: f64, bare: &[usize]) {
     let n = outline.points.len();
     let clockwise = rototoon::geometry::polygon::signed_area(&outline.points) >= 0.0;

@@ -1,16 +1,16 @@
-//! What is true of a drawing: where each part's control points lie, which of them are seen, and where the picture shows it.
+//! Finds the scored control points of a drawing: those that are visible, and at which the picture shows the contour.
 
 use super::outline::{Outline, Sample};
 use rototoon::geometry::{Point, polygon};
 use tiny_skia::Pixmap;
 
-/// How far beside the ink's edge, in pixels, the picture is read to see whether its colour changes there.
+/// Distance in pixels from the ink's edge at which the colours on both sides of the contour are read.
 const BESIDE: f64 = 1.5;
-/// The least change across a contour that counts, in steps of 255 of one channel.
+/// Least change of a channel across a contour that counts, of 255.
 const CHANGE: i32 = 24;
 
-/// For each part of a drawing (farthest first) and each control point whether it is scored: the point lies in the picture,
-/// no nearer part covers it, and the picture's colour changes across the contour there.
+/// For each part of a drawing (the farthest first) and each of its control points, whether the point is scored. A scored
+/// point is in the picture, no nearer part covers it, and the picture's colour changes across the contour there.
 pub fn scored(outlines: &[Outline], picture: &Pixmap) -> Vec<Vec<bool>> {
     let lines: Vec<Vec<Sample>> = outlines.iter().map(Outline::dense).collect();
     let shapes: Vec<Vec<Point>> = lines.iter().map(|l| l.iter().map(|s| s.at).collect()).collect();
@@ -24,12 +24,12 @@ pub fn scored(outlines: &[Outline], picture: &Pixmap) -> Vec<Vec<bool>> {
         .collect()
 }
 
-/// Whether a part hides `p`: `p` lies inside, or under the ink.
+/// Whether a part hides `p`, because `p` is inside the part or under its ink.
 fn covers(shape: &[Point], line: &[Sample], p: Point) -> bool {
     polygon::contains(shape, p) || line.iter().any(|s| s.at.distance(p) < s.ink / 2.0)
 }
 
-/// Whether the colours on the contour and just beside its ink differ at a control point.
+/// Whether at a control point the colours on the contour and on both sides of its ink differ.
 pub fn changes(outline: &Outline, i: usize, picture: &Pixmap) -> bool {
     let n = outline.points.len();
     let at = outline.points[i];
@@ -46,7 +46,7 @@ pub fn changes(outline: &Outline, i: usize, picture: &Pixmap) -> bool {
     differ(colours[0], colours[1]) || differ(colours[0], colours[2]) || differ(colours[1], colours[2])
 }
 
-/// The colour of the pixel that holds `p`; `None` outside the picture.
+/// The colour of the pixel that contains `p`; `None` outside the picture.
 fn colour(picture: &Pixmap, p: Point) -> Option<[i32; 3]> {
     if p.x < 0.0 || p.y < 0.0 {
         return None;

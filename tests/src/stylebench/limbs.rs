@@ -1,14 +1,18 @@
-//! As-rigid-as-possible manipulation with and without sub-key points: how well a limb keeps its width, its smoothness and its place.
+//! Measures how well as-rigid-as-possible manipulation keeps the width, the smoothness and the place of a limb, with and
+//! without sub-key points.
 //!
-//! The limb is drawn straight, two bones of 50 px along x and 20 px wide, and posed in two ways: bones that become curved (their
-//! splines' control points move across, half a bone's length at most), and a straight arm that bends at the elbow. The true limb is
-//! the strip of 20 px about the splines; about an elbow, within a width of it, nothing is true and only the width counts.
+//! The limb is drawn straight: two bones of 50 px along x, 20 px wide. It has two kinds of poses. In the first one the bones
+//! become curved: the control points of their splines move across, by half a bone's length at most. In the second one a
+//! straight arm bends at the elbow. The true limb of a curved pose is the strip of 20 px around the splines. A bent elbow has
+//! no true shape, so only the width is measured there.
 //!
-//! Sub-key points keep their place along the limb; one number of them is also moved as the paper prints it.
+//! Sub-key points keep their place along the limb. For one number of sub-key points the rule printed in the paper is
+//! measured too.
 //!
 //! - **width**: root mean square of the relative error of the distance between the two sides, at 41 places along the limb
-//! - **roughness**: mean length of the second differences of both sides over that of the true sides; 1 is as smooth as the truth
-//! - **off**: mean distance of the sides from the true limb's, in px
+//! - **roughness**: mean length of the second differences of both sides, divided by that of the true sides; 1 is as smooth
+//!   as the truth
+//! - **off**: mean distance of the sides from the true sides, in px
 
 use anyhow::Result;
 use rototoon::geometry::Point;
@@ -20,37 +24,37 @@ use serde::Serialize;
 const BONE: f64 = 50.0;
 /// Width of the limb, in px.
 const WIDTH: f64 = 20.0;
-/// Places along the limb.
+/// Number of places along the limb.
 const PLACES: usize = 41;
-/// Numbers of sub-key points a bone.
+/// Numbers of sub-key points per bone.
 const SUB_KEYS: [usize; 6] = [0, 1, 2, 3, 5, 8];
-/// The number of sub-key points that is also moved as printed.
+/// The number of sub-key points for which the printed rule is measured too.
 const PRINTED: usize = 5;
-/// How far control points go across, in bones.
+/// Distances that control points move across, in bone lengths.
 const ACROSS: [f64; 5] = [0.1, 0.2, 0.3, 0.4, 0.5];
-/// Elbows, in degrees.
+/// Angles of the elbow, in degrees.
 const ELBOWS: [f64; 4] = [30.0, 60.0, 90.0, 120.0];
 
-/// One pose with one number of sub-key points.
+/// The measurement of one pose with one number of sub-key points.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Bent {
-    /// Sub-key points a bone.
+    /// Number of sub-key points per bone.
     pub sub_keys: usize,
-    /// Whether they are drawn to the nearest point of their spline, as printed.
+    /// Whether sub-key points move to the nearest point of their spline, as the paper prints it.
     pub printed: bool,
     /// "curve" or "elbow".
     pub pose: &'static str,
-    /// How far: the control point across in bones, or the elbow in degrees.
+    /// Distance of the control point across in bone lengths, or angle of the elbow in degrees.
     pub amount: f64,
     /// Relative error of the width.
     pub width: f64,
-    /// Roughness beside the truth; none at elbows.
+    /// Roughness relative to the truth; `None` for elbows.
     pub roughness: Option<f64>,
-    /// Distance from the true sides, in px; none at elbows.
+    /// Distance from the true sides, in px; `None` for elbows.
     pub off: Option<f64>,
 }
 
-/// All poses with all numbers of sub-key points.
+/// Measures all poses with all numbers of sub-key points.
 pub fn measure() -> Result<Vec<Bent>> {
     let mut found = Vec::new();
     let ways = SUB_KEYS.map(|sub_keys| (sub_keys, false)).into_iter().chain([(PRINTED, true)]);
@@ -83,7 +87,7 @@ fn folded(degrees: f64) -> [LimbPose; 2] {
     [upper, LimbPose { ends: (fore.ends.0, hand), ..fore }]
 }
 
-/// Both sides of a limb at its places.
+/// The points of both sides of a limb, at its places.
 fn sides(limbs: &[LimbPose; 2]) -> [Vec<Point>; 2] {
     let place = |k: usize, side: f64| {
         let along = 2.0 * k as f64 / (PLACES - 1) as f64;
@@ -125,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_limb_at_rest_is_the_true_one() {
+    fn a_limb_at_rest_has_no_error() {
         let found = bent(Options::default(), "curve", 0.0, &straight()).unwrap();
         assert!(found.width < 1e-9 && found.off.unwrap() < 1e-8, "{found:?}");
     }
@@ -137,6 +141,6 @@ mod tests {
         let none = off(Options { sub_keys: 0, ..Options::default() });
         assert!(own < 0.2 * none, "{own} {none}");
         let printed = off(Options { printed: true, ..Options::default() });
-        assert!(own < 0.6 * printed, "those of the print slide together: {own} {printed}");
+        assert!(own < 0.6 * printed, "the printed rule lets sub-key points slide together: {own} {printed}");
     }
 }

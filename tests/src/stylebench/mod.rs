@@ -1,5 +1,5 @@
-//! What `bench-style` measures by itself: limbs reshaped with and without sub-key points, overlap order from few marks, and
-//! translation against the clips that were really performed.
+//! The measurements of `bench-style` that need no other library: limbs reshaped with and without sub-key points, overlap
+//! order from few marks, and translation compared with true clips.
 //!
 //! - [`limbs`]: width and smoothness of bent limbs
 //! - [`order`]: which limb is in front
@@ -13,7 +13,7 @@ pub mod translation;
 pub struct Random(u64);
 
 impl Random {
-    /// From a seed.
+    /// Starts a sequence from a seed.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -28,7 +28,7 @@ impl Random {
         (self.unit() * count as f64) as usize
     }
 
-    /// Brings a list into an order that any other would have been as likely as.
+    /// Shuffles a list. All orders are equally likely.
     pub fn shuffle<T>(&mut self, list: &mut [T]) {
         for k in (1..list.len()).rev() {
             let other = self.below(k + 1);

@@ -1,9 +1,10 @@
-//! Overlap order from sparse marks, on made-up limbs.
+//! Measures the overlap order inferred from sparse marks, on synthetic limbs.
 //!
-//! A figure is a handful of strips strewn over a square, which cross in many places, with a true order that nobody told. It changes
-//! half way through twenty frames (one limb swings from the back to the front), so that marks hold for ranges of frames. A share of the pairs
-//! that cross is marked, chosen at random; depths are inferred, and every crossing pair on every frame is compared with the truth. A tie
-//! is wrong. Beside it: marks between limbs that are neighbours in the true order, one fewer than there are limbs.
+//! A figure is a few strips at random places of a square, which cross in many places. Its true depth order is random. The
+//! order changes in the middle of twenty frames, where one limb moves from the back to the front, so marks are valid for
+//! ranges of frames. A random share of the crossing pairs is marked. Depths are inferred from the marks, and every crossing
+//! pair on every frame is compared with the truth. A tie counts as wrong. The alternative are marks between neighbours in
+//! the true order, which are one fewer than there are limbs.
 
 use super::Random;
 use anyhow::Result;
@@ -11,25 +12,25 @@ use rototoon::geometry::Point;
 use rototoon::reshape::depth::{Mark, infer};
 use serde::Serialize;
 
-/// Figures of each number of limbs.
+/// Number of figures for each number of limbs.
 const FIGURES: usize = 200;
 /// Numbers of limbs.
 const LIMBS: [usize; 3] = [6, 10, 14];
 /// Shares of crossing pairs that are marked.
 const SHARES: [f64; 7] = [0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0];
-/// Frames; the order changes half way.
+/// Number of frames. The order changes in the middle.
 const FRAMES: i32 = 20;
 
-/// How much of the order is right.
+/// The measurement of one number of limbs and one share of marks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ordered {
     /// Number of limbs.
     pub limbs: usize,
-    /// Share of crossing pairs that are marked; none for marks between neighbours of the true order.
+    /// Share of crossing pairs that are marked; `None` for marks between neighbours in the true order.
     pub share: Option<f64>,
-    /// Marks on a frame, in the mean.
+    /// Mean number of marks on a frame.
     pub marks: f64,
-    /// Share of crossing pairs that are right.
+    /// Share of crossing pairs in the right order.
     pub right: f64,
 }
 
@@ -39,7 +40,7 @@ struct Figure {
     depths: [Vec<usize>; 2],
 }
 
-/// All numbers of limbs with all shares.
+/// Measures all numbers of limbs with all shares.
 pub fn measure() -> Result<Vec<Ordered>> {
     let mut found = Vec::new();
     for limbs in LIMBS {
@@ -63,7 +64,7 @@ fn figure(limbs: usize, random: &mut Random) -> Figure {
     let crossing = pairs.filter(|&(a, b)| cross(strips[a], strips[b])).collect();
     let mut before: Vec<usize> = (0..limbs).collect();
     random.shuffle(&mut before);
-    // The limb at the back comes to the front; the others keep their order.
+    // The limb at the back moves to the front. The others keep their order.
     let after = before.iter().map(|depth| if *depth == 0 { limbs - 1 } else { depth - 1 }).collect();
     Figure { crossing, depths: [before, after] }
 }
@@ -126,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_marks_give_the_whole_order_and_none_gives_nothing() {
+    fn all_marks_give_the_full_order_and_no_marks_give_none() {
         let mut random = Random::new(3);
         let figures: Vec<Figure> = (0..5).map(|_| figure(8, &mut random)).collect();
         assert!(figures.iter().all(|figure| figure.crossing.len() > 1));

@@ -1,7 +1,8 @@
-//! Translation against the clips that were really performed, by preset and rank.
+//! Measures the error of translation by preset and rank.
 //!
-//! Of the clips of every character but the content's, sixteen spread evenly: each is left out, made from the others, and compared
-//! with the true one: mean distance of the sixteen key points beside the pelvis, the pelvis held still, in torso lengths.
+//! Sixteen clips, spread evenly over those of all characters except the content's, are left out in turn. Each is made from
+//! the other clips and compared with the true clip. The error is the mean distance of the sixteen key points other than the
+//! pelvis, with the pelvises on each other, in torso lengths.
 
 use anyhow::{Context, Result, bail};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -13,23 +14,23 @@ use rototoon::scene::{Clip, Silent};
 use rototoon::style::{Options, Preset, Request, translate};
 use serde::Serialize;
 
-/// Ranks that are tried.
+/// The ranks to measure.
 const RANKS: [usize; 7] = [1, 2, 4, 6, 10, 16, 24];
-/// Most clips that are left out in turn: with all of them the factorisations take an hour.
+/// Most clips that are left out in turn. With all clips the factorisations would take an hour.
 const MOST: usize = 16;
 
-/// The mean error of a way to translate.
+/// The mean error of a preset with a rank.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Translated {
-    /// Id of the preset; "copy" for the content unchanged.
+    /// Id of the preset; "copy" for the unchanged content.
     pub preset: &'static str,
-    /// The rank; none where there is none, or the preset's own.
+    /// The rank; `None` if the preset has no rank.
     pub rank: Option<usize>,
     /// Mean distance in torso lengths.
     pub error: f64,
 }
 
-/// All presets that have a rank with all ranks, and the others once.
+/// Measures all presets, those with a rank once for each rank.
 pub fn measure(clips: &Clips, content: Option<&str>) -> Result<Vec<Translated>> {
     let clips = &clips.clips;
     let first = clips.first().context("clips: found none, expected several characters and motions")?;
@@ -73,7 +74,7 @@ pub fn measure(clips: &Clips, content: Option<&str>) -> Result<Vec<Translated>> 
     Ok(found)
 }
 
-/// Mean distance of key points, pelvis on pelvis, in torso lengths of the truth.
+/// Mean distance of key points, with the pelvises on each other, in torso lengths of the truth.
 fn distance(made: &[Posture], truth: &[Posture]) -> f64 {
     let size = typical_torso(truth).max(f64::MIN_POSITIVE);
     let made = resample(made, truth.len());
@@ -89,7 +90,7 @@ mod tests {
     use rototoon::geometry::Point;
 
     #[test]
-    fn distances_are_told_in_torso_lengths_with_the_pelvis_held() {
+    fn distances_are_in_torso_lengths_from_the_pelvis() {
         let truth: Posture = std::array::from_fn(|k| Point::new(0.0, -2.0 * k as f64));
         let moved = truth.map(|p| p + Point::new(5.0, 5.0));
         assert_eq!(distance(&[moved], &[truth]), 0.0);
@@ -99,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_compared_is_refused() {
+    fn clips_without_a_counterpart_are_refused() {
         let clip = Clip::new("a", "walk", vec![[Point::ZERO; COUNT]]);
         assert!(measure(&Clips { clips: vec![], fps: 1.0 }, None).is_err());
         assert!(measure(&Clips { clips: vec![clip], fps: 1.0 }, None).is_err());

@@ -1,9 +1,9 @@
-//! In-betweens of frames of a set against the true frames between, beside linear interpolation of the same points.
+//! Measures the errors of in-betweens, compared with linear interpolation of the same points.
 //!
-//! Every contour has the same points on all frames, and they are paired rightly for both. Keys are all frames at one
-//! distance, from every first frame.
+//! Keys are frames of a set at equal distances, beginning with every possible first frame. In-betweens are compared with the
+//! true frames. Every contour has the same points on all frames, and both methods get the correct pairs.
 //!
-//! Beside that, where the points of a contour are looked for on the next key if that is drawn with other points.
+//! [`measure_places`] measures where the points of a contour are found on the next key, if that is drawn with other points.
 
 use super::{Contours, Set};
 use anyhow::{Context, Result};
@@ -12,26 +12,26 @@ use rototoon::tween::Stroke;
 use rototoon::tween::between::{GivenPegs, InBetween, Key, Options, Sequence, Spacing};
 use rototoon::tween::matching::{Matching, Pair};
 
-/// Root mean square way in pixels from key to key below which a contour does not move.
+/// Least root mean square distance in pixels from key to key of a contour that moves.
 const LEAST_WAY: f64 = 5.0;
 
 /// Sums of distances in pixels from the true points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
-    /// Points.
+    /// Number of points.
     pub count: usize,
     /// Of linear interpolation.
     pub linear: f64,
-    /// Of linear interpolation with the spacing chart that suits it best.
+    /// Of linear interpolation with its best spacing chart.
     pub linear_charted: f64,
-    /// Of ours.
+    /// Of Rototoon.
     pub ours: f64,
-    /// Of ours with the spacing chart that suits it best.
+    /// Of Rototoon with its best spacing chart.
     pub ours_charted: f64,
 }
 
 impl Errors {
-    /// Adds others.
+    /// Adds other sums.
     pub fn add(&mut self, other: Self) {
         self.count += other.count;
         self.linear += other.linear;
@@ -41,12 +41,12 @@ impl Errors {
     }
 }
 
-/// Shares that a chart may give a frame.
+/// The shares of the way that a chart may give a frame.
 fn shares() -> impl Iterator<Item = f64> {
     (-10..=50).map(|k| f64::from(k) / 40.0)
 }
 
-/// The keys of a set as drawings; only parts that every key has.
+/// The keys of a set as drawings, with only the parts that every key has.
 fn drawings(set: &Set, frames: &[i32]) -> (Vec<usize>, Vec<Key>) {
     let there = |i: &usize| frames.iter().all(|f| set.parts[*i].points.contains_key(f));
     let parts: Vec<usize> = (0..set.parts.len()).filter(there).collect();
@@ -67,23 +67,23 @@ fn off(drawn: &[Vec<Point>], truth: &[&Vec<Point>]) -> f64 {
     drawn.iter().zip(truth).map(stroke).sum()
 }
 
-/// Sums of distances in pixels from the true places.
+/// Sums of distances in pixels from the true positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlaceErrors {
-    /// Points.
+    /// Number of points.
     pub count: usize,
-    /// By shares of the length alone.
+    /// Of positions at the same share of the length.
     pub plain: f64,
-    /// By shares of the length between corners.
+    /// Of Rototoon's positions.
     pub ours: f64,
-    /// Contours of which ours are nearer to the truth, and farther from it, by more than a hundredth of a pixel.
+    /// Contours on which Rototoon is better by more than a hundredth of a pixel per point.
     pub better: usize,
-    /// See `better`.
+    /// Contours on which Rototoon is worse by more than a hundredth of a pixel per point.
     pub worse: usize,
 }
 
-/// Where the contours of the first of two frames are looked for on the second, which has twice as many points on the
-/// same lines.
+/// Measures where the points of contours are found on the second of two frames. The second frame has twice as many points on
+/// the same lines.
 pub fn measure_places(set: &Set, (first, second): (i32, i32)) -> Result<PlaceErrors> {
     let (parts, mut keys) = drawings(set, &[first, second]);
     for stroke in &mut keys[1].strokes {
@@ -107,13 +107,13 @@ pub fn measure_places(set: &Set, (first, second): (i32, i32)) -> Result<PlaceErr
     Ok(errors)
 }
 
-/// The same line with a point more on each segment, not in its middle.
+/// The same line with one more point on each segment, not in its middle.
 fn halved(points: &[Point], closed: bool) -> Vec<Point> {
     let last = (!closed).then(|| points.last().copied()).flatten();
     polyline::segments(points, closed).flat_map(|(a, b)| [a, a.lerp(b, 0.37)]).chain(last).collect()
 }
 
-/// For each point of a stroke the place of the other one at its share of the length.
+/// For each point of a stroke the point of the other stroke at the same share of the length.
 fn by_length(stroke: &Stroke, other: &Stroke) -> Vec<Point> {
     let walked = |of: &Stroke| {
         let mut walked = vec![0.0];
@@ -140,8 +140,8 @@ pub fn sequence(set: &Set, frames: &[i32], options: &Options) -> Result<(Vec<usi
     Ok((parts, Sequence::new(keys, &matchings, &GivenPegs::default(), options)?))
 }
 
-/// The errors of the strokes that move one way between some keys, each with the chart that suits it best: what remains
-/// is the way and the shape.
+/// The errors of the strokes that move in one direction between keys. Each stroke has its best chart, so these errors are
+/// only those of path and shape.
 pub fn measure_one_way(set: &Set, frames: &[i32], options: &Options) -> Result<Errors> {
     let (parts, ours) = sequence(set, frames, options)?;
     let mut errors = Errors::default();
@@ -169,8 +169,8 @@ pub fn measure_one_way(set: &Set, frames: &[i32], options: &Options) -> Result<E
     Ok(errors)
 }
 
-/// Whether a contour goes from one key to the other, and on no frame between turns back or beyond them by more than a
-/// tenth of the way; and moves at all.
+/// Whether a contour moves from one key to the other without turning back or going beyond the key, by more than a tenth of
+/// the way.
 fn is_one_way(part: &Contours, (from, to): (i32, i32)) -> bool {
     let (a, b) = (&part.points[&from], &part.points[&to]);
     let square: f64 = a.iter().zip(b).map(|(p, q)| p.distance_squared(*q)).sum();
@@ -190,8 +190,8 @@ fn is_one_way(part: &Contours, (from, to): (i32, i32)) -> bool {
     })
 }
 
-/// The errors of all frames between some keys where strokes follow what was captured, if [`Set::capture`] was called;
-/// charts of those are not looked for.
+/// The errors of all frames between keys, with strokes that follow captured parts, if [`Set::capture`] was called. Charts are
+/// not measured.
 pub fn measure_captured(set: &Set, frames: &[i32], options: &Options) -> Result<Errors> {
     let (parts, sequence) = sequence(set, frames, options)?;
     let sequence = sequence.following(set.captured.clone());
@@ -212,7 +212,7 @@ pub fn measure_captured(set: &Set, frames: &[i32], options: &Options) -> Result<
     Ok(errors)
 }
 
-/// The errors of all frames between some keys.
+/// The errors of all frames between keys.
 pub fn measure(set: &Set, frames: &[i32], options: &Options) -> Result<Errors> {
     let (parts, ours) = sequence(set, frames, options)?;
     let mut errors = Errors::default();
@@ -237,14 +237,14 @@ pub fn measure(set: &Set, frames: &[i32], options: &Options) -> Result<Errors> {
     Ok(errors)
 }
 
-/// The points of drawings whose strokes kept their order.
+/// The points of in-betweens, ordered by track.
 fn points(drawn: Vec<InBetween>) -> Vec<Vec<Point>> {
     let mut drawn = drawn;
     drawn.sort_by_key(|d| d.track);
     drawn.into_iter().map(|d| d.stroke.points).collect()
 }
 
-/// Our drawings between two keys at every share that a chart may give.
+/// Rototoon's in-betweens of two keys at every share that a chart may give.
 struct Charted {
     drawings: Vec<Vec<Vec<Point>>>,
 }
@@ -263,7 +263,7 @@ impl Charted {
     }
 }
 
-/// Rows of keys of a set, at one distance, from every first frame; of a set shorter than that its ends.
+/// Rows of key frames of a set at the distance `gap`, one row for each possible first frame. Rows of one key are left out.
 pub fn rows_of_keys(set: &Set, gap: i32) -> Vec<Vec<i32>> {
     let (first, last) = set.frames;
     let row = |start: i32| (start..=last).step_by(gap as usize).collect::<Vec<_>>();

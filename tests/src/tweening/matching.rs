@@ -1,7 +1,7 @@
-//! Strokes of two frames of a set, the second drawn in another way, matched.
+//! Measures matching on the strokes of two frames of a set, of which the second is drawn in another way.
 //!
-//! The second drawing has another order, half of its strokes run the other way, closed ones start elsewhere, all have
-//! another number of points, and a tenth of the strokes is missing on one of the two sides.
+//! The second drawing has another order of strokes. Half of its strokes run in the other direction, closed ones start
+//! elsewhere, and all have another number of points. A tenth of the strokes is missing on one of the two drawings.
 
 use super::Set;
 use anyhow::Result;
@@ -10,25 +10,25 @@ use rototoon::scene::Silent;
 use rototoon::tween::Stroke;
 use rototoon::tween::matching::{Options, match_strokes};
 
-/// Pairs found and pairs there are.
+/// Counts of correct and wrong pairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Score {
     /// Strokes that are on both drawings.
     pub there: usize,
-    /// Of these, those paired rightly.
+    /// Correct pairs.
     pub right: usize,
-    /// Pairs that are none.
+    /// Wrong pairs.
     pub wrong: usize,
-    /// Strokes that pairing by index pairs rightly.
+    /// Correct pairs of pairing by index.
     pub by_index: usize,
-    /// Closed pairs whose starting points were found within 5 % of the length.
+    /// Correct pairs of closed strokes whose start was found within 5 % of the length.
     pub starts: usize,
-    /// Closed pairs found.
+    /// Correct pairs of closed strokes.
     pub closed: usize,
 }
 
 impl Score {
-    /// Adds another.
+    /// Adds the counts of another score.
     pub fn add(&mut self, other: Self) {
         self.there += other.there;
         self.right += other.right;
@@ -39,7 +39,7 @@ impl Score {
     }
 }
 
-/// Numbers that look random and are always the same (Steele, Lea & Flood 2014, SplitMix64).
+/// Pseudo-random numbers, the same on every machine (Steele, Lea & Flood 2014, SplitMix64).
 pub struct Chance(pub u64);
 
 impl Chance {
@@ -52,7 +52,7 @@ impl Chance {
         ((z ^ (z >> 31)) % bound.max(1) as u64) as usize
     }
 
-    /// The numbers below `count` in some order.
+    /// The numbers below `count` in a random order.
     pub fn order(&mut self, count: usize) -> Vec<usize> {
         let mut order: Vec<usize> = (0..count).collect();
         for k in (1..count).rev() {
@@ -62,18 +62,18 @@ impl Chance {
     }
 }
 
-/// Distance of a closed stroke's start from its true one that still counts as found, in lengths of the stroke.
+/// Largest distance from the true start of a closed stroke that counts as found, as a share of the stroke's length.
 const NEAR_START: f64 = 0.05;
 
-/// A stroke of a drawing, and what it is.
+/// A stroke of a drawing, and the part that it draws.
 struct Known {
     part: usize,
     stroke: Stroke,
-    /// Where the contour's first point lies, as a share of the stroke's length.
+    /// The position of the contour's first point, as a share of the stroke's length.
     start: f64,
 }
 
-/// Matches the strokes of two frames, painted where `paints` are given by part.
+/// Matches the strokes of two frames. `paints` are the colours of the parts, or empty.
 pub fn measure(set: &Set, frames: (i32, i32), paints: &[Option<[f32; 3]>], chance: &mut Chance) -> Result<Score> {
     let (first, second, there) = drawings(set, frames, chance);
     let painted = |k: &Known| Stroke { colour: paints.get(k.part).copied().flatten(), ..k.stroke.clone() };
@@ -109,8 +109,8 @@ pub fn measure(set: &Set, frames: (i32, i32), paints: &[Option<[f32; 3]>], chanc
     Ok(score)
 }
 
-/// The strokes of two frames in orders of their own, those of the second drawn in another way, a tenth of the parts
-/// missing on one side; and the number of parts on both.
+/// The strokes of two frames in random orders, those of the second frame drawn in another way. A tenth of the parts is
+/// missing on one of them. Also returns the number of parts on both.
 fn drawings(set: &Set, (from, to): (i32, i32), chance: &mut Chance) -> (Vec<Known>, Vec<Known>, usize) {
     let there: Vec<usize> =
         (0..set.parts.len()).filter(|&i| [from, to].iter().all(|f| set.parts[i].points.contains_key(f))).collect();
@@ -131,7 +131,7 @@ fn drawings(set: &Set, (from, to): (i32, i32), chance: &mut Chance) -> (Vec<Know
     (first, second, there.len() - away)
 }
 
-/// A contour drawn in another way.
+/// A contour with another start, direction and number of points.
 fn redrawn(set: &Set, i: usize, frame: i32, chance: &mut Chance) -> Known {
     let part = &set.parts[i];
     let points = &part.points[&frame];

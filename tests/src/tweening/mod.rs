@@ -1,8 +1,8 @@
-//! What is measured of tweening on sets with known truth.
+//! Measures matching and in-betweens on sets with known truth.
 //!
-//! - [`between`]: in-betweens against the true frames
-//! - [`matching`]: strokes drawn in another way found again
-//! - [`sheet`]: in-betweens over the truth
+//! - [`between`]: compares in-betweens with the true frames
+//! - [`matching`]: matches strokes that are drawn in another way
+//! - [`sheet`]: draws in-betweens over the truth
 
 pub mod between;
 pub mod matching;
@@ -19,10 +19,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Distances in frames of two keys that are looked at.
+/// Distances between two keys that are measured, in frames.
 pub const GAPS: std::ops::RangeInclusive<i32> = 6..=14;
 
-/// How far inside a contour its paint is looked at, in pixels: beyond the ink, and nearer where nothing is seen there.
+/// Distances inside a contour at which its paint is read, in pixels. The first one avoids the ink. The others are tried if
+/// nothing is visible there.
 const INSETS: [f64; 3] = [5.0, 3.0, 1.5];
 
 /// The contours of a set as strokes on every frame.
@@ -38,11 +39,11 @@ pub struct Set {
     pub pattern: String,
     /// Frames on which the project has keys.
     pub keys: Vec<i32>,
-    /// Its parts as the tracker sees them, from the project's keys; empty before [`Set::capture`].
+    /// The parts as tracked from the project's keys; empty before [`Set::capture`].
     pub captured: Arc<[Captured]>,
 }
 
-/// One contour by frame, with as many points on each, the same point always at the same index.
+/// One contour by frame. It has the same number of points on all frames, and a point keeps its index.
 #[derive(Clone, Debug)]
 pub struct Contours {
     /// Name of the part.
@@ -56,7 +57,7 @@ pub struct Contours {
 }
 
 impl Set {
-    /// Reads `truth.json` of a folder, and from its `project.json` which parts are closed.
+    /// Reads the contours from `truth.json` of a folder. The folder's `project.json` gives depths and closed parts.
     pub fn load(folder: &Path) -> Result<Self> {
         let truth = Truth::load(&folder.join("truth.json"))?;
         let project = rototoon::project::Document::load(&folder.join("project.json"))?;
@@ -74,7 +75,7 @@ impl Set {
             })
             .collect();
         let frames = parts.iter().flat_map(|part| part.points.keys().copied());
-        let frames = (frames.clone().min().context("no frames")?, frames.max().context("no frames")?);
+        let frames = (frames.clone().min().context("found no frames")?, frames.max().context("found no frames")?);
         let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let pattern = folder.join(&project.scene.footage.pattern).to_string_lossy().into_owned();
         let mut keys: Vec<i32> = project.scene.parts.iter().flat_map(|part| part.keys.keys().copied()).collect();
@@ -83,7 +84,7 @@ impl Set {
         Ok(Self { name, parts, frames, pattern, keys, captured: Arc::default() })
     }
 
-    /// Tracks the parts of the project in the same folder.
+    /// Tracks the parts of the project in `folder`, for in-betweens that follow them.
     pub fn capture(&mut self, folder: &Path) -> Result<()> {
         let mut document = rototoon::project::Document::load(&folder.join("project.json"))?;
         pipeline::track(&mut document, folder, &TrackOptions::default(), &Silent)?;
@@ -91,8 +92,8 @@ impl Set {
         Ok(())
     }
 
-    /// The paint of each part, as it is seen on most frames: of the places just inside its contour that no nearer part
-    /// covers, the colour that is nearest to the others'.
+    /// The paint of each part, as it appears on most frames. It is read just inside the contour, where no nearer part covers
+    /// it. Of these colours it is the one that is nearest to all others.
     pub fn paints(&self) -> Result<Vec<Option<[f32; 3]>>> {
         let mut seen = vec![Vec::new(); self.parts.len()];
         for frame in self.frames.0..=self.frames.1 {
@@ -114,7 +115,7 @@ impl Set {
         INSETS.into_iter().map(at).find_map(|colours| commonest(&colours))
     }
 
-    /// Pairs of frames as far apart as [`GAPS`] says; of a shorter set its ends.
+    /// Pairs of frames at the distances of [`GAPS`]. A shorter set gives its first and last frame.
     pub fn spans(&self) -> Vec<(i32, i32)> {
         let (first, last) = self.frames;
         if last - first < *GAPS.start() {
@@ -132,7 +133,7 @@ fn commonest(colours: &[[f32; 3]]) -> Option<[f32; 3]> {
     colours.iter().min_by(|a, b| among(a).total_cmp(&among(b))).copied()
 }
 
-/// Places a little inside a polygon, along it.
+/// Points inside a polygon, near its vertices.
 fn inset(points: &[Point], depth: f64) -> impl Iterator<Item = Point> {
     let side = polygon::signed_area(points).signum() * depth;
     let n = points.len();
@@ -147,7 +148,7 @@ fn pixel(picture: &image::RgbImage, p: Point) -> Option<[f32; 3]> {
     inside.then(|| picture.get_pixel(x as u32, y as u32).0.map(|c| f32::from(c) / 255.0))
 }
 
-/// The dense contour, or the control points where the contour has not the same number of points on every frame.
+/// The dense contour if it has the same number of points on every frame, or else the control points.
 fn even(part: &TruePart) -> &BTreeMap<i32, Vec<Point>> {
     let mut counts = part.contour.values().map(Vec::len);
     let first = counts.next();

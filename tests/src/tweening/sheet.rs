@@ -1,5 +1,5 @@
-//! In-betweens over the true frames, as a contact sheet: linear interpolation in red, ours in blue (following what was
-//! captured, where that was done), the truth in black.
+//! A contact sheet of in-betweens: linear interpolation in red, Rototoon's in-betweens in blue, the truth in black.
+//! Rototoon's strokes follow captured parts if [`Set::capture`] was called.
 
 use super::Set;
 use super::between::sequence;
@@ -24,7 +24,7 @@ pub fn draw(set: &Set, frames: &[i32], options: &Options) -> Result<RgbaImage> {
     let between: Vec<i32> = frames.windows(2).flat_map(|pair| pair[0] + 1..pair[1]).collect();
     let count = between.len().min(PICTURES);
     let all: Vec<Point> = parts.iter().flat_map(|&i| set.parts[i].points.values().flatten().copied()).collect();
-    let (low, high) = polygon::bounds(&all).context("no points")?;
+    let (low, high) = polygon::bounds(&all).context("found no points")?;
     let scale = f64::from(SIZE) / (high - low + Point::splat(2.0 * MARGIN)).max_element();
     let place = move |p: Point| (p - low + Point::splat(MARGIN)) * scale;
     let cells = (0..count).map(|n| {

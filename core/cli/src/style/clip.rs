@@ -28,7 +28,7 @@ pub fn command() -> Command {
         .arg(arguments::output("CLIPS", "The file of clips to write"))
 }
 
-/// Runs it.
+/// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let document = project::load(from)?;

@@ -80,7 +80,7 @@ fn view(text: &str) -> Result<View, String> {
     })
 }
 
-/// Runs it.
+/// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let to = arguments::path(given, "output");
     let read = given.get_many::<PathBuf>("files").into_iter().flatten().chain(given.get_one("joints"));

@@ -42,7 +42,7 @@ pub fn command() -> Command {
         .subcommands([add, list])
 }
 
-/// Runs it.
+/// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let Some((what, given)) = given.subcommand() else { return Err(Failure::Use("expected add or list".into())) };
     let mut library = Library::open(arguments::path(given, "folder"));

@@ -28,7 +28,7 @@ pub fn command() -> Command {
         .subcommands([clip::command(), import::command(), library::command(), translate::command(), reshape::command()])
 }
 
-/// Runs it.
+/// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     match given.subcommand() {
         Some(("clip", given)) => clip::run(given),

@@ -87,7 +87,7 @@ fn of_method() -> [Arg; 4] {
     ]
 }
 
-/// Runs it.
+/// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "clips"), arguments::path(given, "output"));
     let text = |id: &str| arguments::choice(given, id);
