@@ -95,8 +95,8 @@ impl Refiner {
         Some(Self { samples, keys: points, templates, links })
     }
 
-    /// Forgets the difference between part and background, for measurements without it: outside samples are treated
-    /// like inside samples.
+    /// Forgets the difference between part and background, for measurements without it: offsets outside have the same
+    /// cost function as offsets inside.
     pub fn forget_figure(&mut self) {
         self.templates.forget_figure();
     }
