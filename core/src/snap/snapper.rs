@@ -40,7 +40,7 @@ const VOTE_RADIUS: f64 = 3.0;
 /// How to snap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SnapOptions {
-    /// What the paths follow.
+    /// The kind of feature that the paths follow.
     pub follow: Follow,
     /// How far a path may go from its segment.
     pub corridor: CorridorWidth,

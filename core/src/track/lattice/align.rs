@@ -58,7 +58,7 @@ const DRAW_ITERATIONS: usize = 3;
 pub struct Target<'a> {
     /// The frame's picture.
     pub picture: &'a Features,
-    /// What hides the part on the frame. Samples under it are left out.
+    /// The cover of the frame: where the part is hidden. Samples there are left out.
     pub cover: &'a Cover,
     /// The artist's corrections on the frame.
     pub anchors: &'a Anchors,

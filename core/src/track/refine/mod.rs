@@ -57,7 +57,7 @@ pub struct Key<'a> {
     pub points: &'a [Point],
     /// The key's picture.
     pub picture: &'a Features,
-    /// What hides the part at the key.
+    /// The cover at the key: where the part is hidden.
     pub cover: &'a Cover,
 }
 
@@ -65,7 +65,7 @@ pub struct Key<'a> {
 pub struct Frame<'a> {
     /// Its picture.
     pub picture: &'a Features,
-    /// What hides the part.
+    /// The cover: where the part is hidden.
     pub cover: &'a Cover,
     /// Share of the time from the first key to the second.
     pub share: f64,
