@@ -55,7 +55,7 @@ const LINE_REACH: f32 = 0.71;
 /// Luma weights of ITU-R BT.601, for encoded red, green and blue.
 const LUMA: [f32; 3] = [0.299, 0.587, 0.114];
 
-/// What a path follows.
+/// The kind of feature that a path follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Follow {
     /// The line's centre where the control points are, on average, nearer to ink centres than to edges; otherwise the

@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_are_snapped_on_their_tracks_or_keys_and_pictures_asked_for_once() {
+    fn parts_are_snapped_on_tracks_or_keys_and_pictures_are_read_once() {
         let source = Disc { asked: AtomicUsize::new(0) };
         let curves = snap_scene(&scene(), &source, &SnapOptions::default(), &Silent).unwrap();
         assert_eq!(source.asked.load(Ordering::Relaxed), 7);

@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn of_equal_paths_the_one_of_smaller_indices_is_taken() {
+    fn of_equal_paths_the_one_with_smaller_indices_is_taken() {
         // There are two ways around a wall in the middle of a 3 × 3 grid, with the same cost.
         let cost = |_: usize, to: usize, _: usize| (to != 4).then_some(1);
         assert_eq!(shortest_path((3, 3), 3, 5, cost), Some(vec![3, 1, 5]));

@@ -40,7 +40,7 @@ const VOTE_RADIUS: f64 = 3.0;
 /// How to snap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SnapOptions {
-    /// What the paths follow.
+    /// The kind of feature that the paths follow.
     pub follow: Follow,
     /// How far a path may go from its segment.
     pub corridor: CorridorWidth,
@@ -97,7 +97,7 @@ impl<'a> Snapper<'a> {
         polyline::segments(contour, closed).map(|(a, b)| self.path(a, b, kind, &options.corridor)).collect()
     }
 
-    /// Whether a contour's points lie on ink centres or on edges.
+    /// How far the contour's points are from ink centres and from edges. Points outside the picture do not count.
     pub fn vote(&self, contour: &[Point]) -> InkVote {
         let points = contour.iter().filter(|&&p| self.holds(p));
         points.fold(InkVote::default(), |sum, &p| {
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn the_direction_cost_is_the_papers() {
+    fn the_direction_cost_is_that_of_the_paper() {
         let angle = |turn: i32| f64::from(turn) * std::f64::consts::TAU / 65536.0;
         for tp in (0..65536).step_by(5003) {
             for tq in (0..65536).step_by(4001) {
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn costs_stay_between_nothing_and_one() {
+    fn costs_stay_between_zero_and_one() {
         assert_eq!(local_cost(feature(0), feature(0), 0, 1.0, true), 0.0);
         let nothing = Feature::default();
         assert!(local_cost(nothing, nothing, 3, 1.0, true) <= 1.0);

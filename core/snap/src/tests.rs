@@ -119,7 +119,7 @@ fn ends_beside_the_ink_are_kept_and_the_path_joins_it() {
 }
 
 #[test]
-fn where_nothing_can_be_followed_the_segment_stays() {
+fn segments_without_ink_to_follow_stay_straight() {
     let blank = Raster::new(50, 40, PAPER);
     let (a, b) = (Point::new(5.0, 5.0), Point::new(40.0, 30.0));
     let straight =
@@ -136,7 +136,7 @@ fn where_nothing_can_be_followed_the_segment_stays() {
 }
 
 #[test]
-fn tiny_contours_and_pictures_are_served() {
+fn tiny_contours_and_pictures_are_snapped() {
     let dot = Raster::new(1, 1, PAPER);
     let options = SnapOptions::default();
     let corners = [Point::ZERO, Point::ONE];
@@ -149,7 +149,7 @@ fn tiny_contours_and_pictures_are_served() {
 }
 
 #[test]
-fn contours_that_share_a_snapper_find_the_same_as_alone() {
+fn a_shared_snapper_gives_the_same_paths() {
     let centre = Point::new(60.3, 54.8);
     let picture = outlined_disc(centre, 40.0, 2.5);
     let shared = Snapper::new(&picture);

@@ -134,7 +134,7 @@ mod tests {
         let scenery = scenery();
         let (curve, x) = curve_case(8, true);
         let term = Appearance { curve: &curve, scenery: &scenery, level: 0, offsets: &WINDOW };
-        // The pictures are planes that shift by (2, 1) a frame.
+        // The pictures are planes that shift by (2, 1) per frame.
         let moved: Vec<Point> = x[..8].iter().map(|p| *p + Point::new(2.0, 1.0)).collect();
         assert!(residuals(&term, &curve, &[&x[..8], &moved].concat()).1 < 1e-4);
         assert!(residuals(&term, &curve, &[&x[..8], &x[..8]].concat()).1 > 10.0);

@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn few_points_and_points_that_coincide_make_no_trouble() {
+    fn few_points_and_coincident_points_give_finite_values() {
         for closed in [true, false] {
             for n in 0..6 {
                 for points in [ring(n.max(1))[..n].to_vec(), vec![Point::ONE; n]] {

@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn the_projection_keeps_what_is_fixed() {
+    fn the_projection_keeps_fixed_points_and_centres() {
         let scenery = scenery();
         let (curve, x) = curve_case(3, true);
         let start: Vec<Vec<Point>> = x.chunks(3).map(<[Point]>::to_vec).collect();

@@ -23,7 +23,7 @@
 //! - [`curve`]: Catmull–Rom curves, samples, linear functions of the control points
 //! - [`pose`]: the curves of all frames
 //! - [`profile`]: places along a normal, with derivatives
-//! - [`views`]: pictures on a pyramid, and what hides the part
+//! - [`views`]: pictures on a pyramid, and the occlusion of the part
 //! - [`blocks`]: JᵀJ as a block-tridiagonal matrix
 //! - [`energy`]: the terms joined, as an objective for [`trust_region`](crate::numeric::trust_region)
 //! - [`solve`]: minimisation from coarse to fine

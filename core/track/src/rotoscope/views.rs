@@ -70,7 +70,7 @@ fn edge_measure(picture: &Raster<Colour>, x: usize, y: usize) -> f32 {
     (STRONGEST - (0.30 * strength(0) + 0.59 * strength(1) + 0.11 * strength(2))).max(0.0)
 }
 
-/// The views of a job's frames, and what hides its part on each.
+/// The views of a job's frames, and the occlusion of its part on each.
 pub struct Scenery {
     views: Vec<Arc<View>>,
     hidden: Vec<Option<Raster<bool>>>,

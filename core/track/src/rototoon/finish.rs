@@ -1,6 +1,6 @@
 //! Makes tracks from the chosen poses.
 //!
-//! 1. The chosen pose is aligned to what nearer parts leave visible.
+//! 1. The chosen pose is aligned to the samples that nearer parts leave visible.
 //! 2. It is blended with the nearest pose of the other key's model.
 //! 3. The contour is refined by its own colour templates, if they fit better afterwards.
 //! 4. The artist's corrections are enforced.

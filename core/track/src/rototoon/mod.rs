@@ -13,12 +13,12 @@
 //! 2. **Choice.** All parts of a stretch of time choose their paths through the pools together ([`joint`]): nearer
 //!    parts hide farther ones, and connected parts stay together. The choice adds hypotheses to the pools, and is made
 //!    again ([`mend`]).
-//! 3. **Finish.** The chosen poses are aligned once more to what nearer parts leave visible, and their contours are
-//!    refined ([`finish`]).
+//! 3. **Finish.** The chosen poses are aligned once more to the samples that nearer parts leave visible, and their
+//!    contours are refined ([`finish`]).
 //! 4. **Outward.** Parts with a single key are followed from it, after all others ([`outward`]).
 //!
-//! **Memory.** Each step is a pure function of its input, and its last result is kept. A pin on one part leaves the
-//! pools of all other parts as they are, and everything that the choice does not change.
+//! **Memory.** Each step is a pure function of its input, and its last result is kept. A pin on one part does not
+//! change the pools of other parts. The tracks of other parts are computed again only if the choice changes them.
 //!
 //! Work is handed to threads piece by piece (`with_max_len`): if a thread had several pieces, the others would wait for
 //! it at the end.

@@ -35,7 +35,7 @@ pub struct Model {
     pub texture: Texture,
     /// Aligns poses of the lattice.
     pub aligner: Aligner,
-    /// The cover of the key's picture: what hides the part there.
+    /// The cover of the key's picture: where the part is hidden there.
     pub cover: Cover,
     /// The nodes of the lattice, moved to the other key's contour.
     pub there: Vec<Point>,
@@ -48,7 +48,7 @@ pub struct Model {
 pub struct Scenery<'a> {
     /// Features of its picture.
     pub features: &'a Features,
-    /// What hides the part. The alignment leaves hidden samples out.
+    /// The cover: where the part is hidden. The alignment leaves hidden samples out.
     pub cover: &'a Cover,
     /// Whether samples under the cover count as unseen when a pose is measured. If not, only samples outside the
     /// picture do.

@@ -3,7 +3,7 @@
 //! From one drawing to the next of the same shot most of the picture stays, or moves a little with the camera. At a cut
 //! almost no pixel has a similar one nearby. So each pixel of the coarsest level is compared with the pixels around its
 //! place in the other picture. It is a cut if more than half of the pixels have no similar one there, in both
-//! directions: what a part covers or uncovers is missing in one direction only.
+//! directions: an area that a part covers or uncovers has no match in one direction only.
 //!
 //! Limits: a whip pan or a flash looks like a cut. Two shots with the same plain background do not.
 

@@ -18,9 +18,9 @@ use rototoon_image::mean_shift::{MeanShiftOptions, mean_shift};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Bytes kept as edges, all frames together.
+/// Byte budget of the edges of all frames together.
 const EDGE_BUDGET: usize = 64 << 20;
-/// Bytes kept as distances, all frames together.
+/// Byte budget of the distances of all frames together.
 const DISTANCE_BUDGET: usize = 128 << 20;
 
 /// How edges are detected.
@@ -219,7 +219,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     #[test]
-    fn a_store_drops_what_was_not_used_for_longest() {
+    fn a_store_drops_the_least_recently_used_frame() {
         let mut store = Store::default();
         for frame in 0..3 {
             store.put(frame, Arc::new(frame), 10, 30);
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn distances_lead_to_the_border_and_pictures_are_asked_for_once() {
+    fn distances_lead_to_the_border_and_pictures_are_read_once() {
         let (maps, frames) = (EdgeMaps::default(), Curtain(AtomicUsize::new(0)));
         assert_eq!(maps.prepare(&frames, 2), Ok(true));
         for _ in 0..2 {
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_that_fails_can_be_asked_for_again() {
+    fn a_frame_that_fails_can_be_requested_again() {
         let (maps, frames) = (EdgeMaps::default(), Curtain(AtomicUsize::new(0)));
         assert!(maps.prepare(&frames, 7).is_err());
         assert!(maps.prepare(&frames, 7).is_err(), "a failed frame is not in work any more");

@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn all_ways_of_reading_read_the_same() {
+    fn all_read_functions_agree() {
         let picture = Raster::from_fn(331, 270, |x, y| [3, 5, 7].map(|k| ((x * k + y * 11) as f32 * 0.1).sin().abs()));
         let features = Features::new(&picture);
         let (first, step) = (Point::new(-31.0, 17.3), Point::new(7.9, 5.1));

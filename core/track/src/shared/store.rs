@@ -139,7 +139,7 @@ impl Store {
         };
         match self.once(key, make) {
             Value::Pyramid(pyramid) => Ok(pyramid),
-            _ => unreachable!("a pyramid is kept under the key of one"),
+            _ => unreachable!("a pyramid is kept under the key of a pyramid"),
         }
     }
 
@@ -161,7 +161,7 @@ impl Store {
         };
         match self.once(key, make) {
             Value::Sought(sought) => Ok(sought),
-            _ => unreachable!("a picture to search is kept under the key of one"),
+            _ => unreachable!("a prepared picture is kept under the key of a prepared picture"),
         }
     }
 

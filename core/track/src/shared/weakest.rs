@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn untracked_parts_say_nothing() {
+    fn untracked_parts_are_ignored() {
         let mut untracked = part(&[1.0; 9]);
         untracked.confidence.clear();
         assert_eq!(weakest_frame(&[untracked]), None);

@@ -122,7 +122,7 @@ impl Progress for Listener {
 }
 
 #[test]
-fn progress_rises_to_the_end_and_a_cancelled_run_leaves_what_was_known() {
+fn progress_rises_to_the_end_and_a_cancelled_run_keeps_earlier_results() {
     let mut tracker = Tracker::with_solver(Box::new(Recorder::default()));
     let scene = scene((0..5).map(|k| part(&format!("part {k}"), f64::from(k), &[0, 8, 16])).collect());
     let stopped = Listener { told: Mutex::default(), stop_after: 7 };

@@ -66,7 +66,7 @@ fn a_key_in_the_middle_is_followed_both_ways_behind_what_is_nearer() {
 }
 
 #[test]
-fn a_part_that_is_gone_wants_a_key_where_it_was_lost() {
+fn a_part_that_disappears_needs_a_key_where_it_was_lost() {
     let drawn = limb_and_ball();
     let gone = Changed { drawn: &drawn, from: 4, instead: paper };
     let scene = drawn.scene(vec![single(&drawn.0[0], "limb", 0.0, 0)]);
@@ -78,7 +78,7 @@ fn a_part_that_is_gone_wants_a_key_where_it_was_lost() {
 }
 
 #[test]
-fn another_shot_ends_a_track_and_wants_no_key() {
+fn another_shot_ends_a_track_and_needs_no_key() {
     let drawn = limb_and_ball();
     let shot = Changed { drawn: &drawn, from: 4, instead: night };
     let scene = drawn.scene(vec![single(&drawn.0[0], "limb", 0.0, 0)]);
@@ -95,7 +95,7 @@ fn leaving() -> Drawn {
 }
 
 #[test]
-fn a_part_that_leaves_the_picture_wants_no_key() {
+fn a_part_that_leaves_the_picture_needs_no_key() {
     let drawn = leaving();
     let tracking = track(&drawn, &drawn.scene(vec![single(&drawn.0[0], "ball", 0.0, 0)]));
     let found = &tracking.parts[0];
@@ -107,7 +107,7 @@ fn a_part_that_leaves_the_picture_wants_no_key() {
 }
 
 #[test]
-fn pins_and_centers_extend_trust_and_hold_exactly() {
+fn pins_and_centers_extend_trust_and_are_exact() {
     let drawn = limb_and_ball();
     let gone = Changed { drawn: &drawn, from: 4, instead: paper };
     let mut part = single(&drawn.0[0], "limb", 0.0, 1);
@@ -127,7 +127,7 @@ fn pins_and_centers_extend_trust_and_hold_exactly() {
 }
 
 #[test]
-fn parts_between_keys_do_not_notice_a_part_with_one_key() {
+fn a_part_with_one_key_does_not_change_parts_between_keys() {
     let drawn = limb_and_ball();
     let limb = drawn.0[0].part("limb", 0.0);
     let alone = track(&drawn, &drawn.scene(vec![limb.clone()]));

@@ -116,7 +116,7 @@ fn a_textured_shape_that_moves_and_turns_slowly_is_followed() {
 }
 
 #[test]
-fn what_a_nearer_part_hides_is_carried_along() {
+fn hidden_points_are_carried_along() {
     let wall = [(95.0, -10.0), (112.0, -10.0), (112.0, 300.0), (95.0, 300.0)].map(|(x, y)| Point::new(x, y)).to_vec();
     for (name, solver) in presets() {
         let covered = Job { occluders: vec![vec![wall.clone()]; SPAN.len()], ..easy() };
@@ -126,7 +126,7 @@ fn what_a_nearer_part_hides_is_carried_along() {
 }
 
 #[test]
-fn pins_and_centres_hold_exactly() {
+fn pins_and_centres_are_exact() {
     let mut job = easy();
     let pin = Point::new(58.0, 42.5);
     job.corrections.insert(2, Correction { pins: BTreeMap::from([(3, pin)]), center: None });
@@ -146,7 +146,7 @@ fn pins_and_centres_hold_exactly() {
 }
 
 #[test]
-fn short_flat_and_distant_parts_are_tracked_without_nonsense() {
+fn short_flat_and_distant_parts_give_finite_tracks() {
     let shift = |points: &[Point], by: f64| points.iter().map(|&p| p + Point::splat(by)).collect::<Vec<_>>();
     let flat = vec![Point::new(20.0, 20.0); 5];
     let span = Span { first: 0, last: 3 };
@@ -177,14 +177,14 @@ impl FrameSource for Nothing {
 }
 
 #[test]
-fn pictures_without_pixels_are_no_trouble() {
+fn pictures_without_pixels_are_accepted() {
     for (_, solver) in presets() {
         solve(&*solver, &Job { size: (0, 0), ..easy() }, &Nothing);
     }
 }
 
 #[test]
-fn neither_threads_nor_what_is_kept_change_anything() {
+fn threads_and_cached_views_change_nothing() {
     for (_, solver) in presets() {
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

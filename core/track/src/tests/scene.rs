@@ -164,7 +164,7 @@ fn equal_legs_that_cross_stay_on_their_own_hips() {
 }
 
 #[test]
-fn an_edit_solves_no_more_than_it_touches_and_gives_what_a_new_run_gives() {
+fn an_edit_solves_only_affected_jobs_and_equals_a_new_run() {
     let drawn = twins();
     let names = [("far leg", 0.0), ("near leg", 1.0), ("body", 2.0)];
     let parts = drawn.0.iter().zip(names).map(|(shape, (name, depth))| shape.part(name, depth)).collect();
@@ -201,7 +201,7 @@ fn the_number_of_threads_changes_nothing() {
 }
 
 #[test]
-fn pins_and_small_moves_hold_exactly_and_neighbours_follow() {
+fn pins_and_small_moves_are_exact_and_neighbours_follow() {
     let drawn = limb_and_ball();
     let mut limb = drawn.0[0].part("limb", 0.0);
     let pin = drawn.0[0].contour(3)[2] + Point::new(6.0, -5.0);
@@ -218,7 +218,7 @@ fn pins_and_small_moves_hold_exactly_and_neighbours_follow() {
 }
 
 #[test]
-fn a_far_center_says_where_to_look() {
+fn a_far_center_shows_where_to_search() {
     let ball = |motion: fn(f64) -> (Point, f64)| Shape {
         rest: (0..10).map(|k| Point::from_angle(f64::from(k) * 0.628) * Point::new(16.0, 12.0)).collect(),
         colour: [0.2, 0.4, 0.8],

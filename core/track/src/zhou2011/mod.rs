@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn pins_and_centres_hold_exactly() {
+    fn pins_and_centres_are_exact() {
         let mut job = job([outline(0), outline(6)], true, SPAN);
         let pin = Point::new(31.0, 22.5);
         job.corrections.insert(2, Correction { pins: BTreeMap::from([(0, pin)]), center: None });
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn open_short_flat_and_distant_parts_are_tracked_without_nonsense() {
+    fn open_short_flat_and_distant_parts_give_finite_tracks() {
         let shift = |points: &[Point], by: f64| points.iter().map(|&p| p + Point::splat(by)).collect::<Vec<_>>();
         let flat = vec![Point::new(20.0, 20.0); 5];
         let line = [20.0, 40.0, 60.0].map(|x| Point::new(x, 60.0)).to_vec();
@@ -381,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn spans_without_frames_between_and_parts_without_points_are_nothing_to_solve() {
+    fn short_spans_and_parts_without_points_are_nothing_to_solve() {
         let short = solve(&job([outline(0), outline(1)], true, Span { first: 0, last: 1 }));
         assert_eq!(short.summary.termination, Termination::NothingToSolve);
         assert_eq!(short.points, [outline(0), outline(1)]);
@@ -390,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_of_pictures_changes_nothing() {
+    fn cached_edges_change_nothing() {
         let solver = Zhou2011::default();
         let job = job([outline(0), outline(6)], true, SPAN);
         let first = solver.solve(&job, &Bow, &Silent).unwrap();

@@ -1,4 +1,4 @@
-//! The cost of a choice of hypotheses: their fit given what hides them, and torn joints.
+//! The cost of a choice of hypotheses: their fit, given their occluders, and torn joints.
 
 use super::contender::{Contender, Paths, State};
 use super::shadow::Shadows;

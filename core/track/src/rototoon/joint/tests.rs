@@ -46,7 +46,7 @@ fn three_drawings() -> Vec<Drawing> {
 }
 
 #[test]
-fn two_parts_do_not_stand_in_one_place() {
+fn two_parts_do_not_take_the_same_place() {
     let at = |x: f64| turned(&bar(), 0.0, Point::new(x, 200.0));
     let still = (0.0, Point::ZERO);
     let far_models = [model(&at(240.0), still), model(&at(240.0), still)];

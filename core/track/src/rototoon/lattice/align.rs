@@ -58,7 +58,7 @@ const DRAW_ITERATIONS: usize = 3;
 pub struct Target<'a> {
     /// The frame's picture.
     pub picture: &'a Features,
-    /// What hides the part on the frame. Samples under it are left out.
+    /// The cover of the frame: where the part is hidden. Samples there are left out.
     pub cover: &'a Cover,
     /// The artist's corrections on the frame.
     pub anchors: &'a Anchors,
@@ -358,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ground_that_moves_along_the_contour_does_not_draw_the_part_with_it() {
+    fn a_background_that_moves_along_the_contour_does_not_pull_the_part() {
         let (picture, cover) = (picture(258), Cover::none(WIDTH));
         let moved = |texture: &Texture| {
             let anchors = Anchors::default();
@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn outside_slopes_lead_across_the_contour_as_it_is_turned() {
+    fn outside_slopes_point_across_the_rotated_contour() {
         let texture = bar();
         let group = |first: usize| [0, 1, 2].map(|k| ((first + k) as f32 * 1.3).sin());
         let padded = |[a, b, c]: [f32; 3]| Padded::new(a, b, c, 0.0);

@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_stays_while_the_rest_is_drawn_to_its_anchor() {
+    fn held_nodes_stay_while_the_others_move_to_the_anchor() {
         let bar: Vec<Point> =
             [(0.0, 0.0), (160.0, 0.0), (160.0, 20.0), (0.0, 20.0)].map(|(x, y)| Point::new(x, y)).to_vec();
         let mesh = Mesh::new(&bar, true);

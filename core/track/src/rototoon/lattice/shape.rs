@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gradient_is_the_energy_s_slope() {
+    fn the_gradient_is_the_derivative_of_the_energy() {
         let mesh = mesh();
         let bent = |k: usize| Point::new((k as f64 * 1.7).sin(), (k as f64 * 2.3).cos()) * 3.0;
         let nodes: Vec<Point> = mesh.rest.iter().enumerate().map(|(k, &q)| q * 1.4 + bent(k)).collect();

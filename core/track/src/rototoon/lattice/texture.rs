@@ -158,8 +158,8 @@ impl Texture {
         Self { mesh, texels, width }
     }
 
-    /// Forgets the difference between part and background, for measurements without it: outside samples are treated
-    /// like inside samples.
+    /// Forgets the difference between part and background, for measurements without it: samples outside have the same
+    /// cost function and pull as samples inside.
     pub fn forget_figure(&mut self) {
         self.texels.iter_mut().flatten().for_each(|texel| (texel.own, texel.across) = (None, None));
     }
@@ -332,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn another_ground_costs_little_but_the_part_s_own_colour_much() {
+    fn another_background_costs_little_and_the_parts_own_colour_much() {
         let [same, other, own] =
             [[0.9, 0.9, 0.9], [0.1, 0.3, 0.9], [0.8, 0.2, 0.1]].map(|[r, g, b]| Padded::new(r, g, b, 0.0));
         let outside = texel(Some(own));
@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn across_a_contour_lies_as_far_inside_as_outside() {
+    fn the_mirror_place_is_as_far_inside_as_outside() {
         let square = [(10.0, 10.0), (50.0, 10.0), (50.0, 50.0), (10.0, 50.0)].map(|(x, y)| Point::new(x, y));
         let mesh = Mesh::new(&square, true);
         assert!(mesh.across(Point::new(30.0, 6.0)).unwrap().distance(Point::new(30.0, 14.0)) < 1e-9);

@@ -164,7 +164,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_linear_is_shifted_linearly(missing in prop::collection::vec(0usize..20, 0..12), by in prop::array::uniform4(-3.0f64..3.0)) {
+        fn linear_shifts_stay_linear(missing in prop::collection::vec(0usize..20, 0..12), by in prop::array::uniform4(-3.0f64..3.0)) {
             let shift = |p: Point| Point::new(by[0] * p.x - by[1] * p.y, by[2] * p.x + by[3]);
             for (lattice, unknowns) in both(&missing) {
                 let at = |(c, r): (usize, usize)| Point::new(c as f64, r as f64);

@@ -56,7 +56,7 @@ pub struct Seen {
     pub far: FrameNumber,
     /// Features of its picture.
     pub features: Arc<Features>,
-    /// What hides the part.
+    /// The cover: where the part is hidden.
     pub cover: Cover,
     /// The artist's correction of the drawing.
     pub correction: Option<Correction>,

@@ -51,7 +51,7 @@ const WORTH: f64 = 0.01;
 /// Upper limit of the cost of a sample.
 const LOST: f64 = 0.5;
 
-/// A part's templates and links. Made once a span.
+/// A part's templates and links. They are built once per span.
 pub struct Refiner {
     samples: Samples,
     keys: [Vec<Point>; 2],
@@ -73,8 +73,8 @@ impl Refiner {
         Some(Self { samples, keys: points, templates, links })
     }
 
-    /// Forgets the difference between part and background, for measurements without it: outside samples are treated
-    /// like inside samples.
+    /// Forgets the difference between part and background, for measurements without it: offsets outside have the same
+    /// cost function as offsets inside.
     pub fn forget_figure(&mut self) {
         self.templates.forget_figure();
     }

@@ -62,7 +62,8 @@ impl Templates {
         Self { of_key: [0, 1].map(|k: usize| of_key(&keys[k], samples, closed)) }
     }
 
-    /// Forgets the difference between part and background, for measurements without it.
+    /// Forgets the difference between part and background, for measurements without it: offsets outside have the same
+    /// cost function as offsets inside.
     pub fn forget_figure(&mut self) {
         self.of_key.iter_mut().flatten().flat_map(|template| &mut template.cells).for_each(|cell| cell.own = None);
     }

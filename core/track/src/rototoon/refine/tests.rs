@@ -77,7 +77,7 @@ fn a_rough_contour_comes_back_to_the_ink() {
 }
 
 #[test]
-fn another_ground_costs_little_and_the_part_s_own_colour_outside_much() {
+fn another_background_costs_little_and_the_parts_own_colour_much() {
     let at = |x: f64| placed(0.0, Point::new(x, 200.0));
     let keys = [at(150.0), at(330.0)];
     let (pictures, cover) = (keys.each_ref().map(|key| drawn(key, WALL)), Cover::none(LINES as f64));

@@ -43,7 +43,7 @@ mod tests {
     }
 
     #[test]
-    fn alone_it_brings_the_centre_to_its_place_around_a_pin() {
+    fn alone_it_moves_the_centre_to_its_target_around_a_pin() {
         let energy = only(Weights { center: 32.0, ..NONE }, 5, true);
         let mut x = energy.initial();
         minimise(&energy, &mut x, &LmOptions::default(), |_, _| ControlFlow::Continue(()));

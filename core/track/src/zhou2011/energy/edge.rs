@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_field_the_distance_goes_on_level() {
+    fn outside_the_field_the_distance_is_constant() {
         let field = DistanceField::from_fn((0, 0), 3, 3, |x, y| (x + 5 * y) as u16);
         assert_eq!(field.read(Point::new(-40.0, 1.5)), (5.0, Point::new(0.0, 5.0)));
         assert_eq!(field.read(Point::new(1e300, 1e300)), (12.0, Point::ZERO));

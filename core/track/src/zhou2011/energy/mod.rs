@@ -338,7 +338,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn curves_that_stand_still_on_their_edges_cost_nothing() {
+    fn still_curves_on_their_edges_cost_nothing() {
         let (layout, mut start) = wobbly(5, true);
         for k in 5..start.len() {
             start[k] = start[k - 5];

@@ -40,7 +40,7 @@ mod tests {
     }
 
     #[test]
-    fn alone_it_interpolates_linearly_between_what_is_fixed() {
+    fn alone_it_interpolates_linearly_between_fixed_points() {
         let energy = only(Weights { velocity: 4.0, ..NONE }, 5, true);
         let mut x = energy.initial();
         minimise(&energy, &mut x, &LmOptions::default(), |_, _| ControlFlow::Continue(()));

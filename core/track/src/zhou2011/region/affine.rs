@@ -65,11 +65,11 @@ fn column(p: Point) -> Vector2<f64> {
 /// A run of coloured pixels of one row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// Row of the picture; may lie outside.
+    /// Row of the picture. It may be outside.
     pub y: isize,
-    /// Column of the first pixel; may lie outside.
+    /// Column of the first pixel. It may be outside.
     pub x: isize,
-    /// Colours from there to the right, channel by channel: three values a pixel.
+    /// Colours of the pixels from left to right, three values per pixel.
     pub colours: Vec<f32>,
 }
 
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_coloured_where_nothing_can_be() {
+    fn polygons_without_a_counterpart_get_no_colours() {
         let picture = Raster::new(6, 6, [0.5; 3]);
         let square = points([(1.0, 1.0), (4.0, 1.0), (4.0, 4.0), (1.0, 4.0)]);
         let source = Source::new(&picture, &square);

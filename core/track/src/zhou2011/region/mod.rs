@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn where_every_place_is_alike_the_part_stays() {
+    fn a_part_stays_if_all_places_are_equal() {
         let flat = Raster::new(60, 60, [0.25; 3]);
         let polygon = outline(30.3, 28.9);
         let found = find_center(&[Source::new(&flat, &polygon)], &polygon, &flat).unwrap();
