@@ -1,29 +1,31 @@
-//! In-betweens that follow what was captured.
+//! In-betweens that follow captured contours.
 //!
-//! How far a limb has come on each frame, and whether it swings out and back on its way, two drawings do not tell. Where
-//! there is footage between them that was tracked, it is known. A stroke that lies on a captured part then moves as that
-//! part does, from the earlier key forwards and from the later one backwards:
+//! Two drawings do not show the progress of a limb on each frame, nor whether it swings out and back. Tracked footage
+//! between them shows both. A stroke that is drawn on a captured part then moves with that part, from the earlier key
+//! forwards and from the later key backwards:
 //!
 //! p(f) = (1 − u) W_{a→f}(p_a) + u W_{b→f}(p_b), u = (f − a) / (b − a),
 //!
-//! where W takes the part's contour on one frame to that on another, and the plane with it ([`Moving`]). On the keys
-//! these are the drawings themselves, whatever they add to what was captured; between them what the drawings say that the
-//! contours do not fades from one into the other.
+//! W maps the part's contour on one frame to its contour on another, and the plane around it too ([`Moving`]). On the
+//! keys the result is the drawings themselves, with everything that they add to the contours. Between the keys these
+//! additions fade from those of one drawing into those of the other.
 //!
-//! A closed eye has both lids on one line, and an arm may rest on its body: what lies near two stretches of a contour on one
-//! key belongs to that which it is near to on both. Each point is **bound** to the place of the contour that minimises the
-//! sum of its squared distances on the keys, and follows the contour around that place, the farther around the farther it
-//! lies off.
+//! The lids of a closed eye share one line, and an arm may rest on its body. A point near two stretches of a contour on
+//! one key belongs to the stretch to which it is near on both keys. Each point is therefore **bound** to the place on
+//! the contour with the least sum of squared distances on both keys. It follows the contour around that place. The
+//! farther it is from the contour, the longer the stretch that it follows.
 //!
-//! # Which part a stroke follows
+//! # The part that a stroke follows
 //!
-//! Of the parts in which, or near which, it lies on both keys that which best takes its points from the one key to
-//! the other; none if that misses them by more than half of their way, and by more than drawings may lie beside a part; nor a
-//! part that is not captured on all frames between.
+//! Candidates are parts that are captured on all frames of the span and that contain the stroke, or have it near them,
+//! on both keys. The best one carries the stroke's points most exactly from one key to the other. A stroke follows no
+//! part if the best one misses its points by more than half of their way and by more than drawings may be off a part
+//! ([`NEAR`]).
 //!
 //! # Limits
 //!
-//! A chart says how far a movement has come that nobody saw; what was captured has its own spacing, and no chart is used.
+//! A spacing chart describes the progress of a movement that nobody saw. A captured movement has its own spacing, so
+//! charts do not apply to it.
 
 use super::Track;
 use rototoon_base::geometry::moving::Moving;
@@ -31,43 +33,44 @@ use rototoon_base::geometry::{Point, polygon, polyline};
 use rototoon_base::scene::FrameNumber;
 use std::collections::BTreeMap;
 
-/// Parts of a segment of a contour: what lies on it has to be nearer to one of its points than to another stretch.
+/// Number of parts into which a segment of a contour is divided, so that a point on it is nearer to one of them than to
+/// another stretch.
 const STEPS: usize = 4;
-/// How far around the place that it is bound to a point follows the contour: in its distances from it, and in segments at the
-/// least.
+/// Half length of the stretch that a point follows: this many times its distance from the contour, but at least this
+/// many segments.
 const AROUND: f64 = 3.0;
-/// How far a stroke's points lie outside a part, in the mean and in sizes of the part, at the most.
+/// Largest mean distance of a stroke's points outside a part, in sizes of the part.
 const NEAR: f64 = 0.15;
-/// Share of its way that a part must explain of a stroke that does not come out as near as that.
+/// Largest share of its way by which a part may miss a stroke that it does not meet within [`NEAR`].
 const EXPLAINED: f64 = 0.5;
-/// Size of an open contour, which has no area, in its lengths.
+/// Size of an open contour or one without area, as a share of its length.
 const OPEN: f64 = 0.3;
 
-/// A captured contour.
+/// A captured contour of a part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Captured {
     /// Whether the last point joins the first.
     pub closed: bool,
-    /// Its points by frame, as many on each, in pixels.
+    /// Its points by frame, in pixels; the same number on each frame.
     pub contours: BTreeMap<FrameNumber, Vec<Point>>,
 }
 
 impl Captured {
-    /// Whether it is known on all frames from `first` to `last`, with as many points on each.
+    /// Whether it is known on all frames from `first` to `last`, with the same number of points on each.
     fn spans(&self, first: FrameNumber, last: FrameNumber) -> bool {
         let Some(points) = self.contours.get(&first).map(Vec::len) else { return false };
         let alike = self.contours.range(first..=last).filter(|(_, contour)| contour.len() == points).count() as i64;
         first <= last && alike == i64::from(last) - i64::from(first) + 1
     }
 
-    /// A contour with its segments divided.
+    /// A contour with each segment divided into [`STEPS`].
     fn divided(&self, contour: &[Point]) -> Vec<Point> {
         let last = contour.last().filter(|_| !self.closed || contour.len() == 1).copied();
         let steps = |(a, b): (Point, Point)| (0..STEPS).map(move |k| a.lerp(b, k as f64 / STEPS as f64));
         polyline::segments(contour, self.closed).flat_map(steps).chain(last).collect()
     }
 
-    /// Whether points lie in it or near it on a frame.
+    /// Whether points are inside the part or near it on a frame, in the mean.
     fn holds(&self, points: &[Point], frame: FrameNumber) -> bool {
         let Some(contour) = self.contours.get(&frame).filter(|contour| !contour.is_empty()) else { return false };
         let outside = |p: &Point| {
@@ -81,10 +84,10 @@ impl Captured {
         off <= NEAR * self.size(contour)
     }
 
-    /// How large a contour is, in pixels.
+    /// Size of a contour, in pixels.
     fn size(&self, contour: &[Point]) -> f64 {
         let area = if self.closed { polygon::signed_area(contour).abs().sqrt() } else { 0.0 };
-        // A closed eye has no area either.
+        // A closed eye has no area either, so the length counts too.
         area.max(OPEN * polyline::length(contour, false))
     }
 }
@@ -92,16 +95,17 @@ impl Captured {
 /// How a stroke between two keys follows a part.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Following {
-    /// Number of the part.
+    /// Index of the part.
     part: usize,
     /// Frames of the keys.
     frames: [FrameNumber; 2],
-    /// By point the number of the place on the divided contour, and how many places around it count.
+    /// For each point the index of its place on the divided contour, and the number of places around it that count.
     bound: Vec<(usize, f64)>,
 }
 
 impl Following {
-    /// Binds points to a part on both keys; none where it is not captured all the way, or where they do not lie on it.
+    /// Binds points to a part on both keys. `None` where the part is not captured on all frames, or the points are not
+    /// near it.
     fn new(parts: &[Captured], part: usize, frames: [FrameNumber; 2], points: [&[Point]; 2]) -> Option<Self> {
         let captured = &parts[part];
         let on = captured.spans(frames[0], frames[1]);
@@ -123,7 +127,7 @@ impl Following {
         Some(Self { part, frames, bound })
     }
 
-    /// The stroke's points on a frame, from those on its keys.
+    /// The stroke's points on a frame, from its points on both keys.
     pub fn at(&self, parts: &[Captured], points: [&[Point]; 2], frame: FrameNumber) -> Option<Vec<Point>> {
         let [a, b] = self.frames;
         let u = (f64::from(frame) - f64::from(a)) / (f64::from(b) - f64::from(a));
@@ -133,7 +137,7 @@ impl Following {
         Some(forwards.iter().zip(&backwards).map(|(p, q)| p.lerp(*q, u)).collect())
     }
 
-    /// Where the points of one frame are on another.
+    /// Carries points from one frame to another.
     fn carried(&self, part: &Captured, points: &[Point], from: FrameNumber, to: FrameNumber) -> Option<Vec<Point>> {
         let (from, to) = (part.divided(part.contours.get(&from)?), part.divided(part.contours.get(&to)?));
         let count = from.len();
@@ -150,7 +154,7 @@ impl Following {
     }
 }
 
-/// How a track follows a part from a key to the next, whose frames are given.
+/// How a track follows a part from `key` to the next key. `frames` are the frames of these keys.
 pub(super) fn followed(parts: &[Captured], track: &Track, key: usize, frames: [FrameNumber; 2]) -> Option<Following> {
     let (a, b) = (track.points(key)?, track.points(key + 1)?);
     let missed = |part: usize| {
@@ -175,12 +179,12 @@ mod tests {
     use super::super::{GivenPegs, Key, Options, Sequence};
     use super::*;
 
-    /// A bar of length 100 from the origin, open, in a direction.
+    /// An open bar of length 100 from the origin, in a direction.
     fn bar(angle: f64) -> Vec<Point> {
         (0..=20).map(|k| Point::from_angle(angle) * (f64::from(k) * 5.0)).collect()
     }
 
-    /// A swing out to 1.2 and back to 0.2, whose keys say nothing of it.
+    /// The angle of a swing out to about 1.2 and back to 0.2. The keys do not show it.
     fn angle(frame: FrameNumber) -> f64 {
         0.2 * f64::from(frame) / 10.0 + 1.1 * (std::f64::consts::PI * f64::from(frame) / 10.0).sin()
     }
@@ -189,7 +193,7 @@ mod tests {
         Captured { closed: false, contours: frames.into_iter().map(|f| (f, bar(angle(f)))).collect() }
     }
 
-    /// Strokes on frames 0 and 10, paired by index, following parts.
+    /// A sequence of one stroke on frames 0 and 10 that follows parts.
     fn drawn(a: Vec<Point>, b: Vec<Point>, pegs: &GivenPegs, parts: Vec<Captured>) -> Sequence {
         let key = |frame, points| Key { frame, strokes: vec![Stroke::new(points, false)], ..Key::default() };
         let pair = Pair { from: 0, to: 0, reversed: false, start: 0.0, confidence: 1.0, by_hand: true };
@@ -198,7 +202,7 @@ mod tests {
         Sequence::new(keys, &[matching], pegs, &Options::default()).unwrap().following(parts.into())
     }
 
-    /// How far the middle of a stroke is from the middle of the swinging bar, at most, on frames between the keys.
+    /// Largest distance of the stroke's middle from the middle of the swinging bar, on frames between the keys.
     fn off(sequence: &Sequence) -> f64 {
         let on = |f: FrameNumber| sequence.at(f)[0].stroke.points[10].distance(bar(angle(f))[10]);
         (1..10).map(on).fold(0.0, f64::max)
@@ -214,8 +218,8 @@ mod tests {
     }
 
     #[test]
-    fn what_a_drawing_adds_stays_and_fades_into_what_the_next_one_adds() {
-        // 4 px beside the bar on the first key, on it on the second.
+    fn additions_of_one_drawing_fade_into_those_of_the_next() {
+        // 4 px beside the bar on the first key, on the bar on the second.
         let beside = |frame, by: f64| -> Vec<Point> {
             bar(angle(frame)).iter().map(|p| *p + Point::from_angle(angle(frame)).perp() * by).collect()
         };
@@ -230,14 +234,14 @@ mod tests {
     }
 
     #[test]
-    fn of_parts_that_lie_on_each_other_the_one_that_moves_alike_is_followed() {
+    fn a_stroke_follows_the_overlapping_part_that_moves_like_it() {
         let still = Captured { closed: false, contours: (0..=10).map(|f| (f, bar(0.1))).collect() };
         let sequence = drawn(bar(angle(0)), bar(angle(10)), &GivenPegs::default(), vec![still, swing(0..=10)]);
         assert!(off(&sequence) < 1e-6, "{}", off(&sequence));
     }
 
     #[test]
-    fn elsewhere_all_is_as_without() {
+    fn strokes_without_a_usable_part_move_as_before() {
         let far = |points: Vec<Point>| points.into_iter().map(|p| p + Point::new(300.0, 0.0)).collect::<Vec<_>>();
         let both = |parts: Vec<Captured>, pegs: &GivenPegs, shift: bool| {
             let keys = [0, 10].map(|f| if shift { far(bar(angle(f))) } else { bar(angle(f)) });
@@ -259,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_points_that_differ_between_frames_are_no_capture() {
+    fn contours_with_a_varying_number_of_points_are_not_followed() {
         let mut part = swing(0..=10);
         part.contours.insert(5, bar(0.0)[..5].to_vec());
         let with = |parts| drawn(bar(angle(0)), bar(angle(10)), &GivenPegs::default(), parts).at(4);

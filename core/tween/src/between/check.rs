@@ -1,4 +1,4 @@
-//! What drawings, matchings and options must be to be drawn between.
+//! Checks of the input of the in-betweens: drawings, matchings and options.
 
 use super::super::matching::{InPieces, Matching};
 use super::super::peg::TimingError;
@@ -6,18 +6,18 @@ use super::super::stroke::{BadPoint, checked};
 use super::{GivenPegs, Key, Options, Spacing};
 use rototoon_base::scene::FrameNumber;
 
-/// Why there are no in-betweens.
+/// The reason why there are no in-betweens.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BetweenError {
-    /// A point of a drawing is no place.
+    /// A point of a drawing cannot be used.
     #[error("frame {frame}: {source}")]
     Point {
         /// The drawing's frame.
         frame: FrameNumber,
-        /// The point.
+        /// The point and the numbers found.
         source: BadPoint,
     },
-    /// Keys do not follow each other.
+    /// The frames of keys do not rise.
     #[error("found a key on frame {frame} after one on frame {before}, expected a later frame")]
     Order {
         /// Frame of the key.
@@ -25,78 +25,82 @@ pub enum BetweenError {
         /// Frame of the one before it.
         before: FrameNumber,
     },
-    /// There are not as many matchings as spans.
+    /// The number of matchings does not fit the keys.
     #[error("found {found} matchings, expected one for each of {expected} spans between keys")]
     Matchings {
-        /// How many there are.
+        /// Number of matchings.
         found: usize,
-        /// How many there should be.
+        /// Number of spans.
         expected: usize,
     },
-    /// A matching names a stroke that is not there.
+    /// A matching names a stroke that does not exist.
     #[error("matching of frame {frame} and the next key: found stroke {found}, expected less than {count}")]
     Stroke {
         /// Frame of the earlier key.
         frame: FrameNumber,
-        /// The stroke.
+        /// Index of the stroke.
         found: usize,
-        /// Strokes of the drawing.
+        /// Number of strokes of the drawing.
         count: usize,
     },
-    /// A spacing is none.
+    /// A spacing is not valid.
     #[error("frame {frame}: {source}")]
     Spacing {
         /// Frame of the earlier key.
         frame: FrameNumber,
-        /// What is wrong.
+        /// The reason.
         source: SpacingError,
     },
-    /// A stroke hangs on a peg that is not there.
+    /// A stroke hangs on a peg that does not exist.
     #[error("frame {frame}, stroke {stroke}: found peg {found}, expected less than {count}")]
     Peg {
         /// Frame of the key.
         frame: FrameNumber,
         /// Index of the stroke.
         stroke: usize,
-        /// What was found.
+        /// Index of the peg found.
         found: usize,
         /// Number of pegs.
         count: usize,
     },
-    /// The strength of arcs is no number.
+    /// The strength of arcs is outside 0 to 1.
     #[error("arcs are {found}, expected 0 to 1")]
     Arcs {
-        /// What was found.
+        /// The value found.
         found: f64,
     },
 }
 
-/// Why a spacing is none.
+/// The reason why a spacing is not valid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SpacingError {
-    /// A spacing chart has not one share for each frame.
+    /// A spacing chart does not have one share for each frame between the keys.
     #[error("the spacing chart has {found} shares, expected one for each of {expected} frames to the next key")]
     Chart {
-        /// Shares found.
+        /// Number of shares found.
         found: usize,
-        /// Frames between the keys.
+        /// Number of frames between the keys.
         expected: usize,
     },
-    /// A spacing chart holds what is no number.
+    /// A share of a spacing chart is outside −10 to 10.
     #[error("share {index} of the spacing chart is {found}, expected a number from -10 to 10")]
     Share {
         /// Index of the share.
         index: usize,
-        /// What was found.
+        /// The share found.
         found: f64,
     },
-    /// A movement function is none.
+    /// A timing function is not valid.
     #[error(transparent)]
     Timing(#[from] TimingError),
 }
 
 impl Spacing {
-    /// Whether it is one between keys on these frames.
+    /// Checks the spacing for a span between keys on these frames.
+    ///
+    /// # Errors
+    ///
+    /// A timing that is not valid; a chart with the wrong number of shares, or with a share outside −10 to 10.
     pub fn check(&self, frame: FrameNumber, next: FrameNumber) -> Result<(), SpacingError> {
         match self {
             Self::Smooth => Ok(()),

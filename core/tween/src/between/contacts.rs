@@ -1,34 +1,34 @@
-//! Contacts between strokes, kept.
+//! Contacts between strokes, kept between the keys.
 //!
-//! Where a point of one stroke lies on another one on both keys, and on about the same place of it, it shall lie there
-//! between. After everything has moved, the gaps that opened are closed again: both strokes give way, the longer one
-//! less, most at the contact and ever less along half their length. Several contacts are closed in turn, a few times
-//! over.
+//! A contact is a point of one stroke that is on another stroke on both keys, at about the same place of it. The point
+//! must be on that place between the keys too. After all strokes have moved, the gaps that opened are closed. Both
+//! strokes give way, the longer one less. The shift is largest at the contact and fades along half of the stroke's
+//! length. Several contacts are closed in turn, in a few rounds.
 
 use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polygon, polyline};
 use std::collections::BTreeMap;
 
-/// Largest distance in pixels on the keys.
+/// Largest distance, in pixels on the keys, for the end of an open stroke.
 const TOUCHING: f64 = 2.0;
-/// Largest distance in pixels for points inside a stroke.
+/// Largest distance, in pixels on the keys, for other points of a stroke.
 const COINCIDENT: f64 = 0.75;
-/// How far the place on the other stroke may slide from key to key, as a share of its length.
+/// Largest slide of the place on the other stroke from key to key, as a share of its segments.
 const SLIDE: f64 = 0.06;
-/// Contacts of two strokes, at most.
+/// Largest number of contacts of two strokes in each direction.
 const MOST: usize = 24;
-/// Points of one stroke and segments of another, multiplied, up to which all points are looked at.
+/// Points of one stroke times points of another, up to which all points are examined.
 const MOST_TRIED: usize = 1_000_000;
-/// Gap in pixels that counts as closed.
+/// Gap, in pixels, that counts as closed.
 const CLOSED: f64 = 1e-6;
-/// Segments of a run that have a box together.
+/// Number of neighbouring segments that share a box.
 const CHUNK: usize = 6;
-/// Rounds of closing.
+/// Largest number of rounds of closing.
 const ROUNDS: usize = 8;
-/// Share of a stroke's length along which it gives way.
+/// Share of a stroke's points along which a shift fades.
 const REACH: f64 = 0.5;
 
-/// A stroke between its keys.
+/// A stroke on the two keys of a span.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Between<'a> {
     /// Its points on the earlier and the later key.
@@ -36,20 +36,20 @@ pub(super) struct Between<'a> {
     pub closed: bool,
 }
 
-/// A point of one stroke that stays on another.
+/// A point of one stroke that stays on another stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Contact {
     a: usize,
     point: usize,
     b: usize,
-    /// Segment of the other stroke, and how far along it.
+    /// Segment of the other stroke, and the share along it.
     segment: usize,
     along: f64,
-    /// Gap from the other stroke's place to the point, on both keys.
+    /// Vector from the place on the other stroke to the point, on both keys.
     gaps: [Point; 2],
 }
 
-/// The contacts of strokes.
+/// Finds the contacts between strokes.
 pub(super) fn find(strokes: &[Between]) -> Vec<Contact> {
     let boxes: Vec<_> = strokes.iter().map(|s| polygon::bounds(s.ends[0])).collect();
     let mut order: Vec<usize> = (0..strokes.len()).filter(|&i| boxes[i].is_some()).collect();
@@ -71,7 +71,7 @@ pub(super) fn find(strokes: &[Between]) -> Vec<Contact> {
     found.concat()
 }
 
-/// The boxes of runs of a line's segments: what is far from a box need not be looked at.
+/// Boxes around runs of a line's segments. They exclude distant lines quickly.
 struct Chunks(Vec<(Point, Point)>);
 
 impl Chunks {
@@ -83,7 +83,7 @@ impl Chunks {
         Self(segments.chunks(CHUNK).map(bounds).collect())
     }
 
-    /// Whether anything of the line may lie within a distance of a point.
+    /// Whether part of the line may be within a distance of a point.
     fn near(&self, p: Point, distance: f64) -> bool {
         self.0.is_empty()
             || self.0.iter().any(|(low, high)| p.distance_squared(p.clamp(*low, *high)) <= distance * distance)
@@ -125,13 +125,13 @@ fn contact(strokes: &[Between], chunks: &Chunks, a: usize, point: usize, b: usiz
     if slid > (SLIDE * count).max(1.0) {
         return None;
     }
-    // One place on the other stroke stands for both keys.
+    // The place on the other stroke is the same on both keys.
     let on = |key: usize| place(other.ends[key], first.0, first.1);
     let gaps = [0, 1].map(|key| own.ends[key][point] - on(key));
     (gaps[1].length() <= 2.0 * tolerance).then_some(Contact { a, point, b, segment: first.0, along: first.1, gaps })
 }
 
-/// Segment, share along it, and place of a line that is nearest to a point.
+/// The place of a line nearest to a point: segment, share along it, and position.
 fn nearest(p: Point, points: &[Point], closed: bool) -> Option<(usize, f64, Point)> {
     if let [only] = points {
         return Some((0, 0.0, *only));
@@ -152,7 +152,7 @@ fn place(points: &[Point], segment: usize, along: f64) -> Point {
     points[segment].lerp(points[(segment + 1) % points.len()], along)
 }
 
-/// Closes the gaps of contacts at a share of the span; `points` by stroke.
+/// Closes the gaps of contacts at a share of the span. `points` is by stroke.
 pub(super) fn close(contacts: &[Contact], points: &mut [Vec<Point>], closed: &[bool], s: f64) {
     if contacts.is_empty() {
         return;
@@ -188,14 +188,14 @@ pub(super) fn close(contacts: &[Contact], points: &mut [Vec<Point>], closed: &[b
     }
 }
 
-/// By how many points away the share of a shift: half a cosine wave.
+/// The share of a shift by the number of points away from the contact: half a cosine wave.
 fn fall(n: usize) -> Vec<f64> {
     let reach = (REACH * n as f64).max(1.0);
     let share = |apart: usize| 0.5 + 0.5 * (std::f64::consts::PI * apart as f64 / reach).cos();
     (0..n).take_while(|&apart| (apart as f64) < reach).map(share).collect()
 }
 
-/// Shifts a stroke at one of its points, and ever less along it.
+/// Shifts a stroke at one of its points, and less and less along it.
 fn give_way(points: &mut [Point], closed: bool, at: usize, shift: Point, fall: &[f64]) {
     let n = points.len();
     for (apart, &share) in fall.iter().enumerate() {
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn what_parts_is_no_contact() {
+    fn strokes_that_part_are_no_contact() {
         let a = [Point::ZERO, Point::new(10.0, 0.0)];
         let b = [Point::new(5.0, 0.5), Point::new(5.0, 9.0)];
         let away = b.map(|p| p + Point::new(0.0, 8.0));

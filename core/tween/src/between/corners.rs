@@ -1,21 +1,22 @@
-//! Corners to corners: where the shares of the length alone would take a corner of a stroke beside that of its
-//! counterpart.
+//! Alignment of corners: shares of the length alone would put a corner of a stroke beside the corresponding corner of
+//! its counterpart.
 //!
-//! A stroke turns at a vertex by the angle between the chords to the places a little before and after it; of vertices
-//! that turn most among their neighbours and by more than [`LEAST_TURN`] each is a corner. Corners of both strokes are
-//! paired in order, by dynamic programming over all pairs that turn the same way and lie at nearly equal shares, for
-//! the greatest sum of
+//! The turn of a stroke at a vertex is the angle between the chords to the places a little before and after it. A
+//! corner is a vertex with a turn of more than [`LEAST_TURN`] that turns most among its neighbours. Dynamic programming
+//! pairs the corners of both strokes in order. It considers all pairs that turn the same way and have nearly equal
+//! shares. It maximises the sum of
 //!
 //! ```text
 //! min(|α|, |β|) − |α − β| − STRETCH · |offset − offset of the pair before|
 //! ```
 //!
-//! with the turns α and β, and the offset, by how much the share of the one is larger than that of the other; before
-//! the first pair it is 0. Between paired corners (and the ends of open strokes) lengths are in proportion.
+//! Here α and β are the turns. The offset is the share on the counterpart minus the share on the stroke; before the
+//! first pair it is 0. Between paired corners (and the ends of open strokes) lengths are proportional.
 //!
-//! The result is taken unless the best similarity carries one stroke onto the other much less exactly than it does by
-//! plain shares: that tells corners that are no counterparts. On truth contours of six cartoons this leaves two thirds
-//! of the distance that plain shares leave; to ask for a better similarity than theirs leaves nine tenths.
+//! The result is rejected if it makes the strokes much less similar than plain shares do: then the paired corners do
+//! not correspond. Similarity is measured by the distance that the best similarity transform leaves. On true contours
+//! of six cartoons the accepted result leaves two thirds of the distance that plain shares leave. If it had to be
+//! better than plain shares, nine tenths would remain.
 
 use super::super::line::{Line, vertex_shares};
 use super::super::matching::Pair;
@@ -23,34 +24,35 @@ use super::super::stroke::Stroke;
 use rototoon_base::geometry::Point;
 use rototoon_base::geometry::similarity::Similarity;
 
-/// Length of the chords as a share of the stroke's, and least distance of two corners.
+/// Length of the chords as a share of the stroke's length, and smallest distance of two corners.
 const REACH: f64 = 0.025;
-/// Least turn of a corner in radians: about 26°.
+/// Smallest turn of a corner in radians: about 26°.
 const LEAST_TURN: f64 = 0.45;
-/// Radians that a difference of the offsets of neighbouring pairs by the whole length costs.
+/// Cost, in radians, of a difference of one full length between the offsets of neighbouring pairs.
 const STRETCH: f64 = 8.0;
-/// Greatest offset.
+/// Largest offset of a pair.
 const FARTHEST: f64 = 0.2;
-/// Places at which both ways are compared.
+/// Number of places at which both ways are compared.
 const SAMPLES: usize = 128;
-/// Times the distance by plain shares that may be left: what is drawn out along its corners is no similar figure.
+/// Largest accepted distance, as a multiple of the distance by plain shares. It is above 1 because a stroke that is
+/// stretched between its corners is not similar to its counterpart.
 const FITTING: f64 = 1.3;
 
-/// A corner: the share of the length walked to it, and the turn in radians.
+/// A corner: its share of the length, and its turn in radians.
 type Corner = (f64, f64);
 
-/// Shares of a stroke's length, taken to shares of its counterpart's.
+/// A map from shares of a stroke's length to shares of its counterpart's length.
 pub(super) struct Shares {
     closed: bool,
     reversed: bool,
     start: f64,
-    /// Rising pairs of shares, walked from the first point of the stroke and from its counterpart, between which
-    /// lengths are in proportion.
+    /// Rising pairs of shares: on the stroke from its first point, and on the counterpart from the corresponding place.
+    /// Between them lengths are proportional.
     knots: Vec<(f64, f64)>,
 }
 
 impl Shares {
-    /// Those of a stroke and its counterpart, which have points.
+    /// The map for a stroke and its counterpart. Both must have points.
     pub fn new(stroke: &Stroke, other: &Stroke, pair: &Pair) -> Self {
         let plain = Self {
             closed: other.closed,
@@ -79,7 +81,7 @@ impl Shares {
         if off(&aligned) <= FITTING * off(&plain) { aligned } else { plain }
     }
 
-    /// The share of the counterpart's length, from its own first point on, of a share of the stroke's.
+    /// The share of the counterpart's length, from its own first point, that belongs to a share of the stroke's length.
     pub fn at(&self, share: f64) -> f64 {
         let next = self.knots.partition_point(|knot| knot.0 <= share).clamp(1, self.knots.len() - 1);
         let ((s, t), (s1, t1)) = (self.knots[next - 1], self.knots[next]);
@@ -95,7 +97,7 @@ impl Shares {
         }
     }
 
-    /// What [`Self::along`] takes to a share.
+    /// The inverse of [`Self::along`].
     fn walked(&self, share: f64) -> f64 {
         match (self.closed, self.reversed) {
             (true, false) => (share - self.start).rem_euclid(1.0),
@@ -106,7 +108,7 @@ impl Shares {
     }
 }
 
-/// The corners among vertices at these shares, in order.
+/// The corners among vertices at these shares, in order of their shares.
 fn corners(closed: bool, vertices: &[f64], at: impl Fn(f64) -> Point) -> Vec<Corner> {
     let round = |s: f64| if closed { s.rem_euclid(1.0) } else { s };
     let inside = |s: &f64| closed || (*s >= REACH && *s <= 1.0 - REACH);
@@ -131,15 +133,15 @@ fn corners(closed: bool, vertices: &[f64], at: impl Fn(f64) -> Point) -> Vec<Cor
     found
 }
 
-/// Shares of the corners that are counterparts, rising.
+/// The shares of corresponding corners, rising.
 fn paired(mine: &[Corner], theirs: &[Corner], closed: bool) -> Vec<(f64, f64)> {
-    /// A pair that may be, the best sum that ends with it, and the pair before it then.
+    /// A possible pair, the best sum that ends with it, and the pair before it in that sum.
     struct Step {
         shares: (f64, f64),
         sum: f64,
         before: Option<usize>,
     }
-    // A closed stroke's corners near its start are met on both ends of the way.
+    // On a closed stroke a corner near the start may correspond to one near the end.
     let laps: &[f64] = if closed { &[-1.0, 0.0, 1.0] } else { &[0.0] };
     let around: Vec<Corner> =
         laps.iter().flat_map(|lap| theirs.iter().map(move |&(t, turn)| (t + lap, turn))).collect();
@@ -172,7 +174,8 @@ fn paired(mine: &[Corner], theirs: &[Corner], closed: bool) -> Vec<(f64, f64)> {
     found
 }
 
-/// The pairs as knots over the whole length, with the ends of an open stroke, or the neighbours a lap before and after.
+/// Extends the pairs to knots over the full length: with the ends of an open stroke, or with the neighbours one lap
+/// before and after.
 fn knots(mut pairs: Vec<(f64, f64)>, closed: bool) -> Vec<(f64, f64)> {
     if !closed {
         pairs.retain(|&(_, t)| t > 0.0 && t < 1.0);
@@ -187,7 +190,7 @@ fn knots(mut pairs: Vec<(f64, f64)>, closed: bool) -> Vec<(f64, f64)> {
     [lap(last, -1.0)].into_iter().chain(pairs).chain([lap(first, 1.0)]).collect()
 }
 
-/// How far the best similarity leaves points from their counterparts: root of the sum of squares.
+/// The distance of points from their counterparts after the best similarity: root of the sum of squares.
 fn apart(from: &[Point], to: &[Point]) -> f64 {
     let map = Similarity::fit(from, to);
     from.iter().zip(to).map(|(&p, &q)| map.apply(p).distance_squared(q)).sum::<f64>().sqrt()
@@ -211,8 +214,8 @@ mod tests {
     }
 
     #[test]
-    fn corners_meet_corners() {
-        // An elbow in the middle, and one after two fifths of the length.
+    fn corners_are_aligned_with_corners() {
+        // An elbow in the middle, and one at two fifths of the length.
         let a = stroke(&[(0.0, 0.0), (50.0, 0.0), (50.0, 50.0)], false);
         let b = stroke(&[(0.0, 0.0), (40.0, 0.0), (40.0, 60.0)], false);
         let shares = Shares::new(&a, &b, &pair(false, 0.0));
@@ -227,8 +230,9 @@ mod tests {
     }
 
     #[test]
-    fn closed_strokes_go_round_their_start() {
-        // A square, and a rectangle whose first point lies a little past the corner that the square's is.
+    fn closed_strokes_are_aligned_across_their_start() {
+        // A square, and a rectangle whose first point is a little past the corner that corresponds to the square's
+        // first point.
         let a = stroke(&[(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)], true);
         let b = stroke(&[(1.0, 0.0), (14.0, 0.0), (14.0, 10.0), (0.0, 10.0), (0.0, 0.0)], true);
         let places = [(0.0, 47.0), (0.25, 13.0), (0.375, 18.0), (0.5, 23.0), (0.75, 37.0), (0.875, 42.0)];
@@ -242,14 +246,14 @@ mod tests {
         let other = reversed(&b);
         let shares = Shares::new(&a, &other, &pair(true, 0.0));
         for (s, walked) in places {
-            // Its first point is the former's last one.
+            // Its first point is the last point of the other rectangle.
             let off = shares.at(s) - (47.0 - walked) / 48.0;
             assert!((off - off.round()).abs() < 1e-9, "{s}: {}", shares.at(s));
         }
     }
 
     #[test]
-    fn round_strokes_and_other_corners_go_by_plain_shares() {
+    fn round_strokes_and_different_corners_use_plain_shares() {
         let ring = |count: usize, x: f64| {
             let at =
                 |k: usize| Point::from_angle(std::f64::consts::TAU * k as f64 / count as f64) * Point::new(x, 20.0);
@@ -257,7 +261,7 @@ mod tests {
         };
         let shares = Shares::new(&ring(60, 20.0), &ring(45, 24.0), &pair(false, 0.25));
         assert!((shares.at(0.5) - 0.75).abs() < 1e-12);
-        // Elbows that turn to different sides are no counterparts.
+        // Elbows that turn to different sides do not correspond.
         let a = stroke(&[(0.0, 0.0), (50.0, 0.0), (50.0, 50.0)], false);
         let b = stroke(&[(0.0, 0.0), (40.0, 0.0), (40.0, -60.0)], false);
         assert_eq!(Shares::new(&a, &b, &pair(false, 0.0)).at(0.5), 0.5);

@@ -1,8 +1,8 @@
-//! Which place of a stroke is which place of its counterpart: by proportional arc length (Yang et al. 1986, appendix F)
-//! between [`super::corners`] that are counterparts.
+//! Correspondence of places on a stroke and on its counterpart: proportional arc length (Yang et al. 1986, Appendix F)
+//! between corresponding [`super::corners`].
 //!
-//! An artist who drew a stroke with as many points as the other has meant them: where points of equal number lie at
-//! about equal shares of the lengths, those points themselves are taken.
+//! If an artist drew both strokes with the same number of points, the points themselves may correspond. They are used
+//! where points of equal number have nearly equal shares of the length.
 
 use super::super::line::{Line, vertex_shares};
 use super::super::matching::Pair;
@@ -10,17 +10,17 @@ use super::super::stroke::Stroke;
 use super::corners::Shares;
 use rototoon_base::geometry::Point;
 
-/// Greatest difference of the shares of the length, in the mean, at which points of equal number are taken.
+/// Largest mean difference of shares at which points of equal number are taken.
 const MEAN_OFF: f64 = 0.04;
 
 /// Places of a stroke that are followed from drawing to drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Places {
-    /// Where they are in pixels.
+    /// Positions in pixels.
     pub points: Vec<Point>,
-    /// The share of the stroke's length, walked forwards from its first point, at which each lies.
+    /// The share of the stroke's length, from its first point forwards, at each place.
     pub shares: Vec<f64>,
-    /// Indices of the stroke's own points, where the places are such.
+    /// Indices of the stroke's own points, if the places are those points.
     pub own: Option<Vec<usize>>,
 }
 
@@ -32,14 +32,14 @@ impl Places {
         Self { points: stroke.points.clone(), shares, own: Some((0..stroke.points.len()).collect()) }
     }
 
-    /// Places of a stroke between two shares of its length, at shares of that part.
+    /// Places on the part of a stroke between two shares of its length. `shares` are shares of that part.
     pub(super) fn part(stroke: &Stroke, from: f64, to: f64, shares: &[f64]) -> Self {
         let shares: Vec<f64> = shares.iter().map(|s| from + (to - from) * s).collect();
         let line = Line::new(stroke);
         Self { points: shares.iter().map(|&s| line.at(s)).collect(), shares, own: None }
     }
 
-    /// The same places on the counterpart.
+    /// The same places on the counterpart. If the counterpart has no points, the places stay where they are.
     pub(super) fn on(&self, stroke: &Stroke, other: &Stroke, pair: &Pair) -> Self {
         if other.points.is_empty() {
             let points = self.points.clone();
@@ -59,7 +59,7 @@ impl Places {
         Self { points: shares.iter().map(|&s| line.at(s)).collect(), shares, own: None }
     }
 
-    /// For each place the two points of the stroke around it, and the weight of the second, 0 to 1.
+    /// For each place the indices of the two points of the stroke around it, and the weight of the second, 0 to 1.
     pub fn blends(&self, stroke: &Stroke) -> Vec<(usize, usize, f64)> {
         match &self.own {
             Some(own) => own.iter().map(|&i| (i, i, 0.0)).collect(),
@@ -71,7 +71,7 @@ impl Places {
         }
     }
 
-    /// The counterpart's own points, where there are as many and they lie alike.
+    /// The counterpart's own points, if there are as many and they have nearly the same shares.
     fn own_points(&self, stroke: &Stroke, other: &Stroke, reversed: bool, start: f64) -> Option<Vec<usize>> {
         let own = self.own.as_ref()?;
         let n = stroke.points.len();
@@ -117,7 +117,7 @@ mod tests {
         let on = Places::all(&a).on(&a, &b, &pair(true, 0.0));
         assert_eq!(on.points, [(0.0, 0.0), (0.0, 2.0), (0.0, 8.0)].map(Point::from));
         assert_eq!(on.shares, [1.0, 0.75, 0.0]);
-        // Back again, though b has other points.
+        // Back again, although b has different points.
         assert_eq!(on.on(&b, &a, &pair(true, 0.0)).points, a.points);
     }
 

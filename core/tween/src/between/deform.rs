@@ -1,21 +1,23 @@
-//! From one shape to another as rigidly as possible along the line.
+//! Change from one shape to another, as rigid as possible along the line.
 //!
-//! Each edge between neighbouring points turns by an angle and changes in its own turned frame; at share s it has
-//! turned by s times the angle. The angle is that of the best rotation of the edges around it, and continues from edge
-//! to edge without jumps, so that what curls up by half a turn and more curls all the way (Sederberg et al. 1993
-//! interpolate turning angles and lengths alike). The edges are added up again; of a closed line the gap that remains
-//! is spread over the edges by their lengths, which is least squares. Both ends are met exactly.
+//! Each edge between neighbouring points turns by an angle, and changes its length and direction in its own turned
+//! frame. At share s it has turned by s times the angle. The angle is that of the best rotation of the edges around it.
+//! It continues from edge to edge without jumps, so a line that curls up by half a turn or more curls all the way
+//! (Sederberg et al. 1993 interpolate turning angles and lengths in a similar way). The edges are then added up. On a
+//! closed line a gap remains; it is spread over the edges in proportion to their lengths, which is least squares. Both
+//! end shapes are met exactly.
 //!
-//! Limits: a closed line whose turning number changes, as a circle that becomes an eight, moves along straight lines.
+//! Limits: a closed line whose turning number changes, such as a circle that becomes a figure eight, moves along
+//! straight lines.
 
 use rototoon_base::geometry::Point;
 use rototoon_base::geometry::polygon;
 
-/// The edges to each side that tell an edge's turn, as a share of all.
+/// Number of edges on each side that decide an edge's turn, as a share of all edges.
 const WINDOW: f64 = 1.0 / 24.0;
-/// Turn in radians that moves nothing by as much as a rounding error of single precision.
+/// A turn in radians so small that its effect is below a rounding error of single precision.
 const NO_TURN: f64 = 1e-9;
-/// Share of the edges' products that must agree for their turn to be one.
+/// Share of the edges' products that must agree for their turn to count.
 const AGREEMENT: f64 = 0.2;
 
 /// A change of shape.
@@ -24,12 +26,13 @@ pub(super) struct Deform {
     from: Vec<Point>,
     to: Vec<Point>,
     closed: bool,
-    /// Of each edge its turn, itself, and what it becomes, turned back; `None` for straight lines.
+    /// For each edge its turn, its vector in the first shape, and its vector in the second shape turned back. `None`
+    /// for straight movement.
     turns: Option<Vec<(f64, Point, Point)>>,
 }
 
 impl Deform {
-    /// The change from some points to as many others.
+    /// The change from `from` to `to`, which must have the same number of points.
     pub fn new(from: &[Point], to: &[Point], closed: bool, rigid: bool) -> Self {
         assert_eq!(from.len(), to.len(), "points are deformed to as many points");
         let (a, b) = (edges(from, closed), edges(to, closed));
@@ -39,7 +42,7 @@ impl Deform {
         Self { from: from.into(), to: to.into(), closed, turns }
     }
 
-    /// The points at a share, which may lie outside 0..1.
+    /// The points at a share. The share may be outside 0..1.
     pub fn at(&self, s: f64) -> Vec<Point> {
         let straight = || self.from.iter().zip(&self.to).map(|(p, q)| p.lerp(*q, s));
         let Some(turns) = &self.turns else { return straight().collect() };
@@ -61,13 +64,13 @@ impl Deform {
         points
     }
 
-    /// The way of each point from the first shape to the second.
+    /// The vectors from the first shape to the second, x and y of each point in turn.
     pub fn way(&self) -> Vec<f64> {
         self.from.iter().zip(&self.to).flat_map(|(p, q)| (*q - *p).to_array()).collect()
     }
 }
 
-/// A vector turned by an angle; by none, which is what most of a rigid shape turns by, without work.
+/// A vector turned by an angle. Most edges of a rigid shape do not turn, so zero is handled without work.
 fn turned(v: Point, angle: f64) -> Point {
     if angle.abs() < NO_TURN { v } else { Point::from_angle(angle).rotate(v) }
 }
@@ -77,7 +80,7 @@ fn edges(points: &[Point], closed: bool) -> Vec<Point> {
     (0..if closed { n } else { n.saturating_sub(1) }).map(|i| points[(i + 1) % n] - points[i]).collect()
 }
 
-/// The turn of each edge; `None` where a closed line does not come back to the turn with which it began.
+/// The turn of each edge. `None` where a closed line does not return to the turn with which it began.
 fn turns(a: &[Point], b: &[Point], closed: bool) -> Option<Vec<f64>> {
     let n = a.len();
     let reach = ((n as f64 * WINDOW) as usize).max(1);
@@ -97,7 +100,7 @@ fn turns(a: &[Point], b: &[Point], closed: bool) -> Option<Vec<f64>> {
         turns.push(last);
     }
     let first = first?;
-    // Edges before the first that shows a turn take that one.
+    // Edges before the first one with a clear turn take its turn.
     turns.iter_mut().take_while(|turn| **turn == 0.0).for_each(|turn| *turn = first);
     if closed && (nearest_turn(turns[0], turns[n - 1]) - turns[0]).abs() > 1e-9 {
         return None;
@@ -108,7 +111,7 @@ fn turns(a: &[Point], b: &[Point], closed: bool) -> Option<Vec<f64>> {
     Some(turns)
 }
 
-/// Sums of everything before each place, so that those of any window cost two look-ups.
+/// Running sums, so that the sum of any window needs two look-ups.
 struct Running(Vec<(Point, f64)>);
 
 impl Running {
@@ -125,7 +128,7 @@ impl Running {
         (self.0[to].0 - self.0[from].0, self.0[to].1 - self.0[from].1)
     }
 
-    /// The sum of place `i` and `reach` places to each side, which go round where `closed`.
+    /// The sum of place `i` and `reach` places to each side. Where `closed`, the window wraps around.
     fn around(&self, i: usize, reach: usize, closed: bool) -> (Point, f64) {
         let n = self.0.len() - 1;
         let (low, high) = (i.saturating_sub(reach), (i + reach + 1).min(n));
@@ -140,7 +143,7 @@ impl Running {
     }
 }
 
-/// The angle, by whole turns, that is nearest to another.
+/// The equivalent angle nearest to another one.
 fn nearest_turn(angle: f64, to: f64) -> f64 {
     let turn = std::f64::consts::TAU;
     angle + turn * ((to - angle) / turn).round()
@@ -161,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn what_curls_up_keeps_its_length() {
+    fn a_shape_that_curls_up_keeps_its_length() {
         let deform = Deform::new(&spiral(0.0), &spiral(7.0), false, true);
         for s in [0.25, 0.5, 0.75] {
             let points = deform.at(s);
@@ -174,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn windows_go_round() {
+    fn windows_wrap_around() {
         let values: Vec<(Point, f64)> = (0..7).map(|k| (Point::splat(f64::from(1 << k)), f64::from(1 << k))).collect();
         let sums = Running::new(&values);
         assert_eq!(sums.around(0, 2, true).1, 1.0 + 2.0 + 4.0 + 32.0 + 64.0);
@@ -184,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn another_turning_number_moves_straight() {
+    fn a_changed_turning_number_moves_straight() {
         let at = |k: usize| std::f64::consts::TAU * k as f64 / 40.0;
         let circle: Vec<Point> = (0..40).map(|k| Point::from_angle(at(k)) * 10.0).collect();
         let eight: Vec<Point> = (0..40).map(|k| Point::new(at(k).sin(), (2.0 * at(k)).sin()) * 10.0).collect();

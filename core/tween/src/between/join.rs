@@ -1,46 +1,46 @@
-//! How movements between several keys in a row join: with one velocity, unless a corner in time or a hold is asked.
+//! Movements between several keys in a row, joined with one velocity unless there is a corner in time or a hold.
 //!
-//! Between two keys something moves along a path; how far along it, is a cubic of time. At a key the direction is the
-//! mean of the two paths' and the speed their weighted harmonic mean (Fritsch & Butland 1984), less the more the
-//! directions differ, and zero where the movement turns back: nothing overshoots a key. What of that velocity does not
-//! lie along a path is added to it as a cubic that vanishes at both keys. Before the first key and after the last one
-//! everything rests, if asked so.
+//! Between two keys a movement follows a path. Its progress along the path is a cubic of time. At a key, the direction
+//! is the mean of the directions of both paths. The speed is their weighted harmonic mean (Fritsch & Butland 1984). It
+//! shrinks as the directions differ more, and is zero where the movement turns back, so nothing overshoots a key. The
+//! part of this velocity that does not point along a path is added to it as a cubic that vanishes at both keys. With
+//! [`Asked::rest`], everything starts from rest at the first key and comes to rest at the last one.
 
 use super::super::peg::Timing;
 use super::super::peg::{hermite, monotone_slope};
 use super::Spacing;
 
-/// How one movement runs between two keys.
+/// The progress of a movement between two keys.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Run {
     spacing: Option<Spacing>,
     slopes: (f64, f64),
-    /// Velocities beside the path at both ends, in the path's units for the whole span.
+    /// Velocities across the path at both ends, in units of the path per span.
     beside: Option<(Vec<f64>, Vec<f64>)>,
 }
 
-/// What the paths of one movement do at the ends of a span: their derivatives by the share, 0 to 1.
+/// Derivatives of the paths of one movement at the ends of a span, with respect to the share 0 to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ends {
     pub start: Vec<f64>,
     pub end: Vec<f64>,
 }
 
-/// What is asked of the spans and keys.
+/// The requirements for the spans and keys.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Asked<'a> {
-    /// Lengths of the spans in frames.
+    /// Durations of the spans in frames.
     pub durations: &'a [f64],
-    /// By span.
+    /// Spacing of each span.
     pub spacings: &'a [Spacing],
-    /// By key: whether velocities need not join there.
+    /// For each key, whether velocities may break there.
     pub corners: &'a [bool],
-    /// Whether all rests before the first and after the last key.
+    /// Whether movements start from rest at the first key and end at rest at the last one.
     pub rest: bool,
 }
 
 impl Run {
-    /// The share of the way at `u`, 0 to 1, of the span's time.
+    /// The share of the way at `u`, the share of the span's time, 0 to 1.
     pub fn share(&self, u: f64) -> f64 {
         match &self.spacing {
             Some(spacing) => spacing.at(u),
@@ -48,7 +48,7 @@ impl Run {
         }
     }
 
-    /// What is added to value `i` of the path at `u`.
+    /// The amount added to value `i` of the path at `u`.
     pub fn beside(&self, i: usize, u: f64) -> f64 {
         match &self.beside {
             Some((start, end)) => u * (1.0 - u) * ((1.0 - u) * start[i] - u * end[i]),
@@ -57,7 +57,7 @@ impl Run {
     }
 }
 
-/// The runs of a movement, whose spans are `None` where it is not there.
+/// The runs of a movement, one for each span. A span where the movement does not exist is `None` in `ends`.
 pub(super) fn runs(ends: &[Option<Ends>], asked: &Asked) -> Vec<Run> {
     let mut runs: Vec<Run> = (0..ends.len())
         .map(|k| {
@@ -84,7 +84,7 @@ pub(super) fn runs(ends: &[Option<Ends>], asked: &Asked) -> Vec<Run> {
     runs
 }
 
-/// Slope of a smooth span at one of its keys where nothing joins there.
+/// Slope of a smooth span at one of its keys, where nothing joins there.
 fn end_slope(asked: &Asked, span: usize, key: usize) -> f64 {
     let outer = if key == span { span.checked_sub(1) } else { Some(span + 1).filter(|&k| k < asked.spacings.len()) };
     match outer.map(|k| &asked.spacings[k]) {
@@ -123,7 +123,7 @@ mod tests {
         ways.iter().map(|way| Some(Ends { start: way.to_vec(), end: way.to_vec() })).collect()
     }
 
-    /// Place along a chain of straight ways.
+    /// The place on a chain of straight paths at a time.
     fn place(runs: &[Run], ways: &[[f64; 2]], durations: &[f64], time: f64) -> [f64; 2] {
         let (mut start, mut k, mut at) = (0.0, 0, [0.0; 2]);
         while k + 1 < ways.len() && time >= start + durations[k] {

@@ -1,20 +1,21 @@
-//! In-betweens of drawings on key frames.
+//! In-betweens: the drawings between drawings on key frames.
 //!
-//! 1. `tracks`: matched strokes are chained through all drawings, their places followed by proportional arc length
-//!    between corners (`correspond`, `corners`).
-//! 2. [`super::peg::propose`]: strokes that move as one are groups, which hang on each other by hinges; `motion`
-//!    carries each group from key to key along arcs. Given pegs take their place.
-//! 3. `deform`: what of a stroke's change its group does not explain is a change of shape in the group's frame, as
-//!    rigid as possible.
-//! 4. `join`: movements and changes of shape run through several keys with one velocity.
-//! 5. `contacts`: strokes that touch on both keys touch between them.
+//! 1. `tracks` chains matched strokes through all drawings. It follows the places of a stroke by proportional arc
+//!    length between corners ([`correspond`], `corners`).
+//! 2. [`super::peg::propose`] finds groups of strokes that move together, with the hinges between them. `motion`
+//!    carries each group from key to key along arcs. Pegs that the user gives replace the groups.
+//! 3. `deform` handles the change of a stroke that its group's movement does not explain: a change of shape in the
+//!    group's frame, as rigid as possible.
+//! 4. `join` makes movements and changes of shape run through several keys with one velocity.
+//! 5. `contacts` keeps strokes together that touch on both keys.
 //!
-//! Where the movement between the keys was captured, strokes follow that instead: `captured`, [`Sequence::following`].
+//! Where the movement between the keys was captured from footage, strokes follow it instead: `captured`,
+//! [`Sequence::following`].
 //!
 //! # Limits
 //!
-//! How far something has come on each frame cannot be known from two drawings: where it matters, a [`Spacing`] says it,
-//! or footage does. Without that a movement to and fro between two keys needs a key at its turning point.
+//! Two drawings do not show the progress of a movement on each frame between them. Where it matters, a [`Spacing`] or
+//! footage gives it. Without them, a movement to and fro between two keys needs a key at its turning point.
 
 mod captured;
 mod check;
@@ -46,22 +47,21 @@ use rototoon_base::scene::FrameNumber;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// How far the drawings between two keys have come.
+/// The progress of the drawings between two keys.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Spacing {
-    /// As the keys before and after suggest: with one velocity through the keys, and into rest where a movement turns
-    /// back.
+    /// Smooth: one velocity through the keys. A movement that turns back at a key comes to rest there.
     #[default]
     Smooth,
-    /// By a movement function.
+    /// By a timing function.
     Timing(Timing),
-    /// By a spacing chart: the share of the way for each frame between the keys, in order; 0 is the earlier key's
-    /// drawing, 1 the later one's, and what lies outside goes on beyond them.
+    /// By a spacing chart: the share of the way for each frame between the keys, in order. 0 is the drawing of the
+    /// earlier key, 1 that of the later one. Shares outside 0 to 1 go beyond the keys.
     Chart(Vec<f64>),
 }
 
 impl Spacing {
-    /// The share of the way at `u`, 0 to 1, of the time between the keys. [`Self::Smooth`] gives `u`.
+    /// The share of the way at `u`, the share of the time between the keys, 0 to 1. [`Self::Smooth`] gives `u`.
     pub fn at(&self, u: f64) -> f64 {
         match self {
             Self::Smooth => u,
@@ -82,41 +82,42 @@ impl Spacing {
 pub struct Key {
     /// The frame.
     pub frame: FrameNumber,
-    /// The strokes, from behind to the front.
+    /// The strokes, from back to front.
     pub strokes: Vec<Stroke>,
-    /// How the movement to the next key runs.
+    /// Spacing of the movement to the next key.
     pub spacing: Spacing,
-    /// Whether velocities need not join at this key: a corner in time.
+    /// Whether velocities may break at this key: a corner in time.
     pub corner: bool,
 }
 
-/// What strokes do that only one of two drawings has.
+/// The behaviour of strokes that only one of two drawings has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Leaving {
-    /// Shrink into their middle, or grow out of it (Yang et al. 1986).
+    /// They shrink into their middle, or grow out of it (Yang et al. 1986).
     #[default]
     Grow,
-    /// Become transparent.
+    /// They become transparent, or appear out of transparency.
     Fade,
-    /// Move out of the picture of this size in pixels, away from its middle.
+    /// They move out of a picture of this size, away from its middle, or into it.
     Leave {
-        /// Width and height of the picture.
+        /// Width and height of the picture, in pixels.
         size: Point,
     },
 }
 
-/// How in-betweens are made.
+/// Options of the in-betweens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Strength of arcs, 0 for straight ways to 1 for full turns about the fixed point of a movement.
+    /// Strength of arcs, from 0 for straight paths to 1 for full turns about the fixed point of a movement.
     pub arcs: f64,
-    /// Whether shapes change as rigidly as possible; otherwise points move straight in their group's frame.
+    /// Whether shapes change as rigidly as possible. Otherwise points move straight in their group's frame.
     pub rigid: bool,
     /// Whether contacts are kept.
     pub contacts: bool,
-    /// What strokes do that only one of two drawings has.
+    /// The behaviour of strokes that only one of two drawings has.
     pub leaving: Leaving,
-    /// Whether everything rests before the first and after the last key; otherwise it moves on with constant speed.
+    /// Whether movements start from rest at the first key and come to rest at the last key. Otherwise they have
+    /// constant speed there.
     pub rest: bool,
 }
 
@@ -126,20 +127,20 @@ impl Default for Options {
     }
 }
 
-/// Pegs that are given, and what hangs on them.
+/// Pegs given by the user, and the strokes that hang on them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GivenPegs {
     /// The pegs.
     pub tree: PegTree,
-    /// By key and stroke the index of its peg. A track hangs on the peg of the first of its strokes that has one;
-    /// strokes without hang on groups that are found.
+    /// The index of the peg of each stroke, by key and stroke. A track hangs on the peg of the first of its strokes
+    /// that has one. Strokes without a peg hang on groups that are found.
     pub of: Vec<Vec<Option<usize>>>,
 }
 
 /// A stroke of a drawing between keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InBetween {
-    /// The stroke, with as many points as on the first drawing that has it.
+    /// The stroke. It has as many points as on the first drawing of its track.
     pub stroke: Stroke,
     /// Number of its track, the same on all frames.
     pub track: usize,
@@ -154,31 +155,33 @@ struct Change {
     run: Run,
 }
 
-/// All that in-betweens are made from, computed once for some keys.
+/// Everything from which in-betweens are made, computed once for a list of keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sequence {
     keys: Vec<Key>,
     tracks: Vec<Track>,
     motion: Motion,
-    /// By track and span, where both of its keys have it, else `None`.
+    /// By track and span; `None` where a key of the span lacks the track.
     changes: Vec<Vec<Option<Change>>>,
-    /// By track: its points on each key in its carrier's frame.
+    /// By track and key: its points in the frame of its carrier.
     local: Vec<Vec<Option<Vec<Point>>>>,
     /// By span.
     contacts: Vec<Vec<contacts::Contact>>,
     captured: Arc<[Captured]>,
-    /// By track and span how it follows a captured part.
+    /// By track and span: how it follows a captured part, if it does.
     followed: Vec<Vec<Option<Following>>>,
     options: Options,
 }
 
 impl Sequence {
-    /// Prepares the in-betweens of drawings, matched each with the next. Pegs that are given carry the strokes that
-    /// hang on them; all others' are found.
+    /// Prepares the in-betweens of drawings. `matchings[k]` pairs drawing k with the next one. The given pegs carry the
+    /// strokes that hang on them; the groups of all other strokes are found.
     ///
     /// # Errors
     ///
-    /// Points that are no places, keys that do not rise, charts that do not fit; see [`BetweenError`].
+    /// A point that cannot be used; frames that do not rise; a number of matchings that does not fit the keys; a
+    /// matching or peg list that names something that does not exist; a spacing that does not fit; see
+    /// [`BetweenError`].
     pub fn new(
         keys: Vec<Key>,
         matchings: &[Matching],
@@ -188,12 +191,12 @@ impl Sequence {
         Self::built(keys, matchings, pegs, options, None)
     }
 
-    /// As [`Self::new`], for the frames of one span alone: that after key `base`, whose strokes' own points are
-    /// followed. The other keys give the velocities at its ends.
+    /// Like [`Self::new`], but for the frames of one span only: the span after key `base`. It follows the own points of
+    /// that key's strokes. The other keys give the velocities at the ends of the span.
     ///
     /// # Errors
     ///
-    /// As [`Self::new`].
+    /// As for [`Self::new`].
     pub fn of_span(
         keys: Vec<Key>,
         matchings: &[Matching],
@@ -247,7 +250,7 @@ impl Sequence {
         Ok(sequence)
     }
 
-    /// Lets strokes without a given peg follow the captured part that they lie on, where there is one.
+    /// Lets strokes without a given peg follow the captured part on which they are drawn, where there is one.
     pub fn following(mut self, captured: Arc<[Captured]>) -> Self {
         let spans: Vec<[FrameNumber; 2]> = self.keys.windows(2).map(|pair| [pair[0].frame, pair[1].frame]).collect();
         let of = |(t, track): (usize, &Track)| -> Vec<Option<Following>> {
@@ -260,13 +263,13 @@ impl Sequence {
         self
     }
 
-    /// The tracks: which stroke of which drawing is which, and where its points lie.
+    /// The tracks: which stroke of which drawing belongs together, and the places of its points.
     pub fn tracks(&self) -> &[Track] {
         &self.tracks
     }
 
-    /// The drawing on a frame, from behind to the front: on a key that drawing itself, before the first and after the
-    /// last key nothing.
+    /// The drawing on a frame, from back to front. On a key it is that key's drawing. Before the first and after the
+    /// last key it is empty.
     pub fn at(&self, frame: FrameNumber) -> Vec<InBetween> {
         let next = self.keys.partition_point(|key| key.frame <= frame);
         let Some(k) = next.checked_sub(1) else { return Vec::new() };
@@ -291,8 +294,8 @@ impl Sequence {
         strokes.iter().zip(tracks).map(drawn).collect()
     }
 
-    /// The tracks that are drawn between key `k` and the next one, from behind to the front: of a stroke in pieces the
-    /// pieces alone.
+    /// The tracks that are drawn between key `k` and the next one, from back to front. For a stroke in pieces these are
+    /// the pieces only.
     pub fn present(&self, k: usize) -> Vec<usize> {
         let parts = |key: usize| -> BTreeSet<usize> {
             let part = |track: &Track| {
@@ -305,7 +308,7 @@ impl Sequence {
         let whole = |track: &Track, key: usize, parts: &BTreeSet<usize>| {
             track.at(key).is_some_and(|stand| !stand.part && parts.contains(&stand.stroke))
         };
-        // What became one with others on this key, or comes out of one on the next, neither vanishes nor appears.
+        // A stroke that joins with others into one, or comes out of one, neither vanishes nor appears.
         let there = |track: &Track| match (track.at(k), track.at(k + 1)) {
             (Some(_), Some(_)) => true,
             (Some(stand), None) => !stand.part && !whole(track, k, &split),
@@ -352,7 +355,7 @@ impl Sequence {
         drawn.collect()
     }
 
-    /// The points of a track that follows a captured part.
+    /// The points of a track that follows a captured part, on a frame.
     fn followed_at(&self, t: usize, k: usize, frame: FrameNumber) -> Option<Vec<Point>> {
         let points = [self.tracks[t].points(k)?, self.tracks[t].points(k + 1)?].map(Vec::as_slice);
         self.followed[t][k].as_ref()?.at(&self.captured, points, frame)
@@ -382,7 +385,7 @@ impl Sequence {
         }
     }
 
-    /// Everything of a track but its points.
+    /// The attributes of a track without its points.
     fn look(&self, t: usize, k: usize, u: f64) -> Stroke {
         let stroke = |key: usize| self.tracks[t].at(key).map(|stand| &self.keys[key].strokes[stand.stroke]);
         let (before, after) = (stroke(k), stroke(k + 1));
@@ -400,7 +403,7 @@ impl Sequence {
         }
     }
 
-    /// The contacts of a span, by track.
+    /// The contacts of a span, between tracks.
     fn touching(&self, k: usize) -> Vec<contacts::Contact> {
         let mut strokes = Vec::with_capacity(self.tracks.len());
         for track in &self.tracks {
@@ -420,7 +423,7 @@ fn peg_of(track: &Track, pegs: &GivenPegs) -> Option<usize> {
     track.stands.iter().enumerate().find_map(of)
 }
 
-/// Points of tracks on keys in their carriers' frames.
+/// Points of tracks on the keys, in the frames of their carriers.
 fn local(keys: &[Key], places: &[Vec<Option<Vec<Point>>>], motion: &Motion) -> Vec<Vec<Option<Vec<Point>>>> {
     let maps: Vec<_> = (0..keys.len())
         .map(|k| {
@@ -449,7 +452,7 @@ fn changes(places: &[Option<Vec<Point>>], closed: bool, asked: &Asked, options: 
     deforms.into_iter().zip(runs).map(|(deform, run)| deform.map(|deform| Change { deform, run })).collect()
 }
 
-/// The shift that takes points just out of a picture, away from its middle.
+/// The shift that moves points just outside a picture, away from its middle.
 fn way_out(points: &[Point], size: Point) -> Point {
     let Some((low, high)) = polygon::bounds(points) else { return Point::ZERO };
     let way = (0.5 * (low + high) - 0.5 * size).normalize_or(Point::X);

@@ -1,12 +1,13 @@
-//! How groups of strokes move from key to key.
+//! The movement of groups of strokes from key to key.
 //!
-//! Each group ([`super::super::peg::propose`]) is carried from key to key by least-squares similarities; their product
-//! from the first key on is its pose: turn, logarithm of the scale, and where its pivot is. A group that hangs on
-//! another one is described in the frame of that one, so that a limb turns about its joint while the body moves.
-//! Between keys turn and logarithm change evenly along the path, and a root's pivot moves along an arc: a body that
-//! turns by φ on its way from A to B goes round the fixed point of that movement, at full strength, or, since a drawing
-//! seldom shows its pivot, less far ([`super::Options::arcs`]). Given pegs move as they are given, and take the place
-//! of groups.
+//! Least-squares similarities carry each group ([`super::super::peg::propose`]) from key to key. Their product from the
+//! first key on is the pose of the group: its turn, the logarithm of its scale, and the place of its pivot. The pose of
+//! a group that hangs on another one is relative to that one, so a limb turns about its joint while the body moves.
+//!
+//! Between keys the turn and the logarithm change evenly along the path. The pivot of a root moves along an arc: at
+//! full strength, a body that turns by φ on its way from A to B goes round the fixed point of that movement. A drawing
+//! seldom shows the true pivot, so the arc is weaker by default ([`super::Options::arcs`]). Given pegs replace groups
+//! and move as given.
 
 use super::super::peg::PegTree;
 use super::super::peg::propose::{Group, Moving};
@@ -15,17 +16,17 @@ use super::tracks::Track;
 use rototoon_base::geometry::similarity::Similarity;
 use rototoon_base::geometry::{Point, polygon};
 
-/// Least and greatest scale from one key to the next.
+/// Smallest and largest scale from one key to the next.
 const SCALES: (f64, f64) = (0.05, 20.0);
 
-/// Pegs that are given, and by track the one that it hangs on.
+/// The given pegs, and for each track the peg on which it hangs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Hung {
     pub tree: PegTree,
     pub pegs: Vec<Option<usize>>,
 }
 
-/// A pose against that of the parent: turn, logarithm of the scale, place of the pivot.
+/// A pose relative to the parent: turn in radians, logarithm of the scale, place of the pivot in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pose {
     turn: f64,
@@ -38,11 +39,11 @@ struct Pose {
 struct Mover {
     parent: Option<usize>,
     anchor: Point,
-    /// What makes turns and growths comparable with shifts, in pixels.
+    /// Factor, in pixels, that makes turns and growths comparable with shifts.
     radius: f64,
-    /// By key.
+    /// Pose on each key.
     poses: Vec<Pose>,
-    /// By span.
+    /// Progress in each span.
     runs: Vec<Run>,
 }
 
@@ -50,28 +51,28 @@ struct Mover {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Motion {
     movers: Vec<Mover>,
-    /// Parents before children.
+    /// Indices of the groups, parents before children.
     order: Vec<usize>,
-    /// By track the group or given peg that carries it.
+    /// The group or given peg that carries each track.
     pub carriers: Vec<Carrier>,
     arcs: f64,
     tree: PegTree,
 }
 
-/// What carries a track.
+/// The group or given peg that carries a track.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Carrier {
     Group(usize),
     Peg(usize),
 }
 
-/// The places of tracks by key.
+/// The places of each track on each key.
 pub(super) fn by_key(tracks: &[Track], keys: usize) -> Vec<Vec<Option<Vec<Point>>>> {
     tracks.iter().map(|track| (0..keys).map(|k| track.points(k).cloned()).collect()).collect()
 }
 
 impl Motion {
-    /// `places` by track and key.
+    /// Fits the movements of the groups. `places` is by track and key.
     pub fn new(
         tracks: &[Track],
         places: &[Vec<Option<Vec<Point>>>],
@@ -102,7 +103,8 @@ impl Motion {
         motion
     }
 
-    /// Where the groups take the points of the first key at `u` of span `k`; and where the given pegs do at a time.
+    /// The maps of the groups from the first key to `u` of span `k`, and the maps of the given pegs at a time in
+    /// frames.
     pub fn maps(&self, k: usize, u: f64, time: f64) -> (Vec<Similarity>, Vec<Similarity>) {
         let mut maps = vec![Similarity::IDENTITY; self.movers.len()];
         for &g in &self.order {
@@ -114,12 +116,12 @@ impl Motion {
         (maps, self.tree.at(time))
     }
 
-    /// Whether a track hangs on a peg that was given.
+    /// Whether a track hangs on a given peg.
     pub fn on_given_peg(&self, track: usize) -> bool {
         matches!(self.carriers[track], Carrier::Peg(_))
     }
 
-    /// The map of a track's carrier among those of [`Self::maps`].
+    /// The map of a track's carrier, out of those of [`Self::maps`].
     pub fn of_track(&self, track: usize, maps: &(Vec<Similarity>, Vec<Similarity>)) -> Similarity {
         match self.carriers[track] {
             Carrier::Group(g) => maps.0.get(g).copied().unwrap_or(Similarity::IDENTITY),
@@ -140,18 +142,18 @@ impl Motion {
         }
     }
 
-    /// Share of an arc's strength: what hangs on a joint moves straight in its parent's frame.
+    /// Strength of the group's arc. A group on a joint moves straight in its parent's frame.
     fn strength(&self, g: usize) -> f64 {
         if self.movers[g].parent.is_some() { 0.0 } else { self.arcs }
     }
 
-    /// The pivot along its arc: with l = growth + i turn, A + (B − A) (e^(l s) − 1)/(e^l − 1).
+    /// The pivot along its arc: A + (B − A) (e^(l s) − 1)/(e^l − 1) with l = growth + i turn.
     fn arc(&self, g: usize, a: &Pose, b: &Pose, s: f64) -> Point {
         let l = Point::new(b.growth - a.growth, b.turn - a.turn) * self.strength(g);
         let way = b.at - a.at;
         let exp = |z: Point| Point::from_angle(z.y) * z.x.exp();
         let whole = exp(l) - Point::X;
-        // A full turn has no fixed point; nearly none has one too far away.
+        // A full turn has no fixed point. After almost none, the fixed point is too far away.
         if whole.length_squared() < 1e-6 {
             return a.at + way * s;
         }
@@ -179,7 +181,7 @@ impl Pose {
     }
 }
 
-/// Groups with every parent before its children.
+/// Indices of the groups, every parent before its children.
 fn order(groups: &[Group]) -> Vec<usize> {
     let depth = |mut g: usize| {
         let mut depth = 0;
@@ -220,7 +222,7 @@ fn poses(strokes: &[Moving], groups: &[Group], keys: usize, order: &[usize]) -> 
     groups.iter().enumerate().map(mover).collect()
 }
 
-/// By group and key where the group is against the first key, and how far it has turned.
+/// The movement of each group from the first key to each key, with its total turn.
 fn worlds(strokes: &[Moving], groups: &[Group], keys: usize, order: &[usize]) -> Vec<Vec<(Similarity, f64)>> {
     let places = |group: &Group, k: usize, both: usize| -> Vec<Point> {
         let there = |&&i: &&usize| strokes[i].places[k].is_some() && strokes[i].places[both].is_some();
@@ -234,7 +236,7 @@ fn worlds(strokes: &[Moving], groups: &[Group], keys: usize, order: &[usize]) ->
             let (from, to) = (places(group, k - 1, k), places(group, k, k - 1));
             let (last, turn) = by_key[k - 1];
             by_key.push(if from.is_empty() {
-                // Unknown: as its parent moves.
+                // No stroke shows the movement, so the group moves with its parent.
                 group.parent.map_or((last, turn), |parent| {
                     let (before, after) = (worlds[parent][k - 1], worlds[parent][k]);
                     (after.0.after(&before.0.inverse()).after(&last), turn + after.1 - before.1)
@@ -249,7 +251,7 @@ fn worlds(strokes: &[Moving], groups: &[Group], keys: usize, order: &[usize]) ->
     worlds
 }
 
-/// A similarity that neither vanishes nor explodes.
+/// The similarity with its scale limited to [`SCALES`].
 fn bounded(mut map: Similarity) -> Similarity {
     let scale = map.scale();
     map.factor = if scale > 1e-9 { map.factor * (scale.clamp(SCALES.0, SCALES.1) / scale) } else { Point::X };

@@ -49,7 +49,7 @@ fn a_bar_that_turns_about_its_end_moves_along_an_arc() {
 }
 
 #[test]
-fn given_pegs_carry_what_hangs_on_them() {
+fn given_pegs_carry_their_strokes() {
     let tree = |name: &str| {
         use crate::peg::{Peg, PegKey};
         let keys = vec![PegKey::rest(0), PegKey { turn: std::f64::consts::TAU, ..PegKey::rest(8) }];
@@ -63,7 +63,7 @@ fn given_pegs_carry_what_hangs_on_them() {
 }
 
 #[test]
-fn keys_are_drawn_as_they_are_and_nothing_outside() {
+fn keys_are_drawn_as_they_are_and_other_frames_are_empty() {
     let (a, b) = (circle(Point::ZERO, 5.0, 0.0), circle(Point::new(9.0, 0.0), 6.0, 0.2));
     let sequence = sequence(vec![key(3, vec![a.clone()]), key(5, vec![b.clone()])], &Options::default());
     assert_eq!(sequence.at(3)[0].stroke, a);
@@ -73,7 +73,7 @@ fn keys_are_drawn_as_they_are_and_nothing_outside() {
 }
 
 #[test]
-fn strokes_appear_and_vanish_as_asked() {
+fn strokes_appear_and_vanish_as_the_options_say() {
     let (body, dot) = (circle(Point::new(50.0, 50.0), 30.0, 0.0), circle(Point::new(90.0, 50.0), 4.0, 0.0));
     let keys = || vec![key(0, vec![dot.clone(), body.clone()]), key(2, vec![body.clone()])];
     let at = |leaving| {
@@ -91,7 +91,7 @@ fn strokes_appear_and_vanish_as_asked() {
 }
 
 #[test]
-fn charts_and_holds_say_how_far_it_has_come() {
+fn charts_and_holds_set_the_progress() {
     let at = |x: f64| vec![circle(Point::new(x, 0.0), 5.0, 0.0)];
     let with = |spacing| {
         let keys = vec![Key { spacing, ..key(0, at(0.0)) }, key(4, at(100.0))];
@@ -118,7 +118,7 @@ fn several_keys_in_a_row_join_smoothly() {
 }
 
 #[test]
-fn a_stroke_that_falls_into_pieces_moves_as_they_do() {
+fn a_stroke_that_splits_moves_as_its_pieces_do() {
     let line = |y: f64, from: usize, to: usize| (from..=to).map(|k| Point::new(k as f64 * 10.0, y)).collect::<Vec<_>>();
     let marks = |y: f64| circle(Point::new(50.0, y + 60.0), 25.0, 0.0);
     let first = vec![Stroke::new(line(0.0, 0, 10), false), marks(0.0)];
@@ -136,7 +136,7 @@ fn a_stroke_that_falls_into_pieces_moves_as_they_do() {
 }
 
 #[test]
-fn what_cannot_be_used_is_named() {
+fn unusable_input_is_reported() {
     let line = |x: f64| Stroke::new(vec![Point::ZERO, Point::new(x, 0.0)], false);
     let run = |keys: Vec<Key>, matchings: &[Matching]| {
         Sequence::new(keys, matchings, &GivenPegs::default(), &Options::default()).map(|_| ()).unwrap_err().to_string()
@@ -183,7 +183,7 @@ fn many_strokes_and_many_points() {
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same() {
+fn the_number_of_threads_does_not_change_the_result() {
     let strokes = |turn: f64| {
         (0..40)
             .map(|k| circle(Point::from_angle(k as f64 + turn) * (k as f64 * 5.0), 4.0 + turn, k as f64 + turn))
@@ -221,7 +221,7 @@ proptest! {
     }
 }
 
-/// A line in one go, and in three pieces drawn in other directions.
+/// A line in one go, and the same line in three pieces drawn in different directions.
 fn whole_and_pieces() -> (Stroke, Vec<Stroke>) {
     let line = |from: i32, to: i32| {
         let step = if to > from { 1 } else { -1 };
@@ -254,7 +254,7 @@ fn pieces_stay_where_nothing_moves() {
             }
         }
     }
-    // The places on the whole are shares of the whole.
+    // The places on the complete stroke are shares of its length.
     let stand = long.tracks()[2].at(1).unwrap();
     let (low, high) = (stand.places.shares[20], stand.places.shares[0]);
     assert!((low - 7.0 / 9.0).abs() < 0.03 && (high - 1.0).abs() < 1e-9, "{low} {high}");

@@ -1,8 +1,9 @@
 //! Strokes followed through all drawings.
 //!
-//! Pairs of neighbouring drawings are chained. The places that are followed are the points of the stroke on the first
-//! drawing that has it. Of a stroke that the next drawing has in pieces each piece is a track of its own, which begins
-//! on the part of the whole that it comes from; pieces that are joined end on parts of the whole likewise.
+//! The pairs of neighbouring drawings are chained into tracks. A track follows the points of its stroke on the first
+//! drawing that has it. If the next drawing has a stroke in pieces, each piece becomes a track of its own. It begins on
+//! the part of the complete stroke from which it comes. If pieces join into one stroke, their tracks end on parts of
+//! it.
 
 use super::super::matching::{InPieces, Matching, Pair};
 use super::super::stroke::Stroke;
@@ -15,18 +16,18 @@ use rototoon_base::geometry::Point;
 pub struct Stand {
     /// Index of the stroke in the drawing.
     pub stroke: usize,
-    /// Whether the track is only a part of it there.
+    /// Whether the track is only a part of the stroke on this key.
     pub part: bool,
-    /// The places followed.
+    /// The places that are followed.
     pub places: Places,
 }
 
 /// A stroke followed through neighbouring drawings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
-    /// Number of the first key that has it.
+    /// Index of the first key that has it.
     pub first: usize,
-    /// On that key and the following ones that have it.
+    /// One entry for that key and each following key that has it.
     pub stands: Vec<Stand>,
     /// Whether the last place joins the first.
     pub closed: bool,
@@ -38,28 +39,28 @@ impl Track {
         Self { first, stands: vec![stand], closed: of.closed }
     }
 
-    /// Number of the last key that has it.
+    /// Index of the last key that has it.
     pub fn last(&self) -> usize {
         self.first + self.stands.len() - 1
     }
 
-    /// Where it stands on a key.
+    /// Its stroke and places on a key; `None` where the key does not have it.
     pub fn at(&self, key: usize) -> Option<&Stand> {
         self.stands.get(key.checked_sub(self.first)?)
     }
 
-    /// Its points on a key.
+    /// Its points on a key, in pixels.
     pub(super) fn points(&self, key: usize) -> Option<&Vec<Point>> {
         self.at(key).map(|stand| &stand.places.points)
     }
 }
 
-/// The tracks through drawings; `matchings[k]` is that of drawing k and the next one.
+/// The tracks through drawings. `matchings[k]` pairs drawing k with the next one.
 pub(super) fn chained(keys: &[Key], matchings: &[Matching]) -> Vec<Track> {
     let Some(first) = keys.first() else { return Vec::new() };
     let start = |k: usize, i: usize, key: &Key| Track::new(k, i, &key.strokes[i]);
     let mut tracks: Vec<Track> = (0..first.strokes.len()).map(|i| start(0, i, first)).collect();
-    // By stroke of the present drawing its track.
+    // The track of each stroke of the present drawing.
     let mut of: Vec<usize> = (0..tracks.len()).collect();
     for (k, matching) in matchings.iter().enumerate() {
         let (here, next) = (&keys[k], &keys[k + 1]);
@@ -96,8 +97,8 @@ pub(super) fn chained(keys: &[Key], matchings: &[Matching]) -> Vec<Track> {
     tracks
 }
 
-/// The tracks that stand on drawing `base` or come after it, their places being the points of the strokes there,
-/// followed back to the drawings before as far as they go one to one or were pieces of one stroke.
+/// The tracks on drawing `base` and after it. Their places are the points of the strokes there. They are followed back
+/// to earlier drawings as long as a stroke has one counterpart or was part of a stroke.
 pub(super) fn around(keys: &[Key], matchings: &[Matching], base: usize) -> Vec<Track> {
     let mut tracks = chained(&keys[base..], &matchings[base..]);
     tracks.iter_mut().for_each(|track| track.first += base);
@@ -127,8 +128,8 @@ pub(super) fn around(keys: &[Key], matchings: &[Matching], base: usize) -> Vec<T
     tracks
 }
 
-/// The places of a track on a piece, taken to the part of the whole that the piece covers, `covered`, in the piece's
-/// order.
+/// The places of a track on a piece, mapped to the part of the complete stroke that the piece covers. `covered` is that
+/// part, in the piece's order.
 fn on_part(stand: &Stand, piece: &Stroke, covered: Places) -> Places {
     let ends = (covered.shares.first().copied().unwrap_or(0.0), covered.shares.last().copied().unwrap_or(1.0));
     let part = Stroke::new(covered.points, false);
@@ -144,8 +145,8 @@ fn inverse(pair: &Pair) -> Pair {
     Pair { from: pair.to, to: pair.from, start, ..*pair }
 }
 
-/// For each piece of a whole its index, the places of the whole that it covers, and those of the piece: the piece's
-/// points at proportional lengths, in the piece's own order.
+/// For each piece of a stroke: its index, the places of the complete stroke that it covers, and its own places. The
+/// latter are its points, in its own order; the former have the same proportional lengths.
 fn parts(whole: &Stroke, pieces: &InPieces, strokes: &[Stroke]) -> Vec<(usize, (Places, Places))> {
     let lengths: Vec<f64> = pieces.pieces.iter().map(|p| strokes[p.0].length()).collect();
     let total = lengths.iter().sum::<f64>().max(f64::MIN_POSITIVE);

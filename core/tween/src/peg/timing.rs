@@ -39,7 +39,7 @@ pub enum TimingError {
         share: f64,
     },
     /// The times of a custom curve do not rise.
-    #[error("place {index} of the curve is at time {time}, expected a later time than that before it")]
+    #[error("place {index} of the curve is at time {time}, expected a time after the previous")]
     Order {
         /// Index of the place.
         index: usize,
