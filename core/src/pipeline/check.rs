@@ -305,9 +305,7 @@ mod tests {
         );
         error(
             |f| f["drawings"][1]["spacing"] = json!({"curve": [[0.5, 0.1], [0.5, 0.2]]}),
-            &[
-                "drawings[1] (frame 4).spacing: place 1 of the curve is at time 0.5, expected a later time than that before it",
-            ],
+            &["drawings[1] (frame 4).spacing: place 1 of the curve is at time 0.5, expected a time after the previous"],
         );
         error(
             |f| f["pegs"][0]["keys"][0]["timing"] = json!({"curve": [[2, 0.1]]}),
