@@ -1,23 +1,25 @@
-//! What points carry besides their place (pressure, radius, opacity), carried over to guiding points.
+//! Attributes of points (pressure, radius, opacity), transferred to guiding points.
 //!
-//! The curve is known, and with it each point's parameter and the weights of the guides there: an attribute's values at
-//! the guides are the linear least squares of the same blend, one banded system a channel. A small weight on the
-//! difference of neighbours decides where no point speaks for a guide, and damps noise no more than that.
+//! The curve is known, and so are each point's parameter and the weights of the guiding points there. The values at the
+//! guiding points are the linear least-squares solution for the same blend: one banded system for each attribute. A
+//! small weight on the difference of neighbours determines the values of guiding points without nearby points. It is
+//! too small to smooth noise noticeably.
 
 use rototoon_base::curve::Spline;
 use rototoon_base::numeric::banded::BandMatrix;
 
-/// Weight of equal neighbours, in points a guide.
+/// Weight of the difference of neighbours, in points per guiding point.
 const EVEN: f64 = 1e-5;
 
-/// Values for the guides of a spline whose blend comes nearest to `values` at `parameters`.
+/// Values at the guiding points of a spline whose blend is nearest to `values` at `parameters`.
 pub(super) fn fit(spline: &Spline, parameters: &[f64], values: &[f64]) -> Vec<f64> {
     let n = spline.guides().len();
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
     if n == 1 || !mean.is_finite() {
         return vec![mean; n];
     }
-    // A closed spline's guides are numbered in turn from both sides of the start.
+    // The guiding points of a closed spline are numbered alternately from both sides of the start, which keeps the band
+    // narrow.
     let place = |k: usize| match spline.is_closed() {
         false => k,
         true if k < n.div_ceil(2) => 2 * k,

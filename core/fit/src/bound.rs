@@ -1,31 +1,32 @@
-//! The error of a fit as a bound that holds on the whole continuous curve, both ways.
+//! The error of a fit: an upper bound that is valid on the complete continuous curve, in both directions.
 //!
-//! **Points to curve.** The distance from each point to its foot on the curve: an upper bound of its distance to the
-//! curve whatever the foot, tight since the feet are looked up exactly on their piece and its neighbours.
+//! **From points to curve.** The distance from a point to any foot on the curve is an upper bound of its distance from
+//! the curve. The bound is tight because each foot is computed exactly on its piece and the neighbouring pieces.
 //!
-//! **Curve to points' line.** The distance to a segment is a convex function, so on a part of parabola it is nowhere
-//! larger than at the part's three control points. The curve is cut at the feet; each part is held against the segments
-//! around its points, and halved as long as its bound is above what has been found elsewhere, at most [`HALVINGS`]
-//! times. The result is never below the true distance, and above it by no more than the bend of the last halves.
+//! **From curve to line.** The distance to a segment is a convex function. On a part of a parabola it is therefore
+//! nowhere larger than at the part's three control points. The curve is cut at the feet. Each part is compared with the
+//! segments around its points, and halved as long as its bound is above the largest error found elsewhere, at most
+//! [`HALVINGS`] times. The result is never below the true distance. It exceeds it by no more than the bend of the last
+//! halves.
 
 use rototoon_base::curve::{Quadratic, Spline};
 use rototoon_base::geometry::Point;
 use rototoon_base::geometry::polyline::nearest_on_segment;
 
-/// Times that a part of the curve is halved.
+/// Largest number of times that a part of the curve is halved.
 const HALVINGS: usize = 10;
-/// Segments on each side of a part's own that it is held against.
+/// Number of segments on each side of its own with which a part is compared.
 const REACH: usize = 4;
 
-/// The points' line with the parameters of its points on the spline.
+/// The line of the points, with the parameters of its points on the spline.
 pub(super) struct Line<'a> {
     pub points: &'a [Point],
     pub closed: bool,
     pub parameters: &'a [f64],
 }
 
-/// Largest distance of a point to the curve, the parameters made exact on the way, and of the curve to the points'
-/// line; with the index of a point there.
+/// The largest distance, in pixels, of a point from the curve and of the curve from the line of the points, with the
+/// index of a point there. It writes the exact parameters of the points to `feet`.
 pub(super) fn error(spline: &Spline, line: &Line, feet: &mut [f64]) -> (f64, usize) {
     let pieces: Vec<Quadratic> = spline.pieces().collect();
     let mut worst = (0.0, 0);
@@ -39,7 +40,7 @@ pub(super) fn error(spline: &Spline, line: &Line, feet: &mut [f64]) -> (f64, usi
     curve_error(spline, &pieces, line, worst)
 }
 
-/// Nearest point to `p` on the piece at parameter `t` and its neighbours.
+/// The parameter and the distance of the point nearest to `p` on the piece at parameter `t` and its neighbours.
 fn foot(spline: &Spline, pieces: &[Quadratic], p: Point, t: f64) -> (f64, f64) {
     let count = pieces.len();
     let (i, u) = spline.locate(t);
@@ -63,7 +64,7 @@ fn foot(spline: &Spline, pieces: &[Quadratic], p: Point, t: f64) -> (f64, f64) {
 /// Raises `worst` to the distance of the curve from the line of points.
 fn curve_error(spline: &Spline, pieces: &[Quadratic], line: &Line, mut worst: (f64, usize)) -> (f64, usize) {
     let (n, count, closed) = (line.points.len(), pieces.len() as f64, spline.is_closed());
-    // The curve is walked once, from the first point on, along parameters that never fall.
+    // The curve is followed once from the first point on, along parameters that never fall.
     let first = if closed { line.parameters[0] } else { 0.0 };
     let mut reached = first;
     for j in 0..n {
@@ -87,7 +88,7 @@ fn curve_error(spline: &Spline, pieces: &[Quadratic], line: &Line, mut worst: (f
     worst
 }
 
-/// Parameter `t` as one that is not below `reached`; of a closed curve of `count` pieces, going round.
+/// Parameter `t`, raised to at least `reached`. On a closed curve of `count` pieces it is first moved by full rounds.
 fn ahead(mut t: f64, reached: f64, count: Option<f64>) -> f64 {
     if let Some(count) = count {
         t += ((reached - t) / count).round() * count;
@@ -119,7 +120,7 @@ fn part_error(part: &Quadratic, line: &Line, j: usize, floor: f64, halvings: usi
     }
     let (left, right) = part.split(0.5);
     let error = part_error(&left, line, j, floor, halvings - 1);
-    // What the first half needs, the second need not be below.
+    // The error of the first half is a floor for the second half.
     error.max(part_error(&right, line, j, floor.max(error), halvings - 1))
 }
 
@@ -148,8 +149,8 @@ mod tests {
             let samples = spline.flattened(60);
             let to_line = samples.iter().map(|&p| polyline::distance(p, &points, closed)).fold(0.0, f64::max);
             prop_assert!(bound >= to_curve.max(to_line) - 1e-9, "{bound} {to_curve} {to_line}");
-            // And it is a distance of this fit, not a blind guess: the points are within √2 of their own places, and a
-            // segment's places within that of the curve between, but for the bow of the curve.
+            // The bound is also not much too large: the points are within √2 of their own places, and the places of a
+            // segment are within that of the curve between, apart from the bow of the curve.
             let bow = spline.pieces().map(|p| p.length()).fold(0.0, f64::max) * count / 60.0;
             prop_assert!(bound <= 2f64.sqrt() + bow + 1e-9, "{bound} {bow}");
         }

@@ -1,31 +1,32 @@
-//! Points made ready: no two equal ones in a row, and none far apart.
+//! Preparation of the points: no two equal points in a row, and no long gaps.
 //!
-//! Fitting looks at points; the tolerance is for the line through them. Long segments therefore get points in between,
-//! at most [`SPACING`] tolerances apart as long as that does not multiply the work ([`MOST`]); what is missed between
-//! them the final measurement finds.
+//! Fitting looks at points only, but the tolerance is for the line through them. Long segments therefore get points in
+//! between. These are at most [`SPACING`] tolerances apart, unless that would multiply the work ([`MOST`]). The final
+//! measurement finds errors between them.
 
 use rototoon_base::geometry::Point;
 
-/// Wanted spacing of points in tolerances.
+/// Intended largest spacing of points, in tolerances.
 const SPACING: f64 = 6.0;
-/// Points added are at most about this many for each one given, and a few.
+/// At most about this many points are added for each given one, plus [`FEW`].
 const MOST: f64 = 3.0;
 const FEW: f64 = 200.0;
 
-/// A polyline ready for fitting.
+/// A polyline prepared for fitting.
 #[derive(Clone, Debug)]
 pub(super) struct Cleaned {
-    /// Points without repetitions, long segments filled; of a closed one the first is not repeated at the end.
+    /// Points without repetitions, with long segments filled. A closed polyline does not repeat its first point at the
+    /// end.
     pub points: Vec<Point>,
-    /// Arc length at each.
+    /// Arc length at each point, in pixels.
     pub lengths: Vec<f64>,
-    /// Length of the whole, the closing segment included.
+    /// Length of the complete polyline, including the closing segment.
     pub total: f64,
     /// For each point that was given, the index of its like in `points`.
     pub places: Vec<usize>,
 }
 
-/// Points without repetitions, and for each given point the index of its like.
+/// The points without repetitions, and for each given point the index of its copy.
 pub(super) fn distinct(points: &[Point], closed: bool) -> (Vec<Point>, Vec<usize>) {
     let mut kept: Vec<Point> = Vec::with_capacity(points.len());
     let mut places = Vec::with_capacity(points.len());
@@ -42,7 +43,7 @@ pub(super) fn distinct(points: &[Point], closed: bool) -> (Vec<Point>, Vec<usize
     (kept, places)
 }
 
-/// The polyline ready for fitting. There is at least one point.
+/// Prepares a polyline of at least one point for fitting.
 pub(super) fn cleaned(points: &[Point], closed: bool, tolerance: f64) -> Cleaned {
     let (kept, mut places) = distinct(points, closed);
     let n = kept.len();

@@ -1,30 +1,31 @@
-//! Corners by turning angle over arc length.
+//! Corners, found by the turning angle over a stretch of arc length.
 //!
-//! The direction before and after a point is that of the straight line that best fits the points within a reach of arc
-//! length on its side. Over the reach the steps of a pixel staircase average out (directions from neighbouring points
-//! would be multiples of 45°). A corner turns by [`LEAST_TURN`] or more, turns more than its surroundings, and does so
-//! at once: of a round bend, a wider reach sees more of the turn in proportion, of a corner hardly more.
+//! The direction before a point is that of the straight line that fits the points best within a reach of arc length
+//! before it. The direction after it is found in the same way. Over the reach, the steps of a pixel staircase average
+//! out; the directions between neighbouring points would be multiples of 45°. A corner turns by at least
+//! [`LEAST_TURN`], turns more than its surroundings, and turns suddenly: on a round bend, a wider reach sees
+//! proportionally more of the turn; at a corner it sees hardly more.
 //!
-//! The corner itself is where both lines meet, if that is near the point, since the point carries its rounding;
-//! otherwise the point (sharp tips, where nearly parallel lines meet anywhere).
+//! The place of the corner is the intersection of both lines if that is near the point, because the point itself is
+//! rounded. Otherwise it is the point. This applies to sharp tips, whose nearly parallel lines may meet anywhere.
 
 use rototoon_base::geometry::Point;
 
-/// Reach to each side in tolerances.
+/// Reach to each side, in tolerances.
 const REACH: f64 = 8.0;
-/// Least number of points that make a side.
+/// Smallest number of points on a side.
 const LEAST_POINTS: usize = 3;
-/// Least turn of a corner in radians: 40°.
+/// Smallest turn of a corner in radians: 40°.
 const LEAST_TURN: f64 = 0.7;
-/// A wider reach, in reaches, and the share of its turn that the reach must see. (Half the reach would be lost in
-/// noise.)
+/// A wider reach, as a multiple of the reach, and the share of its turn that the reach must see. (Half the reach would
+/// see mainly noise.)
 const WIDER: f64 = 1.75;
 const SUDDEN: f64 = 0.76;
-/// The lines' meeting counts within this many tolerances of the point.
+/// The intersection of the lines counts within this many tolerances of the point.
 const NEAR: f64 = 0.8;
-/// The tip is sought within this share of the reach.
+/// The tip is searched within this share of the reach.
 const TIP: f64 = 0.6;
-/// Tolerances on each side of the tip that its lines leave out.
+/// Stretch on each side of the tip that its lines leave out, in tolerances.
 const SKIP: f64 = 1.5;
 
 /// A corner of the points.
@@ -32,35 +33,35 @@ const SKIP: f64 = 1.5;
 pub(super) struct Corner {
     /// Index of its point.
     pub index: usize,
-    /// Where it is.
+    /// Place of the corner, in pixels.
     pub place: Point,
 }
 
-/// Points with running sums, for lines through any stretch in constant time.
+/// Points with running sums, so that a line through any stretch needs constant time.
 struct Sums<'a> {
     points: &'a [Point],
     lengths: &'a [f64],
     total: f64,
     closed: bool,
-    /// Sums over the points before an index of x, y, xx, xy, yy about the first point.
+    /// Sums over the points before each index of x, y, xx, xy, yy relative to the first point.
     sums: Vec<[f64; 5]>,
 }
 
-/// A straight line through points: their mean and unit direction along the travel.
+/// A straight line through points: their mean, and the unit direction in the order of the points.
 #[derive(Clone, Copy)]
 struct Line {
     center: Point,
     direction: Point,
 }
 
-/// The corners in order. `lengths` are the arc lengths of the points, `total` that of the whole.
+/// The corners in order. `lengths` are the arc lengths of the points, `total` is that of the complete line.
 pub(super) fn corners(points: &[Point], lengths: &[f64], total: f64, closed: bool, tolerance: f64) -> Vec<Corner> {
     let n = points.len();
     if n < 2 * LEAST_POINTS {
         return Vec::new();
     }
     let sums = Sums::new(points, lengths, total, closed);
-    // A reach that holds a few points, and leaves most of the curve outside.
+    // The reach must contain a few points and must leave most of the curve outside.
     let spacing = total / n as f64;
     let reach = (REACH * tolerance).max(4.0 * spacing).min(0.2 * total);
     let turns: Vec<f64> = (0..n).map(|j| sums.turn(j, reach).abs()).collect();
@@ -75,7 +76,7 @@ pub(super) fn corners(points: &[Point], lengths: &[f64], total: f64, closed: boo
         }
     }
     found.sort_by_key(|corner| corner.index);
-    // Peaks with the same tip, or with tips that noise sets a step apart, are one corner.
+    // Peaks with the same tip, or with tips that noise moved apart by a step, are one corner.
     found.dedup_by(|next, kept| lengths[next.index] - lengths[kept.index] < TIP * reach);
     if let (true, [first, .., last]) = (closed, &found[..])
         && lengths[first.index] + total - lengths[last.index] < TIP * reach
@@ -100,7 +101,7 @@ impl<'a> Sums<'a> {
         Self { points, lengths, total, closed, sums }
     }
 
-    /// Line through the points at arc lengths `from ..= to`, which may lie beyond the ends of a closed curve.
+    /// The line through the points at arc lengths `from ..= to`, which may be beyond the ends of a closed curve.
     fn line(&self, from: f64, to: f64) -> Option<Line> {
         let n = self.points.len();
         let turn = if !self.closed { 0.0 } else { (0.5 * (from + to) / self.total).floor() * self.total };
@@ -147,12 +148,12 @@ impl<'a> Sums<'a> {
         self.sides(j, reach).map_or(0.0, |(before, after)| before.direction.angle_to(after.direction))
     }
 
-    /// Whether no point within the reach turns more (of equals, the first counts).
+    /// Whether no point within the reach turns more. Among equal turns the first counts.
     fn is_peak(&self, turns: &[f64], j: usize, reach: f64) -> bool {
         self.around(j, reach).all(|k| turns[k] < turns[j] || (turns[k] == turns[j] && k >= j))
     }
 
-    /// Indices of the points within a reach of `j`, nearest first on each side.
+    /// Indices of the points within a reach of `j`, the nearest first on each side.
     fn around(&self, j: usize, reach: f64) -> impl Iterator<Item = usize> + '_ {
         let n = self.points.len();
         let apart = move |k: usize| {
@@ -165,12 +166,12 @@ impl<'a> Sums<'a> {
         std::iter::once(j).chain(back).chain(forth)
     }
 
-    /// The point near `j` that sticks out most: the turn is nearly the same at a few points, the tip is not.
+    /// The point near `j` that sticks out most. The turn is nearly the same at a few points, but the tip is unique.
     fn tip(&self, j: usize, reach: f64) -> usize {
         let Some((before, after)) = self.sides(j, reach) else { return j };
         let chord = after.center - before.center;
         let height = |k: usize| chord.perp_dot(self.points[k] - before.center).abs();
-        // Of equal heights the nearest to `j`.
+        // Among equal heights the nearest to `j` wins.
         self.around(j, TIP * reach).fold(j, |best, k| if height(k) > height(best) { k } else { best })
     }
 
@@ -208,7 +209,7 @@ mod tests {
         corners(points, &lengths, total, closed, 1.0)
     }
 
-    /// Centres of the pixels along a dense outline.
+    /// The centres of the pixels along a dense outline.
     fn staircase(at: impl Fn(f64) -> Point) -> Vec<Point> {
         let mut points: Vec<Point> = (0..20_000).map(|i| at(i as f64 / 20_000.0).floor() + 0.5).collect();
         points.dedup();

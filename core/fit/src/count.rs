@@ -1,12 +1,14 @@
-//! The fewest nodes with which a section keeps the limit.
+//! The smallest number of nodes with which a section keeps the limit.
 //!
-//! The profile foretells about how many. From there the number rises while fits fail (where few pieces fail, by
-//! doubling the nodes of those) and falls while they succeed, in steps that grow with the number, until the border
-//! between success and failure is one node wide. Each fit refines the profile.
+//! The profile predicts the number approximately. From there the number rises while fits fail and falls while they
+//! succeed, in steps proportional to the number, until the border between failure and success is one node wide. Where
+//! only few pieces fail, the nodes of these pieces are doubled instead. Each fit refines the profile.
 //!
-//! Then nodes are taken out of the best fit itself, which gets along with a fifth fewer than even starts do. Which of
-//! them can be missed is asked of a few least-squares steps near each, on some of the points (its *promise*); the most
-//! promising are tried in full, in long sections several far apart at once.
+//! Then nodes are removed from the best fit. This gives about a fifth fewer nodes than even starts. A few least-squares
+//! steps near each node, on some of the points, estimate whether it can be removed (its *promise*). The most promising
+//! ones are tried in full. In long sections several nodes far from each other are removed at once.
+//!
+//! Limits: the search is local, so the number found may not be the smallest.
 
 use super::feet::wrapped;
 use super::profile::Profile;
@@ -17,28 +19,29 @@ use rototoon_base::geometry::Point;
 /// Work of a trial.
 const EFFORT: Effort = Effort { squares: 4, excess: 24 };
 
-/// Fewer points a node are too few for a smooth curve to be told from noise.
+/// With fewer points per node, a smooth curve cannot be distinguished from noise.
 const DENSE: usize = 3;
-/// Most nodes that are tried: this multiple of those foretold, and so many more.
+/// Largest number of nodes tried: this multiple of the predicted number, plus [`SPARE`].
 const AMPLE: f64 = 1.6;
 const SPARE: usize = 5;
-/// Fits that may be spent on going below the border.
+/// Number of fits that may be spent on removing nodes.
 const BELOW: usize = 16;
-/// Nodes that are left out in turn at each step below, the most promising first.
+/// Number of nodes that are tried one by one for removal in each step, the most promising first.
 const PROMISING: usize = 4;
-/// Nodes whose promise is below this multiple of the limit, so many pieces apart, are left out together.
+/// Nodes whose promise is below this multiple of the limit are removed together, if they are [`APART`] pieces apart and
+/// at least [`LEAST_TOGETHER`] in number.
 const PROMISED: f64 = 1.0;
 const APART: usize = 6;
 const LEAST_TOGETHER: usize = 3;
-/// A start is hopeless if its error stays above this multiple of the limit.
+/// A start whose promise is above this multiple of the limit is not tried.
 const UNPROMISING: f64 = 1.6;
 
-/// Why a section has no fit.
+/// The reason why a section has no fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unfit {
-    /// It is wrong at this point even with many nodes.
+    /// It fails at this point even with many nodes.
     At(usize),
-    /// It needs about as many nodes as there are points.
+    /// It needs about as many nodes as it has points.
     Noise,
 }
 
@@ -48,7 +51,7 @@ pub(super) fn fewest(given: &Given, grown: Profile) -> Result<Trial, Unfit> {
     Ok(below(given, found))
 }
 
-/// A fit with this many nodes, if one keeps the limit.
+/// A fit with this number of nodes, if one keeps the limit.
 pub(super) fn exactly(given: &Given, nodes: usize) -> Option<Trial> {
     let mut profile = Profile::grown(given.points, given.lengths, given.limit);
     for _ in 0..3 {
@@ -61,7 +64,7 @@ pub(super) fn exactly(given: &Given, nodes: usize) -> Option<Trial> {
     None
 }
 
-/// Falls while fits succeed and rises while they fail.
+/// Reduces the number while fits succeed and raises it while they fail.
 fn border(given: &Given, mut profile: Profile) -> Result<Trial, Unfit> {
     let least = given.ends.least();
     let foretold = (profile.total().round() as isize + nodes_beyond_pieces(given.ends)).max(least as isize) as usize;
@@ -101,7 +104,7 @@ fn border(given: &Given, mut profile: Profile) -> Result<Trial, Unfit> {
     }
 }
 
-/// Other starts with one node less than the best fit has, as long as one of them succeeds.
+/// Removes nodes from the best fit as long as a fit with one node fewer succeeds.
 fn below(given: &Given, mut best: Trial) -> Trial {
     let mut left = BELOW;
     'lower: while best.nodes.len() > given.ends.least() {
@@ -144,7 +147,7 @@ impl Given<'_> {
         Profile::measured(cuts, &errors, self.limit)
     }
 
-    /// Pieces whose node could be left out.
+    /// The pieces whose node may be removed.
     fn movable<'t>(&'t self, trial: &'t Trial) -> impl Iterator<Item = usize> + 't {
         let pieces = trial.slots.len();
         let inner = move |i: usize| self.ends == Ends::Periodic || (i > 0 && i + 1 < pieces);
@@ -154,7 +157,8 @@ impl Given<'_> {
         })
     }
 
-    /// Without the nodes of all very promising pieces that are far from each other; `None` where those are few.
+    /// Removes the nodes of all very promising pieces that are far from each other; `None` where there are too few of
+    /// them.
     fn without_several(&self, trial: &Trial, starts: &[(f64, usize)]) -> Option<Trial> {
         let pieces = trial.slots.len();
         let apart = |a: usize, b: usize| {
@@ -183,7 +187,7 @@ impl Given<'_> {
         Trial { nodes, slots, parameters, errors: trial.errors }
     }
 
-    /// The same with the parameters of the strided points alone; the others stay.
+    /// The same, with new parameters for the strided points only.
     fn without_in_few(&self, trial: &Trial, piece: usize) -> Trial {
         let (nodes, slots) = self.nodes_without(trial, piece);
         let shorter = self.shorter(trial, piece);
@@ -201,10 +205,10 @@ impl Given<'_> {
         (nodes, slots)
     }
 
-    /// Where a parameter goes when the node of a piece is left out.
+    /// The map from old to new parameters when the node of a piece is removed.
     fn shorter(&self, trial: &Trial, piece: usize) -> impl Fn(f64) -> f64 + use<> {
         let periodic = self.ends == Ends::Periodic;
-        // The three pieces about the node and its neighbours become two.
+        // The three pieces around the node become two.
         let (from, count) = (piece as f64 - 1.0, trial.slots.len() as f64);
         move |t: f64| {
             let ahead = if periodic { wrapped(t - from, count) } else { t - from };
@@ -220,7 +224,7 @@ impl Given<'_> {
         }
     }
 
-    /// A fit's nodes and parameters with the nodes of failing pieces doubled; `None` where more than `most` pieces
+    /// A fit's nodes and parameters with the nodes of failing pieces doubled. `None` where more than `most` pieces
     /// fail.
     fn with_more(&self, trial: &Trial, most: usize) -> Option<Trial> {
         let (_, errors) = self.measure(trial);
@@ -232,7 +236,7 @@ impl Given<'_> {
         if failing.len() > most {
             return None;
         }
-        // Of neighbours that fail, the worse.
+        // Among failing neighbours only the worse one is split.
         let worst = |&&i: &&usize| {
             let above = |k: usize| errors.get(k).is_some_and(|&e| e > errors[i]);
             movable(i) && !above(i + 1) && !(i > 0 && above(i - 1))

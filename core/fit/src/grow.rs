@@ -1,12 +1,12 @@
-//! How far a piece can be grown: by doubling while it fits, then by halving the gap.
+//! The largest length to which a piece can grow: doubling while it fits, then halving the gap.
 //!
-//! Costs a number of tries that grows with the logarithm of the length. Limits: what fits again after it did not is not
-//! found.
+//! The number of tries grows with the logarithm of the length. Limits: a length that fits again after a shorter one
+//! failed is not found.
 
-/// The last index up to `last` that a piece from `start` reaches; the next one always counts as reached.
+/// The last index up to `last` that a piece from `start` reaches. The index after `start` always counts as reached.
 ///
-/// `step` is the first length tried, `gap(good)` the difference at which a reached and an unreached index are near
-/// enough.
+/// `step` is the first length tried. The search ends when a reached and an unreached index differ by at most
+/// `gap(good)`.
 pub(super) fn grow(
     start: usize,
     last: usize,

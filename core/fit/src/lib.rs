@@ -1,29 +1,31 @@
-//! From points to quadratic B-splines with few guiding points, within a tolerance that is a guarantee.
+//! Curve fitting: from points to quadratic B-splines with few guiding points, with a guaranteed tolerance.
 //!
 //! This crate fits lines that are already points: strokes of a pen, traced outlines. It finds no lines in pictures;
 //! `rototoon-snap` does that.
 //!
-//! [`fit`] takes a drawn or traced line and gives a uniform quadratic B-spline ([`rototoon_base::curve::Spline`]). No point of
-//! the line is farther than the tolerance from the curve, and no place of the continuous curve is farther than the
-//! tolerance from the line; the largest distance is given back (`bound` says how it is known).
+//! [`fit`] takes a drawn or traced line and returns a uniform quadratic B-spline ([`rototoon_base::curve::Spline`]). No point
+//! of the line is farther than the tolerance from the curve, and no place of the continuous curve is farther than the
+//! tolerance from the line. The largest distance is returned; `bound` describes how it is measured.
 //!
-//! # The default
+//! # The default method
 //!
-//! The guiding points of a uniform spline are all that can be chosen: there are no knots to place. Where pieces end
-//! along the line follows from the guides, hence parameters are unknowns as well. With the parameters eliminated, the
-//! distances are a nonlinear least-squares problem in the guides (`solve`) whose Gauss–Newton steps are banded and
-//! cheap; what remains is to find a good start and the least number of guides.
+//! A uniform spline has no knots to place: its guiding points are the only unknowns that can be chosen. The guiding
+//! points decide where pieces end along the line, so the parameters of the points are unknowns as well. Eliminating the
+//! parameters leaves a nonlinear least-squares problem in the guiding points (`solve`). Its Gauss–Newton steps are
+//! banded and cheap. What remains is to find a good start and the smallest number of guiding points.
 //!
-//! 1. `clean`: repeated points go, long segments are filled.
-//! 2. `corners`: turning angle over a stretch of arc length, which a pixel staircase does not fool. Corners cut the
-//!    line into sections that are fitted by themselves.
-//! 3. `profile`: how long a parabola may be along the line.
-//! 4. `trial`: a fit with a given number of nodes: linear solve, least squares, then the *largest* error.
-//! 5. `count`: the fewest nodes for which that succeeds. `long`: the same in chunks, in linear time.
-//! 6. `whole`: sections put together and measured; `polygon` where nothing smooth fits.
+//! 1. `clean` removes repeated points and fills long segments.
+//! 2. `corners` finds corners by the turning angle over a stretch of arc length; a pixel staircase does not disturb
+//!    it. Corners cut the line into sections, which are fitted separately.
+//! 3. `profile` estimates how long a parabola may be along the line.
+//! 4. `trial` makes a fit with a given number of nodes: a linear solve, least squares, then the reduction of the
+//!    *largest* error.
+//! 5. `count` finds the smallest number of nodes for which that succeeds. `long` does the same in chunks, in linear
+//!    time.
+//! 6. `whole` joins the sections and measures the curve. `polygon` is used where nothing smooth fits.
 //!
-//! `attributes` carries pressure and the like over to the guides, `together` gives several curves equal numbers of
-//! guides.
+//! `attributes` transfers pressure and similar values to the guiding points. `together` gives several curves the
+//! same number of guiding points.
 //!
 //! # The preset `yang1986`
 //!
@@ -85,7 +87,7 @@ pub use together::{Polyline, fit_together};
 use rototoon_base::curve::Spline;
 use rototoon_base::geometry::{Point, polyline};
 
-/// How curves are fitted.
+/// Options of curve fitting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Largest distance between line and curve, in pixels; positive and finite.
@@ -95,7 +97,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// The default method with this tolerance in pixels.
+    /// The default method with this tolerance, in pixels.
     pub fn new(tolerance: f64) -> Self {
         Self { tolerance, preset: Preset::Rototoon }
     }
@@ -104,15 +106,15 @@ impl Options {
 /// A method of fitting.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preset {
-    /// Fewest guides.
+    /// The default method; it needs the fewest guiding points.
     #[default]
     Rototoon,
-    /// Yang et al. 1986.
+    /// The procedure of Yang et al. 1986.
     Yang1986,
 }
 
 impl Preset {
-    /// The preset of an id.
+    /// The preset with an id; `None` for an unknown id.
     pub fn from_id(id: &str) -> Option<Self> {
         match id {
             "rototoon" => Some(Self::Rototoon),
@@ -122,35 +124,35 @@ impl Preset {
     }
 }
 
-/// Why a line cannot be fitted.
+/// The reason why a line cannot be fitted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
     /// It has no points.
     #[error("no points, expected at least one")]
     Empty,
-    /// A point is not a place, or too far away to compute with.
+    /// A coordinate of a point is not a number or too large.
     #[error("point {index} is ({x}, {y}), expected numbers between -1e9 and 1e9")]
     Point {
-        /// Its index.
+        /// Index of the point.
         index: usize,
-        /// What was found.
+        /// The x found.
         x: f64,
-        /// What was found.
+        /// The y found.
         y: f64,
     },
-    /// The tolerance is not a distance.
+    /// The tolerance is not a positive, finite number.
     #[error("tolerance {found} px, expected a positive number")]
     Tolerance {
-        /// What was found.
+        /// The value found.
         found: f64,
     },
-    /// Of curves fitted together, one does not take the common number of guides.
+    /// Among curves fitted together, one cannot take the common number of guiding points.
     #[error("no fit with exactly {count} guiding points keeps the tolerance")]
     Guides {
-        /// The number.
+        /// The common number of guiding points.
         count: usize,
     },
-    /// An attribute has not one value for each point.
+    /// An attribute does not have one value for each point.
     #[error("{found} values, expected one for each of {expected} points")]
     Values {
         /// Number of values.
@@ -163,22 +165,27 @@ pub enum FitError {
 /// A fitted curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fitted {
-    /// The curve.
+    /// The curve, in the coordinates of the points (pixels).
     pub spline: Spline,
-    /// Bound of the distances from the points to the curve and from the curve to the line of the points, in pixels.
+    /// Upper bound of the distances from the points to the curve and from the curve to the line of the points, in
+    /// pixels.
     pub max_error: f64,
-    /// Parameter of each given point's place on the curve.
+    /// The parameter of the place on the curve that belongs to each given point.
     pub parameters: Vec<f64>,
 }
 
 impl Fitted {
-    /// A curve that is a point.
+    /// A curve that is one point.
     fn point(guides: Vec<Point>, closed: bool, points: usize) -> Self {
         Self { spline: Spline::of_finite(guides, closed), max_error: 0.0, parameters: vec![0.0; points] }
     }
 
-    /// Values at the guides whose blend along the curve ([`Spline::blend`]) comes nearest to one value for each given
-    /// point.
+    /// Values at the guiding points whose blend along the curve ([`Spline::blend`]) is nearest to `values`, which has
+    /// one value for each given point.
+    ///
+    /// # Errors
+    ///
+    /// A number of values that differs from the number of points.
     pub fn attribute(&self, values: &[f64]) -> Result<Vec<f64>, FitError> {
         if values.len() != self.parameters.len() {
             return Err(FitError::Values { found: values.len(), expected: self.parameters.len() });
@@ -187,9 +194,13 @@ impl Fitted {
     }
 }
 
-/// Fits a line of points, whose last joins the first where it is `closed`.
+/// Fits a curve to a line of points, in pixels. The last point joins the first where the line is `closed`.
 ///
-/// Repeated points count once; a line that is a point gives a spline of one guide.
+/// Repeated points count once. A line that is one point gives a spline with one guiding point.
+///
+/// # Errors
+///
+/// A tolerance that is not positive and finite; no points; a point that cannot be used.
 pub fn fit(points: &[Point], closed: bool, options: &Options) -> Result<Fitted, FitError> {
     checked(points, options.tolerance)?;
     let data = clean::cleaned(points, closed, options.tolerance);

@@ -1,8 +1,8 @@
-//! Long sections in chunks, so that the work grows with the number of points and no faster.
+//! Long sections, fitted in chunks so that the work grows only linearly with the number of points.
 //!
-//! A first fit of the whole section, with a few nodes more than foretold, gives a curve that is right nearly
-//! everywhere. It is cut at joints with small errors; the two nodes about each such joint stay as they are, so that the
-//! chunks join as smoothly as before, and each chunk looks for its fewest nodes by itself.
+//! A first fit of the complete section, with a few nodes more than predicted, gives a curve that is right nearly
+//! everywhere. The curve is cut at joints with small errors. The two nodes at each of these joints stay fixed, so the
+//! chunks join as smoothly as before. Each chunk then searches for its own smallest number of nodes.
 
 use super::count::{Unfit, fewest};
 use super::profile::Profile;
@@ -11,15 +11,16 @@ use super::solve::Errors;
 use super::trial::{Effort, Given, Trial};
 use rototoon_base::geometry::Point;
 
-/// Sections of more pieces than that are cut.
+/// Sections with more pieces than this are cut.
 const LONG: f64 = 48.0;
-/// Wanted pieces of a chunk.
+/// Intended number of pieces of a chunk.
 const CHUNK: usize = 28;
-/// Joints around the wanted one among which the best is taken.
+/// Number of joints on each side of the intended one among which the best is chosen.
 const CHOICE: usize = 5;
-/// Nodes of the first fit, as a multiple of those foretold.
+/// Nodes of the first fit, as a multiple of the predicted number.
 const AMPLE: f64 = 1.15;
-/// A piece's length may differ from that of its points' line by this factor.
+/// A piece is crooked if the ratio of its length to the length of its points' line is outside this number to its
+/// inverse.
 const CROOKED: f64 = 0.7;
 /// Rounds of joining chunks that cannot be fitted.
 const JOININGS: usize = 3;
@@ -40,14 +41,14 @@ pub(super) fn fit(given: &Given) -> Result<Trial, Vec<Unfit>> {
     in_chunks(given, &whole)
 }
 
-/// Joints at the start and the end of a chunk, by the index of the piece that begins there; none at the section's own
-/// ends.
+/// The joints at the start and the end of a chunk, each by the index of the piece that begins there; `None` at the
+/// section's own ends.
 type Joints = (Option<usize>, Option<usize>);
 
 /// A stretch of the section between two joints of its first fit.
 struct Chunk {
     joints: Joints,
-    /// Its points: indices, which go round in a closed section.
+    /// Indices of its points. In a closed section they may wrap around.
     points: Vec<usize>,
     ends: (End, End),
     held: [Point; 4],
@@ -69,8 +70,7 @@ impl Chunk {
     }
 }
 
-/// Fits all chunks. A chunk that cannot be fitted is joined with its neighbour at the joint that is nearer to the
-/// fault.
+/// Fits all chunks. A chunk that cannot be fitted is joined with its neighbour, at the joint nearer to the fault.
 fn in_chunks(given: &Given, whole: &Trial) -> Result<Trial, Vec<Unfit>> {
     let mut joints = joints(given, whole);
     let mut done: Vec<(Joints, Trial)> = Vec::new();
@@ -111,7 +111,7 @@ fn in_chunks(given: &Given, whole: &Trial) -> Result<Trial, Vec<Unfit>> {
     Err(vec![Unfit::Noise])
 }
 
-/// Joints at which to cut, by the index of the piece that begins there.
+/// The joints at which to cut, by the index of the piece that begins there.
 fn joints(given: &Given, whole: &Trial) -> Vec<usize> {
     let (cuts, errors) = given.measure(whole);
     let pieces = errors.len();
@@ -141,7 +141,7 @@ fn joints(given: &Given, whole: &Trial) -> Vec<usize> {
 /// The stretches between the joints.
 fn chunks(given: &Given, whole: &Trial, joints: &[usize]) -> Vec<Chunk> {
     let n = given.points.len();
-    // The first point of the piece that begins at a joint; points follow the curve, small steps back aside.
+    // The first point of the piece that begins at a joint. Points follow the curve, apart from small steps back.
     let first_of = |i: usize| {
         let after = |&t: &f64| t >= i as f64 && t < (i + CHUNK / 2) as f64;
         whole.parameters.iter().position(after).unwrap_or(n - 1)
@@ -167,7 +167,7 @@ fn chunks(given: &Given, whole: &Trial, joints: &[usize]) -> Vec<Chunk> {
     }
 }
 
-/// A stretch of a closed section, which may lie across its start.
+/// A stretch of a closed section. It may run across the start.
 fn cyclic_chunk(
     from: Option<usize>,
     to: Option<usize>,
@@ -183,7 +183,7 @@ fn cyclic_chunk(
     Chunk { joints: (from, to), points, ends: (End::Joined, End::Joined), held }
 }
 
-/// Chunks put together.
+/// Chunks that are put together.
 struct Merged<'a> {
     given: &'a Given<'a>,
     nodes: Vec<Point>,

@@ -1,15 +1,15 @@
-//! Where no smooth curve fits: straight lines with a corner at each end.
+//! Straight lines with a corner at each end, for sections where no smooth curve fits.
 //!
-//! A chord between two of the points stands for all points between them as long as none is farther from it than the
-//! limit (it is grown as far as that holds). The points between are then within the limit of the chord; and each place
-//! of the chord has a place of the points' line square to it, hence within the limit too: the guarantee holds both
-//! ways.
+//! A chord between two of the points may replace all points between them if none is farther from it than the limit.
+//! Each chord grows as long as this is true. Every point between is then within the limit of the chord. Perpendicular
+//! to every place of the chord there is a place of the points' line, so the chord is within the limit of the line too.
+//! The guarantee is valid in both directions.
 
 use super::grow::grow;
 use rototoon_base::geometry::Point;
 use rototoon_base::geometry::polyline::nearest_on_segment;
 
-/// Vertices of a chain of chords, by index of their points: the first and the last point, and some between.
+/// The vertices of a chain of chords, by index of their points: the first point, the last point and some between.
 pub(super) fn vertices(points: &[Point], limit: f64) -> Vec<usize> {
     let last = points.len() - 1;
     let mut chosen = vec![0];
@@ -30,7 +30,7 @@ fn farthest(points: &[Point], start: usize, limit: f64) -> usize {
     grow(start, last, 2, |_| 1, fits)
 }
 
-/// Parameters of the points on the chords, two pieces (straight half legs between corners) each.
+/// The parameters of the points on the chords. Each chord has two pieces, which are straight half legs between corners.
 pub(super) fn parameters(points: &[Point], vertices: &[usize]) -> Vec<f64> {
     let mut all = Vec::with_capacity(points.len());
     for (edge, pair) in vertices.windows(2).enumerate() {

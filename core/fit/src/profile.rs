@@ -1,26 +1,26 @@
-//! Where pieces should end: first guess and improvement.
+//! The lengths of pieces along a section: a first guess, and its improvement.
 //!
-//! **Guess.** Along the points, each parabola is grown as far as a least-squares one stays within the tolerance (the
-//! first step of Yang et al. 1986, with least squares instead of slopes read off noisy neighbours). Its length is what
-//! the curve allows there: short where curvature changes fast, long where it is even. The pieces of a uniform spline
-//! cannot change their length at once, so the cuts are smoothed.
+//! **Guess.** Along the points, each parabola grows as long as a least-squares parabola stays within the tolerance.
+//! (This is the first step of Yang et al. 1986, with least squares instead of slopes from noisy neighbours.) Its length
+//! shows how long a piece may be there: short where the curvature changes fast, long where it is even. The pieces of a
+//! uniform spline cannot change their length suddenly, so the cuts are smoothed.
 //!
-//! **Improvement.** The error of a parabola grows with the third to fourth power of its length. A piece whose error is
-//! e has used (e / tolerance)^¼ of the length it may have; cuts at even sums of these shares even out the errors
-//! (equidistribution; de Boor 1973).
+//! **Improvement.** The error of a parabola grows with the third to fourth power of its length. A piece with the error
+//! e therefore uses the share (e / tolerance)^¼ of its allowed length. Cuts at even sums of these shares even out the
+//! errors (equidistribution; de Boor 1973).
 
 use super::grow::grow;
 use nalgebra::{Matrix3, Matrix3x2};
 use rototoon_base::geometry::Point;
 
-/// Exponent from error to the share of the allowed length.
+/// Exponent from the error to the share of the allowed length.
 const SHARE: f64 = 0.25;
-/// Errors are read within these multiples of the tolerance.
+/// Errors are clamped to these multiples of the tolerance.
 const SHARE_RANGE: (f64, f64) = (0.1, 8.0);
 /// Rounds of smoothing of the cuts.
 const SMOOTHING: usize = 2;
 
-/// Cuts along a section by arc length of its points, and the weight of each stretch between two of them.
+/// Cuts along a section by arc length of its points, and the weight of each stretch between two cuts.
 #[derive(Clone, Debug)]
 pub(super) struct Profile {
     pub cuts: Vec<f64>,
@@ -28,7 +28,7 @@ pub(super) struct Profile {
 }
 
 impl Profile {
-    /// Grows parabolas over the points, whose arc lengths are `lengths`.
+    /// Grows parabolas over the points. `lengths` are their arc lengths.
     pub fn grown(points: &[Point], lengths: &[f64], tolerance: f64) -> Self {
         let mut cuts = vec![lengths[0]];
         let mut start = 0;
@@ -40,14 +40,14 @@ impl Profile {
         Self { cuts, weights }
     }
 
-    /// The pieces of a fit with their largest errors.
+    /// The profile of the pieces of a fit with their largest errors.
     pub fn measured(cuts: Vec<f64>, errors: &[f64], tolerance: f64) -> Self {
         let share = |e: &f64| (e / tolerance).clamp(SHARE_RANGE.0, SHARE_RANGE.1).powf(SHARE);
         let weights = errors.iter().map(share).collect();
         Self { cuts, weights }
     }
 
-    /// Sum of the weights: about how many pieces are needed.
+    /// Sum of the weights: approximately the number of pieces needed.
     pub fn total(&self) -> f64 {
         self.weights.iter().sum()
     }
@@ -76,14 +76,14 @@ impl Profile {
     }
 }
 
-/// Index of the last point that one parabola reaches from `start` within the tolerance; at least the next.
+/// Index of the last point that one parabola from `start` reaches within the tolerance; at least the next point.
 fn farthest(points: &[Point], lengths: &[f64], start: usize, tolerance: f64) -> usize {
     let last = points.len() - 1;
     let fits = |end: usize| parabola_error(&points[start..=end], &lengths[start..=end]) <= tolerance;
     grow(start, last, 4, |good| 1 + (good - start) / 32, fits)
 }
 
-/// Largest distance across the curve from the least-squares parabola in arc length.
+/// Largest distance across the curve from the least-squares parabola in arc length, in pixels.
 fn parabola_error(points: &[Point], lengths: &[f64]) -> f64 {
     let (n, first) = (points.len(), lengths[0]);
     let span = lengths[n - 1] - first;

@@ -1,34 +1,36 @@
-//! The part of a curve that is fitted at once: between two corners, two ends, or the whole of a smooth closed curve.
+//! A section: the part of a curve that is fitted at once, between two corners or ends, or a complete smooth closed
+//! curve.
 //!
-//! Its unknowns are *nodes*, guiding points of which a corner's counts once. A piece's control points are fixed
-//! combinations of three nodes, before, about and after: the middle one is the node about which the piece lies, the
-//! ends are α · outer + (1 − α) · about. The share α is a half, since pieces end at midpoints, and one at the free end
-//! of an open curve, where the midpoint gives way to the end itself.
+//! The unknowns of a section are its *nodes*: its guiding points, where the doubled guiding point of a corner counts
+//! once. The control points of a piece are fixed combinations of three nodes: before, about and after. The middle
+//! control point is the node about which the piece is drawn. The outer control points are α · outer + (1 − α) · about.
+//! The share α is a half, because pieces end at midpoints. At the free end of an open curve α is one, because the end
+//! itself replaces the midpoint.
 
 use rototoon_base::curve::Quadratic;
 use rototoon_base::geometry::Point;
 
-/// How an open section begins or ends.
+/// The kind of an end of an open section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum End {
-    /// An end of an open curve: the curve starts at the end node, which may move.
+    /// An end of an open curve. The curve starts at the end node, which may move.
     Free,
-    /// A corner, which is given: the first piece is a straight half leg.
+    /// A corner, whose node is given. The first piece is a straight half leg.
     Corner,
-    /// The middle of a smooth curve: the outermost two nodes are given, and the section begins at their midpoint.
+    /// A place inside a smooth curve. The outermost two nodes are given, and the section begins at their midpoint.
     Joined,
 }
 
-/// What bounds a section.
+/// The boundary of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Ends {
-    /// Nothing: it is closed and smooth.
+    /// None: the section is closed and smooth.
     Periodic,
     /// Its two ends.
     Open(End, End),
 }
 
-/// A piece's nodes and the shares of the outer ones in its ends.
+/// A piece's nodes, and the shares of the outer nodes in its ends.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slot {
     pub nodes: [usize; 3],
@@ -89,7 +91,7 @@ impl Ends {
         }
     }
 
-    /// Fewest nodes.
+    /// Smallest number of nodes.
     pub fn least(self) -> usize {
         match self {
             Self::Periodic => 3,
@@ -101,13 +103,14 @@ impl Ends {
     }
 }
 
-/// A piece prepared for looking up nearest points: B(u) = p0 + 2b u + a u².
+/// A piece in the form used to find nearest points: B(u) = p0 + 2b u + a u².
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arc {
     pub p0: Point,
     pub a: Point,
     pub b: Point,
-    /// Rests at its start (−1) or end (1), where it is a corner's straight half leg; 0 elsewhere.
+    /// −1 or 1 where the piece is the straight half leg of a corner at its start or end (the curve has no speed there);
+    /// 0 elsewhere.
     pub rest: i8,
 }
 

@@ -1,41 +1,41 @@
 //! One Gauss–Newton step of a section's nodes towards its points.
 //!
-//! A point p with foot B(t) and unit normal n leaves the residual n · (B(t) − p): the distance, with the parameter
-//! eliminated (the tangent distance of Blake & Isard 1998; Wang, Pottmann & Liu 2006 show it to be Gauss–Newton on the
-//! true squared distance, where moving point and foot in turn converges only linearly). Moving the curve along itself
-//! changes no distance to first order, so a small weight on that direction keeps the equations regular; a weight of one
-//! is the plain point-to-point problem, with which a fit starts.
+//! A point p with the foot B(t) and the unit normal n has the residual n · (B(t) − p): its distance, with the parameter
+//! eliminated. This is the tangent distance of Blake & Isard 1998. Wang, Pottmann & Liu 2006 show that it is
+//! Gauss–Newton on the true squared distance, while moving point and foot in turn converges only linearly. Moving the
+//! curve along itself changes no distance to first order. A small weight on that direction keeps the equations regular.
+//! A weight of one gives the plain point-to-point problem, with which a fit starts.
 //!
-//! **Largest error instead of the mean.** What counts is that no point is farther off than the tolerance. A
-//! least-squares fit leaves the largest error two to three times the mean; therefore the later steps minimise Σ ε r² +
-//! (|r| − θ)₊² with θ a little below the tolerance: a piecewise quadratic penalty on the excess alone, to which
-//! Gauss–Newton applies unchanged, and whose minimum has no excess if the section can be fitted at all.
+//! **Largest error instead of mean error.** No point may be farther off than the tolerance. A least-squares fit leaves
+//! a largest error of two to three times the mean. The later steps therefore minimise Σ ε r² + (|r| − θ)₊² with θ a
+//! little below the tolerance. This is a piecewise quadratic penalty on the excess alone. Gauss–Newton applies
+//! unchanged. The minimum has no excess if the section can be fitted at all.
 //!
-//! A point touches three neighbouring nodes: the normal equations are banded. For a closed section the nodes are
-//! numbered in turn from both sides of the start, which keeps the band narrow.
+//! A point depends on three neighbouring nodes, so the normal equations are banded. The nodes of a closed section are
+//! numbered alternately from both sides of the start, which keeps the band narrow.
 
 use super::feet;
 use super::section::{Arc, Ends, Slot};
 use rototoon_base::geometry::Point;
 use rototoon_base::numeric::banded::BandMatrix;
 
-/// What the residuals are weighed by.
+/// The weighting of the residuals.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Goal {
-    /// Least squares; the weight of the direction along the curve.
+    /// Least squares, with this weight of the direction along the curve.
     Squares(f64),
-    /// No excess over the threshold, in pixels.
+    /// No excess over this threshold, in pixels.
     Within(f64),
 }
 
-/// Weight of the direction along the curve once the normal counts.
+/// Weight of the direction along the curve, relative to the normal, in steps on the excess.
 const SLIDE: f64 = 0.01;
 /// Weight of errors without excess.
 const INSIDE: f64 = 0.005;
-/// Errors below this share of the threshold are well inside, and of such points each fourth is kept.
+/// Errors below this share of the threshold are well inside. Of these points one in [`KEPT`] is used.
 const QUIET: f64 = 0.6;
 const KEPT: usize = 4;
-/// Share of the diagonal that is added to it.
+/// Share of each diagonal element that is added to it.
 const DAMPING: f64 = 1e-5;
 
 /// The points of a section with their parameters.
@@ -45,36 +45,36 @@ pub(super) struct Track<'a> {
     pub parameters: Vec<f64>,
 }
 
-/// What a pass over the points found.
+/// The errors that a pass over the points found.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Errors {
     pub largest: f64,
-    /// Index of the point.
+    /// Index of the point with the largest error.
     pub at: usize,
     pub squares: f64,
 }
 
-/// Arcs of the section's pieces.
+/// The arcs of the section's pieces.
 pub(super) fn arcs(nodes: &[Point], slots: &[Slot]) -> Vec<Arc> {
     slots.iter().map(|slot| Arc::new(nodes, slot)).collect()
 }
 
-/// Normal equations under construction; reused from step to step.
+/// The normal equations under construction, reused from step to step.
 pub(super) struct Step<'a> {
     ends: Ends,
     slots: &'a [Slot],
     nodes: usize,
-    /// Nodes that do not move.
+    /// Whether each node is fixed.
     fixed: Vec<bool>,
     matrix: BandMatrix,
     rhs: Vec<f64>,
-    /// Distances of the points as last measured, and how far the nodes had travelled by then.
+    /// For each point the distance last measured, and how far the nodes had travelled at that time.
     distances: Vec<(f64, f64)>,
-    /// Sum of the largest moves of a node, step by step.
+    /// Sum over the steps of the largest move of a node.
     travelled: f64,
 }
 
-/// Place of node `k` in the equations.
+/// The position of node `k` in the equations.
 fn place(ends: Ends, k: usize, nodes: usize) -> usize {
     match ends {
         Ends::Open(..) => k,
@@ -83,7 +83,8 @@ fn place(ends: Ends, k: usize, nodes: usize) -> usize {
     }
 }
 
-/// Sums of one piece: 3 × 3 blocks of xx, xy, yy, of which the lower ones are gathered, and three right-hand sides.
+/// The sums of one piece: 3 × 3 blocks of xx, xy and yy, of which the lower ones are gathered, and three right-hand
+/// sides.
 #[derive(Default)]
 struct Block {
     matrix: [[[f64; 3]; 3]; 3],
@@ -108,7 +109,7 @@ impl<'a> Step<'a> {
         }
     }
 
-    /// Holds all nodes but those of the pieces for which `free` says so.
+    /// Fixes all nodes except those of the pieces for which `free` is true.
     pub fn hold_but(&mut self, free: impl Fn(usize) -> bool) {
         let mut held = vec![true; self.nodes];
         for (i, slot) in self.slots.iter().enumerate() {
@@ -122,19 +123,19 @@ impl<'a> Step<'a> {
         self.slots.len()
     }
 
-    /// Distance of point `j` when it was last among the chosen.
+    /// The distance of point `j` at the last pass that included it.
     pub fn distance(&self, j: usize) -> f64 {
         self.distances[j].0
     }
 
-    /// Whether point `j` is within the limit without another look: a place of the curve moves no farther than the nodes
-    /// that it is blended from, and so no farther than all nodes have travelled since the last look.
+    /// Whether point `j` is certainly within the limit. A place of the curve moves at most as far as the nodes from
+    /// which it is blended, so at most as far as the nodes have travelled since the point's last measurement.
     pub fn is_sure(&self, j: usize, limit: f64) -> bool {
         let (distance, travelled) = self.distances[j];
         distance + (self.travelled - travelled) <= limit
     }
 
-    /// Follows the feet, measures, and gathers the equations, for the points of rising indices `chosen`.
+    /// Follows the feet, measures the distances and gathers the equations, for the points `chosen` (rising indices).
     pub fn gather(
         &mut self,
         nodes: &[Point],
@@ -177,7 +178,7 @@ impl<'a> Step<'a> {
         errors
     }
 
-    /// Indices of the points that belong to free ends.
+    /// Indices of the points at free ends.
     fn held_ends(&self, points: usize) -> [Option<usize>; 2] {
         use super::section::End::Free;
         match self.ends {
@@ -219,7 +220,7 @@ impl<'a> Step<'a> {
         *block = Block::default();
     }
 
-    /// The step of every node; `None` where the equations have no solution.
+    /// The step of each node; `None` where the equations have no solution.
     pub fn solve(&mut self) -> Option<Vec<Point>> {
         let total: f64 = (0..2 * self.nodes).map(|k| self.matrix.get(k, k)).sum();
         let mean = (total / (2 * self.nodes) as f64).max(f64::MIN_POSITIVE);
@@ -243,12 +244,12 @@ impl<'a> Step<'a> {
     }
 }
 
-/// Weight along the curve, weight across it, and the share of the error that pulls; none where point `j` is left out.
+/// Weight along the curve, weight across it, and the share of the error that pulls. `None` leaves point `j` out.
 fn weights(goal: Goal, distance: f64, end: bool, j: usize) -> Option<(f64, f64, f64)> {
     Some(match goal {
         Goal::Squares(_) if end => (1.0, 1.0, 1.0),
         Goal::Squares(slide) => (slide, 1.0, 1.0),
-        // Points well inside only keep the equations regular: some of them do.
+        // Points well inside only keep the equations regular; a part of them is enough.
         Goal::Within(threshold) if distance < QUIET * threshold && !j.is_multiple_of(KEPT) && !end => return None,
         Goal::Within(threshold) => {
             let over = distance > threshold;
@@ -270,7 +271,7 @@ impl Errors {
 
 impl Block {
     fn add(&mut self, weights: &[f64; 3], error: Point, tangent: Point, (along, across): (f64, f64), pull: f64) {
-        // Where the curve rests there is no tangent: all directions count.
+        // Where the curve has no speed it has no tangent. All directions count there.
         let squared = tangent.length_squared();
         let extra = if squared > f64::MIN_POSITIVE { (along - across) / squared } else { 0.0 };
         let (xx, xy, yy) = (

@@ -1,4 +1,4 @@
-//! Whole fits: the guarantee, bad input, odd input.
+//! Complete fits: the guarantee, bad input, unusual input.
 
 use super::*;
 use proptest::prelude::*;
@@ -9,7 +9,7 @@ fn fitted(points: &[Point], closed: bool, tolerance: f64) -> Fitted {
     fit(points, closed, &Options::new(tolerance)).unwrap()
 }
 
-/// Naive measure: every point against the whole curve, dense samples against the whole line.
+/// Naive measure: every point against the complete curve, and dense samples of the curve against the complete line.
 fn true_error(fit: &Fitted, points: &[Point]) -> f64 {
     let to_curve = points.iter().map(|&p| fit.spline.nearest(p).distance).fold(0.0, f64::max);
     let samples = fit.spline.flattened(40);
@@ -17,7 +17,7 @@ fn true_error(fit: &Fitted, points: &[Point]) -> f64 {
     samples.iter().map(|&p| polyline::distance(p, points, closed)).fold(to_curve, f64::max)
 }
 
-/// Pixel centres along a closed outline, one sample a pixel.
+/// Pixel centres along a closed outline.
 fn pixels(count: usize, at: impl Fn(f64) -> Point) -> Vec<Point> {
     (0..count).map(|i| at(i as f64 / count as f64).floor() + 0.5).collect()
 }
@@ -33,7 +33,7 @@ fn a_pixel_outline_gets_few_guides_and_keeps_the_tolerance() {
     assert!(fit.max_error <= 1.0 && true_error(&fit, &points) <= fit.max_error + 1e-9);
     assert!(fit.spline.guides().len() <= 20, "{}", fit.spline.guides().len());
     assert_eq!(fit.spline.corners(), [] as [usize; 0]);
-    // And it is the outline: of the same area, but for half a pixel along it.
+    // The area is that of the outline, up to half a pixel along it.
     let area = polygon::signed_area(&points);
     assert!((fit.spline.area() - area).abs() < 0.5 * fit.spline.length());
 }
@@ -52,7 +52,7 @@ fn corners_stay_sharp() {
     assert_eq!(corners.len(), 10);
     for &k in &corners {
         let off = star.iter().map(|s| s.distance(fit.spline.guides()[k])).fold(f64::INFINITY, f64::min);
-        // Rounding moves the tip by up to 0.7 px, and the corner is put on a point near it.
+        // Rounding moves the tip by up to 0.7 px, and the corner is put on a point near the tip.
         assert!(off < 2.5, "{off}");
     }
     assert!(fit.spline.guides().len() <= 26, "{}", fit.spline.guides().len());
@@ -60,7 +60,7 @@ fn corners_stay_sharp() {
 }
 
 #[test]
-fn lines_and_points_are_what_they_are() {
+fn lines_and_points_are_kept() {
     let p = Point::new(3.0, 4.0);
     for closed in [false, true] {
         let point = fitted(&[p; 5], closed, 1.0);
@@ -116,7 +116,7 @@ fn crossings_do_not_mislead() {
         .collect();
     let fit = fitted(&eight, true, 0.5);
     assert!(true_error(&fit, &eight) <= 0.5 && fit.spline.guides().len() <= 20, "{}", fit.spline.guides().len());
-    // Both lobes, each run through once and the other way round.
+    // Both lobes are drawn once, with opposite directions.
     assert!(fit.spline.area().abs() < 50.0);
     assert!((fit.spline.length() - polyline::length(&eight, true)).abs() < 5.0);
 }
@@ -131,7 +131,7 @@ fn sparse_points_keep_the_curve_near_their_line() {
 }
 
 #[test]
-fn pressure_comes_along() {
+fn pressure_is_transferred() {
     let points: Vec<Point> = (0..300).map(|i| bean(i as f64 / 400.0)).collect();
     let pressure: Vec<f64> = (0..300).map(|i| 1.0 + 0.5 * (i as f64 / 60.0).sin()).collect();
     let fit = fitted(&points, false, 0.2);
@@ -140,7 +140,7 @@ fn pressure_comes_along() {
     for (&t, want) in fit.parameters.iter().zip(&pressure) {
         assert!((fit.spline.blend(&carried, t) - want).abs() < 0.05);
     }
-    // Parameters lead to the points' places.
+    // The parameters lead to the places of the points.
     for (&t, &p) in fit.parameters.iter().zip(&points) {
         assert!(fit.spline.point(t).distance(p) <= 0.2);
     }
@@ -155,7 +155,7 @@ fn a_long_line_is_fitted_in_chunks_as_well_as_in_parts() {
     let parts: usize = points.chunks(900).map(|part| fitted(part, false, 1.0).spline.piece_count()).sum();
     let count = whole.spline.piece_count();
     assert!(count as f64 <= 1.1 * parts as f64, "{count} {parts}");
-    // The ends of the parts of a closed one meet as smoothly as the rest.
+    // On a closed curve the ends of the chunks join as smoothly as the rest.
     let ring = pixels(20_000, |t| Point::from_angle(t * TAU) * (3000.0 + 40.0 * (90.0 * t * TAU).sin()) + 4000.0);
     let ring = fitted(&ring, true, 1.0);
     assert!(ring.max_error <= 1.0 && ring.spline.corners().is_empty());

@@ -1,23 +1,27 @@
-//! Several curves fitted with the same number of guiding points, so that in-betweens may move guide to guide.
+//! Several curves fitted with the same number of guiding points, so that in-betweens can move guiding point to guiding
+//! point.
 //!
-//! Each curve is fitted by itself; the largest number is the common one. The others are fitted again with exactly that
-//! many, shared out over their sections. Where a curve cannot take exactly that many (rarely: a corner's guide may be
-//! repeated at no cost), the common number rises by one and all is tried again.
+//! Each curve is first fitted by itself. The largest number of guiding points becomes the common one. The other curves
+//! are fitted again with exactly that number, distributed over their sections. Rarely, a curve cannot take exactly that
+//! number (a corner's guiding point can be repeated without effect). Then the common number rises by one and the
+//! procedure repeats.
 
 use super::corners::corners;
 use super::{FitError, Fitted, Options, checked, clean, finished, fit, whole};
 use rototoon_base::geometry::Point;
 
-/// Times that the common number may rise.
+/// Number of times that the common number may rise.
 const ATTEMPTS: usize = 24;
 
-/// A polyline to fit: points, and whether the last joins the first.
+/// A polyline to fit: its points, and whether the last point joins the first.
 pub type Polyline<'a> = (&'a [Point], bool);
 
-/// Fits the curves to equal numbers of guiding points, each within the tolerance.
+/// Fits the curves with equal numbers of guiding points, each within the tolerance. The preset of the options is
+/// ignored.
 ///
-/// The preset is ignored. Fails as [`fit`] does, with the index of the curve, and where a curve takes no more guides
-/// (it is a point).
+/// # Errors
+///
+/// The errors of [`fit`], with the index of the curve; a curve that does not take the common number of guiding points.
 pub fn fit_together(curves: &[Polyline], options: &Options) -> Result<Vec<Fitted>, (usize, FitError)> {
     let plain = Options { preset: super::Preset::Rototoon, ..*options };
     let single = |(k, &(points, closed)): (usize, &Polyline)| fit(points, closed, &plain).map_err(|error| (k, error));
@@ -41,12 +45,12 @@ pub fn fit_together(curves: &[Polyline], options: &Options) -> Result<Vec<Fitted
     Err((k, FitError::Guides { count: common }))
 }
 
-/// One curve with exactly `guides` guiding points.
+/// Fits one curve with exactly `guides` guiding points; `None` where that is not possible.
 fn exactly((points, closed): Polyline, options: &Options, guides: usize) -> Result<Option<Fitted>, FitError> {
     checked(points, options.tolerance)?;
     let data = clean::cleaned(points, closed, options.tolerance);
     if data.points.len() == 1 {
-        // A point stays a point however often it is given.
+        // A point stays a point, however often it is repeated.
         return Ok(Some(Fitted::point(vec![points[0]; guides], closed, points.len())));
     }
     let found = corners(&data.points, &data.lengths, data.total, closed, options.tolerance);

@@ -1,8 +1,8 @@
-//! A section fitted with a given number of nodes.
+//! A fit of a section with a given number of nodes.
 //!
-//! Parameters come from the profile's cuts, nodes from one linear solve for these parameters; then a few Gauss–Newton
-//! steps on the squared distances, then steps on the excess over the tolerance. It ends as soon as every point is
-//! within the limit, or when steps no longer help.
+//! The parameters come from the profile's cuts. One linear solve for these parameters gives the nodes. A few
+//! Gauss–Newton steps on the squared distances follow, then steps on the excess over the tolerance. The fit ends as
+//! soon as every point is within the limit, or when further steps do not help.
 
 use super::feet::wrapped;
 use super::profile::Profile;
@@ -11,33 +11,33 @@ use super::solve::{Errors, Goal, Step, Track, arcs};
 use rototoon_base::geometry::Point;
 use rototoon_base::geometry::polyline::nearest_on_segment;
 
-/// Weight along the curve in the first steps after the linear one.
+/// Weight along the curve in the first step after the linear one.
 const FIRST_SLIDE: f64 = 0.2;
 /// Weight along the curve in the later least-squares steps.
 const SLIDE: f64 = 0.02;
 /// Share of the limit at which excess begins.
 const THRESHOLD: f64 = 0.8;
-/// A fit whose largest error is above this multiple of the limit after the least-squares steps is given up.
+/// A fit is given up if its largest error is above this multiple of the limit after the least-squares steps.
 const HOPELESS: f64 = 3.5;
-/// With each step, what is left to that multiple must fall to this share.
+/// With each step, the tolerated excess over the limit shrinks by this factor.
 const PATIENCE: f64 = 0.8;
 
-/// Points a piece that the least-squares steps look at.
+/// Number of points per piece used by the least-squares steps.
 const SAMPLES: usize = 12;
-/// Least-squares steps that tell whether a start is promising.
+/// Number of least-squares steps that estimate whether a start is promising.
 const PROMISE: usize = 2;
-/// Pieces on each side of a change that such steps move.
+/// Number of pieces on each side of a change that these steps move.
 const NEAR: usize = 3;
-/// Of so many steps on the excess one looks at all points.
+/// One in this many steps on the excess uses all points.
 const FULL_EVERY: usize = 4;
 /// A point is in danger if its error is above this share of the limit.
 const DANGER: f64 = 0.45;
 
-/// Between the feet of neighbours the curve may be off their segment by this multiple of the limit: it may still be
-/// near the next segment, which the final measure knows.
+/// Between the feet of neighbouring points, the curve may be this multiple of the limit away from their segment. It may
+/// still be near the next segment; the final measurement decides.
 const STRAY: f64 = 1.25;
 
-/// How much work a trial may be.
+/// The amount of work of a trial.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Effort {
     /// Least-squares steps.
@@ -46,17 +46,17 @@ pub(super) struct Effort {
     pub excess: usize,
 }
 
-/// The points of a section, in order, with their arc lengths; of a closed section the first is not repeated.
+/// The points of a section in order, with their arc lengths. A closed section does not repeat its first point.
 #[derive(Clone, Debug)]
 pub(super) struct Given<'a> {
     pub points: &'a [Point],
     pub lengths: &'a [f64],
-    /// Arc length of the whole, the closing stretch included.
+    /// Arc length of the complete section, including the closing stretch.
     pub total: f64,
     pub ends: Ends,
-    /// Nodes that are given: first two, last two, as far as `ends` holds them.
+    /// Given nodes: the first two and the last two. `ends` decides which of them count.
     pub held: [Point; 4],
-    /// Largest distance allowed.
+    /// Largest distance allowed, in pixels.
     pub limit: f64,
 }
 
@@ -70,7 +70,7 @@ pub(super) struct Trial {
 }
 
 impl Given<'_> {
-    /// Nodes and parameters for these cuts between pieces.
+    /// A first guess of nodes and parameters from the profile.
     pub fn start(&self, nodes: usize, profile: &Profile) -> Trial {
         let slots = self.ends.slots(nodes);
         let cuts = profile.cut(slots.len());
@@ -88,7 +88,7 @@ impl Given<'_> {
         Trial { nodes: guess, slots, parameters, errors: Errors::default() }
     }
 
-    /// Puts the given nodes, and free ends, in their places.
+    /// Puts the given nodes and the free ends in their places.
     fn hold(&self, nodes: &mut [Point]) {
         let Ends::Open(start, end) = self.ends else { return };
         let n = nodes.len();
@@ -121,7 +121,7 @@ impl Given<'_> {
         self.lengths.iter().map(parameter).collect()
     }
 
-    /// Fits from a start. `linear` begins with the linear solve for the start's parameters.
+    /// Fits from a start. With `linear` it begins with the linear solve for the start's parameters.
     pub fn run(&self, start: Trial, effort: Effort, linear: bool) -> Trial {
         let Trial { nodes, slots, parameters, .. } = start;
         let mut work = Work::new(self, &slots, nodes, parameters);
@@ -133,7 +133,7 @@ impl Given<'_> {
         Trial { nodes, slots, parameters, errors }
     }
 
-    /// Points enough to tell the shape of so many pieces.
+    /// A selection of points that is enough to show the shape of this many pieces.
     pub fn strided(&self, pieces: usize) -> Vec<usize> {
         let all = self.points.len();
         let stride = (all / (SAMPLES * pieces).max(1)).max(1);
@@ -144,9 +144,8 @@ impl Given<'_> {
         strided
     }
 
-    /// How promising a start is that differs from a good fit about piece `at`: the largest error near there, on some of
-    /// the points, after a few least-squares steps of the nodes near there. Only the parameters of the strided points
-    /// count.
+    /// The promise of a start that differs from a good fit around piece `at`: the largest error near that piece after a
+    /// few least-squares steps of the nodes near it. Only strided points are used, and only their parameters matter.
     pub fn promise(&self, start: Trial, at: usize) -> f64 {
         let pieces = start.slots.len();
         let apart = |i: usize| {
@@ -162,9 +161,9 @@ impl Given<'_> {
         work.step.gather(&work.nodes, &mut work.track, Goal::Squares(SLIDE), true, chosen).largest
     }
 
-    /// The first point after which the curve does not keep near the points' line: it might turn off and come back
-    /// between the feet of two neighbours. Looks at the middle of each such stretch. Else the point with the largest
-    /// error, if that is above the limit.
+    /// A point where the fit fails: the point with the largest error, if that is above the limit. Otherwise the first
+    /// point after which the curve leaves the points' line; it might turn off and come back between the feet of two
+    /// neighbours. The middle of each stretch is tested.
     pub fn fault(&self, trial: &Trial) -> Option<usize> {
         if trial.errors.largest > self.limit {
             return Some(trial.errors.at);
@@ -185,7 +184,7 @@ impl Given<'_> {
             if to <= from {
                 return false;
             }
-            // Joints inside a stretch are where it bends: their sides are looked at one by one.
+            // A stretch with a joint inside bends there, so both sides are tested.
             let middle = |from: f64, to: f64| {
                 let t = 0.5 * (from + to);
                 let t = if t >= count && self.ends == Ends::Periodic { t - count } else { t };
@@ -200,7 +199,7 @@ impl Given<'_> {
         })
     }
 
-    /// Cuts between the pieces of a fit by arc length of the points, and the largest error of each piece.
+    /// The cuts between the pieces of a fit, by arc length of the points, and the largest error of each piece.
     pub fn measure(&self, trial: &Trial) -> (Vec<f64>, Vec<f64>) {
         let pieces = trial.slots.len();
         let arcs: Vec<Arc> = arcs(&trial.nodes, &trial.slots);
@@ -214,7 +213,7 @@ impl Given<'_> {
                 cuts[i] = self.lengths[j];
             }
         }
-        // A piece without points takes an even share between its neighbours; cuts never fall.
+        // Pieces without points share the gap between their neighbours evenly. Cuts never fall.
         let mut known = 0;
         for i in 1..=pieces {
             if cuts[i].is_nan() {
@@ -230,14 +229,14 @@ impl Given<'_> {
     }
 }
 
-/// A running trial.
+/// A trial in progress.
 struct Work<'a, 'b> {
     given: &'a Given<'a>,
     track: Track<'a>,
     step: Step<'b>,
     nodes: Vec<Point>,
     best: Option<(Vec<Point>, Vec<f64>, Errors)>,
-    /// Points enough to tell the shape.
+    /// Indices of the points that are enough to show the shape.
     strided: Vec<usize>,
 }
 
@@ -271,7 +270,7 @@ impl<'a, 'b> Work<'a, 'b> {
         }
     }
 
-    /// Parameters of the points between those of the least-squares steps.
+    /// Interpolates the parameters of the points between those used by the least-squares steps.
     fn interpolate(&mut self) {
         let count = self.step.pieces() as f64;
         let periodic = self.given.ends == Ends::Periodic;
@@ -287,8 +286,8 @@ impl<'a, 'b> Work<'a, 'b> {
         }
     }
 
-    /// Steps on the excess: all points now and then (but those that are sure to be within the limit), in between those
-    /// that are in danger of it.
+    /// Steps on the excess. From time to time a step uses all points, except those that are certainly within the limit.
+    /// The steps between use only the points in danger.
     fn excess(&mut self, steps: usize) {
         let goal = Goal::Within(THRESHOLD * self.given.limit);
         let limit = self.given.limit;
@@ -310,7 +309,7 @@ impl<'a, 'b> Work<'a, 'b> {
                 let chosen = danger.iter().copied();
                 let errors = self.step.gather(&self.nodes, &mut self.track, goal, true, chosen);
                 if errors.largest <= limit {
-                    // Perhaps done: the others have a say before the next step.
+                    // The fit may be complete. The next pass tests the other points too.
                     since = FULL_EVERY;
                     continue;
                 }

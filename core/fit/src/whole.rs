@@ -1,10 +1,10 @@
-//! A whole curve: sections between corners and ends, fitted one by one and put together.
+//! The complete curve: sections between corners and ends are fitted one by one and joined.
 //!
-//! A section that cannot be fitted gets a corner where it is worst and is tried again in two parts; after a few rounds,
-//! or at once where noise as large as the tolerance makes every point count, it becomes straight lines
-//! ([`super::polygon`]). So there always is a result, and it always keeps the tolerance. What is fitted is measured
-//! again as a whole ([`super::bound`]); a section where the curve strays between points that are far apart is fitted
-//! with a smaller limit.
+//! A section that cannot be fitted gets a corner at its worst point and is tried again in two parts. After a few rounds
+//! it becomes straight lines ([`super::polygon`]). This happens at once where the noise is as large as the tolerance
+//! and every point would count. There is therefore always a result, and it always keeps the tolerance. The joined curve
+//! is measured again as a unit ([`super::bound`]). If it strays from the line between points, the sections are fitted
+//! again with a smaller limit.
 
 use super::bound::{self, Line};
 use super::clean::Cleaned;
@@ -17,13 +17,13 @@ use rototoon_base::curve::Spline;
 use rototoon_base::geometry::Point;
 use rototoon_base::geometry::polyline::nearest_on_segment;
 
-/// Rounds of new corners before straight lines.
+/// Rounds of new corners before straight lines are used.
 const ROUNDS: usize = 5;
-/// A fault within this many limits of a corner is that corner's.
+/// A fault within this many limits of a corner belongs to that corner.
 const BESIDE: f64 = 6.0;
-/// A fault within this many limits of a corner's place is the same tip.
+/// A fault within this many limits of a corner's place belongs to the same tip.
 const TIP: f64 = 2.0;
-/// Share of the tolerance that fits use: rounding, and the measure's own slack, take the rest.
+/// Share of the tolerance that fits use. The rest is for rounding and for the slack of the measurement.
 const MARGIN: f64 = 0.998;
 /// Rounds with a smaller limit where the curve strays between points.
 const STRICTER: usize = 4;
@@ -31,13 +31,13 @@ const STRICTER: usize = 4;
 /// A fitted section.
 #[derive(Clone, Debug)]
 struct Part {
-    /// Nodes, and which of them are corners (or doubled ends).
+    /// Nodes, each with whether it is a corner (or a doubled end).
     nodes: Vec<(Point, bool)>,
-    /// Parameters of its points, from 0 at its first piece.
+    /// Parameters of its points, counted from 0 at its first piece.
     parameters: Vec<f64>,
 }
 
-/// A section to fit: from one mark to the next.
+/// A section to fit, from one mark to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Span {
     from: usize,
@@ -48,7 +48,7 @@ struct Span {
     periodic: bool,
 }
 
-/// A fitted curve with the parameters of the cleaned points and the error that was measured.
+/// A fitted curve, the parameters of the cleaned points, and the measured error in pixels.
 #[derive(Clone, Debug)]
 pub(super) struct Whole {
     pub spline: Spline,
@@ -70,7 +70,8 @@ pub(super) fn fit(data: &Cleaned, closed: bool, corners: &[Corner], tolerance: f
     measured(data, closed, &sections(data, closed, on_points, MARGIN * tolerance, 0))
 }
 
-/// Fits with exactly `guides` guiding points; `None` where that many are too few, or do not keep the tolerance.
+/// Fits with exactly `guides` guiding points. `None` where this number is too small, or the fit does not keep the
+/// tolerance.
 pub(super) fn fit_exactly(
     data: &Cleaned,
     closed: bool,
@@ -85,7 +86,8 @@ pub(super) fn fit_exactly(
     let nodes: usize = parts.iter().map(|(_, part)| part.nodes.len()).sum();
     let mut still = nodes;
     for (span, part) in &mut parts {
-        // In proportion to the section's own nodes; what one cannot take goes to the later ones.
+        // Each section gets a share in proportion to its nodes. Nodes that it cannot take are left for the later
+        // sections.
         let share = (left * part.nodes.len()).div_ceil(still).min(left);
         still -= part.nodes.len();
         if let Some(richer) = with_nodes(data, span, limit, part, share) {
@@ -93,7 +95,7 @@ pub(super) fn fit_exactly(
             *part = richer;
         }
     }
-    // A corner's guide once more changes nothing about the shape.
+    // Repeating the guiding point of a corner does not change the shape.
     let mut whole = measured(data, closed, &parts);
     if left > 0 {
         let mut all = whole.spline.guides().to_vec();
@@ -106,7 +108,7 @@ pub(super) fn fit_exactly(
     (whole.error <= tolerance).then_some(whole)
 }
 
-/// A section's fit with `more` nodes.
+/// A section's fit with `more` additional nodes.
 fn with_nodes(data: &Cleaned, span: &Span, limit: f64, part: &Part, more: usize) -> Option<Part> {
     if more == 0 || part.nodes.iter().skip(1).rev().skip(1).any(|node| node.1) {
         return None;
@@ -117,7 +119,7 @@ fn with_nodes(data: &Cleaned, span: &Span, limit: f64, part: &Part, more: usize)
     Some(part_of(span, trial))
 }
 
-/// Sections and their fits. With no rounds all are straight lines.
+/// The sections and their fits. With zero rounds all are straight lines.
 fn sections(data: &Cleaned, closed: bool, mut corners: Vec<Corner>, limit: f64, rounds: usize) -> Vec<(Span, Part)> {
     let mut done: Vec<(Span, Part)> = Vec::new();
     for round in 0..=rounds {
@@ -150,9 +152,9 @@ fn sections(data: &Cleaned, closed: bool, mut corners: Vec<Corner>, limit: f64, 
     done
 }
 
-/// Puts a corner where a fit fails. Next to a corner that is there already, that one was misplaced: it is first put on
-/// its point, then moved to the fault, or between both where they are next to each other (the tip of a sharp corner may
-/// be two pixels wide); only then the fault gets a corner of its own.
+/// Puts a corner where a fit fails. If there is a corner nearby, that one was misplaced. In the first round it is put
+/// on its own point. Later it moves to the fault, or between its place and the fault where both are close (the tip of a
+/// sharp corner may be two pixels wide). After that a fault gets a corner of its own.
 fn repair(data: &Cleaned, closed: bool, corners: &mut Vec<Corner>, index: usize, round: usize, limit: f64) {
     let apart = |corner: &Corner| {
         let apart = (data.lengths[corner.index] - data.lengths[index]).abs();
@@ -170,7 +172,8 @@ fn repair(data: &Cleaned, closed: bool, corners: &mut Vec<Corner>, index: usize,
     }
 }
 
-/// Where corners would help; none where noise is the reason, or where there is a corner already.
+/// The points where corners would help. Empty where noise is the reason, or where the faults are at the ends of the
+/// section.
 fn worst_points(data: &Cleaned, span: &Span, reasons: &[Unfit]) -> Vec<usize> {
     let n = data.points.len();
     let inner = |&at: &usize| span.periodic || (at > 0 && at + 1 < span.count);
@@ -209,7 +212,7 @@ fn spans(data: &Cleaned, closed: bool, corners: &[Corner]) -> Vec<Span> {
         .collect()
 }
 
-/// Points of a span and their arc lengths from its start.
+/// The points of a span, and their arc lengths from its start.
 fn cut(data: &Cleaned, span: &Span) -> (Vec<Point>, Vec<f64>) {
     let n = data.points.len();
     let indices = span.from..span.from + span.count;
@@ -259,7 +262,7 @@ fn straight(data: &Cleaned, span: &Span, limit: f64) -> Part {
     if span.periodic {
         points.push(points[0]);
     } else {
-        // Corners may lie beside their points, by less than the limit.
+        // Corners may be beside their points, by less than the limit.
         let last = points.len() - 1;
         (points[0], points[last]) = (span.start.1, span.end.1);
     }
@@ -269,19 +272,20 @@ fn straight(data: &Cleaned, span: &Span, limit: f64) -> Part {
     if span.periodic {
         parameters.pop();
         nodes.pop();
-        // The first corner is doubled: its second guide begins the first chord.
+        // The first corner is doubled. Its second guiding point begins the first chord.
         parameters.iter_mut().for_each(|t| *t += 1.0);
     }
     Part { nodes, parameters }
 }
 
-/// Puts the sections together and measures the curve.
+/// Joins the sections and measures the curve.
 fn measured(data: &Cleaned, closed: bool, parts: &[(Span, Part)]) -> Whole {
     let n = data.points.len();
     let mut guides: Vec<Point> = Vec::new();
     let mut parameters = vec![0.0; n];
     for (span, part) in parts {
-        // A corner is written by the section that begins there; of an open curve by the one that ends there.
+        // Each corner must be written once: on a closed curve by the section that begins there, on an open curve by the
+        // section that ends there.
         if closed || guides.is_empty() {
             push(&mut guides, part.nodes[0]);
         }

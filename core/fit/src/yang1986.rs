@@ -1,23 +1,26 @@
-//! The two-step fitting of Yang et al. 1986, with the tolerance shared evenly, ε₁ = ε₂ = ε/2.
+//! The two-step fitting procedure of Yang et al. 1986. Both steps get half of the tolerance, ε₁ = ε₂ = ε/2.
 //!
-//! **Step 1, parabolas** ([`arcs`]). From a knot on, a parabola with the knots' slopes is tried up to the third point
-//! and farther, as long as no point is farther from it than ε₁; the last good one stays. The slope at a point is the
-//! mean of those to its neighbours (eq. 8); at a corner, where the turn exceeds a threshold, each side has its own.
+//! **Step 1, parabolas** ([`arcs`]). From each knot, a parabola with the slopes of the knots is tried up to the third
+//! point and farther, as long as no point is farther from it than ε₁. The last good one is kept. The slope at a point
+//! is the mean of the slopes to its neighbours (eq. 8). At a corner, where the turn exceeds a threshold, each side has
+//! its own slope.
 //!
-//! **Step 2, guiding points** ([`guides`]). Where the tangents of neighbouring knots meet are the first guiding points,
-//! one a parabola. Wherever the spline misses the parabolas by more than ε₂, the parabola that is missed most gets one
-//! more: for n of them the intersections of the n + 1 tangents at even parameter steps (eq. D.1). Of a Bézier parabola
-//! these are its blossom at neighbouring parameters. Corners get double guiding points.
+//! **Step 2, guiding points** ([`guides`]). The first guiding points are the intersections of the tangents of
+//! neighbouring knots, one for each parabola. As long as the spline misses a parabola by more than ε₂, the parabola
+//! with the largest miss gets one more guiding point. A parabola with n guiding points has them at the intersections of
+//! n + 1 tangents at even parameter steps (eq. D.1). On a Bézier parabola these are its blossom values at neighbouring
+//! parameters. Corners get double guiding points.
 //!
-//! **What differs from the print.** Slopes are infinite on vertical tangents; here they are directions, and the mean of
-//! two slopes is the bisector. Two directions of an S-shaped stretch meet behind a knot or nowhere: there no parabola
-//! stays between the knots with these tangents, and the stretch ends before. Where even the shortest stretch has none,
-//! its chord's middle is the guiding point, a straight line. The discrepancies printed in the paper's Table 2 cannot be
-//! reproduced; the procedure and its result can (see the test). The paper promises ε for the points only; so does step
-//! 1 here. The error that is given back is measured like that of all fits, and may exceed the tolerance between points
-//! or by the corners' straight legs. If it does, the shares of ε are halved and all is done again; where six halvings
-//! do not help (a staircase of pixels, whose every step is a corner to slopes of neighbours), the default method takes
-//! over.
+//! **Differences from the print.** Slopes are infinite on vertical tangents, so directions are used, and the mean of
+//! two slopes is the bisector. The tangents at the ends of an S-shaped stretch meet behind a knot or nowhere. No
+//! parabola with these tangents stays between the knots, so the stretch ends earlier. If even the shortest stretch has
+//! no parabola, the middle of its chord is the guiding point, which gives a straight line. The discrepancies printed in
+//! the paper's Table 2 could not be reproduced. The procedure and its result could (see the test).
+//!
+//! **Guarantee.** The paper guarantees ε for the points only, and so does step 1 here. The returned error is measured
+//! as for all fits. It may exceed the tolerance between points or at the straight legs of corners. Then the shares of ε
+//! are halved and both steps run again. If six halvings do not help, the default method takes over. This happens on a
+//! staircase of pixels, where the slopes of neighbours make every step a corner.
 
 use super::bound::{self, Line};
 use super::clean::Cleaned;
@@ -26,30 +29,30 @@ use super::whole::Whole;
 use rototoon_base::curve::{Quadratic, Spline};
 use rototoon_base::geometry::Point;
 
-/// A turn at a point beyond this is a corner: 60°. (The paper leaves the threshold to the user.)
+/// Smallest turn of a corner: 60°. (The paper leaves the threshold to the user.)
 const CORNER: f64 = std::f64::consts::FRAC_PI_3;
-/// Points on each parabola at which the spline's distance is measured.
+/// Number of intervals on each parabola between the points at which the spline's distance is measured.
 const SAMPLES: usize = 32;
-/// Points up to which a first parabola is tried ("starting at the third data point").
+/// Farthest point, counted from the start, up to which a first parabola is tried ("starting at the third data point").
 const TRIED: usize = 4;
-/// Most guiding points that a parabola gets.
+/// Largest number of guiding points of a parabola.
 const MOST: usize = 64;
-/// Times that the shares of the tolerance are made smaller.
+/// Number of times that the shares of the tolerance may be halved.
 const STRICTER: usize = 6;
 
-/// A knot between parabolas: its place and the directions in which the curve arrives and leaves.
+/// A knot between parabolas: its place, and the directions in which the curve arrives and leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knot {
-    /// Where it is.
+    /// Position, in pixels.
     pub place: Point,
-    /// Direction of arrival; any length but zero.
+    /// Direction of arrival, of any length but zero.
     pub arrival: Point,
-    /// Direction of departure, the same except at a corner.
+    /// Direction of departure; equal to the arrival except at a corner.
     pub departure: Point,
 }
 
 impl Knot {
-    /// A smooth knot.
+    /// A knot with one direction.
     pub fn smooth(place: Point, direction: Point) -> Self {
         Self { place, arrival: direction, departure: direction }
     }
@@ -59,25 +62,25 @@ impl Knot {
     }
 }
 
-/// The parabola between two knots: its guiding point is where the tangents meet. A straight line where they do not meet
-/// ahead of the one and behind the other.
+/// The parabola between two knots. Its guiding point is the intersection of their tangents. If the tangents do not meet
+/// ahead of the first knot and behind the second, it is a straight line.
 pub fn parabola(from: &Knot, to: &Knot) -> Quadratic {
     let middle = meeting(from, to).unwrap_or(0.5 * (from.place + to.place));
     Quadratic::new(from.place, middle, to.place)
 }
 
-/// Where the tangents of two knots meet, ahead of the first and behind the second.
+/// The intersection of the tangents of two knots, if it is ahead of the first and behind the second.
 fn meeting(from: &Knot, to: &Knot) -> Option<Point> {
     let (a, b, chord) = (from.departure, to.arrival, to.place - from.place);
     let cross = a.perp_dot(b);
     let (ahead, behind) = (chord.perp_dot(b) / cross, a.perp_dot(chord) / cross);
-    // Almost parallel tangents meet too far away for a stretch of drawn line.
+    // Almost parallel tangents meet too far away for a stretch of a drawn line.
     let far = 1e3 * chord.length();
     let place = from.place + a * ahead;
     (ahead > 0.0 && behind > 0.0 && place.distance(from.place) < far).then_some(place)
 }
 
-/// The guiding points of a parabola that has `n` of them: its blossom at neighbouring ones of n + 1 even parameters.
+/// The `n` guiding points of a parabola: its blossom at neighbouring ones of n + 1 even parameters.
 fn guides_of(arc: &Quadratic, n: usize) -> impl Iterator<Item = Point> + '_ {
     (0..n).map(move |i| {
         let (s, t) = (i as f64 / n as f64, (i + 1) as f64 / n as f64);
@@ -85,9 +88,9 @@ fn guides_of(arc: &Quadratic, n: usize) -> impl Iterator<Item = Point> + '_ {
     })
 }
 
-/// Step 2 for parabolas that follow each other, `corners[i]` telling of a corner at the start of parabola `i` (ignored
-/// at an open curve's start): the spline, the number of guiding points of each parabola, and the iterations that it
-/// took.
+/// Step 2, for parabolas that follow each other. `corners[i]` says whether parabola `i` starts at a corner (ignored at
+/// the start of an open curve). `tolerance` is ε₂ in pixels. Returns the spline, the number of guiding points of each
+/// parabola, and the number of iterations.
 pub fn guides(arcs: &[Quadratic], corners: &[bool], closed: bool, tolerance: f64) -> (Spline, Vec<usize>, usize) {
     let n = arcs.len();
     let mut counts = vec![1; n];
@@ -104,14 +107,14 @@ pub fn guides(arcs: &[Quadratic], corners: &[bool], closed: bool, tolerance: f64
         counts[worst] += 1;
         iterations += 1;
         (spline, starts) = assembled(arcs, corners, closed, &counts);
-        // A guiding point more moves the joints with the neighbours, and nothing beyond them.
+        // One more guiding point moves the joints with the neighbours, and nothing beyond them.
         for i in [(worst + n - 1) % n, worst, (worst + 1) % n] {
             missed[i] = discrepancy(&arcs[i], &spline, starts[i], counts[i]);
         }
     }
 }
 
-/// The spline, and for each parabola the index of the piece about its first guiding point.
+/// The spline, and for each parabola the index of the piece around its first guiding point.
 fn assembled(arcs: &[Quadratic], corners: &[bool], closed: bool, counts: &[usize]) -> (Spline, Vec<usize>) {
     let mut guides = Vec::new();
     let mut starts = Vec::with_capacity(arcs.len());
@@ -131,7 +134,7 @@ fn assembled(arcs: &[Quadratic], corners: &[bool], closed: bool, counts: &[usize
     (Spline::of_finite(guides, closed), starts)
 }
 
-/// Largest distance of a parabola's points to the pieces about its own guiding points and their neighbours.
+/// Largest distance of a parabola's points from the pieces around its own guiding points and their neighbours.
 fn discrepancy(arc: &Quadratic, spline: &Spline, start: usize, count: usize) -> f64 {
     let pieces = spline.piece_count();
     let around = |k: isize| {
@@ -144,7 +147,8 @@ fn discrepancy(arc: &Quadratic, spline: &Spline, start: usize, count: usize) -> 
     (0..=SAMPLES).map(|k| distance(arc.point(k as f64 / SAMPLES as f64))).fold(0.0, f64::max)
 }
 
-/// Step 1: knots and parabolas along points, and the corners among the parabolas' starts.
+/// Step 1: the parabolas along points, and for each parabola whether it starts at a corner. `tolerance` is ε₁ in
+/// pixels.
 pub fn arcs(points: &[Point], closed: bool, tolerance: f64) -> (Vec<Quadratic>, Vec<bool>) {
     let n = points.len();
     let line: Vec<Point> = if closed { points.iter().chain([&points[0]]).copied().collect() } else { points.to_vec() };
@@ -161,9 +165,9 @@ pub fn arcs(points: &[Point], closed: bool, tolerance: f64) -> (Vec<Quadratic>, 
         let corner = (start + 1..line.len()).find(|&k| knots[k].is_corner()).unwrap_or(line.len());
         let (mut end, mut step) = (start + 1, 1);
         while end < corner.min(line.len() - 1) {
-            // Point by point; of long stretches, where each test takes long, a sixteenth at once.
+            // Long stretches grow by a sixteenth at a time, because each test of them takes long.
             let next = (end + step).min(corner).min(line.len() - 1);
-            // The shortest parabola may fail where a longer one, past a step of the pixels, does not.
+            // The shortest parabola may fail where a longer one, past a step of the pixels, succeeds.
             if !fits(next) && end > start + 1 {
                 break;
             }
@@ -188,7 +192,7 @@ fn is_straight(points: &[Point], tolerance: f64) -> bool {
     points.iter().all(|&p| chord.perp_dot(p - points[0]).abs() < tolerance * chord.length())
 }
 
-/// The knot at a point, by its neighbours (eq. 8 and 9).
+/// The knot at a point, from its neighbours (eq. 8 and 9).
 fn knot(points: &[Point], i: usize, closed: bool, last: bool) -> Knot {
     let n = points.len();
     let (has_before, has_after) = (closed || i > 0, closed || i + 1 < n);
@@ -203,7 +207,7 @@ fn knot(points: &[Point], i: usize, closed: bool, last: bool) -> Knot {
     Knot::smooth(points[i], mean)
 }
 
-/// The whole procedure.
+/// Both steps, repeated with smaller shares of the tolerance until the measured error keeps it.
 pub(super) fn fit(data: &Cleaned, closed: bool, tolerance: f64) -> Whole {
     let mut share = 0.5 * tolerance;
     let mut best: Option<Whole> = None;
@@ -233,7 +237,7 @@ pub(super) fn fit(data: &Cleaned, closed: bool, tolerance: f64) -> Whole {
 mod tests {
     use super::*;
 
-    /// Table 1 of the paper, signs restored: knots and slopes.
+    /// Table 1 of the paper with its signs restored: knots and slopes.
     const TABLE_1: [(f64, f64, f64); 11] = [
         (9.50, 8.90, -0.649),
         (10.1, 6.50, 0.300),
@@ -248,7 +252,7 @@ mod tests {
         (8.10, 11.3, -8.000),
     ];
 
-    /// Parabola i of the paper, i from 1: from knot i − 1 to knot i.
+    /// Parabola i of the paper (i from 1) runs from knot i − 1 to knot i.
     fn table() -> Vec<Quadratic> {
         let knot = |k: usize| {
             let (x, y, slope) = TABLE_1[k % 11];
@@ -264,13 +268,13 @@ mod tests {
     }
 
     fn near(a: Point, x: f64, y: f64) -> bool {
-        // The paper prints two decimals, of values computed from rounded slopes.
+        // The paper prints two decimals of values computed from rounded slopes.
         (a.x - x).abs() < 0.02 && (a.y - y).abs() < 0.04
     }
 
     #[test]
     fn the_first_guiding_points_are_those_of_table_1() {
-        // As printed, but for G(2), whose second coordinate is 7.2 there and 7.0 in Table 2, and for lost signs.
+        // As printed, except for lost signs and for G(2): its second coordinate is 7.2 there and 7.0 in Table 2.
         let printed =
             [(8.30, 9.60), (12.0, 7.0), (8.0, 6.0), (9.0, 1.0), (5.0, 3.0), (5.4, 6.4), (0.8, 5.7), (2.3, 7.9)];
         let rest = [(-0.2, 12.0), (5.4, 9.7), (7.0, 20.0)];
@@ -331,7 +335,7 @@ mod tests {
     fn guiding_points_of_a_parabola_make_it_again() {
         let arc = table()[8];
         let chain: Vec<Point> = guides_of(&arc, 5).collect();
-        // Inner midpoints lie on the parabola at even parameters, and the pieces between are its parts.
+        // Inner midpoints are on the parabola at even parameters, and the pieces between them are its parts.
         for i in 1..5 {
             let joint = 0.5 * (chain[i - 1] + chain[i]);
             assert!(joint.distance(arc.point(i as f64 / 5.0)) < 1e-12);

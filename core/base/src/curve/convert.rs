@@ -1,17 +1,17 @@
-//! To and from Bézier curves.
+//! Conversion to and from Bézier curves.
 //!
-//! **Out.** A spline's pieces are quadratic Bézier curves as they are; of a quadratic p0, p1, p2 the cubic with inner
-//! control points a third of the way from p1 to the ends is the same curve (degree elevation).
+//! **Out.** The pieces of a spline are quadratic Bézier curves. A quadratic p0, p1, p2 is the same curve as the cubic
+//! whose inner control points are a third of the way from p1 to the ends (degree elevation).
 //!
-//! **Cubic to quadratics.** A cubic c0 … c3 and the quadratic with the same ends and middle point (3 c1 + 3 c2 − c0 −
-//! c3)/4 differ by (c3 − 3 c2 + 3 c1 − c0) u(u − ½)(u − 1), whose factor in u is at most √3/36 (Sederberg, *Computer
-//! Aided Geometric Design*, §2). Of n equal parts the third difference falls as n⁻³, so n = ⌈∛(√3/36 · |third
-//! difference| / tolerance)⌉ parts keep the tolerance, pointwise in the parameter. The parts join in position and,
-//! because the middle control points of equal parts of one cubic lie on its tangents only up to third order, not
-//! exactly in direction.
+//! **Cubic to quadratics.** Take a cubic c0 … c3 and the quadratic with the same ends and the middle control point (3
+//! c1 + 3 c2 − c0 − c3)/4. They differ by (c3 − 3 c2 + 3 c1 − c0) u(u − ½)(u − 1). The factor in u is at most √3/36
+//! (Sederberg, *Computer Aided Geometric Design*, §2). The third difference of n equal parts falls as n⁻³. So n =
+//! ⌈∛(√3/36 · |third difference| / tolerance)⌉ parts keep the tolerance at each parameter. The parts join exactly in
+//! position, but not exactly in direction: the middle control points of equal parts are on the tangents of the cubic
+//! only up to third order.
 //!
-//! **In.** A chain of quadratics is a uniform spline exactly where each joint is the midpoint of the middle control
-//! points around it ([`Spline::from_quadratics`]). Any other chain has to be fitted to a tolerance, see `rototoon-fit`.
+//! **In.** A chain of quadratics is a uniform spline exactly if each joint is the midpoint of the middle control points
+//! around it ([`Spline::from_quadratics`]). Any other chain must be fitted to a tolerance, see [`crate::fit`].
 
 use super::{Quadratic, Spline, SplineError};
 use crate::geometry::Point;
@@ -19,14 +19,14 @@ use crate::geometry::Point;
 /// A cubic Bézier piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cubic {
-    /// Its control points; the first and last lie on it.
+    /// Control points, in pixels; the first and the last are on the curve.
     pub points: [Point; 4],
 }
 
-/// Largest value of |u (u − ½) (u − 1)| between 0 and 1, at u = ½ ± √3/6: √3/36.
+/// Largest value of |u (u − ½) (u − 1)| between 0 and 1: √3/36, at u = ½ ± √3/6.
 const CUBIC_WAVE: f64 = 0.048_112_522_432_468_816;
 
-/// Most quadratics that a cubic is cut into.
+/// Largest number of quadratics for one cubic.
 const MOST_PARTS: f64 = 65_536.0;
 
 impl Cubic {
@@ -37,20 +37,22 @@ impl Cubic {
         c0 * (v * v * v) + c1 * (3.0 * u * v * v) + c2 * (3.0 * u * u * v) + c3 * (u * u * u)
     }
 
-    /// Derivative by the parameter.
+    /// Derivative with respect to the parameter.
     pub fn derivative(&self, u: f64) -> Point {
         let [c0, c1, c2, c3] = self.points;
         let v = 1.0 - u;
         ((c1 - c0) * (v * v) + (c2 - c1) * (2.0 * u * v) + (c3 - c2) * (u * u)) * 3.0
     }
 
-    /// Quadratics of equal parameter steps, nowhere farther than `tolerance` from the cubic; as few as that needs.
+    /// Quadratics of equal parameter steps, nowhere farther than `tolerance` pixels from the cubic; as few as the bound
+    /// of this module allows.
     ///
-    /// `tolerance` is positive; with one that is not, the largest number of parts is taken (65 536).
+    /// `tolerance` must be positive. Zero gives the largest number of parts (65 536), a negative number or NaN gives
+    /// one part.
     pub fn to_quadratics(self, tolerance: f64) -> Vec<Quadratic> {
         let [c0, c1, c2, c3] = self.points;
         let wave = CUBIC_WAVE * ((c3 - c0) + 3.0 * (c1 - c2)).length();
-        // A little more than the bound, which rounding must not break.
+        // Slightly more than the bound, so that rounding cannot break it.
         let parts = (wave / tolerance * (1.0 + 1e-9)).cbrt().ceil();
         let parts = if parts.is_nan() { 1.0 } else { parts.clamp(1.0, MOST_PARTS) };
         let step = 1.0 / parts;
@@ -59,7 +61,7 @@ impl Cubic {
                 let (from, to) = (i as f64 * step, (i + 1) as f64 * step);
                 let (start, end) = (self.point(from), self.point(to.min(1.0)));
                 let (inner, outer) = (self.derivative(from) * step, self.derivative(to.min(1.0)) * step);
-                // (3 c1 + 3 c2 − c0 − c3)/4 of the part, whose c1 and c2 follow from its end tangents.
+                // (3 c1 + 3 c2 − c0 − c3)/4 of the part. Its c1 and c2 follow from its end tangents.
                 Quadratic::new(start, 0.5 * (start + end) + 0.25 * (inner - outer), end)
             })
             .collect()
@@ -75,27 +77,31 @@ impl From<Quadratic> for Cubic {
 /// A chain of Bézier pieces that is not a uniform spline.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NotUniform {
-    /// The middle control points make no spline.
+    /// The middle control points cannot make a spline.
     #[error(transparent)]
     Guides(#[from] SplineError),
     /// A joint is not the midpoint of the middle control points around it.
     #[error(
-        "joint {index} lies {distance} px from the midpoint of the control points around it, expected at most {tolerance} px; \
+        "joint {index} is {distance} px from the midpoint of the control points around it, expected at most {tolerance} px; \
          fit the curve to a tolerance instead"
     )]
     Joint {
-        /// Index of the piece that starts there.
+        /// Index of the piece with the joint.
         index: usize,
-        /// How far it is off.
+        /// Distance of the joint from the midpoint, in pixels.
         distance: f64,
-        /// What is allowed.
+        /// Largest distance allowed, in pixels.
         tolerance: f64,
     },
 }
 
 impl Spline {
-    /// The spline whose pieces these are, if joints are off the midpoints by at most `tolerance` pixels. The result is
-    /// then within the tolerance of the pieces.
+    /// The spline with these pieces, if each joint is within `tolerance` pixels of the midpoint around it. The result
+    /// is then within the tolerance of the pieces.
+    ///
+    /// # Errors
+    ///
+    /// No pieces, or points that are not finite; a joint that is too far from the midpoint.
     pub fn from_quadratics(pieces: &[Quadratic], closed: bool, tolerance: f64) -> Result<Self, NotUniform> {
         let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return Err(SplineError::Empty.into()) };
         let middle = pieces.iter().map(|piece| piece.p1);
@@ -112,7 +118,7 @@ impl Spline {
         Ok(spline)
     }
 
-    /// The pieces as cubic Bézier curves: the same curve.
+    /// The pieces as cubic Bézier curves of the same shape.
     pub fn to_cubics(&self) -> Vec<Cubic> {
         self.pieces().map(Cubic::from).collect()
     }
@@ -144,7 +150,7 @@ mod tests {
             let cubic = Cubic::from(piece);
             prop_assert!(cubic.point(u).distance(piece.point(u)) < 1e-12 * 100.0);
             prop_assert!(cubic.derivative(u).distance(piece.derivative(u)) < 1e-11 * 100.0);
-            // And so one quadratic is enough to come back.
+            // Therefore one quadratic is enough on the way back.
             let back = cubic.to_quadratics(1e-6);
             prop_assert_eq!(back.len(), 1);
             prop_assert!(back[0].p1.distance(piece.p1) < 1e-9);
@@ -166,7 +172,7 @@ mod tests {
                 }
             }
             prop_assert!(worst <= tolerance * (1.0 + 1e-6), "{worst}");
-            // One part less would not have kept it (samples miss the peak by less than a twentieth).
+            // One part fewer would not keep the tolerance (samples miss the peak by less than a twentieth).
             let bound = |n: f64| worst / 0.95 * (n / (n - 1.0)).powi(3);
             prop_assert!(n == 1.0 || bound(n) >= tolerance, "{n} {worst}");
         }

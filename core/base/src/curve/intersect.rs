@@ -1,23 +1,22 @@
-//! Where two parabola pieces meet (Yang et al. 1986, Appendix E).
+//! The meetings of two parabola pieces (Yang et al. 1986, Appendix E).
 //!
-//! **Boxes first.** Pieces whose boxes are apart do not meet.
+//! **Boxes first.** Pieces with separate boxes do not meet.
 //!
-//! **The quartic.** For X on the piece p0 + 2b v + a v², cross products with a and b give v and v² alone:
-//! a × (X − p0) = 2D v and b × (X − p0) = −D v² with D = a × b. So the parabola is the set where
+//! **The quartic.** For X on the piece p0 + 2b v + a v², the cross products with a and b isolate v and v²: a × (X − p0)
+//! = 2D v and b × (X − p0) = −D v², with D = a × b. So the parabola is the set of X with
 //!
-//! (a × (X − p0))² + 4 D (b × (X − p0)) = 0,
+//! (a × (X − p0))² + 4 D (b × (X − p0)) = 0.
 //!
-//! and with X the other piece's point, quadratic in u, this is a quartic in u. Its roots are the crossings; v follows
-//! from the first equation, and both are polished by Newton's method on B₁(u) = B₂(v). The more bent of the two pieces
-//! is made implicit, since D divides.
+//! If X is the point of the other piece, a quadratic in u, this is a quartic in u. Its roots are the crossings, and v
+//! follows from the first equation. Newton's method on B₁(u) = B₂(v) polishes both. The more bent piece is the one made
+//! implicit, because D is a divisor.
 //!
 //! **Degenerate cases.**
-//! - Straight pieces (D = 0 in proportion to the size): see `straight`.
-//! - The same parabola: the quartic vanishes. The shared stretch, between ends of the two, is reported as an overlap.
-//! - Tangents: a double root, reported once. What is apart by less than the rounding of the coefficients counts as
-//!   touching.
+//! - Straight pieces (D is zero relative to the size): see [`super::straight`].
+//! - Pieces of one parabola: the quartic vanishes. The shared stretch is reported as an overlap.
+//! - Tangents: a double root, reported once. Curves closer than the rounding of the coefficients count as touching.
 //!
-//! Limits: two crossings closer together than about 1e-6 of the pieces' size may be reported as one.
+//! Limits: two crossings closer together than about 1e-6 of the pieces' parameters may be reported as one.
 
 use super::meeting::{MERGE, Meeting, SAME};
 use super::straight::{line_and_parabola, lines};
@@ -29,7 +28,7 @@ use crate::numeric::roots::roots_in;
 const STRAIGHT: f64 = 1e-9;
 
 impl Quadratic {
-    /// All meetings with another piece, in the order of this one's parameter.
+    /// All meetings with another piece, in the order of this piece's parameter.
     pub fn intersect(&self, other: &Self) -> Vec<Meeting> {
         let (low, high) = self.control_box();
         let (other_low, other_high) = other.control_box();
@@ -38,7 +37,7 @@ impl Quadratic {
         if gap > SAME * size {
             return Vec::new();
         }
-        // About a near origin, so that distance from the true one costs no digits.
+        // Computing relative to a nearby origin keeps precision far from the true one.
         let moved = |q: &Self| Self::new(q.p0 - low, q.p1 - low, q.p2 - low);
         let (mine, theirs) = (moved(self), moved(other));
         let mut found = match (mine.straight(size), theirs.straight(size)) {
@@ -89,7 +88,7 @@ fn merged(sorted: Vec<Meeting>) -> Vec<Meeting> {
     kept
 }
 
-/// Two bent pieces; the second is made implicit.
+/// The meetings of two bent pieces. The second one is made implicit.
 fn parabolas(one: &Quadratic, two: &Quadratic, size: f64) -> Vec<Meeting> {
     let (a, b) = two.coefficients();
     let d = a.perp_dot(b);
@@ -112,7 +111,7 @@ fn parabolas(one: &Quadratic, two: &Quadratic, size: f64) -> Vec<Meeting> {
     roots_in(&quartic, 0.0, 1.0)
         .iter()
         .map(|&u| (u, at(u)))
-        // Ends that touch may miss the interval by a rounding.
+        // Ends that touch may miss the interval because of rounding.
         .chain(ends.map(|u| (u, at(u))))
         .filter_map(|(u, v)| accepted(one, two, (u, v), size))
         .collect()
@@ -128,7 +127,7 @@ fn accepted(one: &Quadratic, two: &Quadratic, (u, v): (f64, f64), size: f64) -> 
     (miss(best) <= SAME * size).then_some(Meeting::Point { first: best.0, second: best.1 })
 }
 
-/// Newton's method on B₁(u) = B₂(v); where the tangents are parallel, the steps that still help.
+/// Newton's method on B₁(u) = B₂(v). It stops where the tangents become parallel.
 fn polish(one: &Quadratic, two: &Quadratic, (mut u, mut v): (f64, f64)) -> (f64, f64) {
     for _ in 0..4 {
         let error = one.point(u) - two.point(v);
@@ -146,12 +145,12 @@ fn polish(one: &Quadratic, two: &Quadratic, (mut u, mut v): (f64, f64)) -> (f64,
 
 /// The shared stretch of two pieces of one parabola.
 fn same_parabola(one: &Quadratic, two: &Quadratic, size: f64) -> Option<Meeting> {
-    // Parameters on `one` of both ends of `two`, on the parabola continued: affine in v.
+    // Parameters on `one` of both ends of `two`, on the extended parabola. In between they are affine in v.
     let (a, b) = one.coefficients();
     let d = a.perp_dot(b);
     let on_one = |p: Point| a.perp_dot(p - one.p0) / (2.0 * d);
     let (start, end) = (on_one(two.p0), on_one(two.p2));
-    // Three points and the tangents of one on the other: a parabola that shares them all is the same.
+    // If five points of `two` are on the corresponding points of the other parabola, both parabolas are the same.
     let shared = |v: f64| {
         let u = start + (end - start) * v;
         one.point(u).distance(two.point(v)) <= SAME * size.max(one.point(u).length())
@@ -168,8 +167,8 @@ fn same_parabola(one: &Quadratic, two: &Quadratic, size: f64) -> Option<Meeting>
 }
 
 impl Spline {
-    /// Where this spline meets another: pairs of the pieces' indices with how they meet. A meeting at a joint is
-    /// reported for the pieces on both of its sides.
+    /// The meetings of this spline with another: the indices of both pieces, and how they meet. A meeting at a joint is
+    /// reported for the pieces on both sides of it.
     pub fn intersect(&self, other: &Self) -> Vec<((usize, usize), Meeting)> {
         let theirs: Vec<_> = other.pieces().map(|piece| (piece, piece.bounds())).collect();
         let mut found = Vec::new();
@@ -216,7 +215,7 @@ mod tests {
         }
         // y = x² against x = 3 − ((y − 1.5)/1.75)²: counted by hand, the left end hides two.
         assert_eq!(found.len(), crossings_by_chords(&tall, &wide, 2000));
-        // The same arch laid on its side crosses all four times.
+        // The same arch on its side crosses all four times.
         let side = piece([(3.0, -3.0), (-5.0, 0.0), (3.0, 3.0)].map(|(x, y)| (x + 0.1, y)));
         let up = piece([(-3.0, 3.0), (0.0, -5.0), (3.0, 3.0)].map(|(x, y)| (x, y + 0.1)));
         assert_eq!(points(&side.intersect(&up)).len(), crossings_by_chords(&side, &up, 2000));
@@ -263,13 +262,13 @@ mod tests {
         assert_eq!(points(&line.intersect(&piece([(4.0, 0.0), (6.0, 0.0), (8.0, 0.0)]))), [(1.0, 0.0)]);
         let back = piece([(6.0, 0.0), (4.0, 0.0), (2.0, 0.0)]);
         assert_eq!(line.intersect(&back), [Meeting::Overlap { first: (0.5, 1.0), second: (1.0, 0.5) }]);
-        // A doubled control point is how a corner's straight half is stored.
+        // A corner's straight half is stored with a doubled control point.
         let stopping = piece([(0.0, -4.0), (2.0, 0.0), (2.0, 0.0)]);
         assert_eq!(points(&line.intersect(&stopping)).len(), 1);
     }
 
     #[test]
-    fn points_meet_what_passes_through_them() {
+    fn points_meet_the_pieces_that_pass_through_them() {
         let dot = piece([(2.0, 0.0); 3]);
         let line = piece([(0.0, 0.0), (2.0, 0.0), (4.0, 0.0)]);
         assert_eq!(points(&line.intersect(&dot)), [(0.5, 0.0)]);
@@ -278,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folded_line_is_met_on_both_ways() {
+    fn a_folded_line_is_met_in_both_directions() {
         let folded = piece([(0.0, 0.0), (4.0, 0.0), (0.0, 0.0)]);
         let gate = piece([(1.0, -1.0), (1.0, 0.0), (1.0, 1.0)]);
         assert_eq!(points(&folded.intersect(&gate)).len(), 2);
@@ -287,7 +286,7 @@ mod tests {
         assert!(found.iter().all(|m| matches!(m, Meeting::Overlap { .. })));
     }
 
-    /// Naive reference: chords of both, each against each.
+    /// Naive reference: the chords of one against the chords of the other.
     fn crossings_by_chords(one: &Quadratic, two: &Quadratic, n: usize) -> usize {
         let chords = |q: &Quadratic| -> Vec<(Point, Point)> {
             (0..n).map(|i| (q.point(i as f64 / n as f64), q.point((i + 1) as f64 / n as f64))).collect()
@@ -310,7 +309,8 @@ mod tests {
                     prop_assert!(one.point(first).distance(two.point(second)) < 1e-7);
                 }
             }
-            // Chords are a hair off: pairs that nearly touch may differ by a pair of crossings or one at an end.
+            // Chords are slightly off: for pairs that nearly touch, the count may differ by a pair of crossings, or by
+            // one at an end.
             let coarse = crossings_by_chords(&one, &two, 150);
             let shaky = found.iter().any(|m| match *m {
                 Meeting::Point { first: u, second: v } => {

@@ -1,23 +1,25 @@
 //! Arc length of a parabola piece in closed form, and the parameter at a given length.
 //!
-//! With B′(u) = 2(b + a u) the speed is 2√(A u² + 2B u + C), A = a·a, B = a·b, C = b·b. Completing the square, v = u +
-//! B/A and k = |a × b|/A (as AC − B² = (a × b)²), it is 2√A √(v² + k²), whose integral is elementary:
+//! With B′(u) = 2(b + a u) the speed is 2√(A u² + 2B u + C), where A = a·a, B = a·b, C = b·b. Complete the square with
+//! v = u + B/A and k = |a × b|/A (because AC − B² = (a × b)²). The speed becomes 2√A √(v² + k²), which has an
+//! elementary integral:
 //!
 //! L = √A [ v √(v² + k²) + k² asinh(v/k) ], from v = B/A to v = 1 + B/A.
 //!
-//! This is the formula that Yang et al. 1986 give in Appendix F, whose print lost signs and powers.
+//! This is the formula of Yang et al. 1986, Appendix F. Its print lost signs and powers.
 //!
-//! **The straight limit.** As the piece tends to even travel along a line, A → 0 and v → ∞: two large numbers are
-//! subtracted. For |v| > `FAR` the speed is so smooth (its nearest singularity is more than `FAR` piece lengths away)
-//! that five Gauss–Legendre nodes are exact to rounding: their error falls as ρ⁻¹⁰, ρ ≈ 4 `FAR`. Folded straight pieces
-//! (k = 0) are the other limit: k² asinh(v/k) → 0.
+//! **The straight limit.** As the piece approaches even travel along a line, A → 0 and v → ∞, and two large numbers are
+//! subtracted. For |v| > [`FAR`] the speed is very smooth, because its nearest singularity is more than `FAR` piece
+//! lengths away. Five Gauss–Legendre nodes are then exact to rounding: their error falls as ρ⁻¹⁰ with ρ ≈ 4 `FAR`.
+//! Folded straight pieces (k = 0) are the other limit, with k² asinh(v/k) → 0.
 //!
-//! The inverse is found by Newton's method on the length, whose derivative is the speed, kept within a bracket.
+//! **The inverse** is found by Newton's method on the length. Its derivative is the speed. A bracket keeps the
+//! iteration safe.
 
 use super::{Quadratic, Spline};
 use crate::geometry::Point;
 
-/// Distance of the parabola's vertex, in piece lengths, beyond which quadrature takes over from the formula.
+/// Distance of the parabola's vertex, in piece lengths, beyond which quadrature replaces the formula.
 const FAR: f64 = 8.0;
 
 /// Nodes and weights of the five-point Gauss–Legendre rule on −1..1, for the nodes that are not negative.
@@ -33,12 +35,12 @@ impl Quadratic {
         self.length_to(1.0)
     }
 
-    /// Length from the start to parameter `u` (0 to 1).
+    /// Length from the start to parameter `u` (0 to 1), in pixels.
     pub fn length_to(&self, u: f64) -> f64 {
         let (a, b) = self.coefficients();
         let squared = a.length_squared();
         let start = a.dot(b) / squared;
-        // Of straight pieces `start` is infinite or not a number: no comparison holds.
+        // For straight pieces `start` is infinite or not a number, and the comparison is false.
         let by_formula = start.abs() <= FAR && squared > f64::MIN_POSITIVE;
         if !by_formula {
             return quadrature(a, b, u);
@@ -47,7 +49,7 @@ impl Quadratic {
         squared.sqrt() * (primitive(start + u, k) - primitive(start, k))
     }
 
-    /// Parameter (0 to 1) at which the length from the start is `length`; clamped to the piece.
+    /// The parameter (0 to 1) at which the length from the start is `length` pixels; clamped to the piece.
     pub fn parameter_at(&self, length: f64) -> f64 {
         let total = self.length();
         if length.is_nan() || length <= 0.0 || total <= 0.0 {
@@ -92,11 +94,12 @@ fn quadrature(a: Point, b: Point, u: f64) -> f64 {
     half * sum
 }
 
-/// The lengths of a spline's pieces, summed up: from a length to the parameter and back in logarithmic time.
+/// Cumulative lengths of a spline's pieces. They give the parameter at a length, and the length at a parameter, in
+/// logarithmic time.
 #[derive(Clone, Debug)]
 pub struct ArcLengths<'a> {
     spline: &'a Spline,
-    /// Length up to the start of each piece, and at last the whole.
+    /// Length up to the start of each piece, followed by the total length.
     before: Vec<f64>,
 }
 
@@ -112,18 +115,18 @@ impl<'a> ArcLengths<'a> {
         Self { spline, before }
     }
 
-    /// The whole length in pixels.
+    /// Total length in pixels.
     pub fn total(&self) -> f64 {
         self.before[self.before.len() - 1]
     }
 
-    /// Length from the start of the spline to parameter `t`.
+    /// Length from the start of the spline to parameter `t`, in pixels.
     pub fn length_to(&self, t: f64) -> f64 {
         let (i, u) = self.spline.locate(t);
         self.before[i] + self.spline.piece(i).length_to(u)
     }
 
-    /// Parameter at which the length from the start is `length`; clamped to the spline.
+    /// The parameter at which the length from the start is `length` pixels; clamped to the spline.
     pub fn parameter_at(&self, length: f64) -> f64 {
         let pieces = self.before.len() - 1;
         let i = self.before[1..pieces].partition_point(|&end| end < length);
@@ -137,7 +140,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// High-order reference: the five-point rule on many parts, split where the piece nearly stops.
+    /// Reference of high order: the five-point rule on many parts, split where the piece nearly stops.
     fn by_quadrature(piece: &Quadratic, u: f64) -> f64 {
         let (a, b) = piece.coefficients();
         let turn = (-a.dot(b) / a.length_squared()).clamp(0.0, u);
@@ -145,7 +148,7 @@ mod tests {
         let mut sum = 0.0;
         for (from, to) in [(turn, 0.0), (turn, u)] {
             let mut edge = from;
-            // Graded towards the stop: halves of halves.
+            // The parts become smaller towards the stop: halves of halves.
             for level in (0..50).rev() {
                 let next = from + (to - from) * 0.5f64.powi(level);
                 let n = 8;
@@ -166,7 +169,7 @@ mod tests {
         assert!((line.length() - 5.0).abs() < 1e-15 * 5.0);
         let point = Quadratic::new(Point::ONE, Point::ONE, Point::ONE);
         assert_eq!(point.length(), 0.0);
-        // There and back again: to 1 and back.
+        // There and back: to 1 and back.
         let folded = Quadratic::new(Point::ZERO, Point::new(2.0, 0.0), Point::ZERO);
         assert!((folded.length() - 2.0).abs() < 1e-15 * 2.0);
         // y = x² from 0 to 1: √5/2 + asinh(2)/4.

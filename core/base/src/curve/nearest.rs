@@ -1,13 +1,13 @@
-//! The point of a parabola piece that is nearest to a given one.
+//! The point of a parabola piece nearest to a given point.
 //!
-//! At an inner nearest point the error is perpendicular to the tangent, (B(u) − p) · B′(u) = 0: with d = p0 − p a
-//! cubic,
+//! At an inner nearest point the error is perpendicular to the tangent: (B(u) − p) · B′(u) = 0. With d = p0 − p this is
+//! a cubic equation:
 //!
 //! d·b + (d·a + 2 b·b) u + 3 a·b u² + a·a u³ = 0.
 //!
-//! Its roots between 0 and 1 and both ends are all candidates (up to three inner ones: two nearest points and a
-//! farthest between them). Straight pieces, folded pieces and points are the cases a ∥ b and a = 0, which the root
-//! finder takes like any other: no case of its own.
+//! The candidates are its roots between 0 and 1 and both ends. There are up to three inner candidates: two nearest
+//! points with a farthest one between them. Straight pieces, folded pieces and points are the cases a ∥ b and a = 0.
+//! The root finder handles them like all others.
 
 use super::{Quadratic, Spline};
 use crate::geometry::Point;
@@ -16,7 +16,7 @@ use crate::numeric::roots::roots_in;
 /// A nearest point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
-    /// Its parameter.
+    /// Its parameter on the curve.
     pub parameter: f64,
     /// The point.
     pub point: Point,
@@ -25,7 +25,7 @@ pub struct Nearest {
 }
 
 impl Quadratic {
-    /// The nearest point to `p`; of several the one with the least parameter.
+    /// The point nearest to `p`. Among several the one with the smallest parameter counts.
     pub fn nearest(&self, p: Point) -> Nearest {
         let (a, b) = self.coefficients();
         let d = self.p0 - p;
@@ -45,13 +45,13 @@ impl Quadratic {
     }
 }
 
-/// Distance of `p` to a box.
+/// Distance of `p` from a box.
 fn box_distance(p: Point, (low, high): (Point, Point)) -> f64 {
     (low - p).max(p - high).max(Point::ZERO).length()
 }
 
 impl Spline {
-    /// The nearest point to `p`, over all pieces; its parameter is the spline's.
+    /// The point nearest to `p` among all pieces. Its parameter is that of the spline.
     pub fn nearest(&self, p: Point) -> Nearest {
         let first = self.piece(0).nearest(p);
         (1..self.piece_count()).fold(first, |best, i| {
@@ -81,7 +81,7 @@ mod tests {
         assert_eq!(point.nearest(Point::new(4.0, 5.0)).distance, 5.0);
         let line = Quadratic::new(Point::ZERO, Point::new(2.0, 0.0), Point::new(4.0, 0.0));
         assert_eq!(line.nearest(Point::new(1.0, 3.0)).point, Point::new(1.0, 0.0));
-        // Folded: it turns back at (1, 0), where nothing is perpendicular.
+        // A folded piece turns back at (1, 0), where it has no perpendicular.
         let folded = Quadratic::new(Point::ZERO, Point::new(2.0, 0.0), Point::ZERO);
         assert!((folded.nearest(Point::new(5.0, 0.0)).distance - 4.0).abs() < 1e-12);
         let stopping = Quadratic::new(Point::ZERO, Point::new(2.0, 0.0), Point::new(2.0, 0.0));

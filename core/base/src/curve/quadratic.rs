@@ -1,28 +1,28 @@
-//! A piece of parabola as a quadratic Bézier curve.
+//! A piece of a parabola as a quadratic Bézier curve.
 //!
-//! B(u) = (1−u)² p0 + 2u(1−u) p1 + u² p2 = p0 + 2b u + a u², with b = p1 − p0 and a = p0 − 2p1 + p2. In these terms
-//! B′ = 2(b + a u) and B″ = 2a; a is the parabola's axis direction, a × b is twice the (signed) area of the control
+//! B(u) = (1−u)² p0 + 2u(1−u) p1 + u² p2 = p0 + 2b u + a u², with b = p1 − p0 and a = p0 − 2p1 + p2. Then B′ = 2(b + a
+//! u) and B″ = 2a. The vector a is the direction of the parabola's axis. |a × b| is twice the area of the control
 //! triangle and vanishes where the piece is straight.
 //!
-//! **Box.** A coordinate is extreme at an end or where its derivative vanishes, u = −b/a.
-//! **Area.** ½∫ B × B′ du is a polynomial integral; between the piece and its chord lies two thirds of the control
-//! triangle (Archimedes).
+//! **Box.** A coordinate is extreme at an end or where its derivative vanishes, at u = −b/a.
+//! **Area.** ½∫ B × B′ du is the integral of a polynomial. The area between the piece and its chord is two thirds of
+//! the control triangle (Archimedes).
 
 use crate::geometry::Point;
 
-/// A quadratic Bézier piece.
+/// A quadratic Bézier piece, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quadratic {
-    /// Where it starts.
+    /// Start.
     pub p0: Point,
-    /// Its middle control point: the tangents at both ends meet there.
+    /// Middle control point: the intersection of the tangents at both ends.
     pub p1: Point,
-    /// Where it ends.
+    /// End.
     pub p2: Point,
 }
 
 impl Quadratic {
-    /// The piece of three control points.
+    /// The piece with these three control points.
     pub const fn new(p0: Point, p1: Point, p2: Point) -> Self {
         Self { p0, p1, p2 }
     }
@@ -38,18 +38,18 @@ impl Quadratic {
         self.p0 * (v * v) + self.p1 * (2.0 * u * v) + self.p2 * (u * u)
     }
 
-    /// Derivative by the parameter.
+    /// Derivative with respect to the parameter.
     pub fn derivative(&self, u: f64) -> Point {
         ((self.p1 - self.p0) * (1.0 - u) + (self.p2 - self.p1) * u) * 2.0
     }
 
-    /// Second derivative by the parameter; the same everywhere.
+    /// Second derivative with respect to the parameter; it is constant.
     pub fn second_derivative(&self) -> Point {
         self.coefficients().0 * 2.0
     }
 
-    /// Unit direction of travel at `u`. Where the piece comes to rest (a corner), the direction from which it comes or
-    /// in which it goes; zero of a piece that is a point.
+    /// Unit direction of travel at `u`. Where the speed is zero (at a corner), it is the direction of arrival or
+    /// departure. It is zero for a piece that is a point.
     pub fn direction(&self, u: f64) -> Point {
         let here = self.derivative(u).normalize_or_zero();
         if here != Point::ZERO {
@@ -59,14 +59,14 @@ impl Quadratic {
         towards.normalize_or_zero()
     }
 
-    /// Signed curvature in 1/px, positive where it turns from x towards y; infinite or not a number where the piece
-    /// rests.
+    /// Signed curvature in 1/px, positive where the piece turns from x towards y. It is infinite or not a number where
+    /// the speed is zero.
     pub fn curvature(&self, u: f64) -> f64 {
         let first = self.derivative(u);
         first.perp_dot(self.second_derivative()) / first.length().powi(3)
     }
 
-    /// The part between two parameters, as a piece of its own; backwards where `to` is less than `from`.
+    /// The part between two parameters as a piece; it is reversed where `to` is less than `from`.
     pub fn part(&self, from: f64, to: f64) -> Self {
         let middle = self.p0 * ((1.0 - from) * (1.0 - to))
             + self.p1 * (from * (1.0 - to) + to * (1.0 - from))
@@ -81,12 +81,12 @@ impl Quadratic {
         (Self::new(self.p0, left, middle), Self::new(middle, right, self.p2))
     }
 
-    /// The same piece, travelled backwards.
+    /// The same piece in the opposite direction.
     pub fn reversed(&self) -> Self {
         Self::new(self.p2, self.p1, self.p0)
     }
 
-    /// Smallest and largest coordinates of the control points: a box that holds the piece.
+    /// Smallest and largest coordinates of the control points: a box that contains the piece.
     pub fn control_box(&self) -> (Point, Point) {
         (self.p0.min(self.p1).min(self.p2), self.p0.max(self.p1).max(self.p2))
     }
@@ -112,8 +112,8 @@ impl Quadratic {
         (2.0 * p.perp_dot(q) + p.perp_dot(r) + 2.0 * q.perp_dot(r)) / 6.0
     }
 
-    /// Half the largest size of the second difference: how far the piece bends away from even travel along its chord.
-    /// No point of the piece is farther than half of this from the chord's point of the same parameter.
+    /// Half the length of the second difference, in pixels. It measures the bend of the piece: no point is farther than
+    /// half of this from the point of the chord with the same parameter.
     pub fn bend(&self) -> f64 {
         0.5 * self.coefficients().0.length()
     }
@@ -124,7 +124,7 @@ pub(crate) mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Any piece within a picture; every third one degenerate in some way.
+    /// Any piece within a picture. One in three is degenerate in some way.
     pub(crate) fn any_piece() -> impl Strategy<Value = Quadratic> {
         let coordinate = -100.0f64..100.0;
         let point = (coordinate.clone(), coordinate).prop_map(|(x, y)| Point::new(x, y));
@@ -144,7 +144,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_piece_at_rest_still_has_a_direction() {
+    fn a_piece_without_speed_still_has_a_direction() {
         let p = Quadratic::new(Point::ZERO, Point::new(3.0, 0.0), Point::new(3.0, 0.0));
         assert_eq!(p.direction(1.0), Point::X);
         assert_eq!(p.reversed().direction(0.0), -Point::X);
@@ -153,7 +153,7 @@ pub(crate) mod tests {
 
     proptest! {
         #[test]
-        fn parts_lie_on_the_whole(piece in any_piece(), from in 0.0f64..1.0, to in 0.0f64..1.0, u in 0.0f64..1.0) {
+        fn parts_are_on_the_piece(piece in any_piece(), from in 0.0f64..1.0, to in 0.0f64..1.0, u in 0.0f64..1.0) {
             let inside = piece.part(from, to).point(u);
             prop_assert!(inside.distance(piece.point(from + (to - from) * u)) < 1e-11 * 100.0);
             let (left, right) = piece.split(from);

@@ -1,41 +1,42 @@
-//! Uniform quadratic B-splines by their guiding points (Yang et al. 1986, §2).
+//! Uniform quadratic B-splines, given by their guiding points (Yang et al. 1986, §2).
 //!
-//! **Closed.** Guiding points G_0 … G_{n−1}, indices modulo n. Piece i is the parabola P_i, G_i, P_{i+1} with
-//! P_i = (G_{i−1} + G_i)/2: n guides, n pieces.
+//! **Closed curves** have guiding points G_0 … G_{n−1}, with indices modulo n. Piece i is the parabola P_i, G_i,
+//! P_{i+1} with P_i = (G_{i−1} + G_i)/2. So n guiding points make n pieces.
 //!
-//! **Open.** The curve starts at its first and ends at its last guiding point: piece i is the parabola about G_{i+1},
-//! and the first and last midpoint give way to the end itself. So n ≥ 3 guides make n − 2 pieces, three guides are one
-//! Bézier parabola, two a line, one a point. This is the uniform B-spline of order three with clamped ends (what other
-//! programs call a NURBS curve of order 3 with end points), and a doubled end guide makes the straight start that the
-//! paper draws.
+//! **Open curves** start at their first guiding point and end at their last one. Piece i is the parabola about G_{i+1};
+//! the ends of the curve replace the first and the last midpoint. So n ≥ 3 guiding points make n − 2 pieces: three of
+//! them are one Bézier parabola. Two guiding points make a line, and one makes a point. This is the uniform B-spline of
+//! order three with clamped ends (other programs call it a NURBS curve of order 3 with end points). A doubled end
+//! guiding point makes the straight start that the paper draws.
 //!
-//! **Corners.** A guiding point that is given twice lies on the curve, which arrives and leaves in straight halves of
-//! the polygon's legs and may turn at any angle (Pavlidis 1982). Three times and more change nothing about the shape.
+//! **Corners** are guiding points that are given twice. Such a point is on the curve. The curve arrives and leaves
+//! along straight halves of the polygon's legs and may turn by any angle (Pavlidis 1982). Repeating the point three
+//! times or more does not change the shape.
 //!
-//! The parameter t runs from 0 to the number of pieces; piece ⌊t⌋ at u = t − ⌊t⌋.
+//! The parameter t runs from 0 to the number of pieces. It means piece ⌊t⌋ at u = t − ⌊t⌋.
 
 use super::Quadratic;
 use crate::geometry::Point;
 
-/// Points that make no spline.
+/// Points that cannot make a spline.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SplineError {
-    /// There are none.
+    /// There are no points.
     #[error("a spline needs at least one guiding point")]
     Empty,
-    /// One is infinite or not a number.
+    /// A coordinate is infinite or not a number.
     #[error("guiding point {index} is ({x}, {y}), expected finite coordinates")]
     NotFinite {
-        /// Its index.
+        /// Index of the point.
         index: usize,
-        /// What was found.
+        /// The x found.
         x: f64,
-        /// What was found.
+        /// The y found.
         y: f64,
     },
 }
 
-/// A uniform quadratic B-spline: at least one guiding point, all finite.
+/// A uniform quadratic B-spline. It has at least one guiding point, and all are finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     guides: Vec<Point>,
@@ -44,6 +45,10 @@ pub struct Spline {
 
 impl Spline {
     /// The spline of these guiding points.
+    ///
+    /// # Errors
+    ///
+    /// No guiding points; a coordinate that is not finite.
     pub fn new(guides: Vec<Point>, closed: bool) -> Result<Self, SplineError> {
         if guides.is_empty() {
             return Err(SplineError::Empty);
@@ -60,7 +65,7 @@ impl Spline {
         Self { guides, closed }
     }
 
-    /// The guiding points; those of corners twice.
+    /// The guiding points. Those of corners are repeated.
     pub fn guides(&self) -> &[Point] {
         &self.guides
     }
@@ -75,13 +80,21 @@ impl Spline {
         if self.closed { self.guides.len() } else { self.guides.len().saturating_sub(2).max(1) }
     }
 
-    /// Indices of the guides whose pieces touch piece `i`: before, about and after it. Panics beyond the last piece.
+    /// Indices of the guiding points of piece `i`: before, about and after it.
+    ///
+    /// # Panics
+    ///
+    /// If there is no piece `i`.
     pub fn support(&self, i: usize) -> [usize; 3] {
         assert!(i < self.piece_count(), "piece {i} of {}", self.piece_count());
         support(i, self.guides.len(), self.closed)
     }
 
-    /// Piece `i`. Panics beyond the last.
+    /// Piece `i`.
+    ///
+    /// # Panics
+    ///
+    /// If there is no piece `i`.
     pub fn piece(&self, i: usize) -> Quadratic {
         let support = self.support(i);
         let [before, about, after] = support.map(|k| self.guides[k]);
@@ -99,8 +112,8 @@ impl Spline {
         (0..self.piece_count()).map(|i| self.piece(i))
     }
 
-    /// The piece of a parameter and the place on it. Beyond the ends an open spline's are taken; a closed one goes
-    /// round.
+    /// The index of the piece at parameter `t`, and the parameter on that piece, 0 to 1. An open spline clamps `t` to
+    /// its ends. A closed one wraps around.
     pub fn locate(&self, t: f64) -> (usize, f64) {
         let count = self.piece_count();
         let t = if self.closed && !(0.0..=count as f64).contains(&t) { t.rem_euclid(count as f64) } else { t };
@@ -115,20 +128,20 @@ impl Spline {
         self.piece(i).point(u)
     }
 
-    /// Derivative by the parameter; continuous except at corners, where it vanishes.
+    /// Derivative with respect to the parameter. It is continuous except at corners, where it vanishes.
     pub fn derivative(&self, t: f64) -> Point {
         let (i, u) = self.locate(t);
         self.piece(i).derivative(u)
     }
 
-    /// Second derivative by the parameter; of the piece that starts there, at joints.
+    /// Second derivative with respect to the parameter. At a joint it is that of the piece that starts there.
     pub fn second_derivative(&self, t: f64) -> Point {
         let (i, _) = self.locate(t);
         self.piece(i).second_derivative()
     }
 
-    /// Guides that bear on the point at `t`, and their weights, which sum to one. What else the guides carry (a radius,
-    /// a colour) is blended by the same weights.
+    /// The guiding points that affect the point at `t`, with their weights, which sum to one. The same weights blend
+    /// other values at the guiding points (a radius, a colour).
     pub fn weights(&self, t: f64) -> [(usize, f64); 3] {
         let (i, u) = self.locate(t);
         let [before, about, after] = self.support(i);
@@ -141,7 +154,7 @@ impl Spline {
         [(before, first), (about, 1.0 - first - last), (after, last)]
     }
 
-    /// Values given for each guide, blended at `t`.
+    /// Blends values given at the guiding points, at parameter `t`.
     pub fn blend(&self, values: &[f64], t: f64) -> f64 {
         self.weights(t).iter().map(|&(k, weight)| weight * values[k]).sum()
     }
@@ -152,7 +165,7 @@ impl Spline {
         self.piece(i).direction(u)
     }
 
-    /// Length in pixels. To look up many lengths and parameters see [`super::ArcLengths`].
+    /// Length in pixels. For many lengths and parameters use [`super::ArcLengths`].
     pub fn length(&self) -> f64 {
         self.pieces().map(|piece| piece.length()).sum()
     }
@@ -166,18 +179,18 @@ impl Spline {
         })
     }
 
-    /// Exact signed area in px², positive where the curve runs clockwise on the screen (x right, y down); an open one
-    /// is closed by a straight line.
+    /// Exact signed area in px², positive where the curve runs clockwise on the screen (x to the right, y down). An
+    /// open curve is closed by a straight line.
     pub fn area(&self) -> f64 {
-        // About a point of the curve, so that a curve far from the origin keeps its digits.
+        // Computing relative to a point of the curve keeps precision far from the origin.
         let origin = self.guides[0];
         let swept = self.pieces().map(|p| Quadratic::new(p.p0 - origin, p.p1 - origin, p.p2 - origin).swept_area());
         let (start, end) = (self.piece(0).p0 - origin, self.piece(self.piece_count() - 1).p2 - origin);
         swept.sum::<f64>() + 0.5 * end.perp_dot(start)
     }
 
-    /// Index of the first guide of each corner: of those that are followed by a copy of themselves, and are not the
-    /// ends of an open curve.
+    /// Index of the first guiding point of each corner: a guiding point that is repeated and is not an end of an open
+    /// curve.
     pub fn corners(&self) -> Vec<usize> {
         let n = self.guides.len();
         let same = |i: usize| self.guides[i] == self.guides[(i + 1) % n];
@@ -188,8 +201,8 @@ impl Spline {
         (0..last).filter(|&i| same(i) && begins(i) && inner(i)).collect()
     }
 
-    /// The pieces before and after parameter `t`, those of length zero in the parameter left out. A part of a piece is
-    /// not a piece of a uniform spline, therefore these are Bézier pieces. A closed curve is cut at its start too.
+    /// The pieces before and after parameter `t`, without those of zero length in the parameter. The result is Bézier
+    /// pieces, because a part of a piece is not a piece of a uniform spline. A closed curve is cut at its start too.
     pub fn split(&self, t: f64) -> (Vec<Quadratic>, Vec<Quadratic>) {
         let (cut, u) = self.locate(t);
         let mut pieces = self.pieces();
@@ -204,8 +217,8 @@ impl Spline {
         (before, after)
     }
 
-    /// The same curve with each piece halved: twice the pieces (knot insertion; Chaikin 1974). The curve is the same,
-    /// at twice the parameter.
+    /// The same curve with each piece halved (knot insertion; Chaikin 1974). It has twice the number of pieces, so each
+    /// parameter doubles.
     pub fn refined(&self) -> Self {
         let (g, n) = (&self.guides, self.guides.len());
         let quarters = |i: usize| [g[i].lerp(g[(i + 1) % n], 0.25), g[i].lerp(g[(i + 1) % n], 0.75)];
@@ -216,7 +229,7 @@ impl Spline {
             let (a, b) = (g[0], g[n - 1]);
             [0.0, 0.25, 0.75, 1.0].map(|u| a.lerp(b, u)).into()
         } else {
-            // The leg at a clamped end belongs to one piece alone, which halves it.
+            // The leg at a clamped end belongs to one piece only, so it is halved.
             let start = [g[0], g[0].lerp(g[1], 0.5)];
             let end = [g[n - 2].lerp(g[n - 1], 0.5), g[n - 1]];
             start.into_iter().chain((1..n - 2).flat_map(quarters)).chain(end).collect()
@@ -224,13 +237,12 @@ impl Spline {
         Self { guides, closed: self.closed }
     }
 
-    /// The same curve, travelled backwards.
+    /// The same curve in the opposite direction.
     pub fn reversed(&self) -> Self {
         Self { guides: self.guides.iter().rev().copied().collect(), closed: self.closed }
     }
 
-    /// The points at `per_piece` even parameter steps of each piece, for display. An open curve's ends are both among
-    /// them.
+    /// Points at `per_piece` even parameter steps of each piece, for display. On an open curve both ends are included.
     pub fn flattened(&self, per_piece: usize) -> Vec<Point> {
         let step = 1.0 / per_piece.max(1) as f64;
         let mut points: Vec<_> =
@@ -284,7 +296,7 @@ pub(crate) mod tests {
         assert_eq!(spline.point(4.0), spline.point(0.0));
         assert_eq!(spline.point(-0.5), spline.point(3.5));
         assert_eq!(spline.bounds(), (Point::ZERO, Point::splat(8.0)));
-        // The square less four corners, each a third of its triangle of 8.
+        // The square without four corners, each a third of its triangle of 8.
         assert!((spline.area() - (64.0 - 4.0 * 8.0 / 3.0)).abs() < 1e-12);
     }
 

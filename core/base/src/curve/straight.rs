@@ -1,16 +1,17 @@
-//! Where pieces meet of which one or both are straight: what the quartic of [`super::intersect`] cannot tell.
+//! The meetings of pieces of which one or both are straight. The quartic of [`super::intersect`] cannot handle them.
 //!
-//! - A straight and a bent piece: the line's own equation replaces the quartic, giving a quadratic; the parameter on
-//!   the line is found along it. A straight piece may fold back on itself and then meet twice at one place.
-//! - Two straight pieces: points where the lines cross, a stretch where they lie on each other, fold by fold.
-//! - Pieces that are points: met where the other passes through.
+//! - A straight and a bent piece: the line's own equation replaces the quartic and gives a quadratic. The parameter on
+//!   the line is found along it. A straight piece may fold back on itself; it then meets the other piece twice at one
+//!   place.
+//! - Two straight pieces: the points where the lines cross, or the stretches that they share, fold by fold.
+//! - Pieces that are points: they are met where the other piece passes through them.
 
 use super::Quadratic;
 use super::meeting::{MERGE, Meeting, SAME};
 use crate::geometry::Point;
 use crate::numeric::roots::roots_in;
 
-/// Direction of a straight piece's line; none where it is a point.
+/// Direction of a straight piece's line; `None` where the piece is a point.
 fn line_direction(line: &Quadratic) -> Option<Point> {
     let legs = [line.p1 - line.p0, line.p2 - line.p1, line.p2 - line.p0];
     legs.into_iter()
@@ -18,7 +19,7 @@ fn line_direction(line: &Quadratic) -> Option<Point> {
         .and_then(|leg| leg.try_normalize())
 }
 
-/// Parameters at which a straight piece passes the place `at` along `direction`.
+/// The parameters at which a straight piece passes the place `at`, measured along `direction`.
 fn along_line(line: &Quadratic, direction: Point, at: f64, size: f64) -> Vec<f64> {
     let (a, b) = line.coefficients();
     let polynomial = [line.p0.dot(direction) - at, 2.0 * b.dot(direction), a.dot(direction)];
@@ -29,7 +30,7 @@ fn along_line(line: &Quadratic, direction: Point, at: f64, size: f64) -> Vec<f64
             found.push(end);
         }
     }
-    // The turning point of a fold, touched within the same slack.
+    // The turning point of a fold may touch within the same slack.
     let turn = -b.dot(direction) / a.dot(direction);
     if turn > 0.0 && turn < 1.0 && (line.point(turn).dot(direction) - at).abs() <= SAME * size {
         found.retain(|u| (u - turn).abs() >= 1e-4);
@@ -38,7 +39,7 @@ fn along_line(line: &Quadratic, direction: Point, at: f64, size: f64) -> Vec<f64
     found
 }
 
-/// A straight piece and a bent one.
+/// The meetings of a straight piece and a bent one.
 pub(super) fn line_and_parabola(line: &Quadratic, other: &Quadratic, size: f64) -> Vec<Meeting> {
     let Some(direction) = line_direction(line) else { return point_and_piece(line, other, size) };
     let (a, b) = other.coefficients();
@@ -58,7 +59,7 @@ pub(super) fn line_and_parabola(line: &Quadratic, other: &Quadratic, size: f64) 
     found
 }
 
-/// A piece that is a point.
+/// The meetings of a piece that is a point with another piece.
 fn point_and_piece(point: &Quadratic, other: &Quadratic, size: f64) -> Vec<Meeting> {
     let nearest = other.nearest(point.p0);
     if nearest.distance > SAME * size {
@@ -67,7 +68,7 @@ fn point_and_piece(point: &Quadratic, other: &Quadratic, size: f64) -> Vec<Meeti
     vec![Meeting::Point { first: 0.0, second: nearest.parameter }]
 }
 
-/// Two straight pieces.
+/// The meetings of two straight pieces.
 pub(super) fn lines(one: &Quadratic, two: &Quadratic, size: f64) -> Vec<Meeting> {
     let (Some(s), Some(t)) = (line_direction(one), line_direction(two)) else {
         return match line_direction(one) {
@@ -89,14 +90,14 @@ pub(super) fn lines(one: &Quadratic, two: &Quadratic, size: f64) -> Vec<Meeting>
     if s.perp_dot(offset).abs() > SAME * size { Vec::new() } else { on_one_line(one, two, s, size) }
 }
 
-/// The stretches of a straight piece between which it does not turn back.
+/// The parameter intervals in which a straight piece does not turn back.
 fn monotone(line: &Quadratic, direction: Point) -> Vec<(f64, f64)> {
     let (a, b) = line.coefficients();
     let turn = -b.dot(direction) / a.dot(direction);
     if turn > MERGE && turn < 1.0 - MERGE { vec![(0.0, turn), (turn, 1.0)] } else { vec![(0.0, 1.0)] }
 }
 
-/// Two straight pieces on the same line: the stretches that they share, fold by fold.
+/// The stretches that two straight pieces on the same line share, fold by fold.
 fn on_one_line(one: &Quadratic, two: &Quadratic, direction: Point, size: f64) -> Vec<Meeting> {
     let place = |q: &Quadratic, u: f64| q.point(u).dot(direction);
     let parameter = |q: &Quadratic, (from, to): (f64, f64), x: f64| {

@@ -1,9 +1,12 @@
 //! Points, polylines and polygons.
 //!
-//! - [`moving`]: the plane deformed as a line in it is
+//! - [`moving`]: deformation of the plane that follows a line
 //! - [`polyline`]: length, resampling, distance
 //! - [`polygon`]: area, centre, inside test, coverage mask
 //! - [`similarity`]: least-squares similarity between two point sets
+//!
+//! Coordinates are pixels, x to the right, y down. The origin is the outer corner of the top left pixel, so a pixel's
+//! centre is at +0.5.
 
 pub mod moving;
 pub mod polygon;

@@ -1,21 +1,23 @@
-//! A plane deformed as a line in it is: every point of the line goes where it goes, and what lies around follows.
+//! Deformation of the plane that follows a line: every point of the line goes to its image, and the surroundings
+//! follow.
 //!
-//! Moving least squares (Schaefer, McPhail & Warren 2006, "Image Deformation Using Moving Least Squares", §2.2): for each
-//! place v the similarity is fitted that best takes the line's points p to their images q, those near v counting most,
-//! w = ℓ / |p − v|², and that map is applied to v. Where all of the line moves by one similarity so does the plane. ℓ is
-//! the length of line that a point stands for, so that it is no matter how densely a stretch is drawn.
+//! The method is moving least squares (Schaefer, McPhail & Warren 2006, "Image Deformation Using Moving Least Squares",
+//! §2.2). For each place v, the similarity is fitted that maps the line's points p best to their images q. Points near
+//! v count most: w = ℓ / |p − v|². This similarity is then applied to v. If the complete line moves by one similarity,
+//! so does the plane. ℓ is the length of line that a point represents, so the density of the points does not matter.
 //!
-//! Limits: what lies nearer to another stretch of the line than to its own follows that, unless it is said to which it belongs
-//! ([`Moving::apply_by`]).
+//! Limits: a place nearer to another stretch of the line than to its own follows that stretch, unless the caller says
+//! to which stretch it belongs ([`Moving::apply_by`]).
 
 use super::Point;
 
-/// Squared distance in pixels below which a place is a point of the line.
+/// Squared distance, in px², below which a place is equal to a point of the line.
 const SAME_PLACE: f64 = 1e-12;
-/// Least and greatest scale of what lies beside the line: a stretch that has collapsed says nothing of its surroundings.
+/// Smallest and largest scale beside the line. A stretch that has collapsed does not show the scale of its
+/// surroundings.
 const SCALES: (f64, f64) = (0.25, 4.0);
 
-/// The deformation that takes one line to another of as many points.
+/// The deformation that maps one line to another with the same number of points.
 #[derive(Clone, Copy, Debug)]
 pub struct Moving<'a> {
     from: &'a [Point],
@@ -24,19 +26,23 @@ pub struct Moving<'a> {
 }
 
 impl<'a> Moving<'a> {
-    /// From the points of a line to their images, paired by index.
+    /// The deformation from the points of a line to their images, paired by index.
+    ///
+    /// # Panics
+    ///
+    /// If the numbers of points differ.
     pub fn new(from: &'a [Point], to: &'a [Point], closed: bool) -> Self {
         assert_eq!(from.len(), to.len(), "a line is deformed to one of as many points");
         Self { from, to, closed }
     }
 
-    /// Where a place goes. Without a line it stays.
+    /// The image of a place. Without a line it stays.
     pub fn apply(&self, v: Point) -> Point {
         self.apply_by(v, |_| 1.0)
     }
 
-    /// The same, where the line's points count by their numbers too: so may be said which stretch of a line a place belongs
-    /// to that lies near several.
+    /// Like [`Self::apply`], with an additional weight for each point of the line by its index. With it the caller
+    /// chooses the stretch to which a place near several stretches belongs.
     pub fn apply_by(&self, v: Point, counts: impl Fn(usize) -> f64) -> Point {
         let weight = |i: usize| counts(i) * self.length(i) / v.distance_squared(self.from[i]);
         let same = |&i: &usize| counts(i) > 0.0 && v.distance_squared(self.from[i]) < SAME_PLACE;
@@ -66,7 +72,7 @@ impl<'a> Moving<'a> {
         factor.rotate(v - source) + target
     }
 
-    /// Half of the segments at a point, and a little, so that points on one place count too.
+    /// Half of the length of the segments at a point. A small extra makes coincident points count too.
     fn length(&self, i: usize) -> f64 {
         let (n, at) = (self.from.len(), |i: usize| self.from[i]);
         let before = if i > 0 || self.closed { at(i).distance(at((i + n - 1) % n)) } else { 0.0 };
@@ -113,12 +119,12 @@ mod tests {
 
     #[test]
     fn a_limb_that_bends_turns_what_is_drawn_on_it() {
-        // A bar of which the right half turns by 90° about its middle.
+        // A bar whose right half turns by 90° about its middle.
         let bar: Vec<Point> = (-20..=20).map(|k| Point::new(f64::from(k) * 5.0, 0.0)).collect();
         let bent: Vec<Point> = bar.iter().map(|p| if p.x > 0.0 { p.perp() } else { *p }).collect();
         let moving = Moving::new(&bar, &bent, false);
         let (left, right) = (moving.apply(Point::new(-80.0, 6.0)), moving.apply(Point::new(80.0, 6.0)));
-        // Moved along without a turn, the right one would be 8 px off.
+        // If it only moved along without a turn, the right point would be 8 px off.
         assert!(left.distance(Point::new(-80.0, 6.0)) < 2.5, "{left}");
         assert!(right.distance(Point::new(-6.0, 80.0)) < 2.5, "{right}");
     }

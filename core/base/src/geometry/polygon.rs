@@ -8,7 +8,7 @@ pub fn signed_area(points: &[Point]) -> f64 {
     0.5 * (0..n).map(|i| points[i].perp_dot(points[(i + 1) % n])).sum::<f64>()
 }
 
-/// Mean of the points: the "part centre" of Zhou & Xiao 2011, eq. 9. The origin where there are none.
+/// Mean of the points: the "part centre" of Zhou & Xiao 2011, eq. 9. It is the origin where there are no points.
 pub fn center(points: &[Point]) -> Point {
     if points.is_empty() {
         return Point::ZERO;
@@ -22,7 +22,7 @@ pub fn bounds(points: &[Point]) -> Option<(Point, Point)> {
     Some(points.iter().fold((first, first), |(low, high), &p| (low.min(p), high.max(p))))
 }
 
-/// Whether `p` lies inside, by the even-odd rule.
+/// Whether `p` is inside, by the even-odd rule.
 pub fn contains(points: &[Point], p: Point) -> bool {
     let mut inside = false;
     let mut previous = match points.last() {
@@ -40,8 +40,8 @@ pub fn contains(points: &[Point], p: Point) -> bool {
     inside
 }
 
-/// Calls `span(y, x0, x1)` for each run of pixels `x0..x1` of row `y` whose centres lie inside the polygon (even-odd),
-/// within a picture of `width` × `height`. Rows come in order, runs of a row from left to right.
+/// Calls `span(y, x0, x1)` for each run of pixels `x0..x1` of row `y` whose centres are inside the polygon (even-odd),
+/// within a picture of `width` × `height` pixels. Rows come in order, and the runs of a row from left to right.
 pub fn for_each_span(points: &[Point], width: usize, height: usize, mut span: impl FnMut(usize, usize, usize)) {
     let Some((low, high)) = bounds(points) else { return };
     let first = (low.y - 0.5).ceil().max(0.0);

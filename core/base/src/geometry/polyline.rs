@@ -2,30 +2,30 @@
 
 use super::Point;
 
-/// Coordinates beyond this are refused where drawings come in: differences and squares of them would lose what is smaller
-/// than a pixel.
+/// Largest coordinate accepted in drawings, in pixels. Beyond it, differences and squares of coordinates would lose
+/// details smaller than a pixel.
 pub const FARTHEST: f64 = 1e9;
 
-/// Index of the first point that is no place, or too far away to compute with.
+/// Index of the first point with a coordinate that is not a number or beyond [`FARTHEST`].
 pub fn first_unusable(points: &[Point]) -> Option<usize> {
     points.iter().position(|p| p.is_nan() || p.abs().max_element() > FARTHEST)
 }
 
-/// Length in pixels of a polyline; of a closed one the segment from the last point to the first counts too.
+/// Length in pixels of a polyline. For a closed one the segment from the last point to the first counts too.
 pub fn length(points: &[Point], closed: bool) -> f64 {
     segments(points, closed).map(|(a, b)| a.distance(b)).sum()
 }
 
-/// The segments of a polyline in order; a closed one ends with the segment from the last point to the first.
+/// The segments of a polyline in order. A closed one ends with the segment from the last point to the first.
 pub fn segments(points: &[Point], closed: bool) -> impl Iterator<Item = (Point, Point)> + '_ {
     let n = points.len();
     let count = if closed && n > 1 { n } else { n.saturating_sub(1) };
     (0..count).map(move |i| (points[i], points[(i + 1) % n]))
 }
 
-/// `count` points spaced evenly by arc length. An open polyline keeps both ends, a closed one its first point.
+/// `count` points evenly spaced by arc length. An open polyline keeps both ends, a closed one its first point.
 ///
-/// A polyline without length (or of one point) gives `count` copies of its first point; an empty one gives nothing.
+/// A polyline without length (or of one point) gives `count` copies of its first point. An empty one gives no points.
 pub fn resample(points: &[Point], closed: bool, count: usize) -> Vec<Point> {
     let Some(&first) = points.first() else { return Vec::new() };
     let total = length(points, closed);

@@ -1,12 +1,14 @@
-//! Least-squares similarity (rotation, scale, shift) between two point sets of equal length, in closed form with
-//! complex numbers: with both sets centred, the best factor is r = Σ w conj(p) q / Σ w |p|².
+//! Least-squares similarity (rotation, scale, shift) between two point sets of equal length.
+//!
+//! The solution has a closed form with complex numbers: with both sets centred, the best factor is r = Σ w conj(p) q /
+//! Σ w |p|². All weights w are 1 here.
 
 use super::Point;
 
-/// q = rotate-and-scale(p − source) + target.
+/// q = rotate-and-scale(p − source) + target, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Similarity {
-    /// Complex factor: length is the scale, argument the turn from x towards y.
+    /// Complex factor: its length is the scale, its argument the turn from x towards y.
     pub factor: Point,
     /// Centre of the source points.
     pub source: Point,
@@ -15,10 +17,14 @@ pub struct Similarity {
 }
 
 impl Similarity {
-    /// The map that leaves every point where it is.
+    /// The map that does not move any point.
     pub const IDENTITY: Self = Self { factor: Point::X, source: Point::ZERO, target: Point::ZERO };
 
-    /// The similarity that best takes `from` to `to` (paired by index). A set without extent gives a pure shift.
+    /// The similarity that best maps `from` to `to` (paired by index). A set without extent gives a pure shift.
+    ///
+    /// # Panics
+    ///
+    /// If the numbers of points differ.
     pub fn fit(from: &[Point], to: &[Point]) -> Self {
         assert_eq!(from.len(), to.len(), "a similarity is fitted to pairs of points");
         let (source, target) = (super::polygon::center(from), super::polygon::center(to));
@@ -38,19 +44,20 @@ impl Similarity {
         self.factor.rotate(p - self.source) + self.target
     }
 
-    /// The map back. Of a map that takes everything to one place, the one that leaves all there.
+    /// The inverse map. A map that takes everything to one place has no inverse; then it is the shift back from the
+    /// target centre to the source centre.
     pub fn inverse(&self) -> Self {
         let norm = self.factor.length_squared();
         let factor = if norm > 1e-12 { Point::new(self.factor.x, -self.factor.y) / norm } else { Point::X };
         Self { factor, source: self.target, target: self.source }
     }
 
-    /// This map after another.
+    /// The map that applies `first`, then this one.
     pub fn after(&self, first: &Self) -> Self {
         Self { factor: self.factor.rotate(first.factor), source: first.source, target: self.apply(first.target) }
     }
 
-    /// The place that the map leaves where it is; `None` of a map that hardly turns or scales.
+    /// The point that the map does not move; `None` for a map that hardly turns or scales.
     pub fn fixed_point(&self) -> Option<Point> {
         let rest = Point::X - self.factor;
         let norm = rest.length_squared();
