@@ -10,7 +10,7 @@
 //! 4. `relaxation` prefers choices that keep neighbouring strokes together. It is graduated assignment (Gold &
 //!    Rangarajan 1996): every choice keeps a weight, each choice supports the choices of its neighbours that fit it,
 //!    and the weights sharpen from round to round.
-//! 5. An exact assignment ([`crate::numeric::sparse_assignment`]) takes the resulting costs. A stroke may stay without
+//! 5. An exact assignment ([`rototoon_base::numeric::sparse_assignment`]) takes the resulting costs. A stroke may stay without
 //!    counterpart at a price. The pairs give a new movement around each stroke. Steps 3 to 5 run up to three times.
 //! 6. `pieces` examines the strokes that are left over. Such a stroke may be a piece of a stroke that was drawn in one
 //!    go on the other drawing.

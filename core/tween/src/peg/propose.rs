@@ -1,7 +1,7 @@
 //! Pegs found from strokes that moved: rigid groups, and the hinges between them.
 //!
 //! Each stroke and each pair of neighbouring keys keeps the sums from which a least-squares similarity follows
-//! ([`crate::geometry::similarity`]). The sums of two groups add up to the sums of both together, so the residual of a
+//! ([`rototoon_base::geometry::similarity`]). The sums of two groups add up to the sums of both together, so the residual of a
 //! joint movement is cheap to compute. The search begins with single strokes. It repeatedly joins the two groups whose
 //! joint movement explains both best. It ends when every join would leave more than a small share of their size
 //! unexplained.

@@ -1,6 +1,6 @@
 //! Confidence of a point with a single key, and whether a part can be trusted on a drawing.
 //!
-//! Between two keys the models of both keys disagree if one of them is wrong ([`crate::track::confidence`]). With a
+//! Between two keys the models of both keys disagree if one of them is wrong ([`confidence`](super::super::confidence)). With a
 //! single key three other measurements are used:
 //!
 //! - e, the mean squared colour difference around the point: how well the key's colours fit there.
