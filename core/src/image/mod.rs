@@ -1,4 +1,4 @@
-//! Pictures from files and what is computed on them.
+//! Image processing: reading pictures from files, and computations on them.
 //!
 //! - [`canny`]: edges of the luma
 //! - [`colour`]: sRGB, luma and CIE Lab
@@ -8,11 +8,14 @@
 //! - [`flow`]: dense optical flow by inverse search
 //! - [`gaussian`]: separable blur
 //! - [`mean_shift`]: the filter that flattens colours and keeps edges
-//! - [`pixel`]: what a pixel is to the filters
+//! - [`pixel`]: the pixel types of the filters
 //! - [`pyramid`]: a picture at halved sizes
 //! - [`resize`]: area reduction and bilinear enlargement
 //! - [`sample`]: bilinear reading with derivatives
-//! - [`sequence`]: the pictures of a footage, decoded in parallel and kept for a while
+//! - [`sequence`]: the pictures of a footage, decoded in parallel, with a cache
+//!
+//! Picture coordinates are pixels, x to the right, y down. The origin is the outer corner of the top left pixel, so a
+//! pixel's centre is at +0.5.
 
 pub mod canny;
 pub mod colour;
