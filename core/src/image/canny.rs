@@ -271,9 +271,9 @@ fn suppress_row(levels: &Raster<i16>, rows: &[GradientRow; 3], thresholds: &Thre
 
 /// The neighbour along the gradient.
 ///
-/// The border between a straight and a diagonal direction is at tan 22.5° = √2 − 1. The condition a ≤ (√2 − 1) b is (a
-/// + b)² ≤ 2 b², which integers decide without rounding. Because √2 is irrational, no gradient is exactly on the
-/// border.
+/// The border between a straight and a diagonal direction is at tan 22.5° = √2 − 1. The condition a ≤ (√2 − 1) b is
+/// equivalent to (a + b)² ≤ 2 b². Integers decide this without rounding. Because √2 is irrational, no gradient is
+/// exactly on the border.
 #[inline]
 fn direction(gx: i32, gy: i32) -> (isize, isize) {
     let (ax, ay) = (gx.abs(), gy.abs());
