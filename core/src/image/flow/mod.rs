@@ -71,7 +71,7 @@ impl Pyramid {
 ///
 /// If the pictures differ in size.
 pub fn dense_flow(first: &Pyramid, second: &Pyramid) -> Flow {
-    assert_eq!(first.size(), second.size(), "pictures of one size");
+    assert_eq!(first.size(), second.size(), "the pictures must have the same size");
     vectorised(
         #[inline(always)]
         || coarse_to_fine(first, second),

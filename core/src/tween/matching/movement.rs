@@ -15,7 +15,7 @@ use super::{Fixed, Options};
 use crate::geometry::Point;
 use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
-/// Step in radians of the proposed turns of the whole drawing.
+/// Step in radians of the proposed turns of the complete drawing.
 const TURN_STEP: f64 = std::f64::consts::PI / 12.0;
 /// Number of strokes on which movements are tried in a large drawing: the largest ones.
 const TRIED_ON: usize = 48;
