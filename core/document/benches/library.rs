@@ -1,4 +1,5 @@
-//! A library of 2500 postures (79 clips of 32 frames): its index opened, and all of it read, with and without an index.
+//! Time of opening the index of a library of about 2500 postures (79 clips of 32 frames), and of reading all clips with
+//! and without an index.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use rototoon_base::geometry::Point;

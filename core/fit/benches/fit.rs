@@ -1,11 +1,11 @@
-//! Time of fitting splines to pixel outlines: a cartoon's outline, and lines of growing length.
+//! Time of fitting splines to pixel outlines: the outline of a cartoon, and lines of growing length.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use rototoon_base::geometry::Point;
 use rototoon_fit::{Options, fit};
 use std::f64::consts::TAU;
 
-/// A closed outline of about 1200 px with two corners, one sample a pixel, rounded to pixel centres.
+/// A closed outline of about 1200 px with two corners, one sample per pixel, rounded to pixel centres.
 fn outline() -> Vec<Point> {
     let (a, b) = (Point::new(150.0, 60.0), Point::new(420.0, 330.0));
     let side = |from: Point, to: Point, waves: [f64; 3], s: f64| {
@@ -20,7 +20,7 @@ fn outline() -> Vec<Point> {
     (0..1217).map(|i| at(i as f64 / 1217.0).floor() + 0.5).collect()
 }
 
-/// An open wave of this many points, rounded to pixel centres.
+/// An open wave of `count` points, rounded to pixel centres.
 fn wave(count: usize) -> Vec<Point> {
     let at = |x: f64| Point::new(x, 40.0 * (x / 45.0).sin() + 9.0 * (x / 17.0).cos());
     (0..count).map(|i| at(i as f64).floor() + 0.5).collect()

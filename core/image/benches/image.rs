@@ -1,7 +1,7 @@
 //! Time of the image stage on a drawn picture of one megapixel, on one thread and on all.
 //!
-//! The picture is written to `target/bench/image.png`, so that `tests/bench_opencv.py` can measure OpenCV on the same
-//! pixels and put both into one table.
+//! The picture is written to `target/bench/image.png`. `tests/bench_opencv.py` measures OpenCV on the same pixels and
+//! puts both into one table.
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
 use rototoon_base::scene::{Colour, Raster};
@@ -17,7 +17,7 @@ use std::path::Path;
 const WIDTH: usize = 1250;
 const HEIGHT: usize = 800;
 
-/// Centre, radius and colour of the discs that stand for painted parts, each with a line of ink around it.
+/// Centre, radius and colour of discs that imitate painted parts. Each has a line of ink around it.
 const DISCS: [(f32, f32, f32, [f32; 3]); 9] = [
     (300.0, 300.0, 160.0, [222.0, 90.0, 70.0]),
     (420.0, 460.0, 120.0, [240.0, 200.0, 90.0]),
@@ -33,7 +33,7 @@ const DISCS: [(f32, f32, f32, [f32; 3]); 9] = [
 /// Half the width of the ink, in pixels.
 const INK: f32 = 1.8;
 
-/// Discs with outlines over a painted background, with the noise of compression, in whole 8-bit levels.
+/// Discs with outlines on a painted background, with noise like that of compression, in integer 8-bit levels.
 fn picture() -> Raster<Colour> {
     let mut state = 1u32;
     let mut noise = move || {
@@ -57,7 +57,7 @@ fn picture() -> Raster<Colour> {
     })
 }
 
-/// Writes the picture where the comparison finds it.
+/// Writes the picture to the place where the comparison looks for it.
 fn write(picture: &Raster<Colour>) {
     let bytes = picture.data().iter().flatten().map(|v| (255.0 * v).round() as u8).collect();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/bench");

@@ -1,24 +1,24 @@
 //! Canny's edge detector on the luma.
 //!
 //! 1. The luma is rounded to 8 bits and blurred by a Gaussian of the chosen σ.
-//! 2. Sobel's 3×3 derivatives give gradient and magnitude, L1 (|gx| + |gy|) or L2.
-//! 3. A pixel stays if its magnitude is the greatest of itself and its two neighbours along the gradient, whose
-//!    direction is one of four sectors of 45°.
-//! 4. Hysteresis: pixels above the high threshold, and all above the low one that hang together with them through any
-//!    of the eight neighbours.
+//! 2. Sobel's 3×3 derivatives give the gradient and its magnitude, L1 (|gx| + |gy|) or L2.
+//! 3. Non-maximum suppression: a pixel stays if its magnitude is not exceeded by its two neighbours along the gradient.
+//!    The direction of the gradient is one of four sectors of 45°.
+//! 4. Hysteresis: edges are the pixels above the high threshold, and all pixels above the low one that are connected
+//!    with them through any of the eight neighbours.
 //!
-//! (Canny, "A computational approach to edge detection", PAMI 1986.) Units are those of OpenCV's `Canny`: 8-bit luma
-//! times the weights of the Sobel kernel, so a step of 1 level has the magnitude 4. Thresholds carry over.
+//! Source: Canny, "A computational approach to edge detection", PAMI 1986. Units are those of OpenCV's `Canny`: 8-bit
+//! luma times the weights of the Sobel kernel, so a step of 1 level has the magnitude 4. The same thresholds apply.
 //!
 //! **Equivariance.** A mirrored or turned picture gives the mirrored or turned edges, bit by bit. Two things usually
-//! break that. Rounding: here everything up to the magnitude is exact integer arithmetic (the blur by
-//! [`Kernel::exact`]), rounded once, pixel by pixel, to sixteenths of a level. Ties: a sharp step has the same
-//! magnitude on both its sides, and the usual rule (greater than the one neighbour, not less than the other) takes the
-//! left or the upper side. Here the darker side wins, which in a drawing is the side of the ink; where the two are
-//! equally dark both stay.
+//! break this. The first is rounding. Here everything up to the magnitude is exact integer arithmetic (the blur uses
+//! [`Kernel::exact`]), rounded only once, pixel by pixel, to sixteenths of a level. The second is ties. A sharp step
+//! has the same magnitude on both sides, and the usual rule (greater than one neighbour, not less than the other) takes
+//! the left or the upper side. Here the darker side wins, which in a drawing is the side of the ink. If both are
+//! equally dark, both stay.
 //!
-//! Limits: the borders of the picture are no edges, since the picture continues beyond them (mirrored for the blur,
-//! repeated for the derivative). σ above about 10 px is coarse, see [`Kernel::exact`].
+//! Limits: the border of the picture is no edge, because the picture continues beyond it (mirrored for the blur,
+//! repeated for the derivative). A σ above about 10 px is coarse, see [`Kernel::exact`].
 
 use super::colour::luma;
 use super::gaussian::{Border, Kernel, convolve_row};
@@ -37,16 +37,16 @@ pub enum GradientNorm {
     L2,
 }
 
-/// How to detect edges.
+/// Options of the edge detector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CannyOptions {
-    /// Standard deviation of the blur in pixels; 0 for none.
+    /// Standard deviation of the blur in pixels; 0 for no blur.
     pub sigma: f64,
     /// Magnitude above which a pixel continues an edge, in 8-bit levels times the weights of the Sobel kernel.
     pub low: f64,
-    /// Magnitude above which a pixel starts an edge.
+    /// Magnitude above which a pixel starts an edge, in the same unit.
     pub high: f64,
-    /// How the gradient is measured.
+    /// The norm of the gradient.
     pub norm: GradientNorm,
 }
 
@@ -56,15 +56,15 @@ impl Default for CannyOptions {
     }
 }
 
-/// Fractions of a level that the blurred luma is held in.
+/// Parts of a level in which the blurred luma is stored.
 const PARTS: f64 = 16.0;
 
-/// What non-maximum suppression says of a pixel.
+/// The result of non-maximum suppression for a pixel.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Mark {
     /// No edge.
     None,
-    /// An edge if it hangs together with a strong one.
+    /// An edge if it is connected with a strong pixel.
     Weak,
     /// An edge.
     Strong,
@@ -85,13 +85,13 @@ pub fn canny_luma(grey: &Raster<u8>, options: &CannyOptions) -> Raster<bool> {
     edges_of(grey, options, f32::from)
 }
 
-/// Pixels that are passed over together where none is strong enough.
+/// Number of pixels that are skipped together where none is strong enough.
 const GROUP: usize = 32;
 
-/// Rows that one task works on, from the picture to the marks, so that nothing between leaves the cache.
+/// Number of rows in one task, from the picture to the marks, so that the data between stays in the cache.
 const BAND: usize = 64;
 
-/// Rows beyond the band that its magnitudes need: one for the neighbours, one for their derivatives.
+/// Number of rows beyond the band that its magnitudes need: one for the neighbours and one for their derivatives.
 const HALO: usize = 2;
 
 fn edges_of<T: Copy + Sync>(
@@ -121,7 +121,7 @@ fn edges_of<T: Copy + Sync>(
     hysteresis(width, height, marks)
 }
 
-/// Some rows of the grey levels blurred, in sixteenths.
+/// Some rows of the blurred grey levels, in sixteenths.
 #[inline(always)]
 fn blurred_levels<T: Copy>(
     picture: &Raster<T>,
@@ -131,7 +131,7 @@ fn blurred_levels<T: Copy>(
 ) -> Raster<i16> {
     const BORDER: Border = Border::Reflect101;
     let (width, radius) = (picture.width(), kernel.radius());
-    // With the rows that the kernel reaches, so that it never sees their border but the picture's.
+    // The rows that the kernel reaches are included, so it sees only the border of the picture.
     let mut source = Raster::new(width, rows.len() + 2 * radius, 0.0f32);
     for j in 0..source.height() {
         let y = BORDER.index((rows.start + j) as isize - radius as isize, picture.height());
@@ -153,7 +153,7 @@ fn blurred_levels<T: Copy>(
     levels
 }
 
-/// The thresholds in the unit of the magnitudes: a magnitude must be greater.
+/// The thresholds in the unit of the magnitudes. A magnitude must be greater.
 struct Thresholds {
     low: i32,
     high: i32,
@@ -170,7 +170,7 @@ impl Thresholds {
     }
 }
 
-/// Gradient and magnitude of one row; the magnitude has a zero more at each end.
+/// Gradient and magnitude of one row. The magnitude has an additional zero at each end.
 struct GradientRow {
     gx: Vec<i16>,
     gy: Vec<i16>,
@@ -182,7 +182,7 @@ impl GradientRow {
         Self { gx: vec![0; width], gy: vec![0; width], magnitude: vec![0; width + 2] }
     }
 
-    /// Row `y`; beyond the picture the magnitude is 0.
+    /// Computes row `y`. Outside the picture the magnitude is 0.
     #[inline(always)]
     fn fill(&mut self, levels: &Raster<i16>, norm: GradientNorm, y: isize, scratch: &mut [Vec<i16>; 2]) {
         if y < 0 || y >= levels.height() as isize {
@@ -223,7 +223,7 @@ impl GradientRow {
     }
 }
 
-/// Non-maximum suppression on rows `first` of `levels` and on, as many as `marks` holds.
+/// Non-maximum suppression on the rows of `levels` from `first` on, as many as `marks` has.
 #[inline(always)]
 fn suppress_band(levels: &Raster<i16>, norm: GradientNorm, thresholds: &Thresholds, first: usize, marks: &mut [Mark]) {
     let width = levels.width();
@@ -239,14 +239,14 @@ fn suppress_band(levels: &Raster<i16>, norm: GradientNorm, thresholds: &Threshol
     }
 }
 
-/// Non-maximum suppression on row `y`; `rows` are those above, at and below it.
+/// Non-maximum suppression on row `y`. `rows` are the rows above, at and below it.
 #[inline(always)]
 fn suppress_row(levels: &Raster<i16>, rows: &[GradientRow; 3], thresholds: &Thresholds, y: usize, marks: &mut [Mark]) {
     let width = marks.len();
     let here = &rows[1];
     let (gxs, gys, magnitudes) = (&here.gx[..width], &here.gy[..width], &here.magnitude[1..=width]);
     for (group, some) in magnitudes.chunks(GROUP).enumerate() {
-        // Most of a drawing is flat.
+        // Most of a drawing is flat, so complete groups can be skipped.
         if some.iter().fold(0, |most, &m| most.max(m)) <= thresholds.low {
             continue;
         }
@@ -255,7 +255,7 @@ fn suppress_row(levels: &Raster<i16>, rows: &[GradientRow; 3], thresholds: &Thre
             let (gx, gy) = (gxs[x] as i32, gys[x] as i32);
             let (dx, dy) = direction(gx, gy);
             let level = levels.get(x, y);
-            // A neighbour as strong as the pixel itself wins if it is darker.
+            // A neighbour with the same magnitude wins if it is darker.
             let beaten = |dx: isize, dy: isize| {
                 let other = rows[(1 + dy) as usize].magnitude[(x as isize + 1 + dx) as usize];
                 other > magnitude
@@ -271,8 +271,9 @@ fn suppress_row(levels: &Raster<i16>, rows: &[GradientRow; 3], thresholds: &Thre
 
 /// The neighbour along the gradient.
 ///
-/// The border between a straight and a slanting direction is at tan 22.5° = √2 − 1: a ≤ (√2 − 1) b is (a + b)² ≤ 2 b², in
-/// whole numbers without rounding. Since it is irrational, no gradient lies on it.
+/// The border between a straight and a diagonal direction is at tan 22.5° = √2 − 1. The condition a ≤ (√2 − 1) b is
+/// equivalent to (a + b)² ≤ 2 b². Integers decide this without rounding. Because √2 is irrational, no gradient is
+/// exactly on the border.
 #[inline]
 fn direction(gx: i32, gy: i32) -> (isize, isize) {
     let (ax, ay) = (gx.abs(), gy.abs());
@@ -288,7 +289,7 @@ fn direction(gx: i32, gy: i32) -> (isize, isize) {
     }
 }
 
-/// Strong pixels, and the weak ones that hang together with them.
+/// The strong pixels, and the weak ones connected with them.
 fn hysteresis(width: usize, height: usize, mut marks: Vec<Mark>) -> Raster<bool> {
     let mut open: Vec<usize> = (0..marks.len()).filter(|&i| marks[i] == Mark::Strong).collect();
     while let Some(at) = open.pop() {
@@ -315,7 +316,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Step by step from the definitions, on whole pictures and without hurry.
+    /// Step by step from the definitions, on complete pictures, without optimisation.
     fn naive(grey: &Raster<u8>, options: &CannyOptions) -> Raster<bool> {
         let (width, height) = (grey.width(), grey.height());
         let kernel = Kernel::exact(options.sigma);
@@ -388,7 +389,7 @@ mod tests {
         Raster::from_fn(r.height(), r.width(), |x, y| r.get(y, r.height() - 1 - x))
     }
 
-    /// Few levels, so that ties abound; or all of them.
+    /// Pictures of few levels, so that ties are frequent, or of all levels.
     fn pictures() -> impl Strategy<Value = Raster<u8>> {
         (1usize..24, 1usize..24, prop::sample::select(vec![1u8, 15, 60, 120])).prop_flat_map(|(w, h, step)| {
             let data = prop::collection::vec((0..=255 / step).prop_map(move |v| v * step), w * h);
@@ -441,7 +442,7 @@ mod tests {
     }
 
     #[test]
-    fn weak_edges_hang_on_through_corners_of_all_eight_neighbours() {
+    fn weak_edges_connect_through_all_eight_neighbours() {
         for (dx, dy) in [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)] {
             let mut marks = vec![Mark::None; 25];
             marks[12] = Mark::Strong;
@@ -455,7 +456,7 @@ mod tests {
     }
 
     #[test]
-    fn flat_and_empty_pictures_have_none() {
+    fn flat_and_empty_pictures_have_no_edges() {
         let options = CannyOptions { low: 0.0, high: 0.0, ..CannyOptions::default() };
         assert_eq!(canny_luma(&Raster::new(5, 4, 77), &options), Raster::new(5, 4, false));
         assert_eq!(canny_luma(&Raster::new(1, 1, 77), &options), Raster::new(1, 1, false));

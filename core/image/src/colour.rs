@@ -1,41 +1,41 @@
 //! sRGB, luma and CIE Lab.
 //!
-//! - **sRGB** (IEC 61966-2-1): 0 to 1, encoded for the screen. [`encode`] and [`decode`] turn light into it and back;
-//!   outside 0 to 1 the curves go on, mirrored below 0, so that float pictures lose nothing.
+//! - **sRGB** (IEC 61966-2-1): 0 to 1, encoded for the screen. [`encode`] turns light into it and [`decode`] turns it
+//!   back. Outside 0 to 1 the curves continue, mirrored below 0, so that float pictures lose nothing.
 //! - **Luma**: 0.299 R + 0.587 G + 0.114 B of the encoded values (ITU-R BT.601), the grey that edge detectors expect.
 //! - **CIE Lab** (CIE 15) for the white of sRGB (D65): L from 0 to 100, a and b about −110 to 110. Equal distances look
-//!   about equally different, which is what matching of drawn colours wants.
+//!   about equally different, which suits the matching of drawn colours.
 //!
-//! [`lab_picture`] is made for whole frames: the decoding curve is read from a table and the cube root is found by
-//! iteration, which vectorises and, unlike a system's mathematical library, gives the same bits everywhere. It agrees
-//! with the exact [`lab`] to 0.01.
+//! [`lab_picture`] is made for complete frames. It reads the decoding curve from a table and finds the cube root by
+//! iteration. This vectorises and, unlike a system's mathematical library, gives the same bits on every system. It
+//! agrees with the exact [`lab`] to 0.01.
 
 use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSlice, ParallelSliceMut};
 use rototoon_base::numeric::vector::vectorised;
 use rototoon_base::scene::{Colour, Raster};
 use std::sync::LazyLock;
 
-/// Light, linear, to an sRGB-encoded value.
+/// Linear light to an sRGB-encoded value.
 pub fn encode(light: f32) -> f32 {
     let l = light.abs();
     let value = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
     value.copysign(light)
 }
 
-/// An sRGB-encoded value to light, linear.
+/// An sRGB-encoded value to linear light.
 pub fn decode(value: f32) -> f32 {
     let v = value.abs();
     let light = if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
     light.copysign(value)
 }
 
-/// The grey of an encoded colour, on the same scale.
+/// The luma of an sRGB-encoded colour, on the same scale.
 #[inline]
 pub fn luma([r, g, b]: Colour) -> f32 {
     0.299 * r + 0.587 * g + 0.114 * b
 }
 
-/// The luma of a picture.
+/// The luma of each pixel of a picture.
 pub fn luma_picture(picture: &Raster<Colour>) -> Raster<f32> {
     let mut out = Raster::new(picture.width(), picture.height(), 0.0);
     let pieces = out.data_mut().par_chunks_mut(PIECE).zip(picture.data().par_chunks(PIECE));
@@ -47,19 +47,19 @@ pub fn luma_picture(picture: &Raster<Colour>) -> Raster<f32> {
     out
 }
 
-/// Pixels that one task works on.
+/// Number of pixels in one task.
 const PIECE: usize = 1 << 14;
 
-/// Linear sRGB to X, Y, Z, each divided by that of the white: the rows sum to 1.
+/// Linear sRGB to X, Y and Z, each divided by that of the white. The rows sum to 1.
 const TO_XYZ: [[f32; 3]; 3] =
     [[0.433_953, 0.376_219, 0.189_828], [0.212_671, 0.715_160, 0.072_169], [0.017_758, 0.109_477, 0.872_765]];
 
-/// Where the cube root of CIE Lab gives way to its tangent: (6/29)³.
+/// Value below which a tangent replaces the cube root of CIE Lab: (6/29)³.
 const KNEE: f32 = 216.0 / 24389.0;
-/// The tangent's slope over 116: (29/3)³ / 116.
+/// Slope of the tangent divided by 116: (29/3)³ / 116.
 const TANGENT: f32 = 24389.0 / 27.0 / 116.0;
 
-/// An encoded colour in CIE Lab: L 0 to 100, a, b.
+/// An sRGB-encoded colour in CIE Lab: L from 0 to 100, a, b.
 pub fn lab(colour: Colour) -> [f32; 3] {
     let f = |t: f32| if t > KNEE { t.cbrt() } else { TANGENT * t + 16.0 / 116.0 };
     let light = colour.map(decode);
@@ -67,10 +67,10 @@ pub fn lab(colour: Colour) -> [f32; 3] {
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
-/// Entries of the decoding table over 0 to 1.
+/// Number of intervals of the decoding table over 0 to 1.
 const TABLE: usize = 2040;
 
-/// [`decode`] at i / 2040, so that 8-bit values are entries of the table.
+/// [`decode`] at i / 2040, so that all 8-bit values are entries of the table.
 static DECODED: LazyLock<Vec<f32>> =
     LazyLock::new(|| (0..=TABLE + 1).map(|i| decode((i as f64 / TABLE as f64) as f32)).collect());
 
@@ -85,7 +85,7 @@ fn cbrt_fast(t: f32) -> f32 {
     root
 }
 
-/// A picture in CIE Lab, colours held to 0 to 1: within 0.01 of [`lab`].
+/// A picture in CIE Lab, with colours clamped to 0 to 1. Each value is within 0.01 of [`lab`].
 pub fn lab_picture(picture: &Raster<Colour>) -> Raster<[f32; 3]> {
     let table = DECODED.as_slice();
     let mut out = Raster::new(picture.width(), picture.height(), [0.0; 3]);
@@ -99,10 +99,10 @@ pub fn lab_picture(picture: &Raster<Colour>) -> Raster<[f32; 3]> {
     out
 }
 
-/// Pixels whose channels are worked on side by side.
+/// Number of pixels whose channels are computed side by side.
 const GROUP: usize = 64;
 
-/// The table is read one by one; all before and after runs in vectors.
+/// The conversion of a few pixels. The table is read value by value; everything before and after it runs in vectors.
 #[inline(always)]
 fn lab_piece(table: &[f32], pixels: &[Colour], out: &mut [[f32; 3]]) {
     let mut values = [[0.0f32; 3]; GROUP];

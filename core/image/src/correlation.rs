@@ -1,12 +1,12 @@
 //! Correlation of pictures by the fast Fourier transform.
 //!
-//! Σ_u picture(x + u) pattern(u) for all x at once is a product of spectra: picture × conj(pattern) (convolution
-//! theorem). Real pictures leave half of a complex transform idle, so two patterns are transformed together, as real and
-//! imaginary part, and their results come back together. A conjugated spectrum is that of the pattern turned by half,
-//! which is what is transformed.
+//! By the convolution theorem, Σ_u picture(x + u) pattern(u) for all x at once is a product of spectra: picture ×
+//! conj(pattern). A complex transform of a real picture wastes half of its work. Two patterns are therefore transformed
+//! together, as real and imaginary part, and their results come back in the same way. The conjugated spectrum is that
+//! of the pattern turned by 180°, so the turned pattern is transformed.
 //!
-//! The transform is circular: where a pattern reaches over an edge of the picture, the opposite edge is read. All other
-//! places are right without any padding.
+//! Limits: the transform is circular. Where a pattern reaches over an edge of the picture, the opposite edge is read.
+//! All other places are right without padding.
 
 use rototoon_base::numeric::vector::vectorised;
 use rototoon_base::scene::Raster;
@@ -23,7 +23,7 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// Bytes kept.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.re[..]) + size_of_val(&self.im[..])
     }
@@ -38,7 +38,8 @@ pub struct Correlator {
 }
 
 impl Correlator {
-    /// For pictures of `width` × `height`; both are raised to the next size that transforms quickly.
+    /// Prepares transforms for pictures of `width` × `height` pixels. Both are raised to the next size that transforms
+    /// quickly.
     pub fn new(width: usize, height: usize) -> Self {
         let (width, height) = (smooth(width), smooth(height));
         let mut planner = FftPlanner::new();
@@ -48,6 +49,10 @@ impl Correlator {
     }
 
     /// The transform of a picture, padded with zeros.
+    ///
+    /// # Panics
+    ///
+    /// If the picture is larger than the size given to [`Self::new`], raised.
     pub fn picture(&self, picture: &Raster<f32>) -> Spectrum {
         assert!(picture.width() <= self.width && picture.height() <= self.height);
         let mut data = vec![Complex32::default(); self.width * self.height];
@@ -58,7 +63,11 @@ impl Correlator {
         self.transformed(data, [0..picture.height(), 0..0])
     }
 
-    /// The transform of two patterns for [`Correlator::correlate`]. They may not be larger than the pictures.
+    /// The transform of two patterns for [`Correlator::correlate`].
+    ///
+    /// # Panics
+    ///
+    /// If a pattern is larger than the pictures.
     pub fn patterns(&self, patterns: [&Raster<f32>; 2]) -> Spectrum {
         let mut data = vec![Complex32::default(); self.width * self.height];
         for (pattern, unit) in patterns.iter().zip([Complex32::new(1.0, 0.0), Complex32::new(0.0, 1.0)]) {
@@ -70,13 +79,13 @@ impl Correlator {
                 }
             }
         }
-        // Row 0 stays the first one; the others come from the end.
+        // Row 0 stays the first row; the other rows wrap to the end.
         let others = patterns.iter().map(|pattern| pattern.height()).max().unwrap_or(0).saturating_sub(1);
         self.transformed(data, [0..1, self.height - others..self.height])
     }
 
-    /// Sums of correlations of the pictures with the pairs of patterns in the same order: entry (x, y) of each of the
-    /// two results is Σ over the pictures of Σ_u picture(x + u) pattern(u).
+    /// Sums of the correlations of pictures with pairs of patterns, taken in the same order. Entry (x, y) of each of
+    /// the two results is Σ over the pictures of Σ_u picture(x + u) pattern(u).
     pub fn correlate(&self, pictures: &[Spectrum], patterns: &[Spectrum]) -> [Raster<f32>; 2] {
         let mut turned = vec![Complex32::default(); self.width * self.height];
         vectorised(
@@ -92,7 +101,7 @@ impl Correlator {
         [raster(data.iter().map(|c| scale * c.re).collect()), raster(data.iter().map(|c| scale * c.im).collect())]
     }
 
-    /// Of a picture that is zero but for some rows: the transform of nothing is nothing.
+    /// Transforms a picture that is zero outside some rows. Only these rows need the transform along rows.
     fn transformed(&self, mut data: Vec<Complex32>, rows: [Range<usize>; 2]) -> Spectrum {
         let mut turned = vec![Complex32::default(); data.len()];
         for rows in rows.into_iter().filter(|rows| !rows.is_empty()) {
@@ -106,7 +115,7 @@ impl Correlator {
     }
 }
 
-/// Σ of the products of spectra in pairs.
+/// The sum of the products of spectra, pair by pair.
 #[inline(always)]
 fn add_products(pictures: &[Spectrum], patterns: &[Spectrum], sums: &mut [Complex32]) {
     const PIECE: usize = 256;
@@ -129,7 +138,8 @@ fn add_products(pictures: &[Spectrum], patterns: &[Spectrum], sums: &mut [Comple
     }
 }
 
-/// Rows of `width` values made columns of `height`, from column `first` on, in tiles that stay in the processor's cache.
+/// Writes rows of `width` values as columns of `height`, from column `first` on, in tiles that stay in the processor's
+/// cache.
 fn transpose_rows(rows: &[Complex32], first: usize, to: &mut [Complex32], width: usize, height: usize) {
     const TILE: usize = 16;
     let count = rows.len() / width;
@@ -144,7 +154,7 @@ fn transpose_rows(rows: &[Complex32], first: usize, to: &mut [Complex32], width:
     }
 }
 
-/// The least number from `n` on that has no prime factor above 5.
+/// The smallest number from `n` on without a prime factor above 5.
 fn smooth(n: usize) -> usize {
     let is_smooth = |mut k: usize| {
         for p in [2, 3, 5] {
@@ -190,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn sizes_are_raised_to_quick_ones() {
+    fn sizes_are_raised_to_fast_ones() {
         assert_eq!([1, 7, 11, 97, 240].map(smooth), [1, 8, 12, 100, 240]);
     }
 }

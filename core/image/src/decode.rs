@@ -1,17 +1,17 @@
-//! A picture from a file: PNG, JPEG, TIFF, BMP, WebP or OpenEXR, told by its content, not by its name.
+//! A picture from a file: PNG, JPEG, TIFF, BMP, WebP or OpenEXR. The content decides the format, not the name.
 //!
-//! Whatever the file holds becomes three channels, sRGB-encoded, 0 to 1:
+//! Every picture becomes three channels, sRGB-encoded, 0 to 1:
 //!
-//! - **Whole numbers** (1 to 16 bits a channel, grey, palette, colour, CMYK) are taken as sRGB-encoded.
-//! - **Floats** (OpenEXR, float TIFF) are light: they are encoded, and cut to 0 to 1. What is not a number is black.
-//! - **Transparency** is laid over a mid grey, sRGB-encoded 0.5. Ink may be black or white; on white or black paper the
-//!   one or the other would vanish, on grey both keep their edges. Whole numbers are mixed as encoded values, as
-//!   painting programs mix their antialiased edges; OpenEXR holds light multiplied by alpha and is mixed as light.
+//! - **Integers** (1 to 16 bits per channel; grey, palette, colour, CMYK) are taken as sRGB-encoded.
+//! - **Floats** (OpenEXR, float TIFF) are light. They are encoded and clamped to 0 to 1. NaN becomes black.
+//! - **Transparent pixels** are blended with a mid grey, sRGB-encoded 0.5. Ink may be black or white. On white or black
+//!   paper one of them would vanish; on grey both keep their edges. Integers are blended as encoded values, as painting
+//!   programs blend their antialiased edges. OpenEXR has light multiplied by alpha and is blended as light.
 //! - **Animations** (PNG, WebP) give their first frame.
 //!
-//! Limits: colour profiles and gamma chunks are not applied, nor is the orientation that cameras note. TIFF with a
-//! palette and OpenEXR without R, G and B channels are refused by the decoder, with its reason. A picture may take
-//! 2 GiB at most while it is decoded.
+//! Limits: colour profiles, gamma chunks and the orientation noted by cameras are ignored. The decoder refuses TIFF
+//! with a palette and OpenEXR without R, G and B channels, with its own reason. A picture may use at most 2 GiB while
+//! it is decoded.
 
 use super::colour::{decode as to_light, encode};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
@@ -21,22 +21,22 @@ use std::io::{self, BufReader};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-/// What transparent pixels are laid over, sRGB-encoded.
+/// The grey with which transparent pixels are blended, sRGB-encoded.
 pub const BACKDROP: f32 = 0.5;
 
-/// Most bytes that decoding may take.
+/// Largest number of bytes that decoding may use.
 const MOST_BYTES: u64 = 2 << 30;
 
-/// Why a file gives no picture.
+/// The reason why a file gives no picture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DecodeError {
-    /// There is no such file.
+    /// The file does not exist.
     #[error("no such file")]
     Missing,
-    /// The file is no picture that can be read: what the decoder or the system said.
+    /// The file cannot be read as a picture. The text is the reason given by the decoder or the system.
     #[error("{0}")]
     Unreadable(String),
-    /// The picture is not of the size asked for.
+    /// The picture does not have the expected size.
     #[error("the picture is {width}x{height} pixels")]
     WrongSize {
         /// Width of the picture in the file.
@@ -61,7 +61,11 @@ impl From<image::ImageError> for DecodeError {
     }
 }
 
-/// Width and height of the picture in a file, in pixels. Reads no more than the file's head.
+/// Width and height of the picture in a file, in pixels. It reads the header of the file only.
+///
+/// # Errors
+///
+/// A file that does not exist or cannot be read as a picture.
 pub fn probe(path: &Path) -> Result<(usize, usize), DecodeError> {
     guarded(|| {
         let (width, height) = open(path)?.into_dimensions()?;
@@ -69,18 +73,27 @@ pub fn probe(path: &Path) -> Result<(usize, usize), DecodeError> {
     })
 }
 
-/// The picture in a file; of another size than `expected`, if one is given, it is an error and not decoded.
+/// The picture in a file, sRGB-encoded, 0 to 1. `expected` is the width and height that it must have, if given.
+///
+/// # Errors
+///
+/// A file that does not exist or cannot be read as a picture; a picture of another size, which is not decoded.
 pub fn decode(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<Colour>, DecodeError> {
     decoded(path, expected, colours)
 }
 
-/// The picture in a file with its transparency: light, not cut, multiplied by alpha, and alpha. What is not a number is
-/// 0, what is infinite the largest number there is. Errors as with [`decode`].
+/// The picture in a file with its transparency: red, green and blue light multiplied by alpha, not clamped to 1,
+/// followed by alpha. NaN becomes 0, infinity becomes the largest number.
+///
+/// # Errors
+///
+/// As for [`decode`].
 pub fn decode_layer(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<[f32; 4]>, DecodeError> {
     decoded(path, expected, layer)
 }
 
-/// A file's pixels, made from what the decoder gives and whether that is multiplied by alpha.
+/// A file's pixels. `pixels` converts the decoder's picture; its second argument says whether that is multiplied by
+/// alpha.
 fn decoded<T: Copy>(
     path: &Path,
     expected: Option<(usize, usize)>,
@@ -97,7 +110,7 @@ fn decoded<T: Copy>(
         }
         if decoder.total_bytes() > MOST_BYTES {
             let reason =
-                format!("{width}x{height} pixels take {} bytes, more than {MOST_BYTES}", decoder.total_bytes());
+                format!("{width}x{height} pixels need {} bytes, expected at most {MOST_BYTES}", decoder.total_bytes());
             return Err(DecodeError::Unreadable(reason));
         }
         let pixels = pixels(DynamicImage::from_decoder(decoder)?, multiplied);
@@ -106,11 +119,11 @@ fn decoded<T: Copy>(
     })
 }
 
-/// A file opened, its format found.
+/// Opens a file and finds its format.
 fn open(path: &Path) -> Result<ImageReader<BufReader<File>>, DecodeError> {
     let file = File::open(path)?;
     if file.metadata()?.is_dir() {
-        return Err(DecodeError::Unreadable("it is a folder".into()));
+        return Err(DecodeError::Unreadable("it is a folder, expected a file".into()));
     }
     let mut reader = ImageReader::new(BufReader::new(file)).with_guessed_format()?;
     if reader.format().is_none() {
@@ -122,13 +135,13 @@ fn open(path: &Path) -> Result<ImageReader<BufReader<File>>, DecodeError> {
     Ok(reader)
 }
 
-/// A decoder that panics on a broken file is an error like any other.
+/// Turns a panic of the decoder, on a broken file, into an error.
 fn guarded<T>(work: impl FnOnce() -> Result<T, DecodeError>) -> Result<T, DecodeError> {
-    let failed = |_| Err(DecodeError::Unreadable("the decoder failed on it".into()));
+    let failed = |_| Err(DecodeError::Unreadable("the decoder panicked on this file".into()));
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(failed)
 }
 
-/// The pixels as colours over the backdrop.
+/// The pixels as colours, blended with the backdrop.
 fn colours(picture: DynamicImage, multiplied: bool) -> Vec<Colour> {
     match picture {
         DynamicImage::ImageLuma8(p) => whole::<1, _>(p.as_raw(), byte),
@@ -166,7 +179,7 @@ fn word(v: u16) -> f32 {
     v as f32 / 65535.0
 }
 
-/// Encoded values in groups of `N`: grey, grey and alpha, colour, colour and alpha.
+/// Encoded values in groups of `N`: grey, grey and alpha, colour, or colour and alpha.
 fn whole<const N: usize, V: Copy>(values: &[V], unit: impl Fn(V) -> f32) -> Vec<Colour> {
     let over = |v: f32, alpha: f32| BACKDROP + alpha * (v - BACKDROP);
     let (pixels, _) = values.as_chunks::<N>();
@@ -182,14 +195,14 @@ fn whole<const N: usize, V: Copy>(values: &[V], unit: impl Fn(V) -> f32) -> Vec<
     pixels.iter().map(colour).collect()
 }
 
-/// Light with alpha over the backdrop, encoded.
+/// Light with alpha, blended with the backdrop and encoded.
 fn light_over([r, g, b, alpha]: [f32; 4], multiplied: bool) -> Colour {
     let alpha = if alpha.is_nan() { 0.0 } else { alpha.clamp(0.0, 1.0) };
     let own = if multiplied { 1.0 } else { alpha };
     [r, g, b].map(|v| encoded(own * v + (1.0 - alpha) * to_light(BACKDROP)))
 }
 
-/// Light encoded and cut to 0 to 1.
+/// Light, encoded and clamped to 0 to 1.
 fn encoded(light: f32) -> f32 {
     if light.is_nan() { 0.0 } else { encode(light).clamp(0.0, 1.0) }
 }
@@ -300,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn exr_is_multiplied_by_alpha_already() {
+    fn exr_is_already_multiplied_by_alpha() {
         let half = to_light(0.5);
         let read = there_and_back("a.exr", ImageBuffer::from_pixel(5, 4, Rgba([0.5 * half, 0.0, 0.5, 0.5f32])));
         let want = [0.5, encode(0.5 * half), encode(0.5 + 0.5 * half)];
@@ -309,7 +322,7 @@ mod tests {
         assert!(close(clear.get(1, 1), [0.5; 3], 1e-4));
     }
 
-    /// PNG's check sum of a chunk, bit by bit.
+    /// PNG's checksum of a chunk, bit by bit.
     fn crc(bytes: &[u8]) -> u32 {
         !bytes.iter().fold(!0u32, |sum, &byte| {
             (0..8).fold(sum ^ byte as u32, |s, _| if s & 1 == 1 { (s >> 1) ^ 0xEDB8_8320 } else { s >> 1 })
@@ -321,7 +334,7 @@ mod tests {
         [&(data.len() as u32).to_be_bytes()[..], &body, &crc(&body).to_be_bytes()].concat()
     }
 
-    /// A zlib stream that stores its bytes as they are.
+    /// A zlib stream that stores its bytes uncompressed.
     fn stored(bytes: &[u8]) -> Vec<u8> {
         let len = bytes.len() as u16;
         let (a, b) = bytes.iter().fold((1u32, 0u32), |(a, b), &v| {
@@ -332,7 +345,8 @@ mod tests {
         [&head[..], &len.to_le_bytes(), &(!len).to_le_bytes(), bytes, &((b << 16) | a).to_be_bytes()].concat()
     }
 
-    /// A PNG by hand: `rows` are filter byte and packed pixels; `extra` chunks come before and after the picture data.
+    /// A PNG file built by hand: each of `rows` is a filter byte and packed pixels; chunks go `before` and `after` the
+    /// picture data.
     fn png(size: [u32; 2], bits: u8, kind: u8, before: &[Vec<u8>], rows: &[u8], after: &[Vec<u8>]) -> Vec<u8> {
         let header = [&size[0].to_be_bytes()[..], &size[1].to_be_bytes(), &[bits, kind, 0, 0, 0]].concat();
         let mut all = b"\x89PNG\r\n\x1a\n".to_vec();
@@ -359,7 +373,7 @@ mod tests {
         assert_eq!(white, [0, 2, 9]);
         assert!(read.row(1).iter().all(|&c| c == [0.0; 3]));
 
-        // Two bits a pixel, four colours, the last of them transparent.
+        // Two bits per pixel and four colours, the last one transparent.
         let palette = [chunk(b"PLTE", &[0, 0, 0, 255, 0, 0, 0, 255, 0, 9, 9, 9]), chunk(b"tRNS", &[255, 255, 255, 0])];
         let indexed = png([4, 1], 2, 3, &palette, &[0, 0b00_01_10_11], &[]);
         let read = decode(&file(&folder, "palette.png", &indexed), None).unwrap();
@@ -399,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn the_content_counts_not_the_name() {
+    fn the_content_decides_the_format_not_the_name() {
         let folder = folder();
         let path = folder.path().join("a.png");
         let picture = ImageBuffer::from_pixel(1, 1, Rgb([255u8, 0, 0]));

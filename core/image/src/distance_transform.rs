@@ -1,24 +1,25 @@
 //! Exact Manhattan distance to the nearest edge.
 //!
-//! The Manhattan distance |Δx| + |Δy| is a sum of one term an axis, so the transform is two passes (Rosenfeld & Pfaltz,
-//! "Sequential operations in digital picture processing", 1966; Felzenszwalb & Huttenlocher, "Distance transforms of
-//! sampled functions", 2012, §4): along each row the distance to the row's nearest edge, then along each column the
-//! least of that plus the number of rows between. Rows are independent and run in parallel; the column pass sweeps
-//! whole rows down and up, which vectorises.
+//! The Manhattan distance |Δx| + |Δy| is a sum of one term per axis. The transform therefore has two passes (Rosenfeld
+//! & Pfaltz, "Sequential operations in digital picture processing", 1966; Felzenszwalb & Huttenlocher, "Distance
+//! transforms of sampled functions", 2012, §4). The first pass finds the distance along each row to the nearest edge of
+//! the row. The second pass finds, along each column, the minimum of that distance plus the number of rows between.
+//! Rows are independent and run in parallel. The column pass sweeps complete rows down and up, which vectorises.
 //!
-//! Distances are between pixel centres, in pixels. **Without any edge** every pixel is [`without_edge`] away: farther
-//! than any edge of the picture could be, yet finite, so that an energy that reads it stays finite and has no slope.
+//! Distances are between pixel centres, in pixels. **Without any edge** every pixel has the distance [`without_edge`].
+//! This is farther than any edge of the picture could be, but finite, so an energy that reads it stays finite and has
+//! no slope.
 
 use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSlice, ParallelSliceMut};
 use rototoon_base::scene::Raster;
 
-/// The distance in a picture of this size that has no edge: width + height.
+/// The distance used in a picture of this size without an edge: width + height, in pixels.
 pub fn without_edge(width: usize, height: usize) -> f32 {
     (width + height) as f32
 }
 
-/// For each pixel the Manhattan distance to the nearest pixel of `edges` that is set, in pixels;
-/// [`without_edge`] where none is.
+/// For each pixel the Manhattan distance to the nearest set pixel of `edges`, in pixels; [`without_edge`] where there
+/// is none.
 pub fn manhattan(edges: &Raster<bool>) -> Raster<f32> {
     let (width, height) = (edges.width(), edges.height());
     let far = without_edge(width, height);
@@ -41,7 +42,7 @@ pub fn manhattan(edges: &Raster<bool>) -> Raster<f32> {
     out
 }
 
-/// Distances within a row, `far` at most: counted from the left, then held against the count from the right.
+/// Distances within a row, at most `far`: counted from the left, then compared with the count from the right.
 fn along_row(edges: &[bool], far: f32, out: &mut [f32]) {
     let cap = far as i32;
     let mut count = cap;
@@ -56,7 +57,7 @@ fn along_row(edges: &[bool], far: f32, out: &mut [f32]) {
     }
 }
 
-/// A row is at most one pixel farther than its neighbour.
+/// Limits each distance to that of the neighbouring row plus one.
 fn step(from: &[f32], to: &mut [f32]) {
     for (to, &from) in to.iter_mut().zip(from) {
         *to = if from + 1.0 < *to { from + 1.0 } else { *to };
@@ -68,7 +69,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The definition: the least distance over all edges.
+    /// The definition: the minimum of the distances to all edges.
     fn naive(edges: &Raster<bool>) -> Raster<f32> {
         let pixels = || (0..edges.height()).flat_map(|y| (0..edges.width()).map(move |x| (x, y)));
         Raster::from_fn(edges.width(), edges.height(), |x, y| {

@@ -1,12 +1,12 @@
 //! Separable Gaussian blur.
 //!
-//! The Gaussian is the one blur that is both round and a product of a row and a column kernel. Each output row is made
-//! in one go: the rows above and below are summed with the kernel's weights, then the sum is filtered along the row.
-//! No intermediate picture is stored, and both loops run over flat channels.
+//! The Gaussian is the only blur that is both round and a product of a row kernel and a column kernel. Each output row
+//! is computed in one go: the rows above and below are summed with the kernel's weights, then the sum is filtered along
+//! the row. No intermediate picture is stored, and both loops run over flat channels.
 //!
-//! Weights left and right of the centre are equal, and the two pixels they belong to are added before they are
-//! weighted, so a mirrored picture gives the mirrored result to the last bit. A quarter turn swaps the two passes and
-//! agrees to rounding only, unless the kernel is [`Kernel::exact`].
+//! Weights left and right of the centre are equal. Their two pixels are added before they are weighted, so a mirrored
+//! picture gives the mirrored result to the last bit. A quarter turn exchanges the two passes and agrees up to rounding
+//! only, unless the kernel is [`Kernel::exact`].
 //!
 //! Limits: the kernel ends at 3 σ, where the Gaussian has fallen to 1 % of its height; 0.3 % of its mass is beyond.
 
@@ -15,24 +15,24 @@ use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut
 use rototoon_base::numeric::vector::vectorised;
 use rototoon_base::scene::Raster;
 
-/// How many σ the kernel reaches to each side.
+/// Reach of the kernel to each side, in σ.
 const REACH: f64 = 3.0;
 
-/// Sum of the weights of an exact kernel: two passes over 8-bit integers stay below 2²⁴, where `f32` counts exactly.
+/// Sum of the weights of an exact kernel. With it, two passes over 8-bit integers stay below 2²⁴, where `f32` is exact.
 const EXACT_SUM: f64 = 256.0;
 
-/// Which pixels lie beyond the border.
+/// The pixels beyond the border of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Border {
-    /// The border pixel again and again: `aaa|abcd|ddd`.
+    /// The border pixel is repeated: `aaa|abcd|ddd`.
     #[default]
     Replicate,
-    /// The picture mirrored at the border pixel's centre: `dcb|abcd|cba`.
+    /// The picture is mirrored at the centre of the border pixel: `dcb|abcd|cba`.
     Reflect101,
 }
 
 impl Border {
-    /// The index in `0..len` that stands for `index`. `len` must not be 0.
+    /// The index in `0..len` that replaces `index`. `len` must not be 0.
     pub fn index(self, index: isize, len: usize) -> usize {
         let last = len as isize - 1;
         match self {
@@ -46,23 +46,23 @@ impl Border {
     }
 }
 
-/// A symmetric kernel: the weight of the centre, then those at distance 1, 2, … to each side.
+/// A symmetric kernel: the weight of the centre, then the weights at distance 1, 2, … to each side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kernel {
     weights: Vec<f32>,
 }
 
 impl Kernel {
-    /// The Gaussian with standard deviation `sigma` pixels, weights summing to 1. Only the centre where `sigma` is not
-    /// above 0.
+    /// The Gaussian with a standard deviation of `sigma` pixels; its weights sum to 1. If `sigma` is not positive, only
+    /// the centre has a weight.
     pub fn gaussian(sigma: f64) -> Self {
         let raw = half_gaussian(sigma);
         let sum = raw[0] + 2.0 * raw[1..].iter().sum::<f64>();
         Self { weights: raw.iter().map(|w| (w / sum) as f32).collect() }
     }
 
-    /// The Gaussian with whole-numbered weights that sum to 256. On 8-bit whole numbers both passes of [`convolve`]
-    /// are exact in `f32`, so that their order does not matter. The weights are coarse where `sigma` is above 10.
+    /// The Gaussian with integer weights that sum to 256. On 8-bit integers both passes of [`convolve`] are exact in
+    /// `f32`, so their order does not matter. The weights are coarse where `sigma` is above 10.
     pub fn exact(sigma: f64) -> Self {
         let raw = half_gaussian(sigma);
         let sum = raw[0] + 2.0 * raw[1..].iter().sum::<f64>();
@@ -74,7 +74,7 @@ impl Kernel {
         Self { weights: weights.iter().map(|&w| w as f32).collect() }
     }
 
-    /// How many pixels the kernel reaches to each side.
+    /// Reach of the kernel to each side, in pixels.
     pub fn radius(&self) -> usize {
         self.weights.len() - 1
     }
@@ -84,7 +84,7 @@ impl Kernel {
         self.weights[0] + 2.0 * self.weights[1..].iter().sum::<f32>()
     }
 
-    /// The weight at a distance from the centre, in pixels, up to the radius.
+    /// The weight at a distance from the centre, in pixels; at most the radius.
     pub fn weight(&self, distance: usize) -> f32 {
         self.weights[distance]
     }
@@ -100,7 +100,8 @@ fn half_gaussian(sigma: f64) -> Vec<f64> {
     (0..=radius).map(|i| (-0.5 * (i as f64 / sigma).powi(2)).exp()).collect()
 }
 
-/// The picture blurred by a Gaussian of standard deviation `sigma` pixels; itself where `sigma` is not above 0.
+/// The picture blurred by a Gaussian with a standard deviation of `sigma` pixels. If `sigma` is not positive, it is
+/// unchanged.
 pub fn blur<T: Pixel>(picture: &Raster<T>, sigma: f64, border: Border) -> Raster<T> {
     convolve(picture, &Kernel::gaussian(sigma), border)
 }
@@ -122,7 +123,7 @@ pub fn convolve<T: Pixel>(picture: &Raster<T>, kernel: &Kernel, border: Border) 
     out
 }
 
-/// Row `y` of [`convolve`]; `padded` is room for the row and the kernel's radius at each end.
+/// Row `y` of [`convolve`]. `padded` has room for the row and the kernel's radius at each end.
 #[inline(always)]
 pub(super) fn convolve_row<T: Pixel>(
     picture: &Raster<T>,
@@ -158,7 +159,7 @@ fn sum_rows<T: Pixel>(picture: &Raster<T>, kernel: &Kernel, border: Border, y: u
     }
 }
 
-/// Filters along a row; `padded` has `radius` pixels more at each end than `out`.
+/// Filters along a row. `padded` has `radius` more pixels at each end than `out`.
 #[inline(always)]
 fn filter_row(padded: &[f32], channels: usize, kernel: &Kernel, out: &mut [f32]) {
     let (radius, len) = (kernel.radius(), out.len());
@@ -180,7 +181,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The definition: every pixel a double sum over the two-dimensional kernel.
+    /// The definition: every pixel is a double sum over the two-dimensional kernel.
     fn naive(picture: &Raster<f32>, sigma: f64, border: Border) -> Raster<f32> {
         let radius = (REACH * sigma).ceil() as isize;
         let height = |i: isize, j: isize| (-((i * i + j * j) as f64) / (2.0 * sigma * sigma)).exp();
@@ -222,7 +223,7 @@ mod tests {
         }
 
         #[test]
-        fn exact_kernels_forget_the_order_of_passes(picture in pictures(), sigma in 0.1f64..12.0) {
+        fn exact_kernels_do_not_depend_on_the_order_of_passes(picture in pictures(), sigma in 0.1f64..12.0) {
             let bytes = picture.map(|v| (v * 255.0).round());
             let turned = Raster::from_fn(bytes.height(), bytes.width(), |x, y| bytes.get(y, x));
             let kernel = Kernel::exact(sigma);

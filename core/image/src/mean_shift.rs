@@ -1,36 +1,38 @@
-//! The mean-shift filter, which flattens colours and keeps edges.
+//! The mean-shift filter: it flattens colours and keeps edges.
 //!
-//! Every pixel starts a walk in position and colour together: it moves to the mean place and the mean colour of the
-//! pixels in the window around it whose colour is nearer than the range, again and again until it stands still, and
-//! takes the colour where it ends (Comaniciu & Meer, "Mean shift: a robust approach toward feature space analysis",
-//! PAMI 2002, §3 and filtering of §4.1, with the flat kernel). Paint and compression noise go, ink stays.
+//! Every pixel starts a walk in position and colour together. It looks at the pixels in the window around it whose
+//! colours are nearer than the range, and moves to their mean place and mean colour. This repeats until it stands
+//! still. The pixel then takes the colour where the walk ends. Noise of paint and compression disappears, ink stays.
+//! Source: Comaniciu & Meer, "Mean shift: a robust approach toward feature space analysis", PAMI 2002, §3 and the
+//! filtering of §4.1, with the flat kernel.
 //!
-//! **From coarse to fine.** The walk is done on a picture halved `levels` times; the result is enlarged, and on the
-//! next finer level only the pixels near a colour border are walked again: inside a flat colour the enlarged result is
-//! right already. Steps, rounding and stopping rule are those of OpenCV's `pyrMeanShiftFiltering`, so that its
-//! parameters (`sp`, `sr`, `maxLevel`) mean the same here. Three things differ: the pixels near a colour border are the
-//! same number to each side of it, those at the border of the picture are among them, and on a coarser level the
-//! halved radius is rounded once, so that all windows are of one size.
+//! **From coarse to fine.** The walk is done on a picture halved `levels` times, and the result is enlarged. On the
+//! next finer level only the pixels near a colour border walk again, because inside a flat colour the enlarged result
+//! is already right. Steps, rounding and the stopping rule are those of OpenCV's `pyrMeanShiftFiltering`, so its
+//! parameters (`sp`, `sr`, `maxLevel`) have the same meaning here. Three things differ. The number of pixels near a
+//! colour border is the same on both sides of it. The pixels at the border of the picture are included. On a coarser
+//! level the halved radius is rounded once, so all windows have the same size.
 //!
-//! **Speed.** The colours are whole numbers of 8 bits in three planes of `i16` with a frame of a colour that is far
-//! from every other. So a window is whole rows of 16 pixels without any test for the picture's border, and its sums
-//! are lanes of 16-bit integers: exact, in any order. Rows of the picture are independent and run in parallel.
+//! **Speed.** The colours are 8-bit integers in three planes of `i16`. The planes have a frame with a colour far from
+//! every other colour. A window is therefore read in complete rows of 16 pixels without a test for the border of the
+//! picture. Its sums are lanes of 16-bit integers, which are exact in any order. Rows of the picture are independent
+//! and run in parallel.
 //!
-//! Limits: colours are rounded to 8 bits, values outside 0 to 1 are cut; the range is at most 100 levels and the
-//! spatial radius at most 60 pixels (16 bits hold no more), larger ones are cut.
+//! Limits: colours are rounded to 8 bits, and values outside 0 to 1 are clamped. The range is at most 100 levels and
+//! the radius at most 60 pixels, because 16 bits have no room for more. Larger values are reduced to these limits.
 
 use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSlice, ParallelSliceMut};
 use rototoon_base::numeric::vector::vectorised;
 use rototoon_base::scene::{Colour, Raster};
 
-/// How to filter.
+/// Options of the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeanShiftOptions {
-    /// Half the window's side in pixels, 1 to 60: the window has 2 · `radius` + 1 pixels a side.
+    /// Half the side of the window in pixels, 1 to 60: the window has 2 · `radius` + 1 pixels on each side.
     pub radius: usize,
-    /// Largest Euclidean distance of colours that count as near, in 8-bit levels, 0 to 100.
+    /// Largest Euclidean distance of near colours, in 8-bit levels, 0 to 100.
     pub range: usize,
-    /// How often the picture is halved first; 0 walks every pixel at full size.
+    /// Number of times that the picture is halved first. With 0 every pixel walks at full size.
     pub levels: usize,
     /// Largest number of steps of a walk.
     pub steps: usize,
@@ -43,23 +45,23 @@ impl Default for MeanShiftOptions {
     }
 }
 
-/// A colour of 8-bit levels.
+/// A colour in 8-bit levels.
 type Levels = [u8; 3];
 
-/// Sum of steps, squared in colour and plain in position, at which a walk has come to rest.
+/// A walk stands still when its change is at most this: the squared change of colour plus the steps in position.
 const REST: i32 = 1;
 
-/// The least squared distance that makes a colour border between neighbours of the coarser level.
+/// Smallest squared distance that makes a colour border between neighbours on the coarser level.
 const LEAST_BORDER: i32 = 16;
 
-/// The picture filtered, at 8 bits a channel.
+/// The picture filtered, rounded to 8 bits per channel. Colours are sRGB-encoded, 0 to 1.
 pub fn mean_shift(picture: &Raster<Colour>, options: &MeanShiftOptions) -> Raster<Colour> {
     let round = |v: f32| (255.0 * v.clamp(0.0, 1.0) + 0.5) as i32 as u8;
     let levels = converted(picture, round);
     converted(&mean_shift_levels(&levels, options), |v| v as f32 / 255.0)
 }
 
-/// Every channel of every pixel converted.
+/// Converts every channel of every pixel.
 fn converted<A, B>(picture: &Raster<[A; 3]>, convert: impl Fn(A) -> B + Sync) -> Raster<[B; 3]>
 where
     A: Copy + Sync,
@@ -80,7 +82,7 @@ where
     out
 }
 
-/// The picture of 8-bit levels filtered.
+/// The picture of 8-bit levels, filtered.
 pub fn mean_shift_levels(picture: &Raster<Levels>, options: &MeanShiftOptions) -> Raster<Levels> {
     if picture.data().is_empty() {
         return picture.clone();
@@ -110,16 +112,16 @@ pub fn mean_shift_levels(picture: &Raster<Levels>, options: &MeanShiftOptions) -
     result
 }
 
-/// Pixels that one task converts.
+/// Number of pixels in one conversion task.
 const PIECE: usize = 1 << 14;
 
-/// Pixels in a lane group.
+/// Number of pixels in a lane group.
 const LANES: usize = 16;
 
-/// A value that is far from every colour, however far the range reaches.
+/// A value far from every colour, for any range.
 const FAR: i16 = -1000;
 
-/// A picture made ready for walks.
+/// A picture prepared for walks.
 struct Walk<'a> {
     source: &'a Raster<Levels>,
     planes: [Vec<i16>; 3],
@@ -129,7 +131,7 @@ struct Walk<'a> {
     steps: usize,
 }
 
-/// What the near pixels of a window sum to.
+/// Sums over the near pixels of a window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Sums {
     count: i32,
@@ -155,7 +157,7 @@ impl<'a> Walk<'a> {
         Self { source, planes, stride, radius, range, steps }
     }
 
-    /// Walks from every pixel, or only from those marked, the others keeping the colour given.
+    /// Walks from every pixel, or from the marked pixels only. The others keep the given colour.
     fn filter(&self, known: Option<(Raster<Levels>, &Raster<bool>)>) -> Raster<Levels> {
         let (mut out, marked) = match known {
             Some((colours, marked)) => (colours, Some(marked)),
@@ -188,7 +190,7 @@ impl<'a> Walk<'a> {
             }
             let share = 1.0 / sums.count as f64;
             let mean = |sum: i32| (sum as f64 * share).round_ties_even() as i32;
-            // Means are rounded as places in the picture: a half goes to the even one.
+            // Means are rounded as places in the picture; a half goes to the even number.
             let from_window = |sum: i32, at: i32| mean(sum + sums.count * (at - self.radius as i32));
             let (to_x, to_y) = (from_window(sums.x, x), from_window(sums.y, y));
             let to = sums.colour.map(mean);
@@ -202,7 +204,7 @@ impl<'a> Walk<'a> {
         colour.map(|v| v as u8)
     }
 
-    /// Sums over the pixels around (`x`, `y`) that are near to `colour`.
+    /// Sums over the pixels around (`x`, `y`) whose colours are near `colour`.
     #[inline(always)]
     fn window(&self, x: usize, y: usize, colour: [i32; 3]) -> Sums {
         let side = 2 * self.radius + 1;
@@ -216,7 +218,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Sums of a column of lane groups, one a lane.
+/// Sums of a column of lane groups, one for each lane.
 #[derive(Default)]
 struct LaneSums {
     count: [i16; LANES],
@@ -225,8 +227,8 @@ struct LaneSums {
 }
 
 impl LaneSums {
-    /// Over `columns` columns from place `at` of the planes and all rows of the window. A lane sums at most 121 values
-    /// of 255, which 16 bits hold.
+    /// Sums over `columns` columns from index `at` of the planes, and over all rows of the window. A lane sums at most
+    /// 121 values of 255, for which 16 bits are enough.
     #[inline(always)]
     fn over(walk: &Walk, at: usize, columns: usize, colour: [i16; 3]) -> Self {
         let mut sums = Self::default();
@@ -237,10 +239,11 @@ impl LaneSums {
         for row in 0..2 * walk.radius + 1 {
             let from = at + row * walk.stride;
             let [p0, p1, p2] = [0, 1, 2].map(|c| &walk.planes[c][from..from + LANES]);
-            // Plain loops and choices: where little is optimised, as in tests, a range's steps and `min` are calls.
+            // Plain loops and choices are used, because with little optimisation, as in tests, ranges and `min` are
+            // function calls.
             let mut i = 0;
             while i < LANES {
-                // Distances are cut just beyond the range, so that three squares fit 16 bits.
+                // Distances are clamped just beyond the range, so that three squares fit 16 bits.
                 let square = |v: i16, c: i16| {
                     let d = if v > c { v - c } else { c - v };
                     let d = if d < cap { d } else { cap };
@@ -273,7 +276,7 @@ impl LaneSums {
     }
 }
 
-/// Burt & Adelson's kernel for a pyramid of pictures, times 16.
+/// Burt & Adelson's kernel for picture pyramids, times 16.
 const KERNEL: [i32; 5] = [1, 4, 6, 4, 1];
 
 /// The index mirrored at the border pixels.
@@ -281,12 +284,12 @@ fn mirrored(index: isize, len: usize) -> usize {
     super::gaussian::Border::Reflect101.index(index, len)
 }
 
-/// Half the size, rounded up, after the pyramid's kernel.
+/// Half the size, rounded up, after filtering with the pyramid's kernel.
 fn halve(picture: &Raster<Levels>) -> Raster<Levels> {
     let (width, height) = (picture.width(), picture.height());
     let mut out = Raster::new(width.div_ceil(2), height.div_ceil(2), [0; 3]);
     let small = out.width();
-    // Two pixels more at each end, mirrored.
+    // Two more pixels at each end, mirrored.
     let scratch = || vec![[0i32; 3]; width + 4];
     out.data_mut().par_chunks_mut(small).enumerate().for_each_init(scratch, |sums, (y, out)| {
         let rows = [-2, -1, 0, 1, 2].map(|k| picture.row(mirrored(2 * y as isize + k, height)).as_flattened());
@@ -312,8 +315,9 @@ fn halve(picture: &Raster<Levels>) -> Raster<Levels> {
     out
 }
 
-/// The coarser row left of (or above), at and right of a finer one that lies on a coarse one; of one between two, the
-/// two, the first of them twice. With the kernel's weights, which sum to 8.
+/// The coarser rows that make a finer row, with the kernel's weights, which sum to 8. A finer row on a coarse row takes
+/// the one before it, the row itself and the next. A finer row between two coarse rows takes these two; the first of
+/// them is listed twice, once with weight 0. The same is valid for columns.
 fn taps(index: usize, coarse: usize) -> [(usize, i32); 3] {
     let centre = (index / 2).min(coarse - 1);
     let next = (centre + 1).min(coarse - 1);
@@ -323,11 +327,11 @@ fn taps(index: usize, coarse: usize) -> [(usize, i32); 3] {
     [(mirrored(centre as isize - 1, coarse), 1), (centre, 6), (next, 1)]
 }
 
-/// Enlarged to the given size, twice its own or one less, by the pyramid's kernel.
+/// Enlarges to the given size, which is twice its own or one less, with the pyramid's kernel.
 fn double(picture: &Raster<Levels>, width: usize, height: usize) -> Raster<Levels> {
     let coarse = picture.width();
     let mut out = Raster::new(width, height, [0; 3]);
-    // One pixel more at each end.
+    // One more pixel at each end.
     let scratch = || vec![[0i32; 3]; coarse + 2];
     out.data_mut().par_chunks_mut(width).enumerate().for_each_init(scratch, |sums, (y, out)| {
         let rows = taps(y, picture.height()).map(|(row, weight)| (picture.row(row).as_flattened(), weight));
@@ -355,14 +359,14 @@ fn double(picture: &Raster<Levels>, width: usize, height: usize) -> Raster<Level
     out
 }
 
-/// Which pixels of the finer level lie at a colour border of the coarser: around coarse pixels one of whose eight
-/// neighbours is as far as the range.
+/// The pixels of the finer level near a colour border of the coarser one. They are around coarse pixels that differ
+/// from one of their eight neighbours by at least the range.
 fn near_borders(coarse: &Raster<Levels>, width: usize, height: usize, range: i32) -> Raster<bool> {
     let limit = (range * range).max(LEAST_BORDER);
     let mut marked = Raster::new(width, height, false);
     for y in 0..coarse.height() {
         for x in 0..coarse.width() {
-            // Each pair of neighbours once.
+            // Each pair of neighbours is visited once.
             for (i, j) in [(x + 1, y), (x.wrapping_sub(1), y + 1), (x, y + 1), (x + 1, y + 1)] {
                 if i < coarse.width() && j < coarse.height() && distance(coarse.get(x, y), coarse.get(i, j)) >= limit {
                     mark_around(&mut marked, 2 * x, 2 * y);
@@ -374,12 +378,12 @@ fn near_borders(coarse: &Raster<Levels>, width: usize, height: usize, range: i32
     marked
 }
 
-/// Squared Euclidean distance.
+/// Squared Euclidean distance of two colours.
 fn distance(a: Levels, b: Levels) -> i32 {
     (0..3).map(|c| (a[c] as i32 - b[c] as i32).pow(2)).sum()
 }
 
-/// Marks the finer pixel that a coarse pixel lies on, and its eight neighbours.
+/// Marks the finer pixel at the place of a coarse pixel, and its eight neighbours.
 fn mark_around(marked: &mut Raster<bool>, x: usize, y: usize) {
     let columns = x.saturating_sub(1)..(x + 2).min(marked.width());
     for j in y.saturating_sub(1)..(y + 2).min(marked.height()) {
@@ -392,7 +396,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A walk by the definition.
+    /// A walk by its definition.
     fn naive(picture: &Raster<Levels>, x: usize, y: usize, radius: usize, range: i32, steps: usize) -> Levels {
         let (mut x, mut y, mut colour) = (x, y, picture.get(x, y));
         for _ in 0..steps {
@@ -422,7 +426,7 @@ mod tests {
         colour
     }
 
-    /// Noise around few colours, so that windows are partly near.
+    /// Noise around a few colours, so that windows are partly near.
     fn pictures() -> impl Strategy<Value = Raster<Levels>> {
         (1usize..26, 1usize..26, 1u8..60).prop_flat_map(|(w, h, noise)| {
             let pixel = (prop::array::uniform3(0..noise), prop::sample::select(vec![[0u8, 0, 0], [120, 40, 190]]));
@@ -502,7 +506,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_goes_and_the_edge_stays() {
+    fn noise_disappears_and_the_edge_stays() {
         let noisy = Raster::from_fn(40, 30, |x, y| {
             let noise = ((x * 7 + y * 13 + x * y) % 9) as u8;
             if x < 20 { [30 + noise, 40, 60 + noise] } else { [200, 180 + noise, 90] }

@@ -1,7 +1,7 @@
-//! What a pixel is to the filters: a few `f32` channels that lie side by side.
+//! The pixel types of the filters: a few `f32` channels next to each other.
 //!
-//! A filter that treats all channels alike runs over the flat channels of a row, where the compiler vectorises it,
-//! whether the picture is grey or coloured.
+//! A filter that treats all channels alike runs over the flat channels of a row. The compiler vectorises this loop for
+//! grey and coloured pictures.
 
 /// A pixel made of `f32` channels.
 pub trait Pixel: Copy + Send + Sync + 'static {
@@ -13,7 +13,7 @@ pub trait Pixel: Copy + Send + Sync + 'static {
     /// The channels of the pixels, one after the other.
     fn flat(pixels: &[Self]) -> &[f32];
 
-    /// The channels of the pixels, one after the other, to change.
+    /// The channels of the pixels, one after the other, for writing.
     fn flat_mut(pixels: &mut [Self]) -> &mut [f32];
 
     /// `self + weight * other`, channel by channel.

@@ -1,12 +1,12 @@
 //! A picture at halved sizes.
 //!
-//! Level 0 is the picture; each further level is blurred, then reduced by exactly 2, so that a point p of the picture
-//! lies at p / 2ˡ on level l whatever the size (see [`resize::reduce`](super::resize::reduce)). Levels are blurred so
-//! that a Gaussian of σ = `softness` · 2ˡ pixels of the picture separates level l from the picture, as if each were
-//! made from the picture itself: variances add, so from one level to the next √3 · `softness` level pixels are
-//! missing (2 · `softness` before the first reduction).
+//! Level 0 is the picture. Each further level is blurred, then reduced by exactly 2, so a point p of the picture is at
+//! p / 2ˡ on level l for any size (see [`resize::reduce`](super::resize::reduce)). The blur of level l is a Gaussian of
+//! σ = `softness` · 2ˡ pixels of the picture, as if the level were made from the picture itself. Variances add. The blur
+//! before a reduction therefore has σ = √3 · `softness` pixels of the level that is reduced. For level 0 it has
+//! σ = 2 · `softness`, because level 0 itself is not blurred.
 //!
-//! Limits: the averaging within the reduction comes on top and is not counted.
+//! Limits: the averaging within the reduction adds to the blur and is not counted.
 
 use super::gaussian::{Border, blur};
 use super::pixel::Pixel;
@@ -14,14 +14,14 @@ use super::resize::reduce;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, Raster};
 
-/// A picture at halved sizes; never without its level 0.
+/// A picture at halved sizes. It always has a level 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pyramid<T = Colour> {
     levels: Vec<Raster<T>>,
 }
 
 impl<T: Pixel> Pyramid<T> {
-    /// At most `levels` levels, fewer where a picture of one pixel is reached, at least the picture itself. `softness`
+    /// At most `levels` levels, but at least the picture itself. It ends earlier at a picture of one pixel. `softness`
     /// is the σ of the blur in pixels of the level; 0 averages only.
     pub fn new(picture: Raster<T>, levels: usize, softness: f64) -> Self {
         let mut all = vec![picture];
@@ -42,7 +42,7 @@ impl<T: Pixel> Pyramid<T> {
         &self.levels
     }
 
-    /// Where a point of the picture lies on a level.
+    /// The position on a level of a point of the picture.
     pub fn to_level(point: Point, level: usize) -> Point {
         point / 2f64.powi(level as i32)
     }
@@ -64,8 +64,8 @@ mod tests {
     }
 
     #[test]
-    fn places_hold_on_every_level() {
-        // A slope is unchanged by blur and reduction, away from the border.
+    fn positions_are_right_on_every_level() {
+        // Away from the border, blur and reduction do not change a slope.
         let picture = Raster::from_fn(101, 67, |x, y| 0.01 * (x as f32 + 0.5) - 0.02 * (y as f32 + 0.5));
         let pyramid = Pyramid::new(picture, 4, 0.5);
         let p = Point::new(47.3, 31.9);
@@ -88,7 +88,7 @@ mod tests {
         };
         let centre = mean(&|x| x);
         let variance = mean(&|x| (x - centre).powi(2));
-        // (σ/8)² of the blurs, and 1/12 of a pixel's own width for the reduction and for its reading.
+        // (σ/8)² of the blurs, and 1/12 for a pixel's own width in the reduction and in its reading.
         assert!((variance - (0.25 + 1.0 / 12.0)).abs() < 0.06, "{variance}");
     }
 }

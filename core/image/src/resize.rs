@@ -1,22 +1,22 @@
 //! Area reduction and bilinear enlargement.
 //!
-//! **Reduction**: a pixel of the result is the mean of the area it covers, pixels cut by its border counting by their
-//! share. That is the exact integral of the picture seen as squares of colour: nothing aliases as nearest or bilinear
-//! sampling would, and thin lines keep their weight.
+//! **Reduction**: a pixel of the result is the mean of the area that it covers. Source pixels cut by the border of this
+//! area count by their share. This is the exact integral of the picture as squares of colour. It does not alias like
+//! nearest or bilinear sampling, and thin lines keep their weight.
 //!
-//! **Enlargement**: bilinear between pixel centres, the border pixel continued outwards.
+//! **Enlargement**: bilinear between pixel centres; the border pixel continues outwards.
 //!
-//! Both are products of a row and a column rule, so each axis is a list of taps: the first source pixel and the
-//! weights from there on. [`resize`] chooses the rule for each axis by itself. [`reduce`] keeps the factor exact where
-//! it does not divide the size: a point p of the picture lies at p / factor in the result, and the last pixel is the
-//! mean of the part of its area that lies in the picture.
+//! Both are products of a row rule and a column rule. Each axis is therefore a list of taps: the first source pixel and
+//! the weights from there on. [`resize`] chooses the rule separately for each axis. [`reduce`] keeps the factor exact
+//! even if it does not divide the size: a point p of the picture is at p / factor in the result, and the last pixel is
+//! the mean of the part of its area inside the picture.
 
 use super::pixel::Pixel;
 use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
 use rototoon_base::numeric::vector::vectorised;
 use rototoon_base::scene::Raster;
 
-/// How one axis is resampled: for each pixel of the result its first source pixel and the weights from there on.
+/// The resampling of one axis: for each pixel of the result its first source pixel and the weights from there on.
 struct Axis {
     starts: Vec<usize>,
     offsets: Vec<usize>,
@@ -34,7 +34,7 @@ impl Axis {
         self.offsets.push(self.weights.len());
     }
 
-    /// `len` pixels, each `factor` source pixels wide; `factor` at least 1.
+    /// `len` pixels, each `factor` source pixels wide; `factor` is at least 1.
     fn area(source: usize, len: usize, factor: f64) -> Self {
         let mut axis = Self::with_capacity(len);
         for i in 0..len {
@@ -43,7 +43,7 @@ impl Axis {
             let first = from.floor() as usize;
             let last = (to.ceil() as usize).clamp(first + 1, source);
             let cover = |j: usize| (to.min((j + 1) as f64) - from.max(j as f64)).max(0.0);
-            // A sliver that rounding alone made would cost a tap.
+            // A sliver that comes from rounding only would cost a tap.
             let last = if last - first > 1 && cover(last - 1) < 1e-9 { last - 1 } else { last };
             let total: f64 = (first..last).map(cover).sum();
             axis.push(first, (first..last).map(|j| (cover(j) / total) as f32));
@@ -51,7 +51,7 @@ impl Axis {
         axis
     }
 
-    /// `len` pixels of a larger picture, read between the centres of the source pixels.
+    /// `len` pixels of a larger picture, interpolated between the centres of the source pixels.
     fn bilinear(source: usize, len: usize) -> Self {
         let mut axis = Self::with_capacity(len);
         for i in 0..len {
@@ -64,7 +64,7 @@ impl Axis {
         axis
     }
 
-    /// Area or bilinear, whichever the sizes ask for.
+    /// Area reduction or bilinear enlargement, depending on the sizes.
     fn between(source: usize, len: usize) -> Self {
         if len <= source { Self::area(source, len, source as f64 / len as f64) } else { Self::bilinear(source, len) }
     }
@@ -79,7 +79,7 @@ impl Axis {
 }
 
 /// The picture at `width` × `height` pixels: the mean of the area along an axis that shrinks, bilinear along one that
-/// grows. Empty where either size is 0.
+/// grows. The result is empty where either size is 0.
 pub fn resize<T: Pixel>(picture: &Raster<T>, width: usize, height: usize) -> Raster<T> {
     if picture.data().is_empty() || width == 0 || height == 0 {
         return Raster::new(0, 0, T::ZERO);
@@ -90,8 +90,8 @@ pub fn resize<T: Pixel>(picture: &Raster<T>, width: usize, height: usize) -> Ras
     resample(picture, &Axis::between(picture.width(), width), &Axis::between(picture.height(), height))
 }
 
-/// The picture reduced by `factor`, at least 1, along both axes: ⌈width / factor⌉ × ⌈height / factor⌉ pixels. A point p
-/// of the picture lies at exactly p / `factor`. A factor that is not above 1 gives the picture itself.
+/// The picture reduced by `factor` along both axes: ⌈width / factor⌉ × ⌈height / factor⌉ pixels. A point p of the
+/// picture is at exactly p / `factor`. A factor of 1 or less, or NaN, gives the picture itself.
 pub fn reduce<T: Pixel>(picture: &Raster<T>, factor: f64) -> Raster<T> {
     if factor.is_nan() || factor <= 1.0 || picture.data().is_empty() {
         return picture.clone();
@@ -101,7 +101,7 @@ pub fn reduce<T: Pixel>(picture: &Raster<T>, factor: f64) -> Raster<T> {
     resample(picture, &Axis::area(picture.width(), width, factor), &Axis::area(picture.height(), height, factor))
 }
 
-/// Columns first, since what they leave is smaller: a row of the result needs no intermediate picture.
+/// Sums columns first. A row of the result then needs no intermediate picture.
 fn resample<T: Pixel>(picture: &Raster<T>, columns: &Axis, rows: &Axis) -> Raster<T> {
     let mut out = Raster::new(columns.len(), rows.len(), T::ZERO);
     let scratch = || vec![T::ZERO; picture.width()];
@@ -137,7 +137,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The area a cell [x0, x1) × [y0, y1) shares with each source pixel, summed.
+    /// The mean over a cell [x0, x1) × [y0, y1), from the area that it shares with each source pixel.
     fn mean_of_area(picture: &Raster<f32>, x: [f64; 2], y: [f64; 2]) -> f64 {
         let (mut sum, mut area) = (0.0, 0.0);
         for j in 0..picture.height() {

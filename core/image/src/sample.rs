@@ -1,14 +1,15 @@
 //! Bilinear reading at points between pixels, with derivatives.
 //!
-//! Points are picture coordinates: the centre of the top-left pixel is (0.5, 0.5). Between centres the value is
-//! bilinear; beyond the outermost centres the border continues unchanged, so the value is defined and continuous on
-//! the whole plane.
+//! Points are picture coordinates: the centre of the top left pixel is (0.5, 0.5). Between centres the value is
+//! bilinear. Beyond the outermost centres the border continues unchanged. The value is therefore defined and continuous
+//! on the complete plane.
 //!
-//! The derivative is that of this very function, not a filtered gradient, so that a solver that checks its step
-//! against the value never finds them at odds. It is constant across a cell in its own direction, jumps on the lines
-//! through pixel centres (there it is the one towards larger coordinates), and is zero where the border continues.
+//! The derivative is that of this function, not a filtered gradient. A solver that compares its step with the value
+//! therefore never finds a contradiction. The derivative by x does not change along x within a cell, nor that by y
+//! along y. It jumps on the lines through pixel centres, where it is the one towards larger coordinates. It is zero
+//! where the border continues.
 //!
-//! Limits: a point with a coordinate that is not a number reads as not a number.
+//! Limits: a point with a NaN coordinate reads as NaN.
 
 use super::pixel::Pixel;
 use rototoon_base::geometry::Point;
@@ -17,7 +18,7 @@ use rototoon_base::scene::Raster;
 /// A value and its derivatives by x and y, per pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slope<T> {
-    /// What [`read`] gives.
+    /// The value that [`read`] returns.
     pub value: T,
     /// Derivative by x.
     pub dx: T,
@@ -25,7 +26,7 @@ pub struct Slope<T> {
     pub dy: T,
 }
 
-/// Where a coordinate falls on an axis.
+/// The position of a coordinate on an axis.
 struct Place {
     low: usize,
     high: usize,
@@ -47,7 +48,11 @@ fn place(coordinate: f64, len: usize) -> Place {
     }
 }
 
-/// The value at `point`. Panics where the picture is empty.
+/// The value at `point`, in picture coordinates.
+///
+/// # Panics
+///
+/// If the picture is empty.
 #[inline]
 pub fn read<T: Pixel>(picture: &Raster<T>, point: Point) -> T {
     let (x, y) = (place(point.x, picture.width()), place(point.y, picture.height()));
@@ -60,7 +65,11 @@ pub fn read<T: Pixel>(picture: &Raster<T>, point: Point) -> T {
         .plus(u * v, bottom[x.high])
 }
 
-/// The value at `point` and its derivatives. Panics where the picture is empty.
+/// The value at `point`, in picture coordinates, and its derivatives.
+///
+/// # Panics
+///
+/// If the picture is empty.
 #[inline]
 pub fn read_slope<T: Pixel>(picture: &Raster<T>, point: Point) -> Slope<T> {
     let (x, y) = (place(point.x, picture.width()), place(point.y, picture.height()));
@@ -87,7 +96,7 @@ mod tests {
     proptest! {
         #[test]
         fn slope_is_the_difference_of_values(picture in pictures(), x in -3.0f64..12.0, y in -3.0f64..12.0) {
-            // Differences across a line of pixel centres would see two slopes.
+            // Differences across a line of pixel centres would mix two slopes.
             let h = 1e-2;
             let clear = |c: f64| ((c - 0.5).rem_euclid(1.0) - 0.5).abs() < 0.5 - 2.0 * h;
             prop_assume!(clear(x) && clear(y));

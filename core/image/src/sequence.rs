@@ -1,9 +1,9 @@
-//! The pictures of a footage, decoded when they are asked for and kept for a while.
+//! The pictures of a footage, decoded on demand, with a cache.
 //!
-//! Trackers ask for the same few frames again and again, and a sequence does not fit into memory: the pictures used
-//! last stay, up to a number of bytes. What a caller gets does not depend on what was kept. Decoding happens outside
-//! the lock, so that several threads decode at once; two that want the same picture at the same moment may both decode
-//! it, which costs time but can never deadlock within a pool of threads.
+//! Trackers read the same few frames again and again, but a complete sequence does not fit into memory. The most
+//! recently used pictures are therefore kept, up to a number of bytes. The result does not depend on what was kept.
+//! Decoding happens outside the lock, so several threads decode at the same time. Two threads that need the same
+//! picture at the same moment may both decode it. That costs time, but it cannot deadlock within a pool of threads.
 
 use super::decode::{DecodeError, decode, decode_layer};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Bytes of pictures that a sequence keeps unless told otherwise.
+/// Default limit of the bytes of pictures that a sequence keeps.
 pub const KEPT_BYTES: usize = 256 << 20;
 
 /// A footage whose pictures are read from files.
@@ -25,12 +25,20 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// The footage of a document that lies in `folder`. Reads no file. An error if the pattern is none.
+    /// The footage of a document in `folder`. No file is read.
+    ///
+    /// # Errors
+    ///
+    /// A file name pattern that is not valid.
     pub fn new(footage: &Footage, folder: &Path) -> Result<Self, PatternError> {
         Self::keeping(footage, folder, KEPT_BYTES)
     }
 
-    /// As [`Sequence::new`], keeping pictures of at most `bytes` bytes; 0 keeps none.
+    /// As [`Sequence::new`], with at most `bytes` bytes of pictures kept; 0 keeps none.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Sequence::new`].
     pub fn keeping(footage: &Footage, folder: &Path, bytes: usize) -> Result<Self, PatternError> {
         let pattern = FramePattern::parse(&footage.pattern)?;
         let kept = Mutex::new(Kept { most: bytes, ..Kept::default() });
@@ -47,20 +55,23 @@ impl Sequence {
         &self.folder
     }
 
-    /// Where a frame's file should be.
+    /// The path of a frame's file.
     pub fn path(&self, frame: FrameNumber) -> PathBuf {
         self.folder.join(self.pattern.path(frame))
     }
 
-    /// Decodes frames in parallel, in their order; all pictures are in memory at once. Of several errors the one of the
-    /// earliest frame in the list.
+    /// Decodes frames in parallel and returns them in the given order. All pictures are in memory at once.
+    ///
+    /// # Errors
+    ///
+    /// Of several errors, that of the first frame in the list.
     pub fn pictures(&self, frames: &[FrameNumber]) -> Result<Vec<Arc<Raster<Colour>>>, FrameError> {
         let results: Vec<_> = frames.par_iter().map(|&frame| self.picture(frame)).collect();
         results.into_iter().collect()
     }
 
-    /// Decodes frames in parallel so that they are at hand, in their order as many as are kept. Errors are not told:
-    /// who asks for the frame will meet them.
+    /// Decodes frames in parallel into the cache: from the start of the list, as many as the cache can keep. Errors are
+    /// not reported; a caller gets them when it reads the frame.
     pub fn prefetch(&self, frames: &[FrameNumber]) {
         let bytes = (self.footage.width * self.footage.height * size_of::<Colour>()).max(1);
         let most = self.locked().most / bytes;
@@ -69,18 +80,22 @@ impl Sequence {
         });
     }
 
-    /// Forgets the pictures kept, since files may have changed.
+    /// Empties the cache, because files may have changed.
     pub fn forget(&self) {
         let mut kept = self.locked();
         *kept = Kept { most: kept.most, ..Kept::default() };
     }
 
-    /// A thread that panicked leaves the pictures as they should be: nothing panics between two changes.
+    /// A thread that panicked cannot leave the cache inconsistent, because nothing panics between two changes of it.
     fn locked(&self) -> std::sync::MutexGuard<'_, Kept> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A frame with its transparency, as [`decode_layer`] gives it; it is not kept.
+    /// A frame with its transparency, as [`decode_layer`] returns it. It is not cached.
+    ///
+    /// # Errors
+    ///
+    /// A frame outside the footage; a file that does not exist, cannot be read or has another size.
     pub fn layer(&self, frame: FrameNumber) -> Result<Raster<[f32; 4]>, FrameError> {
         self.inside(frame)?;
         self.read(frame, decode_layer)
@@ -120,10 +135,10 @@ impl FrameSource for Sequence {
     }
 }
 
-/// The pictures used last.
+/// The most recently used pictures.
 #[derive(Debug, Default)]
 struct Kept {
-    /// Each with the time of its last use.
+    /// Each picture with the time of its last use.
     pictures: BTreeMap<FrameNumber, (Arc<Raster<Colour>>, u64)>,
     bytes: usize,
     most: usize,
@@ -138,7 +153,8 @@ impl Kept {
         Some(picture.clone())
     }
 
-    /// Keeps a picture; those that were not used for longest make room. One that is too large by itself is not kept.
+    /// Caches a picture. The pictures unused for the longest time make room. A picture that is too large by itself is
+    /// not kept.
     fn put(&mut self, frame: FrameNumber, picture: &Arc<Raster<Colour>>) {
         let bytes = |picture: &Raster<Colour>| size_of_val(picture.data());
         let own = bytes(picture);
@@ -162,7 +178,7 @@ mod tests {
     use image::{ImageBuffer, Rgb};
     use tempfile::TempDir;
 
-    /// Frames 1 to 6 of 4 × 3 pixels, each of a grey of its own.
+    /// Frames 1 to 6 of 4 × 3 pixels, each with a different grey.
     fn footage() -> (TempDir, Footage) {
         let folder = tempfile::tempdir().unwrap();
         for frame in 1..=6u8 {
@@ -209,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn prefetch_stops_at_what_is_kept() {
+    fn prefetch_stops_at_the_limit_of_the_cache() {
         let (folder, footage) = footage();
         let sequence = Sequence::keeping(&footage, folder.path(), 2 * BYTES).unwrap();
         sequence.prefetch(&[4, 9, 2, 3]);
@@ -241,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn an_absolute_pattern_forgets_the_folder() {
+    fn an_absolute_pattern_ignores_the_folder() {
         let (folder, footage) = footage();
         let pattern = folder.path().join("f%03d.png").to_str().unwrap().to_owned();
         let sequence = Sequence::new(&Footage { pattern, ..footage }, Path::new("elsewhere")).unwrap();

@@ -1,6 +1,6 @@
-//! Mattes of twelve moving parts as the OpenFX plugin draws them, in full HD on one thread.
+//! Time of the mattes of twelve moving parts as the OpenFX plugin draws them, in full HD on one thread.
 //!
-//! Aims: 8 ms a frame, 60 ms with motion blur of 16 samples; growth with pixels and points linear.
+//! Targets: 8 ms per frame, 60 ms with motion blur of 16 samples, and linear growth with pixels and points.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use rototoon_base::geometry::Point;
@@ -8,7 +8,7 @@ use rototoon_render::coverage::Window;
 use rototoon_render::mask::Mask;
 use std::hint::black_box;
 
-/// Twelve limbs of a figure that fills the picture, overlapping, at a time in frames.
+/// Twelve overlapping limbs of a figure that fills the picture, at a time in frames.
 fn parts(width: f64, height: f64, points: usize, time: f64) -> Vec<Vec<Point>> {
     let part = |index: usize| {
         let middle =
@@ -41,7 +41,7 @@ fn mattes(bench: &mut Criterion) {
         ("12 parts of 2400 points", 2400, 1, 0.0, 0.0),
     ] {
         group.bench_function(name, |bench| {
-            // The outlines are prepared once a frame too.
+            // The plugin also prepares the outlines once per frame.
             bench.iter(|| {
                 let (mask, window) = mask(1920, 1080, points, samples, grow, feather);
                 black_box(mask.draw(window, &mut || true))

@@ -1,4 +1,4 @@
-//! Snapping of a 1920×1080 drawing: twelve outlined discs, sixteen control points each.
+//! Time of snapping on a 1920×1080 drawing: twelve outlined discs with sixteen control points each.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use rototoon_base::geometry::Point;

@@ -1,10 +1,10 @@
 //! Time of one Levenberg–Marquardt iteration on the space-time energy of a part.
 //!
-//! An iteration is what the minimiser does for a step that is taken: residuals and Jacobian, normal equations, Cholesky
-//! factor, solution, residuals at the new place. The symbolic analysis is done once, outside.
+//! An iteration is the work of the minimiser for an accepted step: residuals and Jacobian, normal equations, Cholesky
+//! factor, solution, residuals at the new place. The symbolic analysis is done once and is not measured.
 //!
-//! With `ROTOTOON_DUMP=FOLDER` set, the damped normal equations of each size are written there in MatrixMarket form, for
-//! `tests/bench_scipy.py` to solve.
+//! With `ROTOTOON_DUMP=FOLDER` set, the damped normal equations of each size are written to that folder in MatrixMarket
+//! form. `tests/bench_scipy.py` solves them.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use rototoon_base::geometry::Point;
@@ -17,10 +17,10 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
-/// Damping of the matrices: what the minimiser starts with.
+/// Damping of the matrices: the start value of the minimiser.
 const DAMPING: f64 = 1e-3;
 
-/// A blob of `points` points that wanders and breathes over `frames` frames, its true outline drawn as the edge.
+/// A blob of `points` points that moves and changes its shape over `frames` frames. Its true outline is the edge.
 fn problem(frames: usize, points: usize) -> Energy {
     let layout = Layout::new(frames, points, true);
     let outline = |frame: f64, j: usize, wobble: f64| {
@@ -51,7 +51,7 @@ fn problem(frames: usize, points: usize) -> Energy {
     })
 }
 
-/// The minimiser's pieces, ready for an iteration.
+/// The parts of the minimiser, prepared for an iteration.
 struct Iteration {
     energy: Energy,
     x: Vec<f64>,
@@ -95,7 +95,8 @@ impl Iteration {
         self.residuals.iter().map(|r| r * r).sum()
     }
 
-    /// Lower triangle of the whole matrix, long rows included, and the right-hand side as a comment line of numbers.
+    /// Writes the lower triangle of the complete matrix, long rows included, with the right-hand side as a comment line
+    /// of numbers.
     fn dump(&mut self, path: &Path) -> std::io::Result<()> {
         self.assemble();
         let mut entries = BTreeMap::new();

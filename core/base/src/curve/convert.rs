@@ -3,10 +3,10 @@
 //! **Out.** The pieces of a spline are quadratic Bézier curves. A quadratic p0, p1, p2 is the same curve as the cubic
 //! whose inner control points are a third of the way from p1 to the ends (degree elevation).
 //!
-//! **Cubic to quadratics.** Take a cubic c0 … c3 and the quadratic with the same ends and the middle control point (3
-//! c1 + 3 c2 − c0 − c3)/4. They differ by (c3 − 3 c2 + 3 c1 − c0) u(u − ½)(u − 1). The factor in u is at most √3/36
-//! (Sederberg, *Computer Aided Geometric Design*, §2). The third difference of n equal parts falls as n⁻³. So n =
-//! ⌈∛(√3/36 · |third difference| / tolerance)⌉ parts keep the tolerance at each parameter. The parts join exactly in
+//! **Cubic to quadratics.** Take a cubic c0 … c3 and the quadratic with the same ends and the middle control point
+//! (3 c1 + 3 c2 − c0 − c3)/4. They differ by (c3 − 3 c2 + 3 c1 − c0) u(u − ½)(u − 1). The factor in u is at most √3/36
+//! (Sederberg, *Computer Aided Geometric Design*, §2). The third difference of n equal parts falls as n⁻³. So
+//! n = ⌈∛(√3/36 · |third difference| / tolerance)⌉ parts keep the tolerance at each parameter. The parts join exactly in
 //! position, but not exactly in direction: the middle control points of equal parts are on the tangents of the cubic
 //! only up to third order.
 //!

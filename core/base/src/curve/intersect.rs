@@ -2,8 +2,8 @@
 //!
 //! **Boxes first.** Pieces with separate boxes do not meet.
 //!
-//! **The quartic.** For X on the piece p0 + 2b v + a v², the cross products with a and b isolate v and v²: a × (X − p0)
-//! = 2D v and b × (X − p0) = −D v², with D = a × b. So the parabola is the set of X with
+//! **The quartic.** For X on the piece p0 + 2b v + a v², the cross products with a and b isolate v and v²:
+//! a × (X − p0) = 2D v and b × (X − p0) = −D v², with D = a × b. So the parabola is the set of X with
 //!
 //! (a × (X − p0))² + 4 D (b × (X − p0)) = 0.
 //!

@@ -1,7 +1,7 @@
 //! Curves made of parabolas: uniform quadratic B-splines and their pieces.
 //!
-//! A drawn line is stored as a [`Spline`] with guiding points G_i. The curve passes through their midpoints P_i =
-//! (G_{i−1} + G_i)/2, tangent to the polygon of the guiding points. Between two midpoints it is the parabola
+//! A drawn line is stored as a [`Spline`] with guiding points G_i. The curve passes through their midpoints
+//! P_i = (G_{i−1} + G_i)/2, tangent to the polygon of the guiding points. Between two midpoints it is the parabola
 //! ([`Quadratic`] Bézier piece) P_i, G_i, P_{i+1} (Yang et al. 1986, eq. 3 and 4). Parabolas are used because most
 //! questions of animation have a closed answer for them: length, area, box, nearest point, crossings.
 //!

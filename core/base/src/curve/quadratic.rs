@@ -1,8 +1,8 @@
 //! A piece of a parabola as a quadratic Bézier curve.
 //!
-//! B(u) = (1−u)² p0 + 2u(1−u) p1 + u² p2 = p0 + 2b u + a u², with b = p1 − p0 and a = p0 − 2p1 + p2. Then B′ = 2(b + a
-//! u) and B″ = 2a. The vector a is the direction of the parabola's axis. |a × b| is twice the area of the control
-//! triangle and vanishes where the piece is straight.
+//! B(u) = (1−u)² p0 + 2u(1−u) p1 + u² p2 = p0 + 2b u + a u², with b = p1 − p0 and a = p0 − 2p1 + p2. Then
+//! B′ = 2(b + a u) and B″ = 2a. The vector a is the direction of the parabola's axis. |a × b| is twice the area of the
+//! control triangle and vanishes where the piece is straight.
 //!
 //! **Box.** A coordinate is extreme at an end or where its derivative vanishes, at u = −b/a.
 //! **Area.** ½∫ B × B′ du is the integral of a polynomial. The area between the piece and its chord is two thirds of

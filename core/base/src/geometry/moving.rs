@@ -32,7 +32,7 @@ impl<'a> Moving<'a> {
     ///
     /// If the numbers of points differ.
     pub fn new(from: &'a [Point], to: &'a [Point], closed: bool) -> Self {
-        assert_eq!(from.len(), to.len(), "a line is deformed to one of as many points");
+        assert_eq!(from.len(), to.len(), "both lines must have the same number of points");
         Self { from, to, closed }
     }
 

@@ -26,7 +26,7 @@ impl Similarity {
     ///
     /// If the numbers of points differ.
     pub fn fit(from: &[Point], to: &[Point]) -> Self {
-        assert_eq!(from.len(), to.len(), "a similarity is fitted to pairs of points");
+        assert_eq!(from.len(), to.len(), "both sets must have the same number of points");
         let (source, target) = (super::polygon::center(from), super::polygon::center(to));
         let mut numerator = Point::ZERO;
         let mut denominator = 0.0;

@@ -1,14 +1,15 @@
 //! Dense optical flow by inverse search.
 //!
-//! From coarse to fine: every patch of the first picture, on a grid that overlaps, looks for its place in the second by
-//! gradient descent, starting from the coarser level's flow or from a neighbour's, whichever fits better; the patches'
-//! shifts are blended into a dense field, each weighted by how well it explains the pixel; a variational step then
-//! smooths the field where the pictures say little and keeps it where they say much.
+//! The search runs from coarse to fine. On each level, overlapping patches of the first picture on a grid search their
+//! places in the second one by gradient descent. Each starts from the coarser level's flow or from a neighbour's,
+//! whichever fits better. The patches' shifts are blended into a dense field; each is weighted by how well it explains
+//! the pixel. A variational step then smooths the field where the pictures carry little information, and keeps it where
+//! they carry much.
 //!
 //! Source: Kroeger, Timofte, Dai & Van Gool, "Fast Optical Flow using Dense Inverse Search" (2016): patches §2.1,
-//! densification eq. 3, parameters of the second operating point; refinement in `refine`.
+//! densification eq. 3, parameters of the second operating point. The refinement is in [`refine`].
 //!
-//! Limits: luma only; movements of more than about twice a patch at the coarsest level are not found.
+//! Limits: luma only. Movements of more than about twice a patch at the coarsest level are not found.
 
 mod patches;
 mod plane;
@@ -21,20 +22,21 @@ use rototoon_base::numeric::vector::vectorised;
 use rototoon_base::scene::Raster;
 use std::ops::{Add, Mul};
 
-/// Shift of each pixel, in pixels, from the first picture to the second: x, y.
+/// Shift of each pixel from the first picture to the second: x, y in pixels.
 pub type Flow = Raster<[f32; 2]>;
 
-/// Smallest side of a picture that the search works on: below it the patches would cover most of the picture.
+/// Smallest side of a picture in the search. Below it the patches would cover most of the picture.
 const SMALLEST: usize = 16;
 
-/// A picture in halves of its size, ready for the flow to or from it: made once, it serves all the pictures beside it.
+/// A picture at halved sizes, prepared for the flow from it or to it. It is computed once and serves for all
+/// neighbouring pictures.
 pub struct Pyramid {
     /// From fine to coarse.
     levels: Vec<Level>,
 }
 
 impl Pyramid {
-    /// Of luma of 0 to 1.
+    /// The pyramid of a luma picture, 0 to 1.
     pub fn new(luma: &Raster<f32>) -> Self {
         vectorised(
             #[inline(always)]
@@ -51,21 +53,25 @@ impl Pyramid {
         Self { levels }
     }
 
-    /// Width and height of the picture.
+    /// Width and height of the picture in pixels.
     pub fn size(&self) -> (usize, usize) {
         let finest = &self.levels[0].luma;
         (finest.width(), finest.height())
     }
 
-    /// Bytes kept.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         self.levels.iter().map(Level::bytes).sum()
     }
 }
 
-/// Flow from `first` to `second`, pictures of one size.
+/// The flow from `first` to `second`.
+///
+/// # Panics
+///
+/// If the pictures differ in size.
 pub fn dense_flow(first: &Pyramid, second: &Pyramid) -> Flow {
-    assert_eq!(first.size(), second.size(), "pictures of one size");
+    assert_eq!(first.size(), second.size(), "the pictures must have the same size");
     vectorised(
         #[inline(always)]
         || coarse_to_fine(first, second),
@@ -84,7 +90,7 @@ fn coarse_to_fine(first: &Pyramid, second: &Pyramid) -> Flow {
     flow
 }
 
-/// Mean of 2×2 pixels; an odd last row or column is averaged with itself.
+/// Means of 2×2 pixels. An odd last row or column is averaged with itself.
 #[inline(always)]
 fn halved(picture: &Raster<f32>) -> Raster<f32> {
     let (width, height) = (picture.width().div_ceil(2), picture.height().div_ceil(2));
@@ -95,14 +101,14 @@ fn halved(picture: &Raster<f32>) -> Raster<f32> {
     })
 }
 
-/// The flow of a level at the next finer one: read bilinearly, twice as long.
+/// A level's flow at the next finer level: read bilinearly, with doubled shifts.
 #[inline(always)]
 fn doubled(flow: &Flow, width: usize, height: usize) -> Flow {
     let flow = flow.map(Vec2::from);
     Raster::from_fn(width, height, |x, y| (2.0 * read(&flow, x as f32 / 2.0 - 0.25, y as f32 / 2.0 - 0.25)).to_array())
 }
 
-/// Bilinear reading at pixel-centre coordinates (a pixel's centre is an integer); clamped at the edges.
+/// Bilinear reading at coordinates in which pixel centres are integers; clamped at the edges.
 #[inline(always)]
 fn read<T: Copy + Add<Output = T>>(raster: &Raster<T>, x: f32, y: f32) -> T
 where
@@ -153,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn tiny_and_flat_pictures_are_no_trouble() {
+    fn tiny_and_flat_pictures_give_finite_flow() {
         for (width, height) in [(1, 1), (5, 40), (64, 1)] {
             let [first, second] = [0.5, 0.7].map(|grey| Pyramid::new(&Raster::new(width, height, grey)));
             let flow = dense_flow(&first, &second);

@@ -1,4 +1,4 @@
-//! Patches that search their place in the second picture, and the dense field blended from them.
+//! The patches that search their places in the second picture, and the dense field blended from them.
 
 use super::Flow;
 use super::plane::Plane;
@@ -8,13 +8,13 @@ use rototoon_base::scene::Raster;
 
 /// Side of a patch in pixels.
 const PATCH: usize = LANES;
-/// Pixels by which a picture is continued, enough for a patch that lies beside it and its next neighbours.
+/// Number of pixels by which a picture is continued: enough for a patch beside the picture and its next neighbours.
 const BEYOND: usize = PATCH + 1;
 /// Distance between neighbouring patches in pixels.
 const STRIDE: usize = 4;
-/// Steps of gradient descent of a patch at the most.
+/// Largest number of shifts that the gradient descent of a patch tries, including the start.
 const STEPS: usize = 16;
-/// A patch that strays further than this from its start has lost its way, in pixels.
+/// A patch that moves farther than this from its start, in pixels, is lost.
 const FURTHEST: f32 = 8.0;
 
 /// The rows of a patch.
@@ -25,7 +25,7 @@ pub(super) struct Level {
     pub luma: Raster<f32>,
     pub plane: Plane,
     pub slopes: [Plane; 2],
-    /// Luma, its derivatives, and nothing.
+    /// Luma, its two derivatives, and 0.
     pub together: Raster<Vec4>,
     /// Luma, continued beyond the edges by [`BEYOND`] pixels.
     wide: Raster<f32>,
@@ -56,16 +56,16 @@ impl Level {
         Self { luma, plane, slopes, together, wide }
     }
 
-    /// Bytes kept.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         let planes: usize = std::iter::once(&self.plane).chain(&self.slopes).map(Plane::bytes).sum();
         planes + size_of_val(self.luma.data()) + size_of_val(self.wide.data()) + size_of_val(self.together.data())
     }
 
-    /// Bilinear luma of a patch whose first pixel is at pixel-centre coordinates.
+    /// Bilinear luma of a patch. Its first pixel is at (`x`, `y`), in coordinates in which pixel centres are integers.
     #[inline(always)]
     fn patch_at(&self, x: f32, y: f32) -> Rows {
-        // Further out nothing changes any more.
+        // Farther out nothing changes.
         let within = |at: f32, count: usize| (at + BEYOND as f32).clamp(0.0, (count + BEYOND) as f32);
         let (x, y) = (within(x, self.luma.width()), within(y, self.luma.height()));
         let (x0, y0) = (x as i32 as usize, y as i32 as usize);
@@ -80,7 +80,7 @@ impl Level {
         patch
     }
 
-    /// Pixels of a row from `x` on, each mixed with the next one.
+    /// Pixels of a row from `x` on, each mixed with the next one by `share`.
     #[inline(always)]
     fn between(&self, x: usize, y: usize, share: f32) -> Lanes {
         let row = &self.wide.row(y)[x..=x + PATCH];
@@ -88,12 +88,12 @@ impl Level {
     }
 }
 
-/// A patch of the first picture: luma without its mean, derivatives, and the inverse of their moment matrix.
+/// A patch of the first picture: luma without its mean, its derivatives, and the inverse of their moment matrix.
 struct Patch {
     x: usize,
     y: usize,
     luma: Rows,
-    /// Along x and along y.
+    /// Derivatives along x and along y.
     gradient: [Rows; 2],
     inverse: [f32; 3],
 }
@@ -103,13 +103,13 @@ impl Patch {
     fn new(level: &Level, x: usize, y: usize) -> Self {
         let count = (PATCH * PATCH) as f32;
         let mut luma = cut(&level.plane, x, y);
-        // Differences of mean-free patches have mean-free derivatives.
+        // The derivatives of differences between mean-free patches are mean-free.
         let mut gradient = [cut(&level.slopes[0], x, y), cut(&level.slopes[1], x, y)];
         for rows in std::iter::once(&mut luma).chain(&mut gradient) {
             let mean = Lanes::splat(total(rows) / count);
             rows.iter_mut().for_each(|row| *row = *row - mean);
         }
-        // The ridge (of a contrast of one grey step in 8 bits) keeps flat patches where they are.
+        // The ridge (a contrast of one grey step of 8 bits) keeps flat patches where they are.
         let ridge = count * (1.0 / 255.0f32).powi(2);
         let [gx, gy] = &gradient;
         let (xx, xy, yy) = (total(&product(gx, gx)) + ridge, total(&product(gx, gy)), total(&product(gy, gy)) + ridge);
@@ -117,7 +117,7 @@ impl Patch {
         Self { x, y, luma, gradient, inverse: [yy / determinant, -xy / determinant, xx / determinant] }
     }
 
-    /// The difference to the second picture at shift `u`, without its mean, and its mean square.
+    /// The difference from the second picture at shift `u`, without its mean, and its mean square.
     #[inline(always)]
     fn difference(&self, second: &Level, u: [f32; 2]) -> (Rows, f32) {
         let mut d = second.patch_at(self.x as f32 + u[0], self.y as f32 + u[1]);
@@ -156,17 +156,17 @@ impl Patch {
     }
 }
 
-/// Where a patch has come to.
+/// The place that a patch found.
 #[derive(Clone, Copy)]
 struct Found {
     shift: [f32; 2],
     /// Mean square difference there.
     square: f32,
-    /// Whether descending further leads nowhere.
+    /// Whether further descent cannot improve it.
     settled: bool,
 }
 
-/// The pixels of a plane below a patch; beyond the edge those that are nearest to it.
+/// The pixels of a plane under a patch. Beyond the edge the nearest pixels are repeated.
 #[inline(always)]
 fn cut(plane: &Plane, x: usize, y: usize) -> Rows {
     let mut rows = [Lanes::splat(0.0); PATCH];
@@ -176,7 +176,7 @@ fn cut(plane: &Plane, x: usize, y: usize) -> Rows {
     rows
 }
 
-/// Pixel by pixel.
+/// The product of two patches, pixel by pixel.
 #[inline(always)]
 fn product(a: &Rows, b: &Rows) -> Rows {
     let mut product = *a;
@@ -186,7 +186,7 @@ fn product(a: &Rows, b: &Rows) -> Rows {
     product
 }
 
-/// Sum over a patch, column by column first.
+/// Sum over a patch, first along the columns.
 #[inline(always)]
 fn total(patch: &Rows) -> f32 {
     let mut columns = Lanes::splat(0.0);
@@ -196,7 +196,7 @@ fn total(patch: &Rows) -> f32 {
     columns.sum()
 }
 
-/// The dense flow of a level from the coarser level's, brought to this size.
+/// The dense flow of a level. `coarse` is the coarser level's flow, enlarged to this size.
 #[inline(always)]
 pub(super) fn search(first: &Level, second: &Level, coarse: &Flow) -> Flow {
     let (width, height) = (first.luma.width(), first.luma.height());
@@ -218,13 +218,14 @@ pub(super) fn search(first: &Level, second: &Level, coarse: &Flow) -> Flow {
     blend(first, second, &patches, &found)
 }
 
-/// Top-left corners of the patches along one side: they reach over the far edge, so that each pixel is covered.
+/// Top left corners of the patches along one axis. The patches reach over the far edge, so each pixel is covered.
 fn grid(count: usize) -> Vec<usize> {
     (0..count.saturating_sub(PATCH - STRIDE).max(1)).step_by(STRIDE).collect()
 }
 
-/// One pass over the patches in reading order (or from the end): each starts from its own shift or that of the two
-/// neighbours passed before, whichever fits best, and descends. From where it has settled before it need not.
+/// One pass over the patches in reading order or in reverse. Each patch starts from its own shift or from that of the
+/// two neighbours visited before, whichever fits best, and descends. A patch that has settled at the best start does
+/// not descend again.
 #[inline(always)]
 fn sweep(patches: &[Patch], second: &Level, found: &mut [Found], columns: usize, backwards: bool) {
     let count = patches.len();

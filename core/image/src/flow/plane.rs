@@ -1,9 +1,9 @@
-//! Values of a picture's pixels as a plane of its own, with a border, for loops that work on several neighbouring pixels
-//! at once.
+//! Planes of values for the pixels of a picture, with a border, for loops that process several neighbouring pixels at
+//! once.
 
 use rototoon_base::numeric::lanes::{LANES, Lanes};
 
-/// One value a pixel. A pixel lies around the picture on each side, and rows are filled up to whole [`LANES`].
+/// One value per pixel. A border of one pixel surrounds the picture, and rows are padded to complete [`LANES`].
 #[derive(Clone)]
 pub(super) struct Plane {
     width: usize,
@@ -13,18 +13,18 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// All zero.
+    /// A plane of zeros.
     pub fn zeros(width: usize, height: usize) -> Self {
         let stride = width.next_multiple_of(LANES) + 2;
         Self { width, height, stride, data: vec![0.0; stride * (height + 2)] }
     }
 
-    /// Bytes kept.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.data[..])
     }
 
-    /// Index of a pixel; -1 and the picture's size are the border.
+    /// The index of a pixel. −1 and the picture's size are the border.
     #[inline(always)]
     fn index(&self, x: isize, y: isize) -> usize {
         (y + 1) as usize * self.stride + (x + 1) as usize
@@ -36,7 +36,7 @@ impl Plane {
         Lanes::read(&self.data[self.index(x, y)..])
     }
 
-    /// The same; beyond the picture's edge the pixel that is nearest to it.
+    /// The same for pixels that may be beyond the edge of the picture, where the nearest pixel counts.
     #[inline(always)]
     pub fn clamped_lanes(&self, x: usize, y: usize) -> Lanes {
         let row = self.row(y.min(self.height - 1));
@@ -46,7 +46,7 @@ impl Plane {
         Lanes::from_fn(|v| row[(x + v).min(self.width - 1)])
     }
 
-    /// The same, to set.
+    /// Sets the values of [`LANES`] pixels of a row, from column `x` on.
     #[inline(always)]
     pub fn set_lanes(&mut self, x: usize, y: usize, values: Lanes) {
         let from = self.index(x as isize, y as isize);
@@ -59,14 +59,14 @@ impl Plane {
         &self.data[self.index(0, y as isize)..][..self.width]
     }
 
-    /// The pixels of row `y`, to change.
+    /// The pixels of row `y`, for writing.
     #[inline(always)]
     pub fn row_mut(&mut self, y: usize) -> &mut [f32] {
         let from = self.index(0, y as isize);
         &mut self.data[from..][..self.width]
     }
 
-    /// Gives the border the values of the pixels that it lies next to.
+    /// Copies the outermost pixels to the border.
     pub fn continue_border(&mut self) {
         let (width, height, stride) = (self.width, self.height, self.stride);
         for y in 1..=height {
@@ -79,11 +79,12 @@ impl Plane {
     }
 }
 
-/// One value a pixel, the two colours of a chequerboard apart: what changes together lies together, and so do the
-/// neighbours of it. A pixel of the border lies around.
+/// One value per pixel, with the two colours of a chequerboard stored separately. Values that change together are then
+/// next to each other, and so are their neighbours. A border of one pixel surrounds the picture.
 ///
-/// Row y of colour c has the pixels x = 2 k + p, where p = (y + c) mod 2. Their right and left neighbours are those of the
-/// other colour at k + p and k + p − 1 of the same row, the lower and the upper at k of the rows beside it.
+/// Row y of colour c has the pixels x = 2 k + p, where p = (y + c) mod 2. Their right and left neighbours have the
+/// other colour and are at k + p and k + p − 1 of the same row. The lower and upper neighbours are at k of the rows
+/// beside it.
 #[derive(Clone)]
 pub(super) struct Board {
     width: usize,
@@ -93,26 +94,27 @@ pub(super) struct Board {
 }
 
 impl Board {
-    /// All zero.
+    /// A board of zeros.
     pub fn zeros(width: usize, height: usize) -> Self {
         let stride = width.div_ceil(2).next_multiple_of(LANES) + 2;
         Self { width, height, stride, colours: [(); 2].map(|()| vec![0.0; stride * (height + 2)]) }
     }
 
-    /// Values of [`LANES`] pixels of a colour from the `k`-th of a row on; rows and pixels are counted from the border's.
+    /// Values of [`LANES`] pixels of a colour, from the `k`-th of a row on. Rows and pixels are counted from the
+    /// border.
     #[inline(always)]
     pub fn lanes(&self, colour: usize, k: usize, y: usize) -> Lanes {
         Lanes::read(&self.colours[colour][y * self.stride + k..])
     }
 
-    /// The same, to set.
+    /// Sets the values that [`Self::lanes`] reads.
     #[inline(always)]
     pub fn set_lanes(&mut self, colour: usize, k: usize, y: usize, values: Lanes) {
         values.write(&mut self.colours[colour][y * self.stride + k..]);
     }
 
-    /// Sets the values of [`LANES`] pixels of a row, from column `x` (a multiple of [`LANES`]) on; what lies beyond the
-    /// picture stays zero.
+    /// Sets the values of [`LANES`] pixels of a row, from column `x` (a multiple of [`LANES`]) on. Values beyond the
+    /// picture stay zero.
     #[inline(always)]
     pub fn set(&mut self, x: usize, y: usize, values: Lanes) {
         let whole = x + LANES <= self.width;
@@ -122,7 +124,7 @@ impl Board {
         self.colours[1 - y % 2][from..from + LANES / 2].copy_from_slice(&odd);
     }
 
-    /// Gives a plane of the same size its values.
+    /// Writes its values to a plane of the same size.
     #[inline(always)]
     pub fn join(&self, plane: &mut Plane) {
         for y in 0..self.height {

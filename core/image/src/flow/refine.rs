@@ -1,9 +1,11 @@
 //! Variational refinement of a dense flow.
 //!
-//! Minimises Σ ψ(brightness change) + γ ψ(gradient change) + α ψ(|∇u|² + |∇v|²) with ψ(s²) = √(s² + ε²), in which the
-//! picture terms are linearised at the given flow (one warp) and the weights ψ' are refitted between sweeps of
-//! successive over-relaxation. Source: Brox, Bruhn, Papenberg & Weickert, "High Accuracy Optical Flow Estimation Based
-//! on a Theory for Warping" (2004), eq. 4 and 5; the sweeps are red-black, so that their order is no matter.
+//! It minimises Σ ψ(brightness change) + γ ψ(gradient change) + α ψ(|∇u|² + |∇v|²) with ψ(s²) = √(s² + ε²). The picture
+//! terms are linearised at the given flow (one warp). The weights ψ' are refitted between sweeps of successive
+//! over-relaxation. The sweeps are red-black, so their order within a colour does not matter.
+//!
+//! Source: Brox, Bruhn, Papenberg & Weickert, "High Accuracy Optical Flow Estimation Based on a Theory for Warping"
+//! (2004), eq. 4 and 5.
 
 use super::Flow;
 use super::patches::Level;
@@ -11,19 +13,19 @@ use super::plane::{Board, Plane};
 use super::terms::Terms;
 use rototoon_base::numeric::lanes::{LANES, Lanes};
 
-/// Weight of smoothness (8-bit luma units).
+/// Weight α of the smoothness (for 8-bit luma).
 const SMOOTHNESS: f32 = 20.0;
-/// Weight of brightness constancy.
+/// Weight of the brightness term.
 const BRIGHTNESS: f32 = 5.0;
-/// Weight of gradient constancy.
+/// Weight of the gradient term.
 const GRADIENT: f32 = 10.0;
-/// Rounding of ψ at zero.
+/// Rounding ε of ψ at zero.
 const EPSILON: f32 = 0.001;
-/// Refits of the robust weights.
+/// Number of refits of the robust weights.
 const OUTER: usize = 5;
-/// Relaxation sweeps for each.
+/// Number of relaxation sweeps after each refit.
 const SWEEPS: usize = 5;
-/// Over-relaxation.
+/// Factor of over-relaxation.
 const RELAXATION: f32 = 1.6;
 
 /// Improves `flow` in place.
@@ -65,18 +67,18 @@ fn planes(flow: &Flow) -> [Plane; 2] {
     })
 }
 
-/// The equations of all pixels for their change of flow, and the flow that they change.
+/// The equations of all pixels for their change of flow, and the flow itself.
 struct Equations {
     width: usize,
     height: usize,
-    /// Weights of the links to the right and to the lower neighbour; 0 where there is none.
+    /// Weights of the links to the right neighbour and to the lower neighbour; 0 where there is none.
     links: [Board; 2],
     /// Picture terms: xy, and both right-hand sides.
     cross: Board,
     right: [Board; 2],
     /// Inverse of the diagonal.
     inverse: [Board; 2],
-    /// The flow at the start, and as it is now.
+    /// The flow at the start, and the present flow.
     from: [Board; 2],
     moved: [Board; 2],
 }
@@ -98,7 +100,7 @@ impl Equations {
         Self { width, height, links, cross, right, inverse, from: boards.clone(), moved: boards }
     }
 
-    /// Makes the equations, their robust weights those of the flow so far.
+    /// Builds the equations with the robust weights of the present flow.
     #[inline(always)]
     fn weigh(&mut self, terms: &Terms, from: &[Plane; 2], moved: &[Plane; 2]) {
         let (width, height) = (self.width, self.height);
@@ -122,7 +124,7 @@ impl Equations {
         }
     }
 
-    /// One relaxation of the pixels of a chequerboard's colour.
+    /// One relaxation of the pixels of one colour of the chequerboard.
     #[inline(always)]
     fn relax(&mut self, colour: usize) {
         let other = 1 - colour;
@@ -162,7 +164,7 @@ struct Near {
 }
 
 impl Near {
-    /// Of pixels of a board; `colour` is the neighbours'.
+    /// The values of a board at the neighbours; `colour` is that of the neighbours.
     #[inline(always)]
     fn of(board: &Board, (colour, k, row, shift): (usize, usize, usize, usize)) -> Self {
         Self {
@@ -173,7 +175,7 @@ impl Near {
         }
     }
 
-    /// Where neighbours pull by these weights, less the right-hand side.
+    /// The pull of the neighbours with these weights, minus the right-hand side.
     #[inline(always)]
     fn pull(&self, near: Near, here: Lanes, right_hand: Lanes) -> Lanes {
         -right_hand
@@ -184,7 +186,7 @@ impl Near {
     }
 }
 
-/// Sums of normal equations of some pixels.
+/// Sums of the normal equations of some pixels.
 struct Sums {
     xx: Lanes,
     xy: Lanes,
@@ -205,32 +207,33 @@ impl Sums {
     }
 }
 
-/// The terms of some pixels of one kind: the change, and its derivatives along x and y.
+/// One kind of term at some pixels: the change, and its derivatives along x and y.
 #[inline(always)]
 fn term([change, x_slope, y_slope]: &[Plane; 3], (x, y): (isize, isize)) -> [Lanes; 3] {
     [change.lanes(x, y), x_slope.lanes(x, y), y_slope.lanes(x, y)]
 }
 
-/// What is left of a change after the update, squared.
+/// The square of the change that remains after the update.
 #[inline(always)]
 fn rest([change, x, y]: &[Lanes; 3], du: Lanes, dv: Lanes) -> Lanes {
     let rest = *change + *x * du + *y * dv;
     rest * rest
 }
 
-/// Divided by the slope, a change counts as a distance: strong edges do not outweigh weak ones (Zimmer 2011).
+/// The factor that turns a change into a distance by its slope, so that strong edges do not outweigh weak ones (Zimmer
+/// 2011).
 #[inline(always)]
 fn flat([_, x, y]: &[Lanes; 3]) -> Lanes {
     Lanes::splat(1.0) / (*x * *x + *y * *y + Lanes::splat(0.01))
 }
 
-/// ψ'.
+/// The derivative ψ'.
 #[inline(always)]
 fn robust(square: Lanes) -> Lanes {
     Lanes::splat(1.0) / (square + Lanes::splat(EPSILON * EPSILON)).sqrt()
 }
 
-/// Robustly weighted normal equations of some pixels.
+/// Normal equations of some pixels with robust weights.
 #[inline(always)]
 fn normal_equations(Terms(terms): &Terms, at: (isize, isize), du: Lanes, dv: Lanes) -> Sums {
     let (brightness, gx, gy) = (term(&terms[0], at), term(&terms[1], at), term(&terms[2], at));
@@ -245,7 +248,7 @@ fn normal_equations(Terms(terms): &Terms, at: (isize, isize), du: Lanes, dv: Lan
     sums
 }
 
-/// Squared difference of the shifts of some pixels and of those at `to`.
+/// Squared difference between the shifts of some pixels and those at `to`.
 #[inline(always)]
 fn apart(moved: &[Plane; 2], (x, y): (isize, isize), to: (isize, isize)) -> Lanes {
     let u = moved[0].lanes(x, y) - moved[0].lanes(to.0, to.1);
@@ -253,7 +256,7 @@ fn apart(moved: &[Plane; 2], (x, y): (isize, isize), to: (isize, isize)) -> Lane
     u * u + v * v
 }
 
-/// Weight of the smoothness link of each pixel to its right and to its lower neighbour.
+/// Weights of the smoothness links of each pixel to its right and to its lower neighbour.
 #[inline(always)]
 fn link_weights(moved: &[Plane; 2], width: usize, height: usize) -> [Plane; 2] {
     let mut diffusivity = Plane::zeros(width, height);
@@ -284,7 +287,7 @@ fn link_weights(moved: &[Plane; 2], width: usize, height: usize) -> [Plane; 2] {
 mod tests {
     use super::*;
 
-    /// Some number for each pixel, 0 to 1.
+    /// An arbitrary number for each pixel, 0 to 1.
     fn plane(width: usize, height: usize, seed: usize) -> Plane {
         let mut plane = Plane::zeros(width, height);
         for y in 0..height {
@@ -331,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn the_colours_apart_are_relaxed_as_one_pixel_after_the_other() {
+    fn relaxation_by_colours_equals_relaxation_pixel_by_pixel() {
         for (width, height) in [(3, 3), (8, 5), (16, 4), (17, 9), (21, 6)] {
             let mut planes: [Plane; 9] = std::array::from_fn(|seed| plane(width, height, seed));
             (0..height).for_each(|y| planes[0].row_mut(y)[width - 1] = 0.0);

@@ -1,12 +1,12 @@
-//! What the pictures say of a pixel's flow, linearised.
+//! The picture terms of each pixel's flow, linearised.
 
 use super::Flow;
 use super::patches::Level;
 use super::plane::Plane;
 use rototoon_base::numeric::lanes::{LANES, Lanes};
 
-/// Brightness, x-gradient and y-gradient change at each pixel in 8-bit units, each linear in the update: value + x du +
-/// y dv. All zero where the shift leaves the picture.
+/// The change of brightness, x-gradient and y-gradient at each pixel, in 8-bit units. Each is linear in the update:
+/// value + x du + y dv. All are zero where the shift leaves the picture.
 pub(super) struct Terms(pub [[Plane; 3]; 3]);
 
 impl Terms {
@@ -34,7 +34,8 @@ impl Terms {
 #[inline(always)]
 fn linearised(own: [&Plane; 3], warped: &[Plane; 3], k: usize, (x, y): (isize, isize)) -> [Lanes; 3] {
     let (now, then) = (warped[k].lanes(x, y), 255.0 * own[k].lanes(x, y));
-    // Brightness has its derivative at hand; averaged with the first picture's it is second-order exact.
+    // The derivatives of brightness are known. Averaged with those of the first picture, they are exact to second
+    // order.
     let (along, down) = if k == 0 {
         let (then_along, then_down) = (255.0 * own[1].lanes(x, y), 255.0 * own[2].lanes(x, y));
         (warped[1].lanes(x, y) + then_along, warped[2].lanes(x, y) + then_down)
@@ -45,7 +46,8 @@ fn linearised(own: [&Plane; 3], warped: &[Plane; 3], k: usize, (x, y): (isize, i
     [now - then, 0.5 * along, 0.5 * down]
 }
 
-/// The second picture's luma and derivatives where the flow leads (8-bit units), and 1 where that is in the picture, else 0.
+/// The second picture's luma and derivatives at the places to which the flow leads (8-bit units), and a plane that is 1
+/// where this place is in the picture and 0 elsewhere.
 #[inline(always)]
 fn warp(second: &Level, flow: &Flow) -> ([Plane; 3], Plane) {
     let (width, height) = (flow.width(), flow.height());
@@ -55,7 +57,7 @@ fn warp(second: &Level, flow: &Flow) -> ([Plane; 3], Plane) {
         let (luma, along, down, inside) = (luma.row_mut(y), along.row_mut(y), down.row_mut(y), inside.row_mut(y));
         for (x, [u, v]) in flow.row(y).iter().enumerate() {
             let (px, py) = (x as f32 + u, y as f32 + v);
-            // A shift that leaves the picture has nothing to be compared with.
+            // A shift that leaves the picture has no value for comparison.
             let seen = px >= 0.0 && py >= 0.0 && px <= (width - 1) as f32 && py <= (height - 1) as f32;
             let values = 255.0 * super::read(&second.together, px, py);
             (luma[x], along[x], down[x]) = (values.x, values.y, values.z);

@@ -4,9 +4,9 @@
 //! between them shows both. A stroke that is drawn on a captured part then moves with that part, from the earlier key
 //! forwards and from the later key backwards:
 //!
-//! p(f) = (1 − u) W_{a→f}(p_a) + u W_{b→f}(p_b), u = (f − a) / (b − a),
+//! p(f) = (1 − u) W_{a→f}(p_a) + u W_{b→f}(p_b), u = (f − a) / (b − a).
 //!
-//! W maps the part's contour on one frame to its contour on another, and the plane around it too ([`Moving`]). On the
+//! Here W maps the part's contour on one frame to its contour on another, and the plane around it too ([`Moving`]). On the
 //! keys the result is the drawings themselves, with everything that they add to the contours. Between the keys these
 //! additions fade from those of one drawing into those of the other.
 //!

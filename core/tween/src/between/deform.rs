@@ -34,7 +34,7 @@ pub(super) struct Deform {
 impl Deform {
     /// The change from `from` to `to`, which must have the same number of points.
     pub fn new(from: &[Point], to: &[Point], closed: bool, rigid: bool) -> Self {
-        assert_eq!(from.len(), to.len(), "points are deformed to as many points");
+        assert_eq!(from.len(), to.len(), "the two shapes must have the same number of points");
         let (a, b) = (edges(from, closed), edges(to, closed));
         let turns = if rigid && from.len() > 2 { turns(&a, &b, closed) } else { None };
         let back = |(turn, (a, b)): (f64, (&Point, &Point))| (turn, *a, Point::from_angle(-turn).rotate(*b));

@@ -16,7 +16,7 @@ use super::{Fixed, Options};
 use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
 
-/// Step in radians of the proposed turns of the whole drawing.
+/// Step in radians of the proposed turns of the complete drawing.
 const TURN_STEP: f64 = std::f64::consts::PI / 12.0;
 /// Number of strokes on which movements are tried in a large drawing: the largest ones.
 const TRIED_ON: usize = 48;
