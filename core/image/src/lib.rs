@@ -11,11 +11,11 @@
 //! - [`flow`]: dense optical flow by inverse search
 //! - [`gaussian`]: separable blur
 //! - [`mean_shift`]: the filter that flattens colours and keeps edges
-//! - [`pixel`]: what a pixel is to the filters
+//! - [`pixel`]: the pixel types of the filters
 //! - [`pyramid`]: a picture at halved sizes
 //! - [`resize`]: area reduction and bilinear enlargement
 //! - [`sample`]: bilinear reading with derivatives
-//! - [`sequence`]: the pictures of a footage, decoded in parallel and kept for a while
+//! - [`sequence`]: the pictures of a footage, decoded in parallel, with a cache
 //!
 //! # Example
 //!
