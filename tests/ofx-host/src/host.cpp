@@ -363,10 +363,25 @@ private:
 
 // ---------------------------------------------------------------- the effect and the host
 
-class TestEffect : public fx::Instance {
+// Records the messages to the user.
+template <class Base> class Recording : public Base {
+public:
+  using Base::Base;
+  OfxStatus vmessage(const char *type, const char *, const char *format, va_list args) override {
+    say(type, format, args);
+    return kOfxStatOK;
+  }
+  OfxStatus setPersistentMessage(const char *type, const char *, const char *format, va_list args) override {
+    say(type, format, args);
+    return kOfxStatOK;
+  }
+  OfxStatus clearPersistentMessage() override { return kOfxStatOK; }
+};
+
+class TestEffect : public Recording<fx::Instance> {
 public:
   TestEffect(fx::ImageEffectPlugin *plugin, fx::Descriptor &descriptor, const std::string &context)
-      : Instance(plugin, descriptor, context, false) {}
+      : Recording(plugin, descriptor, context, false) {}
 
   std::atomic<double> scale{1};
 
@@ -383,15 +398,6 @@ public:
   fx::ClipInstance *newClipInstance(fx::Instance *, fx::ClipDescriptor *descriptor, int) override {
     return new TestClip(this, descriptor);
   }
-  OfxStatus vmessage(const char *type, const char *, const char *format, va_list args) override {
-    say(type, format, args);
-    return kOfxStatOK;
-  }
-  OfxStatus setPersistentMessage(const char *type, const char *, const char *format, va_list args) override {
-    say(type, format, args);
-    return kOfxStatOK;
-  }
-  OfxStatus clearPersistentMessage() override { return kOfxStatOK; }
   void getProjectSize(double &x, double &y) const override {
     TestClip *out = clip("Output");
     x = (out->settings.x2 - out->settings.x1) * out->settings.aspect, y = out->settings.y2 - out->settings.y1;
@@ -520,7 +526,7 @@ public:
 #endif
 };
 
-class TestHost : public fx::Host {
+class TestHost : public Recording<fx::Host> {
 public:
   TestHost() {
     _properties.setIntProperty(kOfxPropAPIVersion, 1, 0);
@@ -563,15 +569,6 @@ public:
   fx::Descriptor *makeDescriptor(const std::string &path, fx::ImageEffectPlugin *plugin) override {
     return new fx::Descriptor(path, plugin);
   }
-  OfxStatus vmessage(const char *type, const char *, const char *format, va_list args) override {
-    say(type, format, args);
-    return kOfxStatOK;
-  }
-  OfxStatus setPersistentMessage(const char *type, const char *, const char *format, va_list args) override {
-    say(type, format, args);
-    return kOfxStatOK;
-  }
-  OfxStatus clearPersistentMessage() override { return kOfxStatOK; }
 
   OfxStatus multiThread(OfxThreadFunctionV1 function, unsigned int n, void *argument) override {
     if (spawned_) return kOfxStatErrExists;
