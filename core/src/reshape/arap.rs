@@ -1,93 +1,96 @@
 //! As-rigid-as-possible shape manipulation in two linear steps (Igarashi, Moscovich & Hughes 2005).
 //!
-//! A triangle with corners v₀, v₁, v₂ knows v₂ in the frame of the other two: v₂ = v₀ + x (v₁ − v₀) + y R₉₀ (v₁ − v₀).
+//! A triangle with corners v₀, v₁, v₂ stores v₂ in the frame of the other two: v₂ = v₀ + x (v₁ − v₀) + y R₉₀ (v₁ − v₀).
 //!
-//! 1. **Similarity.** Place all vertices so that in each triangle each corner stands, as well as possible, where this
-//!    says it should, handles given: least squares in coordinates x and y together (their section 4.1). The result may
-//!    shrink and grow.
-//! 2. **Scale.** Each triangle as it was is turned to fit its placed corners best, without scaling, and the vertices
-//!    are placed anew so that edges match those of the turned triangles (section 4.2). x and y are separate here.
+//! 1. **Similarity.** The free vertices move to where, in each triangle, each corner fits the position that the
+//!    triangle predicts for it. This is a least squares problem in the coordinates x and y together (their section
+//!    4.1). Triangles may shrink and grow in this step.
+//! 2. **Scale.** Each rest triangle is rotated, without scaling, to fit its corners of step 1. Then the vertices move
+//!    so that edges match those of the rotated triangles (their section 4.2). x and y are separate here.
 //!
-//! Both matrices depend on the mesh and on which vertices are handles, not on where these are: they are factored once
-//! ([`Solver::new`]); a frame costs two substitutions ([`Solver::solve`]). Written with complex numbers z = x + iy,
-//! step 1 has a Hermitian matrix of half the size; here it is solved as the real symmetric one, by sparse Cholesky.
+//! Both matrices depend on the mesh and on the choice of handles, not on the positions of the handles. They are
+//! factored once ([`Solver::new`]); each frame costs two substitutions ([`Solver::solve`]). In complex numbers z = x +
+//! iy, step 1 has a Hermitian matrix of half the size. Here it is solved as the real symmetric matrix, by sparse
+//! Cholesky.
 //!
-//! Each triangle may be given a weight (per-limb rigidity): both steps minimise weighted sums.
+//! Each triangle can have a weight (rigidity per limb). Both steps then minimise weighted sums.
 //!
-//! Limits: step 1 needs two handles that do not coincide, otherwise scale and turn are free; with one handle (or
-//! several on one spot) the mesh is shifted. Triangles without area have no frame and are refused by [`Mesh::new`].
+//! Limits: step 1 needs two handles at different points; otherwise scale and rotation are undetermined. With one
+//! handle, or several at one point, the mesh is only shifted. A triangle without area has no frame; [`Mesh::new`]
+//! rejects it.
 
 use crate::geometry::Point;
 use crate::numeric::cholesky::SparseCholesky;
 
-/// Triangles with less than this share of the area of an equilateral one on their longest edge are slivers.
+/// Triangles with less than this share of the area of the equilateral triangle on their longest edge are slivers.
 const SLIVER: f64 = 1e-6;
-/// Handles within this share of the mesh's size of each other are on one spot.
+/// Handles closer than this share of the mesh's size count as one point.
 const ONE_SPOT: f64 = 1e-12;
 
-/// What is wrong with a mesh or its handles.
+/// Errors of a mesh or its handles.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ArapError {
-    /// A vertex is not finite.
+    /// A coordinate of a vertex is not finite.
     #[error("vertex {vertex}: found {found}, expected finite coordinates")]
     Vertex {
-        /// Its index.
+        /// Index of the vertex.
         vertex: usize,
-        /// What was found.
+        /// Its coordinates.
         found: Point,
     },
-    /// A triangle names a vertex that is not there.
+    /// A triangle names a vertex that does not exist.
     #[error("triangle {triangle}: found vertex {found}, expected 0 to {last}")]
     Corner {
-        /// Its index.
+        /// Index of the triangle.
         triangle: usize,
-        /// The vertex it names.
+        /// The vertex that it names.
         found: usize,
-        /// The last vertex.
+        /// Index of the last vertex.
         last: usize,
     },
     /// A triangle has no area.
-    #[error("triangle {triangle}: found area {found}, expected a triangle that is no sliver")]
+        #[error("triangle {triangle}: found area {found}, expected a triangle that is not a sliver")]
     Sliver {
-        /// Its index.
+        /// Index of the triangle.
         triangle: usize,
         /// Its area.
         found: f64,
     },
     /// A vertex belongs to no triangle.
-    #[error("vertex {vertex}: found in no triangle, expected in at least one")]
+        #[error("vertex {vertex}: found in no triangle, expected in at least one")]
     Loose {
-        /// Its index.
+        /// Index of the vertex.
         vertex: usize,
     },
-    /// Weights do not fit.
-    #[error("rigidity: found {found} weights, expected {triangles} positive ones, one a triangle")]
+    /// There is not exactly one positive, finite weight for each triangle.
+    #[error("rigidity: found {found} weights, expected {triangles} positive ones, one for each triangle")]
     Weights {
         /// Number of weights.
         found: usize,
         /// Number of triangles.
         triangles: usize,
     },
-    /// A handle is not there, or stands twice.
+    /// A handle names a vertex that does not exist or that is already a handle.
     #[error("handle {handle}: found vertex {found}, expected each of 0 to {last} at most once")]
     Handle {
-        /// Its place in the list.
+        /// Index of the handle in the list.
         handle: usize,
         /// The vertex it names.
         found: usize,
         /// The last vertex.
         last: usize,
     },
-    /// Places do not fit the handles.
-    #[error("places: found {found}, expected {expected} finite ones, one a handle")]
+    /// There is not exactly one finite position for each handle.
+    #[error("places: found {found}, expected {expected} finite ones, one for each handle")]
     Places {
         /// Number of places.
         found: usize,
         /// Number of handles.
         expected: usize,
     },
-    /// A piece of the mesh has no handle, or only one where the mesh has several pieces: its turn would be free.
-    #[error("vertex {vertex}: its piece of the mesh has too few handles, expected two (one if the mesh is one piece)")]
+    /// A piece of the mesh has no handle, or only one if the mesh has several pieces. Its rotation would be
+    /// undetermined.
+    #[error("vertex {vertex}: found too few handles on its piece of the mesh, expected two (one if the mesh is one piece)")]
     Adrift {
         /// A vertex of the piece.
         vertex: usize,
@@ -104,12 +107,20 @@ pub struct Mesh {
 
 impl Mesh {
     /// A mesh of equal rigidity everywhere.
+    ///
+    /// # Errors
+    ///
+    /// [`ArapError::Vertex`], [`ArapError::Corner`], [`ArapError::Sliver`] or [`ArapError::Loose`].
     pub fn new(vertices: Vec<Point>, triangles: Vec<[usize; 3]>) -> Result<Self, ArapError> {
         let weights = vec![1.0; triangles.len()];
         Self::with_rigidity(vertices, triangles, weights)
     }
 
-    /// A mesh with a weight a triangle: of two triangles that cannot both stay rigid, the heavier bends less.
+    /// A mesh with a weight for each triangle. If two triangles cannot both stay rigid, the heavier one bends less.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Mesh::new`], and [`ArapError::Weights`].
     pub fn with_rigidity(
         vertices: Vec<Point>,
         triangles: Vec<[usize; 3]>,
@@ -146,21 +157,22 @@ impl Mesh {
         &self.vertices
     }
 
-    /// The triangles, three vertices each.
+    /// The triangles, as three vertex indices each.
     pub fn triangles(&self) -> &[[usize; 3]] {
         &self.triangles
     }
 }
 
-/// A symmetric matrix of free unknowns, factored, and what handles contribute to the right-hand side.
+/// The factored symmetric matrix of the free unknowns, and the contribution of the handles to the right-hand side.
 struct System {
     factor: Option<SparseCholesky>,
-    /// Row, column among handles, value: −value · handle is added to the right-hand side.
+    /// Row, column among the handles, value: −value · handle is added to the right-hand side.
     coupling: Vec<(usize, usize, f64)>,
 }
 
 impl System {
-    /// From entries of the whole symmetric matrix, which are summed; `place[v]` is `Ok(free)` or `Err(handle)`.
+    /// Builds the system from entries of the complete symmetric matrix, which are summed. `place[v]` is `Ok(free)` or
+    /// `Err(handle)`.
     fn new(entries: &[(usize, usize, f64)], place: &[Result<usize, usize>], free: usize) -> Option<Self> {
         let mut columns: Vec<Vec<(usize, f64)>> = vec![Vec::new(); free];
         let mut coupling = Vec::new();
@@ -176,7 +188,7 @@ impl System {
         }
         let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::<f64>::new());
         for column in &mut columns {
-            column.sort_by_key(|(row, _)| *row); // stable: sums keep the order of the triangles
+                        column.sort_by_key(|(row, _)| *row); // stable: sums keep the order of the triangles
             let first = rows.len();
             for &(row, value) in column.iter() {
                 if rows.len() > first && rows.last() == Some(&row) {
@@ -200,7 +212,7 @@ impl System {
     }
 }
 
-/// A mesh with chosen handles, ready to be posed again and again.
+/// A mesh with chosen handles that can be posed repeatedly.
 pub struct Solver {
     mesh: Mesh,
     handles: Vec<usize>,
@@ -208,12 +220,16 @@ pub struct Solver {
     free: usize,
     similarity: Option<System>,
     scale: System,
-    /// Places of the first step, kept between frames.
+    /// Vertex positions of the first step, kept between frames.
     first: Vec<Point>,
 }
 
 impl Solver {
     /// Factors both steps for handles at these vertices.
+    ///
+    /// # Errors
+    ///
+    /// [`ArapError::Handle`] or [`ArapError::Adrift`].
     pub fn new(mesh: Mesh, handles: &[usize]) -> Result<Self, ArapError> {
         let n = mesh.vertices.len();
         let mut place: Vec<Result<usize, usize>> = vec![Ok(0); n];
@@ -232,7 +248,7 @@ impl Solver {
         if let Some(vertex) = adrift(&mesh, handles) {
             return Err(ArapError::Adrift { vertex });
         }
-        // Unknown 2v is x of vertex v, 2v + 1 its y; of handles likewise.
+        // Unknown 2v is x of vertex v, 2v + 1 is its y; handles are numbered in the same way.
         let double = |slot: &Result<usize, usize>, axis: usize| match slot {
             Ok(i) => Ok(2 * i + axis),
             Err(h) => Err(2 * h + axis),
@@ -245,7 +261,11 @@ impl Solver {
         Ok(Self { mesh, handles: handles.to_vec(), place, free, similarity, scale, first })
     }
 
-    /// Places of all vertices for places of the handles, in their order.
+    /// Positions of all vertices. `places` gives the positions of the handles in the order of [`Solver::new`].
+    ///
+    /// # Errors
+    ///
+    /// [`ArapError::Places`].
     pub fn solve(&mut self, places: &[Point]) -> Result<Vec<Point>, ArapError> {
         if places.len() != self.handles.len() || places.iter().any(|p| !p.is_finite()) {
             return Err(ArapError::Places { found: places.len(), expected: self.handles.len() });
@@ -315,12 +335,16 @@ impl Solver {
     }
 }
 
-/// Poses a mesh once; the same as a [`Solver`] that is used once.
+/// Poses a mesh once. The result equals that of a [`Solver`] used once.
+///
+/// # Errors
+///
+/// Those of [`Solver::new`] and [`Solver::solve`].
 pub fn deform(mesh: &Mesh, handles: &[usize], places: &[Point]) -> Result<Vec<Point>, ArapError> {
     Solver::new(mesh.clone(), handles)?.solve(places)
 }
 
-/// A vertex of a piece with too few handles.
+/// A vertex of a piece with too few handles, if there is one.
 fn adrift(mesh: &Mesh, handles: &[usize]) -> Option<usize> {
     let mut parent: Vec<usize> = (0..mesh.vertices.len()).collect();
     fn root(parent: &mut [usize], mut v: usize) -> usize {
@@ -345,7 +369,7 @@ fn adrift(mesh: &Mesh, handles: &[usize]) -> Option<usize> {
     (0..mesh.vertices.len()).find(|&v| held[root(&mut parent, v)] < needed)
 }
 
-/// The unit complex number that turns centred `rest` best onto centred `now`.
+/// The rotation, as a unit complex number, that fits centred `rest` to centred `now` by least squares.
 fn rotation(rest: &[Point; 3], now: &[Point; 3]) -> Point {
     let middle = |p: &[Point; 3]| (p[0] + p[1] + p[2]) / 3.0;
     let (r, q) = (middle(rest), middle(now));
@@ -367,7 +391,7 @@ fn similarity_entries(mesh: &Mesh) -> Vec<(usize, usize, f64)> {
             let (base, arm) = (at(b) - at(a), at(c) - at(a));
             let frame = Point::new(base.dot(arm), base.perp_dot(arm)) / base.length_squared();
             let (x, y) = (frame.x, frame.y);
-            // R(x, y) = (−y, x): the rows of the residual's x and y.
+            // The rows of the residual's x and y, with R(x, y) = (−y, x).
             let rows = [
                 [(2 * c, 1.0), (2 * a, x - 1.0), (2 * b, -x), (2 * a + 1, -y), (2 * b + 1, y)],
                 [(2 * c + 1, 1.0), (2 * a + 1, x - 1.0), (2 * b + 1, -x), (2 * a, y), (2 * b, -y)],
@@ -401,7 +425,7 @@ fn edge_entries(mesh: &Mesh) -> Vec<(usize, usize, f64)> {
 mod tests {
     use super::*;
 
-    /// A sheet of `columns` × `rows` squares, each cut in two.
+    /// A sheet of `columns` × `rows` squares, each cut into two triangles.
     fn sheet(columns: usize, rows: usize) -> Mesh {
         let vertices = (0..(columns + 1) * (rows + 1))
             .map(|k| Point::new((k % (columns + 1)) as f64, (k / (columns + 1)) as f64 + 0.1 * (k as f64).sin()))
@@ -471,7 +495,7 @@ mod tests {
             places[2].y += 4.0;
             places[3].y += 4.0;
             let found = deform(&mesh, &handles, &places).unwrap();
-            // How far the half that may be stiff strays from a similar copy of itself.
+            // Deviation of the weighted half from a similar copy of itself.
             let half: Vec<usize> = (0..5).chain(11..16).collect();
             let rest: Vec<Point> = half.iter().map(|&v| mesh.vertices[v]).collect();
             let now: Vec<Point> = half.iter().map(|&v| found[v]).collect();

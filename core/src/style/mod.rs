@@ -1,17 +1,29 @@
-//! Style: a motion re-made in another character's manner, as skeleton clips.
+//! Style translation: re-makes a motion in the manner of another character. Motions are skeleton clips.
 //!
-//! - [`align`]: clips of one motion brought together in time
-//! - [`gaussian`]: what a character adds to a motion, predicted from what it adds to others
-//! - [`bilinear`]: style and content matrices (Tenenbaum & Freeman 2000)
+//! - [`align`]: brings clips of one motion together in time
+//! - [`gaussian`]: predicts what a character adds to a motion from the other clips
+//! - [`bilinear`]: separates style and content matrices (Tenenbaum & Freeman 2000)
 //! - [`factorisation`]: non-negative style factorisation (Liang et al. 2012)
-//! - [`liang2012`]: translation with it
-//! - [`finish`]: limb lengths, standing feet
+//! - [`liang2012`]: translation with that factorisation
+//! - [`finish`]: limb lengths and standing feet
 //!
 //! # The task
 //!
-//! Characters × motions form a grid of clips with holes; the hole (style, motion) is to be filled, the motion being known
-//! from other characters, the style from other motions. Everything happens with the pelvis at the origin and in torso
-//! lengths; the result gets the style's size and walks the content's way.
+//! The known clips form a grid of characters × motions with holes. The task is to fill the hole (style, motion). The
+//! motion is known from other characters, the style from other motions. The models work in torso lengths with the
+//! pelvis at the origin. The result has the size of the style's character. Its pelvis follows the path of the content's
+//! clip.
+//!
+//! # The steps
+//!
+//! [`translate`] checks and aligns the clips, predicts the postures with the chosen preset, and adjusts the prediction
+//! to the key poses. Then it restores the limb lengths, the size, the path of the pelvis, the foot contacts and the
+//! pace. Averages shorten limbs and let feet slide; the last steps repair that for every preset.
+//!
+//! # Limits
+//!
+//! The models work in the picture's plane. They know neither depth nor the ground. Clips of different length are
+//! compared by their postures only.
 
 pub mod align;
 mod basis;
@@ -30,26 +42,26 @@ use crate::scene::skeleton::{COUNT, Posture, torso};
 use crate::scene::{Cancelled, Clip, Progress};
 use grid::{Grid, Row};
 
-/// What progress is told.
+/// Name of the step that progress reports show.
 const STEP: &str = "Translating";
 
 /// The method that translates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preset {
-    /// Gaussian processes over style and posture, averaged by how well they predict what is known, with one of its own for
-    /// the stance: the default.
+    /// Gaussian processes over style and posture; the default. The settings are averaged, weighted by how well each one
+    /// predicts the known clips. The stance has a process of its own.
     #[default]
     Rototoon,
     /// The asymmetric bilinear model of Tenenbaum & Freeman 2000, with a ridge towards the mean style.
     Bilinear,
-    /// Their symmetric model.
+    /// The symmetric bilinear model of the same paper.
     BilinearSymmetric,
-    /// Non-negative style factorisation in its consistent reading.
+    /// Non-negative style factorisation in the consistent reading of the paper.
     Liang2012,
 }
 
 impl Preset {
-    /// Ids of all presets, with a few words for people.
+    /// All presets: id, description, value.
     pub const ALL: [(&'static str, &'static str, Self); 4] = [
         ("rototoon", "Gaussian processes over style and posture", Self::Rototoon),
         ("bilinear", "Tenenbaum & Freeman 2000, a style matrix for each character", Self::Bilinear),
@@ -57,19 +69,20 @@ impl Preset {
         ("liang2012", "Liang et al. 2012, non-negative factorisation", Self::Liang2012),
     ];
 
-    /// The preset of an id.
+    /// The preset with this id; `None` if there is none.
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.iter().find(|(name, _, _)| *name == id).map(|(_, _, preset)| *preset)
     }
 }
 
-/// Whose timing the result has.
+/// Whose timing the result takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pace {
-    /// The content's: frame by frame the same moment of the motion.
+    /// The content's: each frame shows the same moment of the motion as the content's clip.
     #[default]
     Content,
-    /// The style's: faster or slower as its other clips are beside the content's.
+    /// The style's: slower or faster by the mean ratio of the lengths of the style's and the content's clips of the
+    /// same motions.
     Style,
 }
 
@@ -78,40 +91,42 @@ pub enum Pace {
 pub struct KeyPose {
     /// The frame of the content's clip.
     pub frame: usize,
-    /// Key points in the unit of the style's clips; where the pelvis stands does not matter.
+    /// Key points in the unit of the style's clips. The position of the pelvis does not matter.
     pub posture: Posture,
 }
 
-/// What is to be made.
+/// What to translate.
 #[derive(Clone, Debug)]
 pub struct Request<'a> {
-    /// In whose manner.
+    /// The character whose manner the result takes.
     pub style: &'a str,
-    /// Which motion. A clip of it by the style is left out of account.
+    /// The motion. The style's own clip of this motion, if there is one, is ignored.
     pub motion: &'a str,
-    /// Whose motion it was: gives the number of frames, the timing, and the way through the picture.
+    /// The character whose clip of the motion is re-made. It gives the number of frames, the timing, and the path of
+    /// the pelvis.
     pub content: &'a str,
-    /// Postures drawn for the result, met exactly.
+    /// Postures drawn for the result. The result passes through them exactly.
     pub keys: &'a [KeyPose],
 }
 
-/// How it is made.
+/// How to translate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The method.
     pub preset: Preset,
-    /// Whose timing.
+    /// Whose timing the result takes.
     pub pace: Pace,
-    /// Factor on what the style adds to the motion: 1 the most probable, more for a manner that is laid on thicker.
+    /// Factor on what the style adds to the motion: 1 gives the most probable result, more exaggerates the manner.
     ///
-    /// The most probable result is drawn towards the mean of all characters as far as the style is uncertain. A tenth
-    /// more costs next to nothing in accuracy and is recognised more often.
+    /// An uncertain style draws the most probable result towards the mean of all characters. A factor of 1.1 costs
+    /// almost no accuracy, and the manner is recognised more often.
     pub strength: f64,
-    /// Components of the bilinear models' contents and of the factorisation; none for their own. The default preset has none.
+    /// Number of content components of the bilinear models, or rank of the factorisation. `None` takes the preset's own
+    /// number. The default preset ignores it.
     pub rank: Option<usize>,
-    /// Whether limbs keep within the lengths that the style's own clips show.
+    /// Whether limb lengths stay within the range that the style's own clips show.
     pub keep_lengths: bool,
-    /// Whether feet that stand in the content's clip stay where they stand.
+    /// Whether a foot that stands in the content's clip also stands in the result.
     pub keep_contacts: bool,
 }
 
@@ -128,48 +143,48 @@ impl Default for Options {
     }
 }
 
-/// Why nothing was made.
+/// Why a translation failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StyleError {
-    /// No clip has this character.
+    /// No clip is of this character.
     #[error("character: found {found:?}, expected one of {known}")]
     Character {
-        /// The name that was given.
+        /// The requested name.
         found: String,
-        /// All names.
+        /// The names that the clips have.
         known: String,
     },
-    /// No clip has this motion.
+    /// No clip shows this motion.
     #[error("motion: found {found:?}, expected one of {known}")]
     Motion {
-        /// The name that was given.
+        /// The requested name.
         found: String,
-        /// All names.
+        /// The names that the clips have.
         known: String,
     },
-    /// Style and content are one.
+    /// The request names one character for both style and content.
     #[error("style and content: found {character:?} for both, expected two characters")]
     SameCharacter {
         /// The character.
         character: String,
     },
-    /// The content's clip is not there.
-    #[error("content: found no clip of {motion:?} by {character:?}, expected one to re-make")]
+    /// The content's character has no clip of the motion.
+    #[error("content: found no clip of {motion:?} by {character:?}, expected one to translate")]
     Content {
         /// The content's character.
         character: String,
         /// The motion.
         motion: String,
     },
-    /// Nothing tells the manner.
-    #[error("style: found no other clip of {character:?} than of {motion:?} and no key pose, expected at least one")]
+    /// The style is unknown: its character has no other clip, and there is no key pose.
+    #[error("style: found neither another motion of {character:?} beside {motion:?} nor a key pose, expected at least one")]
     NothingKnown {
         /// The style's character.
         character: String,
         /// The motion.
         motion: String,
     },
-    /// A clip holds what is not finite, or nothing.
+    /// A clip is empty or contains numbers that are not finite.
     #[error("clip ({character:?}, {motion:?}), frame {frame}: found no posture of finite numbers")]
     Broken {
         /// The clip's character.
@@ -179,7 +194,7 @@ pub enum StyleError {
         /// The frame.
         frame: usize,
     },
-    /// A character has no size.
+    /// The torso of a character has no positive, finite length.
     #[error("character {character:?}: found a torso of length {found}, expected a positive length")]
     Torso {
         /// The character.
@@ -187,7 +202,7 @@ pub enum StyleError {
         /// Median length over its clips.
         found: f64,
     },
-    /// A key pose has no size.
+    /// The torso of a key pose has no positive, finite length.
     #[error("key pose of frame {frame}: found a torso of length {found}, expected a positive length")]
     KeyPose {
         /// Its frame.
@@ -198,7 +213,7 @@ pub enum StyleError {
     /// The caller asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// A key pose lies beyond the clip.
+    /// A key pose names a frame outside of the content's clip.
     #[error("key pose: found frame {found}, expected 0 to {}", frames - 1)]
     KeyFrame {
         /// The frame.
@@ -208,7 +223,8 @@ pub enum StyleError {
     },
 }
 
-/// What a method hands back: postures with the pelvis at the origin in torso lengths, and their standard deviations.
+/// A method's result: postures in torso lengths with the pelvis at the origin, and for each key point the standard
+/// deviation of a coordinate.
 pub(crate) struct Prediction {
     rows: Vec<Row>,
     deviation: Vec<[f64; COUNT]>,
@@ -216,12 +232,14 @@ pub(crate) struct Prediction {
 
 /// Re-makes a motion in another character's manner.
 ///
-/// The result has the style's size and, key by key point and frame, a standard deviation of each coordinate, learned from how
-/// well the clips that are known are predicted from the others.
+/// The result has the size of the style's character, in the unit of its clips. `deviation` contains, for each frame and
+/// key point, the standard deviation of a coordinate in the same unit. The models estimate it from the errors made when
+/// known clips are predicted from the others.
 ///
 /// # Errors
 ///
-/// What is wrong with the clips or the request, or [`StyleError::Cancelled`].
+/// A [`StyleError`] names the faulty clip or part of the request. [`StyleError::Cancelled`] is returned when `progress`
+/// asks to stop.
 pub fn translate(
     clips: &[Clip],
     request: &Request,
@@ -261,7 +279,7 @@ pub fn translate(
     Ok(clip)
 }
 
-/// Key poses as numbers, one a frame (the last given for it).
+/// Key poses as rows of numbers, sorted by frame. If a frame has several, the last one counts.
 fn keys(grid: &Grid, request: &Request) -> Vec<(usize, Row)> {
     let size = size_of(grid, request);
     let mut keys: Vec<(usize, Row)> = Vec::new();
@@ -273,7 +291,7 @@ fn keys(grid: &Grid, request: &Request) -> Vec<(usize, Row)> {
     keys
 }
 
-/// Torso length of the result: that of the style's clips, or of the first key pose where there is none.
+/// Torso length of the result: that of the style's clips, or that of the first key pose if the style has no clips.
 fn size_of(grid: &Grid, request: &Request) -> f64 {
     let known = (0..grid.motions.len()).any(|m| grid.get(grid.style, m).is_some());
     match request.keys.first() {
@@ -286,10 +304,10 @@ fn own_postures(grid: &Grid) -> Vec<Posture> {
     (0..grid.motions.len()).filter_map(|m| grid.get(grid.style, m)).flatten().copied().collect()
 }
 
-/// Frames over which what is left of the way to a key pose fades.
+/// Standard deviation, in frames, of the weight with which the remaining offset to a key pose fades.
 const KEY_REACH: f64 = 3.0;
 
-/// Meets key poses exactly: what is left of the way to them fades over a few frames.
+/// Adjusts the prediction to the key poses exactly. The offset that remains at a key pose fades over a few frames.
 fn meet(made: &mut Prediction, keys: &[(usize, Row)]) {
     let left: Vec<(usize, Row)> =
         keys.iter().map(|(frame, key)| (*frame, std::array::from_fn(|d| key[d] - made.rows[*frame][d]))).collect();
@@ -306,7 +324,7 @@ fn meet(made: &mut Prediction, keys: &[(usize, Row)]) {
     }
 }
 
-/// Gives postures the style's size and the content's way: the pelvis goes as far as legs of this size carry it.
+/// Gives postures the style's size and the content's path. The pelvis moves in proportion to the size of the body.
 fn place(postures: &mut [Posture], content: &[Posture], size: f64, content_size: f64) {
     let way = resample(content, postures.len());
     let start = way[0][0];
