@@ -49,7 +49,7 @@ pub enum ArapError {
         last: usize,
     },
     /// A triangle has no area.
-        #[error("triangle {triangle}: found area {found}, expected a triangle that is not a sliver")]
+    #[error("triangle {triangle}: found area {found}, expected a triangle that is not a sliver")]
     Sliver {
         /// Index of the triangle.
         triangle: usize,
@@ -57,7 +57,7 @@ pub enum ArapError {
         found: f64,
     },
     /// A vertex belongs to no triangle.
-        #[error("vertex {vertex}: found in no triangle, expected in at least one")]
+    #[error("vertex {vertex}: found in no triangle, expected in at least one")]
     Loose {
         /// Index of the vertex.
         vertex: usize,
@@ -90,7 +90,9 @@ pub enum ArapError {
     },
     /// A piece of the mesh has no handle, or only one if the mesh has several pieces. Its rotation would be
     /// undetermined.
-    #[error("vertex {vertex}: found too few handles on its piece of the mesh, expected two (one if the mesh is one piece)")]
+    #[error(
+        "vertex {vertex}: found too few handles on its piece of the mesh, expected two (one if the mesh is one piece)"
+    )]
     Adrift {
         /// A vertex of the piece.
         vertex: usize,
@@ -188,7 +190,7 @@ impl System {
         }
         let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::<f64>::new());
         for column in &mut columns {
-                        column.sort_by_key(|(row, _)| *row); // stable: sums keep the order of the triangles
+            column.sort_by_key(|(row, _)| *row); // stable: sums keep the order of the triangles
             let first = rows.len();
             for &(row, value) in column.iter() {
                 if rows.len() > first && rows.last() == Some(&row) {

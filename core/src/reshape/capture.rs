@@ -322,7 +322,7 @@ mod tests {
         let error = capture(&set, &parts, 7..=9).unwrap_err().to_string();
         assert_eq!(
             error,
-            "frames 7 to 9: found no frame on which limbs tell both pelvis and neck, expected at least one"
+            "frames 7 to 9: found no frame on which limbs give both pelvis and neck, expected at least one"
         );
         set.limbs[1].end.points[1].part = "wing".into();
         let error = capture(&set, &parts, 0..=4).unwrap_err().to_string();

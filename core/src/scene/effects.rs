@@ -1,47 +1,50 @@
-//! The parameters of the effects for compositing hosts, described once: the plugin makes its parameters from these lists.
+//! The parameters of the effects for compositing hosts, described once. The plugin builds its parameters from these
+//! lists.
 //!
-//! An id is fixed for ever: compositions of users name it. What the command line and the add-on have too is shared with
-//! [`super::parameters`].
+//! An id never changes, because the compositions of users refer to it. Parameters that the command line and the add-on
+//! also have are shared with [`super::parameters`].
+//!
+//! All lengths are pixels of the source, all times are frames.
 
-/// Which values a parameter takes.
+/// The values that a parameter takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EffectKind {
-    /// The path of a file.
+    /// A file path.
     File,
     /// A line of text.
     Text,
-    /// Text that the user does not see.
+    /// Text that hosts do not show.
     Hidden,
     /// A button.
     Button,
     /// On or off.
     Flag(bool),
-    /// A whole number: default, least, greatest, and the ends of the slider.
+    /// An integer: default; least and greatest value; ends of the slider.
     Integer(i32, [i32; 2], [i32; 2]),
-    /// A number: default, least, greatest, and the ends of the slider.
+    /// A number: default; least and greatest value; ends of the slider.
     Number(f64, [f64; 2], [f64; 2]),
-    /// One of several, by index: labels.
+    /// One of several labels, by index.
     Choice(&'static [&'static str]),
-    /// One of the choices of a parameter in [`super::parameters`], by its id.
+    /// The choices of a parameter in [`super::parameters`], by its id.
     Shared(&'static str),
-    /// A colour with opacity.
+    /// A colour with opacity, RGBA.
     Colour([f64; 4]),
-    /// A group, open or not.
+    /// A group; whether it is open.
     Group(bool),
 }
 
 /// A parameter of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EffectParameter {
-    /// Its id, that of no other parameter of the effect.
+    /// Its id, unique within the effect.
     pub id: &'static str,
-    /// A few words, for people.
+    /// Name that hosts show.
     pub label: &'static str,
-    /// A sentence, for people.
+    /// Help text that hosts show.
     pub help: &'static str,
-    /// Which values it takes.
+    /// The values that it takes.
     pub kind: EffectKind,
-    /// The group that shows it.
+    /// Id of the group that shows it.
     pub group: Option<&'static str>,
 }
 
@@ -70,76 +73,76 @@ const OVERLAY: Option<&str> = Some("lines");
 const TRACKING: Option<&str> = Some("tracking");
 const FRAMES: [i32; 2] = [-1_000_000, 1_000_000];
 
-/// Rototoon Roto: every parameter in order.
+/// Parameters of the effect Rototoon Roto, in the order in which hosts show them.
 pub const ROTO: [EffectParameter; 24] = [
     parameter("shapes", "Shapes", EffectKind::Group(true), None, "Where the shapes come from."),
-    parameter("project", "Project", EffectKind::File, SHAPES, "A Rototoon project document; choosing one loads it."),
-    parameter("load", "Load", EffectKind::Button, SHAPES, "Takes the project's shapes into the composition."),
+    parameter("project", "Project", EffectKind::File, SHAPES, "A Rototoon project document. Choosing a file loads it."),
+    parameter("load", "Load", EffectKind::Button, SHAPES, "Loads the project's shapes into the composition."),
     parameter("save", "Save", EffectKind::Button, SHAPES, "Writes the composition's shapes to the project's file."),
-    parameter("document", "Document", EffectKind::Hidden, SHAPES, "The shapes themselves, as a project document."),
+    parameter("document", "Document", EffectKind::Hidden, SHAPES, "The shapes as the text of a project document."),
     parameter(
         "frameOffset",
         "Frame offset",
         EffectKind::Integer(0, FRAMES, [-100, 100]),
         SHAPES,
-        "The composition's frame on which frame 0 of the project lies.",
+        "The composition's frame that shows frame 0 of the project.",
     ),
     parameter(
         "parts",
         "Parts",
         EffectKind::Text,
         SHAPES,
-        "Names of the parts, separated by commas; * stands for any text. All parts where it is empty.",
+        "Names of the parts, separated by commas; * stands for any text. Empty takes all parts.",
     ),
     parameter(
         "useCurves",
         "Snapped lines",
         EffectKind::Flag(true),
         SHAPES,
-        "Whether the outline follows lines snapped to the drawing where there are any, and not the control points.",
+        "Whether outlines follow the snapped lines where they exist. Otherwise they follow the control points.",
     ),
-    parameter("picture", "Picture", EffectKind::Group(true), None, "What is made of them."),
+    parameter("picture", "Picture", EffectKind::Group(true), None, "The picture made from the shapes."),
     parameter(
         "output",
         "Output",
         EffectKind::Choice(&["Cutout", "Matte", "Overlay", "Ids"]),
         PICTURE,
-        "The source cut out by the parts, their matte, their outlines over the source, or a colour for each part.",
+        "The source cut out by the parts, the matte of the parts, their outlines over the source, or a colour for each part.",
     ),
     parameter(
         "invert",
         "Invert",
         EffectKind::Flag(false),
         PICTURE,
-        "Whether cutout and matte are of what is not in a part.",
+        "Whether cutout and matte show the area outside of the parts.",
     ),
     parameter(
         "grow",
         "Grow",
         EffectKind::Number(0.0, [-1000.0, 1000.0], [-20.0, 20.0]),
         PICTURE,
-        "Pixels by which the outline is moved outward, or inward where negative.",
+        "Distance in pixels by which the outline moves outward; a negative distance moves it inward.",
     ),
     parameter(
         "feather",
         "Feather",
         EffectKind::Number(0.0, [0.0, 500.0], [0.0, 50.0]),
         PICTURE,
-        "Pixels over which the border fades on each side.",
+        "Width in pixels over which the border fades, on each side of the outline.",
     ),
     parameter(
         "motionBlur",
         "Motion blur",
         EffectKind::Number(0.0, [0.0, 10.0], [0.0, 1.0]),
         PICTURE,
-        "Frames that the shutter is open, around the frame.",
+        "Time during which the shutter is open, in frames, centred on the frame.",
     ),
     parameter(
         "motionBlurSamples",
         "Samples",
         EffectKind::Integer(16, [1, 64], [1, 64]),
         PICTURE,
-        "Times within the shutter at which the outline is drawn.",
+        "Number of times within the shutter interval at which the outline is drawn.",
     ),
     parameter("lines", "Lines", EffectKind::Group(false), None, "How the overlay draws outlines."),
     parameter(
@@ -147,84 +150,72 @@ pub const ROTO: [EffectParameter; 24] = [
         "Line width",
         EffectKind::Number(2.0, [0.0, 200.0], [0.0, 20.0]),
         OVERLAY,
-        "Pixels across a line.",
+        "Width of the lines in pixels.",
     ),
     parameter("lineColor", "Line colour", EffectKind::Colour([1.0, 0.3, 0.1, 1.0]), OVERLAY, "Colour of the lines."),
     parameter("opacity", "Opacity", EffectKind::Number(1.0, [0.0, 1.0], [0.0, 1.0]), OVERLAY, "Opacity of the lines."),
-    parameter(
-        "tracking",
-        "Tracking",
-        EffectKind::Group(false),
-        None,
-        "Following the keys through the source's frames.",
-    ),
-    parameter("preset", "Method", EffectKind::Shared("preset"), TRACKING, "The method that tracks."),
+    parameter("tracking", "Tracking", EffectKind::Group(false), None, "Tracks the keys through the source's frames."),
+    parameter("preset", "Method", EffectKind::Shared("preset"), TRACKING, "The tracking method."),
     parameter(
         "firstFrame",
         "First frame",
         EffectKind::Integer(0, FRAMES, [0, 1000]),
         TRACKING,
-        "First frame that is tracked. The whole source where it is not before the last.",
+        "First frame to track. The complete source is tracked if it is not before the last frame.",
     ),
-    parameter(
-        "lastFrame",
-        "Last frame",
-        EffectKind::Integer(0, FRAMES, [0, 1000]),
-        TRACKING,
-        "Last frame that is tracked.",
-    ),
+    parameter("lastFrame", "Last frame", EffectKind::Integer(0, FRAMES, [0, 1000]), TRACKING, "Last frame to track."),
     parameter(
         "track",
         "Track",
         EffectKind::Button,
         TRACKING,
-        "Follows the keys through the source's frames and keeps the result in the composition.",
+        "Tracks the keys through the source's frames and stores the result in the composition.",
     ),
 ];
 
-/// Rototoon Lines: every parameter in order.
+/// Parameters of the effect Rototoon Lines, in the order in which hosts show them.
 pub const LINES: [EffectParameter; 7] = [
     line_parameter(
         "output",
         "Output",
         EffectKind::Choice(&["Colours", "Edges", "Distances"]),
-        "The filtered colours, the edges found in them, or the distance to the nearest edge.",
+        "The filtered colours, the edges detected in them, or the distance to the nearest edge.",
     ),
     line_parameter(
         "filterRadius",
         "Filter radius",
         EffectKind::Integer(5, [1, 60], [1, 20]),
-        "Half the filter's side, in pixels.",
+        "Half the side of the filter's window, in pixels.",
     ),
     line_parameter(
         "filterRange",
         "Filter range",
         EffectKind::Integer(20, [0, 100], [0, 60]),
-        "Distance of colours, in levels of 255, that the filter makes one.",
+        "Colour distance below which the filter merges colours, in levels of 255.",
     ),
     line_parameter(
         "sigma",
         "Sigma",
         EffectKind::Number(0.0, [0.0, 10.0], [0.0, 4.0]),
-        "Blur before edges are found, in pixels.",
+        "Standard deviation of the blur before edge detection, in pixels.",
     ),
     line_parameter(
         "lowThreshold",
         "Low threshold",
         EffectKind::Number(50.0, [0.0, 2000.0], [0.0, 500.0]),
-        "Gradient above which an edge goes on.",
+        "Gradient above which an edge continues.",
     ),
     line_parameter(
         "highThreshold",
         "High threshold",
         EffectKind::Number(120.0, [0.0, 2000.0], [0.0, 500.0]),
-        "Gradient above which an edge begins.",
+        "Gradient above which an edge starts.",
     ),
     line_parameter(
         "distanceRange",
         "Distance range",
         EffectKind::Number(20.0, [1.0, 10_000.0], [1.0, 200.0]),
-        "Distance in pixels that is shown as white.",
+        "Distance in pixels that is displayed as white.",
     ),
 ];
 

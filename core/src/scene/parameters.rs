@@ -1,34 +1,36 @@
-//! What a user may set, described once: command line, add-on and other hosts read [`ALL`] and build their options and
-//! panels from it. An id is unique among all stages and never used again for something else.
+//! The parameters for users, described once. The command line, the add-on and other hosts read [`ALL`] and build their
+//! options and panels from it.
+//!
+//! An id is unique among all stages and is never reused for another parameter.
 
 use serde::Serialize;
 
-/// Where a parameter acts.
+/// The stage to which a parameter belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stage {
-    /// All long work.
+    /// Every long computation.
     Run,
     /// Tracking.
     Track,
-    /// Snapping to the ink.
+    /// Snapping to the ink lines.
     Snap,
-    /// Pictures of the result.
+    /// Rendered pictures of the result.
     Render,
     /// Files for other programs.
     Export,
 }
 
-/// One of several values.
+/// One of the values of a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Choice {
-    /// The value.
+    /// The value in options and files.
     pub id: &'static str,
-    /// For people.
+    /// Name that people see.
     pub label: &'static str,
 }
 
-/// Which values a parameter takes.
+/// The values that a parameter takes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
 pub enum Kind {
@@ -39,7 +41,7 @@ pub enum Kind {
         /// All choices.
         choices: &'static [Choice],
     },
-    /// A whole number.
+    /// An integer.
     Integer {
         /// Default.
         default: i64,
@@ -56,7 +58,7 @@ pub enum Kind {
         min: f64,
         /// Greatest value.
         max: f64,
-        /// Unit, for people; may be empty.
+        /// Unit that people see; may be empty.
         unit: &'static str,
     },
     /// On or off.
@@ -69,15 +71,15 @@ pub enum Kind {
 /// A parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Parameter {
-    /// Unique id.
+    /// Id, unique among all parameters.
     pub id: &'static str,
-    /// A few words, for people.
+    /// Name that people see.
     pub label: &'static str,
-    /// One sentence, for people.
+    /// Help text of one sentence.
     pub help: &'static str,
-    /// Where it acts.
+    /// The stage to which it belongs.
     pub stage: Stage,
-    /// Which values it takes.
+    /// The values that it takes.
     #[serde(flatten)]
     pub kind: Kind,
 }
@@ -86,19 +88,19 @@ const fn choice(id: &'static str, label: &'static str) -> Choice {
     Choice { id, label }
 }
 
-/// Every parameter, by stage.
+/// Every parameter, in the order of the stages.
 pub const ALL: [Parameter; 13] = [
     Parameter {
         id: "threads",
         label: "Threads",
-        help: "Number of threads; 0 takes one for each core. The result does not depend on it.",
+        help: "Number of threads; 0 takes one for each core. The number does not change the result.",
         stage: Stage::Run,
         kind: Kind::Integer { default: 0, min: 0, max: 1024 },
     },
     Parameter {
         id: "preset",
         label: "Method",
-        help: "The method that tracks.",
+        help: "The tracking method.",
         stage: Stage::Track,
         kind: Kind::Choice {
             default: "rototoon",
@@ -113,12 +115,12 @@ pub const ALL: [Parameter; 13] = [
     Parameter {
         id: "follow",
         label: "Follow",
-        help: "What snapped paths stick to.",
+        help: "The feature of the drawing that snapped paths follow.",
         stage: Stage::Snap,
         kind: Kind::Choice {
             default: "auto",
             choices: &[
-                choice("auto", "What the points lie on"),
+                choice("auto", "Border or ink, whichever the points are on"),
                 choice("edge", "Border between two colours"),
                 choice("line", "Centre of the ink"),
             ],
@@ -127,36 +129,36 @@ pub const ALL: [Parameter; 13] = [
     Parameter {
         id: "corridor_share",
         label: "Corridor",
-        help: "How far a snapped path may leave its segment, as a share of the segment's length.",
+        help: "Greatest distance between a snapped path and its segment, as a share of the segment's length.",
         stage: Stage::Snap,
         kind: Kind::Number { default: 0.3, min: 0.0, max: 2.0, unit: "" },
     },
     Parameter {
         id: "corridor_least",
         label: "Least corridor",
-        help: "Least distance that a snapped path may leave its segment, at 540 lines.",
+        help: "Lower limit of the distance between a snapped path and its segment, at 540 lines.",
         stage: Stage::Snap,
         kind: Kind::Number { default: 4.0, min: 1.5, max: 100.0, unit: "px" },
     },
     Parameter {
         id: "corridor_most",
         label: "Greatest corridor",
-        help: "Greatest distance that a snapped path may leave its segment, at 540 lines.",
+        help: "Upper limit of the distance between a snapped path and its segment, at 540 lines.",
         stage: Stage::Snap,
         kind: Kind::Number { default: 40.0, min: 1.5, max: 500.0, unit: "px" },
     },
     Parameter {
         id: "what",
         label: "What",
-        help: "The picture that is made: contours over the footage, the coverage of the closed parts, \
-               what they cover of the footage, or which part is where.",
+        help: "The picture to render: contours over the footage, the matte of the closed parts, \
+               the footage cut out by them, or a colour for each part.",
         stage: Stage::Render,
         kind: Kind::Choice {
             default: "overlay",
             choices: &[
                 choice("overlay", "Contours over the footage"),
                 choice("matte", "Matte of the closed parts"),
-                choice("cutout", "The footage where the closed parts are"),
+                choice("cutout", "Footage within the closed parts"),
                 choice("ids", "A colour for each part; in OpenEXR also Cryptomatte layers"),
             ],
         },
@@ -164,7 +166,7 @@ pub const ALL: [Parameter; 13] = [
     Parameter {
         id: "layers",
         label: "Layers",
-        help: "Whether a matte in OpenEXR also holds the whole matte of each part as a layer of its name.",
+        help: "Whether a matte in OpenEXR also contains the complete matte of each part, in a layer with the part's name.",
         stage: Stage::Render,
         kind: Kind::Flag { default: false },
     },
@@ -185,14 +187,14 @@ pub const ALL: [Parameter; 13] = [
     Parameter {
         id: "confidence",
         label: "Confidence",
-        help: "Whether the overlay shows by colour and opacity how sure each tracked point is.",
+        help: "Whether colour and opacity in the overlay show the confidence of each tracked point.",
         stage: Stage::Render,
         kind: Kind::Flag { default: true },
     },
     Parameter {
         id: "motion",
         label: "Motion",
-        help: "How an exported path goes from one frame to the next.",
+        help: "Motion of an exported path between frames.",
         stage: Stage::Export,
         kind: Kind::Choice {
             default: "hold",
@@ -208,12 +210,12 @@ pub const ALL: [Parameter; 13] = [
     },
 ];
 
-/// The parameter of an id.
+/// The parameter with this id; `None` if there is none.
 pub fn find(id: &str) -> Option<&'static Parameter> {
     ALL.iter().find(|parameter| parameter.id == id)
 }
 
-/// The parameters of a stage.
+/// The parameters of a stage, in the order of [`ALL`].
 pub fn of(stage: Stage) -> impl Iterator<Item = &'static Parameter> {
     ALL.iter().filter(move |parameter| parameter.stage == stage)
 }

@@ -177,7 +177,9 @@ pub enum StyleError {
         motion: String,
     },
     /// The style is unknown: its character has no other clip, and there is no key pose.
-    #[error("style: found neither another motion of {character:?} beside {motion:?} nor a key pose, expected at least one")]
+    #[error(
+        "style: found neither another motion of {character:?} beside {motion:?} nor a key pose, expected at least one"
+    )]
     NothingKnown {
         /// The style's character.
         character: String,

@@ -211,7 +211,7 @@ fn what_is_wrong_is_named_and_changes_nothing() {
     thin.scene.parts[1].keys.get_mut(&0).unwrap().iter_mut().for_each(|p| p.y = 101.0);
     assert_eq!(
         said(&thin, &job(&motion)),
-        "part \"shoe\": outline 0: found no area that it encloses (its points are on a line or a spot), expected some"
+        "part \"shoe\": outline 0: found no enclosed area (its points are on a line or at one spot), expected some"
     );
     let mut broken = motion.clone();
     broken.postures[1][5].x = f64::NAN;
