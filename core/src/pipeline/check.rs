@@ -224,8 +224,8 @@ mod tests {
             &[
                 "pairs[0] (frame 0).from: found 2, expected the index of one of the 2 strokes on frame 0",
                 "pairs[0] (frame 0).to: found 1, expected the index of one of the 1 strokes on frame 4",
-                "pairs[2] (frame 4).from: found stroke 0 on frame 4, expected one that pairs[1] does not hold already",
-                "pairs[2] (frame 4).to: found stroke 0 on frame 9, expected one that pairs[1] does not hold already",
+                "pairs[2] (frame 4).from: found stroke 0 on frame 4, expected a stroke that pairs[1] does not use",
+                "pairs[2] (frame 4).to: found stroke 0 on frame 9, expected a stroke that pairs[1] does not use",
                 "pairs[3].frame: found 9, expected the frame of a drawing that has a next one",
                 "pairs[4] (frame 0).to: found nothing, expected a whole number from 0 on",
             ],

@@ -2,11 +2,14 @@
 //!
 //! ```json
 //! {"rototoon_clips": 1, "fps": 30, "keypoints": ["pelvis", "…"],
-//!  "clips": [{"character": "anna", "motion": "walk", "points": [[[x, y], "17 of them"], "one list a frame"]}]}
+//!  "clips": [{"character": "anna", "motion": "walk", "points": [[[x, y], "17 of them"], "a list for each frame"]}]}
 //! ```
 //!
-//! x right, y down, in any one unit a character. A translated clip also holds `deviation`: for each frame and key point
-//! the standard deviation of its place, in the same unit. Fields that are not known are left out of what is written anew.
+//! x points right, y down. All clips of a character use one unit, which may be any. A translated clip also has
+//! `deviation`: for each frame and key point the standard deviation of its coordinates, in the same unit. Reading skips
+//! unknown fields, and `deviation` too; they are lost when the file is written again.
+//!
+//! Numbers are written with six decimals.
 
 use super::output::{WriteError, write_whole};
 use super::plain_clips as plain;
@@ -16,42 +19,44 @@ use crate::scene::skeleton::{COUNT, NAMES, Posture};
 use serde_json::Value;
 use std::path::Path;
 
-/// Version of the form.
+/// Version of the file format.
 pub const VERSION: u64 = 1;
 
-/// What is wrong with a file of clips or of a key pose.
+/// Errors of a file of clips or of key poses.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ClipsError {
     /// The file cannot be read.
     #[error("{origin}: cannot read: {reason}")]
     Unreadable {
-        /// The file.
+        /// Path of the file.
         origin: String,
-        /// What the system said.
+        /// The message of the system.
         reason: String,
     },
     /// The text is not JSON.
     #[error("{origin}: not JSON (which has no NaN or Infinity either): {reason}")]
     Syntax {
-        /// The file.
+        /// Path of the file.
         origin: String,
-        /// What the reader said, with line and column.
+        /// The message of the parser, with line and column.
         reason: String,
     },
     /// The file was written by a later version.
-    #[error("{origin}: rototoon_clips: found version {found}, expected {VERSION} or less; a newer Rototoon reads it")]
+    #[error(
+        "{origin}: rototoon_clips: found version {found}, expected {VERSION} or less; reading it needs a newer Rototoon"
+    )]
     Later {
-        /// The file.
+        /// Path of the file.
         origin: String,
-        /// Its version.
+        /// The version of the file.
         found: u64,
     },
-    /// A field is missing or holds something else.
+    /// A field is missing or has a wrong value.
     #[error("{origin}: {place}: found {found}, expected {expected}")]
     Field {
-        /// The file.
+        /// Path of the file.
         origin: String,
-        /// Where, with the clip's names and the frame.
+        /// The field, with the clip's names and the frame.
         place: String,
         /// What was found.
         found: String,
@@ -63,22 +68,30 @@ pub enum ClipsError {
 /// A file of clips.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clips {
-    /// The clips in the file's order. No two have the same character and motion.
+    /// The clips in the order of the file. No two have the same character and motion.
     pub clips: Vec<Clip>,
-    /// Frames a second.
+    /// Frames per second.
     pub fps: f64,
 }
 
 impl Clips {
     /// Reads a file.
+    ///
+    /// # Errors
+    ///
+    /// A [`ClipsError`] names the file, the field, and the found and expected values.
     pub fn load(path: &Path) -> Result<Self, ClipsError> {
         Self::parse(&read(path)?, &path.display().to_string())
     }
 
     /// Reads text; `origin` names it in errors.
     ///
-    /// What is as it must be is read straight into numbers. Only where it is not, it is read once more, value by value, to say
-    /// what is wrong and where.
+    /// Valid text is parsed directly into numbers. Only invalid text is parsed again value by value, to find the place
+    /// and kind of the error.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::load`], except for unreadable files.
     pub fn parse(text: &str, origin: &str) -> Result<Self, ClipsError> {
         match plain::read(text) {
             Some(clips) => Ok(clips),
@@ -86,7 +99,7 @@ impl Clips {
         }
     }
 
-    /// The same by way of a tree of values: slow, and every error has its place.
+    /// The same through a tree of values. It is slow, but every error has its place.
     fn parse_by_value(text: &str, origin: &str) -> Result<Self, ClipsError> {
         let reader = Reader { origin };
         let document = reader.json(text)?;
@@ -115,32 +128,45 @@ impl Clips {
         Ok(Self { clips, fps })
     }
 
-    /// The file's text.
+    /// The text of the file.
     pub fn text(&self) -> String {
         plain::written(self) + "\n"
     }
 
-    /// Writes a file, whole or not at all.
+    /// Writes the file completely or not at all.
+    ///
+    /// # Errors
+    ///
+    /// A [`WriteError`] if the file cannot be written; an existing file then stays as it was.
     pub fn save(&self, path: &Path) -> Result<(), WriteError> {
         write_whole(path, self.text().as_bytes())
     }
 }
 
-/// A posture that the animator drew for one frame of the result.
+/// A posture drawn for one frame of the result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnPose {
     /// The frame, from 0.
     pub frame: usize,
-    /// The key points; any common shift of all is left out of account.
+    /// The key points. A common shift of all points does not matter.
     pub posture: Posture,
 }
 
-/// Reads drawn key poses: one posture (`[[x, y], …]`, for the first frame), or `{"frame", "points"}`, or a list of those.
+/// Reads drawn key poses: one posture (`[[x, y], …]`, for frame 0), or `{"frame", "points"}`, or a list of these
+/// objects.
+///
+/// # Errors
+///
+/// A [`ClipsError`].
 pub fn load_key_poses(path: &Path) -> Result<Vec<DrawnPose>, ClipsError> {
     parse_key_poses(&read(path)?, &path.display().to_string())
 }
 
 /// Reads drawn key poses from text; `origin` names it in errors.
+///
+/// # Errors
+///
+/// A [`ClipsError`].
 pub fn parse_key_poses(text: &str, origin: &str) -> Result<Vec<DrawnPose>, ClipsError> {
     let reader = Reader { origin };
     let document = reader.json(text)?;
@@ -198,7 +224,7 @@ impl Reader<'_> {
         match version.as_u64() {
             Some(1..=VERSION) => Ok(()),
             Some(found) if found > VERSION => Err(ClipsError::Later { origin: self.origin.into(), found }),
-            _ => Err(self.wrong("rototoon_clips", version, "the version of the form, 1")),
+            _ => Err(self.wrong("rototoon_clips", version, "the format version 1")),
         }
     }
 

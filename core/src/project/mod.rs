@@ -1,18 +1,19 @@
-//! The project document: footage, parts, the artist's keys and corrections, and what was found.
+//! The project document: footage, parts, the artist's keys and corrections, and the results.
 //!
 //! - [`schema`]: names, order and limits of the fields
-//! - [`problem`]: what is wrong with a document, and where
-//! - [`shape`]: reading JSON that may hold anything
+//! - [`problem`]: problems of a document, with their places
+//! - [`shape`]: a reader for JSON of any content
 //! - [`library`]: a folder of skeleton clips with an index
-//! - [`load`], [`save`]: documents from and to files
-//! - [`validate`]: what a document must hold beyond being well-formed
+//! - [`load`], [`save`]: reading and writing of documents
+//! - [`validate`]: conditions for a document beyond its syntax
 //! - [`drawings`]: drawings on key frames, pairs, pegs and in-betweens
-//! - [`limbs`]: limbs on contours, swapped sides, which part is in front
+//! - [`limbs`]: limbs on contours, swapped sides, order in depth
 //! - [`curves`]: files of curves to fit
-//! - [`clips`], `plain_clips`: files of skeleton clips, and the quick way to read and write them
-//! - [`output`]: files that appear whole or not at all
+//! - [`clips`], `plain_clips`: files of skeleton clips, and the fast way to read and write them
+//! - [`output`]: files that are written completely or not at all
 //!
-//! Fields that this version does not know are kept where they stood. A document of a newer major version is refused.
+//! Fields that this version does not know keep their values and places. A document of a newer major version is
+//! rejected.
 
 pub mod clips;
 pub mod curves;
@@ -46,12 +47,12 @@ pub struct Document {
 }
 
 impl Document {
-    /// A new document of a scene.
+    /// A new document with a scene.
     pub fn new(scene: Scene) -> Self {
         Self { scene, layout: schema::Layout::default() }
     }
 
-    /// Everything that is wrong with the scene as it is now.
+    /// All problems of the present scene.
     pub fn problems(&self) -> Problems {
         validate::problems(&self.scene)
     }

@@ -13,7 +13,7 @@
 //! extrapolate wildly. A few ridges are tried. The chosen one predicts the style's own clips best when each is left out
 //! in turn.
 //!
-//! Limits: key poses shift the result (see [`spread`]); they do not change the model.
+//! Limits: key poses shift the result (see `spread`); they do not change the model.
 
 use super::Prediction;
 use super::basis::MODEL_FRAMES;
