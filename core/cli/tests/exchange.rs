@@ -171,7 +171,7 @@ fn what_cannot_be_imported_is_named_and_nothing_is_written() {
             1,
             "late.fxs: line 2, column 42: <Key>: found a key on frame 9, expected a frame of the footage, 0 to 8",
         ),
-        (file("cut.fxs", "<Silhouette><Object"), 1, "cut.fxs: it is no XML: "),
+        (file("cut.fxs", "<Silhouette><Object"), 1, "cut.fxs: found text that is not XML, expected XML: "),
         (file("none.svg", "<svg/>"), 1, "none.svg: found no shape, expected a path"),
         (file("a.nk", "RotoPaint {}"), 2, "a.nk: expected a name that ends in .svg or .fxs"),
         (folder.path("gone.svg"), 1, "gone.svg: cannot read the shapes: "),

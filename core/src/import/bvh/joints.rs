@@ -1,17 +1,20 @@
-//! Which joints of a BVH file are the template's key points.
+//! Finds the joints of a BVH file that correspond to the template's key points.
 //!
-//! Names are compared without case, blanks and punctuation, without what stands before a colon (`mixamorig:Hips`) and without a
-//! few customary prefixes (`joint_`, `Bip01`, `DEF-`); the side is a word or letter at either end (`LeftArm`, `l_arm`, `arm.L`,
-//! `Arm_L`, `lShldr`). What is left is looked up in a list for each key point, first come first served: programs agree about words
-//! but not about where they put them. A *shoulder* is the joint of the upper arm in one file and the collar bone in another; it
-//! counts only where nothing is called *arm* or *upper arm*. The lists serve the names of Biovision and CMU files, Mixamo,
-//! MotionBuilder, LAFAN, 3ds Max Biped, Poser and Daz, Unreal, SMPL, Blender's Rigify, and the Bandai Namco research data.
+//! Names are compared without case, blanks and punctuation. A prefix before a colon (`mixamorig:Hips`) and a few
+//! customary prefixes (`joint_`, `Bip01`, `DEF-`) are removed. The side is a word or letter at either end (`LeftArm`,
+//! `l_arm`, `arm.L`, `Arm_L`, `lShldr`). The remaining name is looked up in a list for each key point, and the first
+//! entry that matches wins.
 //!
-//! Spines have any number of joints, so the chest is found by place: the joint between pelvis and neck that is nearest to the
-//! template's share of the way, or that share itself where none is near. The top of the head is the end of the head's chain; a head
-//! without a joint lies on the way from the neck to that end.
+//! Programs use the same words for different joints. A *shoulder* is the joint of the upper arm in one file and the
+//! collar bone in another. It counts only if no joint is called *arm* or *upper arm*. The lists cover the names of
+//! Biovision and CMU files, Mixamo, MotionBuilder, LAFAN, 3ds Max Biped, Poser and Daz, Unreal, SMPL, Blender's Rigify,
+//! and the Bandai Namco research data.
 //!
-//! [`JointMap`] says what names do not tell.
+//! Spines have any number of joints, so the chest is found by position. It is the joint between pelvis and neck that is
+//! nearest to the template's share of the way; if none is near, it is the point at that share. The top of the head is
+//! the end of the head's chain. A head without a joint is on the way from the neck to that end.
+//!
+//! [`JointMap`] gives the joints of key points that names do not determine.
 
 use super::parse::{Bvh, Node};
 use crate::scene::proportions::TEMPLATE;
@@ -20,7 +23,7 @@ use glam::DVec3;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// What joints are called that limbs hang on: key point without its side, names of such joints.
+/// Names of the joints of limbs: key point without its side, names in order of preference.
 const LIMBS: [(&str, &[&str]); 6] = [
     ("shoulder", &["arm", "upperarm", "uparm", "shldr", "shldrbend", "shoulderjoint", "shoulder"]),
     ("elbow", &["forearm", "lowerarm", "lowarm", "forearmbend", "elbow", "elbowjoint"]),
@@ -29,28 +32,28 @@ const LIMBS: [(&str, &[&str]); 6] = [
     ("knee", &["leg", "lowerleg", "lowleg", "shin", "calf", "knee", "kneejoint"]),
     ("ankle", &["foot", "ankle", "anklejoint"]),
 ];
-/// What joints of the middle are called.
+/// Names of the joints in the middle of the body.
 const MIDDLE: [(&str, &[&str]); 4] = [
     ("pelvis", &["hips", "hip", "pelvis", "root", "spine"]),
     ("neck", &["neck", "neck1", "neck01", "necklower", "lowerneck", "spine004"]),
     ("head", &["head", "skull", "spine006"]),
     ("head_top", &["headtop", "headtopend", "headend", "headnub", "topofhead"]),
 ];
-/// What stands before names and says nothing.
+/// Prefixes without meaning.
 const PREFIXES: [&str; 8] = ["mixamorig", "joint", "bip001", "bip01", "bip1", "def", "jbip", "character1"];
-/// Share of the torso within which a spine's joint is the chest.
+/// A spine joint within this distance of the expected point is the chest, as a share of the torso.
 const CHEST_REACH: f64 = 0.2;
-/// Where the head begins between the neck and its top: the template's share.
+/// Position of a missing head between the neck and its top: the template's share.
 const HEAD_SHARE: f64 = TEMPLATE.0[2] / (TEMPLATE.0[2] + TEMPLATE.0[3]);
-/// How far the top of the head lies beyond a head without an end, in lengths of the neck.
+/// Distance from the head to its top if the chain has no end, in lengths of the neck.
 const HEAD_TOP: f64 = TEMPLATE.0[3] / TEMPLATE.0[2];
 
-/// A key point's place among a file's nodes: their weighted sum.
+/// The position of a key point as a weighted sum of the positions of a file's nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place(pub Vec<(usize, f64)>);
 
 impl Place {
-    /// The place, for places of the nodes.
+    /// The position for given positions of the nodes.
     pub fn at(&self, nodes: &[DVec3]) -> DVec3 {
         self.0.iter().map(|&(node, weight)| nodes[node] * weight).sum()
     }
@@ -66,24 +69,24 @@ impl Place {
     }
 }
 
-/// Joints given for key points: of several joints, their mean.
+/// Joints given by the user: by key point a list of joints, whose mean position counts.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct JointMap(pub BTreeMap<usize, Vec<String>>);
 
 /// Why key points have no joints.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MapError {
-    /// The map is not as it must be.
+    /// The map is invalid.
     #[error("{place}: found {found}, expected {expected}")]
     Map {
-        /// Where in the map.
+        /// The place within the map.
         place: String,
         /// What was found.
         found: String,
         /// What was expected.
         expected: String,
     },
-    /// A joint of the map is not in the file.
+    /// The file has no joint of this name.
     #[error("joints, {point}: found no joint {joint:?} in the file, expected one of {known}")]
     Unknown {
         /// The key point.
@@ -93,8 +96,10 @@ pub enum MapError {
         /// The file's joints.
         known: String,
     },
-    /// Names do not tell where key points are.
-    #[error("found no joint for {missing}; say which of the file's they are in a map of joints; the file has {known}")]
+    /// Names do not determine the joints of some key points.
+    #[error(
+        "found no joint for {missing}, expected one for each key point; give them in a map of joints; the file has {known}"
+    )]
     Missing {
         /// The key points.
         missing: String,
@@ -104,7 +109,12 @@ pub enum MapError {
 }
 
 impl JointMap {
-    /// Reads a map, `{"l_wrist": "Hand.L", "chest": ["Spine1", "Spine2"]}`; the end of a joint's chain is `"Head/end"`.
+    /// Reads a map such as `{"l_wrist": "Hand.L", "chest": ["Spine1", "Spine2"]}`. The end of a joint's chain is
+    /// `"Head/end"`.
+    ///
+    /// # Errors
+    ///
+    /// [`MapError::Map`].
     pub fn parse(text: &str) -> Result<Self, MapError> {
         let wrong = |place: &str, found: String, expected: &str| MapError::Map {
             place: place.to_owned(),
@@ -139,7 +149,11 @@ fn shown(value: &Value) -> String {
     }
 }
 
-/// The places of all key points.
+/// The positions of all key points in terms of the file's nodes.
+///
+/// # Errors
+///
+/// [`MapError::Unknown`] or [`MapError::Missing`].
 pub fn places(bvh: &Bvh, map: &JointMap) -> Result<[Place; COUNT], MapError> {
     let joints = Joints::new(&bvh.nodes);
     let mut found: [Option<Place>; COUNT] = std::array::from_fn(|_| None);
@@ -156,7 +170,7 @@ pub fn places(bvh: &Bvh, map: &JointMap) -> Result<[Place; COUNT], MapError> {
     }
     let missing: Vec<&str> = (0..COUNT).filter(|&k| found[k].is_none()).map(|k| NAMES[k]).collect();
     if missing.is_empty() {
-        // None is missing, so the default is never used.
+        // No place is missing here, so the default is never used.
         Ok(found.map(|place| place.unwrap_or(Place(Vec::new()))))
     } else {
         Err(MapError::Missing { missing: missing.join(", "), known: joints.known() })
@@ -167,12 +181,12 @@ fn index(point: &str) -> usize {
     NAMES.iter().position(|name| *name == point).unwrap_or_default()
 }
 
-/// The nodes of a file with what their names say.
+/// The nodes of a file with their simplified names.
 struct Joints<'a> {
     nodes: &'a [Node],
-    /// Side and name, simplified.
+    /// Side and simplified name of each node.
     words: Vec<(Option<char>, String)>,
-    /// Places at rest.
+    /// Positions at rest.
     rest: Vec<DVec3>,
 }
 
@@ -190,7 +204,7 @@ impl<'a> Joints<'a> {
         names.join(", ")
     }
 
-    /// Joints of a map.
+    /// The place for the joints named in a map.
     fn given(&self, point: &'static str, names: &[String]) -> Result<Place, MapError> {
         let weight = 1.0 / names.len() as f64;
         let one = |name: &String| {
@@ -206,7 +220,7 @@ impl<'a> Joints<'a> {
         names.iter().map(one).collect::<Result<_, _>>().map(Place)
     }
 
-    /// The joint that a key point's name means.
+    /// The joint whose name matches a key point.
     fn named(&self, point: &str) -> Option<usize> {
         let (side, plain) = match point.split_once('_') {
             Some((side @ ("l" | "r"), plain)) => (side.chars().next(), plain),
@@ -220,14 +234,14 @@ impl<'a> Joints<'a> {
         })
     }
 
-    /// The end of the chain that hangs on a node, by the longest way up from it.
+    /// The end of the chain at a node; of several, the farthest.
     fn end_of(&self, node: usize) -> Option<usize> {
         let hangs = |k: &usize| self.nodes[*k].end && self.nodes[*k].parent == Some(node);
         let away = |k: &usize| self.rest[*k].distance_squared(self.rest[node]);
         (0..self.nodes.len()).filter(hangs).max_by(|a, b| away(a).total_cmp(&away(b)))
     }
 
-    /// Head and top of the head where names do not tell them.
+    /// Finds the head and its top if names do not determine them.
     fn fill_head(&self, found: &mut [Option<Place>; COUNT]) {
         let [neck, head, top] = ["neck", "head", "head_top"].map(index);
         let only = |place: &Option<Place>| match place.as_ref()?.0.as_slice() {
@@ -246,7 +260,8 @@ impl<'a> Joints<'a> {
         }
     }
 
-    /// The chest: the joint between pelvis and neck nearest to the template's share of the way, or that share of it.
+    /// The chest: the joint between pelvis and neck nearest to the template's share of the way, or the point at that
+    /// share.
     fn chest(&self, pelvis: &Place, neck: &Place) -> Place {
         let share = TEMPLATE.0[0];
         let (from, to) = (pelvis.at(&self.rest), neck.at(&self.rest));
@@ -262,7 +277,7 @@ impl<'a> Joints<'a> {
     }
 }
 
-/// Side and name without what differs from program to program.
+/// Side and name, without the differences between programs.
 fn simplified(name: &str) -> (Option<char>, String) {
     let name = name.rsplit(':').next().unwrap_or(name);
     let marked = words(name);
@@ -292,7 +307,8 @@ fn simplified(name: &str) -> (Option<char>, String) {
     run_together(words.concat())
 }
 
-/// A side written at the front of a word, `leftarm` or `lhand`; one letter only before what is called so.
+/// Splits off a side at the front of a word, as in `leftarm` or `lhand`. A single letter counts only before a known
+/// name.
 fn run_together(word: String) -> (Option<char>, String) {
     let limb = |rest: &str| LIMBS.iter().any(|(_, names)| names.contains(&rest));
     for (side, long, short) in [('l', "left", "l"), ('r', "right", "r")] {
@@ -304,8 +320,8 @@ fn run_together(word: String) -> (Option<char>, String) {
     (None, word)
 }
 
-/// The words of a name in lower case: `LeftUpLeg`, `left_up_leg` and `lUpLeg` are told apart at capitals, punctuation and digits'
-/// ends. Numbers stay with the word before them.
+/// The words of a name in lower case. `LeftUpLeg`, `left_up_leg` and `lUpLeg` are split at capitals and punctuation.
+/// Digits stay with the word before them.
 fn words(name: &str) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
     let mut fresh = true;
@@ -318,7 +334,7 @@ fn words(name: &str) -> Vec<String> {
             let lone =
                 c.is_ascii_lowercase() && before.is_ascii_uppercase() && words.last().is_some_and(|w| w.len() > 1);
             if lone {
-                // `LHip`: the last capital begins the word.
+                // `LHip`: the last capital starts the next word.
                 let taken = words.last_mut().and_then(String::pop);
                 words.push(taken.into_iter().collect());
             } else if fresh || capital || words.is_empty() {

@@ -1,10 +1,10 @@
-//! A whole figure, from text to picture.
+//! A complete figure, from the text to the picture.
 
 use super::*;
 use crate::geometry::Point;
 use crate::scene::skeleton::PARENTS;
 
-/// A figure in the T pose, y up, facing z, its left along x: where each key point stands.
+/// Positions of the key points of a figure in the T pose; y points up, it faces z, and its left is along x.
 const STANDING: [[f64; 3]; COUNT] = [
     [0.0, 10.0, 0.0],
     [0.0, 12.0, 0.0],
@@ -46,7 +46,8 @@ const USUAL: [&str; COUNT] = [
     "mixamorig:RightFoot",
 ];
 
-/// A file of the standing figure; the root has positions and a turn about y, every other joint a turn about z.
+/// A file of the standing figure. The root has positions and a rotation about y; every other joint has a rotation about
+/// z.
 fn file(names: &[&str; COUNT], standing: &[[f64; 3]; COUNT], frames: &[[f64; 4]]) -> String {
     let turns = vec!["0"; names.iter().filter(|name| **name != "End Site").count() - 1].join(" ");
     let lines: String = frames.iter().map(|[x, y, z, turn]| format!("{x} {y} {z} {turn} {turns}\n")).collect();
@@ -68,7 +69,8 @@ fn joint(k: usize, names: &[&str; COUNT], standing: &[[f64; 3]; COUNT]) -> Strin
     format!("{kind} {}\n{{\n{offset}{channels}\n{children}}}\n", names[k])
 }
 
-/// The standing figure as it is seen: horizontal and vertical by functions of place, in torso lengths of 4.
+/// The expected view of the standing figure, in torso lengths of 4. `across` gives the horizontal coordinate of a
+/// position.
 fn expected(across: impl Fn([f64; 3]) -> f64) -> Posture {
     STANDING.map(|p| Point::new(across(p), 10.0 - p[1]) / 4.0)
 }
@@ -127,7 +129,7 @@ fn the_pelvis_stays_or_goes_its_way() {
 fn the_view_by_itself_shows_most_of_the_motion() {
     let yaw = |axis: usize, size: f64| {
         let mut text = file(&USUAL, &STANDING, &[[0.0, 10.0, 0.0, 0.0]; 2]);
-        // Of the last frame: every joint's turn about z, and once the whole leg swung in depth.
+        // The last frame has a rotation of every joint about z, and once the complete leg swings in depth.
         text = text.replace("CHANNELS 1 Zrotation", &format!("CHANNELS 1 {}rotation", ["X", "Y", "Z"][axis]));
         let last = text.trim_end().rfind('\n').unwrap() + 1;
         let numbers: Vec<String> = text[last..].split_whitespace().map(str::to_owned).collect();
@@ -176,7 +178,7 @@ fn names_of_other_programs_are_known() {
         let text = file(&names, &STANDING, &[[0.0, 10.0, 0.0, 0.0]]);
         match seen(&text, &with(View::Front)) {
             Ok(found) => near(&found.postures[0], &expected(|[x, _, _]| x)),
-            // Without a mark on the left the left is missing.
+            // Without a mark for the left, the left joints are missing.
             Err(error) => assert!(names[3] == "head" && error.to_string().contains("l_shoulder, l_elbow"), "{error}"),
         }
     }
@@ -188,7 +190,7 @@ fn joints_that_names_do_not_tell_are_asked_for_and_taken_from_a_map() {
     (names[7], names[1]) = ("paw", "s1");
     let text = file(&names, &STANDING, &[[0.0, 10.0, 0.0, 0.0]]);
     let error = seen(&text, &Options::default()).unwrap_err().to_string();
-    assert!(error.starts_with("found no joint for l_wrist; say which of the file's they are"), "{error}");
+    assert!(error.starts_with("found no joint for l_wrist, expected one for each key point"), "{error}");
     assert!(error.contains("mixamorig:Hips, s1, mixamorig:Neck"), "{error}");
     let mapped = |map: &str| {
         let joints = JointMap::parse(map).unwrap();
@@ -219,7 +221,7 @@ fn heads_and_chests_are_found_by_place() {
     let found = seen(&text, &with(View::Front)).unwrap().postures[0];
     assert!(found[2].distance(Point::new(0.0, -1.0)) < 1e-12 && found[4].distance(Point::new(0.0, -1.625)) < 1e-12);
     assert!(found[3].distance(Point::new(0.0, -1.25)) < 1e-12, "{}", found[3]);
-    // No spine between pelvis and neck: the template's share.
+    // There is no spine between pelvis and neck: the template's share counts.
     let mut far = STANDING;
     far[1] = [0.0, 10.5, 0.0];
     let text = file(&USUAL, &far, &[[0.0, 10.0, 0.0, 0.0]]);
@@ -232,13 +234,16 @@ fn what_cannot_be_seen_is_told() {
     let text = file(&USUAL, &STANDING, &frames);
     let error = |text: &str, options: &Options| seen(text, options).unwrap_err().to_string();
     let out = Options { frames: Some(1..=3), ..Options::default() };
-    assert_eq!(error(&text, &out), "frames 1 to 3: expected frames of the file, 0 to 2");
+    assert_eq!(error(&text, &out), "frames: found 1 to 3, expected frames of the file, 0 to 2");
     for fps in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e9] {
         assert!(error(&text, &Options { fps: Some(fps), ..Options::default() }).starts_with("frames a second: found"));
     }
     let point = file(&USUAL, &[[0.0; 3]; COUNT], &frames);
     assert!(error(&point, &Options::default()).starts_with("found a torso of length 0"));
     let far = text.replace("OFFSET 0 2 0", "OFFSET 0 1e308 0");
-    assert_eq!(error(&far, &Options::default()), "frame 0: found neck at no finite place");
+    assert_eq!(
+        error(&far, &Options::default()),
+        "frame 0: found neck at a position that is not finite, expected finite coordinates"
+    );
     assert!(error("HIERARCHY", &Options::default()).starts_with("line 1: found the end of the file"));
 }
