@@ -303,5 +303,5 @@ fn pictures_of_ids_and_layers_are_written() {
     assert!(holds(&fs::read(file("layers.exr")).unwrap(), "triangle.A"));
     let [layers, plain] = ["layers.exr", "plain.exr"].map(|name| image::open(file(name)).unwrap().to_rgba32f());
     assert_eq!(layers, plain);
-    assert!(matte("layers.png", "on", 2).contains("layers expect a name that ends in .exr"));
+    assert!(matte("layers.png", "on", 2).contains("expected a name that ends in .exr for layers"));
 }

@@ -6,7 +6,6 @@
 //!
 //! Limits: an animation starts on the first frame of the footage, and repeats are ignored. The value at the very end of
 //! an animation is left out, since it is one frame after the footage.
-//! followed, and the value at the very end of an animation, which lies a frame behind the footage, is left out.
 
 use super::ImportError;
 use crate::scene::{Footage, FrameNumber};

@@ -1,4 +1,4 @@
-//! What is wrong with a document, stage by stage: its scene, its limbs, its drawings, pairs and pegs, its frames.
+//! Checks a document stage by stage: its scene, its limbs, its drawings, pairs and pegs, and its frames.
 
 use super::PipelineError;
 use super::tween::{peg_of, spacing};
@@ -11,7 +11,11 @@ use crate::tween::peg::{self, PegError};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::path::Path;
 
-/// Everything that is wrong with a document that lies in `folder` and with its frames: each is read.
+/// All problems of a document in `folder` and of its frames. Every frame is read.
+///
+/// # Errors
+///
+/// An invalid pattern, or [`PipelineError::Cancelled`].
 pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Result<Problems, PipelineError> {
     let mut problems = document.problems();
     if let Err(error) = document.limbs() {
@@ -34,7 +38,7 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
     Ok(problems)
 }
 
-/// Pictures that can be drawn on, but that the default preset does not track.
+/// Warns of pictures that can be drawn on but are too wide for the default preset of tracking.
 fn shape(footage: &Footage, problems: &mut Problems) {
     if too_wide(footage) {
         let (width, height) = (footage.width, footage.height);
@@ -43,8 +47,8 @@ fn shape(footage: &Footage, problems: &mut Problems) {
     }
 }
 
-/// Everything that is wrong with a document's drawings, pairs and pegs: fields that are not as they must be, and, where
-/// all are, what tweening could not work with.
+/// All problems of a document's drawings, pairs and pegs. Invalid fields come first. Only if all fields are valid,
+/// tweening's further conditions are checked.
 pub fn drawing_problems(document: &Document) -> Problems {
     let mut problems = Problems::default();
     let (read, wrong) = document.drawings_and_problems();
@@ -94,10 +98,10 @@ fn pegs(read: &Drawings, problems: &mut Problems) {
     }
 }
 
-/// Place and message of what is wrong with a peg.
+/// Place and message of a peg's error.
 fn described(k: usize, peg: &DrawnPeg, error: &PegError) -> (String, String) {
     let place = peg_place(k, &peg.name);
-    // Keys on one frame: the later of them is the one that is out of order.
+    //     // Of several keys on one frame the later one is out of order.
     let index = |frame: FrameNumber| peg.keys.iter().rposition(|key| key.frame == frame).unwrap_or_default();
     let key = |frame: FrameNumber| peg_key_place(&place, index(frame), frame);
     match error {
@@ -105,12 +109,12 @@ fn described(k: usize, peg: &DrawnPeg, error: &PegError) -> (String, String) {
             (format!("{place}.parent"), format!("found {parent}, expected less than {count}"))
         }
         PegError::Loop { .. } => {
-            (format!("{place}.parent"), "the peg hangs on itself, by way of its parents".to_owned())
+            (format!("{place}.parent"), "the peg is its own ancestor, expected parents without a loop".to_owned())
         }
         PegError::Pivot { x, y, .. } => {
             (format!("{place}.pivot"), format!("found [{x}, {y}], expected numbers between -1e9 and 1e9"))
         }
-        // Degrees in the document, radians in the peg.
+        //         // The document has degrees, the peg radians.
         PegError::Key { frame, field: "turn", .. } => (
             format!("{}.turn", key(*frame)),
             format!("found {:e}, expected a number between -5e10 and 5e10", peg.keys[index(*frame)].turn),
@@ -120,13 +124,13 @@ fn described(k: usize, peg: &DrawnPeg, error: &PegError) -> (String, String) {
         }
         PegError::Order { frame, before, .. } => (
             format!("{}.frame", key(*frame)),
-            format!("found {frame}, expected more than {before}, that of the key before it"),
+            format!("found {frame}, expected more than {before}, the frame of the key before it"),
         ),
         PegError::Timing { frame, source, .. } => (format!("{}.timing", key(*frame)), source.to_string()),
     }
 }
 
-/// What has no effect, or can hardly be meant.
+/// Warns of drawings and pegs without effect and of probable mistakes.
 fn odd(read: &Drawings, footage: &Footage, problems: &mut Problems) {
     if read.drawings.len() == 1 {
         problems.warning("drawings", "there is one drawing, so there is nothing to draw between");
@@ -136,7 +140,7 @@ fn odd(read: &Drawings, footage: &Footage, problems: &mut Problems) {
         let place = drawing_place(k, drawing.frame);
         if !(footage.first..=footage.last).contains(&drawing.frame) {
             let (first, last) = (footage.first, footage.last);
-            problems.warning(&*place, format!("the drawing lies outside the footage, frames {first} to {last}"));
+            problems.warning(&*place, format!("the drawing is outside of the footage, frames {first} to {last}"));
         }
         for (i, stroke) in drawing.strokes.iter().enumerate() {
             if stroke.points.is_empty() {
@@ -166,7 +170,7 @@ mod tests {
         Document::parse(&whole.to_string(), "a.json").unwrap()
     }
 
-    /// Errors and warnings, one line each.
+    ///     /// Errors and warnings, with one line for each.
     fn said(fields: &Value) -> (Vec<String>, Vec<String>) {
         let problems = drawing_problems(&document(fields));
         (problems.errors().map(ToString::to_string).collect(), problems.warnings().map(ToString::to_string).collect())
@@ -243,7 +247,7 @@ mod tests {
         );
         error(
             |f| f["pegs"][0]["keys"][1]["frame"] = json!(0),
-            &["pegs[0] \"arm\".keys[1] (frame 0).frame: found 0, expected more than 0, that of the key before it"],
+            &["pegs[0] \"arm\".keys[1] (frame 0).frame: found 0, expected more than 0, the frame of the key before it"],
         );
     }
 
@@ -251,11 +255,11 @@ mod tests {
     fn pegs_are_a_tree_of_movements() {
         error(
             |f| f["pegs"][1]["parent"] = json!("arm"),
-            &["pegs[0] \"arm\".parent: the peg hangs on itself, by way of its parents"],
+            &["pegs[0] \"arm\".parent: the peg is its own ancestor, expected parents without a loop"],
         );
         error(
             |f| f["pegs"][1]["parent"] = json!("body"),
-            &["pegs[1] \"body\".parent: the peg hangs on itself, by way of its parents"],
+            &["pegs[1] \"body\".parent: the peg is its own ancestor, expected parents without a loop"],
         );
         error(
             |f| {
@@ -348,7 +352,7 @@ mod tests {
                 vec![
                     "drawings[0] (frame 12).spacing: there is no next drawing, so the spacing has no effect".to_owned(),
                     "drawings: there is one drawing, so there is nothing to draw between".to_owned(),
-                    "drawings[0] (frame 12): the drawing lies outside the footage, frames 0 to 9".to_owned(),
+                    "drawings[0] (frame 12): the drawing is outside of the footage, frames 0 to 9".to_owned(),
                     "drawings[0] (frame 12).strokes[0]: the stroke has no points, so nothing is drawn".to_owned(),
                     "pegs[0] \"arm\": no stroke hangs on the peg, so it has no effect".to_owned(),
                     "pegs[1] \"body\": no stroke hangs on the peg, so it has no effect".to_owned(),

@@ -1,10 +1,13 @@
-//! A drawing made to follow a skeleton clip: its contours and strokes on every frame of the clip.
+//! Makes a drawing follow a skeleton clip: its contours and strokes on every frame of the clip.
 //!
-//! The drawing is a document's contours on one frame, at rest, with limbs. The clip is brought to the drawing's
-//! proportions limb by limb, its way and its ground to the drawing's size and ground; shoulders and hips stay on its
-//! body, feet that stand in the clip stay where they stand. Every closed part follows the limbs that carry it
-//! ([`crate::reshape::puppet`]), and takes along the strokes and open contours that lie on it. Marks "in front" and
-//! "behind" give the depths of each frame.
+//! The drawing consists of a document's contours on one frame, at rest, and limbs. The clip is converted to the
+//! drawing's proportions limb by limb. Its path and ground are converted to the size and ground of the drawing.
+//! Shoulders and hips stay on the body of the drawing, and feet that stand in the clip keep standing.
+//!
+//! Every closed part follows the limbs that carry it ([`crate::reshape::puppet`]). It takes along the strokes and open
+//! contours on it. Marks "in front" and "behind" determine the depths of each frame.
+//!
+//! Limits: parts are reshaped within the picture's plane; see `puppet`.
 
 mod store;
 
@@ -25,45 +28,50 @@ use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Depths are written to a millionth.
+/// Depths are rounded to a millionth.
 const DEPTH_SCALE: f64 = 1e6;
-/// Share of a clip's frames whose lowest foot is no lower than its ground.
+/// Share of a clip's frames on which the lowest foot is not below the clip's ground.
 const GROUND: f64 = 0.75;
 
-/// Share of the shin's turn that a shoe takes which no limb carries: feet keep nearly the angle that they are drawn
-/// with.
+/// Share of the shin's rotation for a shoe that no limb carries. Feet nearly keep their drawn angle.
 const FOOT_TURN: f64 = 0.3;
 
-/// What is to be made of a drawing.
+/// The request to reshape a drawing.
 #[derive(Clone, Debug)]
 pub struct ReshapeJob<'a> {
     /// The motion, in any unit.
     pub clip: &'a Clip,
-    /// Frames a second of the result.
+    /// Frames per second of the result.
     pub fps: f64,
-    /// The frame on which the drawing is at rest; none for the first on which every part has a contour.
+    /// The frame on which the drawing is at rest; `None` takes the first on which every part has a contour.
     pub rest: Option<FrameNumber>,
-    /// The footage that the result lies over; none for the drawing's own, with as many frames as the clip has.
+    /// The footage under the result; `None` takes the drawing's own. In both cases the footage gets as many frames as
+    /// the clip.
     pub over: Option<Footage>,
-    /// How parts are reshaped.
+    /// Options of reshaping.
     pub options: Options,
-    /// By name of a closed part, points that shall follow it beside its own: those of a picture's mesh.
+    /// Additional points that follow a closed part, by the part's name: those of a picture's mesh.
     pub points: BTreeMap<String, Vec<Point>>,
 }
 
-/// What was made.
+/// The result, beside the changed document.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reshaped {
-    /// Parts that no limb carries, each with the limb (its key points) that it was given: the nearest.
+    /// Parts that no limb carries, each with the key points of the nearest limb, which it follows.
     pub given: Vec<(String, (&'static str, &'static str))>,
     /// Parts that move without bending.
     pub rigid: Vec<String>,
-    /// By part and frame where the points of [`ReshapeJob::points`] are.
+    /// Positions of the points of [`ReshapeJob::points`], by part and frame.
     pub points: BTreeMap<String, Vec<Vec<Point>>>,
 }
 
-/// Reshapes a document's drawing: tracks, snapped paths and depths of its parts, and its strokes, on every frame of the
-/// clip. Runs on the caller's rayon pool; the result does not depend on it.
+/// Reshapes a document's drawing. It sets the tracks, snapped paths and depths of the parts, and the strokes, on every
+/// frame of the clip. It runs on the caller's rayon pool; the result does not depend on the pool.
+///
+/// # Errors
+///
+/// [`PipelineError::Style`] names the part, limb, mark or frame; [`PipelineError::Cancelled`] is returned when
+/// `progress` asks to stop. The document is then unchanged.
 pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progress) -> Result<Reshaped, PipelineError> {
     let set = document.limbs().map_err(wrong)?;
     let rest = rest_frame(&document.scene.parts, job.rest)?;
@@ -84,7 +92,7 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
         progress.report(STEP, 0.05 + 0.95 * finished as f64 / bodies.len() as f64)?;
         Ok(moved)
     });
-    // Of several errors the first part's is told, whichever was met first.
+    //     // Of several errors the one of the first part is reported, whichever occurred first.
     let moved: Vec<Result<Moved, PipelineError>> = moved.collect();
     let moved = moved.into_iter().collect::<Result<Vec<_>, _>>()?;
     let rigid = bodies.iter().zip(&moved).filter(|(_, m)| m.rigid).map(|(b, _)| parts[b.part].name.clone()).collect();
@@ -104,14 +112,16 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     Ok(report)
 }
 
-/// Gives the bodies the points that are asked for.
+/// Adds the requested points to the bodies.
 fn add_points(bodies: &mut [Body], asked: &BTreeMap<String, Vec<Point>>) -> Result<(), PipelineError> {
     for (name, points) in asked {
         let body = bodies.iter_mut().find(|body| body.name == *name);
         let body =
             body.ok_or_else(|| wrong(format!("points: found part {name:?}, expected the name of a closed part")))?;
         if let Some(k) = points.iter().position(|p| !p.is_finite()) {
-            return Err(wrong(format!("points, part {name:?}, point {k}: found no finite number")));
+            return Err(wrong(format!(
+                "points, part {name:?}, point {k}: found coordinates that are not finite, expected finite ones"
+            )));
         }
         body.points.extend(points);
         body.more = points.len();
@@ -119,7 +129,7 @@ fn add_points(bodies: &mut [Body], asked: &BTreeMap<String, Vec<Point>>) -> Resu
     Ok(())
 }
 
-/// What progress is told.
+/// Name of the step that progress reports show.
 const STEP: &str = "Reshaping";
 
 fn wrong(error: impl std::fmt::Display) -> PipelineError {
@@ -145,7 +155,7 @@ fn rest_frame(parts: &[Part], asked: Option<FrameNumber>) -> Result<FrameNumber,
     })
 }
 
-/// The strokes of the drawing on the frame at rest.
+/// The strokes of the drawing on the rest frame.
 fn strokes_at(document: &Document, rest: FrameNumber) -> Result<Vec<DrawnStroke>, PipelineError> {
     let read = document.drawings().map_err(wrong)?;
     Ok(read.drawings.into_iter().find(|drawing| drawing.frame == rest).map_or_else(Vec::new, |d| d.strokes))
@@ -161,7 +171,7 @@ fn footage(own: &Footage, job: &ReshapeJob) -> Footage {
     footage
 }
 
-/// The clip's postures in the drawing's proportions and place.
+/// The clip's postures in the proportions and place of the drawing.
 fn fitted(set: &LimbSet, parts: &[Part], rest: FrameNumber, clip: &Clip) -> Result<Vec<Posture>, PipelineError> {
     if let Some(frame) = clip.postures.iter().position(|p| p.iter().any(|q| !q.is_finite())) {
         let (character, motion) = (&clip.character, &clip.motion);
@@ -184,7 +194,7 @@ fn fitted(set: &LimbSet, parts: &[Part], rest: FrameNumber, clip: &Clip) -> Resu
     let mut low: Vec<f64> = clip.postures.iter().map(lowest).collect();
     low.sort_by(f64::total_cmp);
     let first = clip.postures[0][0];
-    // What lies on the drawing's ground, or on its pelvis where it has no legs.
+    //     // The height that maps to the drawing's ground, or to its pelvis if it has no legs.
     let (level, ground) = match low.get(((low.len() - 1) as f64 * GROUND) as usize) {
         Some(level) if stands => (*level, lowest(&posture)),
         _ => (first.y, posture[0].y),
@@ -198,7 +208,7 @@ fn fitted(set: &LimbSet, parts: &[Part], rest: FrameNumber, clip: &Clip) -> Resu
     Ok(postures)
 }
 
-/// All limbs at rest and on every frame.
+/// All limbs, at rest and on every frame.
 struct Limbs {
     rest: Vec<LimbPose>,
     frames: Vec<Vec<LimbPose>>,
@@ -216,23 +226,24 @@ fn limb_poses(
     for (k, limb) in set.limbs.iter().enumerate() {
         let named = |what: &str| wrong(format!("limbs[{k}] ({} to {}), {what}", NAMES[limb.from], NAMES[limb.to]));
         let ends = drawn[limb.from].zip(drawn[limb.to]);
-        let ends = ends.ok_or_else(|| named(&format!("frame {rest}: found no contour that tells it, expected one")))?;
+        let ends =
+            ends.ok_or_else(|| named(&format!("frame {rest}: found no contour for its key points, expected one")))?;
         if ends.0.distance(ends.1) <= 1e-6 {
             return Err(named(&format!("frame {rest}: found a length of 0, expected a positive one")));
         }
         let mut bends = Vec::new();
         for (&frame, &control) in &limb.bends {
             let [Some(a), Some(b)] = bindings.limb(k, frame) else {
-                return Err(named(&format!("bends, frame {frame}: found no contour that tells the limb there")));
+                return Err(named(&format!("bends, frame {frame}: found no contour for the limb, expected one")));
             };
             bends.push((frame, Bend::of(a, b, control)));
         }
         limbs.rest.push(LimbPose { ends, bend: bend_at(&bends, rest) });
-        // A drawing that shows the other side hangs on the other side's key points.
+        //         // A drawing that shows the other side uses the key points of the other side.
         let side = |point: usize| if set.swapped(rest) { MIRROR[point] } else { point };
         for (frame, (posture, poses)) in (first..).zip(postures.iter().zip(&mut limbs.frames)) {
             let ends = (posture[side(limb.from)], posture[side(limb.to)]);
-            // Bends drawn on a few frames are those of the drawing; the motion goes from one to the next.
+            //             // Bends drawn on a few frames belong to the drawing; the motion interpolates between them.
             poses.push(LimbPose { ends, bend: bend_at(&bends, frame) });
         }
     }
@@ -244,23 +255,23 @@ struct Body {
     part: usize,
     outline: Vec<Point>,
     carriers: Vec<Carrier>,
-    /// The limb that it was given, since none carries it.
+    /// The nearest limb, if no limb carries the part.
     nearest: Option<usize>,
     rest: Vec<LimbPose>,
     name: String,
-    /// Control points, then the points of its snapped paths, those of its strokes, and those asked for.
+    /// Control points, then the points of its snapped paths, those of its strokes, and the requested ones.
     points: Vec<Point>,
     /// Number of control points.
     count: usize,
-    /// Numbers of points of its snapped paths.
+    /// Number of points of each snapped path.
     paths: Vec<usize>,
-    /// Strokes by number (those of the drawing first, then the open parts), with their numbers of points.
+    /// Strokes by number (those of the drawing first, then the open parts), each with its number of points.
     strokes: Vec<(usize, usize)>,
-    /// Number of points asked for.
+    /// Number of requested points.
     more: usize,
 }
 
-/// Where the points of a body are on each frame.
+/// Positions of a body's points on each frame.
 struct Moved {
     frames: Vec<Vec<Point>>,
     rigid: bool,
@@ -276,7 +287,7 @@ impl Body {
     }
 }
 
-/// The closed parts, each with the strokes and open contours that lie on it.
+/// The closed parts, each with the strokes and open contours on it.
 fn bodies(
     parts: &[Part],
     strokes: &[DrawnStroke],
@@ -299,7 +310,7 @@ fn bodies(
     Ok(bodies)
 }
 
-/// A closed part on the frame where it is at rest; none where it has no points there.
+/// A closed part on the rest frame; `None` if it has no points there.
 fn body((index, part): (usize, &Part), set: &LimbSet, rest: &[LimbPose], frame: FrameNumber) -> Option<Body> {
     let (mut points, outline) = (part.points_at(frame)?.clone(), part.outline(frame)?);
     let (carriers, nearest) = carriers(part, set, rest, &outline);
@@ -321,7 +332,7 @@ fn body((index, part): (usize, &Part), set: &LimbSet, rest: &[LimbPose], frame: 
     })
 }
 
-/// The limbs that carry a part; where none is told to, the nearest one, which is also given.
+/// The limbs that carry a part. If none does, the nearest limb carries it and is also returned.
 fn carriers(part: &Part, set: &LimbSet, rest: &[LimbPose], outline: &[Point]) -> (Vec<Carrier>, Option<usize>) {
     let carrier = |limb: usize, turn: f64| {
         let whole = skull(&set.limbs[limb]);
@@ -340,7 +351,7 @@ fn carriers(part: &Part, set: &LimbSet, rest: &[LimbPose], outline: &[Point]) ->
     (vec![carrier(limb, if foot { FOOT_TURN } else { 1.0 })], Some(limb))
 }
 
-/// Whether a limb holds up the head, which keeps its shape.
+/// Whether a limb belongs to the head, which keeps its shape.
 fn skull(limb: &Limb) -> bool {
     ["head", "head_top"].contains(&NAMES[limb.to])
 }
@@ -351,8 +362,8 @@ fn nearest_limb(rest: &[LimbPose], outline: &[Point]) -> usize {
     (0..rest.len()).min_by(|&a, &b| away(&rest[a]).total_cmp(&away(&rest[b]))).unwrap_or(0)
 }
 
-/// The body that a line lies on: the one with most of its points inside, of several the nearest to the viewer; else the
-/// one whose outline is nearest.
+/// The body of a line: the one that contains most of its points, of several the nearest to the viewer. If none contains
+/// a point, the body with the nearest outline.
 fn owner(bodies: &[Body], parts: &[Part], frame: FrameNumber, line: &[Point]) -> usize {
     let inside = |body: &Body| line.iter().filter(|p| polygon::contains(&body.outline, **p)).count();
     let depth = |body: &Body| parts[body.part].depth_at(frame);
@@ -397,7 +408,7 @@ fn depths(
     Ok((0..parts.len()).map(|k| by_frame.iter().map(|all| rounded(all[k])).collect()).collect())
 }
 
-/// The limbs bound to the places of the contours that they have at rest: these keep their meaning on every frame.
+/// Binds the limbs to the parameters of the contours that they have at rest. These stay valid on every frame.
 fn rebound(set: &LimbSet, bindings: &Bindings, parts: &[Part], rest: FrameNumber) -> LimbSet {
     let mut set = set.clone();
     for (k, limb) in set.limbs.iter_mut().enumerate() {

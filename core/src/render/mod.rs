@@ -1,17 +1,17 @@
-//! Pictures of what was found.
+//! Renders pictures of the results.
 //!
 //! - [`overlay`]: contours, control points, keys and confidence over the footage
 //! - [`coverage`]: exact area coverage of unions of polygons
-//! - [`mask`]: parts at a time, blurred by motion, grown and feathered
-//! - [`matte`]: coverage of the closed parts, and what of the footage they cover
-//! - [`visible`]: how much of each pixel every part shows, nearer parts over farther ones
-//! - [`ids`]: the same as a colour for each part; mattes with a layer for each
-//! - [`cryptomatte`]: the same as ranked ids, for keyers
-//! - [`layers`]: OpenEXR files of any number of named channels
+//! - [`mask`]: the parts at a time, with motion blur, growth and feathering
+//! - [`matte`]: the matte of the closed parts, and the footage cut out by them
+//! - [`visible`]: the visible area of every part in each pixel, nearer parts over farther ones
+//! - [`ids`]: that area as a colour for each part; mattes with a layer for each part
+//! - [`cryptomatte`]: that area as ranked ids, for keyers
+//! - [`layers`]: OpenEXR files with any number of named channels
 //! - [`motion`]: contours between frames
-//! - [`grow`]: the outline moved outward or inward
+//! - [`grow`]: outlines moved outward or inward
 //! - [`feather`]: soft borders
-//! - [`line`](mod@line): lines of a width
+//! - [`line`](mod@line): lines of a given width
 //! - [`encode`]: pictures as bytes of a file
 
 pub mod coverage;

@@ -26,7 +26,6 @@
 //!
 //! Limits: the cost grows with the cube of motions × cosines. A posture is one point of a Gaussian. If a manner does a
 //! thing in one of two ways, the prediction is the mean of both.
-//! between two ways of doing a thing get the mean of both.
 
 use super::basis::{Axes, COSINES, MODEL_FRAMES, cosines};
 use super::grid::{Grid, Row, WIDTH, mean};

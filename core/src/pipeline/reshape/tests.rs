@@ -1,4 +1,4 @@
-//! Reshaping of a small figure: a body, an arm, a leg, a shoe, a line on the body.
+//! Reshaping of a small figure: a body, an arm, a leg, a shoe, and a line on the body.
 
 use super::*;
 use crate::pipeline::{ClipJob, clip};
@@ -22,7 +22,7 @@ fn limb(from: &str, to: &str, part: &str, places: [f64; 4], more: &str) -> Strin
     )
 }
 
-/// Rings have their points from the top right down and from the bottom left up: 0 and 7 are the top, 3 and 4 the
+/// The points of a ring run down from the top right and up from the bottom left: 0 and 7 are at the top, 3 and 4 at the
 /// bottom.
 fn figure(fields: &str) -> Document {
     let part = |name: &str, depth: f64, ring: String| {
@@ -51,7 +51,7 @@ fn figure(fields: &str) -> Document {
     Document::parse(&text, "figure").unwrap()
 }
 
-/// The figure's own posture, its arm raised by 30° a frame, its way 5 px a frame.
+/// The figure's own posture. Its arm rises by 30° and the figure moves by 5 px in each frame.
 fn waving(document: &Document, frames: usize) -> Clip {
     let job = ClipJob { character: "a".into(), motion: "wave".into(), frames: Some(0..=0) };
     let rest = clip(document, &job).unwrap().clips.clips[0].postures[0];
@@ -92,13 +92,13 @@ fn a_drawing_follows_a_clip_of_another_size() {
         let part = &document.scene.parts[part];
         part.tracks[&frame][k] - part.keys[&0][k]
     };
-    // Leg, shoe, body and its line go 5 px a frame; the arm turns about the shoulder.
+    // Leg, shoe, body and its line move by 5 px in each frame; the arm rotates about the shoulder.
     for part in [0, 1, 2, 4] {
         assert!(moved(part, 3, 1).distance(Point::new(15.0, 0.0)) < 1e-6, "{part}: {}", moved(part, 3, 1));
     }
     let wrist = document.scene.parts[3].tracks[&3][3].midpoint(document.scene.parts[3].tracks[&3][4]);
     assert!(wrist.distance(Point::new(66.0 + 15.0 + 36.0, 22.0)) < 1.0, "{wrist}");
-    // Captured again, it performs the clip.
+    // A clip captured from the result equals the given clip.
     let again = ClipJob { character: "a".into(), motion: "wave".into(), frames: None };
     let again = clip(&document, &again).unwrap().clips.clips.remove(0);
     for (made, wanted) in again.postures.iter().zip(&motion.postures) {
@@ -241,7 +241,11 @@ fn points_follow_their_part() {
     assert_eq!(made.points["shoe"].iter().map(Vec::len).collect::<Vec<_>>(), [1, 1, 1]);
     for (name, point, said) in [
         ("seam", Point::ZERO, "found part \"seam\", expected the name of a closed part"),
-        ("arm", Point::new(f64::NAN, 0.0), "part \"arm\", point 0: found no finite number"),
+        (
+            "arm",
+            Point::new(f64::NAN, 0.0),
+            "part \"arm\", point 0: found coordinates that are not finite, expected finite ones",
+        ),
     ] {
         let points = BTreeMap::from([(name.to_owned(), vec![point])]);
         let error = reshape(&mut figure(""), &ReshapeJob { points, ..job(&motion) }, &Silent).unwrap_err();

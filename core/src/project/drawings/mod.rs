@@ -4,8 +4,7 @@
 //!
 //! ```json
 //! "drawings": [{"frame": 0, "spacing": "smooth", "corner": false, "strokes": [
-//!   {"points": [[x, y], "…"], "closed": true, "colour": [r, g, b], "material": 0, "layer": 2, "peg": "arm"}, "…"]},
-//!   "…"],
+//!   {"points": [[x, y], "…"], "closed": true, "colour": [r, g, b], "material": 0, "layer": 2, "peg": "arm"}, "…"]}, "…"],
 //! "pairs": [{"frame": 0, "from": 3, "to": 5}, {"frame": 0, "from": 4, "to": null}],
 //! "pegs": [{"name": "arm", "parent": "body", "pivot": [x, y], "keys": [
 //!   {"frame": 0, "shift": [x, y], "turn": 30, "scale": 1.2, "timing": "ease_in_out"}, "…"]}]
@@ -25,13 +24,11 @@
 //! Tweening writes these fields; they replace those of an earlier run:
 //!
 //! ```json
-//! "matches": [{"frame": 0, "next": 8, "pairs": [{"from": 3, "to": 5, "reversed": false, "start": 0.25, "confidence":
-//! 0.97,
-//!   "by_hand": true}, "…"], "split": [{"whole": 1, "pieces": [[2, false], [7, true]]}], "joined": [], "vanished": [4],
-//!   "appeared": []}, "…"],
+//! "matches": [{"frame": 0, "next": 8, "pairs": [{"from": 3, "to": 5, "reversed": false, "start": 0.25,
+//!   "confidence": 0.97, "by_hand": true}, "…"], "split": [{"whole": 1, "pieces": [[2, false], [7, true]]}], "joined": [],
+//!   "vanished": [4], "appeared": []}, "…"],
 //! "in_betweens": [{"frame": 1, "strokes": [{"track": 0, "points": [[x, y], "…"], "closed": true, "opacity": 1,
-//! "colour": "…",
-//!   "material": "…", "layer": "…"}, "…"]}, "…"]
+//!   "colour": "…", "material": "…", "layer": "…"}, "…"]}, "…"]
 //! ```
 //!
 //! - `start`: for closed strokes, the position of the first point on the counterpart, as a share of the counterpart's
