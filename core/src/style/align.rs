@@ -8,8 +8,7 @@
 //! between frames that are a lag apart. The autocorrelation method for pitch works in the same way. The distance is
 //! divided by its mean over all shorter lags (de Cheveigné & Kawahara); this excludes the trivial minimum at lag zero.
 //!
-//! Limits: both compare postures only, with the pelvis at the origin. A motion that returns through the same postures
-//! in reverse order may be matched to itself.
+//! Limits: both compare postures only, with the pelvis at the origin.
 
 use super::Request;
 use crate::scene::Clip;
