@@ -4,7 +4,7 @@
 //! An id never changes, because the compositions of users refer to it. Parameters that the command line and the add-on
 //! also have are shared with [`super::parameters`].
 //!
-//! All lengths are pixels of the source, all times are frames.
+//! Lengths are in pixels, times in frames.
 
 /// The values that a parameter takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
