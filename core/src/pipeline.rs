@@ -1,7 +1,8 @@
-//! The stages joined: from a document and the folder of its footage to a fuller document, pictures or text.
+//! The pipeline joins the stages: it turns a document and the folder of its footage into a fuller document, pictures or
+//! text.
 //!
-//! This is the only folder that knows all stages. A stage's result enters the document as a whole or, after an error or
-//! when cancelled, not at all.
+//! This is the only module that knows all stages. The result of a stage enters the document completely. After an error,
+//! or when cancelled, the document is unchanged.
 
 mod check;
 mod reshape;
@@ -31,10 +32,10 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Why the pipeline stopped. The document is as it was.
+/// Why the pipeline stopped. The document is unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum PipelineError {
-    /// The footage's pattern is none.
+    /// The footage's pattern is invalid.
     #[error("footage: {0}")]
     Pattern(#[from] PatternError),
     /// Tracking failed.
@@ -46,7 +47,7 @@ pub enum PipelineError {
     /// A frame could not be read.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// The caller asked to stop.
+    /// The caller cancelled the work.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// A file could not be written.
@@ -57,24 +58,24 @@ pub enum PipelineError {
     Encode {
         /// The frame.
         frame: FrameNumber,
-        /// What the encoder said.
+        /// The error of the encoder.
         source: EncodeError,
     },
     /// A curve could not be fitted.
     #[error("curves[{curve}].{}", fit_place(source))]
     Fit {
-        /// Its index.
+        /// Index of the curve.
         curve: usize,
-        /// Why.
+        /// The error of the fit.
         source: FitError,
     },
-    /// Drawings could not be tweened.
+    /// The drawings cannot be tweened.
     #[error("{0}")]
     Tween(String),
-    /// Clips or limbs do not fit what was asked for.
+    /// Clips or limbs do not fit the request.
     #[error("{0}")]
     Style(String),
-    /// What was asked for does not fit the document.
+    /// The request does not fit the document.
     #[error("{0}")]
     Request(String),
 }
@@ -89,13 +90,21 @@ fn fit_place(error: &FitError) -> String {
     }
 }
 
-/// The pictures of a document that lies in `folder`.
+/// The pictures of a document in `folder`.
+///
+/// # Errors
+///
+/// [`PipelineError::Pattern`].
 pub fn frames(document: &Document, folder: &Path) -> Result<Sequence, PipelineError> {
     Ok(Sequence::new(&document.scene.footage, folder)?)
 }
 
-/// Fits splines to the curves of a file, each by itself; the text of the file with guides in place of points. Runs on
-/// the caller's rayon pool; the result does not depend on it.
+/// Fits a spline to each curve of a file, independently of the others. Returns the text of the file with guides in
+/// place of the points. It runs on the caller's rayon pool, and the result does not depend on the pool.
+///
+/// # Errors
+///
+/// [`PipelineError::Fit`] for the first curve that cannot be fitted, or [`PipelineError::Cancelled`].
 pub fn fit_curves(curves: &Curves, options: &fit::Options, progress: &dyn Progress) -> Result<String, PipelineError> {
     let (all, done) = (curves.curves.len(), AtomicUsize::new(0));
     let fitted = curves.curves.par_iter().enumerate().map(|(curve, line)| {
@@ -106,13 +115,17 @@ pub fn fit_curves(curves: &Curves, options: &fit::Options, progress: &dyn Progre
         let (spline, max_error) = (fitted.spline, fitted.max_error);
         Ok(CurveGuides { corners: spline.corners(), guides: spline.guides().to_vec(), max_error })
     });
-    // Of several errors the first curve's is told, whichever was met first.
+    // Of several errors the one of the first curve is reported, whichever occurred first.
     let fitted: Vec<Result<CurveGuides, PipelineError>> = fitted.collect();
     let guides = fitted.into_iter().collect::<Result<Vec<_>, _>>()?;
     Ok(curves.with_guides(&guides))
 }
 
-/// Tracks every part of a document that lies in `folder`. Runs on the caller's rayon pool.
+/// Tracks every part of a document in `folder`. It runs on the caller's rayon pool.
+///
+/// # Errors
+///
+/// An invalid pattern, an unreadable frame, a failure of the tracker, or [`PipelineError::Cancelled`].
 pub fn track(
     document: &mut Document,
     folder: &Path,
@@ -125,7 +138,7 @@ pub fn track(
     Ok(tracking)
 }
 
-/// The scene with those corrections alone that act: others are kept in the document, but no stage needs to know them.
+/// The scene with only those corrections that have an effect. The document keeps the others, but no stage needs them.
 pub fn in_effect(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     for part in &mut scene.parts {
@@ -137,14 +150,14 @@ pub fn in_effect(scene: &Scene) -> Scene {
     scene
 }
 
-/// Puts tracks into the scene. Snapped paths stay on frames whose contour is as before.
+/// Puts tracks into the scene. Snapped paths stay on frames whose contour is unchanged.
 pub fn store(scene: &mut Scene, tracking: &Tracking) {
     for (part, found) in scene.parts.iter_mut().zip(&tracking.parts) {
         let before = std::mem::replace(&mut part.tracks, found.tracks.clone());
         let now = &part.tracks;
         part.curves.retain(|frame, _| match (now.get(frame), before.get(frame)) {
             (Some(now), Some(before)) => same_contour(now, before),
-            // Snapped from a key that had no track.
+            //                 // The path was snapped from a key that had no track.
             (Some(now), None) => part.keys.get(frame).is_some_and(|key| same_contour(now, key)),
             _ => false,
         });
@@ -153,13 +166,17 @@ pub fn store(scene: &mut Scene, tracking: &Tracking) {
     }
 }
 
-/// Whether contours differ by no more than what a document's rounding makes of them.
+/// Whether contours differ by no more than the rounding of a document.
 fn same_contour(a: &[Point], b: &[Point]) -> bool {
     let tolerance = 10f64.powi(-DECIMALS);
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (*a - *b).abs().max_element() <= tolerance)
 }
 
-/// Snaps every contour of a document that lies in `folder` to the ink. Runs on the caller's rayon pool.
+/// Snaps every contour of a document in `folder` to the ink. It runs on the caller's rayon pool.
+///
+/// # Errors
+///
+/// An invalid pattern, an unreadable frame, a failure of snapping, or [`PipelineError::Cancelled`].
 pub fn snap(
     document: &mut Document,
     folder: &Path,
@@ -174,43 +191,49 @@ pub fn snap(
     Ok(())
 }
 
-/// Which picture is made of a frame.
+/// The picture to render of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Picture {
     /// Contours over the footage.
     Overlay(OverlayOptions),
-    /// Coverage of the closed parts.
+    /// The matte of the closed parts.
     Matte,
-    /// What of the footage the closed parts cover.
+    /// The footage cut out by the closed parts.
     Cutout,
-    /// The same, and in an OpenEXR file the whole coverage of each part as a layer of its own.
+    /// The matte of the closed parts, and in a layer for each part its complete matte; OpenEXR only.
     Layers,
-    /// A colour for each part, nearer ones over farther ones; in an OpenEXR file with Cryptomatte layers.
+    /// A colour for each part, nearer parts over farther ones. An OpenEXR file also has Cryptomatte layers.
     Ids,
 }
 
-/// What to render.
+/// What to render and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderJob {
     /// The picture.
     pub picture: Picture,
-    /// The frames; none for the whole footage.
+    /// The frames; `None` renders the complete footage.
     pub frames: Option<RangeInclusive<FrameNumber>>,
-    /// Names of the parts; none for all.
+    /// Names of the parts; `None` takes all.
     pub parts: Option<Vec<String>>,
-    /// Files: a pattern with one `%d` or `%0Nd`, or for one frame a plain name. Ends in `.png` or `.exr`.
+    /// The output path, ending in `.png` or `.exr`: a pattern with one `%d` or `%0Nd`, or a plain path for a single
+    /// frame.
     pub output: String,
 }
 
-/// A render job that fits the document.
+/// A render job after its check against the document.
 struct Rendering {
     frames: Vec<(FrameNumber, PathBuf)>,
     parts: Option<Vec<usize>>,
     format: Format,
 }
 
-/// Renders frames of a document that lies in `folder`; returns the files. Each appears whole or not at all. Runs on the
-/// caller's rayon pool.
+/// Renders frames of a document in `folder` and returns the paths of the files. Each file is written completely or not
+/// at all. It runs on the caller's rayon pool.
+///
+/// # Errors
+///
+/// [`PipelineError::Request`] if the job does not fit the document; errors of reading, encoding and writing; or
+/// [`PipelineError::Cancelled`].
 pub fn render(
     document: &Document,
     folder: &Path,
@@ -298,25 +321,25 @@ fn indices(scene: &Scene, names: &[String]) -> Result<Vec<usize>, PipelineError>
     names.iter().map(index).collect()
 }
 
-/// The document as an animated SVG.
+/// Exports the document as an animated SVG.
 pub fn export_svg(document: &Document, options: &SvgOptions) -> String {
     svg(&document.scene, options)
 }
 
-/// The document as a RotoPaint node for Nuke, points of snapped paths `spacing` pixels apart.
+/// Exports the document as a RotoPaint node for Nuke. Points of snapped paths are about `spacing` pixels apart.
 pub fn export_nuke(document: &Document, spacing: f64) -> String {
     export::nuke(&document.scene, spacing)
 }
 
-/// The document as Silhouette shapes, points of snapped paths `spacing` pixels apart.
+/// Exports the document as Silhouette shapes. Points of snapped paths are about `spacing` pixels apart.
 pub fn export_silhouette(document: &Document, spacing: f64) -> String {
     export::silhouette(&document.scene, spacing)
 }
 
-/// A kind of file with shapes.
+/// A format of a file with shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShapeFormat {
-    /// SVG; shapes that are not animated get their key on this frame.
+    /// SVG. Shapes without animation get their key on the frame `still`.
     Svg {
         /// A frame of the footage.
         still: FrameNumber,
@@ -325,8 +348,12 @@ pub enum ShapeFormat {
     Silhouette,
 }
 
-/// Puts the shapes of a file's text into the document as keys of parts; returns what has been left out. The document is
-/// as it was where that fails.
+/// Puts the shapes in the text of a file into the document as keys of parts. Returns a warning for each element that
+/// was left out.
+///
+/// # Errors
+///
+/// An [`ImportError`]; the document is then unchanged.
 pub fn import(document: &mut Document, text: &str, format: ShapeFormat) -> Result<Vec<String>, ImportError> {
     let footage = &document.scene.footage;
     let found = match format {
@@ -337,8 +364,8 @@ pub fn import(document: &mut Document, text: &str, format: ShapeFormat) -> Resul
     Ok(found.warnings)
 }
 
-/// Rewrites a relative footage pattern of a document that moves from folder `from` to folder `to`, so that it names the
-/// same files: relative where there is a way from one folder to the other, else absolute.
+/// Rewrites the relative footage pattern of a document that moves from folder `from` to folder `to`, so it still names
+/// the same files. The new pattern is relative if a relative path exists, otherwise absolute.
 pub fn relocate(document: &mut Document, from: &Path, to: &Path) {
     let pattern = &mut document.scene.footage.pattern;
     if Path::new(pattern).is_relative() {

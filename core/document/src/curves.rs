@@ -1,40 +1,43 @@
 //! The file of curves that `rototoon fit` reads and writes.
 //!
-//! Read: `{"curves": [{"closed": true, "points": [[x, y], …]}]}`. Written: the same curves, with `guides` (guiding points of
-//! a uniform quadratic B-spline; those of corners stand twice), `corners` (index of the first guide of each) and `max_error`
-//! in place of `points`. Other fields are kept where they stood.
+//! Input: `{"curves": [{"closed": true, "points": [[x, y], …]}]}`, in pixels.
+//!
+//! Output: the same curves with three fields in place of `points`. `guides` are the guiding points of a uniform
+//! quadratic B-spline; a guiding point at a corner appears twice. `corners` contains the index of the first of these
+//! two for each corner. `max_error` is the largest distance between line and curve, in pixels. Other fields keep their
+//! places.
 
 use rototoon_base::geometry::Point;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
-/// Why a file of curves could not be read.
+/// Why a file of curves cannot be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CurvesError {
     /// The file cannot be read.
     #[error("{origin}: cannot read the curves: {reason}")]
     Unreadable {
-        /// The file.
+        /// Path of the file.
         origin: String,
-        /// What the system said.
+        /// The message of the system.
         reason: String,
     },
     /// The text is not JSON.
     #[error("{origin}: line {line}, column {column}: {reason}")]
     Syntax {
-        /// The file.
+        /// Path of the file.
         origin: String,
         /// Line, from 1.
         line: usize,
-        /// Byte of the line, from 1.
+        /// Byte within the line, from 1.
         column: usize,
-        /// What the reader said.
+        /// The message of the parser.
         reason: String,
     },
-    /// A field is missing or of another kind.
+    /// A field is missing or has the wrong type.
     #[error("{origin}: {place}: found {found}, expected {expected}")]
     Field {
-        /// The file.
+        /// Path of the file.
         origin: String,
         /// JSON path of the field.
         place: String,
@@ -45,21 +48,21 @@ pub enum CurvesError {
     },
 }
 
-/// A line to fit.
+/// A line to be fitted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvePoints {
     /// Whether the last point joins the first.
     pub closed: bool,
     /// Its points in pixels.
     pub points: Vec<Point>,
-    /// The object it was read from, without the points.
+    /// The other fields of its object; `points` keeps an empty place.
     rest: Map<String, Value>,
 }
 
-/// What takes the place of a line's points.
+/// The result that replaces the points of a line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveGuides {
-    /// Guiding points in pixels; those of corners twice.
+    /// Guiding points in pixels; at a corner twice.
     pub guides: Vec<Point>,
     /// Index of the first guide of each corner.
     pub corners: Vec<usize>,
@@ -70,14 +73,18 @@ pub struct CurveGuides {
 /// A file of curves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curves {
-    /// The lines in the file's order.
+    /// The lines in the order of the file.
     pub curves: Vec<CurvePoints>,
-    /// Fields beside `curves`, and an empty place for it.
+    /// The other fields of the document; `curves` keeps an empty place.
     rest: Map<String, Value>,
 }
 
 impl Curves {
     /// Reads a file.
+    ///
+    /// # Errors
+    ///
+    /// A [`CurvesError`] names the file, the place, and the found and expected values.
     pub fn load(path: &Path) -> Result<Self, CurvesError> {
         let origin = path.display().to_string();
         let unreadable = |reason: String| CurvesError::Unreadable { origin: origin.clone(), reason };
@@ -86,7 +93,11 @@ impl Curves {
         Self::from_json(&text, &origin)
     }
 
-    /// Reads the text of a file; `origin` names it in messages.
+    /// Reads text; `origin` names it in messages.
+    ///
+    /// # Errors
+    ///
+    /// [`CurvesError::Syntax`] or [`CurvesError::Field`].
     pub fn from_json(text: &str, origin: &str) -> Result<Self, CurvesError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let value: Value = serde_json::from_str(text).map_err(|error| {
@@ -102,7 +113,8 @@ impl Curves {
         Ok(Self { curves, rest })
     }
 
-    /// The text of a file with guides in place of the points, one for each curve.
+    /// The text of a file with guides in place of the points. `guides` has an entry for each curve; any other number
+    /// panics.
     pub fn with_guides(&self, guides: &[CurveGuides]) -> String {
         assert_eq!(guides.len(), self.curves.len(), "one result for each curve");
         let pairs = |points: &[Point]| points.iter().map(|p| json!([p.x, p.y])).collect::<Vec<_>>();
@@ -172,7 +184,7 @@ impl Reader<'_> {
     }
 }
 
-/// A value in a few words.
+/// A short description of a value.
 fn described(value: Option<&Value>) -> String {
     match value {
         None => "nothing".into(),

@@ -1,15 +1,15 @@
-//! Reads fields of JSON values that a document holds beside its scene; what does not fit is named with its path.
+//! Reads fields of JSON values beside the scene of a document. Errors name a field by its JSON path.
 
 use super::schema::{MAX_COORDINATE, MAX_FRAME_NUMBER};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::FrameNumber;
 use serde_json::{Map, Value};
 
-/// A field that is not as it must be.
+/// An invalid field.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{place}: found {found}, expected {expected}")]
 pub struct FieldError {
-    /// JSON path.
+    /// JSON path of the field.
     pub place: String,
     /// What was found.
     pub found: String,
@@ -17,12 +17,12 @@ pub struct FieldError {
     pub expected: String,
 }
 
-/// An error.
+/// An error from its three texts.
 pub(super) fn wrong(place: &str, found: &str, expected: &str) -> FieldError {
     FieldError { place: place.into(), found: found.into(), expected: expected.into() }
 }
 
-/// A value in a few words.
+/// A short description of a value.
 pub(super) fn described(value: Option<&Value>) -> String {
     match value {
         None => "nothing".into(),
@@ -32,40 +32,40 @@ pub(super) fn described(value: Option<&Value>) -> String {
     }
 }
 
-/// An object.
+/// Reads an object.
 pub(super) fn object<'a>(value: &'a Value, place: &str) -> Result<&'a Map<String, Value>, FieldError> {
     value.as_object().ok_or_else(|| wrong(place, &described(Some(value)), "an object"))
 }
 
-/// A list.
+/// Reads a list.
 pub(super) fn array<'a>(value: Option<&'a Value>, place: &str) -> Result<&'a Vec<Value>, FieldError> {
     value.and_then(Value::as_array).ok_or_else(|| wrong(place, &described(value), "a list"))
 }
 
-/// True or false.
+/// Reads true or false.
 pub(super) fn flag(value: Option<&Value>, place: &str) -> Result<bool, FieldError> {
     value.and_then(Value::as_bool).ok_or_else(|| wrong(place, &described(value), "true or false"))
 }
 
-/// A number.
+/// Reads a number.
 pub(super) fn number(value: Option<&Value>, place: &str) -> Result<f64, FieldError> {
     value.and_then(Value::as_f64).ok_or_else(|| wrong(place, &described(value), "a number"))
 }
 
-/// A whole number from 0 on.
+/// Reads a whole number of at least 0.
 pub(super) fn count<T: TryFrom<u64>>(value: Option<&Value>, place: &str) -> Result<T, FieldError> {
     let number = value.and_then(Value::as_u64).and_then(|n| T::try_from(n).ok());
     number.ok_or_else(|| wrong(place, &described(value), "a whole number from 0 on"))
 }
 
-/// A frame number.
+/// Reads a frame number.
 pub(super) fn frame(value: Option<&Value>, place: &str) -> Result<FrameNumber, FieldError> {
     let number = value.and_then(Value::as_i64).filter(|n| n.abs() <= MAX_FRAME_NUMBER);
     let number = number.and_then(|n| FrameNumber::try_from(n).ok());
     number.ok_or_else(|| wrong(place, &described(value), "a frame number"))
 }
 
-/// A point within the limits of coordinates.
+/// Reads a point whose coordinates are within the limits.
 pub(super) fn point(value: Option<&Value>, place: &str) -> Result<Point, FieldError> {
     let pair = value.and_then(Value::as_array).filter(|pair| pair.len() == 2);
     let point = pair.and_then(|pair| Some(Point::new(pair[0].as_f64()?, pair[1].as_f64()?)));
@@ -74,7 +74,7 @@ pub(super) fn point(value: Option<&Value>, place: &str) -> Result<Point, FieldEr
     point.filter(fits).ok_or_else(|| wrong(place, &described(value), expected))
 }
 
-/// An optional field.
+/// Reads an optional field.
 pub(super) fn given<T>(
     fields: &Map<String, Value>,
     place: &str,

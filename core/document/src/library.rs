@@ -1,13 +1,14 @@
-//! A library of skeleton clips: a folder with one file a clip, and an index.
+//! A library of skeleton clips: a folder with a file for each clip, and an index.
 //!
-//! `library.json` lists `{"file", "character", "motion", "frames", "fps", "source"}` for each clip; a clip's file is a file of
-//! clips ([`super::clips`]) with one clip in it. The index is for finding without reading; the files are the truth.
+//! The index `library.json` lists `{"file", "character", "motion", "frames", "fps", "source"}` for each clip. The file
+//! of a clip is a file of clips ([`super::clips`]) with one clip. The index makes searching fast; the files are
+//! authoritative.
 //!
-//! A file that is damaged, missing or of a later version takes nothing else with it: it is told as a [`Trouble`], and the rest
-//! is used. So is an index that cannot be read: the library is then what the clip files of the folder say. Clips that the
-//! index does not know are found the same way, so a file may simply be put into the folder.
+//! A file that is damaged, missing or of a later version does not affect the others. It is reported as a [`Trouble`],
+//! and the rest is used. If the index is damaged, the clip files of the folder are read instead. Clip files that the
+//! index does not list are found in the same way, so a file may simply be copied into the folder.
 //!
-//! Clip files are read on the threads of the caller's pool; what is found and in which order does not depend on them.
+//! The threads of the caller's pool read the clip files. Results and their order do not depend on the threads.
 
 use super::clips::{Clips, ClipsError};
 use super::output::{WriteError, write_whole};
@@ -18,27 +19,27 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Version of the index.
+/// Version of the index format.
 pub const VERSION: u64 = 1;
-/// Name of the index.
+/// File name of the index.
 pub const INDEX: &str = "library.json";
-/// How names of clip files end.
+/// Ending of the names of clip files.
 pub const ENDING: &str = ".clip.json";
 
-/// What the index says of a clip.
+/// The index entry of a clip.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// The file's name within the folder.
     pub file: String,
-    /// Who moves.
+    /// The character that moves.
     pub character: String,
-    /// What is done.
+    /// The motion.
     pub motion: String,
     /// Number of frames.
     pub frames: usize,
-    /// Frames a second.
+    /// Frames per second.
     pub fps: f64,
-    /// Where the clip came from; may be empty.
+    /// Source of the clip; may be empty.
     #[serde(default)]
     pub source: String,
 }
@@ -55,48 +56,48 @@ struct WrittenIndex<'a> {
     clips: &'a [Entry],
 }
 
-/// Something of a library that cannot be used; the rest can.
+/// A part of a library that cannot be used. The rest can.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Trouble {
     /// The index is damaged.
     #[error("{origin}: not an index of clips: {reason}; the clip files are read instead")]
     Index {
-        /// The index.
+        /// Path of the index.
         origin: String,
-        /// What is wrong.
+        /// The message of the parser.
         reason: String,
     },
     /// The index is of a later version.
     #[error("{origin}: found version {found}, expected {VERSION} or less; the clip files are read instead")]
     Later {
-        /// The index.
+        /// Path of the index.
         origin: String,
-        /// Its version.
+        /// The version of the index.
         found: u64,
     },
     /// A clip file cannot be used.
     #[error(transparent)]
     Clip(#[from] ClipsError),
-    /// A clip file holds not one clip.
+    /// A clip file does not contain exactly one clip.
     #[error("{origin}: found {found} clips, expected one a file")]
     Count {
-        /// The file.
+        /// Path of the file.
         origin: String,
         /// Number of clips.
         found: usize,
     },
-    /// A name that leads out of the folder.
+    /// A file name in the index leads out of the folder.
     #[error("{origin}: found file {found:?}, expected a name within the folder")]
     Name {
-        /// The index.
+        /// Path of the index.
         origin: String,
-        /// The name.
+        /// The file name.
         found: String,
     },
-    /// A clip of the same character and motion is there already.
+    /// Another file already has the clip of this character and motion.
     #[error("{origin}: found another clip of {character:?}, {motion:?}; the one of {first} is used")]
     Twice {
-        /// The file.
+        /// Path of the file.
         origin: String,
         /// The file that was found first.
         first: String,
@@ -116,7 +117,8 @@ pub struct Library {
 }
 
 impl Library {
-    /// Opens a folder; one that is empty or not there yet is an empty library. Only the index is read, unless it is wrong.
+    /// Opens a folder. A folder that is empty or does not exist is an empty library. If the index is valid, only the
+    /// index and files that it does not list are read.
     pub fn open(folder: &Path) -> Self {
         let mut library = Self { folder: folder.to_owned(), entries: Vec::new(), troubles: Vec::new() };
         let index = folder.join(INDEX);
@@ -134,7 +136,7 @@ impl Library {
         library
     }
 
-    /// What cannot be used.
+    /// The parts of the library that cannot be used.
     pub fn troubles(&self) -> &[Trouble] {
         &self.troubles
     }
@@ -144,7 +146,7 @@ impl Library {
         &self.entries
     }
 
-    /// Clips whose character and motion hold these words, upper or lower case; an empty word holds for all.
+    /// The clips whose character and motion contain these words, ignoring case. An empty word matches all.
     pub fn search<'a>(&'a self, character: &str, motion: &str) -> impl Iterator<Item = &'a Entry> {
         let (character, motion) = (character.to_lowercase(), motion.to_lowercase());
         self.entries.iter().filter(move |entry| {
@@ -152,7 +154,7 @@ impl Library {
         })
     }
 
-    /// Reads the clips of some entries. Files that cannot be used are told and left out.
+    /// Reads the clips of some entries. Files that cannot be used are reported and left out.
     pub fn read<'a>(&self, entries: impl Iterator<Item = &'a Entry>) -> (Vec<Clip>, Vec<Trouble>) {
         let (mut clips, mut troubles) = (Vec::new(), Vec::new());
         let files: Vec<PathBuf> = entries.map(|entry| self.folder.join(&entry.file)).collect();
@@ -166,7 +168,11 @@ impl Library {
         (clips, troubles)
     }
 
-    /// Adds a clip, in place of one of the same character and motion.
+    /// Adds a clip. It replaces an earlier clip of the same character and motion.
+    ///
+    /// # Errors
+    ///
+    /// A [`WriteError`] if the folder, the clip file or the index cannot be written.
     pub fn add(&mut self, clip: &Clip, fps: f64, source: &str) -> Result<(), WriteError> {
         let same = |entry: &Entry| entry.character == clip.character && entry.motion == clip.motion;
         let known = self.entries.iter().position(same);
@@ -193,7 +199,7 @@ impl Library {
         write_whole(&self.folder.join(INDEX), text.as_bytes())
     }
 
-    /// Takes an entry of the index, unless its name leads elsewhere.
+    /// Takes an entry of the index, unless its file name leads out of the folder.
     fn take(&mut self, entry: Entry) {
         if Path::new(&entry.file).components().count() == 1 && !entry.file.contains("..") {
             self.entries.push(entry);
@@ -203,7 +209,7 @@ impl Library {
         }
     }
 
-    /// Clip files that no entry names, in the order of their names.
+    /// Adds the clip files that no entry names, in the order of their names.
     fn find_files(&mut self) {
         let Ok(listed) = fs::read_dir(&self.folder) else { return };
         let known: BTreeSet<&str> = self.entries.iter().map(|entry| entry.file.as_str()).collect();
@@ -242,7 +248,7 @@ impl Library {
         }
     }
 
-    /// A name made of letters and digits of both labels, with a number where it is taken.
+    /// A free file name made of letters and digits of both labels, with a number if necessary.
     fn free_name(&self, clip: &Clip) -> String {
         let plain = |text: &str| -> String {
             text.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect()

@@ -1,25 +1,28 @@
-//! Limbs on a document's contours, the frames with swapped sides, and marks "in front" and "behind".
+//! Limbs on the contours of a document, frames with swapped sides, and marks "in front" and "behind".
 //!
-//! A document may hold, beside what it holds already:
+//! Besides its scene a document may contain:
 //!
 //! ```json
 //! "limbs": [{"from": "r_shoulder", "to": "r_elbow",
-//!     "start": {"points": [{"part": "near arm", "at": 0}, {"part": "near arm", "at": 10}], "share": 0.5},
-//!     "end": {"points": [{"part": "near arm", "drawn": {"0": [x, y], "23": [x, y]}}, {"part": "near arm", "at": 7.5}]},
-//!     "carries": ["near arm", {"part": "near mitten", "turn": 0.5}], "bends": {"0": [x, y]}, "rigidity": 1}, "…"],
+//!   "start": {"points": [{"part": "near arm", "at": 0}, {"part": "near arm", "at": 10}], "share": 0.5},
+//!   "end": {"points": [{"part": "near arm", "drawn": {"0": [x, y], "23": [x, y]}}, {"part": "near arm", "at": 7.5}]},
+//!   "carries": ["near arm", {"part": "near mitten", "turn": 0.5}], "bends": {"0": [x, y]}, "rigidity": 1}, "…"],
 //! "limb_swaps": [[14, 23]],
 //! "depth_marks": [{"front": "near arm", "behind": "coat", "first": 0, "last": 9}, "…"]
 //! ```
 //!
-//! - `from` and `to`: key points by name ([`rototoon_base::scene::skeleton::NAMES`]). Each end lies between two calibration points on
-//!   contours, `share` of the way from the first to the second (½ where it is left out).
-//! - `at`: a place between control points, 7.5 halfway from point 7 to point 8. `drawn`: points near the contour by frame, bound
-//!   to its nearest place there, sliding along it between these frames.
-//! - `carries`: the parts that follow the limb when the drawing is reshaped; where it is left out, those that its calibration
-//!   points lie on. `turn` says how much of the limb's turn a part takes that hangs on the limb's end, 0 to 1.
-//! - `bends`: control points of the limb's Bézier spline, in pixels, by frame. `rigidity`: how stiff it is beside other limbs.
-//! - `limb_swaps`: from a frame to a frame (both included) the contours show the other side: left and right change places.
-//! - `depth_marks`: one part in front of another, on all frames where `first` and `last` are left out.
+//! - `from` and `to`: key points by name ([`rototoon_base::scene::skeleton::NAMES`]). Each end is between two calibration
+//!   points on contours, `share` of the way from the first to the second (default ½).
+//! - `at`: a parameter of the contour; 7.5 is halfway from point 7 to point 8. `drawn`: points near the contour by
+//!   frame. Each is bound to the nearest point of the contour on its frame, and slides along the contour between these
+//!   frames.
+//! - `carries`: the parts that follow the limb when the drawing is reshaped. The default are the parts of its
+//!   calibration points. `turn` is the share of the limb's rotation, 0 to 1, that a rigid part on the limb's end takes.
+//! - `bends`: control points of the limb's Bézier spline by frame, in pixels. `rigidity`: its stiffness relative to
+//!   other limbs.
+//! - `limb_swaps`: from a first to a last frame, both included, the contours show the other side: left and right change
+//!   places.
+//! - `depth_marks`: one part is in front of another. Without `first` or `last` the range of frames is open at that end.
 
 use super::Document;
 use super::drawings::lines;
@@ -31,15 +34,15 @@ use rototoon_base::scene::skeleton::NAMES;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-/// Largest rigidity: beyond it the stiffest triangle would drown the softest one's digits.
+/// Largest rigidity. Beyond it the softest triangles would lose their digits beside the stiffest.
 const MOST_RIGID: f64 = 1e4;
 
 impl Document {
-    /// The limbs, swaps and marks of the document; none where it has none.
+    /// The limbs, swaps and marks of the document; empty if it has none.
     ///
     /// # Errors
     ///
-    /// The first field that is not as it must be.
+    /// The first invalid field.
     pub fn limbs(&self) -> Result<LimbSet, FieldError> {
         let limbs = self.other_list("limbs")?;
         let limbs = limbs.iter().enumerate().map(|(k, value)| limb(value, &format!("limbs[{k}]")));
@@ -54,7 +57,7 @@ impl Document {
         })
     }
 
-    /// Puts limbs, swaps and marks into the document, in place of those that it had.
+    /// Puts limbs, swaps and marks into the document, in place of earlier ones.
     pub fn set_limbs(&mut self, set: &LimbSet) {
         self.set_other_field("limbs", lines(set.limbs.iter().map(written)));
         self.set_other_field("limb_swaps", lines(set.swaps.iter().map(|(first, last)| json!([first, last]))));
@@ -92,7 +95,7 @@ fn limb(value: &Value, place: &str) -> Result<Limb, FieldError> {
     if from == to {
         return Err(wrong(&format!("{place}.to"), &format!("{:?} again", NAMES[to]), "another key point than from"));
     }
-    // From here on the place names the limb by its key points too.
+    // From here on the place also names the limb's key points.
     let place = format!("{place} ({} to {})", NAMES[from], NAMES[to]);
     let (start, end) = (end(fields, &place, "start")?, end(fields, &place, "end")?);
     let carries = match fields.get("carries") {
@@ -178,7 +181,7 @@ fn carried(value: &Value, place: &str) -> Result<Carried, FieldError> {
     }
 }
 
-/// The parts that the calibration points of both ends lie on, each once.
+/// The parts of the calibration points of both ends, each once.
 pub fn carried_by_default(start: &LimbEnd, end: &LimbEnd) -> Vec<Carried> {
     let mut found: Vec<Carried> = Vec::new();
     for point in start.points.iter().chain(&end.points) {

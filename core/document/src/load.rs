@@ -1,4 +1,7 @@
-//! Reads documents.
+//! Reads project documents.
+//!
+//! A document is read in one pass. Reading continues after an invalid value, so the error lists every problem, up to a
+//! limit for each kind. Only text that is not JSON ends the reading early.
 
 use super::Document;
 use super::problem::Problems;
@@ -11,51 +14,51 @@ use serde_json::error::Category;
 use serde_json::value::RawValue;
 use std::path::Path;
 
-/// Why a document could not be read.
+/// Why a document cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The file cannot be read.
     #[error("{origin}: cannot read the document: {reason}")]
     Unreadable {
-        /// The file.
+        /// Path of the file.
         origin: String,
-        /// What the system said.
+        /// The message of the system.
         reason: String,
     },
-    /// The document is of a version that this program does not know.
+    /// The document's version is newer than this program.
     #[error("{origin}: found a document of version {found}, expected version {VERSION}: a newer Rototoon wrote it")]
     Newer {
-        /// The file.
+        /// Path of the file.
         origin: String,
         /// The document's version.
         found: String,
     },
-    /// The text is not JSON, or ends too early.
+    /// The text is not JSON or ends too early.
     #[error("{origin}: line {line}, column {column}{}{place}: {reason}", if place.is_empty() { "" } else { ", in " })]
     Syntax {
-        /// The file.
+        /// Path of the file.
         origin: String,
         /// Line, from 1.
         line: usize,
-        /// Byte of the line, from 1.
+        /// Byte within the line, from 1.
         column: usize,
-        /// JSON path of what was being read.
+        /// JSON path of the value that was being read.
         place: String,
-        /// What was found and what was expected.
+        /// The found and the expected text.
         reason: String,
     },
-    /// The document is JSON, but not a valid project.
+    /// The text is JSON, but not a valid project document.
     #[error("{}", lines(origin, problems).join("\n"))]
     Invalid {
-        /// The file.
+        /// Path of the file.
         origin: String,
-        /// All that is wrong.
+        /// All problems.
         problems: Problems,
     },
 }
 
 impl LoadError {
-    /// The message, one line for each problem.
+    /// The message, with one line for each problem.
     pub fn lines(&self) -> Vec<String> {
         match self {
             Self::Invalid { origin, problems } => lines(origin, problems),
@@ -73,7 +76,11 @@ fn lines(origin: &str, problems: &Problems) -> Vec<String> {
 }
 
 impl Document {
-    /// Reads a document's file.
+    /// Reads the file of a document.
+    ///
+    /// # Errors
+    ///
+    /// A [`LoadError`] with every problem, each with its place.
     pub fn load(path: &Path) -> Result<Self, LoadError> {
         let origin = path.display().to_string();
         let unreadable = |reason: String| LoadError::Unreadable { origin: origin.clone(), reason };
@@ -83,8 +90,12 @@ impl Document {
         Self::parse(json, &origin)
     }
 
-    /// Reads a document from text; `origin` names it in messages. Errors name every problem, not just the first; a
-    /// document that is read has none but warnings ([`Document::problems`]).
+    /// Reads a document from text; `origin` names it in messages. A document without errors may still have warnings
+    /// ([`Document::problems`]).
+    ///
+    /// # Errors
+    ///
+    /// A [`LoadError`] with every problem, not only the first.
     pub fn parse(json: &str, origin: &str) -> Result<Self, LoadError> {
         let json = json.strip_prefix('\u{feff}').unwrap_or(json);
         let mut context = Context::default();
@@ -124,7 +135,7 @@ fn syntax_error(json: &str, origin: &str, context: &Context, error: &serde_json:
     LoadError::Syntax { origin: origin.to_owned(), line, column, place: context.place(), reason }
 }
 
-/// The word for a number that is none, as other tools write it into JSON, at or just before a place.
+/// The word for a number that is not finite, as other tools write it into JSON, at or just before a place.
 fn not_a_number(json: &str, line: usize, column: usize) -> Option<&'static str> {
     let text = json.split('\n').nth(line.checked_sub(1)?)?.as_bytes();
     let starts = column.saturating_sub(2)..=column;
@@ -133,7 +144,7 @@ fn not_a_number(json: &str, line: usize, column: usize) -> Option<&'static str> 
     })
 }
 
-/// What a document holds, as far as it could be read.
+/// The content of a document, as far as it can be read.
 struct Raw {
     footage: Option<Footage>,
     parts: Vec<Part>,
@@ -158,7 +169,7 @@ fn unknown<'de, A: MapAccess<'de>>(entries: &mut A, name: String) -> Result<Fiel
     Ok(Field::Unknown { name, json })
 }
 
-/// Whether `name` is there already; then its value is skipped and noted.
+/// Whether the field `name` appeared before. If so, its value is skipped and an error recorded.
 fn repeated<'de, A: MapAccess<'de>>(
     context: &mut Context,
     entries: &mut A,
@@ -181,7 +192,7 @@ fn require(context: &mut Context, fields: &[Field], names: &[&str]) {
     }
 }
 
-/// The version: a number whose whole part is the major version.
+/// The version: a number whose integer part is the major version.
 struct Version;
 
 impl Shape<'_> for Version {
@@ -273,7 +284,7 @@ impl<'de> Shape<'de> for FootageShape {
 }
 
 fn report(context: &mut Context, name: &'static str, message: String) {
-    // Writing an error cannot fail, so the step is always taken back.
+    // Recording an error cannot fail, so the step is always removed again.
     let _ = context.within(Step::Field(name), |inner| {
         inner.error(message);
         Ok::<_, std::convert::Infallible>(())
@@ -288,7 +299,7 @@ impl<'de> Shape<'de> for PartsShape {
 
     fn list<A: SeqAccess<'de>>(self, context: &mut Context, mut items: A) -> Result<Option<Self::Value>, A::Error> {
         let mut parts = Vec::new();
-        // A part's step replaces the step of the list: `parts[3]`, not `parts.parts[3]`.
+        // The step of a part replaces the step of the list: `parts[3]`, not `parts.parts[3]`.
         while let Some(part) = context
             .within(Step::Part(parts.len()), |inner| items.next_element_seed(Seed(PartShape(parts.len()), inner)))?
         {

@@ -1,24 +1,28 @@
-//! Files that appear whole or not at all.
+//! Files that are written completely or not at all.
 //!
-//! The bytes go to a temporary file in the same folder, are forced to the disk, and only then take the name of the
-//! file: a full disk, a crash or a cancelled run leaves what was there before. A target that is no file (a pipe, a
-//! device) is written to directly, since renaming would replace it.
+//! The bytes go to a temporary file in the same folder and are flushed to the disk. Only then the temporary file takes
+//! the name of the target. After a full disk, a crash or a cancelled run the old file is still there. A target that is
+//! not a regular file (a pipe, a device) is written directly, since renaming would replace it.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// A file could not be written; what was there before is still there.
+/// A file could not be written. An earlier file is unchanged.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: cannot write: {source}", path.display())]
 pub struct WriteError {
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
-    /// What the system said.
+    /// The error of the system.
     pub source: io::Error,
 }
 
-/// Writes `bytes` as the file `path`.
+/// Writes `bytes` as the file `path`, completely or not at all.
+///
+/// # Errors
+///
+/// A [`WriteError`].
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     write(path, bytes).map_err(|source| WriteError { path: path.to_owned(), source })
 }
@@ -30,7 +34,7 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Some(data) if !data.is_file() => return OpenOptions::new().write(true).open(path)?.write_all(bytes),
         _ => {}
     }
-    // A link keeps pointing where it points: its target is what is replaced.
+    // A link keeps its target; the target is replaced.
     let target = if existing.is_some() { fs::canonicalize(path)? } else { path.to_owned() };
     if existing.as_ref().is_some_and(|data| data.permissions().readonly()) {
         return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
@@ -50,14 +54,19 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
     file.as_file().sync_all()?;
     file.persist(&target).map_err(|error| error.error)?;
-    // The new name is on the disk only when the folder is; where folders cannot be opened, the system sees to it.
+    // The new name is on the disk only after the folder is flushed. On systems that cannot open folders, the system
+    // does this.
     if let Ok(folder) = File::open(folder) {
         let _ = folder.sync_all();
     }
     Ok(())
 }
 
-/// Whether a file could be written at `path`, as far as that can be known beforehand: before hours of work, not after.
+/// Checks, as far as possible, whether a file can be written at `path`, so that long work fails before it starts.
+///
+/// # Errors
+///
+/// A [`WriteError`] if the file certainly cannot be written.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let probe = || match fs::metadata(path) {
         Ok(data) if data.is_dir() => Err(io::Error::other("it is a folder, expected a file")),
@@ -75,7 +84,8 @@ fn parent(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// A relative frame pattern of folder `from` as folder `to` names it; absolute where no relative path leads there.
+/// Converts a frame pattern relative to folder `from` into one relative to folder `to`; absolute if there is no
+/// relative path.
 pub fn moved_pattern(pattern: &str, from: &Path, to: &Path) -> String {
     let real = |folder: &Path| {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -93,7 +103,7 @@ pub fn moved_pattern(pattern: &str, from: &Path, to: &Path) -> String {
             up.chain(from.components().skip(shared)).collect()
         }
     };
-    // A percent sign in a folder's name must not become a place for the number.
+    // A percent sign in a folder's name must not become a place for the frame number.
     let way = way.to_string_lossy().replace('%', "%%");
     Path::new(&way).join(pattern).to_string_lossy().into_owned()
 }

@@ -1,8 +1,8 @@
-//! Clips straight from text into numbers, and back: the quick way for files that are as they must be.
+//! The fast way to read and write valid files of clips: text directly into numbers and back.
 //!
-//! A tree of JSON values makes an allocation for every point, ten times the work of reading its digits. Here the types of the form
-//! ([`super::clips`]) are read directly; anything unexpected makes the whole text unreadable this way, and nothing is said about
-//! it: that is the slow way's business.
+//! A tree of JSON values allocates memory for every point, which costs ten times as much as parsing its digits. Here
+//! the types of the format ([`super::clips`]) are parsed directly. Any unexpected value makes [`read`] fail without a
+//! reason; the slow way then finds the error.
 
 use rototoon_base::scene::Clip;
 use rototoon_base::scene::skeleton::{COUNT, NAMES, Posture};
@@ -33,7 +33,7 @@ struct Moves<'a> {
     points: Vec<Posture>,
 }
 
-/// Frames a second of a file that does not say.
+/// Frames per second of a file without `fps`.
 fn usual_rate() -> f64 {
     25.0
 }
@@ -74,7 +74,7 @@ struct WrittenClip<'a> {
     deviation: Vec<[Rounded; COUNT]>,
 }
 
-/// Places are written to a millionth: far below what can be seen, in torso lengths as in pixels.
+/// Numbers are written with six decimals, far below what is visible, in torso lengths as well as in pixels.
 #[derive(Clone, Copy)]
 struct Rounded(f64);
 

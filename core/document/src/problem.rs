@@ -1,27 +1,27 @@
-//! What is wrong with a document, and where.
+//! Problems of a document, with their places.
 
 use std::fmt;
 
-/// No more than this many problems of a kind are listed; the rest is counted.
+/// At most this many problems of each severity are listed; the others are only counted.
 pub const LISTED: usize = 100;
 
-/// How much a problem matters.
+/// Severity of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// The document cannot be used.
     Error,
-    /// The document can be used, but something in it has no effect or is unlikely to be meant.
+    /// The document can be used, but a part of it has no effect or is probably a mistake.
     Warning,
 }
 
-/// One thing that is wrong.
+/// A problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// How much it matters.
+    /// Its severity.
     pub severity: Severity,
     /// JSON path, such as `parts[3] "near arm".keys."11"[5]`.
     pub place: String,
-    /// What was found and what was expected.
+    /// The found and the expected value.
     pub message: String,
 }
 
@@ -35,7 +35,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// All that is wrong, in the order of the document; at most [`LISTED`] errors and as many warnings are named.
+/// All problems in the order of the document. At most [`LISTED`] errors and as many warnings are listed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Problems {
     listed: Vec<Problem>,
@@ -44,17 +44,17 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// Notes an error.
+    /// Adds an error.
     pub fn error(&mut self, place: impl Into<String>, message: impl Into<String>) {
         self.add(Problem { severity: Severity::Error, place: place.into(), message: message.into() });
     }
 
-    /// Notes a warning.
+    /// Adds a warning.
     pub fn warning(&mut self, place: impl Into<String>, message: impl Into<String>) {
         self.add(Problem { severity: Severity::Warning, place: place.into(), message: message.into() });
     }
 
-    /// Notes a problem.
+    /// Adds a problem.
     pub fn add(&mut self, problem: Problem) {
         let count = match problem.severity {
             Severity::Error => &mut self.errors,
@@ -66,7 +66,7 @@ impl Problems {
         }
     }
 
-    /// Notes all problems of `other` after the own ones.
+    /// Adds all problems of `other` after the present ones.
     pub fn append(&mut self, other: Problems) {
         let (errors, warnings) = (self.errors + other.errors, self.warnings + other.warnings);
         for problem in other.listed {
@@ -75,44 +75,44 @@ impl Problems {
         (self.errors, self.warnings) = (errors, warnings);
     }
 
-    /// Number of errors, those not listed included.
+    /// Number of errors, including those not listed.
     pub fn error_count(&self) -> usize {
         self.errors
     }
 
-    /// Number of warnings, those not listed included.
+    /// Number of warnings, including those not listed.
     pub fn warning_count(&self) -> usize {
         self.warnings
     }
 
-    /// Whether nothing at all is wrong.
+    /// Whether there is no problem.
     pub fn is_empty(&self) -> bool {
         self.errors + self.warnings == 0
     }
 
-    /// The problems listed.
+    /// The listed problems.
     pub fn iter(&self) -> impl Iterator<Item = &Problem> {
         self.listed.iter()
     }
 
-    /// The errors listed.
+    /// The listed errors.
     pub fn errors(&self) -> impl Iterator<Item = &Problem> {
         self.listed.iter().filter(|problem| problem.severity == Severity::Error)
     }
 
-    /// The warnings listed.
+    /// The listed warnings.
     pub fn warnings(&self) -> impl Iterator<Item = &Problem> {
         self.listed.iter().filter(|problem| problem.severity == Severity::Warning)
     }
 
-    /// How many errors and warnings are not listed.
+    /// Numbers of errors and warnings that are not listed.
     pub fn left_off(&self) -> (usize, usize) {
         (self.errors.saturating_sub(LISTED), self.warnings.saturating_sub(LISTED))
     }
 }
 
 impl fmt::Display for Problems {
-    /// The errors, one a line; of what is not listed, the number.
+    /// The errors, one in each line, and the number of errors not listed.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, problem) in self.errors().enumerate() {
             write!(out, "{}{problem}", if i > 0 { "\n" } else { "" })?;

@@ -1,8 +1,8 @@
-//! Writes documents.
+//! Writes project documents.
 //!
-//! One line a frame, numbers as short as they can be read back exactly. What the artist made (keys, pins, centres) is
-//! written as it is; what was computed is rounded to [`DECIMALS`] decimals, a tenth of a thousandth of a pixel, except
-//! where it equals a key or a pin, so that "keys included, unchanged" holds in the file too.
+//! Each frame takes one line. Numbers have the shortest text that reads back exactly. The artist's data (keys, pins,
+//! centres) are written unchanged. Computed data are rounded to [`DECIMALS`] decimals (0.0001 pixels). A computed point
+//! that equals a key or a pin is not rounded, so tracks contain the keys exactly in the file too.
 
 use super::output::{WriteError, write_whole};
 use super::problem::Problems;
@@ -17,15 +17,15 @@ use std::path::Path;
 /// Decimals of computed coordinates and confidences.
 pub const DECIMALS: i32 = 4;
 
-/// Why a document could not be saved. The file is as it was before.
+/// Why a document was not saved. The file is unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum SaveError {
-    /// The scene is not valid; a document of it could not be read again.
+    /// The scene is not valid, so the document could not be read again.
     #[error("{path}: not saved, since the document is not valid: {problems}")]
     Invalid {
-        /// The file.
+        /// Path of the file.
         path: String,
-        /// What is wrong.
+        /// All problems.
         problems: Problems,
     },
     /// The file could not be written.
@@ -34,7 +34,11 @@ pub enum SaveError {
 }
 
 impl Document {
-    /// Writes the document; the file appears whole or stays as it was.
+    /// Writes the document completely or not at all.
+    ///
+    /// # Errors
+    ///
+    /// A [`SaveError`].
     pub fn save(&self, path: &Path) -> Result<(), SaveError> {
         let problems = validate::problems(&self.scene);
         if problems.error_count() > 0 {
@@ -43,7 +47,7 @@ impl Document {
         Ok(write_whole(path, self.to_json().as_bytes())?)
     }
 
-    /// The document as text. Of a scene that is not valid ([`Document::problems`]) it may be unreadable.
+    /// The text of the document. If the scene is not valid ([`Document::problems`]), the text may be unreadable.
     pub fn to_json(&self) -> String {
         let mut out = String::from("{");
         let fields = completed(&self.layout.top, &TOP);
@@ -94,7 +98,7 @@ impl Document {
     }
 }
 
-/// Whether a field of a part says nothing and may be left out.
+/// Whether a field of a part has its default value and may be left out.
 fn is_default(part: &Part, name: &str) -> bool {
     match name {
         "pins" => part.pins.is_empty(),

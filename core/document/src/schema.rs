@@ -1,15 +1,14 @@
-//! Names and order of the document's fields.
+//! Names, order and limits of the fields of a document.
 //!
-//! A document may hold fields that this version does not know: another tool's notes, or a later minor version's
-//! results. They are kept as text, byte for byte, at the place where they stood (`Layout`), so that nothing is lost
-//! when the document is saved.
+//! A document may contain fields that this version does not know: notes of another tool, or results of a later minor
+//! version. They are kept as text, byte for byte and in their places ([`Layout`]), so saving loses nothing.
 
 use std::collections::BTreeMap;
 
-/// The major version that is read and written.
+/// The major version that this program reads and writes.
 pub const VERSION: u32 = 1;
 
-/// Largest absolute value of a coordinate, in pixels: far beyond any picture, yet small enough for exact sums.
+/// Largest absolute value of a coordinate, in pixels: far beyond any picture, but small enough for exact sums.
 pub const MAX_COORDINATE: f64 = 1e6;
 
 /// Largest width or height of a picture, in pixels.
@@ -21,25 +20,25 @@ pub const MAX_FRAMES: i64 = 1_000_000;
 /// Largest absolute frame number.
 pub const MAX_FRAME_NUMBER: i64 = 1_000_000_000;
 
-/// The document's own fields, in the order of a new document.
+/// The known fields of the document, in the order of a new document.
 pub(super) const TOP: [&str; 3] = ["rototoon", "footage", "parts"];
 /// The fields of the footage.
 pub(super) const FOOTAGE: [&str; 6] = ["pattern", "first", "last", "fps", "width", "height"];
 /// The fields of a part.
 ///
-/// `wants_key` (written by tracking, left out where empty): the frames on which a part with one key was lost, the last
-/// one before its track or the first one after it, at most two in rising order. A key there helps most.
+/// `wants_key` is written by tracking and left out if empty. It contains the frames on which a part with one key was
+/// lost: the last one before its track and the first one after it, at most two, ascending. A key there helps most.
 ///
-/// `depths` (written by reshaping, left out where empty): by frame the depth there, where it is another than `depth`.
+/// `depths` is written by reshaping and left out if empty. It contains, by frame, depths that differ from `depth`.
 pub(super) const PART: [&str; 11] =
     ["name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves", "wants_key", "depths"];
 
-/// One field of an object as it stood in the document.
+/// A field of an object, as read from the document.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Field {
-    /// A field whose value the scene holds.
+    /// A field whose value is in the scene.
     Known(&'static str),
-    /// A field that is only kept: its name, and its value as it was written.
+    /// A field that is only kept: its name, and the text of its value.
     Unknown {
         /// Name.
         name: String,
@@ -58,10 +57,10 @@ impl Field {
     }
 }
 
-/// Which fields the document had, and in which order.
+/// The fields of the document and their order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Layout {
-    /// The version as it was written.
+    /// The text of the version.
     pub version: String,
     /// Fields of the document.
     pub top: Vec<Field>,
@@ -77,7 +76,7 @@ impl Default for Layout {
     }
 }
 
-/// `fields` followed by those of `known` that are not among them.
+/// `fields`, followed by the fields of `known` that are missing in it.
 pub(super) fn completed<'a>(fields: &'a [Field], known: &[&'static str]) -> Vec<std::borrow::Cow<'a, Field>> {
     use std::borrow::Cow;
     let missing = known.iter().filter(|name| !fields.iter().any(|field| field.name() == **name));

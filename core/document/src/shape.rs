@@ -1,8 +1,8 @@
-//! Reads JSON that may hold anything, in one pass and without a tree in between.
+//! Reads JSON of any content in one pass and without an intermediate tree.
 //!
-//! Each place of a document has a [`Shape`]. What does not fit is noted with its path and skipped, so that one reading
-//! finds everything that is wrong; only text that is not JSON at all ends it, and then the path tells where. A document
-//! of hundreds of megabytes costs its coordinates and no more.
+//! Each place of a document has a [`Shape`]. A value that does not fit is skipped and recorded with its path, so one
+//! reading finds every problem. Only text that is not JSON ends the reading; the path then names the place. A document
+//! of hundreds of megabytes takes memory for its coordinates and little more.
 
 use super::problem::Problems;
 use rototoon_base::geometry::Point;
@@ -16,7 +16,7 @@ use std::fmt;
 pub(super) enum Step {
     /// A field by name.
     Field(&'static str),
-    /// An entry by number, where the key is a number in quotes: a frame or the index of a point.
+    /// An entry whose key is a number in quotes: a frame or the index of a point.
     Entry(i64),
     /// An element of a list.
     Index(usize),
@@ -24,20 +24,20 @@ pub(super) enum Step {
     Part(usize),
 }
 
-/// Where the reading is, and what it has found wrong.
+/// The present place of the reader, and the problems found so far.
 #[derive(Debug, Default)]
 pub(super) struct Context {
     steps: Vec<Step>,
     found: Vec<(Vec<Step>, String)>,
     count: usize,
-    /// Names of the parts, as far as they were read.
+    /// Names of the parts read so far.
     pub names: BTreeMap<usize, String>,
-    /// The document's version where it is newer than what can be read.
+    /// The document's version, if it is too new to be read.
     pub newer: Option<String>,
 }
 
 impl Context {
-    /// Runs `read` one step deeper. After an error the path stays where it was.
+    /// Runs `read` one step deeper. After an error the path still names the place of the error.
     pub fn within<T, E>(&mut self, step: Step, read: impl FnOnce(&mut Self) -> Result<T, E>) -> Result<T, E> {
         self.steps.push(step);
         let value = read(self)?;
@@ -45,7 +45,7 @@ impl Context {
         Ok(value)
     }
 
-    /// Notes an error here.
+    /// Records an error at the present place.
     pub fn error(&mut self, message: String) {
         self.count += 1;
         if self.found.len() < super::problem::LISTED {
@@ -53,17 +53,17 @@ impl Context {
         }
     }
 
-    /// Notes that something else was found than expected.
+    /// Records that a value differs from the expected one.
     pub fn wrong(&mut self, found: impl fmt::Display, expected: &str) {
         self.error(format!("found {found}, expected {expected}"));
     }
 
-    /// The path to here.
+    /// The path of the present place.
     pub fn place(&self) -> String {
         self.path(&self.steps)
     }
 
-    /// All that was found wrong.
+    /// All problems found so far.
     pub fn problems(&self) -> Problems {
         let mut problems = Problems::default();
         for (steps, message) in &self.found {
@@ -90,7 +90,7 @@ impl Context {
     }
 }
 
-/// JSON path of a part, with its name where it has one.
+/// JSON path of a part, with its name if it has one.
 pub(super) fn part_place(index: usize, name: Option<&str>) -> String {
     match name {
         Some(name) => format!("parts[{index}] {name:?}"),
@@ -123,11 +123,11 @@ impl fmt::Display for Scalar<'_> {
     }
 }
 
-/// What a place of the document should hold. Methods that are not given refuse that kind of value.
+/// The expected content at a place of the document. Methods that a shape does not define reject their kind of value.
 pub(super) trait Shape<'de>: Sized {
-    /// What reading gives.
+    /// The type of the result.
     type Value;
-    /// What is expected, for messages.
+    /// Description of the expected value, for messages.
     const EXPECTED: &'static str;
 
     /// Reads a list.
@@ -144,14 +144,14 @@ pub(super) trait Shape<'de>: Sized {
         Ok(None)
     }
 
-    /// Reads anything else.
+    /// Reads a value that is neither a list nor an object.
     fn scalar(self, context: &mut Context, scalar: Scalar<'_>) -> Option<Self::Value> {
         context.wrong(scalar, Self::EXPECTED);
         None
     }
 }
 
-/// A shape with the context that it is read in; gives `None` where the value does not fit.
+/// A shape and the context of the reading. The result is `None` if the value does not fit.
 pub(super) struct Seed<'c, S>(pub S, pub &'c mut Context);
 
 impl<'de, S: Shape<'de>> DeserializeSeed<'de> for Seed<'_, S> {
@@ -328,7 +328,7 @@ impl<'de> Shape<'de> for Pair {
     }
 }
 
-/// A list; elements that do not fit take their default, so that the length stays.
+/// A list. An element that does not fit becomes the default, so the length is preserved.
 #[derive(Clone, Copy)]
 pub(super) struct List<S>(pub S);
 
@@ -348,11 +348,11 @@ impl<'de, S: Shape<'de, Value: Default> + Copy> Shape<'de> for List<S> {
     }
 }
 
-/// Numbers that are written as keys of an object.
+/// Numbers that are keys of an object.
 pub(super) trait EntryNumber: Ord + Copy + fmt::Display + std::str::FromStr {
-    /// What is expected, for messages.
+    /// Description of the expected key, for messages.
     const EXPECTED: &'static str;
-    /// The number in a path.
+    /// The number as a step of a path.
     fn step(self) -> Step;
 }
 
@@ -397,7 +397,7 @@ impl<'de, N: EntryNumber, S: Shape<'de, Value: Default> + Copy> Shape<'de> for E
     fn object<A: MapAccess<'de>>(self, context: &mut Context, mut entries: A) -> Result<Option<Self::Value>, A::Error> {
         let mut map = BTreeMap::new();
         while let Some(key) = entries.next_key::<String>()? {
-            // Other spellings of a number ("+1", "01") would make two keys of one frame.
+            // Other spellings of a number ("+1", "01") would give two keys for one frame.
             let Some(number) = key.parse::<N>().ok().filter(|number| number.to_string() == key) else {
                 entries.next_value::<IgnoredAny>()?;
                 context.wrong(format_args!("the key {}", key_text(&key)), N::EXPECTED);

@@ -1,7 +1,7 @@
-//! What a document must hold beyond being well-formed.
+//! Conditions for a document beyond its syntax.
 //!
-//! Errors make a document unusable. Warnings name what has no effect (corrections outside the keys) or can hardly be
-//! meant (contours without area); the data stay in the document, since the artist made them.
+//! Errors make a document unusable. Warnings name data without effect (corrections outside of the keys) and probable
+//! mistakes (contours without area). Such data stay in the document, since the artist made them.
 
 use super::problem::Problems;
 use super::schema::{MAX_COORDINATE, MAX_FRAME_NUMBER, MAX_FRAMES, MAX_SIZE};
@@ -10,7 +10,7 @@ use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{Footage, FrameNumber, FramePattern, Part, Scene};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Everything that is wrong with a scene.
+/// All problems of a scene.
 pub fn problems(scene: &Scene) -> Problems {
     let footage = &scene.footage;
     let raw = RawFootage {
@@ -27,7 +27,7 @@ pub fn problems(scene: &Scene) -> Problems {
     problems
 }
 
-/// A footage before its fields are known to fit.
+/// The fields of a footage before they are checked.
 pub(super) struct RawFootage {
     pub pattern: Option<String>,
     pub first: Option<i64>,
@@ -38,7 +38,7 @@ pub(super) struct RawFootage {
 }
 
 impl RawFootage {
-    /// The footage where all fields fit; calls `error(field, message)` for each that does not.
+    /// The footage, if all fields are valid. Calls `error(field, message)` for each invalid field.
     pub fn checked(self, mut error: impl FnMut(&'static str, String)) -> Option<Footage> {
         let pattern = self.pattern.filter(|pattern| {
             let parsed = FramePattern::parse(pattern);
@@ -88,7 +88,7 @@ impl RawFootage {
     }
 }
 
-/// Everything that is wrong with the parts of a document.
+/// All problems of the parts of a document.
 pub(super) fn parts_problems(parts: &[Part], footage: Option<&Footage>) -> Problems {
     let mut problems = Problems::default();
     if parts.is_empty() {
@@ -109,7 +109,7 @@ pub(super) fn parts_problems(parts: &[Part], footage: Option<&Footage>) -> Probl
     problems
 }
 
-/// One part under inspection.
+/// The check of one part.
 struct PartCheck<'a> {
     part: &'a Part,
     place: String,
@@ -283,7 +283,8 @@ impl PartCheck<'_> {
     }
 }
 
-/// Whether a correction on this frame has an effect: it lies between two keys, or beside the only one.
+/// Whether a correction on this frame has an effect: the frame is between two keys, or differs from that of the only
+/// key.
 pub fn acts(part: &Part, frame: FrameNumber) -> bool {
     let (Some((&first, _)), Some((&last, _))) = (part.keys.first_key_value(), part.keys.last_key_value()) else {
         return false;

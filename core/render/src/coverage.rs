@@ -1,27 +1,31 @@
 //! Exact area coverage of unions of polygons.
 //!
-//! Each pixel row is cut into slabs at the heights of all polygon corners in it and of all crossings of sides, so that within
-//! a slab the sides keep their order from left to right. In a slab each polygon's interior is a set of intervals between two
-//! sides (non-zero winding, so that a contour that folds over itself has no hole); intervals of all polygons are united,
-//! and a side that bounds the union adds the area to its right within each pixel, in closed form. Coverage is exact for sides
-//! of any slope. Since intervals are united and not opacities, polygons that touch leave no seam.
+//! Each pixel row is cut into slabs at the heights of all polygon corners in it and of all crossings of sides. Within a
+//! slab the sides therefore keep their order from left to right. In a slab the interior of each polygon is a set of
+//! intervals between two sides. The non-zero winding rule applies, so a contour that folds over itself has no hole. The
+//! intervals of all polygons are united. A side that bounds the union adds the area to its right within each pixel, in
+//! closed form. The coverage is exact for sides of any slope. Polygons that touch leave no seam, because intervals are
+//! united and not opacities.
 //!
-//! Heights are whole multiples of 2⁻²⁴ of a row and areas are summed as whole numbers, so that the inside is exactly 1, the
-//! outside exactly 0, and a pixel's value the same whichever window of the picture is asked for. Areas of several instants
-//! are added in the same sums: motion blur by samples costs no more passes over the pixels.
+//! Heights are integer multiples of 2⁻²⁴ of a row, and areas are integer sums. The inside is exactly 1, the outside
+//! exactly 0, and the value of a pixel does not depend on the requested window. Areas of several instants add up in the
+//! same sums, so motion blur by samples needs no more passes over the pixels.
 //!
-//! The sums are kept as differences from pixel to pixel along a row, as in the accumulation buffer of Levien's font-rs.
+//! The sums are stored as differences between neighbouring pixels of a row, as in the accumulation buffer of Levien's
+//! font-rs.
+//!
+//! Limits: at most [`MOST_INSTANTS`] instants; a picture's coordinates times 2²⁴ must fit 64-bit integers.
 
 use rototoon_base::geometry::{Point, polyline};
 
-/// Fractions of a row: the least steps of heights, and of a pixel's area.
+/// Steps in a row: the unit of heights and of the area of a pixel.
 pub(super) const ROW: i64 = 1 << 24;
-/// Most instants: their areas are summed in 32 bits.
+/// Greatest number of instants; their areas are summed in 32 bits.
 pub const MOST_INSTANTS: usize = 64;
-/// Sides nearer than this in their order are not cut at their crossing: far less than a pixel's least step.
+/// Sides closer than this are not cut at their crossing. It is far less than the smallest step of a pixel.
 const NEAR: f64 = 1e-9;
 
-/// A rectangle of pixels: columns `left` to `right` and rows `top` to `bottom`, the latter of each excluded.
+/// A rectangle of pixels. `right` and `bottom` are excluded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
     /// First column.
@@ -45,12 +49,12 @@ impl Window {
         (self.bottom - self.top).max(0) as usize
     }
 
-    /// The window with so many pixels more on each side.
+    /// The window with `by` more pixels on each side.
     pub fn grown(&self, by: i64) -> Self {
         Self { left: self.left - by, top: self.top - by, right: self.right + by, bottom: self.bottom + by }
     }
 
-    /// Rows and columns exchanged.
+    /// The window with rows and columns exchanged.
     pub(super) fn transposed(&self) -> Self {
         Self { left: self.top, top: self.left, right: self.bottom, bottom: self.right }
     }
@@ -59,15 +63,15 @@ impl Window {
 /// A side of a polygon, from its upper to its lower end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
-    /// Height of the upper end, in steps.
+    /// Height of the upper end, in steps of [`ROW`].
     pub top: i64,
-    /// Height of the lower end, in steps; below the upper one.
+    /// Height of the lower end, in steps; greater than `top`.
     pub bottom: i64,
     x: f64,
     slope: f64,
     polygon: u32,
     winding: i32,
-    /// The side's ends as they were given.
+    /// The ends of the side before rounding.
     pub ends: [Point; 2],
 }
 
@@ -94,7 +98,7 @@ impl Edge {
     }
 }
 
-/// Polygons at one or several instants, ready to be scanned.
+/// Polygons at one or several instants, prepared for scanning.
 #[derive(Clone, Debug)]
 pub struct Shape {
     instants: Vec<Instant>,
@@ -102,20 +106,20 @@ pub struct Shape {
 
 #[derive(Clone, Debug)]
 struct Instant {
-    /// By upper ends.
+    /// Sides in the order of their upper ends.
     edges: Vec<Edge>,
     polygons: usize,
 }
 
 impl Shape {
-    /// Closed polygons of each of some instants, of which the shape is the mean; at most [`MOST_INSTANTS`] are taken.
-    /// Polygons with a coordinate that is no number are left out.
+    /// A shape from the closed polygons of some instants; its coverage is their mean. Instants after the first
+    /// [`MOST_INSTANTS`] are ignored, and so are polygons with a coordinate that is not finite.
     pub fn new(instants: &[Vec<Vec<Point>>]) -> Self {
         Self { instants: instants.iter().take(MOST_INSTANTS).map(|polygons| Instant::new(polygons)).collect() }
     }
 
-    /// Calls `each` with the number and the coverage, 0 to 1, of each row of a window from the top, until it returns
-    /// false; whether it never did.
+    /// Calls `each` for the rows of a window from top to bottom, with the row's number and coverage (0 to 1), until it
+    /// returns false. Returns whether it never did.
     pub fn rows(&self, window: Window, each: &mut dyn FnMut(i64, &[f32]) -> bool) -> bool {
         let mut scans: Vec<Scan> = self.instants.iter().map(|instant| Scan::new(instant, window.top)).collect();
         let mut area = Area { left: window.left, delta: vec![0; window.width() + 1] };
@@ -157,9 +161,9 @@ impl Instant {
     }
 }
 
-/// Told of the intervals of the union, slab by slab.
+/// Receives the intervals of the union, slab by slab.
 pub(super) trait Sink {
-    /// An interval between two sides, over the heights `top` to `bottom`.
+    /// An interval between two sides, from height `top` to height `bottom`.
     fn interval(&mut self, left: &Side, right: &Side, top: i64, bottom: i64);
 }
 
@@ -168,13 +172,13 @@ pub(super) trait Sink {
 pub(super) struct Side {
     /// Index among the instant's sides.
     pub edge: usize,
-    /// Where it enters the slab.
+    /// Its x at the top of the slab.
     pub above: f64,
-    /// Where it leaves the slab.
+    /// Its x at the bottom of the slab.
     pub below: f64,
 }
 
-/// Goes through one instant's sides from row to row.
+/// Scans the sides of one instant row by row.
 struct Scan<'a> {
     instant: &'a Instant,
     next: usize,
@@ -188,14 +192,15 @@ struct Scan<'a> {
 impl<'a> Scan<'a> {
     fn new(instant: &'a Instant, top: i64) -> Self {
         let above = top.saturating_mul(ROW);
-        // Sides are sorted by upper ends: those that end above the first row may lie anywhere among the first ones.
+        //         // Sides are sorted by upper ends, so sides that end above the first row may be anywhere among the
+        //         first ones.
         let next = instant.edges.partition_point(|edge| edge.top < above);
         let active = (0..next).filter(|&edge| instant.edges[edge].bottom > above).collect();
         let winding = vec![0; instant.polygons];
         Self { instant, next, active, cuts: Vec::new(), crossings: Vec::new(), sides: Vec::new(), winding }
     }
 
-    /// Scans a row, which follows the last one; whether any side is in it.
+    /// Scans the next row. Returns whether any side is in it.
     fn row(&mut self, y: i64, sink: &mut impl Sink) -> bool {
         let edges = &self.instant.edges;
         let (top, bottom) = (y * ROW, (y + 1) * ROW);
@@ -230,7 +235,7 @@ impl<'a> Scan<'a> {
         true
     }
 
-    /// The sides in a slab that no side begins or ends in, from left to right along its middle.
+    /// Collects the sides of a slab in which no side begins or ends, in the order of x at the middle of the slab.
     fn sides_of(&mut self, top: i64, bottom: i64) {
         let edges = &self.instant.edges;
         self.sides.clear();
@@ -244,7 +249,7 @@ impl<'a> Scan<'a> {
         self.sides.windows(2).any(apart)
     }
 
-    /// The heights of all crossings in a slab, its ends included.
+    /// Collects the heights of all crossings in a slab, and its ends.
     fn cross(&mut self, top: i64, bottom: i64) {
         self.crossings.clear();
         self.crossings.extend([top, bottom]);
@@ -264,7 +269,8 @@ impl<'a> Scan<'a> {
     fn unite(&mut self, top: i64, bottom: i64, sink: &mut impl Sink) {
         self.winding.fill(0);
         let mut inside = 0;
-        // An interval is told when the next begins apart from it: polygons that touch make one.
+        //         // An interval is passed on when the next one begins apart from it. Polygons that touch make one
+        //         interval.
         let mut found: Option<(Side, Side)> = None;
         let mut left = None;
         for side in &self.sides {
@@ -299,7 +305,7 @@ impl<'a> Scan<'a> {
     }
 }
 
-/// Calls a sink with every interval of the first instant in the rows of a window.
+/// Passes every interval of the first instant in the rows of a window to a sink.
 pub(super) fn intervals(shape: &Shape, window: Window, sink: &mut impl Sink) {
     let Some(instant) = shape.instants.first() else { return };
     let mut scan = Scan::new(instant, window.top);
@@ -313,10 +319,10 @@ pub(super) fn edges(shape: &Shape) -> &[Edge] {
     shape.instants.first().map_or(&[], |instant| &instant.edges)
 }
 
-/// Areas of one row, as differences from pixel to pixel.
+/// Areas of one row, as differences between neighbouring pixels.
 struct Area {
     left: i64,
-    /// One for each pixel, and one for what lies beyond the last.
+    /// One entry for each pixel, and one for the area beyond the last.
     delta: Vec<i32>,
 }
 
@@ -329,7 +335,7 @@ impl Sink for Area {
 }
 
 impl Area {
-    /// Adds (or takes away) the area right of a side.
+    /// Adds (or subtracts) the area to the right of a side.
     fn side(&mut self, side: &Side, height: i32, sign: i32) {
         let (low, high) = if side.above < side.below { (side.above, side.below) } else { (side.below, side.above) };
         let (first, last) = (low.floor() as i64, high.ceil() as i64);
@@ -343,13 +349,13 @@ impl Area {
         }
         if last - first <= 1 {
             let own = (tall * ((first + 1) as f64 - 0.5 * (low + high))).round() as i32;
-            // A side in the column left of the window was told by `last` above.
+            //             // A side in the column left of the window was handled with `last` above.
             let at = (first - self.left) as usize;
             self.delta[at] += sign * own;
             self.delta[at + 1] += sign * (height - own);
             return;
         }
-        // The area left of `x` and right of the side: its differences are the areas within pixels.
+        //         // The area to the left of `x` and right of the side. Its differences are the areas within pixels.
         let (width, middle) = (high - low, 0.5 * (low + high));
         let until = |x: f64| {
             if x <= low {
@@ -395,7 +401,7 @@ mod tests {
         Point::new(x, y)
     }
 
-    /// The share of 400 × 400 points of a pixel that lie in any polygon, by winding number.
+    /// The share of 400 × 400 points of a pixel that are inside any polygon, by winding number.
     fn sampled(polygons: &[Vec<Point>], x: usize, y: usize) -> f64 {
         const N: usize = 200;
         let inside = |q: Point| {
@@ -475,7 +481,7 @@ mod tests {
 
         #[test]
         fn halves_make_a_whole(cut in proptest::collection::vec((0.5..5.5, 0.1..3.9), 1..5)) {
-            // A rectangle cut along a line that may fold: the parts have a common border and no seam.
+            // A rectangle cut along a line that may fold: the two parts share a border and have no seam.
             let mut line: Vec<Point> = cut.iter().map(|&(x, y)| p(x, y)).collect();
             line.sort_by(|a, b| a.y.total_cmp(&b.y));
             let mut left = vec![p(2.0, 4.0), p(0.0, 4.0), p(0.0, 0.0), p(2.0, 0.0)];

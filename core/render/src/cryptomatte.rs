@@ -1,50 +1,56 @@
-//! Which part is in a pixel and how much of it, as Cryptomatte layers: any keyer that reads them gets each part's matte
-//! back by its name, exact at antialiased and overlapping borders.
+//! Cryptomatte layers: which parts are in a pixel, and how much of it each covers. A keyer that reads the layers
+//! recovers the matte of each part by its name, exactly even at antialiased and overlapping borders.
 //!
-//! Of each pixel the parts are ranked by the area that they show. A rank is a pair of channels, the part's id and its
-//! coverage; two ranks make a layer `CryptoObject00`, `CryptoObject01`, … of red and green, blue and alpha. An id is the
-//! MurmurHash3_32 of the part's name, taken as the bits of a float; a hash whose exponent would be all zeros or all ones
-//! (denormal, infinite or no number) has the exponent's lowest bit turned over. The manifest, a JSON object of names and
-//! ids as eight hexadecimal digits, and the rules used stand in the file's header.
+//! The parts of each pixel are ranked by their visible area. A rank consists of two channels: the id of the part and
+//! its coverage. Two ranks make a layer `CryptoObject00`, `CryptoObject01`, …, the first in red and green, the second
+//! in blue and alpha. An id is the MurmurHash3_32 of the part's name, used as the bits of a float. If the exponent of
+//! the hash is all zeros or all ones (denormal, infinite or not a number), its lowest bit is inverted. The file's
+//! header contains the manifest, a JSON object of names and ids as eight hexadecimal digits, and the names of the
+//! rules.
 //!
-//! There are six ranks, as is usual, and more where a pixel of the frame needs them: nothing is ever left out.
+//! There are six ranks, as is usual, and more if a pixel of the frame needs them, so no part is ever left out.
 //!
-//! J. Friedman, A. C. Jones: Fully automatic ID mattes with support for motion blur and transparency. SIGGRAPH posters,
-//! 2015. The Cryptomatte specification, version 1.2.
+//! Source: J. Friedman, A. C. Jones: Fully automatic ID mattes with support for motion blur and transparency. SIGGRAPH
+//! posters, 2015. The Cryptomatte specification, version 1.2.
 
 use super::layers::{Attribute, Channel};
 use super::visible::{Share, Visible};
 use rototoon_base::scene::Scene;
 use std::io::Cursor;
 
-/// Name of the layers.
+/// Name of the layers, without their number.
 pub const LAYER: &str = "CryptoObject";
 /// Least number of ranks.
 const RANKS: usize = 6;
 
-/// Two names have the same id and cannot be told apart.
+/// Two parts have the same id, so a keyer cannot distinguish them.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("parts {first:?} and {second:?} have the same Cryptomatte id: expected another name for one of them")]
 pub struct SameId {
-    /// A part's name.
+    /// Name of a part.
     pub first: String,
-    /// Another's.
+    /// Name of another part.
     pub second: String,
 }
 
-/// MurmurHash3_32 with seed 0.
+/// The MurmurHash3_32 of some bytes, with seed 0.
 pub fn murmur3(bytes: &[u8]) -> u32 {
     murmur3::murmur3_32(&mut Cursor::new(bytes), 0).expect("bytes in memory can be read")
 }
 
-/// The id of a name, as the bits of a finite, normal float.
+/// The id of a name: the bits of a finite, normal float.
 pub fn id(name: &str) -> u32 {
     let hash = murmur3(name.as_bytes());
     let exponent = hash >> 23 & 0xff;
     if exponent == 0 || exponent == 0xff { hash ^ 1 << 23 } else { hash }
 }
 
-/// What a file's header says of the layers.
+/// The attributes of the file's header: name, rules and manifest of the layers. `parts` selects parts by index; `None`
+/// takes all.
+///
+/// # Errors
+///
+/// [`SameId`] if two names have the same id.
 pub fn attributes(scene: &Scene, parts: Option<&[usize]>) -> Result<Vec<Attribute>, SameId> {
     let mut manifest = serde_json::Map::new();
     let mut ids: Vec<(u32, &str)> = Vec::new();
@@ -69,7 +75,7 @@ pub fn attributes(scene: &Scene, parts: Option<&[usize]>) -> Result<Vec<Attribut
     ])
 }
 
-/// The channels of all ranks.
+/// The channels of all ranks, `width` × `height` values each.
 pub fn channels(scene: &Scene, visible: &Visible) -> Vec<Channel> {
     let ids: Vec<f32> = scene.parts.iter().map(|part| f32::from_bits(id(&part.name))).collect();
     let ranks = visible.most().max(RANKS).next_multiple_of(2);
@@ -82,7 +88,7 @@ pub fn channels(scene: &Scene, visible: &Visible) -> Vec<Channel> {
     for (at, pixel) in visible.pixels().enumerate() {
         ranked.clear();
         ranked.extend(pixel);
-        // Of equal shares the nearer one stays first.
+        //         // Of equal shares the nearer part comes first.
         ranked.sort_by(|a, b| b.coverage.total_cmp(&a.coverage));
         for (rank, share) in ranked.iter().enumerate() {
             channels[2 * rank].values[at] = ids[share.part];

@@ -1,7 +1,8 @@
-//! Pictures as bytes of a PNG or OpenEXR file.
+//! Encodes pictures as bytes of PNG or OpenEXR files.
 //!
-//! PNG holds what the screen shows (8 bits a channel), mattes with 16 bits. OpenEXR holds 32-bit floats: colours in
-//! linear light, mattes as white premultiplied by its alpha, which compositors take as it is, cutouts likewise.
+//! PNG contains display colours with 8 bits for each channel; mattes have 16 bits. OpenEXR contains 32-bit floats. Its
+//! colours are in linear light. Its mattes are white premultiplied by alpha, the form that compositors expect; its
+//! cutouts are premultiplied too.
 
 use image::codecs::openexr::OpenExrEncoder;
 use image::codecs::png::PngEncoder;
@@ -11,7 +12,7 @@ use rototoon_image::colour;
 use std::io::Cursor;
 use std::path::Path;
 
-/// A kind of picture file.
+/// A picture file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Portable Network Graphics.
@@ -21,7 +22,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format that a file's name asks for.
+    /// The format for the extension of a file name; `None` for other extensions.
     pub fn of(path: &Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "png" => Some(Self::Png),
@@ -31,19 +32,19 @@ impl Format {
     }
 }
 
-/// A picture could not be made into a file.
+/// A picture could not be encoded.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot encode a picture of {width}x{height} pixels: {reason}")]
 pub struct EncodeError {
-    /// Width.
+    /// Width of the picture in pixels.
     pub width: usize,
-    /// Height.
+    /// Height of the picture in pixels.
     pub height: usize,
-    /// What the encoder said.
+    /// The message of the encoder.
     pub reason: String,
 }
 
-/// A colour picture as the bytes of a file.
+/// Encodes a colour picture (sRGB-encoded, 0 to 1).
 pub fn colours(picture: &Raster<Colour>, format: Format) -> Result<Vec<u8>, EncodeError> {
     let (width, height) = (picture.width() as u32, picture.height() as u32);
     let image = match format {
@@ -59,10 +60,10 @@ pub fn colours(picture: &Raster<Colour>, format: Format) -> Result<Vec<u8>, Enco
     bytes(image, format, picture.width(), picture.height())
 }
 
-/// A premultiplied picture with alpha, its colours as the screen shows them, as the bytes of a PNG file.
+/// Encodes a picture with alpha as PNG. Its colours are sRGB-encoded and premultiplied.
 pub fn premultiplied(picture: &Raster<[f32; 4]>) -> Result<Vec<u8>, EncodeError> {
     let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
-    // PNG holds colours that are not premultiplied.
+    //     // Colours in PNG are not premultiplied.
     let straight = |&[r, g, b, a]: &[f32; 4]| {
         let whole = if a > 0.0 { a } else { 1.0 };
         [byte(r / whole), byte(g / whole), byte(b / whole), byte(a)]
@@ -75,7 +76,7 @@ pub fn premultiplied(picture: &Raster<[f32; 4]>) -> Result<Vec<u8>, EncodeError>
     bytes(image.map(DynamicImage::ImageRgba8), Format::Png, picture.width(), picture.height())
 }
 
-/// Light multiplied by alpha, and alpha, as the bytes of a file.
+/// Encodes linear light multiplied by alpha, and alpha.
 pub fn layer(picture: &Raster<[f32; 4]>, format: Format) -> Result<Vec<u8>, EncodeError> {
     let (width, height) = (picture.width(), picture.height());
     match format {
@@ -96,7 +97,7 @@ pub fn layer(picture: &Raster<[f32; 4]>, format: Format) -> Result<Vec<u8>, Enco
     }
 }
 
-/// A matte as the bytes of a file.
+/// Encodes a matte (0 to 1).
 pub fn matte(picture: &Raster<f32>, format: Format) -> Result<Vec<u8>, EncodeError> {
     let (width, height) = (picture.width() as u32, picture.height() as u32);
     let image = match format {
@@ -116,7 +117,7 @@ fn bytes(image: Option<DynamicImage>, format: Format, width: usize, height: usiz
     let failed = |reason: String| EncodeError { width, height, reason };
     let image = image.ok_or_else(|| failed("the size does not fit".to_owned()))?;
     let mut out = Cursor::new(Vec::new());
-    // The encoder is named: to write any format would compile them all.
+    //     // The encoder is named, because a call for any format would compile all encoders.
     let written = match format {
         Format::Png => image.write_with_encoder(PngEncoder::new(&mut out)),
         Format::Exr => image.write_with_encoder(OpenExrEncoder::new(&mut out)),

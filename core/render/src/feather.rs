@@ -1,41 +1,44 @@
-//! Soft borders: a matte blurred by a bell of finite width.
+//! Soft borders: blurs a matte with a bell of finite width.
 //!
-//! The bell is the quadratic B-spline stretched over twice the radius, integrated over each pixel, so that its width may be
-//! any number of pixels and changes smoothly; rows and then columns are blurred by it. A straight border becomes an even,
-//! smooth rise that begins a radius before it and ends a radius behind it.
+//! The bell is the quadratic B-spline stretched over twice the radius and integrated over each pixel. Its width may be
+//! any number of pixels and changes smoothly. Rows are blurred first, then columns. A straight border becomes a smooth
+//! rise that begins a radius before it and ends a radius behind it.
 //!
-//! The time does not depend on the radius. From pixel to pixel the bell's weights are pieces of parabolas, so that their
-//! third differences are zero but for four taps at each of the four places where pieces meet. A row's changes from pixel to
-//! pixel are filtered by those taps and then summed up four times, which gives the row filtered by the whole bell. A matte
-//! changes at borders alone, so that most of it costs next to nothing. Running sums that round would drift, and pixels would
-//! depend on where their window begins; here they are exact. With a third of the radius taken as a fraction
-//! P ∕ Q with even Q, all weights are whole numbers over 48 P³, values are whole multiples of 2⁻²⁰, and P is small enough for
-//! every sum to be a whole number below 2⁵³, which a 64-bit float holds. The fraction leaves the radius by less than a two
-//! hundredth of it. Beyond some 800 pixels sums may round.
+//! The time does not depend on the radius. The weights of the bell are pieces of parabolas, so their third differences
+//! are zero except for four taps at each of the four places where pieces meet. The differences between neighbouring
+//! pixels of a row are filtered with these taps and then summed four times. The result is the row filtered with the
+//! complete bell. A matte changes only at borders, so most of it costs almost nothing.
 //!
-//! P. S. Heckbert: Filtering by repeated integration. SIGGRAPH, 1986.
+//! Running sums that round would drift, and pixels would depend on the start of their window. Here the sums are exact.
+//! A third of the radius is approximated by a fraction P ∕ Q with even Q. Then all weights are integers over 48 P³, and
+//! values are integer multiples of 2⁻²⁰. P is small enough that every sum is an integer below 2⁵³, which a 64-bit float
+//! represents exactly. The fraction differs from the radius by less than 1/200 of it.
+//!
+//! Limits: for radii above about 800 pixels sums may round.
+//!
+//! Source: P. S. Heckbert: Filtering by repeated integration. SIGGRAPH, 1986.
 
 use rototoon_base::numeric::vector::vectorised;
 use rototoon_base::scene::Raster;
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// Steps of a value between 0 and 1.
+/// Steps of a value from 0 to 1.
 const STEPS: f32 = (1 << 20) as f32;
-/// Greatest P: 48 P³ times the steps of a value stay below 2⁵³.
+/// Greatest P: 48 P³ times the steps of a value stays below 2⁵³.
 const MOST_P: f64 = 562.0;
 /// Greatest Q.
 const MOST_Q: i64 = 1024;
-/// Columns that are looked at together, whether anything in them changes.
+/// Number of columns that are checked together for changes.
 const STRIP: usize = 32;
 
-/// The pixels on each side that a blur by a radius reaches over.
+/// Reach of a blur on each side, in pixels.
 pub fn reach(radius: f64) -> usize {
     if radius > 0.0 { (radius + 0.5).ceil() as usize } else { 0 }
 }
 
-/// A picture of values from 0 to 1 blurred by a radius in pixels, and smaller by [`reach`] on each side: what lies nearer to
-/// its border is not known. `None` where `go_on`, asked at each row, says no.
+/// Blurs a picture of values from 0 to 1 by a radius in pixels. The result is smaller by [`reach`] on each side,
+/// because pixels nearer to the border are unknown. `None` if `go_on`, called for each row, returns false.
 pub fn feathered(picture: &Raster<f32>, radius: f64, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
     let margin = reach(radius);
     if margin == 0 {
@@ -55,13 +58,13 @@ pub fn feathered(picture: &Raster<f32>, radius: f64, go_on: &mut dyn FnMut() -> 
     columns(&bell, &rows, &mut result, go_on).then_some(result)
 }
 
-/// The third differences of the bell's weights.
+/// The third differences of the weights of the bell.
 struct Bell {
-    /// Place and value where they are not zero.
+    /// Position and value of those that are not zero.
     taps: Vec<(usize, f64)>,
-    /// One over the sum of the weights.
+    /// The inverse of the sum of the weights.
     share: f64,
-    /// Number of weights less one: twice the reach.
+    /// Number of weights minus one: twice the reach.
     last: usize,
 }
 
@@ -69,7 +72,8 @@ impl Bell {
     fn new(radius: f64) -> Self {
         let (p, q) = fraction(radius / 3.0);
         let cube = |x: f64| x.max(0.0).powi(3);
-        // The truncated powers that make a quadratic B-spline of knots at -3P, -P, P and 3P, in units of 1/Q pixel.
+        //         // The truncated powers that form a quadratic B-spline with knots at -3P, -P, P and 3P, in units of
+        //         1/Q pixel.
         let until = |x: f64| cube(x + 3.0 * p) - 3.0 * cube(x + p) + 3.0 * cube(x - p) - cube(x - 3.0 * p);
         let reach = reach(radius);
         let weight = |k: usize| {
@@ -83,14 +87,14 @@ impl Bell {
         Self { taps, share: 1.0 / (48.0 * p.powi(3)), last: 2 * reach }
     }
 
-    /// A sum of values times weights as a whole number of steps.
+    /// A sum of values times weights as an integer number of steps.
     #[inline(always)]
     fn rounded(&self, sum: f64) -> f32 {
         (sum * self.share + 0.5) as i32 as f32
     }
 }
 
-/// P and an even Q whose quotient is nearest to a number, as large as they may be within a factor of two.
+/// P and an even Q whose quotient is nearest to a number. Q is as large as possible within a factor of two.
 fn fraction(number: f64) -> (f64, f64) {
     let most = ((MOST_P / number) as i64).clamp(2, MOST_Q) / 2;
     let off = |half: i64| {
@@ -102,17 +106,17 @@ fn fraction(number: f64) -> (f64, f64) {
     ((number * q).round().max(1.0), q)
 }
 
-/// A value from 0 as a whole number of steps. Truncation is quicker than rounding, and the same.
+/// A value of at least 0 as an integer number of steps. Truncation is faster than rounding and gives the same result.
 #[inline(always)]
 fn in_steps(value: f32) -> f32 {
     (value * STEPS + 0.5) as i32 as f32
 }
 
-/// Room for one row.
+/// Buffers for one row.
 struct Line {
-    /// The row's changes from pixel to pixel filtered by the taps.
+    /// The differences of the row, filtered with the taps.
     filtered: Vec<f64>,
-    /// Where there may be anything in them.
+    /// The ranges in which they may differ from zero.
     stretches: Vec<Range<usize>>,
 }
 
@@ -127,7 +131,7 @@ impl Line {
         let mut done = 0;
         for stretch in &self.stretches {
             let start = stretch.start.saturating_sub(bell.last).min(to.len());
-            // Where nothing changes the row stays what it is.
+            //             // Without changes the row stays constant.
             to[done.min(start)..start].fill(bell.rounded(sums[3]));
             for n in stretch.clone() {
                 let sum = summed(&mut sums, std::mem::take(&mut self.filtered[n]));
@@ -140,7 +144,7 @@ impl Line {
         to[done..].fill(bell.rounded(sums[3]));
     }
 
-    /// Filters the changes of a row.
+    /// Filters the differences of a row.
     fn find(&mut self, bell: &Bell, from: &[f32]) {
         self.stretches.clear();
         let mut before = 0.0;
@@ -172,16 +176,16 @@ fn summed(sums: &mut [f64; 4], value: f64) -> f64 {
     sums[3]
 }
 
-/// Some columns on their way down.
+/// State of some neighbouring columns on the way down.
 #[derive(Clone)]
 struct Strip {
-    /// Of each column the filtered changes summed up once to four times.
+    /// For each column the filtered differences, summed one to four times.
     sums: [[f64; STRIP]; 4],
-    /// The rows, of those that taps reach back to, that differ from the row before them; the last one first.
+    /// Whether each row within the reach of the taps differs from the row before it; the latest row first.
     changed: VecDeque<bool>,
-    /// Whether no sum but the last has anything in it, so that the last one stays.
+    /// Whether all sums but the last are zero, so that the last one stays constant.
     still: bool,
-    /// The last row of the result.
+    /// The latest row of the result.
     shown: [f32; STRIP],
 }
 
@@ -195,7 +199,7 @@ impl Strip {
         }
     }
 
-    /// Takes the next row, `rows[at][columns]`.
+    /// Adds the next row, `rows[at][columns]`.
     #[inline(always)]
     fn next(&mut self, bell: &Bell, rows: &Raster<f32>, at: usize, columns: &Range<usize>) {
         let row = |y: usize| &rows.row(y)[columns.clone()];
@@ -230,7 +234,7 @@ impl Strip {
     }
 }
 
-/// Blurs the columns of rows in steps; whether it was let go on to the end.
+/// Blurs the columns of rows given in steps. Returns whether `go_on` never stopped it.
 fn columns(bell: &Bell, rows: &Raster<f32>, result: &mut Raster<f32>, go_on: &mut dyn FnMut() -> bool) -> bool {
     let width = rows.width();
     let mut strips = vec![Strip::new(bell); width.div_ceil(STRIP)];
@@ -257,14 +261,14 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The bell's share of each pixel from one end to the other.
+    /// The share of each pixel under the bell, from one end to the other.
     fn weights(radius: f64) -> Vec<f32> {
         let margin = reach(radius) as f64;
         let until = |x: f64| integral(1.5 * x / radius);
         (0..=2 * reach(radius)).map(|k| k as f64 - margin).map(|x| (until(x + 0.5) - until(x - 0.5)) as f32).collect()
     }
 
-    /// The integral of the quadratic B-spline, whose support is -1.5 to 1.5.
+    /// The integral of the quadratic B-spline with support from -1.5 to 1.5.
     fn integral(x: f64) -> f64 {
         let tail = |x: f64| x.powi(3) / 6.0;
         match x {
@@ -312,7 +316,7 @@ mod tests {
             let (p, q) = fraction(radius / 3.0);
             prop_assert!(p <= MOST_P + 0.5 && q % 2.0 == 0.0);
             prop_assert!((3.0 * p / q / radius - 1.0).abs() < 5e-3, "{radius} {p} {q}");
-            // The differences of the weights sum to nothing, and so do their sums: nothing drifts.
+            // The differences of the weights sum to zero, and so do their sums. Therefore nothing drifts.
             let bell = Bell::new(radius);
             let sums = |power: i32| bell.taps.iter().map(|(k, value)| (*k as f64).powi(power) * value).sum::<f64>();
             prop_assert_eq!([sums(0), sums(1), sums(2)], [0.0; 3]);

@@ -1,19 +1,20 @@
-//! The outline of a union of polygons moved outward or inward.
+//! Moves the outline of a union of polygons outward or inward.
 //!
-//! The distance of pixels to the border of the union (not to the borders that its polygons have inside it) gives the moved
-//! border: a pixel is covered by ½ plus the amount plus the distance, positive inside, between 0 and 1. Parts that touch
-//! stay one when they shrink, and corners become round when they grow, as in morphology by a disc.
+//! The signed distance of a pixel to the border of the union, positive inside, determines the moved border. Borders of
+//! polygons inside the union do not count. The coverage of a pixel is ½ plus the amount plus the distance, clamped to 0
+//! and 1. Parts that touch stay connected when they shrink. Corners become round when they grow, as in morphology with
+//! a disc.
 //!
-//! The border comes from [`super::coverage`]: sides steeper than 45° bound intervals of rows, the others intervals of
-//! columns.
+//! The border comes from [`super::coverage`]. Sides steeper than 45° bound intervals of rows, the other sides intervals
+//! of columns.
 
 use super::coverage::{Edge, Shape, Side, Sink, Window, edges, intervals};
 use super::line::{Stretch, squared_distances};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;
 
-/// Coverage of the union of polygons in a window, grown by `amount` pixels or shrunk where that is negative. `None`
-/// where `go_on`, asked at each row, says no.
+/// Coverage of the union of polygons in a window, grown by `amount` pixels (shrunk if negative). `None` if `go_on`,
+/// called for each row, returns false.
 pub fn grown(
     polygons: &[Vec<Point>],
     amount: f64,
@@ -57,7 +58,7 @@ impl Exchanged for Point {
     }
 }
 
-/// The stretches of sides no less steep than 45° that bound the union.
+/// The pieces of sides with a slope of at least 45° that bound the union.
 fn steep(shape: &Shape, window: Window) -> Vec<Stretch> {
     let edges = edges(shape);
     let mut border = Border { edges, last: vec![None; edges.len()], pieces: Vec::new() };
@@ -72,9 +73,9 @@ fn steep(shape: &Shape, window: Window) -> Vec<Stretch> {
 
 struct Border<'a> {
     edges: &'a [Edge],
-    /// The last piece of each side.
+    /// Index of the latest piece of each side.
     last: Vec<Option<usize>>,
-    /// Side, and heights from and to.
+    /// Index of the side, and the heights where the piece begins and ends.
     pieces: Vec<(usize, i64, i64)>,
 }
 

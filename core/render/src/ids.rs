@@ -1,8 +1,9 @@
-//! Which part is where, and the whole matte of each part: pictures with a layer for each, as the bytes of a file.
+//! Pictures of ids and mattes with layers, as bytes of a file.
 //!
-//! A picture of ids is a colour for each part. In OpenEXR its channels R, G, B and A hold that picture in linear light, and
-//! the Cryptomatte layers stand beside them. A matte with layers holds the matte of all parts in R, G, B and A as without
-//! layers, and in the channel A of a layer of its name each part's own, whether another part hides it or not.
+//! A picture of ids has a colour for each part. In OpenEXR its channels R, G, B and A contain that picture in linear
+//! light, and Cryptomatte layers accompany it. A matte with layers has the matte of all parts in R, G, B and A, as
+//! without layers. In addition, a layer with the name of each part has that part's own matte in its channel A, even
+//! where other parts hide it.
 
 use super::encode::{self, EncodeError, Format};
 use super::layers::{self, Channel, layer_name};
@@ -12,8 +13,8 @@ use rototoon_base::scene::{FrameNumber, Raster, Scene, palette};
 use rototoon_image::colour;
 use std::collections::BTreeSet;
 
-/// A colour for each part, by the area that it shows of a pixel: red, green, blue as the screen shows them, premultiplied
-/// by the alpha that comes fourth.
+/// The visible area of each part in each pixel, in the part's colour: red, green and blue, sRGB-encoded and
+/// premultiplied, then alpha.
 pub fn ids(visible: &Visible) -> Raster<[f32; 4]> {
     let mut pixels = visible.pixels();
     Raster::from_fn(visible.width(), visible.height(), |_, _| {
@@ -28,7 +29,11 @@ pub fn ids(visible: &Visible) -> Raster<[f32; 4]> {
     })
 }
 
-/// The bytes of a picture of ids.
+/// Encodes a picture of ids. `parts` selects parts by index; `None` takes all.
+///
+/// # Errors
+///
+/// An [`EncodeError`] if encoding fails or two parts have the same Cryptomatte id.
 pub fn id_picture(
     scene: &Scene,
     frame: FrameNumber,
@@ -58,7 +63,11 @@ pub fn id_picture(
     layers::encode(width, height, channels, &attributes)
 }
 
-/// The bytes of an OpenEXR file of the matte of all parts and of each.
+/// Encodes the matte of all parts and of each part as OpenEXR. `parts` selects parts by index; `None` takes all.
+///
+/// # Errors
+///
+/// An [`EncodeError`].
 pub fn matte_layers(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Result<Vec<u8>, EncodeError> {
     let whole = matte::matte(scene, frame, parts);
     let mut channels: Vec<Channel> =
@@ -80,7 +89,7 @@ mod tests {
     use rototoon_base::scene::{Footage, Part};
     use std::collections::BTreeMap;
 
-    /// Discs in a ring, each over the next, all of them in the middle.
+    /// Discs in a ring. Each overlaps the next one, and all of them overlap in the middle.
     fn scene(count: usize) -> Scene {
         let footage = Footage { pattern: "%d".into(), first: 0, last: 0, fps: 1.0, width: 60, height: 50 };
         let part = |index: usize| {
@@ -117,7 +126,7 @@ mod tests {
         (channels, attributes.collect())
     }
 
-    /// A part's matte by the rules of the specification alone.
+    /// A part's matte, read by the rules of the specification alone.
     fn keyed((channels, attributes): &File, name: &str) -> Vec<f32> {
         let value = |field: &str| {
             let mut found =

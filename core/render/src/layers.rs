@@ -1,7 +1,7 @@
-//! OpenEXR files of any number of named channels, 32-bit floats, without loss.
+//! OpenEXR files with any number of named channels of 32-bit floats, compressed without loss.
 //!
-//! A channel `near arm.A` belongs to the layer `near arm`, as all that reads OpenEXR takes it. Names may be any text: what
-//! separates layers or has no place in a name is replaced ([`layer_name`]).
+//! A channel `near arm.A` belongs to the layer `near arm`; all readers of OpenEXR follow this rule. Part names may be
+//! any text. Characters that separate layers or are not allowed in names are replaced ([`layer_name`]).
 
 use super::encode::EncodeError;
 use exr::image::write::WritableImage;
@@ -15,25 +15,25 @@ use std::io::Cursor;
 /// A channel of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// Name, with the layer's before the last point.
+    /// Name, with the layer's name before the last full stop.
     pub name: String,
-    /// Values row by row from the top left.
+    /// Values row by row, from the top left.
     pub values: Vec<f32>,
 }
 
-/// A text in a file's header.
+/// A text attribute of the file's header.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attribute {
-    /// Name.
+    /// Name of the attribute.
     pub name: String,
-    /// Text.
+    /// Value of the attribute.
     pub value: String,
 }
 
-/// Longest name of a layer, in bytes: with a channel's behind it, what a file may hold.
+/// Greatest length of a layer name in bytes. Together with the name of a channel it is within the limit of a file.
 const LONGEST: usize = 240;
 
-/// A part's name as the name of a layer that no other layer in `taken` has; adds it there.
+/// Converts a part's name to a layer name that is not in `taken`, and adds it there.
 pub fn layer_name(name: &str, taken: &mut BTreeSet<String>) -> String {
     let mut plain: String = name.chars().map(|c| if c == '.' || c.is_control() { '_' } else { c }).collect();
     while plain.len() > LONGEST {
@@ -49,7 +49,11 @@ pub fn layer_name(name: &str, taken: &mut BTreeSet<String>) -> String {
     chosen
 }
 
-/// The bytes of a file of channels, each of `width` × `height` values.
+/// Encodes channels, each of `width` × `height` values, as OpenEXR.
+///
+/// # Errors
+///
+/// An [`EncodeError`] if a channel has another number of values or the encoder fails.
 pub fn encode(
     width: usize,
     height: usize,
@@ -80,7 +84,7 @@ pub fn encode(
     Ok(bytes)
 }
 
-/// Puts the header's entries in the order of their names: the encoder writes them in one that changes from run to run.
+/// Sorts the entries of the header by name. The encoder writes them in an order that changes between runs.
 fn sort_header(bytes: &mut [u8]) -> Option<()> {
     /// Magic number and version.
     const START: usize = 8;

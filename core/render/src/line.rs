@@ -1,21 +1,22 @@
-//! Distances of pixels to segments, and from them lines of a width.
+//! Distances of pixels to segments, and lines of a given width drawn with them.
 //!
-//! A pixel's distance is that of its centre; only distances up to a reach are known, so that the cost is that of the pixels
-//! near the segments. A line covers a pixel by ½ plus half its width less the distance, between 0 and 1: exact for straight
-//! upright and level lines wider than a pixel, within 0.1 for others.
+//! The distance of a pixel is that of its centre. Distances are computed only up to a reach, so the cost is
+//! proportional to the number of pixels near the segments. The coverage of a pixel by a line is ½ plus half the line's
+//! width minus the distance, clamped to 0 and 1. It is exact for straight vertical and horizontal lines wider than a
+//! pixel, and within 0.1 for others.
 
 use super::coverage::Window;
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::Raster;
 
-/// A stretch of a segment: from the share `from` to the share `to` of the way between its ends.
+/// A piece of a segment, between two shares of the way from its first to its second end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stretch {
     /// The segment's ends.
     pub ends: [Point; 2],
-    /// Where it begins.
+    /// Share at which the piece begins.
     pub from: f64,
-    /// Where it ends.
+    /// Share at which the piece ends.
     pub to: f64,
 }
 
@@ -31,7 +32,8 @@ impl Stretch {
         self.at(share.clamp(self.from, self.to)).distance_squared(p)
     }
 
-    /// The columns that lie within `reach` in a row whose centre is at `y`.
+    /// The range of x within `reach` of the piece, in the row whose centre is at `y`; `None` if the row is too far
+    /// away.
     fn columns(&self, y: f64, reach: f64) -> Option<(f64, f64)> {
         let (a, b) = (self.at(self.from), self.at(self.to));
         let (low, high) = (y - reach, y + reach);
@@ -49,8 +51,8 @@ impl Stretch {
     }
 }
 
-/// Squared distances of the pixels of a window to the nearest stretch; infinite beyond the reach. `None` where
-/// `go_on`, asked at each row, says no.
+/// Squared distances of the pixels of a window to the nearest piece; infinite beyond the reach. `None` if `go_on`,
+/// called for each row, returns false.
 pub(super) fn squared_distances(
     stretches: &[Stretch],
     reach: f64,
@@ -86,15 +88,15 @@ pub(super) fn squared_distances(
     Some(result)
 }
 
-/// Coverage, 0 to 1, of lines of a width in pixels along polylines, each closed or open, in a window. `None` where `go_on`,
-/// asked at each row, says no.
+/// Coverage, 0 to 1, of lines along polylines in a window. Each polyline comes with whether it is closed; `width` is in
+/// pixels. `None` if `go_on`, called for each row, returns false.
 pub fn lines(
     polylines: &[(Vec<Point>, bool)],
     width: f64,
     window: Window,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Option<Raster<f32>> {
-    // Thinner than a pixel, a line is a pixel wide and as faint as it is thin.
+    //     // A line thinner than a pixel is drawn one pixel wide, with its width as opacity.
     let (half, strength) = (0.5 * width.max(1.0), width.clamp(0.0, 1.0) as f32);
     let stretches: Vec<Stretch> = polylines
         .iter()

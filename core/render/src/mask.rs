@@ -1,13 +1,14 @@
 //! Contours as a mask: the mean over some instants of the union of polygons, grown or shrunk, then feathered.
 //!
-//! Every pixel has the same value whichever window is asked for, so that a picture may be made in tiles and by threads.
+//! The value of a pixel does not depend on the window. A picture may therefore be computed in tiles and by several
+//! threads.
 
 use super::coverage::{Shape, Window};
 use super::{feather, grow};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;
 
-/// A mask, ready to be drawn.
+/// A mask, prepared for drawing.
 #[derive(Clone, Debug)]
 pub struct Mask {
     instants: Vec<Vec<Vec<Point>>>,
@@ -16,37 +17,37 @@ pub struct Mask {
     feather: f64,
 }
 
-/// What a mask covers at most.
+/// A rectangle that contains the mask.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Upper left.
+    /// Upper left corner, in pixels.
     pub least: Point,
-    /// Lower right.
+    /// Lower right corner, in pixels.
     pub most: Point,
 }
 
 impl Mask {
-    /// A mask of the closed polygons of each instant, grown by some pixels (shrunk where negative) and feathered by a
-    /// radius in pixels.
+    /// A mask of the closed polygons of each instant, grown by `grow` pixels (shrunk if negative), then feathered by a
+    /// radius of `feather` pixels.
     pub fn new(instants: Vec<Vec<Vec<Point>>>, grow: f64, feather: f64) -> Self {
         let shape = Shape::new(&instants);
         Self { instants, shape, grow, feather: feather.max(0.0) }
     }
 
-    /// What the mask covers at most; none where it covers nothing.
+    /// A rectangle that contains the mask; `None` if the mask is empty.
     pub fn bounds(&self) -> Option<Bounds> {
         let points = self.instants.iter().flatten().flatten().filter(|p| p.is_finite());
         let tight = points.fold(None, |bounds: Option<Bounds>, &p| {
             Some(bounds.map_or(Bounds { least: p, most: p }, |b| Bounds { least: b.least.min(p), most: b.most.max(p) }))
         })?;
-        // Both end in an even step of a pixel.
+        //         // Growing and feathering each end half a pixel further out.
         let more = |by: f64| if by == 0.0 { 0.0 } else { by + 0.5 };
         let margin = Point::splat(more(self.grow) + more(self.feather));
         let bounds = Bounds { least: tight.least - margin, most: tight.most + margin };
         bounds.least.cmple(bounds.most).all().then_some(bounds)
     }
 
-    /// Whether nothing of the mask is in a window.
+    /// Whether the mask is empty in a window.
     pub fn misses(&self, window: Window) -> bool {
         self.bounds().is_none_or(|b| {
             b.least.x >= window.right as f64
@@ -56,7 +57,7 @@ impl Mask {
         })
     }
 
-    /// Coverage, 0 to 1, of the pixels of a window. `None` where `go_on`, asked at each row, says no.
+    /// Coverage, 0 to 1, of the pixels of a window. `None` if `go_on`, called for each row, returns false.
     pub fn draw(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
         if self.misses(window) {
             return Some(Raster::new(window.width(), window.height(), 0.0));

@@ -1,11 +1,11 @@
-//! Coverage of the closed parts on a frame; [`super::coverage`] has the areas.
+//! Coverage of the closed parts on a frame. The areas come from [`super::coverage`].
 
 use super::coverage::{Shape, Window};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, Part, Raster, Scene};
 
-/// Coverage, 0 to 1, of the union of closed parts on a frame: of those with the given indices, or of all. Snapped paths
-/// are used where they are there. Parts that are open, or have no contour on the frame, cover nothing.
+/// Coverage, 0 to 1, of the union of closed parts on a frame. `parts` selects parts by index; `None` takes all. Snapped
+/// paths are used where they exist. Open parts and parts without a contour on the frame cover nothing.
 pub fn matte(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Raster<f32> {
     let wanted = |index: usize| parts.is_none_or(|parts| parts.contains(&index));
     let outlines: Vec<_> = scene
@@ -18,7 +18,7 @@ pub fn matte(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Rast
     coverage(&outlines, scene.footage.width, scene.footage.height)
 }
 
-/// A frame's pixels, multiplied by alpha, where closed parts are: what [`matte`] covers of them.
+/// The pixels of a frame, premultiplied, multiplied by the coverage of closed parts ([`matte`]).
 pub fn cutout(
     scene: &Scene,
     frame: FrameNumber,
@@ -29,7 +29,7 @@ pub fn cutout(
     Raster::from_fn(pixels.width(), pixels.height(), |x, y| pixels.get(x, y).map(|v| v * matte.get(x, y)))
 }
 
-/// Coverage of the union of closed polygons.
+/// Coverage, 0 to 1, of the union of closed polygons in a picture of `width` × `height` pixels.
 pub fn coverage(polygons: &[Vec<Point>], width: usize, height: usize) -> Raster<f32> {
     let mut result = Raster::new(width, height, 0.0f32);
     let window = Window { left: 0, top: 0, right: width as i64, bottom: height as i64 };

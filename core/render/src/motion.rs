@@ -1,28 +1,31 @@
-//! Contours between frames, for motion blur and for times that are no whole frame.
+//! Contours between frames, for motion blur and for times between frames.
 //!
-//! Control points go along their arcs: each coordinate is the cubic of Catmull and Rom through the frames around, so that a
-//! swinging arm stays an arc and does not cut its corner. A snapped path goes with its segment: it is carried by the
-//! similarity that takes the segment's ends of its own frame to the ends of the time in between, from both neighbouring
-//! frames, and the two are mixed point by point at equal shares of their lengths.
+//! Control points move along arcs: each coordinate follows the Catmull–Rom cubic through the surrounding frames. A
+//! swinging arm therefore stays on its arc and does not take the chord. A snapped path moves with its segment. The
+//! similarity that maps the ends of the segment on the path's frame to the ends at the given time carries the path.
+//! This is done from both neighbouring frames, and the two results are blended point by point at equal shares of their
+//! lengths.
 //!
-//! E. Catmull, R. Rom: A class of local interpolating splines. Computer Aided Geometric Design, 1974.
+//! Limits: if the number of control points differs between the neighbouring frames, the nearest frame is used.
+//!
+//! Source: E. Catmull, R. Rom: A class of local interpolating splines. Computer Aided Geometric Design, 1974.
 
 use super::coverage::MOST_INSTANTS;
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::{FrameNumber, Part};
 
-/// A time nearer than this to a frame is that frame.
+/// A time closer than this to a frame counts as that frame.
 const SAME_FRAME: f64 = 1e-6;
 
-/// The times that a shutter is open for: `samples` (at least one, at most [`MOST_INSTANTS`]) in the middle of equal shares
-/// of `length` frames around `time`.
+/// The instants of an open shutter: the middles of `samples` equal intervals of `length` frames around `time`. The
+/// number of samples is limited to 1 and [`MOST_INSTANTS`].
 pub fn shutter(time: f64, length: f64, samples: usize) -> Vec<f64> {
     let n = if length > 0.0 { samples.clamp(1, MOST_INSTANTS) } else { 1 };
     (0..n).map(|k| time + length.max(0.0) * ((k as f64 + 0.5) / n as f64 - 0.5)).collect()
 }
 
-/// The contour of a part at any time: with `curves` the snapped paths where they are there, else the control points. None
-/// where the part has no contour on the nearest frame.
+/// The contour of a part at a time in frames. With `curves` it follows the snapped paths where they exist, otherwise
+/// the control points. `None` if the part has no contour on the nearest frame.
 pub fn outline_at(part: &Part, time: f64, curves: bool) -> Option<Vec<Point>> {
     let nearest = frame(time.round())?;
     part.points_at(nearest)?;
@@ -64,7 +67,8 @@ fn between(part: &Part, first: FrameNumber, before: &[Point], after: &[Point], s
     (0..before.len()).map(point).collect()
 }
 
-/// The snapped paths of the frames around, carried to the segments between `points`; none where neither frame has them.
+/// The snapped paths of the neighbouring frames, carried to the segments between `points`. `None` if neither frame has
+/// them.
 fn paths_between(part: &Part, first: FrameNumber, points: &[Point], share: f64) -> Option<Vec<Point>> {
     let sides = [(first, 1.0 - share), (first + 1, share)];
     let known: Vec<_> = sides
@@ -92,11 +96,11 @@ fn paths_between(part: &Part, first: FrameNumber, points: &[Point], share: f64) 
     Some(outline)
 }
 
-/// The similarity that takes one pair of points to another; a shift where the first two are the same.
+/// The similarity that maps one pair of points to another; a shift if the points of the first pair coincide.
 fn carrier(from: [Point; 2], to: [Point; 2]) -> impl Fn(Point) -> Point {
     let (along, wanted) = (from[1] - from[0], to[1] - to[0]);
     let size = along.length_squared();
-    // The quotient of the two differences as complex numbers.
+    //     // The quotient of the two differences as complex numbers.
     let turn = if size > 0.0 { Point::new(along.dot(wanted), along.perp_dot(wanted)) / size } else { Point::X };
     move |p| to[0] + turn.rotate(p - from[0])
 }
@@ -129,7 +133,7 @@ mod tests {
             for (p, radius) in outline_at(&part, time, false).unwrap().iter().zip([10.0, 401f64.sqrt(), 401f64.sqrt()])
             {
                 assert!((p.length() - radius).abs() < 2e-3 * radius, "{time}: {}", p.length());
-                // A straight way between the frames would cut half a per cent off the radius.
+                //         // On a straight way between the frames the radius would be half a per cent smaller.
             }
         }
         let middle = outline_at(&part, 2.5, false).unwrap()[0];

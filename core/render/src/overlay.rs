@@ -1,31 +1,32 @@
-//! Contours, control points, keys and confidence drawn over a frame.
+//! Contours, control points, keys and confidence, drawn over a frame.
 //!
-//! Each part has a colour of its own. A segment is as opaque as its less certain end is sure; a control point goes from red
-//! (not sure) over yellow to green (sure). The artist's keys are white squares, pins white rings.
+//! Each part has a colour of its own. The opacity of a segment shows the confidence of its less certain end. A control
+//! point goes from red (uncertain) over yellow to green (certain). The artist's keys are white squares, pins are white
+//! rings.
 //!
-//! Lines are drawn on a transparent layer, antialiased, and laid over the frame in floats: what is not drawn on keeps
-//! its exact colour.
+//! Lines are drawn antialiased on a transparent layer, which is composited over the frame in floats. Pixels without
+//! lines keep their exact colour.
 
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::palette;
 use rototoon_base::scene::{Colour, FrameNumber, Part, Raster, Scene};
 use tiny_skia::{Color, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
 
-/// Lines for which widths are given; they grow with the picture.
+/// Picture height for which widths are given. Widths grow with the picture.
 const REFERENCE_LINES: f64 = 540.0;
-/// Opacity of a segment that is not sure at all.
+/// Opacity of a segment with confidence 0.
 const FAINTEST: f32 = 0.3;
-/// Width of the dark border around lines, as a share of the line's width on each side.
+/// Width of the dark border on each side of a line, as a share of the line's width.
 const BORDER: f32 = 0.5;
 
-/// What an overlay shows.
+/// Options of an overlay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OverlayOptions {
     /// Width of lines, in pixels at 540 lines.
     pub line_width: f64,
-    /// Whether control points are shown.
+    /// Whether control points are drawn.
     pub points: bool,
-    /// Whether confidence is shown.
+    /// Whether colour and opacity show confidence.
     pub confidence: bool,
 }
 
@@ -35,8 +36,8 @@ impl Default for OverlayOptions {
     }
 }
 
-/// The frame's picture with the contours of all parts, farther ones first. `parts` limits it to those with these
-/// indices. A picture too large to draw on comes back as it is.
+/// The picture of a frame with the contours of all parts, farther parts first. `parts` selects parts by index; `None`
+/// takes all. A picture too large for the layer is returned unchanged.
 pub fn overlay(
     scene: &Scene,
     frame: FrameNumber,
@@ -101,7 +102,7 @@ impl Pen<'_> {
                 Some((polyline(line)?, FAINTEST + (1.0 - FAINTEST) * sure))
             })
             .collect();
-        // All borders first: none lies over a neighbour's line.
+        //         // Borders are drawn first, so none covers a neighbouring line.
         for (path, alpha) in &paths {
             stroke(layer, path, [0.0; 3], 0.5 * alpha, self.width * (1.0 + 2.0 * BORDER));
         }

@@ -1,23 +1,25 @@
-//! How much of each pixel every part shows, nearer parts over farther ones.
+//! The visible area of every part in each pixel, nearer parts over farther ones.
 //!
-//! What a part shows is the coverage of the union of it and all nearer parts less the coverage of the union of the nearer
-//! ones alone. Both come from [`super::coverage`], so the shares of a pixel are areas, not products of opacities: parts
-//! that touch along a border leave no third colour there, and the shares of all parts sum to their matte. Parts of equal
-//! depth lie as in the document, later ones over earlier ones.
+//! The visible area of a part is the coverage of the union of the part and all nearer parts, minus the coverage of the
+//! union of the nearer parts. Both come from [`super::coverage`], so the shares of a pixel are areas and not products
+//! of opacities. Parts that touch along a border leave no third colour there, and the shares of all parts sum to their
+//! matte. Of parts of equal depth the later in the document is in front.
 //!
-//! Pictures are made in bands of rows, and each part within its own bounds, so that the cost grows with the pixels that
-//! parts cover and not with pixels times parts.
+//! Pictures are computed in bands of rows, and each part within its own bounds. The cost grows with the number of
+//! pixels that parts cover, not with pixels times parts.
+//!
+//! Limits: the order follows `depth` of a part, not its depths on single frames.
 
 use super::coverage::{Shape, Window};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, Raster, Scene};
 
-/// Rows that are worked on together.
+/// Number of rows computed together.
 const BAND: i64 = 64;
-/// A share below this is rounding, not area.
+/// A smaller share is rounding, not area.
 const LEAST: f32 = 1.0 / (1 << 18) as f32;
 
-/// What a part shows of a pixel.
+/// The visible share of a part in a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
     /// Index of the part in the scene.
@@ -31,7 +33,7 @@ pub struct Share {
 pub struct Visible {
     width: usize,
     height: usize,
-    /// For each pixel where its shares begin, and one more for the end.
+    /// For each pixel the index of its first share, and a final entry for the end.
     starts: Vec<usize>,
     shares: Vec<Share>,
 }
@@ -52,7 +54,7 @@ impl Visible {
         self.starts.windows(2).map(|ends| &self.shares[ends[0]..ends[1]])
     }
 
-    /// Most shares that any pixel has.
+    /// Greatest number of shares of a pixel.
     pub fn most(&self) -> usize {
         self.pixels().map(<[Share]>::len).max().unwrap_or(0)
     }
@@ -65,7 +67,8 @@ struct Outline {
     bounds: Window,
 }
 
-/// What closed parts show on a frame: those with the given indices, or all. Snapped paths are used where they are there.
+/// The visible areas of closed parts on a frame. `parts` selects parts by index; `None` takes all. Snapped paths are
+/// used where they exist.
 pub fn visible(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Visible {
     let outlines = outlines(scene, frame, parts);
     let (width, height) = (scene.footage.width, scene.footage.height);
@@ -81,7 +84,7 @@ pub fn visible(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Vi
     result
 }
 
-/// The outlines of closed parts, the nearest first.
+/// The outlines of closed parts, nearest first.
 fn outlines(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Vec<Outline> {
     let mut order: Vec<usize> = (0..scene.parts.len()).collect();
     order.retain(|index| scene.parts[*index].closed && parts.is_none_or(|parts| parts.contains(index)));
@@ -97,7 +100,7 @@ fn outlines(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Vec<O
 fn bounds(points: &[Point]) -> Option<Window> {
     let whole = points.iter().all(|p| p.is_finite());
     let (least, most) = points.iter().fold((Point::MAX, Point::MIN), |(a, b), &p| (a.min(p), b.max(p)));
-    // A float beyond the whole numbers becomes the largest one.
+    //     // A float beyond the range of integers becomes the largest integer.
     (whole && !points.is_empty()).then(|| Window {
         left: least.x.floor() as i64,
         top: least.y.floor() as i64,
@@ -167,7 +170,7 @@ mod tests {
 
     #[test]
     fn nearer_parts_hide_and_borders_share_their_pixels() {
-        // The second is nearest, the third lies behind both and ends where the second begins.
+        // The second is nearest. The third is behind both and ends where the second begins.
         let parts = vec![
             (1.0, rectangle(0.0, 0.0, 10.0, 5.0)),
             (2.0, rectangle(4.25, 0.0, 8.0, 5.0)),

@@ -1,15 +1,18 @@
 //! From tracked contours to a skeleton clip: 17 key points on every frame (Liang et al. 2012, section 3).
 //!
-//! Where a limb's four calibration points are there, its key points are told by them ([`rototoon_base::scene::limbs`]). What no contour
-//! tells is filled in, so that a clip is always whole:
+//! The four calibration points of a limb determine its key points ([`rototoon_base::scene::limbs`]). Missing key points are
+//! filled in, so every clip is complete:
 //!
-//! 1. A part that is not there on a frame: the way from the parent key point, straight between the frames that tell it, held
-//!    before the first and after the last.
-//! 2. A limb that is nowhere defined: the same way as on the other side of the body, where that is known.
-//! 3. Otherwise the template's proportions: the torso upright through what is known of it, limbs hanging.
+//! 1. A part is missing on a frame: the offset from the parent key point is interpolated linearly between frames that
+//!    have it. Before the first and after the last of them it stays constant.
+//! 2. A limb is defined nowhere: the offset is copied from the other side of the body, if that is known.
+//! 3. Otherwise the template's proportions serve: the torso stands upright through its known points, and limbs hang
+//!    down.
 //!
-//! [`Captured::guessed`] says what was filled in. Frames on which the contours show the other side ([`LimbSet::swaps`]) have
-//! left and right exchanged before anything is filled in.
+//! [`Captured::guessed`] counts the filled-in key points. On frames where the contours show the other side
+//! ([`LimbSet::swaps`]) left and right are exchanged before anything is filled in.
+//!
+//! Coordinates are those of the tracked contours: pixels, x right, y down.
 
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::limbs::{BindingError, Bound, LimbSet};
@@ -18,21 +21,21 @@ use rototoon_base::scene::skeleton::{COUNT, MIRROR, NAMES, PARENTS, Posture};
 use rototoon_base::scene::{FrameNumber, Part};
 use std::ops::RangeInclusive;
 
-/// Key points of a frame as far as the contours tell them.
+/// Key points of a frame that the contours determine; `None` where they do not.
 pub type Seen = [Option<Point>; COUNT];
 
-/// Key points from contours.
+/// A clip captured from contours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Captured {
     /// The first frame.
     pub first: FrameNumber,
-    /// A posture a frame.
+    /// A posture for each frame.
     pub postures: Vec<Posture>,
     /// For each key point the number of frames on which it was filled in.
     pub guessed: [usize; COUNT],
 }
 
-/// Why nothing was captured.
+/// Why a capture failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CaptureError {
     /// The document has no limbs.
@@ -43,26 +46,26 @@ pub enum CaptureError {
     Binding {
         /// Index of the limb.
         limb: usize,
-        /// Name of its first key point.
+        /// Name of the limb's first key point.
         from: &'static str,
-        /// Name of its second.
+        /// Name of its second key point.
         to: &'static str,
         /// `start` or `end`.
         end: &'static str,
-        /// 0 or 1.
+        /// Index of the calibration point, 0 or 1.
         point: usize,
-        /// What is wrong.
+        /// The error of the binding.
         source: BindingError,
     },
     /// No frame shows the torso.
     #[error("frames {first} to {last}: found no frame on which limbs tell both pelvis and neck, expected at least one")]
     NoTorso {
-        /// First frame asked for.
+        /// First frame requested.
         first: FrameNumber,
-        /// Last frame asked for.
+        /// Last frame requested.
         last: FrameNumber,
     },
-    /// The torso has no length.
+    /// Pelvis and neck coincide.
     #[error("frame {frame}: found pelvis and neck on one spot, expected a torso with a length")]
     FlatTorso {
         /// The frame.
@@ -78,7 +81,11 @@ pub struct Bindings<'a> {
 }
 
 impl<'a> Bindings<'a> {
-    /// Binds all calibration points.
+    /// Binds all calibration points to their contours.
+    ///
+    /// # Errors
+    ///
+    /// [`CaptureError::NoLimbs`] or [`CaptureError::Binding`].
     pub fn new(set: &'a LimbSet, parts: &'a [Part]) -> Result<Self, CaptureError> {
         if set.limbs.is_empty() {
             return Err(CaptureError::NoLimbs);
@@ -97,7 +104,7 @@ impl<'a> Bindings<'a> {
         Ok(Self { set, parts, ends })
     }
 
-    /// Both key points of a limb on a frame (eqs. 2, 3).
+    /// Both key points of a limb on a frame (eqs. 2, 3); `None` for an end whose part is missing there.
     pub fn limb(&self, limb: usize, frame: FrameNumber) -> [Option<Point>; 2] {
         let shares = [self.set.limbs[limb].start.share, self.set.limbs[limb].end.share];
         std::array::from_fn(|end| {
@@ -106,12 +113,12 @@ impl<'a> Bindings<'a> {
         })
     }
 
-    /// Where calibration point `point` of end `end` (0 the start) of a limb is bound.
+    /// The binding of calibration point `point` at end `end` (0 is the start) of a limb.
     pub fn bound(&self, limb: usize, end: usize, point: usize) -> &Bound {
         &self.ends[limb][end][point]
     }
 
-    /// What the contours tell on a frame; sides as they are drawn.
+    /// Key points of a frame from the contours, left and right as drawn. A key point of several limbs gets their mean.
     pub fn drawn(&self, frame: FrameNumber) -> Seen {
         let mut sums = [(Point::ZERO, 0.0); COUNT];
         for (k, limb) in self.set.limbs.iter().enumerate() {
@@ -125,14 +132,19 @@ impl<'a> Bindings<'a> {
         sums.map(|(sum, count)| (count > 0.0).then(|| sum / count))
     }
 
-    /// What the contours tell on a frame, left and right exchanged where the document says so.
+    /// Key points of a frame from the contours. Left and right are exchanged on the frames that the document marks as
+    /// swapped.
     pub fn seen(&self, frame: FrameNumber) -> Seen {
         let drawn = self.drawn(frame);
         if self.set.swapped(frame) { std::array::from_fn(|k| drawn[MIRROR[k]]) } else { drawn }
     }
 }
 
-/// Captures a clip: of the given frames those from the first to the last on which the torso is told.
+/// Captures a clip. It covers the given frames from the first to the last on which the limbs determine pelvis and neck.
+///
+/// # Errors
+///
+/// A [`CaptureError`] if a limb cannot be bound or the torso is missing or has no length.
 pub fn capture(set: &LimbSet, parts: &[Part], frames: RangeInclusive<FrameNumber>) -> Result<Captured, CaptureError> {
     let bindings = Bindings::new(set, parts)?;
     let mut all: Vec<(FrameNumber, Seen)> = frames.clone().map(|frame| (frame, bindings.seen(frame))).collect();
@@ -154,7 +166,8 @@ pub fn capture(set: &LimbSet, parts: &[Part], frames: RangeInclusive<FrameNumber
     Ok(Captured { first: all[0].0, postures: filled(&seen), guessed })
 }
 
-/// The middle of the body from its sides, where it is not told itself.
+/// Fills in missing points of the torso: pelvis and neck from the two sides of the body, the chest from pelvis and
+/// neck.
 fn complete_torso(seen: &mut Seen) {
     let middle = |a: Option<Point>, b: Option<Point>| a.zip(b).map(|(a, b)| a.midpoint(b));
     seen[0] = seen[0].or(middle(seen[11], seen[14]));
@@ -163,7 +176,7 @@ fn complete_torso(seen: &mut Seen) {
     seen[1] = seen[1].or(seen[0].zip(seen[2]).map(|(pelvis, neck)| pelvis.lerp(neck, share)));
 }
 
-/// Postures without holes.
+/// Postures with all missing key points filled in.
 fn filled(seen: &[Seen]) -> Vec<Posture> {
     let mut made = vec![[Point::ZERO; COUNT]; seen.len()];
     let pelvis: Vec<Option<Point>> = seen.iter().map(|frame| frame[0]).collect();
@@ -172,7 +185,7 @@ fn filled(seen: &[Seen]) -> Vec<Posture> {
     }
     for k in 1..COUNT {
         let way = |k: usize| -> Option<Vec<Point>> {
-            // From the parent that stands there, told or filled in.
+            // The offset from the parent if the contours show it, otherwise from the pelvis.
             let ways: Vec<_> = seen.iter().map(|frame| Some(frame[k]? - frame[PARENTS[k]].or(frame[0])?)).collect();
             in_between(&ways)
         };
@@ -189,7 +202,7 @@ fn filled(seen: &[Seen]) -> Vec<Posture> {
     made
 }
 
-/// The way to a key point in the template, for the torso of a posture whose points before it are known.
+/// The offset of a key point in the template, scaled to the torso of a posture whose earlier key points are known.
 fn template_way(k: usize, posture: &Posture) -> Point {
     let torso = if k > 2 { posture[0].distance(posture[1]) + posture[1].distance(posture[2]) } else { 0.0 };
     let up = if k > 2 { (posture[2] - posture[0]).normalize_or(-Point::Y) } else { -Point::Y };
@@ -201,7 +214,8 @@ fn template_way(k: usize, posture: &Posture) -> Point {
     }
 }
 
-/// Values on all frames, straight between those that are known and held beyond them; none where nothing is known.
+/// Values on all frames: linear between the known ones, constant before the first and after the last. `None` if no
+/// value is known.
 fn in_between(values: &[Option<Point>]) -> Option<Vec<Point>> {
     let known: Vec<(usize, Point)> = values.iter().enumerate().filter_map(|(k, v)| Some((k, (*v)?))).collect();
     let (first, last) = (known.first()?, known.last()?);
@@ -222,7 +236,7 @@ mod tests {
     use rototoon_base::scene::limbs::{Binding, Calibration, Limb, LimbEnd};
     use std::collections::BTreeMap;
 
-    /// A part of four points round each of two ends, on frames 0 to 4 moved by (frame, 0).
+    /// A part of four points around each of two ends; on frame f of 0 to 4 it is moved by (f, 0).
     fn part(name: &str, from: Point, to: Point, frames: &[FrameNumber]) -> Part {
         let side = Point::new(0.0, 1.0);
         let at = |frame: &FrameNumber| {
@@ -282,10 +296,10 @@ mod tests {
         let clip = capture(&set, &parts, 0..=4).unwrap();
         assert_eq!(clip.guessed[9], 1);
         assert!(clip.postures[2][9].distance(Point::new(8.0, 0.0)) < 1e-12, "the arm's part is not there on frame 2");
-        // The other arm is like this one, and so is the other leg.
+        // The other arm copies this one, and so does the other leg.
         assert!(clip.postures[1][6].distance(clip.postures[1][9]) < 1e-12);
         assert_eq!(clip.guessed[6], 5);
-        // The head stands on the neck, the hand hangs.
+        // The head stands on the neck; the hand hangs.
         assert!(clip.postures[0][4].y < clip.postures[0][3].y && clip.postures[0][3].y < 0.0);
         assert!(clip.postures[0][10].y > clip.postures[0][9].y);
         assert!(clip.postures.iter().flatten().all(|p| p.is_finite()));

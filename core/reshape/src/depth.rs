@@ -1,13 +1,17 @@
-//! Which part is in front, from a few marks "in front" and "behind" (after Sýkora et al. 2010, "Adding Depth to
-//! Cartoons Using Sparse Depth (In)equalities").
+//! Depth order of parts from a few marks "in front" and "behind" (after Sýkora et al. 2010, "Adding Depth to Cartoons
+//! Using Sparse Depth (In)equalities").
 //!
-//! Marks say, for a range of frames, that one part lies in front of another. For a frame the marks that hold there make
-//! a directed graph. Marks that contradict each other are exactly those on a cycle; they are told, cycle by cycle.
-//! Without one, depths minimise Σ (d_p − d⁰_p)², d⁰ the depths that the drawing has, subject to d_front ≥ d_behind + 1:
-//! a small convex quadratic problem, solved by Hildreth's method (cyclic dual coordinate ascent), which needs no
-//! matrix. Parts without marks keep their depth; the others move as little as the marks allow.
+//! A mark says that one part is in front of another, for a range of frames. The marks of one frame form a directed
+//! graph. Marks contradict each other exactly if they form a cycle. The error lists the marks of the first cycle that
+//! is found.
+//!
+//! Without a cycle the depths minimise Σ (d_p − d⁰_p)² subject to d_front ≥ d_behind + 1, where d⁰ are the depths of
+//! the drawing. This is a small convex quadratic problem. Hildreth's method (cyclic dual coordinate ascent) solves it
+//! without a matrix. Parts without marks keep their depth. The others move as little as the marks allow.
+//!
+//! Limits: parts do not pass through each other within one frame, and marks apply to complete parts.
 
-/// A mark: one part in front of another, from a frame to a frame, both included.
+/// A mark: one part is in front of another, from a first to a last frame, both included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark {
     /// Index of the part in front.
@@ -20,15 +24,15 @@ pub struct Mark {
     pub last: i32,
 }
 
-/// Why no order was found.
+/// Why no order exists.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DepthError {
-    /// A mark names a part that is not there.
+    /// A mark names a part that does not exist.
     #[error("mark {mark}: found part {found}, expected one of {parts} parts")]
     Part {
-        /// The mark.
+        /// Index of the mark.
         mark: usize,
-        /// The part it names.
+        /// The part that it names.
         found: usize,
         /// Number of parts.
         parts: usize,
@@ -38,7 +42,7 @@ pub enum DepthError {
     Contradiction {
         /// The frame.
         frame: i32,
-        /// The marks of one cycle, in its order.
+        /// The marks of one cycle, in order.
         marks: Vec<usize>,
     },
 }
@@ -47,14 +51,18 @@ fn list(marks: &[usize]) -> String {
     marks.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
 }
 
-/// How much nearer what is in front is at least.
+/// Least difference in depth between the part in front and the part behind.
 const GAP: f64 = 1.0;
-/// Sweeps over all marks; chains of n parts need about n².
+/// Greatest number of sweeps over all marks. A chain of n parts needs about n².
 const SWEEPS: usize = 10_000;
-/// Sweeps end when no mark is violated by more.
+/// The sweeps end when none changes a depth by as much as this.
 const TOLERANCE: f64 = 1e-9;
 
-/// Depths at a frame, larger nearer to the viewer: as near to those given as the marks allow.
+/// Depths at a frame, larger values nearer to the viewer: as close to the given depths as the marks allow.
+///
+/// # Errors
+///
+/// [`DepthError::Part`] or [`DepthError::Contradiction`].
 pub fn infer(depths: &[f64], marks: &[Mark], frame: i32) -> Result<Vec<f64>, DepthError> {
     for (mark, m) in marks.iter().enumerate() {
         if let Some(&found) = [m.front, m.behind].iter().find(|p| **p >= depths.len()) {
@@ -85,7 +93,7 @@ pub fn infer(depths: &[f64], marks: &[Mark], frame: i32) -> Result<Vec<f64>, Dep
     Ok(found)
 }
 
-/// Parts from the farthest to the nearest; equal depths in the order of the parts.
+/// Parts from the farthest to the nearest. Equal depths keep the order of the parts.
 pub fn drawing_order(depths: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..depths.len()).collect();
     order.sort_by(|&a, &b| depths[a].total_cmp(&depths[b]));
@@ -98,7 +106,7 @@ fn cycle(parts: usize, marks: &[Mark], active: &[usize]) -> Option<Vec<usize>> {
     active.iter().for_each(|&k| leaving[marks[k].front].push(k));
     let mut done = vec![false; parts];
     for start in 0..parts {
-        // The marks of the path to here, and for each part on it the next mark to try.
+        // The marks on the path to this part, and for each part on the path the next mark to try.
         let mut path: Vec<usize> = Vec::new();
         let mut stack = vec![(start, 0)];
         while let Some((part, next)) = stack.last_mut() {
@@ -137,7 +145,7 @@ mod tests {
         let found = infer(&depths, &[mark(1, 3), mark(2, 1)], 4).unwrap();
         assert!(found[1] - found[3] > 1.0 - 1e-6 && found[2] - found[1] > 1.0 - 1e-6, "{found:?}");
         assert_eq!(found[0], 5.0);
-        // The least move keeps the middle of the three: 1, 2, 3 become 2, 3, 1.
+        // The least change keeps the middle of the three: 1, 2, 3 become 2, 3, 1.
         assert!([2.0, 3.0, 1.0].iter().zip(&found[1..]).all(|(a, b)| (a - b).abs() < 1e-6), "{found:?}");
         assert_eq!(drawing_order(&found), [3, 1, 2, 0]);
     }

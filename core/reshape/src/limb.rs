@@ -1,19 +1,19 @@
-//! Limbs as quadratic Bézier splines in coordinates of their own, and sub-key points that follow them (Liang et al.
-//! 2012, section 5).
+//! Limbs as quadratic Bézier splines in limb coordinates, and sub-key points that follow them (Liang et al. 2012,
+//! section 5).
 //!
 //! A limb leads from key point p_j to p_{j+1} along B(λ) = (1−λ)² p_j + 2λ(1−λ) p_con + λ² p_{j+1} (eq. 9). Its control
-//! point is kept relative to the limb, p_con = p_j + ω_x (p_{j+1} − p_j) + ω_y R (p_{j+1} − p_j) with R the turn by
-//! +90° (eq. 10), so a bend drawn in one pose goes with the limb into any other. Coordinates have x right and y down: R
-//! turns x towards y.
+//! point is stored relative to the limb: p_con = p_j + ω_x (p_{j+1} − p_j) + ω_y R (p_{j+1} − p_j), where R is the
+//! rotation by +90° (eq. 10). A bend drawn in one pose then follows the limb into any other pose. Coordinates have x
+//! right and y down; R turns x towards y.
 //!
-//! **Sub-key points** q_ij are mesh vertices near samples of the spline (eq. 11). From frame to frame each moves with
-//! both key points of its limb, the nearer counting more (eq. 12), and is then drawn to the nearest point of the spline
-//! (eqs. 13, 14).
+//! **Sub-key points** q_ij are mesh vertices near samples of the spline (eq. 11). From frame to frame each one moves
+//! with both key points of its limb, and the nearer key point counts more (eq. 12). Then it moves to the nearest point
+//! of the spline (eqs. 13, 14).
 //!
-//! What the print leaves open: eq. 12 weights the move of p_j by ‖p_j − q‖, so that the *farther* end counts more,
-//! against the sentence beside it; here weights are inverse distances. The cubic of eq. 14 has up to three roots and
-//! its formula loses digits where the spline is nearly straight; [`Quadratic::nearest`] solves it in brackets, and
-//! compares the ends.
+//! Departures from the print: eq. 12 weights the move of p_j by ‖p_j − q‖, so the *farther* end counts more, which
+//! contradicts the sentence beside it. Here the weights are inverse distances. The cubic of eq. 14 has up to three
+//! roots, and its formula loses digits if the spline is nearly straight. [`Quadratic::nearest`] solves it within
+//! brackets and also checks the ends.
 
 use rototoon_base::curve::quadratic::Quadratic;
 use rototoon_base::geometry::Point;
@@ -21,9 +21,9 @@ use rototoon_base::geometry::Point;
 /// A limb's control point, relative to the limb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bend {
-    /// ω_x: along the limb, 0 at its start and 1 at its end.
+    /// ω_x: position along the limb, 0 at its start and 1 at its end.
     pub along: f64,
-    /// ω_y: across, in limb lengths.
+    /// ω_y: offset across, in limb lengths.
     pub across: f64,
 }
 
@@ -31,7 +31,7 @@ impl Bend {
     /// A straight limb.
     pub const STRAIGHT: Self = Self { along: 0.5, across: 0.0 };
 
-    /// The bend of a limb drawn with this control point; straight where the limb has no length.
+    /// The bend of a limb drawn with this control point; straight if the limb has no length.
     pub fn of(start: Point, end: Point, control: Point) -> Self {
         let limb = end - start;
         let length = limb.length_squared();
@@ -48,14 +48,14 @@ impl Bend {
         Quadratic::new(start, start + limb * self.along + limb.perp() * self.across, end)
     }
 
-    /// The bend between two keys, at a share of the way.
+    /// The bend between two keys, `share` of the way from the first to the second.
     pub fn between(&self, other: &Self, share: f64) -> Self {
         let mix = |a: f64, b: f64| a + share * (b - a);
         Self { along: mix(self.along, other.along), across: mix(self.across, other.across) }
     }
 }
 
-/// The bend at a frame from bends drawn on keys, in rising order of frames; straight without any.
+/// The bend at a frame, interpolated between bends drawn on keys (in ascending order of frames); straight without any.
 pub fn bend_at(keys: &[(i32, Bend)], frame: i32) -> Bend {
     let after = keys.partition_point(|(key, _)| *key < frame);
     match (after.checked_sub(1).and_then(|k| keys.get(k)), keys.get(after)) {
@@ -65,7 +65,8 @@ pub fn bend_at(keys: &[(i32, Bend)], frame: i32) -> Bend {
     }
 }
 
-/// Vertices nearest to samples of a spline, `count` evenly spaced in λ between the ends (eq. 11), each once.
+/// Indices of the vertices nearest to `count` samples of a spline (eq. 11). The samples are evenly spaced in λ between
+/// the ends. Each vertex appears once.
 pub fn sub_keys(spline: &Quadratic, vertices: &[Point], count: usize) -> Vec<usize> {
     let mut found = Vec::new();
     for sample in 1..=count {
@@ -77,7 +78,7 @@ pub fn sub_keys(spline: &Quadratic, vertices: &[Point], count: usize) -> Vec<usi
     found
 }
 
-/// A sub-key point one frame on: with the key points (eq. 12), then onto the spline (eqs. 13, 14).
+/// A sub-key point on the next frame: it moves with the key points (eq. 12), then onto the spline (eqs. 13, 14).
 pub fn follow(point: Point, before: (Point, Point), after: (Point, Point), spline: &Quadratic) -> Point {
     let (near, far) = (before.0.distance(point), before.1.distance(point));
     let share = if near + far > 0.0 { near / (near + far) } else { 0.0 }; // inverse distances, normalised

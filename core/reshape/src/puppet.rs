@@ -1,27 +1,30 @@
-//! A drawn part that follows the limbs it goes with (Liang et al. 2012, section 5).
+//! A drawn part that follows the limbs that carry it (Liang et al. 2012, section 5).
 //!
-//! A part is triangulated from its outline ([`super::triangulate`]). Mesh vertices near the key points of its limbs,
-//! and near samples of the limbs' splines (sub-key points, eq. 11), become handles. On a frame each handle's point on
-//! the spline at rest goes to the same place along the new spline, its parameter; what lay between it and the vertex
-//! turns with the spline. The mesh follows as rigidly as possible ([`super::arap`]), and with it every point that it
-//! holds.
+//! A part is triangulated from its outline ([`super::triangulate`]). Mesh vertices near the key points of its limbs
+//! become handles, and so do vertices near samples of the limbs' splines (sub-key points, eq. 11). Each handle belongs
+//! to a point of the spline at rest. On a frame this point moves to the same parameter of the new spline; the offset
+//! from it to the vertex rotates with the spline. The mesh follows as rigidly as possible ([`super::arap`]), and every
+//! point bound to the mesh follows it.
 //!
-//! The print moves sub-key points from frame to frame, which lets errors pile up, as it says itself: with both key
-//! points, and then to the nearest point of the new spline (eqs. 12 to 14, [`follow`]). Here each frame starts from the
-//! drawing at rest, and their places along the limb stay. Drawn to the nearest point ([`Options::printed`]) they slide
-//! together where a limb is curved much. Without sub-key points ([`Options::sub_keys`] 0) this is plain
-//! as-rigid-as-possible manipulation by key points, the comparison that the paper draws: between key points limbs then
-//! leave their splines. (Width across a sharp elbow is kept no better with sub-key points than without: they hold both
-//! limbs straight, and the inside of the bend is pressed together.)
+//! The paper moves sub-key points from frame to frame, with both key points and then to the nearest point of the new
+//! spline (eqs. 12 to 14, [`follow`]). As it says itself, errors then accumulate. Here each frame starts from the
+//! drawing at rest, and the points keep their parameters. With [`Options::printed`] they move to the nearest point
+//! instead; on a strongly curved limb they then slide together.
 //!
-//! A part that its limbs carry *whole* (a head: its key points lie closer together than it is wide, and a skull neither
-//! stretches nor bends) moves without bending or growing, whatever becomes of their lengths: it stays where the first
-//! of its limbs begins, and is turned as fits all their ends best, the farther ones counting more (the rotation of
-//! least squares about a fixed point). As a mesh it would follow every change of a neck's length in the picture, and be
-//! drawn out to a drop.
+//! Without sub-key points ([`Options::sub_keys`] 0) this is plain as-rigid-as-possible manipulation by key points,
+//! which the paper compares with. Between the key points limbs then leave their splines. Sub-key points do not preserve
+//! the width at a sharp elbow: they keep both limbs straight, and the inside of the bend is compressed.
 //!
-//! A part that hangs on a limb's end with less than two handles (a hand, a shoe, a hat) is rigid: it moves with the
-//! nearest place of the spline and takes a share of its turn.
+//! A part whose limbs carry it *whole* moves without bending or growing, however the lengths of its limbs change. A
+//! head is an example: its key points are closer together than its width, and a skull neither stretches nor bends. The
+//! part stays at the start of its first limb. Its rotation about that point fits the ends of all its limbs by least
+//! squares; farther ends count more. A mesh would follow every change of the neck's length in the picture and stretch
+//! into a drop.
+//!
+//! A part on a limb's end with fewer than two handles (a hand, a shoe, a hat) is rigid. It moves with the nearest point
+//! of the spline and takes a share of its rotation.
+//!
+//! Limits: limbs and parts are planar. A part that turns out of the picture's plane needs a new drawing.
 
 use super::arap::{ArapError, Mesh, Solver};
 use super::limb::{Bend, follow, sub_keys};
@@ -29,16 +32,16 @@ use super::triangulate::{Held, Triangles, TriangulateError, triangulate};
 use rototoon_base::curve::quadratic::Quadratic;
 use rototoon_base::geometry::{Point, polygon};
 
-/// Triangle edges in a square as large as the part.
+/// Triangle edges along a side of a square as large as the part.
 const EDGES: f64 = 6.0;
 
-/// How parts are reshaped.
+/// Options of reshaping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Sub-key points of a limb; 0 for plain as-rigid-as-possible manipulation by key points.
+    /// Sub-key points of each limb; 0 gives plain as-rigid-as-possible manipulation by key points.
     pub sub_keys: usize,
-    /// Whether sub-key points are drawn to the nearest point of their spline, as printed ([`follow`]), and not kept at
-    /// their place along it. On strongly curved limbs they then slide together.
+    /// Whether sub-key points move to the nearest point of their spline, as printed ([`follow`]). Otherwise they keep
+    /// their parameter along it. On strongly curved limbs the printed rule makes them slide together.
     pub printed: bool,
 }
 
@@ -51,9 +54,9 @@ impl Default for Options {
 /// A limb on a frame, or in the drawing at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimbPose {
-    /// Its key points.
+    /// Its key points, start and end.
     pub ends: (Point, Point),
-    /// How it is bent.
+    /// Its bend.
     pub bend: Bend,
 }
 
@@ -64,29 +67,29 @@ impl LimbPose {
     }
 }
 
-/// A limb that a part goes with.
+/// A limb that carries a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carrier {
     /// Index of the limb.
     pub limb: usize,
-    /// Share of its turn that a part takes which hangs on it.
+    /// Share of the limb's rotation that a rigid part takes.
     pub turn: f64,
-    /// Weight of the triangles around it.
+    /// Weight of the triangles near the limb.
     pub rigidity: f64,
-    /// Whether a part that only such limbs carry keeps its shape and size.
+    /// Whether the part keeps its shape and size if all its carriers say so.
     pub whole: bool,
 }
 
 /// Why a part cannot be reshaped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PuppetError {
-    /// Its outline cannot be triangulated.
+    /// The outline cannot be triangulated.
     #[error(transparent)]
     Outline(#[from] TriangulateError),
-    /// Its mesh cannot be posed.
+    /// The mesh cannot be posed.
     #[error(transparent)]
     Mesh(#[from] ArapError),
-    /// It goes with no limb.
+    /// No limb carries the part.
     #[error("found no limb that carries it, expected at least one")]
     NoCarrier,
 }
@@ -97,20 +100,20 @@ struct Handle {
     limb: usize,
     /// The point of the spline at rest.
     on: Point,
-    /// From there to the vertex.
+    /// Offset from that point to the vertex.
     offset: Point,
 }
 
 enum Drive {
-    /// Moves with a place of a limb's spline.
+    /// Moves with a point of a limb's spline.
     Rigid { carrier: Carrier, parameter: f64, points: Vec<Point> },
-    /// Keeps its shape and size, and stays with the beginning of its first limb.
+    /// Keeps its shape and size, and stays at the start of its first limb.
     Whole { limbs: Vec<usize>, turn: f64, points: Vec<Point> },
     /// Bends with its limbs.
     Mesh { solver: Box<Solver>, handles: Vec<Handle>, held: Vec<Held> },
 }
 
-/// A part ready to be posed again and again.
+/// A part that can be posed repeatedly.
 pub struct Puppet {
     rest: Vec<LimbPose>,
     drive: Drive,
@@ -118,8 +121,12 @@ pub struct Puppet {
 }
 
 impl Puppet {
-    /// A part with its outline at rest, the points that shall follow it, the limbs at rest (all of the character), and
-    /// those that carry it.
+    /// Prepares a part from its outline at rest, the points that shall follow it, all limbs of the character at rest,
+    /// and the limbs that carry it.
+    ///
+    /// # Errors
+    ///
+    /// A [`PuppetError`].
     pub fn new(
         outline: &[Point],
         points: &[Point],
@@ -140,12 +147,17 @@ impl Puppet {
         Ok(Self { rest: rest.to_vec(), drive, printed: options.printed })
     }
 
-    /// Whether it moves without bending.
+    /// Whether the part moves without bending.
     pub fn is_rigid(&self) -> bool {
         !matches!(self.drive, Drive::Mesh { .. })
     }
 
-    /// The points for the limbs of a frame.
+    /// Positions of the points for the limbs of a frame. `limbs` contains all limbs of the character, in the order of
+    /// the rest pose.
+    ///
+    /// # Errors
+    ///
+    /// [`PuppetError::Mesh`].
     pub fn pose(&mut self, limbs: &[LimbPose]) -> Result<Vec<Point>, PuppetError> {
         match &mut self.drive {
             Drive::Rigid { carrier, parameter, points } => {
@@ -170,7 +182,7 @@ impl Puppet {
     }
 }
 
-/// Where a handle goes.
+/// The position of a handle on a frame.
 fn target(handle: &Handle, rest: &LimbPose, now: &LimbPose, printed: bool) -> Point {
     let (before, after) = (rest.spline(), now.spline());
     let at = before.nearest(handle.on).parameter;
@@ -184,7 +196,7 @@ fn target(handle: &Handle, rest: &LimbPose, now: &LimbPose, printed: bool) -> Po
     on + Point::from_angle(turn).rotate(handle.offset)
 }
 
-/// The turn from a spline's direction at a parameter to another's; of what has no direction, none.
+/// The angle from the direction of a spline at a parameter to that of another spline; 0 if one has no direction.
 fn angle(from: &Quadratic, to: &Quadratic, at: f64, there: f64) -> f64 {
     let direction = |spline: &Quadratic, u: f64| {
         let tangent = (spline.p1 - spline.p0).lerp(spline.p2 - spline.p1, u);
@@ -194,13 +206,13 @@ fn angle(from: &Quadratic, to: &Quadratic, at: f64, there: f64) -> f64 {
     if a.length_squared() > 1e-18 && b.length_squared() > 1e-18 { a.angle_to(b) } else { 0.0 }
 }
 
-/// The turn about the origin that brings the first points of pairs nearest to the second, by least squares.
+/// The rotation about the origin that fits the first points of the pairs to the second by least squares, in radians.
 fn turn_between(pairs: impl Iterator<Item = (Point, Point)>) -> f64 {
     let (cosine, sine) = pairs.fold((0.0, 0.0), |(c, s), (a, b)| (c + a.dot(b), s + a.perp_dot(b)));
     if cosine == 0.0 && sine == 0.0 { 0.0 } else { sine.atan2(cosine) }
 }
 
-/// A part that keeps its shape. It stays with the limb that begins where no other ends.
+/// A part that keeps its shape. It stays at the limb that starts where no other limb ends.
 fn whole(points: &[Point], rest: &[LimbPose], carriers: &[Carrier]) -> Drive {
     let hangs = |a: &Carrier| {
         let start = rest[a.limb].ends.0;
@@ -212,7 +224,7 @@ fn whole(points: &[Point], rest: &[LimbPose], carriers: &[Carrier]) -> Drive {
     Drive::Whole { limbs, turn: order[0].turn, points: points.to_vec() }
 }
 
-/// The mesh of a part, unless it has too few handles.
+/// The mesh of a part; `None` if it has too few handles.
 fn mesh(
     outline: &[Point],
     points: &[Point],
@@ -222,7 +234,8 @@ fn mesh(
 ) -> Result<Option<Drive>, PuppetError> {
     let edge = (polygon::signed_area(outline).abs().sqrt() / EDGES).max(1e-9);
     let whole = triangulate(&[outline.to_vec()], &[], edge)?;
-    // What hangs on the rest by one vertex could turn freely about it: the rest alone is posed, and holds what it holds.
+    // A piece joined to the rest by one vertex could rotate freely about it. Therefore only one piece, the largest with
+    // enough handles, is posed. It carries all points.
     let posed = whole.pieces().into_iter().find_map(|piece| {
         let (vertices, handles) = handles(&piece, edge, rest, carriers, options);
         (vertices.len() > 1).then_some((piece, vertices, handles))
@@ -241,13 +254,13 @@ fn mesh(
     let mesh = Mesh::with_rigidity(shape.vertices, shape.triangles, weights)?;
     match Solver::new(mesh, &vertices) {
         Ok(solver) => Ok(Some(Drive::Mesh { solver: Box::new(solver), handles, held })),
-        // A piece of a torn outline that no limb reaches: the part as a whole is rigid then.
+        // No limb reaches a piece of a torn outline; then the complete part is rigid.
         Err(ArapError::Adrift { .. }) => Ok(None),
         Err(other) => Err(other.into()),
     }
 }
 
-/// Vertices that follow limbs, each once; what is farther than an edge from its vertex has none.
+/// Vertices that follow limbs, each once. A point farther than an edge from the nearest vertex gets no handle.
 fn handles(
     shape: &Triangles,
     edge: f64,
@@ -278,7 +291,7 @@ fn handles(
     (vertices, found)
 }
 
-/// A part that hangs on the nearest of its limbs.
+/// A rigid part on the nearest of its limbs.
 fn hanging(outline: &[Point], points: &[Point], rest: &[LimbPose], carriers: &[Carrier]) -> Option<Drive> {
     let middle = polygon::center(outline);
     let near = |carrier: &Carrier| rest[carrier.limb].spline().nearest(middle);

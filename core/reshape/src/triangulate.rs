@@ -1,73 +1,81 @@
-//! A triangle mesh of what outlines enclose.
+//! Triangulates the area that outlines enclose.
 //!
-//! Constrained Delaunay triangulation, refined after Ruppert 1995 and Chew 1993 (crate `spade`): edges of the outlines stay
-//! edges, no angle is smaller than [`LEAST_ANGLE`] except where the outlines themselves are sharper, and no triangle is much
-//! larger than an equilateral one on the wanted edge.
+//! The mesh is a constrained Delaunay triangulation, refined after Ruppert 1995 and Chew 1993 (crate `spade`). Edges of
+//! the outlines stay edges. No angle is smaller than [`LEAST_ANGLE`], except where the outlines themselves are sharper.
+//! No triangle is much larger than an equilateral triangle on the requested edge.
 //!
-//! Drawn outlines are not always clean, so they are repaired first: points on one spot count once, long segments are divided,
-//! and where a line crosses itself or another one the crossing becomes a vertex. What is enclosed follows the winding number:
-//! not 0 in the outlines and 0 in the holes. So an outline that folds over itself has no hole there, as in rendering.
+//! Drawn outlines are not always clean, so they are repaired first. Points at one spot count once, and long segments
+//! are divided. Where lines cross, the crossing becomes a vertex. The winding number defines the enclosed area: it is
+//! not 0 in the outlines and 0 in the holes. As in rendering, an outline that folds over itself has no hole at the
+//! fold.
 //!
-//! Limits: triangles are not refined where an outline lies over itself an even number of times. Detail finer than a tenth of
-//! the wanted edge is smoothed away. Triangles that remain slivers (at crossings under a tiny angle) are left out.
+//! Limits: triangles are not refined where an outline covers itself an even number of times. Detail finer than a tenth
+//! of the requested edge is smoothed away. Triangles that remain slivers, at crossings of a tiny angle, are left out.
 
 use rototoon_base::geometry::{Point, polygon, polyline};
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 use std::collections::BTreeMap;
 
-/// Smallest angle of refined triangles, in degrees; refinement is certain to end below 20.7, and does nearly always at this.
+/// Smallest angle of refined triangles in degrees. Refinement is proven to end below 20.7; at this angle it nearly
+/// always ends.
 pub const LEAST_ANGLE: f64 = 25.0;
-/// Points nearer to the last one than this share of the wanted edge are left out.
+/// A point closer to the previous one than this share of the requested edge is left out.
 const SHORTEST: f64 = 0.1;
-/// Largest triangle, in areas of an equilateral one on the wanted edge.
+/// Largest triangle, in areas of the equilateral triangle on the requested edge.
 const LARGEST: f64 = 1.6;
-/// Triangles smaller than this share of the wanted edge's square are not refined further: the sharp ends of outlines.
+/// Triangles smaller than this share of the square of the requested edge are not refined further. They occur at sharp
+/// ends of outlines.
 const SMALLEST: f64 = 0.04;
-/// Triangles with less than this share of the area of an equilateral one on their longest edge are slivers.
+/// Triangles with less than this share of the area of the equilateral triangle on their longest edge are slivers.
 const SLIVER: f64 = 1e-5;
-/// Most vertices that refinement may add: for each point of the outlines, and for each triangle of the wanted size in their box.
+/// Limit of the vertices that refinement adds: for each point of the outlines, and for each triangle of the largest
+/// size in their bounding box.
 const MOST: [f64; 2] = [10.0, 4.0];
 
 /// Why there is no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TriangulateError {
-    /// A point is not finite or too far away.
+    /// A coordinate is not finite or too large.
     #[error("outline {outline}, point {point}: found {found}, expected numbers between -1e9 and 1e9")]
     Point {
-        /// Its outline.
+        /// Index of the outline.
         outline: usize,
-        /// Its index.
+        /// Index of the point.
         point: usize,
-        /// What was found.
+        /// Its coordinates.
         found: Point,
     },
-    /// An outline encloses nothing.
+    /// An outline encloses no area.
     #[error("outline {outline}: found no area that it encloses (its points are on a line or a spot), expected some")]
     Flat {
-        /// The outline.
+        /// Index of the outline.
         outline: usize,
     },
-    /// There is nothing at all, or the holes take all of it.
+    /// There are no outlines, or the holes take all of the area.
     #[error("outlines: found nothing that is inside of them and outside of the holes")]
     Nothing,
-    /// The wanted edge is no length.
+    /// The edge length is not positive and finite.
     #[error("edge: found {found}, expected a positive length")]
     Edge {
-        /// What was found.
+        /// The given length.
         found: f64,
     },
 }
 
-/// Vertices and triangles; three vertices each, all turning the same way.
+/// Vertices and triangles. Each triangle names three vertices, and all have the same orientation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangles {
-    /// Places of the vertices.
+    /// Positions of the vertices.
     pub vertices: Vec<Point>,
-    /// Vertices of each triangle.
+    /// Vertex indices of each triangle.
     pub triangles: Vec<[usize; 3]>,
 }
 
-/// Triangulates what `outlines` enclose and `holes` do not, with edges of about the given length in pixels.
+/// Triangulates the area within `outlines` and outside of `holes`, with edges of about the length `edge`, in pixels.
+///
+/// # Errors
+///
+/// A [`TriangulateError`]; holes are numbered after the outlines.
 pub fn triangulate(outlines: &[Vec<Point>], holes: &[Vec<Point>], edge: f64) -> Result<Triangles, TriangulateError> {
     if !(edge > 0.0 && edge.is_finite()) {
         return Err(TriangulateError::Edge { found: edge });
@@ -80,7 +88,8 @@ pub fn triangulate(outlines: &[Vec<Point>], holes: &[Vec<Point>], edge: f64) -> 
         constrain(&mut mesh, ring);
     }
     let largest = LARGEST * 3f64.sqrt() / 4.0 * edge * edge;
-    // What lies outside is not refined: flat angles between an outline and its hull would cut it into crumbs.
+    // The area outside of the outlines is not refined: the flat angles between an outline and its hull would produce
+    // tiny triangles.
     let parameters = RefinementParameters::<f64>::new()
         .exclude_outer_faces(true)
         .with_angle_limit(AngleLimit::from_deg(LEAST_ANGLE))
@@ -91,7 +100,7 @@ pub fn triangulate(outlines: &[Vec<Point>], holes: &[Vec<Point>], edge: f64) -> 
     collect(&mesh, outside, inside)
 }
 
-/// A ring whose points are neither on one spot nor farther apart than an edge.
+/// A ring without repeated points and without segments longer than an edge.
 fn cleaned(outline: usize, ring: &[Point], edge: f64) -> Result<Vec<Point>, TriangulateError> {
     if let Some(point) = polyline::first_unusable(ring) {
         return Err(TriangulateError::Point { outline, point, found: ring[point] });
@@ -117,14 +126,14 @@ fn cleaned(outline: usize, ring: &[Point], edge: f64) -> Result<Vec<Point>, Tria
     Ok(divided)
 }
 
-/// Whether a ring encloses more than an area, also where its loops run against each other.
+/// Whether a ring encloses more than an area. Loops of opposite orientation do not cancel.
 fn encloses(ring: &[Point], least: f64) -> bool {
     let fan: f64 = (1..ring.len() - 1).map(|k| (ring[k] - ring[0]).perp_dot(ring[k + 1] - ring[0]).abs()).sum();
     polygon::signed_area(ring).abs() > least || fan > 4.0 * least
 }
 
 fn constrain(mesh: &mut ConstrainedDelaunayTriangulation<Point2<f64>>, ring: &[Point]) {
-    // Coordinates are checked to be finite and of a usable size, which is all that insertion asks for.
+    // Coordinates are finite and of usable size here; insertion requires no more.
     let handles: Vec<_> = ring.iter().filter_map(|p| mesh.insert(Point2::new(p.x, p.y)).ok()).collect();
     for k in 0..handles.len() {
         let (from, to) = (handles[k], handles[(k + 1) % handles.len()]);
@@ -134,14 +143,14 @@ fn constrain(mesh: &mut ConstrainedDelaunayTriangulation<Point2<f64>>, ring: &[P
     }
 }
 
-/// How many vertices may be added; sharp ends would take more and more of them.
+/// Greatest number of vertices to add. Sharp ends would need ever more of them.
 fn most(rings: &[Vec<Point>], largest: f64) -> usize {
     let points: Vec<Point> = rings.iter().flatten().copied().collect();
     let size = polygon::bounds(&points).map_or(Point::ZERO, |(low, high)| high - low);
     (MOST[0] * points.len() as f64 + MOST[1] * size.x * size.y / largest) as usize
 }
 
-/// How often a ring goes round a point.
+/// Winding number of a ring about a point.
 fn winding(ring: &[Point], p: Point) -> i32 {
     polyline::segments(ring, true)
         .map(|(a, b)| match (a.y <= p.y, b.y <= p.y) {
@@ -163,7 +172,7 @@ fn collect(
         let corners = face.vertices();
         let at = corners.map(|v| Point::new(v.position().x, v.position().y));
         let middle = (at[0] + at[1] + at[2]) / 3.0;
-        // Each outline by itself: two that run against each other do not cancel out.
+        // Each outline counts by itself: two of opposite orientation do not cancel.
         let within = |rings: &[Vec<Point>]| rings.iter().any(|ring| winding(ring, middle) != 0);
         if !within(outlines) || within(holes) || is_sliver(&at) {
             continue;
@@ -185,24 +194,24 @@ fn is_sliver([a, b, c]: &[Point; 3]) -> bool {
     (*b - *a).perp_dot(*c - *a).abs() < 2.0 * SLIVER * 0.433 * longest
 }
 
-/// A point held by a triangle: it moves as the weighted mean of the corners.
+/// A point bound to a triangle. It moves as the weighted mean of the corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Held {
-    /// The corners' vertices.
+    /// Vertex indices of the corners.
     pub corners: [usize; 3],
-    /// Their weights, which sum to 1; a point outside of the mesh has negative ones.
+    /// Weights of the corners; their sum is 1. A point outside of the mesh has negative weights.
     pub weights: [f64; 3],
 }
 
 impl Held {
-    /// The point for places of the vertices.
+    /// The point for given positions of the vertices.
     pub fn at(&self, places: &[Point]) -> Point {
         (0..3).map(|k| places[self.corners[k]] * self.weights[k]).sum()
     }
 }
 
 impl Triangles {
-    /// The pieces that hang together by edges, the largest by area first.
+    /// The pieces of the mesh that are connected by edges, in descending order of area.
     pub fn pieces(&self) -> Vec<Self> {
         let mut owner: BTreeMap<(usize, usize), usize> = BTreeMap::new();
         let mut piece: Vec<usize> = (0..self.triangles.len()).collect();
@@ -224,7 +233,7 @@ impl Triangles {
         pieces
     }
 
-    /// Some of the triangles with their vertices.
+    /// Some of the triangles, with their vertices.
     fn part(&self, triangles: &[[usize; 3]]) -> Self {
         let mut number: BTreeMap<usize, usize> = BTreeMap::new();
         let mut vertices = Vec::new();
@@ -242,7 +251,7 @@ impl Triangles {
         self.triangles.iter().map(|t| polygon::signed_area(&t.map(|v| self.vertices[v])).abs()).sum()
     }
 
-    /// Binds a point to the triangle that it lies in, or to the nearest one.
+    /// Binds a point to the triangle that contains it, or to the nearest one.
     pub fn hold(&self, p: Point) -> Held {
         let weights = |corners: &[usize; 3]| {
             let [a, b, c] = corners.map(|v| self.vertices[v]);
@@ -271,7 +280,7 @@ impl Triangles {
     }
 }
 
-/// The first of the pieces that are one with a piece.
+/// The representative of the piece that a triangle belongs to (union–find).
 fn root(piece: &mut [usize], mut t: usize) -> usize {
     while piece[t] != t {
         piece[t] = piece[piece[t]];
@@ -330,7 +339,7 @@ mod tests {
     #[test]
     fn an_outline_that_crosses_itself_is_filled_by_winding() {
         let v = Point::new;
-        // Two squares in a figure of eight, and a fold that lies over itself.
+        // Two squares in a figure of eight, and an outline that folds over itself.
         let eight = vec![v(0.0, 0.0), v(40.0, 40.0), v(40.0, 0.0), v(0.0, 40.0)];
         let mesh = triangulate(&[eight], &[], 5.0).unwrap();
         assert!((area(&mesh) - 800.0).abs() < 1.0, "{}", area(&mesh));

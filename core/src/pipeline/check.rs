@@ -1,4 +1,4 @@
-//! What is wrong with a document, stage by stage: its scene, its limbs, its drawings, pairs and pegs, its frames.
+//! Checks a document stage by stage: its scene, its limbs, its drawings, pairs and pegs, and its frames.
 
 use super::PipelineError;
 use super::tween::{peg_of, spacing};
@@ -11,7 +11,11 @@ use crate::tween::peg::{self, PegError};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::path::Path;
 
-/// Everything that is wrong with a document that lies in `folder` and with its frames: each is read.
+/// All problems of a document in `folder` and of its frames. Every frame is read.
+///
+/// # Errors
+///
+/// An invalid pattern, or [`PipelineError::Cancelled`].
 pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Result<Problems, PipelineError> {
     let mut problems = document.problems();
     if let Err(error) = document.limbs() {
@@ -34,7 +38,7 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
     Ok(problems)
 }
 
-/// Pictures that can be drawn on, but that the default preset does not track.
+/// Warns of pictures that can be drawn on but are too wide for the default preset of tracking.
 fn shape(footage: &Footage, problems: &mut Problems) {
     if too_wide(footage) {
         let (width, height) = (footage.width, footage.height);
@@ -43,8 +47,8 @@ fn shape(footage: &Footage, problems: &mut Problems) {
     }
 }
 
-/// Everything that is wrong with a document's drawings, pairs and pegs: fields that are not as they must be, and, where
-/// all are, what tweening could not work with.
+/// All problems of a document's drawings, pairs and pegs. Invalid fields come first. Only if all fields are valid,
+/// tweening's further conditions are checked.
 pub fn drawing_problems(document: &Document) -> Problems {
     let mut problems = Problems::default();
     let (read, wrong) = document.drawings_and_problems();
@@ -94,10 +98,10 @@ fn pegs(read: &Drawings, problems: &mut Problems) {
     }
 }
 
-/// Place and message of what is wrong with a peg.
+/// Place and message of a peg's error.
 fn described(k: usize, peg: &DrawnPeg, error: &PegError) -> (String, String) {
     let place = peg_place(k, &peg.name);
-    // Keys on one frame: the later of them is the one that is out of order.
+    //     // Of several keys on one frame the later one is out of order.
     let index = |frame: FrameNumber| peg.keys.iter().rposition(|key| key.frame == frame).unwrap_or_default();
     let key = |frame: FrameNumber| peg_key_place(&place, index(frame), frame);
     match error {
@@ -110,7 +114,7 @@ fn described(k: usize, peg: &DrawnPeg, error: &PegError) -> (String, String) {
         PegError::Pivot { x, y, .. } => {
             (format!("{place}.pivot"), format!("found [{x}, {y}], expected numbers between -1e9 and 1e9"))
         }
-        // Degrees in the document, radians in the peg.
+        //         // The document has degrees, the peg radians.
         PegError::Key { frame, field: "turn", .. } => (
             format!("{}.turn", key(*frame)),
             format!("found {:e}, expected a number between -5e10 and 5e10", peg.keys[index(*frame)].turn),
@@ -126,7 +130,7 @@ fn described(k: usize, peg: &DrawnPeg, error: &PegError) -> (String, String) {
     }
 }
 
-/// What has no effect, or can hardly be meant.
+/// Warns of drawings and pegs without effect and of probable mistakes.
 fn odd(read: &Drawings, footage: &Footage, problems: &mut Problems) {
     if read.drawings.len() == 1 {
         problems.warning("drawings", "there is one drawing, so there is nothing to draw between");
@@ -166,7 +170,7 @@ mod tests {
         Document::parse(&whole.to_string(), "a.json").unwrap()
     }
 
-    /// Errors and warnings, one line each.
+    ///     /// Errors and warnings, with one line for each.
     fn said(fields: &Value) -> (Vec<String>, Vec<String>) {
         let problems = drawing_problems(&document(fields));
         (problems.errors().map(ToString::to_string).collect(), problems.warnings().map(ToString::to_string).collect())

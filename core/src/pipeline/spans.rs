@@ -1,8 +1,8 @@
-//! Some of the spans between drawings: matched, and drawn on the frames that are wanted.
+//! Draws single spans between drawings: matches their strokes and draws the requested frames.
 //!
-//! A host that keeps drawings and in-betweens side by side wants only those made anew that an edit touches. So each
-//! span is a function of a few drawings: the two at its ends, and, where its spacing is smooth, those before and after
-//! them, which give the velocities at its ends ([`keys_of`]). Each two neighbouring drawings are matched once.
+//! A host that stores drawings and in-betweens side by side redraws only the spans that an edit changes. Each span is
+//! therefore a function of few drawings ([`keys_of`]): the two at its ends, and, with smooth spacing, those before and
+//! after them, which determine the velocities at its ends. Two neighbouring drawings are matched only once.
 
 use super::PipelineError;
 use crate::scene::{Cancelled, FrameNumber, Progress, Silent};
@@ -15,34 +15,34 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Drawings and what is decided of them.
+/// Drawings and the decisions about them.
 #[derive(Clone, Debug, Default)]
 pub struct Sheet {
-    /// The drawings on their frames, which rise.
+    /// The drawings, in ascending order of frames.
     pub keys: Vec<Key>,
-    /// By span the pairs made by hand.
+    /// Pairs made by hand, by span.
     pub by_hand: Vec<Vec<HandPair>>,
-    /// By span the strokes of the later drawing that are to have no counterpart.
+    /// By span, the strokes of the later drawing that must have no counterpart.
     pub alone: Vec<Vec<usize>>,
-    /// Pegs that are given.
+    /// The given pegs.
     pub pegs: GivenPegs,
-    /// Captured parts that strokes follow.
+    /// The captured parts that strokes follow.
     pub captured: Arc<[Captured]>,
 }
 
-/// A span to be drawn.
+/// A span to draw.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Wanted {
-    /// Number of its earlier key.
+    /// Index of its earlier key.
     pub key: usize,
-    /// Frames between its keys.
+    /// The frames to draw, between its keys.
     pub frames: Vec<FrameNumber>,
 }
 
 /// A stroke that is drawn on all frames of a span.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawn {
-    /// On the earlier and the later key, where it has it there.
+    /// Its origin on the earlier and the later key; `None` if it is absent there.
     pub stands: [Option<DrawnStand>; 2],
     /// Whether the last point joins the first.
     pub closed: bool,
@@ -50,36 +50,37 @@ pub struct Drawn {
     pub points: usize,
 }
 
-/// Where a stroke of a span comes from on one of its keys.
+/// The origin of a span's stroke on one of its keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnStand {
     /// Index of the stroke in the drawing.
     pub stroke: usize,
-    /// Whether it is only a part of it.
+    /// Whether it is only a part of that stroke.
     pub part: bool,
-    /// For each point the two points of that stroke between which it lies, and the weight of the second.
+    /// For each point the two points of that stroke around it, and the weight of the second.
     pub blends: Vec<(usize, usize, f64)>,
 }
 
-/// A span that was drawn.
+/// A drawn span.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnSpan {
-    /// What was wanted.
+    /// The request.
     pub wanted: Wanted,
-    /// Its strokes, from behind to the front.
+    /// Its strokes, from back to front.
     pub strokes: Vec<Drawn>,
-    /// By frame the share of the way, 0 to 1, for all that is blended.
+    /// By frame, the share of the way, 0 to 1, for blended attributes.
     pub shares: Vec<f64>,
-    /// By frame its strokes, in the same order.
+    /// By frame, its strokes in the same order.
     pub drawings: Vec<Vec<InBetween>>,
 }
 
 impl Sheet {
-    /// The matching of the drawing `key` and the next one.
+    /// Matches the drawing `key` and the next one.
     ///
     /// # Errors
     ///
-    /// Points that are no places, pairs made by hand of strokes that are not there; the frames are named.
+    /// [`PipelineError::Tween`] for points that are not finite or pairs of missing strokes, with the frames; or
+    /// [`PipelineError::Cancelled`].
     pub fn matching(
         &self,
         key: usize,
@@ -89,7 +90,7 @@ impl Sheet {
         let (first, second) = (&self.keys[key], &self.keys[key + 1]);
         let by_hand = self.by_hand.get(key).map_or(&[][..], Vec::as_slice);
         let alone = self.alone.get(key).map_or(&[][..], Vec::as_slice);
-        // What has no points has no counterpart.
+        //         // A stroke without points has no counterpart.
         let mut others = second.strokes.clone();
         for &stroke in alone {
             let count = others.len();
@@ -105,12 +106,12 @@ impl Sheet {
         })
     }
 
-    /// Matches what is needed and draws the spans that are wanted. Returns them, and by span the matching where it was
-    /// needed. Runs on the caller's rayon pool; the result does not depend on it.
+    /// Makes the necessary matchings and draws the requested spans. Returns the spans, and by span the matching if one
+    /// was needed. It runs on the caller's rayon pool; the result does not depend on the pool.
     ///
     /// # Errors
     ///
-    /// As [`Self::matching`] and [`Sequence::new`]; a key that has no next one.
+    /// Those of [`Self::matching`] and [`Sequence::new`]; [`PipelineError::Tween`] for a key without a next one.
     pub fn draw(
         &self,
         wanted: &[Wanted],
@@ -127,7 +128,7 @@ impl Sheet {
         let needed: Vec<usize> = needed.into_iter().collect();
         let counter = Counter { done: AtomicUsize::new(0), all: needed.len() + wanted.len(), progress };
         let found = match needed[..] {
-            // A single pair reports what it does; among several each is a step.
+            //             // A single matching reports its own progress; several count as steps.
             [key] => vec![self.matching(key, matching, &Half(progress))?],
             _ => {
                 let one = |&key: &usize| counter.step("matching strokes", || self.matching(key, matching, &Silent));
@@ -173,7 +174,7 @@ impl Sheet {
     }
 }
 
-/// The keys on which the in-betweens after key `key` depend.
+/// The keys that determine the in-betweens after key `key`.
 pub fn keys_of(keys: &[Key], key: usize) -> RangeInclusive<usize> {
     let smooth = usize::from(keys[key].spacing == Spacing::Smooth);
     key.saturating_sub(smooth)..=(key + 1 + smooth).min(keys.len() - 1)
@@ -193,7 +194,7 @@ fn drawn_strokes(sequence: &Sequence, base: usize, strokes: [&[Stroke]; 2]) -> V
     sequence.present(base).into_iter().map(of).collect()
 }
 
-/// Counts steps that end in any order.
+/// Counts steps, which may end in any order.
 struct Counter<'a> {
     done: AtomicUsize,
     all: usize,
@@ -210,7 +211,7 @@ impl Counter<'_> {
     }
 }
 
-/// The first half of a progress.
+/// Maps a progress to the first half of another.
 struct Half<'a>(&'a dyn Progress);
 
 impl Progress for Half<'_> {
@@ -256,7 +257,7 @@ mod tests {
             let (old, new) = (draw(&before, &[0, 1, 2, 3]), draw(&after, &[0, 1, 2, 3]));
             let differ: Vec<usize> = (0..4).filter(|&k| old[k] != new[k]).collect();
             assert_eq!(differ, touched, "{spacing:?}");
-            // Alone or with others, a span is the same.
+            //         // A span is the same whether drawn alone or with others.
             assert_eq!(draw(&after, &[2])[0], new[2]);
         }
     }

@@ -1,4 +1,4 @@
-//! From contours to a skeleton clip, and from one character's clips to a motion in another's manner.
+//! From contours to a skeleton clip, and translation of a motion into another character's manner.
 
 use super::PipelineError;
 use crate::project::Document;
@@ -9,29 +9,35 @@ use crate::scene::{Clip, FrameNumber, Progress};
 use crate::style::{self, Options, Request, StyleError};
 use std::ops::RangeInclusive;
 
-/// Which clip to make of a document.
+/// The clip to make of a document.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClipJob {
-    /// Who moves.
+    /// The character that moves.
     pub character: String,
-    /// What is done.
+    /// Name of the motion.
     pub motion: String,
-    /// The frames; none for the whole footage.
+    /// The frames; `None` takes the complete footage.
     pub frames: Option<RangeInclusive<FrameNumber>>,
 }
 
-/// A clip made from a document's contours.
+/// A clip captured from the contours of a document.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CapturedClip {
-    /// The clip alone, with the footage's frames a second.
+    /// A file with this clip only, at the footage's frame rate.
     pub clips: Clips,
-    /// The document's frame of its first posture.
+    /// The document's frame of the first posture.
     pub first: FrameNumber,
-    /// Key points that no contour tells on some frames, with the number of these; they were filled in.
+    /// Key points that were filled in on some frames because no contour determines them, with the number of these
+    /// frames.
     pub guessed: Vec<(&'static str, usize)>,
 }
 
-/// Makes a clip of a document's tracked contours by its limbs.
+/// Captures a clip from a document's tracked contours and its limbs.
+///
+/// # Errors
+///
+/// [`PipelineError::Request`] for an empty name or frames outside of the footage; [`PipelineError::Style`] for limbs
+/// that cannot be used.
 pub fn clip(document: &Document, job: &ClipJob) -> Result<CapturedClip, PipelineError> {
     let wrong = |error: &dyn std::fmt::Display| PipelineError::Style(error.to_string());
     for (name, value) in [("character", &job.character), ("motion", &job.motion)] {
@@ -55,7 +61,12 @@ pub fn clip(document: &Document, job: &ClipJob) -> Result<CapturedClip, Pipeline
     Ok(CapturedClip { clips: Clips { clips: vec![clip], fps: footage.fps }, first: captured.first, guessed })
 }
 
-/// Re-makes a motion in another character's manner. Runs on the caller's rayon pool; the result does not depend on it.
+/// Re-makes a motion in another character's manner. It runs on the caller's rayon pool; the result does not depend on
+/// the pool.
+///
+/// # Errors
+///
+/// [`PipelineError::Style`] or [`PipelineError::Cancelled`].
 pub fn translate(
     clips: &Clips,
     request: &Request,

@@ -1,4 +1,4 @@
-//! From the drawings of a document to the drawings between them.
+//! In-betweens from the drawings of a document.
 
 use super::PipelineError;
 use crate::project::Document;
@@ -15,8 +15,14 @@ use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::{Value, json};
 use std::sync::Arc;
 
-/// Matches the strokes of a document's drawings and puts the drawings between them into it. Strokes follow the document's
-/// tracked parts that they lie on if `follow` says so. Runs on the caller's rayon pool; the result does not depend on it.
+/// Matches the strokes of a document's drawings and puts the in-betweens into the document. With `follow`, strokes on
+/// tracked parts of the document follow these parts. It runs on the caller's rayon pool; the result does not depend on
+/// the pool.
+///
+/// # Errors
+///
+/// [`PipelineError::Tween`] names the field or the frames; [`PipelineError::Cancelled`] is returned when `progress`
+/// asks to stop.
 pub fn tween(
     document: &mut Document,
     options: &Options,
@@ -56,7 +62,7 @@ pub fn tween(
     Ok(())
 }
 
-/// The tracked parts of a scene, for drawings to follow.
+/// The tracked parts of a scene, for strokes to follow.
 pub fn captured(scene: &Scene) -> Arc<[Captured]> {
     let part = |part: &Part| Captured { closed: part.closed, contours: part.tracks.clone() };
     scene.parts.iter().map(part).collect()
@@ -76,18 +82,26 @@ fn key(drawing: &Drawing, k: usize) -> Result<Key, PipelineError> {
     Ok(Key { frame: drawing.frame, strokes, spacing, corner: drawing.corner })
 }
 
-/// The spacing that a JSON value means, as documents write it; `place` names it in errors.
+/// The spacing in a JSON value of the document's form; `place` names it in errors.
+///
+/// # Errors
+///
+/// [`PipelineError::Tween`].
 pub fn spacing_of(value: &Value, place: &str) -> Result<Spacing, PipelineError> {
     let written = read_timing(value, place).map_err(|error| PipelineError::Tween(error.to_string()))?;
     spacing(&written).map_err(|error| PipelineError::Tween(format!("{place}: {error}")))
 }
 
-/// The pegs of a list of JSON values, as documents write them, with their names.
+/// The pegs in JSON values of the document's form.
+///
+/// # Errors
+///
+/// [`PipelineError::Tween`].
 pub fn pegs_of(values: &[Value]) -> Result<PegTree, PipelineError> {
     tree(&read_pegs(values).map_err(|error| PipelineError::Tween(error.to_string()))?)
 }
 
-/// The spacing; or what was found and what was expected.
+/// Converts a spacing. The error states the found and the expected value.
 pub(super) fn spacing(written: &WrittenTiming) -> Result<Spacing, String> {
     Ok(match written {
         WrittenTiming::Smooth => Spacing::Smooth,
@@ -121,7 +135,7 @@ fn tree(pegs: &[DrawnPeg]) -> Result<PegTree, PipelineError> {
     PegTree::new(pegs).map_err(|error| PipelineError::Tween(format!("pegs: {error}")))
 }
 
-/// The peg, number `k` of its document; or the place and what was found and expected there.
+/// Converts the peg with index `k`. The error consists of its place, and of the found and the expected value.
 pub(super) fn peg_of(drawn: &DrawnPeg, k: usize) -> Result<Peg, (String, String)> {
     let keys = drawn.keys.iter().enumerate().map(|(j, key)| {
         let place = || format!("{}.timing", peg_key_place(&peg_place(k, &drawn.name), j, key.frame));

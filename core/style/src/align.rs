@@ -1,12 +1,14 @@
-//! Clips of one motion brought together in time.
+//! Alignment of clips of one motion in time.
 //!
-//! **Dynamic time warping** (Sakoe & Chiba 1978): the monotone path of least total distance between two clips of postures,
-//! steps (1, 1), (1, 0), (0, 1), found by dynamic programming within a band about the diagonal. Each frame of the leading
-//! clip gets the mean time of the frames it is paired with.
+//! **Dynamic time warping** (Sakoe & Chiba 1978) finds the monotone path of least total distance between two clips of
+//! postures. Its steps are (1, 1), (1, 0) and (0, 1). Dynamic programming finds the path within a band about the
+//! diagonal. Each frame of the leading clip gets the mean time of the frames that it is paired with.
 //!
-//! **Gait cycles** by self-similarity: the lag at which a clip is most like itself, as the first deep minimum of the mean
-//! distance between frames that lie a lag apart (as the autocorrelation method for pitch does, with de Cheveigné &
-//! Kawahara's normalisation by the mean over shorter lags, which keeps the minimum at lag zero out).
+//! **Gait cycles** are found by self-similarity. The period is the lag of the first deep minimum of the mean distance
+//! between frames that are a lag apart. The autocorrelation method for pitch works in the same way. The distance is
+//! divided by its mean over all shorter lags (de Cheveigné & Kawahara); this excludes the trivial minimum at lag zero.
+//!
+//! Limits: both compare postures only, with the pelvis at the origin.
 
 use super::Request;
 use rototoon_base::scene::Clip;
@@ -16,15 +18,16 @@ use rototoon_base::scene::skeleton::{COUNT, Posture};
 /// Half width of the band, as a share of the longer clip.
 const BAND: f64 = 0.3;
 
-/// A minimum counts as a cycle where the normalised distance falls below this.
+/// A minimum counts as a cycle if the normalised distance is below this.
 const ALIKE: f64 = 0.35;
 
-/// Squared distance of two postures, the pelvis of each as its origin.
+/// Squared distance of two postures, each with its pelvis as the origin.
 fn distance(a: &Posture, b: &Posture) -> f64 {
     (1..COUNT).map(|k| ((a[k] - a[0]) - (b[k] - b[0])).length_squared()).sum()
 }
 
-/// The path of least distance: pairs of frames from (0, 0) to the last of both.
+/// The path of least distance: pairs of frames (of `a`, of `b`) from (0, 0) to the last frame of both. Empty if a clip
+/// is empty.
 pub fn time_warp(a: &[Posture], b: &[Posture]) -> Vec<(usize, usize)> {
     let (n, m) = (a.len(), b.len());
     if n == 0 || m == 0 {
@@ -55,15 +58,15 @@ pub fn time_warp(a: &[Posture], b: &[Posture]) -> Vec<(usize, usize)> {
     path
 }
 
-/// Where a path may have come from; the diagonal first, so that it wins among equals.
+/// Possible predecessors of a pair on the path. The diagonal comes first, so that it wins ties.
 fn steps(i: usize, j: usize) -> impl Iterator<Item = (usize, usize)> {
     let diagonal = (i > 0 && j > 0).then(|| (i - 1, j - 1));
     let (up, left) = ((i > 0).then(|| (i - 1, j)), (j > 0).then(|| (i, j - 1)));
     diagonal.into_iter().chain(up).chain(left)
 }
 
-/// A clip in the frames of another that shows the same motion: for each of the leading clip's frames the posture at the
-/// same moment of the motion.
+/// Warps a clip onto the frames of another clip of the same motion. For each frame of the leading clip it gives the
+/// posture at the same moment of the motion.
 pub fn warped(clip: &[Posture], leading: &[Posture]) -> Vec<Posture> {
     let path = time_warp(leading, clip);
     let mut times = vec![(0.0, 0.0); leading.len()];
@@ -71,7 +74,7 @@ pub fn warped(clip: &[Posture], leading: &[Posture]) -> Vec<Posture> {
         times[i].0 += j as f64;
         times[i].1 += 1.0;
     }
-    // Pairs are whole frames: smoothing over neighbours takes the stairs out, and keeps what is monotone monotone.
+    // The paired frames are integers. Smoothing over neighbours removes the steps and keeps the times monotone.
     let mean: Vec<f64> = times.iter().map(|(sum, count)| sum / f64::max(*count, 1.0)).collect();
     let last = mean.len().saturating_sub(1);
     (0..mean.len())
@@ -83,7 +86,7 @@ pub fn warped(clip: &[Posture], leading: &[Posture]) -> Vec<Posture> {
         .collect()
 }
 
-/// Frames of one cycle of a clip; `None` of one that does not repeat itself.
+/// Frames of one cycle of a clip; `None` if the clip does not repeat itself.
 pub fn cycle_length(postures: &[Posture]) -> Option<usize> {
     let n = postures.len();
     let apart =
@@ -100,7 +103,7 @@ pub fn cycle_length(postures: &[Posture]) -> Option<usize> {
     Some(first)
 }
 
-/// The cycles of a clip, cut where it is most like its first frame; empty where it does not repeat itself.
+/// The cycles of a clip, cut at the frames most like its first. Empty if the clip does not repeat itself.
 pub fn cycles(postures: &[Posture]) -> Vec<Vec<Posture>> {
     let Some(length) = cycle_length(postures) else { return Vec::new() };
     let reach = (length / 6).max(1);
@@ -114,7 +117,8 @@ pub fn cycles(postures: &[Posture]) -> Vec<Vec<Posture>> {
     cuts.windows(2).map(|cut| postures[cut[0]..cut[1]].to_vec()).collect()
 }
 
-/// How long the style's clips last beside the content's, over the motions that both show: the mean ratio of frames.
+/// The mean ratio of the lengths of the style's and the content's clips over the motions that both have (a geometric
+/// mean); 1 if there are none.
 pub(super) fn pace(clips: &[Clip], request: &Request) -> f64 {
     let frames = |character: &str, motion: &str| {
         clips.iter().find(|c| c.character == character && c.motion == motion).map(|c| c.postures.len() as f64)
@@ -127,7 +131,7 @@ pub(super) fn pace(clips: &[Clip], request: &Request) -> f64 {
     if ratios.is_empty() { 1.0 } else { (ratios.iter().sum::<f64>() / ratios.len() as f64).exp() }
 }
 
-/// Plays a clip slower (`ratio` above 1) or faster.
+/// Resamples a clip to play slower (`ratio` above 1) or faster. Its standard deviations come from the nearest frame.
 pub(super) fn change_pace(clip: &mut Clip, ratio: f64) {
     let (before, after) = (clip.postures.len(), (clip.postures.len() as f64 * ratio).round().max(1.0) as usize);
     clip.postures = resample(&clip.postures, after);

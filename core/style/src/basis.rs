@@ -1,30 +1,31 @@
-//! Clips in few numbers: cosines over time, axes over the key points.
+//! A compact description of clips: cosines over time, principal axes over the key points.
 //!
-//! **Time.** The first [`COSINES`] basis functions of the discrete cosine transform (DCT-II), orthonormal on
-//! [`MODEL_FRAMES`] frames. They need no periodic clip, and what is faster than they are is taken from the mean motion.
+//! **Time.** The basis is the first [`COSINES`] functions of the discrete cosine transform (DCT-II), orthonormal on
+//! [`MODEL_FRAMES`] frames. They do not require a periodic clip. Faster motion is taken from the mean motion instead.
 //!
-//! **Key points.** Principal axes of what characters add to motions, found apart for the part that is the same on both
-//! sides of the body and the part that is opposite. A manner that shows on the left in one phase shows on the right half a
-//! cycle later; axes that are even or odd under the exchange of sides let a kernel say so (see `kernels`).
+//! **Key points.** The axes are the principal axes of what characters add to motions. The part that is equal on both
+//! sides of the body and the part that is opposite get axes of their own. A manner that shows on the left in one phase
+//! shows on the right half a cycle later. With axes that are even or odd under the exchange of sides a kernel can
+//! express this (see `kernels`).
 
 use super::grid::{Row, WIDTH};
 use faer::{Mat, Side};
 use rototoon_base::scene::skeleton::{COUNT, MIRROR};
 
-/// Frames in which clips are compared.
+/// Number of frames in which clips are compared.
 pub(super) const MODEL_FRAMES: usize = 32;
 
-/// Cosines kept.
+/// Number of cosines.
 pub(super) const COSINES: usize = 12;
 
 /// Axes with less than this share of the largest variance are left out.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// The cosines at `frames` frames over the length of a clip: `frames` rows of [`COSINES`].
+/// Values of the cosines at `frames` frames over the length of a clip: `frames` rows of [`COSINES`].
 pub(super) fn cosines(frames: usize) -> Vec<[f64; COSINES]> {
     let n = MODEL_FRAMES as f64;
     let at = |frame: usize| {
-        // First and last frame stand where those of the model stand.
+        // The first and the last frame coincide with those of the model.
         let share = if frames > 1 { frame as f64 / (frames - 1) as f64 } else { 0.0 };
         let time = (share * (n - 1.0) + 0.5) / n;
         std::array::from_fn(|k| match k {
@@ -37,9 +38,9 @@ pub(super) fn cosines(frames: usize) -> Vec<[f64; COSINES]> {
 
 /// Orthonormal axes of the space of postures.
 pub(super) struct Axes {
-    /// The axes, those even under the exchange of sides first.
+    /// The axes; those even under the exchange of sides come first.
     pub vectors: Vec<Row>,
-    /// Number of even ones.
+    /// Number of even axes.
     pub even: usize,
 }
 
@@ -74,7 +75,7 @@ impl Axes {
     }
 }
 
-/// An orthonormal basis of the postures that the exchange of sides leaves as they are (`sign` 1) or turns round (−1).
+/// An orthonormal basis of the postures that the exchange of sides keeps (`sign` 1) or negates (−1).
 fn sided(sign: f64) -> Vec<Row> {
     let mut basis = Vec::new();
     for k in 0..COUNT {
@@ -95,7 +96,7 @@ fn sided(sign: f64) -> Vec<Row> {
     basis
 }
 
-/// Variances and principal axes within the span of a basis, largest first.
+/// Variances and principal axes within the span of a basis, in descending order.
 fn principal(covariance: &[Row], basis: &[Row]) -> Vec<(f64, Row)> {
     let project = |a: &Row, b: &Row| -> f64 {
         (0..WIDTH).map(|i| a[i] * covariance[i].iter().zip(b).map(|(c, v)| c * v).sum::<f64>()).sum()

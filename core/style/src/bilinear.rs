@@ -1,15 +1,19 @@
-//! Separating style and content with bilinear models (Tenenbaum & Freeman 2000).
+//! Separation of style and content with bilinear models (Tenenbaum & Freeman 2000).
 //!
-//! A posture y of style s and content c (a moment of a motion) is bilinear in vectors of both.
+//! A posture y of style s and content c is bilinear in a vector of each. A content is one moment of a motion.
 //!
-//! - **Asymmetric** (their section 3.1): y = A_s b_c, a matrix A_s a style. With all styles stacked, the observations are one
-//!   matrix, and its singular value decomposition gives A and B at once.
-//! - **Symmetric** (section 3.2): y_k = Σ_ij w_kij a_i b_j. Their iterated decomposition alternates between the two sides; on
-//!   a complete grid that is the alternating computation of a Tucker decomposition of two modes (De Lathauwer et al. 2000).
+//! - **Asymmetric** (their section 3.1): y = A_s b_c, with a matrix A_s for each style. All styles stacked form one
+//!   matrix of observations. Its singular value decomposition gives A and B at once.
+//! - **Symmetric** (their section 3.2): y_k = Σ_ij w_kij a_i b_j. Their iterated decomposition alternates between the
+//!   two sides. On a complete grid it equals the alternating computation of a Tucker decomposition of two modes (De
+//!   Lathauwer et al. 2000).
 //!
-//! The wanted style is not part of the decomposition. Its matrix or vector is fitted to the motions that it shows, with a
-//! ridge towards the mean style: as few clips cannot determine 34 × 16 numbers, plain least squares extrapolates wildly. The
-//! ridge is the one, of a few, with which the style's own clips are predicted best when each in turn is left out.
+//! The style to be predicted takes no part in the decomposition. Its matrix or vector is fitted to its known motions,
+//! with a ridge towards the mean style. Few clips cannot determine 34 × 16 numbers; plain least squares would
+//! extrapolate wildly. A few ridges are tried. The chosen one predicts the style's own clips best when each is left out
+//! in turn.
+//!
+//! Limits: key poses shift the result (see `spread`); they do not change the model.
 
 use super::Prediction;
 use super::basis::MODEL_FRAMES;
@@ -19,25 +23,25 @@ use faer::{Mat, Side};
 use rototoon_base::scene::clip::between;
 use rototoon_base::scene::skeleton::{COUNT, Posture};
 
-/// J: length of a content vector.
+/// J: length of the content vectors.
 const CONTENT: usize = 16;
-/// I: longest style vector of the symmetric model.
+/// I: greatest length of the style vectors of the symmetric model.
 const STYLE: usize = 5;
 /// Ridges tried, as shares of the mean squared content.
 const RIDGES: [f64; 5] = [0.01, 0.1, 1.0, 10.0, 100.0];
-/// Rounds of the symmetric decomposition; it hardly changes after five.
+/// Rounds of the symmetric decomposition. The result hardly changes after five.
 const ROUNDS: usize = 8;
 
 /// Which of the two models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Model {
-    /// A matrix a style.
+    /// A matrix for each style.
     Asymmetric,
-    /// A vector a style.
+    /// A vector for each style.
     Symmetric,
 }
 
-/// Makes the wanted clip.
+/// Predicts the requested clip with one of the models; `rank` replaces the length of the content vectors.
 pub(super) fn predict(grid: &Grid, keys: &[(usize, Row)], model: Model, rank: Option<usize>) -> Prediction {
     let known: Vec<usize> =
         (0..grid.motions.len()).filter(|&m| m != grid.motion && grid.get(grid.style, m).is_some()).collect();
@@ -56,13 +60,14 @@ fn squares(errors: &[Vec<Row>]) -> f64 {
     errors.iter().flatten().flatten().map(|e| e * e).sum()
 }
 
-/// What the other characters' clips give.
+/// The model fitted to the other characters' clips.
 struct Fitted {
     /// B: content vectors, J × moments.
     contents: Mat<f64>,
-    /// Styles as linear maps of content vectors: for the asymmetric model none; for the symmetric, Σ_i a_i W_i with W_i 34 × J.
+    /// Style maps W_i, 34 × J. A style with the vector a is the linear map Σ_i a_i W_i of content vectors. Empty for
+    /// the asymmetric model.
     maps: Vec<Mat<f64>>,
-    /// The mean style as such a map.
+    /// The mean style as a linear map of content vectors.
     mean: Mat<f64>,
     /// The mean style vector.
     mean_vector: Vec<f64>,
@@ -108,7 +113,7 @@ impl Fitted {
         Self { contents, maps, mean, mean_vector }
     }
 
-    /// The style's clip of a motion, its map fitted to some of its others.
+    /// Predicts the style's clip of the motion `wanted`, with its map fitted to its clips of the `known` motions.
     fn clip(&self, grid: &Grid, known: &[usize], wanted: usize, ridge: f64) -> Vec<Row> {
         let own: Vec<Row> = known.iter().filter_map(|&m| grid.rows(grid.style, m, MODEL_FRAMES)).flatten().collect();
         let b = Mat::from_fn(self.contents.nrows(), own.len(), |j, c| {
@@ -121,7 +126,7 @@ impl Fitted {
         (0..MODEL_FRAMES).map(|t| std::array::from_fn(|d| made[(d, t)])).collect()
     }
 
-    /// min ‖(A − Ā) B − rest‖² + λ‖A − Ā‖².
+    /// Fits a style matrix: min ‖(A − Ā) B − rest‖² + λ‖A − Ā‖².
     fn matrix(&self, b: &Mat<f64>, rest: &Mat<f64>, ridge: f64) -> Mat<f64> {
         let n = b.nrows();
         let mut normal = b * b.transpose();
@@ -135,7 +140,7 @@ impl Fitted {
         }
     }
 
-    /// The same for the style vector.
+    /// Fits a style vector by the same least squares problem.
     fn vector(&self, b: &Mat<f64>, rest: &Mat<f64>, ridge: f64) -> Mat<f64> {
         let made: Vec<Mat<f64>> = self.maps.iter().map(|map| map * b).collect();
         let n = made.len();
@@ -168,14 +173,14 @@ fn weighted(maps: &[Mat<f64>], weights: &[f64]) -> Mat<f64> {
     Mat::from_fn(rows, columns, |d, j| maps.iter().zip(weights).map(|(map, w)| w * map[(d, j)]).sum())
 }
 
-/// Blocks of 34 rows, one a style, mixed with vectors (new × styles).
+/// Mixes blocks of 34 rows, one for each style, with vectors (new × styles).
 fn mix(vectors: &Mat<f64>, stacked: &Mat<f64>) -> Mat<f64> {
     Mat::from_fn(vectors.nrows() * WIDTH, stacked.ncols(), |row, c| {
         (0..vectors.ncols()).map(|s| vectors[(row / WIDTH, s)] * stacked[(s * WIDTH + row % WIDTH, c)]).sum()
     })
 }
 
-/// Leading eigenvectors of a symmetric matrix as rows.
+/// The leading eigenvectors of a symmetric matrix, as rows.
 fn leading(matrix: faer::MatRef<'_, f64>, count: usize) -> Mat<f64> {
     let n = matrix.nrows();
     match matrix.self_adjoint_eigen(Side::Lower) {
@@ -184,7 +189,7 @@ fn leading(matrix: faer::MatRef<'_, f64>, count: usize) -> Mat<f64> {
     }
 }
 
-/// Errors of the style's own clips, each predicted from the others; none where there are not two.
+/// Errors of the style's own clips, each predicted from the others. Empty if there are fewer than two.
 pub(super) fn held_apart(grid: &Grid, known: &[usize], clip: impl Fn(&[usize], usize) -> Vec<Row>) -> Vec<Vec<Row>> {
     if known.len() < 2 {
         return Vec::new();
@@ -200,7 +205,7 @@ pub(super) fn held_apart(grid: &Grid, known: &[usize], clip: impl Fn(&[usize], u
         .collect()
 }
 
-/// A clip of the model's frames in the frames of the content.
+/// Resamples a clip from the model's frames to the frames of the content.
 pub(super) fn onto_frames(grid: &Grid, rows: &[Row]) -> Vec<Row> {
     let postures: Vec<Posture> = rows.iter().map(super::grid::posture).collect();
     let step = (MODEL_FRAMES - 1) as f64 / grid.frames.saturating_sub(1).max(1) as f64;
@@ -210,9 +215,12 @@ pub(super) fn onto_frames(grid: &Grid, rows: &[Row]) -> Vec<Row> {
     (0..grid.frames).map(|frame| super::grid::row(&between(&postures, frame as f64 * step))).collect()
 }
 
-/// Brings a clip to its key poses by what they differ from it, straight between them, and says how sure it is: by the errors of
-/// clips that were predicted without being known; of those only what moves about its mean, where a pose is drawn. Without
-/// such errors, by the spread of the motion among the others.
+/// Shifts a clip to its key poses and estimates its standard deviation.
+///
+/// The offsets at the key poses are interpolated linearly over the frames between them. The deviation comes from the
+/// errors of clips that were predicted while left out. If key poses are given, only the variation of these errors about
+/// their mean counts, since the key poses correct the mean. Without such errors the spread of the motion among the
+/// other characters takes their place.
 pub(super) fn spread(grid: &Grid, mut rows: Vec<Row>, errors: &[Vec<Row>], keys: &[(usize, Row)]) -> Prediction {
     let offsets: Vec<(usize, Row)> =
         keys.iter().map(|(f, key)| (*f, std::array::from_fn(|d| key[d] - rows[*f][d]))).collect();

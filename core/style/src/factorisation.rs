@@ -1,78 +1,82 @@
-//! Non-negative style factorisation (Liang et al. 2012, section 4, algorithm 1), X ≈ UV.
+//! Non-negative style factorisation (Liang et al. 2012, section 4, algorithm 1): X ≈ UV.
 //!
-//! X (n × d, no negative entries) holds a posture a row; U (n × k) holds the codes, V (k × d) a basis of postures. The paper
-//! minimises ½‖X − UV‖² + α ΣV + β-weighted class term (eq. 7) by turns:
+//! X (n × d, no negative entries) has a posture in each row. U (n × k) contains the codes, V (k × d) a basis of
+//! postures. The paper minimises ½‖X − UV‖² + α ΣV + a class term of weight β (eq. 7) by alternating steps:
 //!
-//! 1. U ← U − μ [(UV − X)Vᵀ + β (UW − Y)Wᵀ], μ = 1/λ, λ a bound on the largest eigenvalue of VVᵀ + β WWᵀ. The step is
-//!    missing in the print; one over the Lipschitz constant is the largest that never overshoots.
-//! 2. Negative entries of U become zero (the print: "set all U_ij to 0", which would wipe the matrix; see
-//!    [`Reading::Literal`] for what the print does).
-//! 3. Columns of U get root mean square 1, the scale moved into V (the print: rows of unit length, which loses each frame's
-//!    magnitude).
-//! 4. V ← V ∘ (UᵀX) / (UᵀUV + α), Hoyer's (2002) multiplicative step, as printed.
-//! 5. At the end, V̄ = V A Aᵀ with A the leading eigenvectors of VᵀV (eq. 6, which as printed has rank one and cannot satisfy
-//!    UV̄ ≈ X); negative entries become zero.
+//! 1. U ← U − μ [(UV − X)Vᵀ + β (UW − Y)Wᵀ], μ = 1/λ, λ a bound on the largest eigenvalue of VVᵀ + β WWᵀ. The printed
+//!    formula lacks the step size. The inverse of the Lipschitz constant is the largest step that never overshoots.
+//! 2. Negative entries of U become zero. The paper prints "set all U_ij to 0", which would clear the matrix;
+//!    [`Reading::Literal`] does so.
+//! 3. Columns of U get root mean square 1, and the scale moves into V. The paper prints rows of unit length, which
+//!    loses the magnitude of each frame.
+//! 4. V ← V ∘ (UᵀX) / (UᵀUV + α), the multiplicative step of Hoyer (2002), as printed.
+//! 5. At the end, V̄ = V A Aᵀ, where A contains the leading eigenvectors of VᵀV (eq. 6; as printed it has rank one and
+//!    cannot satisfy UV̄ ≈ X). Negative entries become zero.
 //!
-//! The class term of the print, ‖WV − Y‖² with W = YVᵀ(VVᵀ)⁻¹, multiplies matrices that do not fit and never enters the
-//! updates. Labels belong to postures, so codes should tell them: Y ≈ UW, W by ridge regression, and β lets it act on U.
+//! The printed class term, ‖WV − Y‖² with W = YVᵀ(VVᵀ)⁻¹, multiplies matrices whose sizes do not match, and it never
+//! enters the updates. Labels belong to postures, so the codes should predict them: Y ≈ UW. Here W comes from ridge
+//! regression, and β weights its influence on U.
 //!
-//! Steps are repeated until the relative error changes by less than a tolerance over ten rounds, or to a limit. Starts are
-//! pseudo-random with a fixed seed.
+//! The steps repeat until the relative error changes by less than a tolerance over ten rounds, or up to a limit. The
+//! start is pseudo-random with a fixed seed.
 //!
-//! **Speed.** XVᵀ and UᵀX are matrix products of n·d·k; everything else is smaller. Postures are taken in pieces of `ROWS`
-//! rows, which stay in a processor's cache, side by side on all threads; sums over the pieces are made in their order, so
-//! that the result is the same on any number of threads. Products go through faer's kernels; the objective is found
-//! from the products at hand, ‖X − UV‖² = ‖X‖² − 2⟨V, UᵀX⟩ + ⟨V, UᵀUV⟩, at no extra pass.
+//! **Speed.** XVᵀ and UᵀX are matrix products of n·d·k operations; everything else is smaller. Postures are processed
+//! in pieces of [`ROWS`] rows that fit a processor's cache, in parallel on all threads. Sums over the pieces are added
+//! in order, so the result is the same on any number of threads. The products use faer's kernels. The objective follows
+//! from products that are already known, ‖X − UV‖² = ‖X‖² − 2⟨V, UᵀX⟩ + ⟨V, UᵀUV⟩, without another pass over X.
+//!
+//! Limits: the minimum is local and depends on the seed. Two factorisations of different matrices share no order of
+//! components (see `liang2012`).
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use rototoon_base::numeric::vector::dot;
 
-/// Rounds between looks at the error.
+/// Rounds between checks of the error.
 const LOOK: usize = 10;
-/// Rows of a piece.
+/// Rows in a piece.
 const ROWS: usize = 512;
-/// What keeps divisions from zero.
+/// Keeps denominators away from zero.
 const TINY: f64 = 1e-12;
 /// Ridge of the class regression, as a share of the mean squared code.
 const CLASS_RIDGE: f64 = 1e-2;
-/// Steps of V a round: with UᵀU and UᵀX at hand another costs next to nothing (Gillis & Glineur 2012, "Accelerated
+/// Steps of V in a round. With UᵀU and UᵀX known another step is cheap (Gillis & Glineur 2012, "Accelerated
 /// Multiplicative Updates").
 const BASIS_STEPS: usize = 3;
-/// Steps of U a round where there are few codes, so that XVᵀ costs more than they do.
+/// Steps of U in a round when the codes are few. Then XVᵀ costs more than a step.
 const CODE_STEPS: usize = 2;
-/// Power iterations that bound λ each round; V changes little between rounds.
+/// Power iterations for the bound λ in each round. V changes little between rounds, so few are enough.
 const POWER_STEPS: usize = 2;
 
-/// Which reading of the paper.
+/// The reading of the paper's algorithm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reading {
-    /// The one described above.
+    /// The reading described above.
     #[default]
     Consistent,
-    /// As printed: a negative entry wipes U, rows of U have unit length, eq. 6 keeps one direction.
+    /// As printed: any negative entry clears U, rows of U get unit length, and eq. 6 keeps one direction.
     Literal,
 }
 
-/// How to factor.
+/// Options of a factorisation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// k: number of basis postures.
     pub rank: usize,
     /// α: sparseness of V.
     pub sparseness: f64,
-    /// β: how much codes are drawn to tell the classes.
+    /// β: weight of the class term, which makes the codes separate the classes.
     pub class_weight: f64,
-    /// r of eq. 6: directions that V keeps; `None` for all.
+    /// r of eq. 6: number of directions that V keeps; `None` keeps all.
     pub directions: Option<usize>,
-    /// Most rounds.
+    /// Greatest number of rounds.
     pub rounds: usize,
-    /// Ends when the relative error changes by less than this over ten rounds.
+    /// The rounds end when the relative error changes by less than this over ten rounds.
     pub tolerance: f64,
-    /// Start of the pseudo-random numbers.
+    /// Seed of the pseudo-random start.
     pub seed: u64,
-    /// Which reading.
+    /// The reading of the algorithm.
     pub reading: Reading,
 }
 
@@ -94,11 +98,11 @@ impl Default for Options {
 /// Why the rounds ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// The error changes by less than the tolerance.
+    /// The error changed by less than the tolerance.
     Converged,
-    /// The limit of rounds.
+    /// The limit of rounds was reached.
     Rounds,
-    /// All codes are zero: nothing can come back from that.
+    /// All codes became zero. Further steps cannot change that.
     Wiped,
 }
 
@@ -109,17 +113,17 @@ pub struct Factorisation {
     pub codes: Mat<f64>,
     /// V: basis postures, k × d.
     pub basis: Mat<f64>,
-    /// W: classes from codes, k × classes.
+    /// W: class weights, k × classes; the codes predict the classes as UW.
     pub classes: Mat<f64>,
     /// ‖X − UV‖ / ‖X‖.
     pub error: f64,
     /// Rounds done.
     pub rounds: usize,
-    /// Why they ended.
+    /// Why the rounds ended.
     pub ended: Ended,
 }
 
-/// Why a matrix was not factored.
+/// Why a matrix cannot be factored.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FactorError {
     /// An entry is negative or not finite.
@@ -132,7 +136,7 @@ pub enum FactorError {
         /// What was found.
         found: f64,
     },
-    /// Labels do not fit.
+    /// The number of labels differs from the number of rows.
     #[error("labels: found {found}, expected one for each of {rows} rows")]
     Labels {
         /// Number of labels.
@@ -140,18 +144,23 @@ pub enum FactorError {
         /// Number of rows.
         rows: usize,
     },
-    /// No basis posture.
+    /// The rank is 0.
     #[error("rank: found 0, expected at least 1")]
     Rank,
 }
 
-/// The class of each row as a matrix of zeros and ones.
+/// The class of each row as an indicator matrix, rows × classes, of zeros and ones.
 pub fn indicator(labels: &[usize]) -> Mat<f64> {
     let classes = labels.iter().max().map_or(0, |most| most + 1);
     Mat::from_fn(labels.len(), classes, |row, class| if labels[row] == class { 1.0 } else { 0.0 })
 }
 
-/// Factors a matrix of postures; `labels` holds the class of each row, or nothing.
+/// Factors a matrix X (postures × coordinates) without negative entries. `labels` contains the class of each row, or is
+/// empty.
+///
+/// # Errors
+///
+/// A [`FactorError`] if the rank is 0, the number of labels is wrong, or an entry is negative or not finite.
 pub fn factor(x: MatRef<'_, f64>, labels: &[usize], options: &Options) -> Result<Factorisation, FactorError> {
     check(x, labels, options)?;
     let (n, d, k) = (x.nrows(), x.ncols(), options.rank);
@@ -210,7 +219,7 @@ fn check(x: MatRef<'_, f64>, labels: &[usize], options: &Options) -> Result<(), 
     Ok(())
 }
 
-/// Pseudo-random codes and basis of the right size: numbers from 0.1 to 1.1, scaled so that UV has the mean of X.
+/// Pseudo-random start of U and V: numbers from 0.1 to 1.1, with V scaled so that the mean of UV equals that of X.
 fn start(x: MatRef<'_, f64>, options: &Options) -> (Mat<f64>, Mat<f64>) {
     let (n, d, k) = (x.nrows(), x.ncols(), options.rank);
     let mut state = options.seed;
@@ -231,7 +240,7 @@ fn start(x: MatRef<'_, f64>, options: &Options) -> (Mat<f64>, Mat<f64>) {
     (u, v)
 }
 
-/// Matrices that every round uses.
+/// Buffers for the matrices that every round computes.
 struct Work {
     vv: Mat<f64>,
     step: Mat<f64>,
@@ -287,8 +296,9 @@ impl Work {
         }
     }
 
-    /// A bound on the largest eigenvalue of the matrix that U is multiplied by: power iterations, then the Collatz–Wielandt
-    /// bound max (Av)_i / v_i, which holds from above for matrices without negative entries; otherwise the largest row sum.
+    /// An upper bound of the largest eigenvalue of the matrix that multiplies U. After some power iterations the
+    /// Collatz–Wielandt ratio max (Av)_i / v_i is an upper bound for a matrix without negative entries. With negative
+    /// entries the largest sum of absolute values of a row is used.
     fn largest(&mut self) -> f64 {
         let k = self.vv.nrows();
         let mut bound = f64::INFINITY;
@@ -304,7 +314,7 @@ impl Work {
         if mixed { sums } else { bound.min(sums) }
     }
 
-    /// Step 4; gives ‖X − UV‖² of the V before it.
+    /// Step 4. Returns ‖X − UV‖² for V before the step.
     fn step_basis(&mut self, x: MatRef<'_, f64>, u: &Mat<f64>, v: &mut Mat<f64>, alpha: f64, norm: f64) -> f64 {
         let mut first = 0.0;
         let products = |(u, x): (MatRef<f64>, MatRef<f64>)| (u.transpose() * u, u.transpose() * x);
@@ -334,7 +344,7 @@ impl Work {
     }
 }
 
-/// One step of the codes of some postures, negative ones made zero; whether there were any.
+/// One step of the codes of some postures; negative codes become zero. Returns whether any were negative.
 fn code_step(u: &mut MatMut<f64>, step: &mut MatMut<f64>, target: &MatMut<f64>, vv: &Mat<f64>, mu: f64) -> bool {
     let mut negative = false;
     matmul(step.as_mut(), Accum::Replace, u.as_ref(), vv, -1.0, Par::Seq);
@@ -350,13 +360,13 @@ fn code_step(u: &mut MatMut<f64>, step: &mut MatMut<f64>, target: &MatMut<f64>, 
     negative
 }
 
-/// The rows of a matrix in pieces of [`ROWS`].
+/// Splits the rows of a matrix into pieces of [`ROWS`] rows.
 fn pieces_of(matrix: MatRef<'_, f64>) -> Vec<MatRef<'_, f64>> {
     let starts = (0..matrix.nrows()).step_by(ROWS);
     starts.map(|first| matrix.subrows(first, ROWS.min(matrix.nrows() - first))).collect()
 }
 
-/// See [`pieces_of`].
+/// The same as [`pieces_of`], for writing.
 fn pieces_mut(mut rest: MatMut<'_, f64>) -> Vec<MatMut<'_, f64>> {
     let mut pieces = Vec::new();
     while rest.nrows() > 0 {
@@ -429,7 +439,7 @@ mod tests {
         })
     }
 
-    /// The same steps, written plainly.
+    /// The same steps in plain form.
     fn naive(x: &Mat<f64>, mut u: Mat<f64>, mut v: Mat<f64>, rounds: usize) -> (Mat<f64>, Mat<f64>) {
         for _ in 0..rounds {
             let vv = &v * v.transpose();
@@ -479,7 +489,7 @@ mod tests {
 
     #[test]
     fn rows_of_unit_length_lose_the_magnitude_of_a_frame() {
-        // Two frames of one posture, one twice as large: with rows of unit length both codes are the same.
+        // Two frames of one posture, the second twice as large: with rows of unit length both get the same code.
         let x = Mat::from_fn(2, 5, |i, j| (i + 1) as f64 * (j + 1) as f64);
         let (mut u, mut v) = (Mat::from_fn(2, 1, |i, _| (i + 1) as f64), Mat::from_fn(1, 5, |_, j| (j + 1) as f64));
         normalise(&mut u, &mut v, Reading::Consistent);

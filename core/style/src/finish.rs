@@ -1,31 +1,34 @@
-//! What a made clip must keep: limb lengths, and feet that stand.
+//! Finishing of a translated clip: limb lengths and standing feet.
 //!
-//! **Limb lengths.** Averages of swinging limbs are too short, and nothing in a Gaussian model of coordinates knows that a
-//! thigh has one length. In the picture a limb may still look shorter when it points towards the viewer, so each limb is
-//! held within the lengths that the character's own clips show. Per frame, the least move of all key points together that
-//! does this: Gauss–Newton on the constraints, Δ = Jᵀ(JJᵀ)⁻¹ c (Bender et al., "A Survey on Position-Based Simulation",
-//! 2014, solves the same one by one), the pelvis fixed.
+//! **Limb lengths.** Averages of swinging limbs are too short. A Gaussian model of coordinates does not know that a
+//! thigh has a fixed length. In the picture a limb that points towards the viewer does look shorter. Therefore each
+//! limb keeps within the range of lengths that the character's own clips show. In each frame this takes the smallest
+//! total move of all key points, by Gauss–Newton on the constraints, Δ = Jᵀ(JJᵀ)⁻¹ c, with the pelvis fixed. Bender et
+//! al. ("A Survey on Position-Based Simulation", 2014) solve the same constraints one by one.
 //!
-//! **Contacts.** Where an ankle of the content's clip hardly moves through the picture, that of the made clip shall not
-//! either. First the way of the pelvis takes up what standing feet move in common, straight between contacts; what is left,
-//! the leg takes up by inverse kinematics of its two limbs (law of cosines), fading in and out beside the contact. Clips with
-//! the pelvis at the origin throughout know of no ground, and nothing is done.
+//! **Contacts.** Where an ankle of the content's clip hardly moves in the picture, the ankle of the result must not
+//! move either. First the pelvis takes up the common motion of the standing feet; between contacts its shift is
+//! interpolated linearly. The leg takes up the rest by inverse kinematics of its two limbs (law of cosines). This
+//! correction fades in and out beside the contact.
+//!
+//! Limits: a clip whose pelvis stays in one place has no ground to stand on. For such a clip nothing is done.
 
 use rototoon_base::geometry::Point;
 use rototoon_base::numeric::dense::DenseCholesky;
 use rototoon_base::scene::clip::resample;
 use rototoon_base::scene::skeleton::{COUNT, LEGS, LIMBS, PARENTS, Posture, limb_lengths, torso};
 
-/// Most rounds of the limb constraints. The second already leaves little of long limbs, short ones take a few more.
+/// Greatest number of rounds for the limb constraints. For long limbs little remains after the second; short limbs need
+/// a few more.
 const ROUNDS: usize = 12;
-/// A foot stands where it moves less than this between frames, in torso lengths.
+/// A foot stands if it moves by less than this between two frames, in torso lengths.
 const STANDING: f64 = 0.015;
-/// For at least this many frames.
+/// A contact lasts at least this many frames.
 const LEAST_FRAMES: usize = 3;
-/// Frames over which a correction fades beside a contact.
+/// Frames over which a correction fades before and after a contact.
 const FADE: usize = 4;
 
-/// Holds limbs within the lengths that `own` postures show; `held` frames are left as they are.
+/// Keeps limbs within the range of lengths that the postures `own` show. The frames in `held` stay unchanged.
 pub fn keep_lengths(postures: &mut [Posture], own: &[Posture], held: &[usize]) {
     if own.is_empty() {
         return;
@@ -55,7 +58,7 @@ fn constrain(posture: &mut Posture, range: &[(f64, f64); LIMBS]) {
     let n = active.len();
     let ends = |limb: usize| (limb + 1, PARENTS[limb + 1]);
     let direction = |limb: usize| (posture[limb + 1] - posture[PARENTS[limb + 1]]) / lengths[limb];
-    // A row of J: +d at the child, −d at the parent unless that is the pelvis.
+    // A row of J: +d at the child, −d at the parent unless the parent is the pelvis.
     let along = |limb: usize, point: usize| match ends(limb) {
         (child, _) if child == point => direction(limb),
         (_, parent) if parent == point && point != 0 => -direction(limb),
@@ -80,7 +83,7 @@ fn constrain(posture: &mut Posture, range: &[(f64, f64); LIMBS]) {
     posture.iter_mut().zip(moved).for_each(|(p, d)| *p += d);
 }
 
-/// Frames, from first to one past the last, through which a foot stands.
+/// Ranges of frames during which an ankle stands.
 pub fn contacts(postures: &[Posture], ankle: usize) -> Vec<std::ops::Range<usize>> {
     let size = postures.iter().map(torso).sum::<f64>() / postures.len().max(1) as f64;
     let still: Vec<bool> =
@@ -100,7 +103,7 @@ pub fn contacts(postures: &[Posture], ankle: usize) -> Vec<std::ops::Range<usize
     found
 }
 
-/// Keeps the feet of a made clip where they stand in the content's.
+/// Makes the feet of a translated clip stand wherever they stand in the content's clip.
 pub fn keep_contacts(postures: &mut [Posture], content: &[Posture]) {
     let content = resample(content, postures.len());
     let size = content.iter().map(torso).sum::<f64>() / content.len().max(1) as f64;
@@ -152,7 +155,7 @@ fn between_known(known: &[(usize, Point)], frame: usize) -> Point {
     }
 }
 
-/// Moves an ankle; the knee follows so that both limbs keep their lengths, on the side where it was.
+/// Moves an ankle by `shift`. The knee follows: both limbs keep their lengths, and the knee stays on its side.
 fn reach(posture: &mut Posture, [hip, knee, ankle]: &[usize; 3], shift: Point) {
     let (h, k, a) = (posture[*hip], posture[*knee], posture[*ankle]);
     let (upper, lower) = (h.distance(k), k.distance(a));
@@ -215,7 +218,7 @@ mod tests {
 
     #[test]
     fn a_foot_that_stands_stays_and_legs_keep_their_lengths() {
-        // The content's left foot stands while its body moves on; in the made clip it slides.
+        // The content's left foot stands while the body moves on. In the translated clip it slides.
         let frames = 12;
         let content: Vec<Posture> = (0..frames)
             .map(|f| {

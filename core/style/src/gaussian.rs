@@ -1,27 +1,31 @@
-//! What a character adds to a motion, predicted from what it adds to others and what others add: Gaussian processes.
+//! Gaussian processes that predict what a character adds to a motion, from what it adds to other motions and what other
+//! characters add.
 //!
-//! Let X[s, m] hold the clip of character s and motion m in the coordinates of `basis`, one column an axis. With the mean
-//! motion taken out, each axis is a Gaussian process over characters × (motion, time) with covariance
-//! (K_s + c 11ᵀ) ⊗ K_m: K_m from `kernels`, K_s between characters, c large (which frees the mean of a motion).
+//! X[s, m] contains the clip of character s and motion m in the coordinates of `basis`, with a column for each axis.
+//! The mean motion is removed. Each axis is then a Gaussian process over characters × (motion, time) with covariance
+//! (K_s + c 11ᵀ) ⊗ K_m. K_m comes from `kernels`, K_s is the covariance between characters, and c is large, which
+//! leaves the mean of a motion free.
 //!
-//! - **Characters.** K_s = (1 − γ) S + γ I, S the covariance of what characters add on average over time, from all other
-//!   motions than the one in question: two that walk, run and stand alike are expected to jump alike.
-//! - **Motions.** The static half of K_m is drawn by g towards the covariance observed among the other characters: from who
-//!   leans when walking, one knows who leans when walking sideways, whatever their postures' likeness says.
+//! - **Characters.** K_s = (1 − γ) S + γ I. S is the covariance of what characters add on average over time, taken from
+//!   all motions except the one to be predicted. Two characters that walk, run and stand alike are expected to jump
+//!   alike.
+//! - **Motions.** The static half of K_m moves by the share g towards the covariance observed among the other
+//!   characters. Someone who leans when walking also leans when walking sideways, even if the postures differ.
 //! - **Leaving one clip out.** With the Kronecker form the prediction of a clip from all others needs no new
-//!   factorisation: e = (B⁻¹)[K⁻¹ X], B the clip's block of K⁻¹ (Rasmussen & Williams 2006, eq. 5.12, blockwise). The hole of
-//!   the grid is predicted by the same formula, in which what fills it cancels out.
-//! - **Averaging.** Noise, weight of the posture, γ and g take the values of a small grid. Which are best differs from
-//!   axis to axis and between the static and the moving part (a stoop goes through all motions, a waving hand does not), so
-//!   each gets its own average, weighted by the leave-one-out error E as exp(−κ log E): a likelihood of Gaussian errors,
-//!   κ in proportion to the number of clips. Nothing is fixed by hand that the clips can tell.
-//! - **Stance.** What a clip is on average over time, most of what there is to foretell, comes from a process of its own:
+//!   factorisation: e = (B⁻¹)[K⁻¹ X], where B is the clip's block of K⁻¹ (Rasmussen & Williams 2006, eq. 5.12,
+//!   blockwise). The same formula predicts the hole of the grid; the values that fill the hole cancel out.
+//! - **Averaging.** Noise, weight of the posture, γ and g take the values of a small grid. The best values differ
+//!   between axes, and between the static and the moving part: a stoop lasts through all motions, a waving hand does
+//!   not. Therefore each axis and part gets its own average, weighted by exp(−κ log E), where E is the leave-one-out
+//!   error. This is a likelihood of Gaussian errors; κ is proportional to the number of clips. The clips determine
+//!   these four settings, not a constant.
+//! - **Stance.** The mean of a clip over time is most of what can be predicted. It comes from a process of its own:
 //!   `stance`.
-//! - **Uncertainty.** The covariance of the leave-one-out errors over time, axis by axis, is the covariance of what is
-//!   predicted; `key_pose` conditions on drawn postures with it.
+//! - **Uncertainty.** The covariance of the leave-one-out errors over time, axis by axis, serves as the covariance of
+//!   the prediction. `key_pose` conditions on drawn postures with it.
 //!
-//! Limits: cost grows with the cube of motions × cosines; a posture is one point of a Gaussian, so manners that choose
-//! between two ways of doing a thing get the mean of both.
+//! Limits: the cost grows with the cube of motions × cosines. A posture is one point of a Gaussian. If a manner does a
+//! thing in one of two ways, the prediction is the mean of both.
 
 use super::basis::{Axes, COSINES, MODEL_FRAMES, cosines};
 use super::cells::Cells;
@@ -40,7 +44,7 @@ const NOISE: [f64; 3] = [0.05, 0.2, 0.8];
 const POSTURE: [f64; 3] = [0.05, 0.2, 0.6];
 const SHRINK: [f64; 3] = [0.4, 0.7, 1.0];
 const OBSERVED: [f64; 4] = [0.0, 0.3, 0.6, 0.85];
-/// κ for each clip: a clip counts as about one and a half independent numbers an axis.
+/// κ for each clip: on each axis a clip counts as about one and a half independent numbers.
 const WEIGHT_PER_CLIP: f64 = 0.85;
 /// Rounds in which holes of the grid beside the wanted one are filled.
 const FILLING: usize = 3;
@@ -49,21 +53,21 @@ const FILLING: usize = 3;
 /// positive definite.
 type LeftOut = Option<Vec<Vec<f64>>>;
 
-/// What all settings share.
+/// Data that all settings share.
 struct Shared<'a> {
     cells: &'a Cells,
     kernels: &'a Kernels,
     even: usize,
     observed: Vec<Vec<f64>>,
-    /// For each γ.
+    /// One entry for each γ.
     styles: Vec<Styles>,
 }
 
-/// Characters beside each other.
+/// Covariance between characters.
 struct Styles {
-    /// The precision by left-out motion.
+    /// Precision matrices, by the motion left out.
     precisions: Vec<Vec<f64>>,
-    /// Σ_t (K_s⁻¹)[s, t] Z[t] by character s and left-out motion.
+    /// Σ_t (K_s⁻¹)[s, t] Z[t], by character s and the motion left out.
     mixed: Vec<Vec<Vec<f64>>>,
 }
 
@@ -79,7 +83,8 @@ impl<'a> Shared<'a> {
     }
 }
 
-/// For one character and each left-out motion: clips less the mean of the others, weighted by the precision's row.
+/// For one character and each motion left out: clips minus the mean of the others, weighted by the character's row of
+/// the precision.
 fn mixed(cells: &Cells, precisions: &[Vec<f64>], s: usize) -> Vec<Vec<f64>> {
     let means: Vec<f64> = (0..cells.motions).flat_map(|m| cells.mean_of(m, s)).collect();
     let n = cells.characters;
@@ -97,7 +102,7 @@ fn mixed(cells: &Cells, precisions: &[Vec<f64>], s: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// All settings of γ and g for one covariance of motions; g outermost.
+/// Predictions with all settings of γ and g for one covariance of motions. g varies in the outer loop.
 fn left_out(shared: &Shared, weights: Weights, observed: &[f64]) -> Vec<LeftOut> {
     let cells = shared.cells;
     let empty = || Some(vec![vec![0.0; cells.x.first().map_or(0, Vec::len)]; cells.characters]);
@@ -162,13 +167,13 @@ fn clips_of(
     Some(())
 }
 
-/// The inverse of a covariance of motions, taken apart so that its static block can be exchanged cheaply: with E the static
-/// rows, K⁻¹ = A₀ + Q (K / rest) ⁻¹ Qᵀ, and only the Schur complement K / rest changes with that block.
+/// The inverse of a covariance of motions, split so that its static block can be replaced cheaply. With E the static
+/// rows, K⁻¹ = A₀ + Q (K / rest)⁻¹ Qᵀ. A change of the static block changes only the Schur complement K / rest.
 struct Split {
     n: usize,
     /// K_EE.
     fixed: Vec<f64>,
-    /// K_EE less what the moving rows explain.
+    /// K_EE minus the part that the moving rows explain: the Schur complement.
     complement: Vec<f64>,
     rest: Vec<f64>,
     q: Vec<f64>,
@@ -193,7 +198,7 @@ impl Split {
         Some(Self { n, fixed, complement, rest, q })
     }
 
-    /// The inverse with the static block drawn by `share` towards an observed covariance of unit mean variance.
+    /// The inverse after the static block is moved by `share` towards an observed covariance of mean variance 1.
     fn drawn(&self, observed: &[f64], share: f64) -> Option<Vec<f64>> {
         let m = self.n / COSINES;
         let scale = (0..m).map(|i| self.fixed[i * m + i]).sum::<f64>() / m as f64;
@@ -221,7 +226,7 @@ fn add_product(into: &mut [f64], q: &[f64], middle: &[f64], n: usize, m: usize, 
     }
 }
 
-/// Fills holes of the grid beside the wanted one with what a middling setting predicts.
+/// Fills the holes of the grid, except the requested one, with the predictions of a middle setting.
 fn fill(cells: &mut Cells, kernels: &Kernels, even: usize, target: (usize, usize)) {
     let holes: Vec<(usize, usize)> = (0..cells.characters)
         .flat_map(|s| (0..cells.motions).map(move |m| (s, m)))
@@ -239,7 +244,7 @@ fn fill(cells: &mut Cells, kernels: &Kernels, even: usize, target: (usize, usize
     }
 }
 
-/// Averages settings, and tells the errors of what that average predicts.
+/// Averages the predictions of all settings. Also returns the errors that the average makes on the known clips.
 fn averaged(cells: &Cells, found: &[Vec<Vec<f64>>], target: (usize, usize)) -> (Vec<f64>, Errors) {
     let (d, motions) = (cells.axes, cells.motions);
     let clips: Vec<(usize, usize)> = (0..cells.characters)
@@ -275,7 +280,7 @@ fn averaged(cells: &Cells, found: &[Vec<Vec<f64>>], target: (usize, usize)) -> (
     (coefficients, errors)
 }
 
-/// Makes the wanted clip.
+/// Predicts the requested clip.
 pub(super) fn predict(
     grid: &Grid,
     keys: &[(usize, Row)],
@@ -323,7 +328,7 @@ pub(super) fn predict(
     Ok(assemble(grid, &axes, coefficients, &errors, keys))
 }
 
-/// The clip of what is added to the mean motion, with key poses met.
+/// The clip from its offset to the mean motion, conditioned on the key poses.
 fn assemble(grid: &Grid, axes: &Axes, coefficients: Vec<f64>, errors: &Errors, keys: &[(usize, Row)]) -> Prediction {
     let mean = grid.mean_without(grid.style, grid.motion, grid.frames).unwrap_or_default();
     let basis = cosines(grid.frames);

@@ -1,9 +1,11 @@
-//! Clips as a grid of characters × motions, in one frame: the pelvis at the origin, the torso of length one.
+//! The known clips as a grid of characters × motions, in one frame: pelvis at the origin, torso length 1.
 //!
-//! Dividing by a character's torso and taking the pelvis out is the global half of the paper's unification (Liang et al.
-//! 2012, eq. 4): what remains of proportion is part of the manner and is learned with it. Every clip of a motion is
-//! brought to the content's number of frames; clips of that length are taken as aligned, others are aligned to the
-//! content (or the motion's first clip) first.
+//! Division by the character's torso and removal of the pelvis are the global half of the paper's unification (Liang et
+//! al. 2012, eq. 4). The remaining differences of proportion are part of the manner and are learned with it.
+//!
+//! Every clip of a motion is brought to one number of frames: that of the content's clip, or that of the motion's first
+//! clip if the content's character lacks the motion. Clips of that length count as aligned. Other clips are aligned by
+//! time warping first.
 
 use super::align;
 use super::{Request, StyleError};
@@ -12,23 +14,23 @@ use rototoon_base::scene::Clip;
 use rototoon_base::scene::clip::resample;
 use rototoon_base::scene::skeleton::{COUNT, Posture, torso};
 
-/// Numbers a posture: x and y of each key point.
+/// Numbers in a posture: x and y of each key point.
 pub(super) const WIDTH: usize = 2 * COUNT;
 
-/// A posture as numbers, x before y.
+/// A posture as numbers: x, then y, of each key point.
 pub(super) type Row = [f64; WIDTH];
 
-/// The clips that a translation learns from, without the one that it makes.
+/// The clips that a translation learns from, without the requested one.
 pub(super) struct Grid {
-    /// Names in the order of their first clip.
+    /// Names in the order of their first clips.
     pub characters: Vec<String>,
-    /// The motions that at least two characters show, and the wanted one.
+    /// The requested motion and the motions that at least two characters show.
     pub motions: Vec<String>,
-    /// Index of the character whose manner is wanted.
+    /// Index of the style's character.
     pub style: usize,
-    /// Index of the character whose motion it was.
+    /// Index of the content's character.
     pub content: usize,
-    /// Index of the wanted motion.
+    /// Index of the requested motion.
     pub motion: usize,
     /// Torso length of each character in the unit of its clips.
     pub torso: Vec<f64>,
@@ -38,7 +40,7 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Sorts clips for a request.
+    /// Checks the clips and the request, and sorts the clips into the grid.
     pub fn new(clips: &[Clip], request: &Request) -> Result<Self, StyleError> {
         check(clips, request)?;
         let mut characters: Vec<String> = Vec::new();
@@ -81,7 +83,7 @@ impl Grid {
         self.frames = self.get(self.content, self.motion).map_or(1, <[Posture]>::len);
     }
 
-    /// Brings all clips of a motion to the frames of one of them.
+    /// Brings all clips of a motion to the frames of one of them, the content's if it exists.
     fn align(&mut self, m: usize) {
         let count = self.motions.len();
         let of = |s: usize| s * count + m;
@@ -95,17 +97,17 @@ impl Grid {
         }
     }
 
-    /// A clip, unified and aligned; `None` where the grid has none.
+    /// A clip in torso lengths, aligned; `None` if the grid has none.
     pub fn get(&self, character: usize, motion: usize) -> Option<&[Posture]> {
         self.clips[character * self.motions.len() + motion].as_deref()
     }
 
-    /// A clip as numbers in `frames` frames.
+    /// A clip as numbers, resampled to `frames` frames.
     pub fn rows(&self, character: usize, motion: usize, frames: usize) -> Option<Vec<Row>> {
         self.get(character, motion).map(|clip| resample(clip, frames).iter().map(row).collect())
     }
 
-    /// Mean of the clips of a motion over characters, without one of them; `None` where that leaves none.
+    /// Mean of the clips of a motion over all characters except one; `None` if no clip remains.
     pub fn mean_without(&self, character: usize, motion: usize, frames: usize) -> Option<Vec<Row>> {
         mean((0..self.characters.len()).filter(|&s| s != character).filter_map(|s| self.rows(s, motion, frames)))
     }

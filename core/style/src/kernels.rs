@@ -1,36 +1,39 @@
-//! What a character adds to one moment of a motion is like what it adds to another: how much, as a covariance.
+//! Covariance kernels: how similar what a character adds to one moment of a motion is to what it adds to another
+//! moment.
 //!
-//! Between the moments (m, t) and (m′, t′), p(m, t) being the mean posture over characters, in torso lengths:
+//! The table shows the terms between the moments (m, t) and (m′, t′). p(m, t) is the mean posture over characters, in
+//! torso lengths.
 //!
-//! | term | says |
+//! | term | meaning |
 //! | --- | --- |
 //! | w₀ | a character adds the same everywhere |
-//! | w₁ exp(−‖p(m) − p(m′)‖² / 2ℓ²) | and more alike to motions that are alike as a whole |
-//! | w₂ [m = m′] | each motion has something of its own |
-//! | w_p exp(−‖p − p′‖² / 2ℓ²) ± η w_p exp(−‖p − σp′‖² / 2ℓ²) | alike postures get alike additions; σ exchanges left and right, + for axes that are even under it, − for odd ones |
-//! | w_t [m = m′] exp(−(t − t′)² / 2τ²) | moments close in time |
-//! | n | and the rest |
+//! | w₁ exp(−‖p(m) − p(m′)‖² / 2ℓ²) | it adds alike to motions that are alike on the whole |
+//! | w₂ [m = m′] | it adds something of its own to each motion |
+//! | w_p exp(−‖p − p′‖² / 2ℓ²) ± η w_p exp(−‖p − σp′‖² / 2ℓ²) | it adds alike to similar postures |
+//! | w_t [m = m′] exp(−(t − t′)² / 2τ²) | it adds alike to moments close in time |
+//! | n | noise |
 //!
-//! The posture term with exchanged sides is the same as learning from every clip twice, once mirrored, at no cost.
-//! All are brought into the cosines of `basis`, so that a motion takes twelve rows whatever its length.
+//! σ exchanges left and right; the sign is + for axes that are even under σ and − for odd axes. This posture term has
+//! the same effect as learning from every clip twice, once mirrored, at no cost. All terms are expressed in the cosines
+//! of `basis`, so a motion takes twelve rows whatever its length.
 
 use super::basis::{COSINES, MODEL_FRAMES, cosines};
 use super::grid::{Row, WIDTH};
 use rototoon_base::scene::skeleton::MIRROR;
 
-/// w₀, w₁, w₂, w_t: of a magnitude with w_p, over which the model averages. Results hardly change when they are doubled.
+/// w₀, w₁, w₂, w_t, comparable in size to w_p, over which the model averages. Doubling them hardly changes the results.
 const CONSTANT: f64 = 0.15;
 const MOTION: f64 = 0.25;
 const OWN: f64 = 0.15;
 const TIME: f64 = 0.1;
-/// ℓ, in torso lengths over all key points together.
+/// ℓ, in torso lengths: a distance over all key points together.
 const POSTURE_LENGTH: f64 = 0.6;
 /// τ, as a share of the clip.
 const TIME_LENGTH: f64 = 0.15;
 /// η.
 const MIRRORED: f64 = 0.8;
 
-/// Weights of the terms over which the model averages.
+/// Weights over which the model averages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Weights {
     /// w_p.
@@ -39,9 +42,9 @@ pub(super) struct Weights {
     pub noise: f64,
 }
 
-/// The terms, each `motions · COSINES` square.
+/// The terms, each a square matrix of `motions · COSINES` rows.
 pub(super) struct Kernels {
-    /// Rows: motions times cosines.
+    /// Number of rows: motions times cosines.
     pub size: usize,
     fixed: Vec<f64>,
     posture: Vec<f64>,
@@ -49,7 +52,7 @@ pub(super) struct Kernels {
 }
 
 impl Kernels {
-    /// From the mean motions, each in [`MODEL_FRAMES`] frames.
+    /// The terms for mean motions, each in [`MODEL_FRAMES`] frames.
     pub fn new(means: &[Vec<Row>]) -> Self {
         let size = means.len() * COSINES;
         let mut kernels = Self {
@@ -85,7 +88,7 @@ impl Kernels {
         kernels
     }
 
-    /// The covariance for axes that are even under the exchange of sides, or odd ones.
+    /// The covariance of even axes or of odd axes under the exchange of sides.
     pub fn covariance(&self, weights: Weights, even: bool) -> Vec<f64> {
         let sign = if even { MIRRORED } else { -MIRRORED };
         let mut sum: Vec<f64> = (0..self.size * self.size)
@@ -95,7 +98,7 @@ impl Kernels {
         sum
     }
 
-    /// How alike motions are on average over time, for even axes or odd ones: the posture terms alone, unit diagonal.
+    /// Similarity of motions on average over time, for even or odd axes: the posture terms alone, with unit diagonal.
     pub fn stances(&self, even: bool) -> Vec<f64> {
         let sign = if even { MIRRORED } else { -MIRRORED };
         let motions = self.size / COSINES;

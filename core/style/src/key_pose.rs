@@ -1,26 +1,27 @@
-//! Drawn postures as observations, and how sure a clip is.
+//! Drawn postures as observations, and the standard deviation of a clip.
 //!
-//! The errors made on the clips that are known say how errors hang together in time: most of them last through the whole clip
-//! (a stoop, an arm held high), so a single drawn posture corrects them everywhere. With Σ the covariance of the errors of
-//! one axis over the cosines, φ_t the cosines at frame t and y what the drawing adds there,
+//! The errors made on known clips show how errors correlate over time. Most of them last through a complete clip (a
+//! stoop, an arm held high), so a single drawn posture corrects them everywhere. Let Σ be the covariance of the errors
+//! of one axis over the cosines, φ_t the cosines at frame t, and y the drawn offset to the mean motion. Then
 //!
-//! c ← c + Σ Φᵀ (Φ Σ Φᵀ)⁻¹ (y − Φ c),    Σ ← Σ − Σ Φᵀ (Φ Σ Φᵀ)⁻¹ Φ Σ,
+//! c ← c + Σ Φᵀ (Φ Σ Φᵀ)⁻¹ (y − Φ c), Σ ← Σ − Σ Φᵀ (Φ Σ Φᵀ)⁻¹ Φ Σ,
 //!
-//! Φ holding the rows φ_t of the drawn frames: conditioning of a Gaussian. Each axis has a Σ of its own, mixed with that of
-//! all axes as far as clips are few.
+//! where Φ consists of the rows φ_t of the drawn frames. This is the conditioning of a Gaussian. Each axis has its own
+//! Σ. With few clips it is blended with the Σ of all axes.
 
 use super::basis::{Axes, COSINES};
 use rototoon_base::numeric::dense::DenseCholesky;
 use rototoon_base::scene::skeleton::COUNT;
 
-/// The covariance of all axes counts as this many clips.
+/// The covariance of all axes together counts as much as this many clips.
 const POOLED: f64 = 20.0;
-/// The mean size of errors counts as this many clips of a motion.
+/// The mean size of the errors counts as much as this many clips of a motion.
 const COMMON: f64 = 3.0;
-/// Variance of what is drawn, as a share of that of the axis: what the cosines cannot tell.
+/// Variance of a drawn value as a share of the axis's variance. It stands for the motion that the cosines cannot
+/// express.
 const DRAWN: f64 = 1e-3;
 
-/// Errors of clips that are known and were predicted: clip, cosine, axis.
+/// Errors of the predictions of known clips, by clip, cosine and axis.
 pub(super) struct Errors {
     axes: usize,
     motions: Vec<usize>,
@@ -34,7 +35,7 @@ impl Errors {
         Self { axes, motions, values }
     }
 
-    /// Notes an error.
+    /// Stores an error.
     pub fn set(&mut self, clip: usize, cosine: usize, axis: usize, error: f64) {
         self.values[(clip * COSINES + cosine) * self.axes + axis] = error;
     }
@@ -43,7 +44,7 @@ impl Errors {
         self.values[(clip * COSINES + cosine) * self.axes + axis]
     }
 
-    /// Sum over clips of errors times errors, cosines × cosines.
+    /// Sum over clips of the products of errors, cosines × cosines.
     fn products(&self, axis: usize) -> Vec<f64> {
         let mut sum = vec![0.0; COSINES * COSINES];
         for clip in 0..self.motions.len() {
@@ -54,7 +55,7 @@ impl Errors {
         sum
     }
 
-    /// Squared size of the errors of one motion beside that of all; drawn towards 1 where clips are few.
+    /// Squared size of the errors of one motion relative to all motions. Few clips draw it towards 1.
     fn scale(&self, motion: usize) -> f64 {
         let size = COSINES * self.axes;
         let squares: Vec<f64> =
@@ -88,7 +89,8 @@ impl Errors {
     }
 }
 
-/// Conditions cosines × axes on what is drawn at some frames, given by axis; also gives the covariances that remain.
+/// Conditions coefficients (cosines × axes) on drawn values, given by frame and axis. Also returns the remaining
+/// covariances.
 pub(super) fn condition(
     mut coefficients: Vec<f64>,
     errors: &Errors,
@@ -128,7 +130,7 @@ pub(super) fn condition(
     (coefficients, covariances)
 }
 
-/// Standard deviation of a coordinate of each key point, frame by frame: the root of the mean variance of x and y.
+/// Standard deviation of a coordinate of each key point in each frame: the root of the mean variance of x and y.
 pub(super) fn deviation(covariances: &[Vec<f64>], axes: &Axes, basis: &[[f64; COSINES]]) -> Vec<[f64; COUNT]> {
     let at = |cosine: &[f64; COSINES]| {
         let along: Vec<f64> = covariances

@@ -1,13 +1,13 @@
 //! Translation by non-negative style factorisation: the content's codes with the style's basis.
 //!
-//! The paper factors each character by itself and exchanges bases; two such factorisations have no order of components in
-//! common, and the exchange is worse than no translation at all. Here the codes are shared: a row of X is one moment of one
-//! motion, its columns the postures of all characters side by side, so that one code tells what happens and each
-//! character's columns of V tell how it does that. The style's columns are found from the rows of the motions that it shows
-//! (the multiplicative step of V with U fixed, started at the mean character), and the codes of the wanted motion with
-//! these columns are the result.
+//! The paper factors each character separately and exchanges the bases. Two separate factorisations share no order of
+//! components, so the exchange is worse than no translation at all. Here the codes are shared. A row of X is one moment
+//! of one motion; its columns are the postures of all characters side by side. One code then says what happens, and
+//! each character's columns of V say how that character does it.
 //!
-//! Starting at the mean and ending early keeps the columns from fitting what 24 free codes can fit of few clips.
+//! The style's columns are fitted to the rows of its known motions. The fit is the multiplicative step of V with U
+//! fixed, and it starts at the mean character. The codes of the requested motion times these columns are the result.
+//! The start at the mean and an early stop keep 24 free codes from overfitting few clips.
 
 use super::Prediction;
 use super::basis::MODEL_FRAMES;
@@ -18,14 +18,14 @@ use faer::Mat;
 
 /// Rounds that fit the style's columns.
 const STYLE_ROUNDS: usize = 30;
-/// What every number is above zero at least, in torso lengths.
+/// Smallest value of the shifted numbers, in torso lengths.
 const ABOVE_ZERO: f64 = 0.05;
 /// β.
 const CLASS_WEIGHT: f64 = 0.01;
-/// What keeps divisions from zero.
+/// Keeps denominators away from zero.
 const TINY: f64 = 1e-12;
 
-/// Makes the wanted clip.
+/// Predicts the requested clip; `rank` replaces the number of codes.
 pub(super) fn predict(grid: &Grid, keys: &[(usize, Row)], rank: Option<usize>) -> Prediction {
     let k = rank.unwrap_or(FactorOptions::default().rank).max(1);
     let known: Vec<usize> =
@@ -36,11 +36,11 @@ pub(super) fn predict(grid: &Grid, keys: &[(usize, Row)], rank: Option<usize>) -
     spread(grid, rows, &apart, keys)
 }
 
-/// The style's clip of a motion from some of its others.
+/// Predicts the style's clip of the motion `wanted` from its clips of the `known` motions.
 fn from_motions(grid: &Grid, known: &[usize], wanted: usize, k: usize) -> Vec<Row> {
     let others: Vec<usize> = (0..grid.characters.len()).filter(|&s| s != grid.style).collect();
     let order: Vec<usize> = known.iter().copied().chain(std::iter::once(wanted)).collect();
-    // A clip that another character lacks is taken from the mean of those who have it.
+    // If another character lacks a clip, the mean of the characters that have it takes its place.
     let clips: Vec<Vec<Vec<Row>>> = others
         .iter()
         .map(|&s| {
@@ -71,7 +71,7 @@ fn from_motions(grid: &Grid, known: &[usize], wanted: usize, k: usize) -> Vec<Ro
     (0..MODEL_FRAMES).map(|t| std::array::from_fn(|d| made[(t, d)] + shift[d])).collect()
 }
 
-/// The style's columns of V.
+/// Fits the style's columns of V.
 fn columns(uu: Mat<f64>, ux: Mat<f64>, mut v: Mat<f64>) -> Mat<f64> {
     for _ in 0..STYLE_ROUNDS {
         let uuv = &uu * &v;

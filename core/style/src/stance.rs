@@ -1,26 +1,27 @@
-//! What a character adds to a motion on average over time: its stance.
+//! The stance of a character in a motion: what it adds on average over time.
 //!
-//! Most of what cannot be foretold of a clip is its static posture: who stoops, how far, in which motion. The process of
-//! `gaussian` ties characters and motions by a product of covariances, its noise among them, so that even what a clip has
-//! by chance counts as shared by characters that are alike. For the static part a sum says better what there is. With Z[a, b]
-//! what character a adds to motion b, one number an axis,
+//! Most of the unpredictable part of a clip is its static posture: who stoops, how far, in which motion. The process of
+//! `gaussian` joins characters and motions by a product of covariances, noise included. Even the accidents of a clip
+//! then count as shared by similar characters. For the static part a sum of covariances fits better. Let Z[a, b] be
+//! what character a adds to motion b, one number for each axis. Then
 //!
 //! K = c 11ᵀ ⊗ I + L ⊗ B + I ⊗ B + I ⊗ I:
 //!
-//! - c 11ᵀ ⊗ I frees the mean of each motion (c large);
-//! - L ⊗ B: characters that are alike add alike to motions that are alike. L = Σ_b Z_b Z_bᵀ / ‖Z_b‖² over the motions but the
-//!   one in question, with unit mean diagonal: it crosses axes, so that who stoops when walking is known to lower the arms
-//!   when waving, if others do so; each motion counts the same, however much it varies;
-//! - I ⊗ B: a character adds alike to motions that are alike, whatever others do. B is the covariance of postures of
-//!   `kernels`, for the means over time, with unit diagonal;
-//! - I ⊗ I: and the rest.
+//! - c 11ᵀ ⊗ I leaves the mean of each motion free (c is large).
+//! - L ⊗ B: similar characters add alike to similar motions. L = Σ_b Z_b Z_bᵀ / ‖Z_b‖² over all motions except the one
+//!   to be predicted, with unit mean diagonal. It includes all axes. If others who stoop when walking lower the arms
+//!   when waving, a stooping walker is expected to do so too. Each motion counts the same, however much it varies.
+//! - I ⊗ B: a character adds alike to similar motions, independently of other characters. B is the covariance of
+//!   postures of `kernels`, averaged over time, with unit diagonal.
+//! - I ⊗ I is the rest.
 //!
-//! The prediction is the conditional mean (Rasmussen & Williams 2006, eq. 2.25) given the clips that are known, the even and
-//! the odd axes apart. The terms have equal weights: fitted on one half of the characters, weights are as often worse as
-//! better on the other. On 8 characters × 9 motions, each clip left out in turn, the error of the whole falls from 0.1223
-//! to 0.1188 torso lengths.
+//! The prediction is the conditional mean (Rasmussen & Williams 2006, eq. 2.25) given the known clips, separately for
+//! the even and the odd axes. The terms have equal weights: weights fitted on one half of the characters were as often
+//! worse as better on the other half. On 8 characters × 9 motions, with each clip left out in turn, the stance reduces
+//! the error of the complete clip from 0.1223 to 0.1188 torso lengths.
 //!
-//! Limits: two motions say too little of likeness, and are left to `gaussian`. Cost grows with the cube of the clips.
+//! Limits: two motions are too few to measure similarity; they are left to `gaussian`. The cost grows with the cube of
+//! the number of clips.
 
 use super::cells::Cells;
 use super::kernels::Kernels;
@@ -28,11 +29,11 @@ use rototoon_base::numeric::dense::DenseCholesky;
 
 /// c.
 const MEAN_VARIANCE: f64 = 30.0;
-/// Motions from which on the prediction is better than that of `gaussian`.
+/// With at least this many motions the prediction is better than that of `gaussian`.
 const FEWEST_MOTIONS: usize = 3;
 
-/// What the character of the target adds to its motion on average over time, and the motion's mean: the coefficient of the
-/// constant cosine for each axis, of which the first `even` are even. None where too little is known.
+/// Predicts the stance of the target's character in its motion, the motion's mean included. Returns the coefficient of
+/// the constant cosine for each axis; the first `even` axes are even. `None` if too little is known.
 pub(super) fn predict(cells: &Cells, kernels: &Kernels, even: usize, target: (usize, usize)) -> Option<Vec<f64>> {
     let motions = cells.motions;
     if motions < FEWEST_MOTIONS {
@@ -67,7 +68,7 @@ pub(super) fn predict(cells: &Cells, kernels: &Kernels, even: usize, target: (us
     Some(result)
 }
 
-/// L: how alike characters are in what they add to motions other than one.
+/// L: similarity of characters in what they add to all motions except one.
 fn likeness(
     characters: usize,
     known: &[(usize, usize)],
@@ -105,7 +106,7 @@ mod tests {
 
     const CHARACTERS: usize = 4;
 
-    /// Clips that rest, of two even axes and an odd one; what a character adds to a motion is given.
+    /// Clips without movement, with two even axes and an odd one; `added` gives what a character adds to a motion.
     fn cells(motions: usize, added: impl Fn(usize, usize) -> [f64; 3]) -> Cells {
         let clip = |s: usize, m: usize| {
             let mut block = vec![0.0; COSINES * 3];
@@ -121,13 +122,13 @@ mod tests {
         }
     }
 
-    /// Kernels of motions whose mean postures lie this far apart.
+    /// Kernels of motions whose mean postures are `apart` from each other.
     fn kernels(motions: usize, apart: f64) -> Kernels {
         let mean = |m: usize| -> Row { std::array::from_fn(|d| if d == WIDTH - 1 { m as f64 * apart } else { 0.0 }) };
         Kernels::new(&(0..motions).map(|m| vec![mean(m); MODEL_FRAMES]).collect::<Vec<_>>())
     }
 
-    /// What is predicted of character 0 in motion 0, without the motion's mean.
+    /// The prediction for character 0 in motion 0, without the motion's mean.
     fn predicted(motions: usize, apart: f64, added: impl Fn(usize, usize) -> [f64; 3]) -> [f64; 3] {
         let cells = cells(motions, added);
         let found = predict(&cells, &kernels(motions, apart), 2, (0, 0)).unwrap();
@@ -139,7 +140,7 @@ mod tests {
     fn who_adds_the_same_to_all_motions_is_expected_to_add_it_here() {
         let own = [[1.0, -2.0, 0.5], [0.2, 0.4, -0.3], [-0.5, 0.6, 0.2], [-0.7, 1.0, -0.4]];
         let found = predicted(6, 0.1, |s, _| own[s]);
-        // Against the mean of the others that is what is left of it to all.
+        // This is what remains of the common offset relative to the mean of the others.
         let left = [0, 1, 2].map(|axis| own[0][axis] - (1..4).map(|s| own[s][axis]).sum::<f64>() / 3.0);
         for axis in 0..3 {
             assert!((found[axis] - left[axis]).abs() < 0.3 * left[axis].abs(), "{found:?} for {left:?}");
@@ -148,11 +149,12 @@ mod tests {
 
     #[test]
     fn who_is_like_another_is_expected_to_do_as_that_one_does() {
-        // 0 and 1 agree in every other motion, in which the axes go to and fro; the motions have nothing in common.
+        // Characters 0 and 1 agree in every other motion. In those the axes alternate, and the motions have nothing in
+        // common.
         let sign = |s: usize| if s < 2 { 1.0 } else { -1.0 };
         let found =
             predicted(7, 5.0, |s, m| [sign(s) * [3.0, 1.0, -1.0][m % 3], 0.0, sign(s) * [2.0, -1.0, 1.0][m % 3]]);
-        // Of the others in motion 0 one has 3 and two have −3: their mean is −1.
+        // Of the other characters in motion 0 one has 3 and two have −3, so their mean is −1.
         assert!(found[0] > 1.0 && found[2] > 0.5, "towards the one that it is like: {found:?}");
         assert!(found[1].abs() < 1e-9);
     }

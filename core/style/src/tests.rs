@@ -1,11 +1,11 @@
-//! Translation on clips made by a rule, where the truth is known.
+//! Translation of clips made by a rule, so that the truth is known.
 
 use super::*;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Silent;
 use rototoon_base::scene::skeleton::{LEGS, limb_lengths};
 
-/// A figure with a stoop and a way to hold its arms, at a moment of a motion.
+/// A figure at a moment of a motion, with a given stoop and position of the arms.
 fn figure(motion: usize, phase: f64, stoop: f64, arms: f64) -> Posture {
     let turn = std::f64::consts::TAU * phase;
     let swing = [0.5, 0.9, 0.3, 0.0][motion % 4];
@@ -88,7 +88,8 @@ fn a_pair_of_characters_is_enough() {
     let pair: Vec<Clip> = library().into_iter().filter(|c| c.character == "plain" || c.character == "old").collect();
     let truth = clip(1, 1, 24);
     let copied = apart(&clip(0, 1, 24).postures, &truth.postures);
-    // The symmetric model has a style vector as long as there are other characters: one number says nothing.
+    // The symmetric model has as many style components as there are other characters. A single number cannot carry a
+    // style.
     for (id, _, preset) in Preset::ALL.into_iter().filter(|p| p.2 != Preset::BilinearSymmetric) {
         let made = translate(&pair, &request(&[]), &Options { preset, ..Options::default() }, &Silent).unwrap();
         let error = apart(&made.postures, &truth.postures);

@@ -1,4 +1,8 @@
 //! Skeleton clips: a character's motion as key points over time.
+//!
+//! A clip is a list of postures in any one unit, with x right and y down. Between frames postures are interpolated
+//! linearly, key point by key point. This shortens a fast swinging limb a little; callers that need exact lengths
+//! restore them.
 
 use super::skeleton::{self, Posture};
 use crate::geometry::Point;
@@ -6,29 +10,30 @@ use crate::geometry::Point;
 /// One motion of one character.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
-    /// Who moves.
+    /// The character that moves.
     pub character: String,
-    /// What is done; clips of one motion by several characters show the same content.
+    /// Name of the motion. Clips of one motion by several characters show the same content.
     pub motion: String,
-    /// Key points frame by frame, x right and y down, in any one unit for all clips of the character.
+    /// A posture for each frame, x right and y down. All clips of a character use one unit.
     pub postures: Vec<Posture>,
-    /// How sure each key point is: a standard deviation in the unit of the points, frame by frame. Empty where not known.
+    /// Standard deviation of the coordinates of each key point in each frame, in the unit of the points. Empty if
+    /// unknown.
     pub deviation: Vec<[f64; skeleton::COUNT]>,
 }
 
 impl Clip {
-    /// A clip of known postures.
+    /// A clip without standard deviations.
     pub fn new(character: impl Into<String>, motion: impl Into<String>, postures: Vec<Posture>) -> Self {
         Self { character: character.into(), motion: motion.into(), postures, deviation: Vec::new() }
     }
 
-    /// The same motion told in `frames` frames from its first to its last, straight between neighbouring postures.
+    /// The postures resampled to `frames` frames, from the first to the last, with linear interpolation.
     pub fn resampled(&self, frames: usize) -> Vec<Posture> {
         resample(&self.postures, frames)
     }
 }
 
-/// A list of postures in `frames` frames, first and last kept; as it is where it has that many.
+/// Postures resampled to `frames` frames; the first and the last are kept. A list of that length is returned unchanged.
 pub fn resample(postures: &[Posture], frames: usize) -> Vec<Posture> {
     let Some(last) = postures.len().checked_sub(1) else { return Vec::new() };
     if postures.len() == frames {
@@ -38,7 +43,8 @@ pub fn resample(postures: &[Posture], frames: usize) -> Vec<Posture> {
     (0..frames).map(|frame| between(postures, frame as f64 * step)).collect()
 }
 
-/// The posture at a time between frames; the first or last beyond them.
+/// The posture at a time in frames, linear between neighbouring frames. Before the first or after the last frame it is
+/// constant.
 pub fn between(postures: &[Posture], time: f64) -> Posture {
     let last = postures.len() - 1;
     let time = time.clamp(0.0, last as f64);

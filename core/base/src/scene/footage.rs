@@ -1,4 +1,7 @@
-//! Which frames there are, and where their pictures come from.
+//! Footage: the range of frames, and the source of their pictures.
+//!
+//! Footage is a numbered sequence of pictures of one size. Frame numbers are those of the artist's time line and may be
+//! negative.
 
 use super::raster::{Colour, Raster};
 use std::path::PathBuf;
@@ -10,13 +13,13 @@ pub type FrameNumber = i32;
 /// Frames `first` to `last` of a picture sequence, both included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Footage {
-    /// Path with one `%d` or `%0Nd` for the frame number; relative to the document's folder, or absolute.
+    /// Path with one `%d` or `%0Nd` for the frame number, relative to the document's folder or absolute.
     pub pattern: String,
     /// First frame.
     pub first: FrameNumber,
     /// Last frame, included.
     pub last: FrameNumber,
-    /// Frames a second.
+    /// Frames per second.
     pub fps: f64,
     /// Width of every frame, in pixels.
     pub width: usize,
@@ -24,37 +27,42 @@ pub struct Footage {
     pub height: usize,
 }
 
-/// Hands out the pictures of a footage. Implementations keep few of them in memory: callers ask again.
+/// Gives access to the pictures of a footage. An implementation keeps few of them in memory, so callers request
+/// pictures repeatedly.
 pub trait FrameSource: Sync {
-    /// The picture of a frame, all of the footage's size.
+    /// The picture of a frame, sRGB-encoded, in the footage's size.
+    ///
+    /// # Errors
+    ///
+    /// A [`FrameError`] names the frame and the file.
     fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError>;
 }
 
-/// Why a frame's picture could not be had.
+/// Why the picture of a frame is not available.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FrameError {
-    /// No file where the pattern says.
+    /// The file does not exist.
     #[error("frame {frame}: no file {path:?}")]
     Missing {
-        /// The frame asked for.
+        /// The requested frame.
         frame: FrameNumber,
-        /// Where it should be.
+        /// The path of the file.
         path: PathBuf,
     },
-    /// The file is there but cannot be read as a picture.
+    /// The file exists but cannot be decoded.
     #[error("frame {frame}: cannot read {path:?}: {reason}")]
     Unreadable {
-        /// The frame asked for.
+        /// The requested frame.
         frame: FrameNumber,
         /// The file.
         path: PathBuf,
-        /// What the decoder or the system said.
+        /// The message of the decoder or the system.
         reason: String,
     },
-    /// The picture is not of the footage's size.
+    /// The picture does not have the footage's size.
     #[error("frame {frame}: {path:?} is {found_width}x{found_height} pixels, but the footage is {width}x{height}")]
     WrongSize {
-        /// The frame asked for.
+        /// The requested frame.
         frame: FrameNumber,
         /// The file.
         path: PathBuf,
@@ -67,10 +75,10 @@ pub enum FrameError {
         /// Height of the footage.
         height: usize,
     },
-    /// The frame lies outside the footage.
+    /// The frame is outside of the footage.
     #[error("frame {frame} is outside the footage, which has frames {first} to {last}")]
     Outside {
-        /// The frame asked for.
+        /// The requested frame.
         frame: FrameNumber,
         /// First frame of the footage.
         first: FrameNumber,

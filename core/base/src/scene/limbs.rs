@@ -1,33 +1,37 @@
-//! Limbs of a drawn character: which places of its contours tell where its key points are.
+//! Limbs of a drawn character: the points of its contours that determine its key points.
 //!
-//! A limb leads from one key point of the template skeleton to another. At either end two calibration points lie on tracked
-//! contours, and the key point lies between them: p_j = (1 − ω_j) p₁ + ω_j p₂, p_{j+1} = (1 − ω_{j+1}) p₃ + ω_{j+1} p₄
-//! (Liang et al. 2012, eqs. 2, 3). Calibration points are bound to places of a contour's parameter: 2.25 is a quarter of the way
-//! from control point 2 to the next one. So they go wherever tracking carries the contour, and need to be drawn on one or two
-//! keys only; drawn on several, they slide along the contour between these.
+//! A limb leads from one key point of the template skeleton to another. At either end two calibration points are on
+//! tracked contours, and the key point is between them: p_j = (1 − ω_j) p₁ + ω_j p₂, p_{j+1} = (1 − ω_{j+1}) p₃ +
+//! ω_{j+1} p₄ (Liang et al. 2012, eqs. 2, 3).
+//!
+//! Calibration points are bound to parameters of a contour: 2.25 is a quarter of the way from control point 2 to the
+//! next one. They therefore follow the tracked contour, and one or two keys are enough to draw them on. If they are
+//! drawn on several keys, their parameter is interpolated between these.
+//!
+//! Points are in pixels of the footage, x right and y down.
 
 use super::{FrameNumber, Part};
 use crate::geometry::{Point, polyline};
 use std::collections::BTreeMap;
 
-/// A point drawn beside a contour is bound to it up to this share of the contour's length away.
+/// Greatest distance of a drawn point from its contour, as a share of the contour's length.
 const REACH: f64 = 0.1;
 
-/// Where a calibration point is bound.
+/// The binding of a calibration point to its contour.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Binding {
-    /// A place of the contour's parameter, the same on all frames.
+    /// A parameter of the contour, the same on all frames.
     Place(f64),
-    /// Points drawn on frames; each is bound to the nearest place of the contour there.
+    /// Points drawn on frames. Each is bound to the nearest point of the contour on its frame.
     Drawn(BTreeMap<FrameNumber, Point>),
 }
 
 /// A calibration point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
-    /// Name of the part on whose contour it lies.
+    /// Name of the part whose contour carries the point.
     pub part: String,
-    /// Where on it.
+    /// Its position on the contour.
     pub binding: Binding,
 }
 
@@ -36,39 +40,40 @@ pub struct Calibration {
 pub struct LimbEnd {
     /// p₁ and p₂ (or p₃ and p₄).
     pub points: [Calibration; 2],
-    /// ω: 0 at the first, 1 at the second of them.
+    /// ω: 0 at the first of these points, 1 at the second.
     pub share: f64,
 }
 
-/// A part that goes with a limb.
+/// A part that a limb carries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Carried {
     /// Name of the part.
     pub part: String,
-    /// How much of the limb's turn a part takes that hangs on the limb's end: 1 all, 0 keeps its angle in the picture.
+    /// Share of the limb's rotation that a rigid part on the limb's end takes: 1 takes all, 0 keeps the angle in the
+    /// picture.
     pub turn: f64,
 }
 
 /// A limb.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limb {
-    /// Key point where it begins, in the order of [`super::skeleton::NAMES`].
+    /// Index of the key point where the limb begins, in the order of [`super::skeleton::NAMES`].
     pub from: usize,
-    /// Key point where it ends.
+    /// Index of the key point where it ends.
     pub to: usize,
     /// Its beginning.
     pub start: LimbEnd,
     /// Its end.
     pub end: LimbEnd,
-    /// The parts that go with it when a drawing is reshaped.
+    /// The parts that it carries when a drawing is reshaped.
     pub carries: Vec<Carried>,
-    /// Control points of its Bézier spline, drawn on frames, in pixels.
+    /// Control points of its Bézier spline by frame, in pixels.
     pub bends: BTreeMap<FrameNumber, Point>,
-    /// Weight of the triangles around it: of two that cannot both stay rigid, the heavier bends less.
+    /// Weight of the triangles around it. If two triangles cannot both stay rigid, the heavier one bends less.
     pub rigidity: f64,
 }
 
-/// "In front" and "behind", from a frame to a frame.
+/// A mark "in front" or "behind", for a range of frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthMark {
     /// Name of the part in front.
@@ -81,39 +86,40 @@ pub struct DepthMark {
     pub last: FrameNumber,
 }
 
-/// The limbs of a character, and what else tells how its drawing is to be read.
+/// The limbs of a character, and the marks needed to read its drawing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LimbSet {
-    /// The limbs; a key point that several of them tell lies in the mean of what they say.
+    /// The limbs. A key point that several limbs determine is the mean of their points.
     pub limbs: Vec<Limb>,
-    /// Frames, from first to last, on which the contours show the other side: left and right change places.
+    /// Ranges of frames, first and last included, on which the contours show the other side: left and right change
+    /// places.
     pub swaps: Vec<(FrameNumber, FrameNumber)>,
-    /// Which part is in front.
+    /// Marks of the order in depth.
     pub marks: Vec<DepthMark>,
 }
 
-/// Why a limb's end could not be found.
+/// Why a calibration point cannot be bound.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BindingError {
     /// No part has this name.
     #[error("part: found {found:?}, expected one of {known}")]
     Part {
-        /// The name.
+        /// The name in the document.
         found: String,
-        /// All names.
+        /// The names of all parts.
         known: String,
     },
-    /// The contour has no such place.
+    /// The contour has no such parameter.
     #[error("at: found {found}, expected 0 to {last} on {part:?}")]
     Place {
         /// The part.
         part: String,
-        /// The place.
+        /// The parameter.
         found: f64,
-        /// The last place of the contour.
+        /// The last parameter of the contour.
         last: f64,
     },
-    /// The part has no contour where a point is drawn.
+    /// The part has no contour on the frame of a drawn point.
     #[error("drawn, frame {frame}: found no contour of {part:?} there")]
     NoContour {
         /// The part.
@@ -121,7 +127,7 @@ pub enum BindingError {
         /// The frame.
         frame: FrameNumber,
     },
-    /// A point is drawn too far away from the contour.
+    /// A drawn point is too far from the contour.
     #[error(
         "drawn, frame {frame}: found a point {distance:.1} px from the contour of {part:?}, expected at most {reach:.1}"
     )]
@@ -130,17 +136,17 @@ pub enum BindingError {
         part: String,
         /// The frame.
         frame: FrameNumber,
-        /// How far away.
+        /// Its distance from the contour in pixels.
         distance: f64,
-        /// How far is allowed.
+        /// The greatest allowed distance in pixels.
         reach: f64,
     },
-    /// Nothing is drawn.
+    /// The binding contains no drawn point.
     #[error("drawn: found no point, expected one on at least one frame")]
     Nothing,
 }
 
-/// A calibration point that has been found on its contour: places by frame, in rising order, at least one.
+/// A bound calibration point: parameters by frame, in ascending order, at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
     /// Index of the part.
@@ -149,7 +155,11 @@ pub struct Bound {
 }
 
 impl Calibration {
-    /// Finds the part and the places on its contour.
+    /// Finds the part, and the parameters of the drawn points on its contour.
+    ///
+    /// # Errors
+    ///
+    /// A [`BindingError`].
     pub fn bind(&self, parts: &[Part]) -> Result<Bound, BindingError> {
         let Some(index) = parts.iter().position(|part| part.name == self.part) else {
             let known: Vec<&str> = parts.iter().map(|part| part.name.as_str()).collect();
@@ -170,7 +180,7 @@ impl Calibration {
     }
 }
 
-/// The place of a contour nearest to a drawn point.
+/// The parameter of the contour's point nearest to a drawn point.
 fn place_of(part: &Part, frame: FrameNumber, p: Point) -> Result<(FrameNumber, f64), BindingError> {
     let none = || BindingError::NoContour { part: part.name.clone(), frame };
     let points = part.points_at(frame).filter(|points| points.len() > 1).ok_or_else(none)?;
@@ -192,7 +202,7 @@ fn place_of(part: &Part, frame: FrameNumber, p: Point) -> Result<(FrameNumber, f
 }
 
 impl Bound {
-    /// The point on a frame; none where the part has no contour there.
+    /// The point on a frame in pixels; `None` if the part has no contour there.
     pub fn at(&self, parts: &[Part], frame: FrameNumber) -> Option<Point> {
         let part = &parts[self.part];
         let points = part.points_at(frame).filter(|points| !points.is_empty())?;
@@ -204,7 +214,7 @@ impl Bound {
         Some(points[a].lerp(points[b], place - place.floor()))
     }
 
-    /// The place on a frame; round a closed contour of `around` places by the shorter way.
+    /// The parameter on a frame. On a closed contour of `around` segments it moves the shorter way round.
     pub fn place(&self, frame: FrameNumber, around: Option<f64>) -> f64 {
         let after = self.places.partition_point(|(key, _)| *key < frame);
         let (before, after) = match (after.checked_sub(1).map(|k| self.places[k]), self.places.get(after)) {
@@ -223,7 +233,7 @@ impl Bound {
 }
 
 impl LimbSet {
-    /// Whether left and right have changed places on a frame.
+    /// Whether left and right change places on a frame. Two swaps cancel out.
     pub fn swapped(&self, frame: FrameNumber) -> bool {
         self.swaps.iter().filter(|(first, last)| (*first..=*last).contains(&frame)).count() % 2 == 1
     }

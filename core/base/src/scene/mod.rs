@@ -1,18 +1,18 @@
-//! The types that stages hand to each other.
+//! The data types that the stages exchange, and the descriptions of parameters.
 //!
 //! - [`clip`]: a character's motion as key points over time
-//! - [`correspondence`]: contours drawn afresh, matched to the parts
+//! - [`correspondence`]: matching of freshly drawn contours to the parts
 //! - [`effects`]: the parameters of the effects for compositing hosts
-//! - [`footage`]: which frames there are and where their pictures come from
-//! - [`limbs`]: which places of contours tell where key points are
-//! - [`palette`]: colours that tell parts apart
-//! - [`parameters`]: what a user may set, described once
+//! - [`footage`]: the range of frames and the source of their pictures
+//! - [`limbs`]: the points of contours that determine key points
+//! - [`palette`]: colours that distinguish parts
+//! - [`parameters`]: the parameters for users, described once
 //! - [`part`]: a tracked contour with its keys, corrections and results
 //! - [`pattern`]: file names of a numbered sequence
-//! - [`progress`]: how long work reports and is cancelled
-//! - [`proportions`]: limb lengths of a character, postures in another's
+//! - [`progress`]: progress reports and cancelling of long work
+//! - [`proportions`]: limb lengths of a character, and postures in other proportions
 //! - [`raster`]: a rectangle of pixels
-//! - [`skeleton`]: the key points of a posture and how they hang together
+//! - [`skeleton`]: the key points of a posture and the limbs between them
 
 pub mod clip;
 pub mod correspondence;
@@ -35,7 +35,7 @@ pub use pattern::{FramePattern, PatternError};
 pub use progress::{Cancelled, Progress, Silent};
 pub use raster::{Colour, Raster};
 
-/// Footage and the parts that are captured from it: all that the tracker needs and all that it fills in.
+/// Footage and the parts captured from it: the complete input of the tracker, which also receives its results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// The frames.

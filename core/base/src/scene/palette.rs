@@ -1,9 +1,9 @@
-//! Colours that tell parts apart.
+//! Colours that distinguish parts.
 
 use super::Colour;
 
-/// The colour of the part number `index`: hues follow each other by the golden ratio of the circle, so that any number
-/// of neighbours differ; lightness alternates, so that close hues do too.
+/// The colour of part number `index`, sRGB-encoded, 0 to 1. Hues advance by the golden ratio of the circle, so
+/// neighbouring indices differ. Saturation and lightness change with each index, so colours of similar hue differ too.
 pub fn distinct(index: usize) -> Colour {
     const GOLDEN: f64 = 0.618_033_988_749_895;
     const START: f64 = 0.03;

@@ -1,34 +1,36 @@
-//! What a user may set, described once: command line, add-on and other hosts read [`ALL`] and build their options and
-//! panels from it. An id is unique among all stages and never used again for something else.
+//! The parameters for users, described once. The command line, the add-on and other hosts read [`ALL`] and build their
+//! options and panels from it.
+//!
+//! An id is unique among all stages and is never reused for another parameter.
 
 use serde::Serialize;
 
-/// Where a parameter acts.
+/// The stage to which a parameter belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stage {
-    /// All long work.
+    /// Every long computation.
     Run,
     /// Tracking.
     Track,
-    /// Snapping to the ink.
+    /// Snapping to the ink lines.
     Snap,
-    /// Pictures of the result.
+    /// Rendered pictures of the result.
     Render,
     /// Files for other programs.
     Export,
 }
 
-/// One of several values.
+/// One of the values of a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Choice {
-    /// The value.
+    /// The value in options and files.
     pub id: &'static str,
-    /// For people.
+    /// Name that people see.
     pub label: &'static str,
 }
 
-/// Which values a parameter takes.
+/// The values that a parameter takes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
 pub enum Kind {
@@ -39,7 +41,7 @@ pub enum Kind {
         /// All choices.
         choices: &'static [Choice],
     },
-    /// A whole number.
+    /// An integer.
     Integer {
         /// Default.
         default: i64,
@@ -56,7 +58,7 @@ pub enum Kind {
         min: f64,
         /// Greatest value.
         max: f64,
-        /// Unit, for people; may be empty.
+        /// Unit that people see; may be empty.
         unit: &'static str,
     },
     /// On or off.
@@ -69,15 +71,15 @@ pub enum Kind {
 /// A parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Parameter {
-    /// Unique id.
+    /// Id, unique among all parameters.
     pub id: &'static str,
-    /// A few words, for people.
+    /// Name that people see.
     pub label: &'static str,
-    /// One sentence, for people.
+    /// Help text of one sentence.
     pub help: &'static str,
-    /// Where it acts.
+    /// The stage to which it belongs.
     pub stage: Stage,
-    /// Which values it takes.
+    /// The values that it takes.
     #[serde(flatten)]
     pub kind: Kind,
 }
@@ -86,7 +88,7 @@ const fn choice(id: &'static str, label: &'static str) -> Choice {
     Choice { id, label }
 }
 
-/// Every parameter, by stage.
+/// Every parameter, in the order of the stages.
 pub const ALL: [Parameter; 13] = [
     Parameter {
         id: "threads",
@@ -208,12 +210,12 @@ pub const ALL: [Parameter; 13] = [
     },
 ];
 
-/// The parameter of an id.
+/// The parameter with this id; `None` if there is none.
 pub fn find(id: &str) -> Option<&'static Parameter> {
     ALL.iter().find(|parameter| parameter.id == id)
 }
 
-/// The parameters of a stage.
+/// The parameters of a stage, in the order of [`ALL`].
 pub fn of(stage: Stage) -> impl Iterator<Item = &'static Parameter> {
     ALL.iter().filter(move |parameter| parameter.stage == stage)
 }

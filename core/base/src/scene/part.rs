@@ -1,34 +1,37 @@
-//! A part: one contour of a character that is followed through the frames.
+//! A part: one contour of a character, followed through the frames.
+//!
+//! A part contains the artist's input (keys, pins, corrected centres, depths) and the results of tracking and snapping.
+//! Points are in pixels of the footage, x right and y down.
 
 use super::FrameNumber;
 use crate::geometry::Point;
 use std::collections::BTreeMap;
 
-/// A contour with its key frames, the artist's corrections, and what tracking and snapping found.
+/// A contour with its keys, the artist's corrections, and the results of tracking and snapping.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
     /// Unique name.
     pub name: String,
     /// Whether the last control point joins the first.
     pub closed: bool,
-    /// Larger is nearer to the viewer; equal depths have no order.
+    /// Depth; larger is nearer to the viewer. Parts of equal depth have no order.
     pub depth: f64,
-    /// The artist's control points by frame; the same number on each.
+    /// The artist's control points by frame. Their number is the same on each frame.
     pub keys: BTreeMap<FrameNumber, Vec<Point>>,
-    /// Control points the artist moved on frames between keys, by frame and point index.
+    /// Control points that the artist moved on frames between keys, by frame and point index.
     pub pins: BTreeMap<FrameNumber, BTreeMap<usize, Point>>,
-    /// Part centres (mean of the control points) the artist corrected, by frame.
+    /// Part centres (mean of the control points) that the artist corrected, by frame.
     pub centers: BTreeMap<FrameNumber, Point>,
-    /// Tracked control points on every frame from the first to the last key, keys included; of a part with one key on
-    /// every frame around it on which the track is trusted.
+    /// Tracked control points by frame. A part with several keys has them on every frame from the first to the last
+    /// key, keys included. A part with one key has them on the frames around it on which the track is trusted.
     pub tracks: BTreeMap<FrameNumber, Vec<Point>>,
-    /// How sure each tracked point is, 0 to 1.
+    /// Confidence of each tracked point by frame, 0 to 1.
     pub confidence: BTreeMap<FrameNumber, Vec<f64>>,
-    /// Snapped pixel paths: by frame, one path a segment.
+    /// Snapped pixel paths: by frame, one path for each segment.
     pub curves: BTreeMap<FrameNumber, Vec<Vec<Point>>>,
-    /// Of a tracked part with one key: the frames before and after its track on which it was lost, and wants a key.
+    /// For a tracked part with one key: the frames before and after its track on which it was lost. They need a key.
     pub wants_key: Vec<FrameNumber>,
-    /// Depths on single frames where they are other than `depth`.
+    /// Depths of single frames that differ from `depth`.
     pub depths: BTreeMap<FrameNumber, f64>,
 }
 
@@ -52,7 +55,7 @@ impl Span {
         (self.last - self.first + 1) as usize
     }
 
-    /// Never: a span has at least its two keys.
+    /// Always false: a span has at least its two keys.
     pub fn is_empty(&self) -> bool {
         false
     }
@@ -64,19 +67,19 @@ impl Span {
 }
 
 impl Part {
-    /// The spans between neighbouring keys, in time order. None where there are fewer than two keys.
+    /// The spans between neighbouring keys, in time order. Empty if there are fewer than two keys.
     pub fn spans(&self) -> Vec<Span> {
         let frames: Vec<_> = self.keys.keys().copied().collect();
         frames.windows(2).map(|pair| Span { first: pair[0], last: pair[1] }).collect()
     }
 
-    /// The control points on a frame: tracked, or the artist's key.
+    /// The control points on a frame: the tracked ones, otherwise the artist's key.
     pub fn points_at(&self, frame: FrameNumber) -> Option<&Vec<Point>> {
         self.tracks.get(&frame).or_else(|| self.keys.get(&frame))
     }
 
-    /// The contour on a frame as a polyline: the snapped paths joined where they are there and complete, else the
-    /// control points. Of a closed part the last point is not the first again.
+    /// The contour on a frame as a polyline: the joined snapped paths if they are complete, otherwise the control
+    /// points. The last point of a closed part does not repeat the first.
     pub fn outline(&self, frame: FrameNumber) -> Option<Vec<Point>> {
         let points = self.points_at(frame)?;
         let Some(paths) = self.complete_curves(frame) else { return Some(points.clone()) };
@@ -88,7 +91,7 @@ impl Part {
         Some(outline)
     }
 
-    /// The snapped paths of a frame where there is one, not empty, for each segment between its control points.
+    /// The snapped paths of a frame, if each segment between control points has one that is not empty.
     pub fn complete_curves(&self, frame: FrameNumber) -> Option<&Vec<Vec<Point>>> {
         let paths = self.curves.get(&frame)?;
         (!paths.is_empty() && paths.len() == self.segment_count() && paths.iter().all(|path| !path.is_empty()))

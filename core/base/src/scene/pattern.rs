@@ -1,7 +1,7 @@
-//! File names of a numbered sequence: a path with one `%d` or `%0Nd` for the frame number, as `printf` writes it.
+//! File names of a numbered sequence: a path with one `%d` or `%0Nd` for the frame number, as in `printf`.
 //!
-//! `%d` is the plain number, `%0Nd` fills it with zeros to N characters, a minus sign included; longer numbers are
-//! written in full. `%%` stands for a percent sign. The number may stand in the name of a file or of a folder.
+//! `%d` is the plain number. `%0Nd` pads it with zeros to N characters, a minus sign included; longer numbers are
+//! written in full. `%%` stands for a percent sign. The number may be in the name of a file or of a folder.
 
 use super::FrameNumber;
 use std::fmt::Write;

@@ -1,17 +1,24 @@
-//! How long work reports what it does and learns that it is no longer wanted.
+//! Progress reports of long work, and the way to cancel it.
+//!
+//! Long work calls [`Progress::report`] repeatedly. If the call returns [`Cancelled`], the work stops and returns that
+//! error.
 
-/// The caller asked to stop; nothing has been changed.
+/// The caller cancelled the work. Nothing has been changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
 
-/// Told how far long work has come; may stop it. Called from several threads.
+/// Receives the progress of long work and can stop it. It is called from several threads.
 pub trait Progress: Sync {
-    /// `done` is the finished share of the whole, 0 to 1, never falling; `step` names what is being done.
+    /// `done` is the finished share of the work, from 0 to 1; it never falls. `step` names the present step.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] stops the work.
     fn report(&self, step: &str, done: f64) -> Result<(), Cancelled>;
 }
 
-/// Listens to nothing and never stops.
+/// Ignores reports and never cancels.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 

@@ -1,20 +1,20 @@
-//! Proportions of a character, and postures brought from one to another (Liang et al. 2012, eq. 4).
+//! Proportions of a character, and postures converted from one character to another (Liang et al. 2012, eq. 4).
 //!
-//! W_char of the paper is local: each limb is scaled by itself, along its own direction, and the key points behind it
-//! move with it. Here it is the ratio of two typical lengths of the limb: the template's and the character's
-//! ([`Proportions::unify`]), and back, or those of any two characters ([`Proportions::to`]). A limb that looks shorter
-//! because it points at the viewer stays shorter by the same share.
+//! W_char of the paper is local: each limb is scaled along its own direction, and the key points beyond it move with
+//! it. Here the scale is the ratio of two typical lengths of the limb: the template's and the character's
+//! ([`Proportions::unify`]), or those of any two characters ([`Proportions::to`]). A limb that looks shorter because it
+//! points towards the viewer stays shorter by the same share.
 
 use super::skeleton::{COUNT, GIRDLES, LIMBS, PARENTS, Posture, limb_lengths, torso};
 
-/// Limbs shorter than this share of the torso have no direction to be scaled along.
+/// Limbs shorter than this share of the torso have no direction along which to scale them.
 const NO_LENGTH: f64 = 1e-6;
 
-/// Typical lengths of the limbs; that of key point `k` at `k − 1`, in any unit.
+/// Typical lengths of the limbs in any unit. Entry `k − 1` belongs to key point `k`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proportions(pub [f64; LIMBS]);
 
-/// The template's proportions, in torso lengths: a grown figure seen from the side, between front and profile.
+/// The template's proportions in torso lengths: an adult figure seen from the side, between front and profile.
 pub const TEMPLATE: Proportions =
     Proportions([0.55, 0.45, 0.2, 0.3, 0.22, 0.5, 0.45, 0.22, 0.5, 0.45, 0.15, 0.8, 0.75, 0.15, 0.8, 0.75]);
 
@@ -30,7 +30,7 @@ impl Proportions {
         self.0[0] + self.0[1]
     }
 
-    /// A posture of a character of these proportions in another's; the pelvis stays.
+    /// Converts a posture of a character with these proportions to those of `other`. The pelvis stays.
     pub fn to(&self, other: &Self, posture: &Posture) -> Posture {
         let size = other.torso() / self.torso().max(f64::MIN_POSITIVE);
         let mut moved = *posture;
@@ -42,9 +42,11 @@ impl Proportions {
         moved
     }
 
-    /// [`Self::to`] for a drawing, whose limbs hang on its body where they are drawn. A body that turns towards the viewer
-    /// shows its shoulders and hips several times as far apart as in profile, but a drawing does not turn: they, and what
-    /// follows them, go no farther from neck and pelvis than in the drawing.
+    /// Like [`Self::to`], for a drawing whose limbs hang on its body where they are drawn.
+    ///
+    /// A body that turns towards the viewer shows its shoulders and hips several times as far apart as in profile, but
+    /// a drawing does not turn. Therefore shoulders and hips stay within their drawn distance from neck and pelvis;
+    /// their arms and legs move with them.
     pub fn to_drawing(&self, drawing: &Self, posture: &Posture) -> Posture {
         let mut moved = self.to(drawing, posture);
         for joint in GIRDLES {
@@ -55,18 +57,18 @@ impl Proportions {
         moved
     }
 
-    /// A posture in the template's proportions and of torso length 1; the pelvis stays.
+    /// A posture in the template's proportions, with torso length 1. The pelvis stays.
     pub fn unify(&self, posture: &Posture) -> Posture {
         self.to(&TEMPLATE, posture)
     }
 }
 
-/// The median torso of some postures.
+/// The median torso length of some postures.
 pub fn typical_torso(postures: &[Posture]) -> f64 {
     median(postures.iter().map(torso).collect())
 }
 
-/// The median; 0 of nothing.
+/// The median; 0 for an empty list.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let n = values.len();

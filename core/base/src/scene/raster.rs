@@ -3,7 +3,7 @@
 /// A colour as the screen shows it: sRGB-encoded red, green and blue, 0 to 1.
 pub type Colour = [f32; 3];
 
-/// `width` × `height` values in rows from the top left. Never of a length that does not fit its size.
+/// `width` × `height` values in rows from the top left. The number of values always fits the size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Raster<T> {
     width: usize,
@@ -12,17 +12,17 @@ pub struct Raster<T> {
 }
 
 impl<T: Copy> Raster<T> {
-    /// Every pixel set to `value`.
+    /// A raster with every pixel set to `value`.
     pub fn new(width: usize, height: usize, value: T) -> Self {
         Self { width, height, data: vec![value; width * height] }
     }
 
-    /// Rows of `data` from the top; `None` unless there are `width * height` values.
+    /// A raster of the rows in `data`, from the top; `None` unless there are `width * height` values.
     pub fn from_vec(width: usize, height: usize, data: Vec<T>) -> Option<Self> {
         (data.len() == width.checked_mul(height)?).then_some(Self { width, height, data })
     }
 
-    /// `value(x, y)` at each pixel.
+    /// A raster with `value(x, y)` at each pixel.
     #[inline(always)]
     pub fn from_fn(width: usize, height: usize, mut value: impl FnMut(usize, usize) -> T) -> Self {
         let mut data = Vec::with_capacity(width * height);
@@ -44,20 +44,21 @@ impl<T: Copy> Raster<T> {
         self.height
     }
 
-    /// The pixel in column `x` of row `y`. Panics outside.
+    /// The pixel in column `x` of row `y`. Panics if the index is outside of the data; only debug builds check `x`
+    /// itself.
     #[inline(always)]
     pub fn get(&self, x: usize, y: usize) -> T {
         debug_assert!(x < self.width);
         self.data[y * self.width + x]
     }
 
-    /// Sets the pixel in column `x` of row `y`. Panics outside.
+    /// Sets the pixel in column `x` of row `y`. Panics like [`Self::get`].
     pub fn set(&mut self, x: usize, y: usize, value: T) {
         debug_assert!(x < self.width);
         self.data[y * self.width + x] = value;
     }
 
-    /// The pixel nearest to (`x`, `y`) that lies in the picture. Panics where the picture is empty.
+    /// The pixel of the raster nearest to (`x`, `y`). Panics if the raster is empty.
     #[inline(always)]
     pub fn clamped(&self, x: isize, y: isize) -> T {
         let x = x.clamp(0, self.width as isize - 1) as usize;
@@ -71,7 +72,7 @@ impl<T: Copy> Raster<T> {
         &self.data[y * self.width..(y + 1) * self.width]
     }
 
-    /// Row `y`, to change.
+    /// Row `y`, mutable.
     pub fn row_mut(&mut self, y: usize) -> &mut [T] {
         &mut self.data[y * self.width..(y + 1) * self.width]
     }
@@ -81,12 +82,12 @@ impl<T: Copy> Raster<T> {
         &self.data
     }
 
-    /// All pixels, row by row, to change.
+    /// All pixels, row by row, mutable.
     pub fn data_mut(&mut self) -> &mut [T] {
         &mut self.data
     }
 
-    /// The picture with `f` applied to each pixel.
+    /// The raster with `f` applied to each pixel.
     pub fn map<U>(&self, f: impl FnMut(T) -> U) -> Raster<U> {
         Raster { width: self.width, height: self.height, data: self.data.iter().copied().map(f).collect() }
     }

@@ -1,8 +1,8 @@
-//! The template skeleton: 17 key points in a fixed order, and how they hang together.
+//! The template skeleton: 17 key points in a fixed order, and the limbs between them.
 //!
-//! A posture is a place for each key point (Liang et al. 2012, section 3). Sixteen limbs lead from a parent to a child
-//! outward from the pelvis; five pairs of points have a left and a right. Lengths are told in torso lengths, the way from
-//! pelvis over chest to neck.
+//! A posture is a position for each key point (Liang et al. 2012, section 3). Sixteen limbs lead from a parent to a
+//! child, outward from the pelvis. Some points belong to the left or the right side of the body and mirror each other.
+//! Lengths are given in torso lengths; the torso leads from the pelvis over the chest to the neck.
 
 use crate::geometry::Point;
 
@@ -12,7 +12,7 @@ pub const COUNT: usize = 17;
 /// Number of limbs.
 pub const LIMBS: usize = COUNT - 1;
 
-/// A place for each key point, in the order of [`NAMES`].
+/// A position for each key point, in the order of [`NAMES`].
 pub type Posture = [Point; COUNT];
 
 /// Names of the key points.
@@ -36,16 +36,16 @@ pub const NAMES: [&str; COUNT] = [
     "r_ankle",
 ];
 
-/// Where each key point hangs; the pelvis on itself. A parent comes before its children.
+/// Parent of each key point; the pelvis is its own. A parent comes before its children.
 pub const PARENTS: [usize; COUNT] = [0, 0, 1, 2, 3, 2, 5, 6, 2, 8, 9, 0, 11, 12, 0, 14, 15];
 
-/// The point of the other side; those of the middle are their own.
+/// The point on the other side of the body; points in the middle map to themselves.
 pub const MIRROR: [usize; COUNT] = [0, 1, 2, 3, 4, 8, 9, 10, 5, 6, 7, 14, 15, 16, 11, 12, 13];
 
 /// Hip, knee and ankle of both legs.
 pub const LEGS: [[usize; 3]; 2] = [[11, 12, 13], [14, 15, 16]];
 
-/// Shoulders and hips; the key points of an arm or a leg follow each.
+/// Shoulders and hips. The two key points after each belong to the same arm or leg.
 pub const GIRDLES: [usize; 4] = [5, 8, 11, 14];
 
 /// Length of the torso: pelvis to chest to neck.
@@ -53,7 +53,7 @@ pub fn torso(posture: &Posture) -> f64 {
     posture[0].distance(posture[1]) + posture[1].distance(posture[2])
 }
 
-/// Lengths of the limbs; that of key point `k` at `k − 1`.
+/// Lengths of the limbs. Entry `k − 1` belongs to key point `k`.
 pub fn limb_lengths(posture: &Posture) -> [f64; LIMBS] {
     std::array::from_fn(|limb| posture[limb + 1].distance(posture[PARENTS[limb + 1]]))
 }

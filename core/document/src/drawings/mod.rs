@@ -1,37 +1,39 @@
 //! Drawings on key frames, pairs made by hand, pegs, and the in-betweens made from them.
 //!
-//! A document may hold, beside what it holds already:
+//! Besides its scene a document may contain:
 //!
 //! ```json
 //! "drawings": [{"frame": 0, "spacing": "smooth", "corner": false, "strokes": [
-//!     {"points": [[x, y], "…"], "closed": true, "colour": [r, g, b], "material": 0, "layer": 2, "peg": "arm"}, "…"]}, "…"],
+//!   {"points": [[x, y], "…"], "closed": true, "colour": [r, g, b], "material": 0, "layer": 2, "peg": "arm"}, "…"]}, "…"],
 //! "pairs": [{"frame": 0, "from": 3, "to": 5}, {"frame": 0, "from": 4, "to": null}],
 //! "pegs": [{"name": "arm", "parent": "body", "pivot": [x, y], "keys": [
-//!     {"frame": 0, "shift": [x, y], "turn": 30, "scale": 1.2, "timing": "ease_in_out"}, "…"]}]
+//!   {"frame": 0, "shift": [x, y], "turn": 30, "scale": 1.2, "timing": "ease_in_out"}, "…"]}]
 //! ```
 //!
-//! - `drawings`: frames rising; strokes from behind to the front. `colour` (sRGB, 0 to 1), `material`, `layer` and
-//!   `peg` may be left out, and so may `corner`, a corner in time: velocities do not join there. `spacing` says how the
-//!   movement to the next drawing runs: `"smooth"` (also where it is left out), a movement function, or a spacing
-//!   chart, the list of shares of the way, one for each frame between.
-//! - A movement function is one of `"constant"` (a hold), `"linear"`, `"ease_in"`, `"ease_out"`, `"ease_in_out"`,
-//!   `"cosine"`, `"bounce"`, or `{"curve": [[time, share], …]}`, or `{"bounce": count}`.
-//! - `pairs`: stroke `from` of the drawing on `frame` is stroke `to` of the next one, or none; by index from 0.
-//! - `pegs`: `turn` in degrees from x towards y, whole turns count; what is left out of a key is at rest, a `parent`
-//!   that is left out is none.
+//! - `drawings`: frames ascend; strokes are listed from back to front. `colour` (sRGB, 0 to 1), `material`, `layer` and
+//!   `peg` are optional. `corner` is optional too: it marks a corner in time, where velocities need not join. `spacing`
+//!   determines the movement to the next drawing: `"smooth"` (the default), a movement function, or a spacing chart,
+//!   which is a list with the share of the way for each frame between.
+//! - A movement function is `"constant"` (a hold), `"linear"`, `"ease_in"`, `"ease_out"`, `"ease_in_out"`, `"cosine"`,
+//!   `"bounce"`, `{"curve": [[time, share], …]}`, or `{"bounce": count}`.
+//! - `pairs`: stroke `from` of the drawing on `frame` becomes stroke `to` of the next drawing, or vanishes if `to` is
+//!   null. Both are indices from 0.
+//! - `pegs`: `turn` is in degrees from x towards y, and complete turns count. Fields missing in a key have their values
+//!   at rest. A peg without `parent` has none.
 //!
-//! Tweening writes, in place of those of an earlier run:
+//! Tweening writes these fields; they replace those of an earlier run:
 //!
 //! ```json
-//! "matches": [{"frame": 0, "next": 8, "pairs": [{"from": 3, "to": 5, "reversed": false, "start": 0.25, "confidence": 0.97,
-//!     "by_hand": true}, "…"], "split": [{"whole": 1, "pieces": [[2, false], [7, true]]}], "joined": [], "vanished": [4],
-//!     "appeared": []}, "…"],
-//! "in_betweens": [{"frame": 1, "strokes": [{"track": 0, "points": [[x, y], "…"], "closed": true, "opacity": 1, "colour": "…",
-//!     "material": "…", "layer": "…"}, "…"]}, "…"]
+//! "matches": [{"frame": 0, "next": 8, "pairs": [{"from": 3, "to": 5, "reversed": false, "start": 0.25,
+//!   "confidence": 0.97, "by_hand": true}, "…"], "split": [{"whole": 1, "pieces": [[2, false], [7, true]]}], "joined": [],
+//!   "vanished": [4], "appeared": []}, "…"],
+//! "in_betweens": [{"frame": 1, "strokes": [{"track": 0, "points": [[x, y], "…"], "closed": true, "opacity": 1,
+//!   "colour": "…", "material": "…", "layer": "…"}, "…"]}, "…"]
 //! ```
 //!
-//! - `start`: of closed strokes the share of the counterpart's length at which the first point of the other lies.
-//! - `track`: the same number for the same stroke on all frames.
+//! - `start`: for closed strokes, the position of the first point on the counterpart, as a share of the counterpart's
+//!   length.
+//! - `track`: the number of a stroke, the same on all frames.
 
 mod read;
 
@@ -47,19 +49,19 @@ use serde_json::{Map, Value, json};
 
 pub use super::fields::FieldError as DrawingsError;
 
-/// A movement function or chart as it is written.
+/// A movement function or spacing chart, as written in a document.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum WrittenTiming {
     /// `"smooth"`.
     #[default]
     Smooth,
-    /// A name.
+    /// The name of a movement function.
     Named(String),
     /// `{"curve": [[time, share], …]}`.
     Curve(Vec<(f64, f64)>),
     /// `{"bounce": count}`.
     Bounce(u32),
-    /// A list of shares.
+    /// A spacing chart: shares of the way.
     Chart(Vec<f64>),
 }
 
@@ -70,13 +72,13 @@ pub struct DrawnStroke {
     pub points: Vec<Point>,
     /// Whether the last point joins the first.
     pub closed: bool,
-    /// sRGB-encoded, 0 to 1.
+    /// Colour, sRGB-encoded, 0 to 1.
     pub colour: Option<[f32; 3]>,
-    /// Number of its material.
+    /// Number of the stroke's material.
     pub material: Option<u32>,
-    /// Number of its layer.
+    /// Number of the stroke's layer.
     pub layer: Option<u32>,
-    /// Index of its peg.
+    /// Index of the stroke's peg.
     pub peg: Option<usize>,
 }
 
@@ -85,11 +87,11 @@ pub struct DrawnStroke {
 pub struct Drawing {
     /// The frame.
     pub frame: FrameNumber,
-    /// From behind to the front.
+    /// Strokes from back to front.
     pub strokes: Vec<DrawnStroke>,
-    /// How the movement to the next drawing runs.
+    /// Spacing of the movement to the next drawing.
     pub spacing: WrittenTiming,
-    /// Whether velocities need not join here.
+    /// Whether this is a corner in time, where velocities need not join.
     pub corner: bool,
 }
 
@@ -98,9 +100,9 @@ pub struct Drawing {
 pub struct DrawnPair {
     /// Index of the earlier drawing.
     pub drawing: usize,
-    /// Stroke of it.
+    /// Index of its stroke.
     pub from: usize,
-    /// Stroke of the next one.
+    /// Index of the stroke of the next drawing; `None` if the stroke vanishes.
     pub to: Option<usize>,
 }
 
@@ -109,13 +111,13 @@ pub struct DrawnPair {
 pub struct DrawnPegKey {
     /// The frame.
     pub frame: FrameNumber,
-    /// In pixels.
+    /// Shift in pixels.
     pub shift: Point,
-    /// In degrees.
+    /// Rotation in degrees, from x towards y.
     pub turn: f64,
-    /// 1 at rest.
+    /// Scale; 1 at rest.
     pub scale: f64,
-    /// How the movement to the next key runs.
+    /// Movement function to the next key.
     pub timing: WrittenTiming,
 }
 
@@ -124,18 +126,18 @@ pub struct DrawnPegKey {
 pub struct DrawnPeg {
     /// Unique name.
     pub name: String,
-    /// Index of the peg that it hangs on.
+    /// Index of the parent peg.
     pub parent: Option<usize>,
-    /// In pixels.
+    /// Pivot in pixels.
     pub pivot: Point,
     /// Its keys.
     pub keys: Vec<DrawnPegKey>,
 }
 
-/// What a document holds for tweening.
+/// The data for tweening in a document.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawings {
-    /// Frames rising.
+    /// Drawings in ascending order of frames.
     pub drawings: Vec<Drawing>,
     /// Pairs made by hand.
     pub pairs: Vec<DrawnPair>,
@@ -143,33 +145,33 @@ pub struct Drawings {
     pub pegs: Vec<DrawnPeg>,
 }
 
-/// A drawing between keys.
+/// A generated drawing between keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnBetween {
     /// The frame.
     pub frame: FrameNumber,
-    /// From behind to the front: track, opacity, stroke.
+    /// Strokes from back to front: track, opacity, stroke.
     pub strokes: Vec<(usize, f64, DrawnStroke)>,
 }
 
 impl Document {
-    /// The drawings, pairs and pegs of the document; none where it has none.
+    /// The drawings, pairs and pegs of the document; empty if it has none.
     ///
     /// # Errors
     ///
-    /// The first field that is not as it must be.
+    /// The first invalid field.
     pub fn drawings(&self) -> Result<Drawings, DrawingsError> {
         let (read, problems) = self.drawings_and_problems();
         problems.into_iter().next().map_or(Ok(read), Err)
     }
 
-    /// The drawings, pairs and pegs of the document, and every field of theirs that is not as it must be. What is wrong
-    /// is at its default among the rest, in its place.
+    /// The drawings, pairs and pegs of the document, and all invalid fields. An invalid value is replaced by its
+    /// default, so indices stay valid.
     pub fn drawings_and_problems(&self) -> (Drawings, Vec<DrawingsError>) {
         read::Reader::default().document(self)
     }
 
-    /// Puts the list `json` into a field that the document's scene does not hold, in place of what was there.
+    /// Puts the list `json` into a field that is not part of the document's scene. It replaces an earlier value.
     pub(super) fn set_other_field(&mut self, name: &'static str, json: String) {
         if self.layout.top.is_empty() {
             self.layout.top.extend(TOP.map(Field::Known));
@@ -188,7 +190,7 @@ impl Document {
         })
     }
 
-    /// The list in such a field; empty where there is none.
+    /// The list in a field that is not part of the scene; empty if the field is missing.
     pub(super) fn other_list(&self, name: &'static str) -> Result<Vec<Value>, DrawingsError> {
         match self.other_field(name) {
             Some(json) => {
@@ -199,7 +201,7 @@ impl Document {
         }
     }
 
-    /// Puts drawings into the document.
+    /// Puts drawings into the document, in place of earlier ones. Spacing, corners and pegs are not written.
     pub fn set_drawings(&mut self, drawings: &[Drawing]) {
         let written = drawings.iter().map(|d| {
             let strokes = d.strokes.iter().map(|s| Value::Object(stroke_fields(s, |v| v))).collect::<Vec<_>>();
@@ -208,7 +210,7 @@ impl Document {
         self.set_other_field("drawings", lines(written));
     }
 
-    /// Puts what tweening found into the document: matches, as JSON objects, and the drawings between keys.
+    /// Puts the results of tweening into the document: matches, as JSON objects, and the drawings between keys.
     pub fn set_in_betweens(&mut self, matches: Vec<Value>, drawn: &[DrawnBetween]) {
         let rounded = |v: f64| (v * 10f64.powi(DECIMALS)).round() / 10f64.powi(DECIMALS);
         let written = drawn.iter().map(|between| {
@@ -226,27 +228,27 @@ impl Document {
     }
 }
 
-/// JSON path of a drawing, with its frame.
+/// Place of a drawing in messages: its JSON path and frame.
 pub fn drawing_place(index: usize, frame: FrameNumber) -> String {
     format!("drawings[{index}] (frame {frame})")
 }
 
-/// JSON path of a pair made by hand, with the frame of its earlier drawing.
+/// Place of a pair in messages: its JSON path and the frame of its earlier drawing.
 pub fn pair_place(index: usize, frame: FrameNumber) -> String {
     format!("pairs[{index}] (frame {frame})")
 }
 
-/// JSON path of a peg, with its name.
+/// Place of a peg in messages: its JSON path and name.
 pub fn peg_place(index: usize, name: &str) -> String {
     format!("pegs[{index}] {name:?}")
 }
 
-/// JSON path of a key of the peg at `peg`, with its frame.
+/// Place of a key of the peg at `peg` in messages: its JSON path and frame.
 pub fn peg_key_place(peg: &str, key: usize, frame: FrameNumber) -> String {
     format!("{peg}.keys[{key}] (frame {frame})")
 }
 
-/// A list with one element a line.
+/// A JSON list with one element in each line.
 pub(super) fn lines(values: impl Iterator<Item = Value>) -> String {
     let lines: Vec<String> = values.map(|value| format!("\n    {value}")).collect();
     if lines.is_empty() { "[]".into() } else { format!("[{}\n  ]", lines.join(",")) }

@@ -1,7 +1,8 @@
-//! Reads drawings, pairs and pegs of JSON values.
+//! Reads drawings, pairs and pegs from JSON values.
 //!
-//! What is wrong is noted, and reading goes on with the default in its place: indices stay what they are, and all that
-//! is wrong is found at once. What depends on a field that could not be read is not complained of again.
+//! An invalid value is recorded as a problem, and reading continues with the default in its place. Indices therefore
+//! stay valid, and one reading finds all problems. A value that depends on an unreadable field causes no further
+//! problem.
 
 use super::super::Document;
 use super::super::fields::{array, count, described, flag, frame, given, number, object, point, wrong};
@@ -13,39 +14,43 @@ use rototoon_base::scene::FrameNumber;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// A movement function or chart of a JSON value; `place` names it in errors.
+/// Reads a movement function or spacing chart; `place` names it in errors.
 pub fn read_timing(value: &Value, place: &str) -> Result<WrittenTiming, DrawingsError> {
     timing(Some(value), place)
 }
 
-/// Pegs of JSON values.
+/// Reads pegs.
+///
+/// # Errors
+///
+/// The first invalid field.
 pub fn read_pegs(values: &[Value]) -> Result<Vec<DrawnPeg>, DrawingsError> {
     let mut reader = Reader::default();
     let pegs = reader.pegs(values);
     reader.problems.into_iter().next().map_or(Ok(pegs), Err)
 }
 
-/// What is wrong so far.
+/// Collects the problems found so far.
 #[derive(Default)]
 pub(super) struct Reader {
     problems: Vec<DrawingsError>,
 }
 
-/// A drawing as far as it could be read.
+/// A drawing, as far as it can be read.
 struct Read {
     drawing: Drawing,
-    /// The frame, where it could be read.
+    /// The frame, if it can be read.
     frame: Option<FrameNumber>,
-    /// Whether its strokes could be counted.
+    /// Whether the number of its strokes is known.
     counted: bool,
 }
 
 impl Reader {
-    /// Reads all that a document holds, pegs first, since strokes name them.
+    /// Reads all data of a document. Pegs come first, since strokes name them.
     pub fn document(mut self, document: &Document) -> (Drawings, Vec<DrawingsError>) {
         let mut list = |name| self.noted(document.other_list(name));
         let (pegs, drawings, pairs) = (list("pegs"), list("drawings"), list("pairs"));
-        // Pairs of drawings that could not be read are not looked for among the others.
+        // Pairs are not checked against drawings that cannot be read.
         let listed = drawings.is_some();
         let (pegs, drawings, pairs) =
             (pegs.unwrap_or_default(), drawings.unwrap_or_default(), pairs.unwrap_or_default());
@@ -59,7 +64,7 @@ impl Reader {
         (Drawings { drawings, pairs, pegs }, self.problems)
     }
 
-    /// What was read; if that failed, nothing, and the problem is noted.
+    /// The value read. On failure it is `None`, and the problem is recorded.
     fn noted<T>(&mut self, read: Result<T, DrawingsError>) -> Option<T> {
         read.map_err(|problem| self.problems.push(problem)).ok()
     }
@@ -84,7 +89,7 @@ impl Reader {
         Read { drawing, frame: on, counted: list.is_some() }
     }
 
-    /// Frames rise.
+    /// Checks that frames ascend.
     fn order(&mut self, read: &[Read]) {
         let mut last: Option<(usize, FrameNumber)> = None;
         for (k, frame) in read.iter().enumerate().filter_map(|(k, read)| Some((k, read.frame?))) {
@@ -99,7 +104,7 @@ impl Reader {
         }
     }
 
-    /// The pairs; `known` says whether the frames of all drawings could be read.
+    /// Reads the pairs; `known` says whether the frames of all drawings are known.
     fn pairs(&mut self, list: &[Value], drawings: &[Read], known: bool) -> Vec<DrawnPair> {
         let mut seen = BTreeMap::new();
         let mut found = Vec::new();
@@ -142,7 +147,7 @@ impl Reader {
         list.iter().enumerate().map(|(k, value)| self.peg(value, k, &names)).collect()
     }
 
-    /// The peg; if it is no object, one without a name, which has been complained of.
+    /// Reads a peg. A value that is not an object gives a peg without a name; its problem is already recorded.
     fn peg(&mut self, value: &Value, k: usize, names: &BTreeMap<&str, usize>) -> DrawnPeg {
         let none = Map::new();
         let fields = value.as_object().unwrap_or(&none);
@@ -188,7 +193,7 @@ fn named(value: Option<&Value>, place: &str, pegs: &BTreeMap<&str, usize>) -> Re
     found.copied().ok_or_else(|| wrong(place, &described(value), "the name of a peg"))
 }
 
-/// The pair, if its drawing could be read.
+/// Reads a pair; `None` if its drawing could not be read.
 fn pair(value: &Value, k: usize, drawings: &[Read], known: bool) -> Result<Option<DrawnPair>, DrawingsError> {
     let place = format!("pairs[{k}]");
     let fields = object(value, &place)?;

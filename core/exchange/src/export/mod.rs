@@ -1,10 +1,10 @@
-//! What was found, for other programs.
+//! Exports the tracked parts to other programs.
 //!
-//! - [`svg`](mod@svg): one animated path a part
-//! - [`nuke`](mod@nuke): a RotoPaint node
-//! - [`silhouette`](mod@silhouette): Silhouette shapes
-//! - [`outlines`]: contours with one number of points
-//! - [`xml`]: text in XML
+//! - [`svg`]: one animated path for each part
+//! - [`nuke`]: a RotoPaint node for Nuke
+//! - [`silhouette`]: Silhouette shapes
+//! - [`outlines`]: contours with the same number of points on every frame
+//! - [`xml`]: escaping of text for XML
 
 pub mod nuke;
 pub mod outlines;
@@ -18,7 +18,7 @@ pub use svg::{Motion, SvgOptions, svg};
 
 use rototoon_base::scene::Scene;
 
-/// The parts as lists of shapes hold them: the nearest first, of equal depths the later one.
+/// Indices of the parts in the order of shape lists: nearest first; of equal depths the later part first.
 fn nearest_first(scene: &Scene) -> Vec<usize> {
     let mut order: Vec<usize> = (0..scene.parts.len()).collect();
     order.sort_by(|&a, &b| scene.parts[b].depth.total_cmp(&scene.parts[a].depth).then(b.cmp(&a)));

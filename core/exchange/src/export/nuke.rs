@@ -1,26 +1,29 @@
 //! Shapes for Nuke: a RotoPaint node as text (`.nk`), to open as a script or to paste into one.
 //!
-//! Each part is a Bézier shape in the root layer, the nearest first, as the node lists them. A point is three pairs of
-//! numbers: the handle before it, itself, the handle after it, handles relative to their point. They are zero, so that the
-//! sides are straight as the part's are. Where a part has several frames each number is a curve of keys `{{frame value} …}`.
-//! Coordinates are pixels, x right, y up, origin at the lower left; the lifetime of a shape ends with its frames.
+//! Each part is a Bézier shape in the root layer; the nearest comes first, as in the node's list. A point consists of
+//! three pairs of numbers: the handle before it, its position, and the handle after it. Handles are relative to their
+//! point. They are zero, so the sides are straight like those of the part. If a part has several frames, each number
+//! that changes is a curve of keys `{{frame value} …}`. Coordinates are pixels with x right, y up and the origin at the
+//! lower left. The lifetime of a shape is the range of its frames.
 //!
-//! Foundry: Nuke Developer Kit, «Roto serialisation format» (version 1.2 of the curves, since Nuke 7). Numbers are written as
-//! `x` and the eight hexadecimal digits of a 32-bit float, as Nuke writes them.
+//! Source: Foundry, Nuke Developer Kit, "Roto serialisation format" (version 1.2 of the curves, since Nuke 7). As in
+//! Nuke, a number is an `x` and the hexadecimal digits of a 32-bit float.
+//!
+//! Limits: a part that vanishes between its frames is interpolated there.
 
 use super::outlines::Outlines;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, Scene, palette};
 use std::fmt::Write;
 
-/// Handles are relative to their point.
+/// Flag: handles are relative to their point.
 const RELATIVE_HANDLES: u32 = 8192;
-/// The last point does not join the first.
+/// Flag: the last point does not join the first.
 const OPEN: u32 = 32;
-/// The lifetime of a shape is a range of frames.
+/// Type of lifetime: a range of frames.
 const FRAME_RANGE: f64 = 4.0;
 
-/// The scene's parts as a RotoPaint node, points of snapped paths about `spacing` pixels apart.
+/// The scene's parts as a RotoPaint node. Points of snapped paths are about `spacing` pixels apart.
 pub fn nuke(scene: &Scene, spacing: f64) -> String {
     let (width, height) = (scene.footage.width, scene.footage.height);
     let mut out = String::from("set cut_paste_input [stack 0]\nversion 7.0 v1\nRotoPaint {\n inputs 0\n");
@@ -69,7 +72,7 @@ fn shape(out: &mut String, scene: &Scene, index: usize, spacing: f64) {
     );
 }
 
-/// A number, or a curve of keys where it changes from frame to frame.
+/// A number, or a curve of keys if the value changes between frames.
 fn channel(values: impl Iterator<Item = (FrameNumber, f64)>) -> String {
     let keys: Vec<_> = values.map(|(frame, value)| (number(frame.into()), number(value))).collect();
     match keys.first() {
@@ -81,13 +84,13 @@ fn channel(values: impl Iterator<Item = (FrameNumber, f64)>) -> String {
     }
 }
 
-/// A 32-bit float as its bits.
+/// The bits of a 32-bit float in hexadecimal digits.
 fn number(value: f64) -> String {
     let bits = (value as f32).to_bits();
     if bits == 0 { "0".to_owned() } else { format!("x{bits:x}") }
 }
 
-/// A name in quotes, without what ends or escapes them.
+/// A name in quotes. Characters that end or escape it become underscores.
 fn name(name: &str) -> String {
     let plain = |c: char| if "\"'\\{}[]$".contains(c) || c.is_control() { '_' } else { c };
     format!("\"{}\"", name.chars().map(plain).collect::<String>())
@@ -124,7 +127,7 @@ mod tests {
     #[test]
     fn what_moves_has_keys_and_what_rests_has_none() {
         let text = nuke(&scene(), 1.0);
-        // Frames 1 and 3 as floats, 0.5 and 2; y is turned up: 28 and 20.
+        // Frames 1 and 3 as floats, 0.5 and 2; y points up: 28 and 20.
         let moving = "{{{x3f800000 x3f000000} {x40400000 x40000000}} x41e00000}";
         assert!(text.contains(moving), "{text}");
         assert!(text.contains("{x41000000 x41a00000}"), "{text}");

@@ -1,17 +1,17 @@
-//! A part's contour with the same number of points on every frame, as formats with animated shapes need it.
+//! A part's contour with the same number of points on every frame, as formats with animated shapes require it.
 //!
-//! A snapped path is resampled by arc length, each segment to the count that its longest path asks for. Without snapped
-//! paths the points are the control points.
+//! Snapped paths are resampled by arc length. Each segment gets the number of points that its longest path requires.
+//! Without snapped paths the points are the control points.
 
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::{FrameNumber, Part};
 
-/// Most points that one segment is given.
+/// Greatest number of points of one segment.
 const MOST_POINTS: f64 = 2000.0;
 /// Least distance between points, in pixels.
 const LEAST_SPACING: f64 = 0.25;
 
-/// Contours of one part.
+/// The contours of one part.
 #[derive(Clone, Debug)]
 pub struct Outlines<'a> {
     part: &'a Part,
@@ -22,7 +22,7 @@ pub struct Outlines<'a> {
 }
 
 impl<'a> Outlines<'a> {
-    /// The contours of a part with points of snapped paths about `spacing` pixels apart.
+    /// Prepares the contours of a part. Points of snapped paths are about `spacing` pixels apart.
     pub fn new(part: &'a Part, spacing: f64) -> Self {
         let spacing = spacing.max(LEAST_SPACING);
         let mut counts = Vec::new();
@@ -38,7 +38,7 @@ impl<'a> Outlines<'a> {
         Self { part, points, counts }
     }
 
-    /// The contour on a frame. `None` where the part has none there, or one with another number of points than its first key.
+    /// The contour on a frame, in pixels; `None` if the part has no points there.
     pub fn at(&self, frame: FrameNumber) -> Option<Vec<Point>> {
         // A document may hold a frame with another number of points: it is no contour of this part.
         let points = self.part.points_at(frame).filter(|points| !points.is_empty() && points.len() == self.points)?;
@@ -59,7 +59,7 @@ impl<'a> Outlines<'a> {
         Some(line)
     }
 
-    /// Frames of `first` to `last` on which there is a contour, with it.
+    /// The frames from `first` to `last` on which there is a contour, each with its contour.
     pub fn within(&self, first: FrameNumber, last: FrameNumber) -> Vec<(FrameNumber, Vec<Point>)> {
         (first..=last).filter_map(|frame| Some((frame, self.at(frame)?))).collect()
     }

@@ -1,11 +1,15 @@
 //! Shapes for Silhouette (`.fxs`).
 //!
-//! An XML document: in one layer a Bézier shape for each part, the nearest first, with a key of its path on every frame on
-//! which the part has a contour. The handles of every point lie on the point, so that the sides are straight as the part's
-//! are. Coordinates do not depend on the resolution: from the middle of the picture, x right, y down, in heights of the
-//! picture. Frames of keys are counted from the session's first frame, which the root names.
+//! The file is an XML document. One layer contains a Bézier shape for each part, nearest first. A shape has a key of
+//! its path on every frame on which the part has a contour. Both handles of a point are at the point, so the sides are
+//! straight like those of the part.
 //!
-//! The format is not published by its makers; this is what M. Borgo's exporter for Nuke writes, which Silhouette reads.
+//! Coordinates are independent of the resolution: the origin is the middle of the picture, x points right, y down, and
+//! the unit is the height of the picture. Key frames are counted from the session's first frame, which the root element
+//! gives.
+//!
+//! Source: the makers have not published the format. This module writes what M. Borgo's exporter for Nuke writes;
+//! Silhouette reads that.
 
 use super::outlines::Outlines;
 use super::xml::escaped;
@@ -16,7 +20,7 @@ use std::fmt::Write;
 /// Decimals of a coordinate: a hundredth of a pixel at 10 000 lines.
 const DECIMALS: usize = 6;
 
-/// The scene's parts as a Silhouette document, points of snapped paths about `spacing` pixels apart.
+/// The scene's parts as a Silhouette document. Points of snapped paths are about `spacing` pixels apart.
 pub fn silhouette(scene: &Scene, spacing: f64) -> String {
     let footage = &scene.footage;
     let mut out = String::from("<!-- Silhouette Shape File -->\n");

@@ -1,8 +1,9 @@
-//! SVG with one animated path a part.
+//! SVG with one animated path for each part.
 //!
-//! Each part is a `path` with a `title` and a SMIL animation of its `d` over the footage, looped; browsers play it as it is.
-//! Each path of a part has the same number of points on every frame, as SMIL needs to interpolate ([`super::outlines`]).
-//! Where a part has no contour it is hidden. Drawn from far to near by depth.
+//! Each part is a `path` with a `title` and a SMIL animation of its `d` over the footage. The animation loops, and
+//! browsers play it directly. SMIL can interpolate only paths with the same number of points, so every frame gets the
+//! same number ([`super::outlines`]). A part is hidden on frames without a contour. Parts are drawn in the order of
+//! depth, far ones first.
 
 use super::outlines::Outlines;
 use super::xml::escaped;
@@ -11,30 +12,30 @@ use rototoon_base::scene::palette;
 use rototoon_base::scene::{FrameNumber, Scene};
 use std::fmt::Write;
 
-/// How a path goes from one frame to the next.
+/// Motion of a path between two frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Motion {
-    /// Each frame is held until the next.
+    /// Each frame is held until the next one.
     #[default]
     Hold,
-    /// Points move evenly.
+    /// Points move linearly.
     Linear,
 }
 
 impl Motion {
-    /// Every motion with its id.
+    /// All motions with their ids.
     pub const ALL: [(Self, &str); 2] = [(Self::Hold, "hold"), (Self::Linear, "linear")];
 
-    /// The motion of an id.
+    /// The motion with this id; `None` if there is none.
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.iter().find(|(_, name)| *name == id).map(|(motion, _)| *motion)
     }
 }
 
-/// How to write.
+/// Options of the export.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SvgOptions {
-    /// How paths move.
+    /// Motion between frames.
     pub motion: Motion,
     /// Distance between points of snapped paths, in pixels; at least 0.25.
     pub spacing: f64,
@@ -46,12 +47,12 @@ impl Default for SvgOptions {
     }
 }
 
-/// Width of lines at 540 lines, in pixels.
+/// Width of strokes in pixels, at 540 lines.
 const LINE_WIDTH: f64 = 2.0;
-/// Opacity of fills: what lies behind a part stays visible.
+/// Opacity of fills, low enough to show what is behind a part.
 const FILL_OPACITY: f64 = 0.35;
 
-/// The scene as an SVG document in the footage's pixels.
+/// The scene as an SVG document, in pixels of the footage.
 pub fn svg(scene: &Scene, options: &SvgOptions) -> String {
     let footage = &scene.footage;
     let (width, height) = (footage.width, footage.height);
@@ -92,7 +93,7 @@ fn path(out: &mut String, scene: &Scene, index: usize, options: &SvgOptions) {
     *out += "</path>\n";
 }
 
-/// Where there is no shape, the one before it, and before the first one the first.
+/// Fills gaps with the previous shape; before the first shape with `first`.
 fn nearest<'a>(shapes: &'a [Option<String>], first: &'a str) -> Vec<&'a str> {
     let mut last = first;
     shapes
@@ -104,13 +105,13 @@ fn nearest<'a>(shapes: &'a [Option<String>], first: &'a str) -> Vec<&'a str> {
         .collect()
 }
 
-/// One animation. Of held values only the changes are written.
+/// Writes one animation. Held values are written only where they change.
 fn animate(out: &mut String, attribute: &str, seconds: f64, motion: Motion, values: &[&str]) {
     let n = values.len();
     let mut kept: Vec<(usize, &str)> = values.iter().copied().enumerate().collect();
     match motion {
         Motion::Hold => kept.dedup_by_key(|(_, value)| *value),
-        // The last frame lasts as long as the others.
+        //             // The last frame lasts as long as the others.
         Motion::Linear => kept.push((n, values[n - 1])),
     }
     let mode = if motion == Motion::Hold { "discrete" } else { "linear" };
@@ -146,7 +147,7 @@ fn write_point(out: &mut String, p: Point) {
     let _ = write!(out, "{} {}", decimal(p.x, 2), decimal(p.y, 2));
 }
 
-/// A number with at most `digits` decimals.
+/// A number with at most `digits` decimals, without negative zero.
 fn decimal(value: f64, digits: i32) -> f64 {
     let scale = 10f64.powi(digits);
     (value * scale).round() / scale + 0.0

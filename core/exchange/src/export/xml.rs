@@ -1,6 +1,6 @@
-//! Text in XML.
+//! Escaping of text for XML.
 
-/// Text as XML holds it; characters that XML cannot hold are left out.
+/// Escapes text for element contents and attributes. Characters that XML does not allow are left out.
 pub fn escaped(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {

@@ -1,11 +1,11 @@
-//! What other programs made: shapes, as keys of parts, and motions, as skeleton clips.
+//! Imports files of other programs: shapes become keys of parts, motions become skeleton clips.
 //!
 //! - [`bvh`]: motion capture
 //! - [`svg`]: paths and basic shapes, still or animated
 //! - `svg_animation`: the keys of animated paths
 //! - [`silhouette`]: Silhouette shapes
 //! - [`path`](mod@path): Bézier paths as contours with one number of points
-//! - [`problem`]: what is wrong with a file, and where
+//! - [`problem`]: errors of a file, with their places
 
 pub mod bvh;
 pub mod path;
@@ -20,10 +20,10 @@ use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, Part, Scene};
 use std::collections::BTreeMap;
 
-/// A shape as a part's contour: on each key as many points.
+/// A shape as the contour of a part. Every key has the same number of points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// Name; that of no other shape of the file.
+    /// Name, unique within the file.
     pub name: String,
     /// Whether the last point joins the first.
     pub closed: bool,
@@ -31,17 +31,17 @@ pub struct Shape {
     pub keys: BTreeMap<FrameNumber, Vec<Point>>,
 }
 
-/// What a file holds.
+/// The shapes of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shapes {
-    /// The shapes, the farthest first.
+    /// The shapes, farthest first.
     pub shapes: Vec<Shape>,
-    /// What has been left out, a line each.
+    /// Elements that were left out, with one line for each.
     pub warnings: Vec<String>,
 }
 
-/// Puts shapes into the scene. A part of a shape's name becomes the shape, at its own depth: its keys, corrections and
-/// results go. Other shapes become new parts, nearer than all that are there, in their order.
+/// Puts shapes into the scene. A shape replaces the part of its name: the depth stays; the keys, corrections and
+/// results of the part are removed. Other shapes become new parts in their order, nearer than all present parts.
 pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) {
     let nearest = scene.parts.iter().map(|part| part.depth).fold(f64::NEG_INFINITY, f64::max);
     let mut depth = if nearest.is_finite() { nearest.floor() + 1.0 } else { 0.0 };
@@ -55,7 +55,7 @@ pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) {
     }
 }
 
-/// A name that no shape has yet.
+/// A name that no shape has yet: the requested name, with a number if necessary.
 fn free_name(wanted: &str, shapes: &[Shape]) -> String {
     let wanted = if wanted.trim().is_empty() { "shape" } else { wanted.trim() };
     let taken = |name: &String| shapes.iter().any(|shape| shape.name == *name);

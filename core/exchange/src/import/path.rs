@@ -1,59 +1,59 @@
 //! Bézier paths as contours.
 //!
-//! The contour of an animated path has the same number of points on every key: each segment is cut into equal steps of its
-//! parameter, as many as its most curved form needs. With second differences of at most D between control points the
-//! second derivative of a cubic is at most 6 D, and a chord over a step h of the parameter is left by at most h² ∕ 8 of that:
-//! n steps stay within ¾ D ∕ n². A straight segment stays one.
+//! The contour of an animated path has the same number of points on every key. Each segment is cut into equal steps of
+//! its parameter; its most curved key determines their number. With second differences of at most D between control
+//! points the second derivative of a cubic is at most 6 D. Over a step h of the parameter the curve is at most h² ∕ 8
+//! of that from its chord. So n steps stay within ¾ D ∕ n². A straight segment stays one step.
 
 use rototoon_base::geometry::{Point, polyline};
 
-/// Farthest that a contour may leave its path, in pixels.
+/// Greatest distance between a contour and its path, in pixels.
 const TOLERANCE: f64 = 0.1;
-/// Handles nearer than this to their chord make a straight segment, in pixels.
+/// A segment whose handles are closer than this to its chord is straight, in pixels.
 const STRAIGHT: f64 = 1e-3;
-/// Most points of one segment.
+/// Greatest number of points of one segment.
 const MOST_STEPS: f64 = 200.0;
 
 /// A path of cubic segments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
-    /// Where it begins.
+    /// Its start.
     pub start: Point,
-    /// Two handles and the end of each segment. Of a closed path the last one leads back to the start.
+    /// Two handles and the end of each segment. The last segment of a closed path leads back to the start.
     pub segments: Vec<[Point; 3]>,
     /// Whether it is closed.
     pub closed: bool,
 }
 
 impl Path {
-    /// A path that only has its start.
+    /// A path without segments.
     pub fn new(start: Point) -> Self {
         Self { start, segments: Vec::new(), closed: false }
     }
 
-    /// Where it ends.
+    /// Its end.
     pub fn end(&self) -> Point {
         self.segments.last().map_or(self.start, |segment| segment[2])
     }
 
-    /// Goes straight to a point.
+    /// Adds a straight segment to a point.
     pub fn line(&mut self, to: Point) {
         let from = self.end();
         self.segments.push([from.lerp(to, 1.0 / 3.0), from.lerp(to, 2.0 / 3.0), to]);
     }
 
-    /// Goes along a cubic to a point.
+    /// Adds a cubic segment to a point.
     pub fn cubic(&mut self, first: Point, second: Point, to: Point) {
         self.segments.push([first, second, to]);
     }
 
-    /// Goes straight back to the start.
+    /// Adds a straight segment to the start and closes the path.
     pub fn close(&mut self) {
         self.line(self.start);
         self.closed = true;
     }
 
-    /// The path with a change applied to all its points.
+    /// The path with `f` applied to all its points.
     pub fn map(&self, f: impl Fn(Point) -> Point) -> Self {
         let segments = self.segments.iter().map(|segment| segment.map(&f)).collect();
         Self { start: f(self.start), segments, closed: self.closed }
@@ -65,14 +65,14 @@ impl Path {
     }
 }
 
-/// The contours of a path's keys; `None` where they are not built alike.
+/// The contours of the keys of a path; `None` if the keys differ in their number of segments or in being closed.
 pub fn contours(keys: &[Path]) -> Option<Vec<Vec<Point>>> {
     let first = keys.first()?;
     let mut count = first.segments.len();
     if keys.iter().any(|key| key.segments.len() != count || key.closed != first.closed) {
         return None;
     }
-    // A drawing program may end a closed path on its start before it closes it.
+    // A drawing program may end a closed path at its start before it closes it.
     let returns = |key: &Path| key.cubics().last().is_some_and(|[from, .., to]| from.distance(to) < STRAIGHT);
     if first.closed && count > 1 && keys.iter().all(returns) {
         count -= 1;
@@ -124,7 +124,7 @@ mod tests {
         assert_eq!(contours(&[path.clone()]).unwrap(), [[p(1.0, 1.0), p(9.0, 1.0), p(9.0, 7.0)]]);
         path.close();
         assert_eq!(contours(&[path.clone()]).unwrap()[0].len(), 3);
-        // Handles on their points, as in Silhouette, make straight sides too.
+        // Handles at their points, as in Silhouette, also make straight sides.
         path.segments[0] = [path.start, p(9.0, 1.0), p(9.0, 1.0)];
         assert_eq!(contours(&[path.clone()]).unwrap()[0].len(), 3);
         let mut twice = Path::new(p(1.0, 1.0));

@@ -1,9 +1,9 @@
-//! What is wrong with a file of shapes, and where.
+//! Errors of a file of shapes, with their places.
 
 use roxmltree::{Document, Node, ParsingOptions};
 use std::fmt;
 
-/// Where something stands in a text file.
+/// A place in a text file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     /// Line, from 1.
@@ -18,23 +18,23 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why shapes could not be read.
+/// Why shapes cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ImportError {
-    /// The file is no XML.
+    /// The file is not XML.
     #[error("it is no XML: {0}")]
     Syntax(String),
-    /// An element is not as it must be.
+    /// An element is invalid.
     #[error("{place}: <{element}>: {message}")]
     Element {
-        /// Where it begins.
+        /// The place where the element begins.
         place: Place,
-        /// Its name.
+        /// Name of the element.
         element: String,
-        /// What was found and what was expected.
+        /// The found and the expected value.
         message: String,
     },
-    /// There is nothing to import.
+    /// The file contains no shape.
     #[error("found no shape, expected {0}")]
     Nothing(&'static str),
 }
@@ -47,19 +47,19 @@ impl ImportError {
     }
 }
 
-/// Where an element begins.
+/// The place where an element begins.
 pub(super) fn place(node: Node) -> Place {
     let position = node.document().text_pos_at(node.range().start);
     Place { line: position.row, column: position.col }
 }
 
-/// The document of a text. Declarations of a document type, as drawing programs write them, are allowed.
+/// Parses a text. Document type declarations are allowed, since drawing programs write them.
 pub(super) fn parsed(text: &str) -> Result<Document<'_>, ImportError> {
     let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
     Document::parse_with_options(text, options).map_err(|error| ImportError::Syntax(error.to_string()))
 }
 
-/// An attribute's number.
+/// The number in an attribute; `None` if the attribute is missing.
 pub(super) fn number(node: Node, name: &str) -> Result<Option<f64>, ImportError> {
     let Some(text) = node.attribute(name) else { return Ok(None) };
     match text.trim().parse::<f64>() {

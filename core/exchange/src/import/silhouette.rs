@@ -1,14 +1,15 @@
-//! Silhouette shapes (`.fxs`).
+//! Shapes of Silhouette (`.fxs`).
 //!
-//! Each `Object` (or `Shape`) of type `Shape` has a property `path` whose keys hold a `Path` of `Point`s: of a Bézier the
-//! point and two handles, of a B-spline one point. [`rototoon_base::scene::Footage`] says where pixels are; coordinates are those that
-//! the export writes: from the middle of the picture in heights of the picture, y down, frames from the session's first.
+//! Each `Object` (or `Shape`) of type `Shape` has a property `path`, whose keys contain a `Path` of `Point`s. A point
+//! of a Bézier path has a position and two handles, a point of a B-spline only a position. Coordinates are those of the
+//! export: the origin is the middle of the picture, the unit its height, y points down, and frames count from the
+//! session's first. The footage gives the size of the picture in pixels.
 //!
-//! - Public descriptions do not agree which handle of a point leads on. The order is taken that gives a shape the shorter
-//!   control polygon over all its keys.
-//! - B-splines are taken as uniform cubic ones; of an open one the ends are doubled twice, so that it reaches them.
-//! - Transformed layers and animated opacity are not applied: a transformation is an error, since the shape would lie
-//!   elsewhere. Hidden shapes are left out with a warning.
+//! - Public descriptions disagree on which handle of a point leads forward. The reader takes the order with the shorter
+//!   control polygon over all keys of a shape.
+//! - B-splines are uniform and cubic. The ends of an open one are repeated three times, so the curve reaches them.
+//! - Transformed layers are an error, since their shapes would be in the wrong place. Animated opacity is ignored.
+//!   Hidden shapes are left out with a warning.
 
 use super::path::{Path, contours};
 use super::problem::{number, parsed, place};
@@ -18,7 +19,7 @@ use rototoon_base::scene::{Footage, FrameNumber};
 use roxmltree::Node;
 use std::collections::BTreeMap;
 
-/// A point with its handles, as far as it has them.
+/// A point with its two handles.
 type Knot = [Point; 3];
 
 /// One key of a path.
@@ -29,7 +30,11 @@ struct Key {
     knots: Vec<Knot>,
 }
 
-/// Reads the shapes of a Silhouette document for footage.
+/// Reads the shapes of a Silhouette document for footage. Points are converted to pixels of the footage.
+///
+/// # Errors
+///
+/// An [`ImportError`] names the element and its place.
 pub fn silhouette(text: &str, footage: &Footage) -> Result<Shapes, ImportError> {
     let document = parsed(text)?;
     let root = document.root_element();
@@ -62,7 +67,7 @@ pub fn silhouette(text: &str, footage: &Footage) -> Result<Shapes, ImportError> 
     Ok(found)
 }
 
-/// The matrices of a layer must change nothing.
+/// Requires that the matrices of a layer are identities.
 fn untransformed(property: Node) -> Result<(), ImportError> {
     const IDENTITY: [f64; 16] = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
     for node in property.children().filter(Node::is_element) {
@@ -137,14 +142,14 @@ fn knot(node: Node, footage: &Footage) -> Result<Knot, ImportError> {
     let (width, height) = (footage.width as f64, footage.height as f64);
     let placed = |pair: &[f64]| Point::new(pair[0] * height + 0.5 * width, (pair[1] + 0.5) * height);
     match numbers.len() {
-        // Points of B-splines may have a weight behind them.
+        //         // A point of a B-spline may have a weight after its coordinates.
         2 | 3 => Ok([placed(&numbers); 3]),
         6.. => Ok([placed(&numbers), placed(&numbers[2..]), placed(&numbers[4..])]),
         _ => Err(ImportError::at(node, format!("found {text:?}, expected (x,y) or (x,y),(x,y),(x,y)"))),
     }
 }
 
-/// The path of a key, with the third point of a knot leading on where `swapped`, else the second.
+/// The path of a key. The forward handle of a knot is its third point if `swapped`, otherwise its second.
 fn built(key: &Key, swapped: bool) -> Path {
     let (on, back) = if swapped { (2, 1) } else { (1, 2) };
     let knots = if key.spline { beziers(key) } else { key.knots.iter().map(|k| [k[0], k[on], k[back]]).collect() };
@@ -160,14 +165,14 @@ fn built(key: &Key, swapped: bool) -> Path {
     path
 }
 
-/// The Bézier knots of a uniform cubic B-spline: point, handle on, handle back.
+/// The Bézier knots of a uniform cubic B-spline: point, forward handle, backward handle.
 fn beziers(key: &Key) -> Vec<Knot> {
     let mut guides: Vec<Point> = key.knots.iter().map(|knot| knot[0]).collect();
     if !key.closed {
         let (first, last) = (guides[0], guides[guides.len() - 1]);
         guides.insert(0, first);
         guides.push(last);
-        // A guide three times over is where the curve begins or ends.
+        //         // The curve begins and ends at a guide that appears three times.
         guides.insert(0, first);
         guides.push(last);
     }

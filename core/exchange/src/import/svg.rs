@@ -1,12 +1,14 @@
 //! Shapes of an SVG document.
 //!
-//! Paths, polygons, polylines, lines, rectangles, circles and ellipses with their transformations become shapes, each
-//! sub-path of a path one by itself. The document's view box is laid over the footage. A shape's name is that of its
-//! `title`, of Inkscape's label, or its `id`.
+//! Paths, polygons, polylines, lines, rectangles, circles and ellipses become shapes, with their transformations
+//! applied. Each sub-path of a path becomes a shape of its own. The view box of the document is mapped to the footage.
+//! The name of a shape is its `title`, its Inkscape label, or its `id`.
 //!
-//! A path with a SMIL animation of its `d` (`svg_animation`), as the export writes it, has a key wherever its form changes
-//! and where a held form ends; other shapes have one key, on a frame that the caller names. What is not drawn where it
-//! stands (definitions, clips, masks, patterns, symbols) is left out, and so, with a warning, are text, pictures and `use`.
+//! If a path has a SMIL animation of its `d` (`svg_animation`), as written by the export, its shape has a key wherever
+//! its form changes, and where a held form ends. Other shapes have one key, on a frame that the caller gives.
+//!
+//! Limits: content that is not drawn in place (definitions, clips, masks, patterns, symbols) is ignored. Text, pictures
+//! and `use` are left out with a warning.
 
 use super::path::{Path, contours};
 use super::problem::{number, parsed, place};
@@ -18,15 +20,20 @@ use roxmltree::Node;
 use std::str::FromStr;
 use svgtypes::{PointsParser, SimplePathSegment, SimplifyingPathParser, Transform, ViewBox};
 
-/// Elements whose content is not drawn where it stands.
+/// Elements whose content is not drawn in place.
 const NOT_DRAWN: [&str; 9] =
     ["defs", "clipPath", "mask", "pattern", "symbol", "marker", "linearGradient", "radialGradient", "filter"];
-/// Elements that draw something that has no outline here.
+/// Elements that are drawn but have no outline here.
 const WITHOUT_OUTLINE: [&str; 4] = ["text", "image", "use", "foreignObject"];
-/// Largest difference of proportions between document and footage.
+/// Greatest relative difference between the aspect ratios of document and footage.
 const PROPORTIONS: f64 = 0.005;
 
-/// Reads the shapes of an SVG document for footage; still ones get their key on frame `still`.
+/// Reads the shapes of an SVG document for footage. A shape without animation gets its key on frame `still`. Points are
+/// converted to pixels of the footage.
+///
+/// # Errors
+///
+/// An [`ImportError`] names the element and its place.
 pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, ImportError> {
     let document = parsed(text)?;
     let root = document.root_element();
@@ -42,7 +49,7 @@ pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, 
     Ok(reader.found)
 }
 
-/// The transformation from the document's units to pixels of the footage.
+/// The transformation from units of the document to pixels of the footage.
 fn laid_over(root: Node, footage: &Footage) -> Result<Transform, ImportError> {
     let view = match root.attribute("viewBox") {
         Some(text) => ViewBox::from_str(text).map_err(|error| {
@@ -63,7 +70,7 @@ fn laid_over(root: Node, footage: &Footage) -> Result<Transform, ImportError> {
     Ok(Transform::new(x, 0.0, 0.0, y, -view.x * x, -view.y * y))
 }
 
-/// A length in pixels; none where there is none or a share of something.
+/// A length in pixels; `None` if the attribute is missing or a percentage.
 fn pixels(node: Node, name: &str) -> Result<Option<f64>, ImportError> {
     let Some(text) = node.attribute(name) else { return Ok(None) };
     let text = text.trim();
@@ -147,7 +154,7 @@ fn own_transform(node: Node) -> Result<Transform, ImportError> {
     })
 }
 
-/// First `inner`, then `outer`.
+/// The transformation that applies `inner` first, then `outer`.
 fn joined(outer: Transform, inner: Transform) -> Transform {
     let (o, i) = (outer, inner);
     Transform::new(
@@ -164,7 +171,7 @@ fn moved(p: Point, t: Transform) -> Point {
     Point::new(t.a * p.x + t.c * p.y + t.e, t.b * p.x + t.d * p.y + t.f)
 }
 
-/// The path data of a shape's element; none of another.
+/// The path data of a shape element; `None` for other elements.
 fn outline(node: Node) -> Result<Option<String>, ImportError> {
     let value = |name: &str| number(node, name).map(Option::unwrap_or_default);
     let positive = |name: &str| match number(node, name)? {
@@ -213,7 +220,7 @@ fn rectangle([x, y]: [f64; 2], [width, height]: [f64; 2], [rx, ry]: [f64; 2]) ->
     format!("M{} {y}h{along}{a}v{down}{b}h{}{c}v{}{d}Z", x + rx, -along, -down)
 }
 
-/// The sub-paths of path data that lead somewhere.
+/// The sub-paths of path data that have segments.
 fn paths(node: Node, text: &str) -> Result<Vec<Path>, ImportError> {
     let mut paths: Vec<Path> = Vec::new();
     for segment in SimplifyingPathParser::from(text) {

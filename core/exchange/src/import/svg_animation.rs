@@ -1,9 +1,11 @@
-//! SMIL animations of a path's data, as keys on frames.
+//! SMIL animations of path data, as keys on frames.
 //!
-//! An `animate` of `d` has its values at shares of its duration, `keyTimes`, or evenly. Held values (`calcMode="discrete"`)
-//! give a key on the first and on the last frame that each is held for; others give one on the frame nearest to their time.
-//! An `animate` of `visibility` takes away what is hidden. Animations begin with the footage's first frame; repeats are not
-//! followed, and the value at the very end of an animation, which lies a frame behind the footage, is left out.
+//! An `animate` element of `d` has values at shares of its duration: those of `keyTimes`, or even ones. A held value
+//! (`calcMode="discrete"`) gives a key on the first and on the last frame of its interval. Any other value gives a key
+//! on the frame nearest to its time. An `animate` element of `visibility` removes the keys of hidden frames.
+//!
+//! Limits: an animation starts on the first frame of the footage, and repeats are ignored. The value at the very end of
+//! an animation is left out, since it is one frame after the footage.
 
 use super::ImportError;
 use rototoon_base::scene::{Footage, FrameNumber};
@@ -18,13 +20,13 @@ pub(super) struct Keyed {
     pub text: String,
 }
 
-/// One animation: frames from the first of the footage with the values that begin there.
+/// An animation: its values with the frames on which they begin, counted from the first frame of the footage.
 struct Animation<'a> {
     values: Vec<(i64, &'a str)>,
     held: bool,
 }
 
-/// The keys of an element's path data; none where it is not animated.
+/// The keys of an element's path data; `None` if it is not animated.
 pub(super) fn keyed(node: Node, footage: &Footage) -> Result<Option<Vec<Keyed>>, ImportError> {
     let Some(data) = animation(node, "d", footage)? else { return Ok(None) };
     let visibility = animation(node, "visibility", footage)?;

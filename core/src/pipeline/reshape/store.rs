@@ -1,7 +1,7 @@
-//! What was made of a drawing, put into its document.
+//! Puts the result of reshaping into the document.
 //!
-//! Parts get keys on the first and the last frame of the clip, between which they are tracked; strokes become drawings
-//! between drawings; depths stand beside the tracks where they change.
+//! Parts get keys on the first and the last frame of the clip, and tracks on all frames between. Strokes become
+//! in-betweens. Depths that differ from the part's depth are stored by frame.
 
 use super::{Body, Moved};
 use crate::geometry::Point;
@@ -10,11 +10,11 @@ use crate::project::drawings::{DrawnBetween, DrawnStroke};
 use crate::scene::{Footage, FrameNumber, Part};
 use std::collections::BTreeMap;
 
-/// By number of stroke or open contour (contours after all strokes): its points on every frame.
+/// Points on every frame, by number of the stroke or open contour (contours after all strokes).
 type Lines = BTreeMap<usize, Vec<Vec<Point>>>;
 
-/// Puts all that was made into the document. `bodies` and `moved` go together; `strokes` are the drawing's at rest;
-/// `depths` are by part and frame of `footage`, which becomes the document's.
+/// Puts the complete result into the document. `bodies` and `moved` have the same order. `strokes` are those of the
+/// drawing at rest. `depths` are by part and frame of `footage`, which becomes the document's footage.
 pub(super) fn store(
     document: &mut Document,
     footage: Footage,
@@ -45,7 +45,7 @@ pub(super) fn store(
     document.scene.footage = footage;
 }
 
-/// A part's tracks and curves; what lies on it is added to `lines`.
+/// Sets a part's tracks and snapped paths. The strokes on it are added to `lines`.
 fn put_body(part: &mut Part, body: &Body, moved: &Moved, frames: &[FrameNumber], lines: &mut Lines) {
     let mut tracks = BTreeMap::new();
     part.curves.clear();
@@ -80,7 +80,7 @@ fn drawn(strokes: &[DrawnStroke], lines: &Lines, frames: &[FrameNumber]) -> Vec<
     frames.iter().enumerate().map(on).collect()
 }
 
-/// Tracks with keys on both ends, and nothing left of corrections to other tracks.
+/// Sets tracks with keys on both ends, and removes corrections to earlier tracks.
 fn set_tracks(part: &mut Part, tracks: BTreeMap<FrameNumber, Vec<Point>>) {
     let ends = [tracks.first_key_value(), tracks.last_key_value()];
     part.keys = ends.into_iter().flatten().map(|(frame, points)| (*frame, points.clone())).collect();

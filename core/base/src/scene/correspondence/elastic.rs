@@ -1,32 +1,35 @@
-//! Elastic correspondence of two curves: where on a drawn curve the control points of a part lie.
+//! Elastic correspondence of two curves: positions of a part's control points on a drawn curve.
 //!
-//! The part's curve is cut into short pieces whose ends include every control point; the drawn curve likewise, twice as
-//! finely, with all its own corners. Dynamic programming (Sebastian, Klein & Kimia 2003 in spirit) finds the monotone map of
-//! least cost: sample i lies at sample j(i), the cost of a pair being how far they are apart after the best similarity, how
-//! their tangents differ, and how their turning differs (so that corners go to corners); the cost of a step how much it
-//! stretches. Ends go to ends on open curves; on closed ones the map is closed, and starts near the similarity's start are
+//! The part's curve is cut into short pieces whose ends include every control point. The drawn curve is cut more than
+//! twice as finely, and its own points are kept. Dynamic programming (in the spirit of Sebastian, Klein & Kimia 2003)
+//! finds the monotone map of least cost from samples i of the part to samples j(i) of the drawn curve.
+//!
+//! The cost of a pair of samples has three terms: their distance after the best similarity, the difference of their
+//! tangents, and the difference of their turning, which maps corners to corners. The cost of a step is its stretch. On
+//! open curves ends map to ends. On closed curves the map is closed, and several starts near that of the similarity are
 //! tried.
 //!
-//! Limits: a part of the curve that is hidden on one drawing only is squeezed to a quarter at most, not left out.
+//! Limits: if a part of the curve is hidden on one of the drawings only, the map cannot leave it out; it compresses it
+//! to a quarter of its length at most.
 
 use super::outline::Alignment;
 use crate::geometry::{Point, polyline};
 
-/// Pieces that the part's curve is cut into, at least.
+/// Least number of pieces of the part's curve.
 const PART_PIECES: f64 = 80.0;
-/// Pieces that the drawn curve is cut into, at least.
+/// Least number of pieces of the drawn curve.
 const DRAWN_PIECES: f64 = 200.0;
-/// Points of a curve above which it is first resampled.
+/// A curve with more points than this is first resampled.
 const MOST_POINTS: usize = 400;
-/// Half width, as a share of the length, of the band of maps that are tried around the even one.
+/// Half width of the band of maps around the even map, as a share of the length.
 const BAND: f64 = 0.15;
-/// Half width, as a share of the length, of the starts that are tried on closed curves.
+/// Half width of the range of starts on closed curves, as a share of the length.
 const STARTS: f64 = 0.08;
-/// Distance, in samples, of the starts that are tried first.
+/// Step, in samples, of the starts that are tried first.
 const COARSE: usize = 4;
 /// Least and greatest stretch of a step, relative to the curves' lengths.
 const STRETCH: (f64, f64) = (0.25, 3.0);
-/// Reach of the turning to each side, as a share of the length.
+/// Reach of the turning to each side of a sample, as a share of the length.
 const TURNING_REACH: f64 = 1.0 / 30.0;
 
 /// Weight of the squared distance in units of the curve's radius.
@@ -53,7 +56,8 @@ pub(super) struct Cut {
 }
 
 impl Cut {
-    /// The curve through `points`, a closed one ending in its first again, in pieces of at most a share of its length.
+    /// Cuts the curve through `points` into pieces of at most a share of its length. A closed curve ends at its first
+    /// point.
     fn new(points: &[Point], closed: bool, pieces: f64) -> Self {
         let length = polyline::length(points, closed);
         let (mut places, mut arcs, mut at_points) = (Vec::new(), Vec::new(), Vec::new());
@@ -92,7 +96,7 @@ impl Cut {
         }
     }
 
-    /// The place at an arc length, which wraps on closed curves and stops at the ends of open ones.
+    /// The point at an arc length. It wraps on closed curves and stops at the ends of open ones.
     fn at_arc(&self, arc: f64) -> Point {
         let arc = if self.closed { arc.rem_euclid(self.length) } else { arc.clamp(0.0, self.length) };
         let next = self.arcs.partition_point(|&s| s <= arc).clamp(1, self.arcs.len() - 1);
@@ -101,29 +105,30 @@ impl Cut {
         self.places[next - 1].lerp(self.places[next], share)
     }
 
-    /// Number of distinct samples of a closed curve, of all samples of an open one.
+    /// Number of samples; the last sample of a closed curve repeats the first and does not count.
     fn count(&self) -> usize {
         self.places.len() - usize::from(self.closed)
     }
 
-    /// Arc length of state `j`, which on a closed curve counts on over the start.
+    /// Arc length of state `j`. On a closed curve it keeps growing past the start.
     fn arc(&self, j: usize) -> f64 {
         if self.closed { (j / self.count()) as f64 * self.length + self.arcs[j % self.count()] } else { self.arcs[j] }
     }
 }
 
-/// How the points of a part lie on a drawn curve.
+/// The positions of a part's control points on a drawn curve.
 pub(super) struct Placement {
     /// Mean cost of a sample.
     pub cost: f64,
-    /// Where each control point lies.
+    /// Position of each control point, in pixels.
     pub places: Vec<Point>,
-    /// Arc length of each control point on the drawn curve, walked forwards from its first point.
+    /// Arc length of each control point on the drawn curve, measured from its first point in drawing order.
     pub arcs: Vec<f64>,
 }
 
-/// The best map of the part's curve onto the drawn one near an alignment. Both have length, and both are closed or open.
-/// `scale` is the size of the drawn curve relative to the part's; `radius` is the drawn curve's.
+/// The best map of the part's curve onto the drawn one near an alignment. Both curves need a positive length, and both
+/// are closed or both open. `scale` is the size of the drawn curve relative to the part's, `radius` that of the drawn
+/// curve in pixels. `None` if no map stays within the allowed stretch.
 pub(super) fn place(
     part: &[Point],
     drawn: &[Point],
@@ -135,7 +140,7 @@ pub(super) fn place(
         if drawn.len() > MOST_POINTS { polyline::resample(drawn, closed, MOST_POINTS) } else { drawn.to_vec() };
     if alignment.reversed {
         walked.reverse();
-        // A closed curve keeps its first point.
+        // The first point of a closed curve stays first.
         walked.rotate_right(usize::from(closed));
     }
     let (p, q) = (Cut::new(part, closed, PART_PIECES), Cut::new(&walked, closed, DRAWN_PIECES));
@@ -159,13 +164,14 @@ pub(super) fn place(
     Some(Placement { cost: map.0 / p.places.len() as f64, places, arcs })
 }
 
-/// Mean by arc length.
+/// Mean position, weighted by arc length.
 fn mean(cut: &Cut) -> Point {
     let pieces = cut.places.windows(2).zip(cut.arcs.windows(2));
     pieces.map(|(p, s)| 0.5 * (p[0] + p[1]) * (s[1] - s[0])).sum::<Point>() / cut.length
 }
 
-/// The best map among starts near a share of the drawn curve's length: every fourth, then those next to the best.
+/// The best map among starts near a share of the drawn curve's length. Every fourth start is tried, then those next to
+/// the best.
 fn closed_map(p: &Cut, q: &Cut, share: f64, cost: &impl Fn(usize, usize) -> f64) -> Option<(f64, Vec<usize>)> {
     let away = |start: usize| {
         let apart = q.arcs[start] / q.length - share;
@@ -182,7 +188,8 @@ fn closed_map(p: &Cut, q: &Cut, share: f64, cost: &impl Fn(usize, usize) -> f64)
     best_of(&mut around).map(|(_, map)| map)
 }
 
-/// Least cost and, by sample of `p`, the state of `q`, of maps that begin at `start` and end a whole curve further.
+/// The best map that begins at `start` and ends one length further: its cost and, for each sample of `p`, the state of
+/// `q`.
 fn monotone_map(p: &Cut, q: &Cut, start: usize, cost: &impl Fn(usize, usize) -> f64) -> Option<(f64, Vec<usize>)> {
     let end = if q.closed { start + q.count() } else { q.count() - 1 };
     let states = end - start + 1;
@@ -195,7 +202,7 @@ fn monotone_map(p: &Cut, q: &Cut, start: usize, cost: &impl Fn(usize, usize) -> 
         let (here, step) = (p.arcs[i] / p.length, (p.arcs[i] - p.arcs[i - 1]) / p.length);
         let mut next = vec![f64::INFINITY; states];
         let first = arcs.partition_point(|&s| s < here - BAND);
-        // The grids differ: a step may be a piece off.
+        //         // The two grids differ, so a step may be off by one piece.
         let (shortest, longest) = (STRETCH.0 * step - 1.0 / DRAWN_PIECES, STRETCH.1 * step + 1.0 / DRAWN_PIECES);
         for j in (first..states).take_while(|&j| arcs[j] <= here + BAND) {
             let (mut best, mut from) = (f64::INFINITY, u32::MAX);

@@ -1,10 +1,14 @@
-//! Which drawn contour is which part: a global assignment under a common movement of the figure.
+//! Assignment of drawn contours to parts, together with a common movement of the figure.
 //!
-//! Parts look alike (arms, legs, eyes), so that shape alone decides little; where a part lies in the figure decides most, but
-//! the figure has moved and turned. Movements are proposed (by each pair of similar contours on its own, and by turns of
-//! the whole about its middle), the promising ones are scored by a full assignment, and the best is refined: with contours
-//! matched, the movement near each part is fitted to its neighbours, so that a limb is expected where its own side of the
-//! body went.
+//! Parts look alike (arms, legs, eyes), so shape alone decides little. The place in the figure decides most, but the
+//! figure has moved and rotated. Therefore movements are proposed: one for each pair of similar contours, and rotations
+//! of the figure about its middle. Full assignments score the most promising movements.
+//!
+//! The score of a movement includes its refinement: with contours matched, the movement near each part is fitted to its
+//! neighbours, so a limb is expected where its side of the body went.
+//!
+//! Limits: the figure rotates and grows within the limits of the options. Two identical parts that change places are
+//! exchanged unless their neighbours or colours differ.
 
 use super::outline::{Alignment, Outline, wrap};
 use super::{DrawnContour, MatchOptions};
@@ -13,41 +17,41 @@ use crate::numeric::assignment::assign;
 
 /// Weight of the unexplained share of the shape.
 const SHAPE: f64 = 2.0;
-/// Weight of the squared turn, in rad², of a part against the figure.
+/// Weight of the squared rotation of a part relative to the figure, in rad².
 const TURN: f64 = 0.15;
-/// Weight of the squared turn, in rad², where a matched part's points are placed: decides for discs only.
+/// The same weight when a matched part's points are placed, in rad². It decides for discs only.
 const SLIDE: f64 = 0.03;
-/// Weight of the squared logarithm of a part's growth against the figure's.
+/// Weight of the squared logarithm of a part's growth relative to the figure's.
 const SIZE: f64 = 1.0;
-/// Weight of the squared logarithm of a length's growth against the size's.
+/// Weight of the squared logarithm of a length's growth relative to the size's.
 const LENGTH: f64 = 0.5;
-/// Weight of the squared distance from the expected place, in units of the figure's radius.
+/// Weight of the squared distance from the expected position, in units of the figure's radius.
 const POSITION: f64 = 2.0;
 /// Weight of the squared colour difference.
 const COLOUR: f64 = 2.0;
-/// Cost of an open contour drawn closed, and of a closed one drawn open with a wide gap.
+/// Cost if an open part is drawn closed, or a closed part open with a wide gap.
 const CLOSEDNESS: f64 = 0.4;
-/// Gap, as a share of the length, from which on a contour counts as fully open.
+/// Gap, as a share of the length, from which a contour counts as fully open.
 const WIDE_GAP: f64 = 0.15;
-/// Preference, for each part and rad², for figures that have turned little.
+/// Cost of the figure's rotation, for each part and rad².
 const STILLNESS: f64 = 0.02;
 
-/// Step in radians of the proposed turns of the whole figure.
+/// Step of the proposed rotations of the figure, in radians.
 const TURN_STEP: f64 = std::f64::consts::PI / 12.0;
-/// Unexplained share of the shape up to which a pair proposes a movement.
+/// Largest unexplained share of the shape with which a pair proposes a movement.
 const PROPOSING: f64 = 0.15;
-/// Movements proposed by pairs, at most.
+/// Greatest number of movements proposed by pairs.
 const MOST_PROPOSALS: usize = 200;
-/// Movements scored by a full assignment.
+/// Number of movements that get a full assignment.
 const FINALISTS: usize = 12;
-/// Rounds of refinement, at most.
+/// Greatest number of refinement rounds.
 const ROUNDS: usize = 6;
-/// Distance, in units of the figure's radius, within which neighbours weigh alike.
+/// Neighbours within this distance have about the same weight, in units of the figure's radius.
 const NEIGHBOURHOOD: f64 = 0.4;
-/// A cost that no option accepts; finite, for the assignment.
+/// A cost that is never accepted. It is finite because the assignment requires finite costs.
 const NEVER: f64 = 1e9;
 
-/// What is known of a pair before anything is known of the figure.
+/// Data of a pair that do not depend on the figure.
 struct Pair {
     alignments: Vec<Alignment>,
     growth: f64,
@@ -70,14 +74,14 @@ impl Movement {
     }
 }
 
-/// Parts and drawn contours side by side.
+/// The parts and the drawn contours.
 pub(super) struct Figures<'a> {
     options: &'a MatchOptions,
-    /// By part; `None` without points.
+    /// By part; `None` if it has no points.
     parts: Vec<Option<Outline>>,
-    /// By drawn contour: its centre.
+    /// By drawn contour, for its centre; `None` if it has no points.
     centres: Vec<Option<Outline>>,
-    /// By part, then drawn contour; `None` where either has no points.
+    /// By part, then drawn contour; `None` if either has no points.
     pairs: Vec<Vec<Option<Pair>>>,
     /// Root mean square distance of the parts from their middle, in pixels.
     radius: f64,
@@ -88,7 +92,7 @@ pub(super) struct Figures<'a> {
 pub(super) struct Chosen {
     pub drawn: usize,
     pub cost: f64,
-    /// How much the figure has turned, in radians.
+    /// Rotation of the figure, in radians.
     pub turn: f64,
 }
 
@@ -96,7 +100,7 @@ impl<'a> Figures<'a> {
     pub fn new(parts: &[DrawnContour], drawn: &[DrawnContour], options: &'a MatchOptions) -> Self {
         let outlines: Vec<_> = parts.iter().map(|part| Outline::new(part, part.closed)).collect();
         let centres: Vec<_> = drawn.iter().map(|contour| Outline::new(contour, contour.closed)).collect();
-        // A drawn contour is taken as closed for closed parts, as open for open ones.
+        // A drawn contour counts as closed beside a closed part, and as open beside an open part.
         let forms: Vec<_> = drawn.iter().map(|c| [Outline::new(c, false), Outline::new(c, true)]).collect();
         let pair = |i: usize, j: usize| {
             let (a, b) = (outlines[i].as_ref()?, forms[j][usize::from(parts[i].closed)].as_ref()?);
@@ -107,7 +111,7 @@ impl<'a> Figures<'a> {
         Self { options, parts: outlines, centres, pairs, radius }
     }
 
-    /// The counterpart of each part.
+    /// Chooses the counterpart of each part.
     pub fn choose(&self) -> Vec<Option<Chosen>> {
         let mut proposals: Vec<(f64, Movement)> =
             self.proposals().into_iter().map(|movement| (self.bound(&movement), movement)).collect();
@@ -123,7 +127,7 @@ impl<'a> Figures<'a> {
         best.map_or_else(|| vec![None; self.parts.len()], |(_, chosen)| chosen)
     }
 
-    /// Movements that may be the figure's.
+    /// Movements to try.
     fn proposals(&self) -> Vec<Movement> {
         let mut result = Vec::new();
         let (source, target) = (middle(&self.parts), middle(&self.centres));
@@ -152,7 +156,7 @@ impl<'a> Figures<'a> {
         result
     }
 
-    /// What a movement costs at least: every part takes its best counterpart, though others may want it too.
+    /// Lower bound of the cost of a movement: every part takes its best counterpart, even if several take the same.
     fn bound(&self, movement: &Movement) -> f64 {
         let of_part = |i: usize| {
             let Some(part) = &self.parts[i] else { return 0.0 };
@@ -164,7 +168,7 @@ impl<'a> Figures<'a> {
         (0..self.parts.len()).map(of_part).sum::<f64>() + stillness
     }
 
-    /// Cost of taking drawn contour `j` for part `i`, whose centre is expected at a place.
+    /// Cost of drawn contour `j` as the counterpart of part `i`, whose centre is expected at `expected`.
     fn cost(&self, i: usize, j: usize, movement: &Movement, expected: Point) -> f64 {
         let (Some(drawn), Some(pair)) = (&self.centres[j], &self.pairs[i][j]) else { return NEVER };
         let away = expected.distance(drawn.centre) / (self.radius * movement.scale);
@@ -173,7 +177,7 @@ impl<'a> Figures<'a> {
         (pair.fixed + shape + SIZE * size * size + POSITION * away * away).min(NEVER)
     }
 
-    /// Assigns, fits the movement around each part to its neighbours, and again until nothing changes.
+    /// Alternates assignment and a fit of the movement around each part to its neighbours, until nothing changes.
     fn refine(&self, movement: &Movement) -> (f64, Vec<Option<Chosen>>) {
         let mut movements = vec![*movement; self.parts.len()];
         let mut best = self.assign(&movements);
@@ -189,17 +193,18 @@ impl<'a> Figures<'a> {
                 break;
             }
         }
-        // A neighbour that swings turns what is fitted around it, but no more than that: the figure's turn is surer.
+        // A neighbour that swings rotates the movement fitted around it. For placing points the figure's rotation is
+        // more reliable.
         let turn = self.fit(&best.1, movement, |_, _| 1.0).turn;
         best.1.iter_mut().flatten().for_each(|choice| choice.turn = turn);
         best
     }
 
-    /// Total cost and counterparts, under the movement that is expected of each part.
+    /// Total cost and counterparts, given the expected movement of each part.
     fn assign(&self, movements: &[Movement]) -> (f64, Vec<Option<Chosen>>) {
         let (rows, columns) = (self.parts.len(), self.centres.len());
         let limit = self.options.max_cost;
-        // A column of its own lets every part stay without counterpart.
+        // An additional column for each part lets it stay without counterpart.
         let mut costs = vec![limit; rows * (columns + rows)];
         for (i, part) in self.parts.iter().enumerate() {
             for j in 0..columns {
@@ -218,7 +223,7 @@ impl<'a> Figures<'a> {
         (total, chosen)
     }
 
-    /// The movement that the matched neighbours of part `i` make, held by the whole figure's where they are few.
+    /// The movement fitted to the matched neighbours of part `i`. If there are few, the figure's movement dominates.
     fn around(&self, i: usize, chosen: &[Option<Chosen>], whole: &Movement) -> Movement {
         let Some(part) = &self.parts[i] else { return *whole };
         let near = (NEIGHBOURHOOD * self.radius).powi(2);
@@ -231,7 +236,7 @@ impl<'a> Figures<'a> {
         )
     }
 
-    /// The movement of matched parts, weighted by index and outline, held by another movement.
+    /// The movement fitted to the matched parts, weighted by index and outline and regularised by another movement.
     fn fit(&self, chosen: &[Option<Chosen>], held: &Movement, weight: impl Fn(usize, &Outline) -> f64) -> Movement {
         let mut known = Vec::new();
         for (k, choice) in chosen.iter().enumerate() {
@@ -247,7 +252,7 @@ impl<'a> Figures<'a> {
         }
         let source = known.iter().map(|k| k.0 * k.1).sum::<Point>() / total;
         let target = known.iter().map(|k| k.0 * k.2).sum::<Point>() / total;
-        // The other movement counts as one more pair, at the figure's radius.
+        // The other movement counts as one more pair at the figure's radius.
         let mut denominator = self.radius * self.radius;
         let mut numerator = Point::from_angle(held.turn) * (held.scale * denominator);
         for (weight, p, q) in known {
@@ -260,8 +265,9 @@ impl<'a> Figures<'a> {
         Movement { turn: factor.to_angle(), scale: factor.length().clamp(1.0 / limit, limit), source, target }
     }
 
-    /// The ways to lay part `i` upon drawn contour `j`, the most likely first, each with the cost of its turn against the
-    /// expected one; and the drawn contour's size relative to the part's, and its radius in pixels.
+    /// The alignments of part `i` with drawn contour `j`, most likely first, each with the cost of its rotation
+    /// relative to the expected one. Also the size of the drawn contour relative to the part's, and its radius in
+    /// pixels.
     pub fn ways(&self, i: usize, j: usize, turn: f64) -> (Vec<(Alignment, f64)>, (f64, f64)) {
         let (Some(pair), Some(part)) = (&self.pairs[i][j], &self.parts[i]) else { return (Vec::new(), (1.0, 1.0)) };
         let doubt = |a: &Alignment| SLIDE * wrap(a.turn - turn).powi(2);
@@ -273,7 +279,7 @@ impl<'a> Figures<'a> {
 }
 
 impl Alignment {
-    /// Cost of the shape and of the turn, for a figure that has turned by an angle.
+    /// Cost of the shape and of the rotation, for a figure rotated by `figure` radians.
     fn cost(&self, figure: f64) -> f64 {
         let turn = wrap(self.turn - figure);
         SHAPE * self.residual + TURN * turn * turn
@@ -297,7 +303,7 @@ impl Pair {
         Self { alignments: a.alignments(b), growth, fixed }
     }
 
-    /// The alignment of least cost for a figure's turn, among those that turn no more than a limit.
+    /// The alignment of least cost for a figure's rotation, among those that rotate by at most `limit`.
     fn best(&self, turn: f64, limit: f64) -> Option<&Alignment> {
         let allowed = self.alignments.iter().filter(|a| wrap(a.turn).abs() <= limit);
         allowed.min_by(|a, b| a.cost(turn).total_cmp(&b.cost(turn)))

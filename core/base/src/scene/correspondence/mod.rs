@@ -1,14 +1,15 @@
-//! Contours that an artist drew afresh, matched to the parts of an earlier key.
+//! Matching of freshly drawn contours to the parts of an earlier key.
 //!
-//! Nothing is assumed of the order, direction, starting point or number of points of what was drawn. First it is decided
-//! which contour is which part (`figure`: shape, size, place in the figure, colour, all at once), then where on it the part's
-//! control points lie (`elastic`). What fits nothing stays without counterpart.
+//! The order, direction, starting point and number of points of the drawn contours are arbitrary. First `figure`
+//! decides which contour is which part, from shape, size, place in the figure and colour together. Then `elastic` finds
+//! the part's control points on the contour. A part that fits no contour stays without counterpart.
 //!
-//! An artist who drew a contour with as many points as the part has meant them: where the elastic map agrees with a plain
-//! shift of the indices, the drawn points themselves are returned.
+//! If an artist drew a contour with as many points as the part has, the drawn points are probably meant. They are
+//! returned themselves if the elastic map agrees with a plain shift of the indices.
 //!
-//! Limits: contours are compared by their sight alone; two equal limbs that have changed places are told apart by nothing
-//! but their neighbours and colours. A disc does not show its turn: it is taken to have turned with the figure.
+//! Limits: contours are compared by their appearance only. Two identical limbs that have changed places can be
+//! distinguished only by their neighbours and colours. A disc does not show its rotation; it is assumed to rotate with
+//! the figure.
 
 mod elastic;
 mod figure;
@@ -18,36 +19,37 @@ use crate::geometry::{Point, polyline};
 use figure::{Chosen, Figures};
 use outline::{Alignment, as_curve};
 
-/// Share of the points that must lie nearest to the drawn point of the same shifted index for the drawn points to be taken.
+/// Share of the points that must be nearest to the drawn point with the same shifted index, so that the drawn points
+/// are returned.
 const AGREEMENT: f64 = 0.6;
 
-/// Ways to lay a part upon its counterpart that are tried point by point.
+/// Number of alignments of a part with its counterpart that are tried point by point.
 const WAYS: usize = 3;
 
-/// Least distance, as a share of the length, of the starts of two ways: nearer ones lead to the same map.
+/// Least difference of the starts of two alignments, as a share of the length. Closer starts lead to the same map.
 const APART: f64 = 0.1;
 
-/// A contour as it was drawn.
+/// A drawn contour.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DrawnContour {
     /// Its points in pixels, in the order of drawing.
     pub points: Vec<Point>,
     /// Whether the last point joins the first.
     pub closed: bool,
-    /// Its colour, sRGB-encoded, 0 to 1; compared where both contours have one.
+    /// Its colour, sRGB-encoded, 0 to 1. Colours are compared if both contours have one.
     pub colour: Option<[f32; 3]>,
 }
 
-/// How to match.
+/// Options of the matching.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatchOptions {
-    /// Cost from which on a part stays without counterpart. The cost has no unit: unequal shapes, a place wrong by 0.7 of
-    /// the figure's radius, and a size wrong by 2.7 cost about 1 each. Parts that an artist drew in another perspective
-    /// reach 2.
+    /// A part whose best cost is at least this stays without counterpart. The cost has no unit. Unequal shapes, a
+    /// position wrong by 0.7 of the figure's radius, and a size wrong by a factor of 2.7 cost about 1 each. Parts drawn
+    /// in another perspective reach 2.
     pub max_cost: f64,
-    /// Farthest turn of the whole figure, in radians.
+    /// Greatest rotation of the figure, in radians.
     pub max_turn: f64,
-    /// Greatest growth of the whole figure, and 1 over its greatest shrinking.
+    /// Greatest growth of the figure as a factor; its inverse limits the shrinking.
     pub max_scale: f64,
 }
 
@@ -64,14 +66,14 @@ pub struct Match {
     pub drawn: usize,
     /// The part's control points on the drawn contour, in the part's order.
     pub points: Vec<Point>,
-    /// How unlike the two are, 0 for equal ones that lie where they are expected.
+    /// Dissimilarity of the two: 0 for equal contours at the expected position.
     pub cost: f64,
 }
 
-/// Why contours were not matched.
+/// Why contours cannot be matched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CorrespondenceError {
-    /// A point of a part is infinite or no number.
+    /// A coordinate of a part's point is not finite.
     #[error("part {part}: point {point} is not a pair of finite numbers")]
     PartPoint {
         /// Index of the part.
@@ -79,7 +81,7 @@ pub enum CorrespondenceError {
         /// Index of the point.
         point: usize,
     },
-    /// A point of a drawn contour is infinite or no number.
+    /// A coordinate of a drawn contour's point is not finite.
     #[error("drawn contour {drawn}: point {point} is not a pair of finite numbers")]
     DrawnPoint {
         /// Index of the drawn contour.
@@ -89,13 +91,14 @@ pub enum CorrespondenceError {
     },
 }
 
-/// The counterpart of each part among the drawn contours; each of these is taken at most once.
+/// Finds the counterpart of each part among the drawn contours. A drawn contour is the counterpart of at most one part.
 ///
-/// Contours without points match nothing.
+/// Points are in pixels, in the frame of the picture. The result has an entry for each part. Contours without points
+/// match nothing.
 ///
 /// # Errors
 ///
-/// The first point that is not finite, by contour and index.
+/// A [`CorrespondenceError`] names the first point that is not finite, by contour and index.
 pub fn match_contours(
     parts: &[DrawnContour],
     drawn: &[DrawnContour],
@@ -116,12 +119,12 @@ pub fn match_contours(
     Ok(matched.collect())
 }
 
-/// Contour and point index of the first point that is not finite.
+/// Indices of the contour and of its first point that is not finite.
 fn not_finite(contours: &[DrawnContour]) -> Option<(usize, usize)> {
     contours.iter().enumerate().find_map(|(i, c)| Some((i, c.points.iter().position(|p| !p.is_finite())?)))
 }
 
-/// The part's points on the drawn contour, by the best of the given ways (the most likely first).
+/// The part's points on the drawn contour, by the best of the given alignments (most likely first).
 fn corresponding(
     part: &DrawnContour,
     drawn: &DrawnContour,
@@ -143,12 +146,12 @@ fn corresponding(
             best = Some((cost, placed, way.reversed));
         }
     }
-    // No map within the allowed stretch: spread evenly.
+    // No map within the allowed stretch: spread the points evenly.
     let Some((_, placed, reversed)) = best else { return polyline::resample(&curve, part.closed, count) };
     own_points(part, drawn, &placed.arcs, reversed).unwrap_or(placed.places)
 }
 
-/// The most likely ways whose starts or directions differ.
+/// The most likely alignments that differ in start or direction.
 fn distinct(ways: &[(Alignment, f64)], closed: bool) -> Vec<&(Alignment, f64)> {
     let mut kept: Vec<&(Alignment, f64)> = Vec::new();
     for entry in ways {
@@ -167,7 +170,7 @@ fn distinct(ways: &[(Alignment, f64)], closed: bool) -> Vec<&(Alignment, f64)> {
     kept
 }
 
-/// The drawn points themselves in the part's order, where there are as many and they lie near the map's places.
+/// The drawn points themselves, in the part's order, if their number is the same and they agree with the map.
 fn own_points(part: &DrawnContour, drawn: &DrawnContour, arcs: &[f64], reversed: bool) -> Option<Vec<Point>> {
     let n = part.points.len();
     if drawn.points.len() != n || drawn.closed != part.closed {

@@ -1,53 +1,54 @@
-//! A contour reduced to what shapes are compared by, and how well two of them can be laid upon each other.
+//! Contours reduced to the features by which shapes are compared, and the alignment of two of them.
 //!
-//! Both curves are sampled evenly by arc length and centred; as complex numbers p and q of unit mean square, the best
-//! similarity is r = mean(conj(p) q), and 1 − |r|² of the variance remains (as in `geometry::similarity`). For closed curves
-//! all starting points are tried. Directions of drawing differ freely for open curves; a closed one turns the same way round
-//! on both drawings, so its direction follows from the sign of the area wherever there is one.
+//! Both curves are sampled evenly by arc length and centred. As complex numbers p and q of unit mean square their best
+//! similarity is r = mean(conj(p) q), and the share 1 − |r|² of the variance remains (as in `geometry::similarity`).
+//! For closed curves all starting points are tried. An open curve may be drawn in either direction. A closed curve has
+//! the same orientation on both drawings, so its direction follows from the sign of the area, unless it encloses hardly
+//! any.
 
 use super::DrawnContour;
 use crate::geometry::{Point, polygon, polyline};
 
-/// Samples of a curve.
+/// Number of samples of a curve.
 pub(super) const SAMPLES: usize = 48;
 
-/// Smallest size, in pixels, that is told apart: a dot counts as that large.
+/// Smallest radius, in pixels. A dot counts as that large.
 const LEAST_RADIUS: f64 = 0.5;
 
-/// Area relative to the squared length from which on a closed curve has a direction of turning (a circle has 0.08).
+/// Area relative to the squared length above which a closed curve has an orientation (a circle has 0.08).
 const LEAST_AREA: f64 = 0.005;
 
-/// A contour as it is compared.
+/// A contour prepared for comparison.
 #[derive(Clone, Debug)]
 pub(super) struct Outline {
-    /// Mean of the even samples.
+    /// Mean of the samples.
     pub centre: Point,
     /// Root mean square distance of the samples from the centre, in pixels; at least [`LEAST_RADIUS`].
     pub radius: f64,
     /// Length in pixels.
     pub length: f64,
-    /// Even samples, centred and divided by the radius.
+    /// Evenly spaced samples, centred and divided by the radius.
     samples: Vec<Point>,
-    /// Sign of the area: 0 for open and for thin curves.
+    /// Sign of the area; 0 for open and for thin curves.
     turning: i8,
     closed: bool,
 }
 
-/// One way to lay a curve upon another.
+/// One alignment of a curve with another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Alignment {
     /// Unexplained share of the variance, 0 to 1.
     pub residual: f64,
-    /// Turn in radians, from x towards y.
+    /// Rotation in radians, from x towards y.
     pub turn: f64,
-    /// Whether the other curve is walked backwards.
+    /// Whether the other curve is traversed backwards.
     pub reversed: bool,
-    /// Share of the other curve's length (walked forwards) at which the first sample lies.
+    /// Position of the first sample on the other curve, as a share of its length from its first point.
     pub start: f64,
 }
 
 impl Outline {
-    /// The contour's outline, taken as closed or open as asked for. `None` where it has no points.
+    /// The outline of a contour, taken as closed or open. `None` if it has no points.
     pub fn new(contour: &DrawnContour, closed: bool) -> Option<Self> {
         let points = as_curve(contour, closed);
         let samples = polyline::resample(&points, closed, SAMPLES);
@@ -61,7 +62,7 @@ impl Outline {
         Some(Self { centre, radius, length, samples, turning, closed })
     }
 
-    /// Every way to lay this curve upon `other`; both are closed or both are open.
+    /// All alignments of this curve with `other`. Both are closed or both are open.
     pub fn alignments(&self, other: &Self) -> Vec<Alignment> {
         let mut result = Vec::new();
         for reversed in [false, true] {
@@ -84,7 +85,7 @@ impl Outline {
             factor += Point::new(p.dot(q), p.perp_dot(q));
         }
         factor /= SAMPLES as f64;
-        // Two dots have nothing that could disagree.
+        // Two dots have no shape that could differ.
         let flat = |outline: &Self| outline.samples.iter().all(|p| *p == Point::ZERO);
         let residual = if flat(self) && flat(other) { 0.0 } else { (1.0 - factor.length_squared()).clamp(0.0, 1.0) };
         let steps = if self.closed { SAMPLES } else { SAMPLES - 1 };
@@ -92,7 +93,7 @@ impl Outline {
     }
 }
 
-/// The points of a contour taken as a closed or an open curve: a closed contour that is to be open ends where it began.
+/// The points of a contour as a closed or an open curve. A closed contour taken as open ends at its first point.
 pub(super) fn as_curve(contour: &DrawnContour, closed: bool) -> Vec<Point> {
     let mut points = contour.points.clone();
     if contour.closed && !closed && points.len() > 2 {
@@ -101,7 +102,7 @@ pub(super) fn as_curve(contour: &DrawnContour, closed: bool) -> Vec<Point> {
     points
 }
 
-/// The angle as the equivalent one from −π to π.
+/// The equivalent angle from −π to π.
 pub(super) fn wrap(angle: f64) -> f64 {
     let turn = std::f64::consts::TAU;
     angle - turn * (angle / turn).round()

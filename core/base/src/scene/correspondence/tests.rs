@@ -1,4 +1,4 @@
-//! A synthetic figure, drawn again in every way.
+//! A synthetic figure, redrawn in many ways.
 
 use super::*;
 use proptest::prelude::*;
@@ -37,7 +37,7 @@ fn figure() -> Vec<DrawnContour> {
     ]
 }
 
-/// A simple generator: tests must not depend on a library's stream of numbers.
+/// A simple generator, since tests must not depend on the random numbers of a library.
 struct Lots(u64);
 
 impl Lots {
@@ -67,7 +67,7 @@ fn redrawn(contour: &DrawnContour, lots: &mut Lots) -> DrawnContour {
     result
 }
 
-/// The figure moved; every part besides turns and shifts a little by itself.
+/// The moved figure. In addition every part rotates and shifts a little by itself.
 fn moved(parts: &[DrawnContour], turn: f64, scale: f64, loose: f64, lots: &mut Lots) -> Vec<DrawnContour> {
     let middle = Point::new(200.0, 200.0);
     let mut unit = || lots.next(2001) as f64 / 1000.0 - 1.0;
@@ -83,7 +83,7 @@ fn moved(parts: &[DrawnContour], turn: f64, scale: f64, loose: f64, lots: &mut L
     result
 }
 
-/// Every part is found in the right contour, its points within `tolerance` px of the truth.
+/// Asserts that every part finds its contour, and that its points are within `tolerance` px of the truth.
 fn check(parts: &[DrawnContour], truth: &[DrawnContour], drawn: &[DrawnContour], order: &[usize], tolerance: f64) {
     let found = match_contours(parts, drawn, &MatchOptions::default()).unwrap();
     for (i, found) in found.iter().enumerate() {

@@ -1,16 +1,16 @@
-//! Where the joints of a BVH file are on a frame (forward kinematics).
+//! Positions of the joints of a BVH file on a frame (forward kinematics).
 //!
-//! A node's frame of reference is its parent's, shifted by its offset and then turned by its rotation channels in the file's order:
-//! with columns as vectors, R = R₁ R₂ R₃, so that the last channel turns first, about axes that the others then carry along. Ends of
-//! chains are only shifted.
+//! The frame of a node is that of its parent, shifted by the node's offset and then rotated by its rotation channels in
+//! the order of the file. With column vectors R = R₁ R₂ R₃: the last channel rotates first, and its axes are carried
+//! along by the others. Ends of chains are only shifted.
 //!
-//! A position channel stands in place of the offset on its axis, as animation programs read it. Files that give positions to
-//! every joint repeat the offset in them, and those that give them to the root have an offset of 0 or the same there.
+//! A position channel replaces the offset on its axis, as in animation programs. Files with positions for every joint
+//! repeat the offset in them. Files with positions for the root have an offset of 0 or the same value there.
 
 use super::parse::{Bvh, Channel};
 use glam::{DMat3, DVec3};
 
-/// The places of all nodes on a frame, in the file's unit and axes.
+/// The positions of all nodes on a frame, in the unit and axes of the file.
 pub fn nodes_at(bvh: &Bvh, frame: usize) -> Vec<DVec3> {
     let mut values = bvh.frame(frame).iter();
     let mut found: Vec<(DVec3, DMat3)> = Vec::with_capacity(bvh.nodes.len());

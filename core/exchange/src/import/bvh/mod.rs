@@ -1,16 +1,17 @@
-//! Motion capture in BVH files, as skeleton clips.
+//! Motion capture in BVH files, converted to skeleton clips.
 //!
-//! - [`parse`]: the file's hierarchy and motion
-//! - [`kinematics`]: where its joints are on each frame
-//! - [`joints`]: which joints are the template's key points
-//! - [`view`]: from space onto the picture
+//! - [`parse`]: the hierarchy and motion of a file
+//! - [`kinematics`]: positions of its joints on each frame
+//! - [`joints`]: the joints of the template's key points
+//! - [`view`]: projection from space to the picture
 //!
-//! A clip is told as those that are learned from are told: the pelvis at the origin, the torso (pelvis over chest to neck, in
-//! space, its median over the clip) of length 1, x right and y down. With [`Options::way`] the pelvis goes its way through the
-//! picture instead, from the origin, which is what a drawing needs that shall walk and stand on its feet.
+//! A clip has the form that the style models expect: the pelvis at the origin, x right and y down, and a torso of
+//! length 1. The torso is measured in space, from the pelvis over the chest to the neck, and its median over the clip
+//! counts. With [`Options::way`] the pelvis follows its path through the picture instead, starting at the origin. A
+//! drawing that walks and stands on its feet needs this path.
 //!
-//! Limits: everything is seen without perspective from one direction all the time. Limbs that point at the viewer are short;
-//! a character that turns about is seen turning.
+//! Limits: the view has no perspective, and its direction is constant. Limbs that point towards the viewer are short. A
+//! character that turns around is seen turning.
 
 pub mod joints;
 pub mod kinematics;
@@ -26,66 +27,65 @@ use rototoon_base::scene::clip::between;
 use rototoon_base::scene::skeleton::{COUNT, NAMES, Posture};
 use std::ops::RangeInclusive;
 
-/// A torso shorter than this has no length to measure by.
+/// A shorter torso is not usable as a unit of length.
 const NO_TORSO: f64 = 1e-9;
-/// More frames than this are not made of one motion, whatever frames a second are asked for.
+/// Greatest number of frames of a clip, whatever frame rate is requested.
 const MOST_FRAMES: f64 = 1e6;
 
-/// How a motion becomes a clip.
+/// Options of the conversion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
-    /// From where it is seen.
+    /// Direction of the view.
     pub view: View,
-    /// Which of the file's axes points up.
+    /// The file's vertical axis.
     pub up: Up,
-    /// Joints of key points that their names do not tell.
+    /// Joints of key points that names do not determine.
     pub joints: JointMap,
-    /// Whether the pelvis goes its way; else it stays at the origin.
+    /// Whether the pelvis follows its path; otherwise it stays at the origin.
     pub way: bool,
-    /// The frames of the file, from 0; none for all.
+    /// Frames of the file, from 0; `None` takes all.
     pub frames: Option<RangeInclusive<usize>>,
-    /// Frames a second of the clip; none for the file's.
+    /// Frames per second of the clip; `None` takes the file's rate.
     pub fps: Option<f64>,
 }
 
-/// Postures seen in a picture.
+/// Postures as seen in a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
-    /// One a frame, in torso lengths, x right and y down.
+    /// A posture for each frame, in torso lengths, x right and y down.
     pub postures: Vec<Posture>,
-    /// Frames a second.
+    /// Frames per second.
     pub fps: f64,
-    /// The direction that they are seen from, in degrees about the vertical: 0 where the character faces the viewer, 90 where it
-    /// faces right.
+    /// Direction of the view about the vertical, in degrees: at 0 the character faces the viewer, at 90 it faces right.
     pub yaw: f64,
 }
 
-/// Why a motion does not become a clip.
+/// Why a motion cannot be converted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MotionError {
-    /// The file is not as it must be.
+    /// The file is invalid.
     #[error(transparent)]
     File(#[from] BvhError),
-    /// Its joints are not the template's.
+    /// Key points have no joints.
     #[error(transparent)]
     Joints(#[from] MapError),
-    /// Frames that the file does not have.
+    /// The requested frames are not in the file.
     #[error("frames {first} to {last}: expected frames of the file, 0 to {}", count - 1)]
     Frames {
-        /// First frame asked for.
+        /// First requested frame.
         first: usize,
-        /// Last frame asked for.
+        /// Last requested frame.
         last: usize,
         /// Number of frames of the file.
         count: usize,
     },
-    /// Frames a second that cannot be.
+    /// The requested frame rate is impossible.
     #[error("frames a second: found {found}, expected a positive number that gives at most {MOST_FRAMES} frames")]
     Rate {
-        /// What was asked for.
+        /// The requested frame rate.
         found: f64,
     },
-    /// A key point is nowhere.
+    /// The position of a key point is not finite.
     #[error("frame {frame}: found {point} at no finite place")]
     Place {
         /// The frame.
@@ -93,7 +93,7 @@ pub enum MotionError {
         /// The key point.
         point: &'static str,
     },
-    /// The character has no size.
+    /// The torso has no positive, finite length.
     #[error("found a torso of length {found} (pelvis over chest to neck), expected a positive length")]
     Torso {
         /// Its length.
@@ -101,7 +101,11 @@ pub enum MotionError {
     },
 }
 
-/// The text of a BVH file, as postures seen from somewhere.
+/// Converts the text of a BVH file to postures in a picture.
+///
+/// # Errors
+///
+/// A [`MotionError`].
 pub fn seen(text: &str, options: &Options) -> Result<Seen, MotionError> {
     let bvh = parse::parse(text)?;
     let places = joints::places(&bvh, &options.joints)?;
@@ -149,11 +153,11 @@ fn torso(postures: &[[DVec3; COUNT]]) -> f64 {
     lengths[lengths.len() / 2]
 }
 
-/// Postures at another number of frames a second: the same time, straight between neighbours.
+/// Resamples postures to another frame rate over the same time, with linear interpolation.
 fn at_rate(postures: Vec<Posture>, own: f64, wanted: Option<f64>) -> Result<(Vec<Posture>, f64), MotionError> {
     let fps = wanted.unwrap_or(own);
     let last = (postures.len() - 1) as f64;
-    // What falls short of a whole frame by rounding is one.
+    // A number of frames that misses an integer only by rounding counts as that integer.
     let frames = (last * fps / own + 1e-6).floor() + 1.0;
     if !(fps > 0.0 && fps.is_finite() && frames <= MOST_FRAMES) {
         return Err(MotionError::Rate { found: fps });

@@ -23,31 +23,32 @@
 //! 0 9 0 90 0 0 0 0 0
 //! ```
 //!
-//! There is no standard; this reads what programs write: any names (with blanks too), keywords and channels in upper or lower
-//! case, channels in any order and of any joint, rotations of one axis twice (proper Euler angles), several roots, blank lines. A
-//! frame is a line. What a file lacks or has too much is an error with its line: half a motion is no motion.
+//! The format has no standard; this parser accepts what programs write. Names may be any text, blanks included.
+//! Keywords and channels are in upper or lower case. Channels may come in any order, and rotations about one axis may
+//! come twice (proper Euler angles). Any joint may have position channels. Several roots and blank lines are allowed.
+//! Each frame is one line. A missing or surplus item is an error with its line, since half a motion is useless.
 
 use glam::DVec3;
 
-/// One of a joint's channels, what a frame's number means.
+/// A channel of a joint: the meaning of a number of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
-    /// The place along an axis (0 x, 1 y, 2 z), in the parent's frame.
+    /// The position along an axis (0 x, 1 y, 2 z), in the parent's frame.
     Position(usize),
-    /// A turn about an axis, in degrees.
+    /// The rotation about an axis, in degrees.
     Rotation(usize),
 }
 
 /// A joint, or the end of a chain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    /// Its name; that of the end of a chain is its joint's.
+    /// Its name. The end of a chain has the name of its joint.
     pub name: String,
-    /// The node it hangs on, which comes before it.
+    /// Its parent node, which comes before it.
     pub parent: Option<usize>,
-    /// Its place at rest, seen from the parent.
+    /// Its position at rest, relative to the parent.
     pub offset: DVec3,
-    /// Its channels in the file's order.
+    /// Its channels in the order of the file.
     pub channels: Vec<Channel>,
     /// Whether it is the end of a chain ("End Site").
     pub end: bool,
@@ -58,9 +59,9 @@ pub struct Node {
 pub struct Bvh {
     /// Joints and ends of chains, each after its parent.
     pub nodes: Vec<Node>,
-    /// Seconds from frame to frame.
+    /// Seconds between two frames.
     pub frame_time: f64,
-    /// The numbers of all frames, one frame after the other.
+    /// The numbers of all frames in order.
     values: Vec<f64>,
     channels: usize,
 }
@@ -77,7 +78,7 @@ impl Bvh {
     }
 }
 
-/// What is wrong with a file.
+/// An error in a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: found {found}, expected {expected}")]
 pub struct BvhError {
@@ -89,10 +90,14 @@ pub struct BvhError {
     pub expected: String,
 }
 
-/// Longest piece of a file that an error repeats, in characters.
+/// Greatest length of a quotation from the file in an error, in characters.
 const SHOWN: usize = 40;
 
-/// Reads a file's text.
+/// Parses the text of a file.
+///
+/// # Errors
+///
+/// A [`BvhError`] with the line.
 pub fn parse(text: &str) -> Result<Bvh, BvhError> {
     let mut lines = Lines::new(text);
     lines.keyword("HIERARCHY", "HIERARCHY, the head of a BVH file")?;
@@ -111,12 +116,12 @@ pub fn parse(text: &str) -> Result<Bvh, BvhError> {
     Ok(Bvh { nodes, frame_time, values, channels })
 }
 
-/// The lines of a text that hold something.
+/// The lines of a text that are not blank.
 struct Lines<'a> {
     rest: std::iter::Enumerate<std::str::Lines<'a>>,
-    /// The line that was taken last, from 1.
+    /// The number of the present line, from 1.
     line: usize,
-    /// What is left of it.
+    /// The rest of the present line.
     left: &'a str,
 }
 
@@ -125,7 +130,7 @@ impl<'a> Lines<'a> {
         Self { rest: text.trim_start_matches('\u{feff}').lines().enumerate(), line: 1, left: "" }
     }
 
-    /// What is left of the line, or the next line that holds something.
+    /// The rest of the present line, or the next line that is not blank.
     fn here(&mut self) -> Option<&'a str> {
         while self.left.is_empty() {
             let (index, line) = self.rest.next()?;
@@ -142,7 +147,7 @@ impl<'a> Lines<'a> {
         Some(here)
     }
 
-    /// Takes a word; blanks and braces end it, and a brace is a word of its own.
+    /// Takes a word. Blanks and braces end it, and a brace is a word of its own.
     fn word(&mut self) -> Option<&'a str> {
         let here = self.here()?;
         let end = match here.find(|c: char| c.is_whitespace() || c == '{' || c == '}') {
@@ -170,7 +175,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Takes a name: what stands on the line before a brace.
+    /// Takes a name: the text before a brace or the end of the line.
     fn name(&mut self) -> Result<String, BvhError> {
         let here = self.left;
         let (name, left) = here.split_at(here.find('{').unwrap_or(here.len()));
@@ -197,14 +202,14 @@ fn quoted(text: &str) -> String {
     }
 }
 
-/// What is known of a node whose braces are open.
+/// A node whose braces are open, and which of its fields were read.
 struct Open {
     node: usize,
     offset: bool,
     channels: bool,
 }
 
-/// The nodes up to and with the word MOTION. Without recursion: files may nest as deep as they like.
+/// Parses the nodes and the word MOTION after them. It does not recurse, since files may be nested to any depth.
 fn hierarchy(lines: &mut Lines) -> Result<Vec<Node>, BvhError> {
     let mut nodes: Vec<Node> = Vec::new();
     let mut open: Vec<Open> = Vec::new();
@@ -252,7 +257,7 @@ fn node(name: String, end: bool) -> Node {
     Node { name, parent: None, offset: DVec3::ZERO, channels: Vec::new(), end }
 }
 
-/// The node that is open; the end of a chain holds none.
+/// The open node; an error if it is the end of a chain.
 fn inside(lines: &Lines, nodes: &[Node], open: &[Open]) -> Result<Option<usize>, BvhError> {
     let parent = open.last().map(|open| open.node);
     match parent {
@@ -301,7 +306,7 @@ fn channels(lines: &mut Lines) -> Result<Vec<Channel>, BvhError> {
     Ok(found)
 }
 
-/// The number on a line that begins with a keyword of one or two words, blanks between them left out of account.
+/// The number on a line that begins with a keyword of one or two words, with any blanks between them.
 fn number_after<T>(
     lines: &mut Lines,
     keyword: &str,

@@ -1,49 +1,51 @@
-//! From space onto the picture: which way is up, where the character faces, and from where it is seen.
+//! Projection from space to the picture: the vertical axis, the facing of the character, and the direction of the view.
 //!
-//! The projection is orthographic, along a horizontal direction. With u up, f where the character faces and l = u × f its left, a
-//! yaw θ about the vertical shows cos θ l + sin θ f to the right: at 0 the character faces the viewer (its left is at the right of
-//! the picture), at 90° it faces right.
+//! The projection is orthographic along a horizontal direction. Let u point up, f be the facing of the character and l =
+//! u × f its left. A view of yaw θ about the vertical shows cos θ l + sin θ f to the right. At 0 the character faces
+//! the viewer (its left is at the right of the picture); at 90° it faces right.
 //!
-//! **Facing** is the horizontal normal to the lines from right to left hip and shoulder, summed over all frames: a step's twist
-//! cancels out. A character that turns right round, or whose sides coincide, faces where it does on the first frame that tells.
+//! **Facing** is the horizontal normal to the lines from the right to the left hip and shoulder, summed over all
+//! frames, so the twist of a step cancels out. If a character turns around completely, or its sides coincide, the first
+//! frame with a clear facing counts.
 //!
-//! **Up** is the axis, y or z, along which neck and ankles are farther apart in the median frame: some programs write z.
+//! **Up** is the axis, y or z, along which neck and ankles are farther apart in the median frame. Some programs write
+//! z.
 //!
-//! **The view chosen by itself** shows as much of the motion as a picture can: the horizontal direction in which the key points
-//! move most about their own means, the pelvis held still (the larger eigenvector of their covariance), lies in the picture. So a
-//! walk is seen from the side and a jumping jack from the front. Of the two sides that show as much it is the character's front,
-//! or, nearer to profile, the one from which it faces right.
+//! **The automatic view** shows as much of the motion as a picture can. It contains the horizontal direction in which
+//! the key points move most about their own means, relative to the pelvis (the larger eigenvector of their covariance).
+//! A walk is seen from the side, a jumping jack from the front. Two opposite views show the same motion; the chosen one
+//! shows the character from the front or, nearer to profile, facing right.
 
 use glam::DVec3;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::skeleton::COUNT;
 
-/// A posture in space.
+/// A posture in space: a position for each key point.
 type InSpace = [DVec3; COUNT];
 
-/// Yaw of a view between front and side, in degrees.
+/// Yaw of the view between front and side, in degrees.
 const THREE_QUARTER: f64 = 45.0;
 
-/// From where a character is seen.
+/// The direction of the view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum View {
-    /// From where most of the motion is seen.
+    /// The direction from which most of the motion is visible.
     #[default]
     Auto,
     /// From the front.
     Front,
-    /// From its right side: it faces right.
+    /// From its right side; it faces right.
     Side,
-    /// Between these.
+    /// Between front and side.
     ThreeQuarter,
     /// From an angle about the vertical in degrees: 0 front, 90 side.
     Yaw(f64),
 }
 
-/// Which of a file's axes points up.
+/// The vertical axis of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Up {
-    /// The one along which the character is tall.
+    /// The axis along which the character is tallest.
     #[default]
     Auto,
     /// y.
@@ -52,7 +54,7 @@ pub enum Up {
     Z,
 }
 
-/// How space is seen.
+/// An orthographic camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     up: DVec3,
@@ -62,7 +64,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A place in the picture, in the unit of space.
+    /// The projection of a position, in the unit of space, x right and y down.
     pub fn picture(&self, place: DVec3) -> Point {
         Point::new(self.right.dot(place), -self.up.dot(place))
     }
@@ -88,7 +90,7 @@ pub fn camera(postures: &[InSpace], up: Up, view: View) -> Camera {
     Camera { up, right: left * cosine + front * sine, yaw: 180.0 - (180.0 - degrees).rem_euclid(360.0) }
 }
 
-/// Sine and cosine that are exact at right angles.
+/// Sine and cosine that are exact at multiples of 90°.
 fn exact_sine_cosine(degrees: f64) -> (f64, f64) {
     match degrees.rem_euclid(360.0) {
         0.0 => (0.0, 1.0),
@@ -108,7 +110,7 @@ fn tall(postures: &[InSpace]) -> DVec3 {
     if height(DVec3::Z) > height(DVec3::Y) { DVec3::Z } else { DVec3::Y }
 }
 
-/// A unit vector that lies level.
+/// The facing of the character, a horizontal unit vector.
 fn facing(postures: &[InSpace], up: DVec3) -> DVec3 {
     let of = |p: &InSpace| {
         let across = (p[11] - p[14]) + (p[5] - p[8]);
@@ -117,12 +119,12 @@ fn facing(postures: &[InSpace], up: DVec3) -> DVec3 {
     let sum: DVec3 = postures.iter().map(of).sum();
     let clear = sum.length() > 0.1 * postures.len() as f64;
     let first = || postures.iter().map(of).find(|f| *f != DVec3::ZERO);
-    // As files are usually written: towards z, or, with z up, towards −y.
+    // The usual facing in files: towards z, or towards −y if z points up.
     let usual = if up == DVec3::Z { DVec3::NEG_Y } else { DVec3::Z };
     if clear { sum.normalize() } else { first().unwrap_or(usual) }
 }
 
-/// The yaw from which most of the motion is seen, in radians.
+/// The yaw that shows most of the motion, in radians.
 fn busiest(postures: &[InSpace], left: DVec3, front: DVec3) -> f64 {
     let level = |p: &InSpace, k: usize| Point::new(left.dot(p[k] - p[0]), front.dot(p[k] - p[0]));
     let (mut ll, mut lf, mut ff) = (0.0, 0.0, 0.0);
