@@ -285,7 +285,7 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
     let format = Format::of(Path::new(&job.output))
         .ok_or_else(|| PipelineError::Request(format!("{}: expected a name that ends in .png or .exr", job.output)))?;
     if job.picture == Picture::Layers && format != Format::Exr {
-        return Err(PipelineError::Request(format!("{}: layers expect a name that ends in .exr", job.output)));
+        return Err(PipelineError::Request(format!("{}: expected a name that ends in .exr for layers", job.output)));
     }
     let range = job.frames.clone().unwrap_or(footage.first..=footage.last);
     if range.is_empty() || !(footage.first..=footage.last).contains(range.start()) || *range.end() > footage.last {

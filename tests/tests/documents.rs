@@ -176,7 +176,7 @@ fn odd_contours_are_valid_with_a_warning() {
         ("[[1, 1]]", "the part is closed but has 1 points"),
         ("[[1, 1], [2, 2]]", "the part is closed but has 2 points"),
         ("[[1, 1], [2, 2], [3, 3]]", "the contour encloses no area"),
-        ("[[-9, 1], [-2, 2], [-3, 9]]", "the contour lies wholly outside the picture of 64x48 pixels"),
+        ("[[-9, 1], [-2, 2], [-3, 9]]", "the contour is completely outside of the picture of 64x48 pixels"),
     ] {
         let texts = warnings(&with_part(&format!(r#""keys": {{"0": {points}, "4": {points}}}"#)));
         assert!(texts.iter().all(|text| text.contains(warning)) && !texts.is_empty(), "{points}: {texts:?}");

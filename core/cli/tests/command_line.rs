@@ -202,7 +202,7 @@ fn odd_parts_are_tracked_or_left_alone_with_a_warning() {
         ("two points", two(json!([[9, 12], [20, 12]])), "has 2 points"),
         ("no area", two(json!([[9, 12], [20, 12], [14, 12]])), "encloses no area"),
         ("one place", two(json!([[9, 12], [9, 12], [9, 12]])), "encloses no area"),
-        ("off", two(json!([[-90, -12], [-70, -12], [-80, -50]])), "lies wholly outside the picture"),
+        ("off", two(json!([[-90, -12], [-70, -12], [-80, -50]])), "is completely outside of the picture"),
         ("far off", two(json!([[-9e5, -12], [9e5, -12], [-80, 9e5]])), ""),
     ];
     let parts: Vec<_> = cases.iter().map(|(name, keys, _)| json!({"name": name, "keys": keys})).collect();

@@ -171,7 +171,7 @@ fn import_errors_are_named_and_nothing_is_written() {
             1,
             "late.fxs: line 2, column 42: <Key>: found a key on frame 9, expected a frame of the footage, 0 to 8",
         ),
-        (file("cut.fxs", "<Silhouette><Object"), 1, "cut.fxs: it is no XML: "),
+        (file("cut.fxs", "<Silhouette><Object"), 1, "cut.fxs: found text that is not XML, expected XML: "),
         (file("none.svg", "<svg/>"), 1, "none.svg: found no shape, expected a path"),
         (file("a.nk", "RotoPaint {}"), 2, "a.nk: expected a name that ends in .svg or .fxs"),
         (folder.path("gone.svg"), 1, "gone.svg: cannot read the shapes: "),
@@ -303,5 +303,5 @@ fn pictures_of_ids_and_layers_are_written() {
     assert!(holds(&fs::read(file("layers.exr")).unwrap(), "triangle.A"));
     let [layers, plain] = ["layers.exr", "plain.exr"].map(|name| image::open(file(name)).unwrap().to_rgba32f());
     assert_eq!(layers, plain);
-    assert!(matte("layers.png", "on", 2).contains("layers expect a name that ends in .exr"));
+    assert!(matte("layers.png", "on", 2).contains("expected a name that ends in .exr for layers"));
 }

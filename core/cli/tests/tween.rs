@@ -132,7 +132,7 @@ fn errors_are_named_and_nothing_is_written() {
         json!([{"name": "a", "parent": "b", "pivot": [0, 0], "keys": keys}, {"name": "b", "parent": "a",
         "pivot": [0, 0], "keys": []}])
     };
-    bad(&|f| f["pegs"] = pegs(json!([])), "hangs on itself");
+    bad(&|f| f["pegs"] = pegs(json!([])), "is its own ancestor");
     bad(&|f| f["pegs"] = pegs(json!([{"frame": 2, "scale": 0}])), "peg \"a\", frame 2: scale is 0");
     let wrong_use = tween(Path::new("none.json"), Path::new("out.json"), &["--arcs", "2"]);
     assert_eq!(wrong_use.status.code(), Some(2));
@@ -161,7 +161,7 @@ fn check_finds_all_that_is_wrong_with_drawings_pairs_and_pegs() {
             "error drawings[0] (frame 2).spacing: found \"fast\", expected a movement function: constant, linear, ease_in, \
              ease_out, ease_in_out, cosine or bounce",
             "error pegs[0] \"a\".keys[0] (frame 2).scale: found 0, expected a number from 1e-6 to 1e9",
-            "error pegs[0] \"a\".parent: the peg hangs on itself, by way of its parents",
+            "error pegs[0] \"a\".parent: the peg is its own ancestor, expected parents without a loop",
             "warning pegs[0] \"a\": no stroke hangs on the peg, so it has no effect",
         ]
     );

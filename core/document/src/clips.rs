@@ -39,7 +39,9 @@ pub enum ClipsError {
         reason: String,
     },
     /// The file was written by a later version.
-    #[error("{origin}: rototoon_clips: found version {found}, expected {VERSION} or less; a newer Rototoon reads it")]
+    #[error(
+        "{origin}: rototoon_clips: found version {found}, expected {VERSION} or less; reading it needs a newer Rototoon"
+    )]
     Later {
         /// The file.
         origin: String,
@@ -198,7 +200,7 @@ impl Reader<'_> {
         match version.as_u64() {
             Some(1..=VERSION) => Ok(()),
             Some(found) if found > VERSION => Err(ClipsError::Later { origin: self.origin.into(), found }),
-            _ => Err(self.wrong("rototoon_clips", version, "the version of the form, 1")),
+            _ => Err(self.wrong("rototoon_clips", version, "the format version 1")),
         }
     }
 

@@ -79,7 +79,7 @@ pub enum Trouble {
     #[error(transparent)]
     Clip(#[from] ClipsError),
     /// A clip file does not contain exactly one clip.
-    #[error("{origin}: found {found} clips, expected one a file")]
+    #[error("{origin}: found {found} clips, expected one clip for each file")]
     Count {
         /// Path of the file.
         origin: String,

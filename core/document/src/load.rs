@@ -70,7 +70,7 @@ impl LoadError {
 fn lines(origin: &str, problems: &Problems) -> Vec<String> {
     let mut lines: Vec<_> = problems.errors().map(|problem| format!("{origin}: {problem}")).collect();
     if problems.left_off().0 > 0 {
-        lines.push(format!("{origin}: and {} errors more", problems.left_off().0));
+        lines.push(format!("{origin}: and {} more errors", problems.left_off().0));
     }
     lines
 }

@@ -45,7 +45,7 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666)); // less the user's mask, as for any new file
+        builder.permissions(fs::Permissions::from_mode(0o666)); // reduced by the user's mask, as for any new file
     }
     let mut file = builder.tempfile_in(folder)?;
     file.write_all(bytes)?;

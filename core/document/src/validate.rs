@@ -213,7 +213,7 @@ impl PartCheck<'_> {
         let size = Point::new(footage.width as f64, footage.height as f64);
         if low.cmpgt(size).any() || high.cmplt(Point::ZERO).any() {
             let picture = format!("{}x{}", footage.width, footage.height);
-            self.warning(place, format!("the contour lies wholly outside the picture of {picture} pixels"));
+            self.warning(place, format!("the contour is completely outside of the picture of {picture} pixels"));
         }
     }
 

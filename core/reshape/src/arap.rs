@@ -47,7 +47,7 @@ pub enum ArapError {
         last: usize,
     },
     /// A triangle has no area.
-    #[error("triangle {triangle}: found area {found}, expected a triangle that is no sliver")]
+    #[error("triangle {triangle}: found area {found}, expected a triangle that is not a sliver")]
     Sliver {
         /// Its index.
         triangle: usize,
@@ -60,8 +60,8 @@ pub enum ArapError {
         /// Its index.
         vertex: usize,
     },
-    /// Weights do not fit.
-    #[error("rigidity: found {found} weights, expected {triangles} positive ones, one a triangle")]
+    /// There is not exactly one positive, finite weight for each triangle.
+    #[error("rigidity: found {found} weights, expected {triangles} positive ones, one for each triangle")]
     Weights {
         /// Number of weights.
         found: usize,
@@ -78,16 +78,19 @@ pub enum ArapError {
         /// The last vertex.
         last: usize,
     },
-    /// Places do not fit the handles.
-    #[error("places: found {found}, expected {expected} finite ones, one a handle")]
+    /// There is not exactly one finite position for each handle.
+    #[error("places: found {found}, expected {expected} finite ones, one for each handle")]
     Places {
         /// Number of places.
         found: usize,
         /// Number of handles.
         expected: usize,
     },
-    /// A piece of the mesh has no handle, or only one where the mesh has several pieces: its turn would be free.
-    #[error("vertex {vertex}: its piece of the mesh has too few handles, expected two (one if the mesh is one piece)")]
+    /// A piece of the mesh has no handle, or only one if the mesh has several pieces. Its rotation would be
+    /// undetermined.
+    #[error(
+        "vertex {vertex}: found too few handles on its piece of the mesh, expected two (one if the mesh is one piece)"
+    )]
     Adrift {
         /// A vertex of the piece.
         vertex: usize,

@@ -58,7 +58,7 @@ pub enum CaptureError {
         source: BindingError,
     },
     /// No frame shows the torso.
-    #[error("frames {first} to {last}: found no frame on which limbs tell both pelvis and neck, expected at least one")]
+    #[error("frames {first} to {last}: found no frame on which limbs give both pelvis and neck, expected at least one")]
     NoTorso {
         /// First frame requested.
         first: FrameNumber,
@@ -66,7 +66,7 @@ pub enum CaptureError {
         last: FrameNumber,
     },
     /// Pelvis and neck coincide.
-    #[error("frame {frame}: found pelvis and neck on one spot, expected a torso with a length")]
+    #[error("frame {frame}: found pelvis and neck at one point, expected a torso with a length")]
     FlatTorso {
         /// The frame.
         frame: FrameNumber,
@@ -322,7 +322,7 @@ mod tests {
         let error = capture(&set, &parts, 7..=9).unwrap_err().to_string();
         assert_eq!(
             error,
-            "frames 7 to 9: found no frame on which limbs tell both pelvis and neck, expected at least one"
+            "frames 7 to 9: found no frame on which limbs give both pelvis and neck, expected at least one"
         );
         set.limbs[1].end.points[1].part = "wing".into();
         let error = capture(&set, &parts, 0..=4).unwrap_err().to_string();

@@ -219,7 +219,7 @@ fn whole(points: &[Point], rest: &[LimbPose], carriers: &[Carrier]) -> Drive {
         carriers.iter().any(|b| b.limb != a.limb && rest[b.limb].ends.1.distance(start) <= 1e-6)
     };
     let mut order = carriers.to_vec();
-    order.sort_by_key(hangs); // stable: of several the first that is given
+    order.sort_by_key(hangs); // stable: the first given limb wins ties
     let limbs = order.iter().map(|carrier| carrier.limb).collect();
     Drive::Whole { limbs, turn: order[0].turn, points: points.to_vec() }
 }

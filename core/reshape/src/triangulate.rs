@@ -46,13 +46,13 @@ pub enum TriangulateError {
         found: Point,
     },
     /// An outline encloses no area.
-    #[error("outline {outline}: found no area that it encloses (its points are on a line or a spot), expected some")]
+    #[error("outline {outline}: found no enclosed area (its points are on a line or at one spot), expected some")]
     Flat {
         /// Index of the outline.
         outline: usize,
     },
     /// There are no outlines, or the holes take all of the area.
-    #[error("outlines: found nothing that is inside of them and outside of the holes")]
+    #[error("outlines: found no area inside of them and outside of the holes, expected some")]
     Nothing,
     /// The edge length is not positive and finite.
     #[error("edge: found {found}, expected a positive length")]

@@ -109,7 +109,7 @@ fn described(k: usize, peg: &DrawnPeg, error: &PegError) -> (String, String) {
             (format!("{place}.parent"), format!("found {parent}, expected less than {count}"))
         }
         PegError::Loop { .. } => {
-            (format!("{place}.parent"), "the peg hangs on itself, by way of its parents".to_owned())
+            (format!("{place}.parent"), "the peg is its own ancestor, expected parents without a loop".to_owned())
         }
         PegError::Pivot { x, y, .. } => {
             (format!("{place}.pivot"), format!("found [{x}, {y}], expected numbers between -1e9 and 1e9"))
@@ -124,7 +124,7 @@ fn described(k: usize, peg: &DrawnPeg, error: &PegError) -> (String, String) {
         }
         PegError::Order { frame, before, .. } => (
             format!("{}.frame", key(*frame)),
-            format!("found {frame}, expected more than {before}, that of the key before it"),
+            format!("found {frame}, expected more than {before}, the frame of the key before it"),
         ),
         PegError::Timing { frame, source, .. } => (format!("{}.timing", key(*frame)), source.to_string()),
     }
@@ -140,7 +140,7 @@ fn odd(read: &Drawings, footage: &Footage, problems: &mut Problems) {
         let place = drawing_place(k, drawing.frame);
         if !(footage.first..=footage.last).contains(&drawing.frame) {
             let (first, last) = (footage.first, footage.last);
-            problems.warning(&*place, format!("the drawing lies outside the footage, frames {first} to {last}"));
+            problems.warning(&*place, format!("the drawing is outside of the footage, frames {first} to {last}"));
         }
         for (i, stroke) in drawing.strokes.iter().enumerate() {
             if stroke.points.is_empty() {
@@ -228,8 +228,8 @@ mod tests {
             &[
                 "pairs[0] (frame 0).from: found 2, expected the index of one of the 2 strokes on frame 0",
                 "pairs[0] (frame 0).to: found 1, expected the index of one of the 1 strokes on frame 4",
-                "pairs[2] (frame 4).from: found stroke 0 on frame 4, expected one that pairs[1] does not hold already",
-                "pairs[2] (frame 4).to: found stroke 0 on frame 9, expected one that pairs[1] does not hold already",
+                "pairs[2] (frame 4).from: found stroke 0 on frame 4, expected a stroke that pairs[1] does not use",
+                "pairs[2] (frame 4).to: found stroke 0 on frame 9, expected a stroke that pairs[1] does not use",
                 "pairs[3].frame: found 9, expected the frame of a drawing that has a next one",
                 "pairs[4] (frame 0).to: found nothing, expected a whole number from 0 on",
             ],
@@ -247,7 +247,7 @@ mod tests {
         );
         error(
             |f| f["pegs"][0]["keys"][1]["frame"] = json!(0),
-            &["pegs[0] \"arm\".keys[1] (frame 0).frame: found 0, expected more than 0, that of the key before it"],
+            &["pegs[0] \"arm\".keys[1] (frame 0).frame: found 0, expected more than 0, the frame of the key before it"],
         );
     }
 
@@ -255,11 +255,11 @@ mod tests {
     fn pegs_are_a_tree_of_movements() {
         error(
             |f| f["pegs"][1]["parent"] = json!("arm"),
-            &["pegs[0] \"arm\".parent: the peg hangs on itself, by way of its parents"],
+            &["pegs[0] \"arm\".parent: the peg is its own ancestor, expected parents without a loop"],
         );
         error(
             |f| f["pegs"][1]["parent"] = json!("body"),
-            &["pegs[1] \"body\".parent: the peg hangs on itself, by way of its parents"],
+            &["pegs[1] \"body\".parent: the peg is its own ancestor, expected parents without a loop"],
         );
         error(
             |f| {
@@ -352,7 +352,7 @@ mod tests {
                 vec![
                     "drawings[0] (frame 12).spacing: there is no next drawing, so the spacing has no effect".to_owned(),
                     "drawings: there is one drawing, so there is nothing to draw between".to_owned(),
-                    "drawings[0] (frame 12): the drawing lies outside the footage, frames 0 to 9".to_owned(),
+                    "drawings[0] (frame 12): the drawing is outside of the footage, frames 0 to 9".to_owned(),
                     "drawings[0] (frame 12).strokes[0]: the stroke has no points, so nothing is drawn".to_owned(),
                     "pegs[0] \"arm\": no stroke hangs on the peg, so it has no effect".to_owned(),
                     "pegs[1] \"body\": no stroke hangs on the peg, so it has no effect".to_owned(),

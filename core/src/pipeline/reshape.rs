@@ -111,7 +111,9 @@ fn add_points(bodies: &mut [Body], asked: &BTreeMap<String, Vec<Point>>) -> Resu
         let body =
             body.ok_or_else(|| wrong(format!("points: found part {name:?}, expected the name of a closed part")))?;
         if let Some(k) = points.iter().position(|p| !p.is_finite()) {
-            return Err(wrong(format!("points, part {name:?}, point {k}: found no finite number")));
+            return Err(wrong(format!(
+                "points, part {name:?}, point {k}: found coordinates that are not finite, expected finite ones"
+            )));
         }
         body.points.extend(points);
         body.more = points.len();
@@ -216,14 +218,15 @@ fn limb_poses(
     for (k, limb) in set.limbs.iter().enumerate() {
         let named = |what: &str| wrong(format!("limbs[{k}] ({} to {}), {what}", NAMES[limb.from], NAMES[limb.to]));
         let ends = drawn[limb.from].zip(drawn[limb.to]);
-        let ends = ends.ok_or_else(|| named(&format!("frame {rest}: found no contour that tells it, expected one")))?;
+        let ends =
+            ends.ok_or_else(|| named(&format!("frame {rest}: found no contour for its key points, expected one")))?;
         if ends.0.distance(ends.1) <= 1e-6 {
             return Err(named(&format!("frame {rest}: found a length of 0, expected a positive one")));
         }
         let mut bends = Vec::new();
         for (&frame, &control) in &limb.bends {
             let [Some(a), Some(b)] = bindings.limb(k, frame) else {
-                return Err(named(&format!("bends, frame {frame}: found no contour that tells the limb there")));
+                return Err(named(&format!("bends, frame {frame}: found no contour for the limb, expected one")));
             };
             bends.push((frame, Bend::of(a, b, control)));
         }

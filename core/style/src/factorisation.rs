@@ -127,7 +127,7 @@ pub struct Factorisation {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FactorError {
     /// An entry is negative or not finite.
-    #[error("row {row}, column {column}: found {found}, expected a number from 0")]
+    #[error("row {row}, column {column}: found {found}, expected a finite number of at least 0")]
     Entry {
         /// Its row.
         row: usize,
@@ -531,7 +531,7 @@ mod tests {
         assert_eq!(factor(x.as_ref(), &[0], &options).unwrap_err(), FactorError::Labels { found: 1, rows: 4 });
         x[(2, 1)] = -1.0;
         let error = factor(x.as_ref(), &[], &options).unwrap_err();
-        assert_eq!(error.to_string(), "row 2, column 1: found -1, expected a number from 0");
+        assert_eq!(error.to_string(), "row 2, column 1: found -1, expected a finite number of at least 0");
         assert_eq!(factor(x.as_ref(), &[], &Options { rank: 0, ..options }).unwrap_err(), FactorError::Rank);
         let zero = factor(Mat::zeros(3, 3).as_ref(), &[], &Options::default()).unwrap();
         assert!(zero.codes.norm_l2().is_finite());

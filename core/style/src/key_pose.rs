@@ -105,7 +105,7 @@ pub(super) fn condition(
         let times = |row: &[f64; COSINES]| -> Vec<f64> {
             (0..COSINES).map(|i| (0..COSINES).map(|j| covariance[i * COSINES + j] * row[j]).sum()).collect()
         };
-        let gains: Vec<Vec<f64>> = (0..n).map(|k| times(at(k))).collect(); // Σ Φᵀ, a column a key
+        let gains: Vec<Vec<f64>> = (0..n).map(|k| times(at(k))).collect(); // Σ Φᵀ, a column for each key
         let mut inner: Vec<f64> =
             (0..n * n).map(|k| at(k / n).iter().zip(&gains[k % n]).map(|(a, b)| a * b).sum()).collect();
         let size = (0..COSINES).map(|k| covariance[k * COSINES + k]).sum::<f64>();

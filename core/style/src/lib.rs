@@ -199,7 +199,7 @@ pub enum StyleError {
         character: String,
     },
     /// The content's clip is not there.
-    #[error("content: found no clip of {motion:?} by {character:?}, expected one to re-make")]
+    #[error("content: found no clip of {motion:?} by {character:?}, expected one to translate")]
     Content {
         /// The content's character.
         character: String,
@@ -207,7 +207,9 @@ pub enum StyleError {
         motion: String,
     },
     /// Nothing tells the manner.
-    #[error("style: found no other clip of {character:?} than of {motion:?} and no key pose, expected at least one")]
+    #[error(
+        "style: found neither another motion of {character:?} beside {motion:?} nor a key pose, expected at least one"
+    )]
     NothingKnown {
         /// The style's character.
         character: String,

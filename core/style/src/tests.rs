@@ -219,7 +219,7 @@ fn broken_clips_are_named() {
     flat.iter_mut().filter(|c| c.character == "shy").for_each(|c| c.postures.fill([Point::ZERO; COUNT]));
     assert!(error(&flat).contains("character \"shy\": found a torso of length 0"));
     let alone: Vec<Clip> = library().into_iter().filter(|c| c.motion == "run" || c.character == "plain").collect();
-    assert!(error(&alone).contains("found no other clip of \"old\" than of \"run\" and no key pose"));
+    assert!(error(&alone).contains("found neither another motion of \"old\" beside \"run\" nor a key pose"));
     let other: Vec<Clip> = library().into_iter().filter(|c| c.character != "plain" || c.motion != "run").collect();
     assert!(error(&other).contains("found no clip of \"run\" by \"plain\""));
 }

@@ -93,14 +93,14 @@ pub const ALL: [Parameter; 13] = [
     Parameter {
         id: "threads",
         label: "Threads",
-        help: "Number of threads; 0 takes one for each core. The result does not depend on it.",
+        help: "Number of threads; 0 takes one for each core. The number does not change the result.",
         stage: Stage::Run,
         kind: Kind::Integer { default: 0, min: 0, max: 1024 },
     },
     Parameter {
         id: "preset",
         label: "Method",
-        help: "The method that tracks.",
+        help: "The tracking method.",
         stage: Stage::Track,
         kind: Kind::Choice {
             default: "rototoon",
@@ -115,12 +115,12 @@ pub const ALL: [Parameter; 13] = [
     Parameter {
         id: "follow",
         label: "Follow",
-        help: "What snapped paths stick to.",
+        help: "The feature of the drawing that snapped paths follow.",
         stage: Stage::Snap,
         kind: Kind::Choice {
             default: "auto",
             choices: &[
-                choice("auto", "What the points lie on"),
+                choice("auto", "Border or ink, whichever the points are on"),
                 choice("edge", "Border between two colours"),
                 choice("line", "Centre of the ink"),
             ],
@@ -129,36 +129,36 @@ pub const ALL: [Parameter; 13] = [
     Parameter {
         id: "corridor_share",
         label: "Corridor",
-        help: "How far a snapped path may leave its segment, as a share of the segment's length.",
+        help: "Greatest distance between a snapped path and its segment, as a share of the segment's length.",
         stage: Stage::Snap,
         kind: Kind::Number { default: 0.3, min: 0.0, max: 2.0, unit: "" },
     },
     Parameter {
         id: "corridor_least",
         label: "Least corridor",
-        help: "Least distance that a snapped path may leave its segment, at 540 lines.",
+        help: "Lower limit of the distance between a snapped path and its segment, at 540 lines.",
         stage: Stage::Snap,
         kind: Kind::Number { default: 4.0, min: 1.5, max: 100.0, unit: "px" },
     },
     Parameter {
         id: "corridor_most",
         label: "Greatest corridor",
-        help: "Greatest distance that a snapped path may leave its segment, at 540 lines.",
+        help: "Upper limit of the distance between a snapped path and its segment, at 540 lines.",
         stage: Stage::Snap,
         kind: Kind::Number { default: 40.0, min: 1.5, max: 500.0, unit: "px" },
     },
     Parameter {
         id: "what",
         label: "What",
-        help: "The picture that is made: contours over the footage, the coverage of the closed parts, \
-               what they cover of the footage, or which part is where.",
+        help: "The picture to render: contours over the footage, the matte of the closed parts, \
+               the footage cut out by them, or a colour for each part.",
         stage: Stage::Render,
         kind: Kind::Choice {
             default: "overlay",
             choices: &[
                 choice("overlay", "Contours over the footage"),
                 choice("matte", "Matte of the closed parts"),
-                choice("cutout", "The footage where the closed parts are"),
+                choice("cutout", "Footage within the closed parts"),
                 choice("ids", "A colour for each part; in OpenEXR also Cryptomatte layers"),
             ],
         },
@@ -166,7 +166,7 @@ pub const ALL: [Parameter; 13] = [
     Parameter {
         id: "layers",
         label: "Layers",
-        help: "Whether a matte in OpenEXR also holds the whole matte of each part as a layer of its name.",
+        help: "Whether a matte in OpenEXR also contains the complete matte of each part, in a layer with the part's name.",
         stage: Stage::Render,
         kind: Kind::Flag { default: false },
     },
@@ -187,14 +187,14 @@ pub const ALL: [Parameter; 13] = [
     Parameter {
         id: "confidence",
         label: "Confidence",
-        help: "Whether the overlay shows by colour and opacity how sure each tracked point is.",
+        help: "Whether colour and opacity in the overlay show the confidence of each tracked point.",
         stage: Stage::Render,
         kind: Kind::Flag { default: true },
     },
     Parameter {
         id: "motion",
         label: "Motion",
-        help: "How an exported path goes from one frame to the next.",
+        help: "Motion of an exported path between frames.",
         stage: Stage::Export,
         kind: Kind::Choice {
             default: "hold",

@@ -120,7 +120,7 @@ impl Reader {
                     let expected = format!("the index of one of the {count} strokes on frame {on}");
                     self.problems.push(wrong(&place, &stroke.to_string(), &expected));
                 } else if let Some(first) = seen.insert((pair.drawing, side, stroke), k) {
-                    let expected = format!("one that pairs[{first}] does not hold already");
+                    let expected = format!("a stroke that pairs[{first}] does not use");
                     self.problems.push(wrong(&place, &format!("stroke {stroke} on frame {on}"), &expected));
                 }
             }

@@ -22,7 +22,7 @@ impl fmt::Display for Place {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ImportError {
     /// The file is not XML.
-    #[error("it is no XML: {0}")]
+    #[error("found text that is not XML, expected XML: {0}")]
     Syntax(String),
     /// An element is invalid.
     #[error("{place}: <{element}>: {message}")]

@@ -271,7 +271,7 @@ mod tests {
             (file("", &good).replace("\"path\"", "\"p\""), "<Object>", "expected one"),
             (file("", &good).replace("Silhouette", "Svg"), "<Svg>", "expected <Silhouette>"),
             (file("hidden=\"True\"", &good), "found no shape", "not hidden"),
-            ("<Silhouette>".into(), "it is no XML", ""),
+            ("<Silhouette>".into(), "found text that is not XML", ""),
         ] {
             let error = silhouette(&text, &FOOTAGE()).unwrap_err().to_string();
             assert!(error.contains(place) && error.contains(message), "{error}");

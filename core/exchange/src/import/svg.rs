@@ -304,7 +304,7 @@ mod tests {
             ("<polygon points=\"1 2 3\"/>", "<polygon>", "expected pairs of numbers"),
             ("<g transform=\"turn(3)\"><path d=\"M0 0h1\"/></g>", "<g>", "transform: found \"turn(3)\""),
             ("<g/>", "found no shape", "expected a path"),
-            ("<g>", "it is no XML", ""),
+            ("<g>", "found text that is not XML", ""),
         ] {
             let error = read(content).unwrap_err().to_string();
             assert!(error.contains(place) && error.contains(message), "{error}");

@@ -211,7 +211,7 @@ fn what_is_wrong_is_named_and_changes_nothing() {
     thin.scene.parts[1].keys.get_mut(&0).unwrap().iter_mut().for_each(|p| p.y = 101.0);
     assert_eq!(
         said(&thin, &job(&motion)),
-        "part \"shoe\": outline 0: found no area that it encloses (its points are on a line or a spot), expected some"
+        "part \"shoe\": outline 0: found no enclosed area (its points are on a line or at one spot), expected some"
     );
     let mut broken = motion.clone();
     broken.postures[1][5].x = f64::NAN;
@@ -241,7 +241,11 @@ fn points_follow_their_part() {
     assert_eq!(made.points["shoe"].iter().map(Vec::len).collect::<Vec<_>>(), [1, 1, 1]);
     for (name, point, said) in [
         ("seam", Point::ZERO, "found part \"seam\", expected the name of a closed part"),
-        ("arm", Point::new(f64::NAN, 0.0), "part \"arm\", point 0: found no finite number"),
+        (
+            "arm",
+            Point::new(f64::NAN, 0.0),
+            "part \"arm\", point 0: found coordinates that are not finite, expected finite ones",
+        ),
     ] {
         let points = BTreeMap::from([(name.to_owned(), vec![point])]);
         let error = reshape(&mut figure(""), &ReshapeJob { points, ..job(&motion) }, &Silent).unwrap_err();

@@ -81,8 +81,8 @@ pub enum PegError {
         /// Number of pegs.
         count: usize,
     },
-    /// A peg hangs on itself.
-    #[error("peg {name:?} hangs on itself, by way of its parents")]
+    /// A peg is its own ancestor.
+    #[error("peg {name:?} is its own ancestor, expected parents without a loop")]
     Loop {
         /// Name of a peg of the loop.
         name: String,

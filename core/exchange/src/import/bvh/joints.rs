@@ -93,8 +93,10 @@ pub enum MapError {
         /// The file's joints.
         known: String,
     },
-    /// Names do not tell where key points are.
-    #[error("found no joint for {missing}; say which of the file's they are in a map of joints; the file has {known}")]
+    /// Names do not determine the joints of some key points.
+    #[error(
+        "found no joint for {missing}, expected one for each key point; give them in a map of joints; the file has {known}"
+    )]
     Missing {
         /// The key points.
         missing: String,

@@ -70,7 +70,7 @@ pub enum MotionError {
     #[error(transparent)]
     Joints(#[from] MapError),
     /// The requested frames are not in the file.
-    #[error("frames {first} to {last}: expected frames of the file, 0 to {}", count - 1)]
+    #[error("frames: found {first} to {last}, expected frames of the file, 0 to {}", count - 1)]
     Frames {
         /// First requested frame.
         first: usize,
@@ -86,7 +86,7 @@ pub enum MotionError {
         found: f64,
     },
     /// The position of a key point is not finite.
-    #[error("frame {frame}: found {point} at no finite place")]
+    #[error("frame {frame}: found {point} at a position that is not finite, expected finite coordinates")]
     Place {
         /// The frame.
         frame: usize,

@@ -246,7 +246,7 @@ fn hierarchy(lines: &mut Lines) -> Result<Vec<Node>, BvhError> {
             ("MOTION", None) if !nodes.is_empty() => return Ok(nodes),
             (_, None) => return Err(lines.wrong_word(word, if nodes.is_empty() { "ROOT" } else { "MOTION" })),
             (_, Some(_)) => {
-                let expected = "OFFSET or CHANNELS (once a joint), JOINT, End Site or }";
+                let expected = "OFFSET or CHANNELS (once for each joint), JOINT, End Site or }";
                 return Err(lines.wrong_word(word, expected));
             }
         }
@@ -337,7 +337,7 @@ fn motion(lines: &mut Lines, count: usize, channels: usize) -> Result<Vec<f64>, 
         }
         let found = values.len() - before;
         if found != channels {
-            let expected = format!("{channels}, one a channel (frame {frame})");
+            let expected = format!("{channels}, one for each channel (frame {frame})");
             return Err(lines.wrong(format!("{found} numbers"), &expected));
         }
     }
@@ -408,7 +408,7 @@ mod tests {
                 .contains("expected Frame Time: and a positive number of seconds")
         );
         assert!(error("Frame Time: 0.25", "Frame Time: inf").contains("expected Frame Time: and a positive"));
-        assert_eq!(error("5 6 7 8", "5 6 7"), "line 18: found 3 numbers, expected 4, one a channel (frame 1)");
+        assert_eq!(error("5 6 7 8", "5 6 7"), "line 18: found 3 numbers, expected 4, one for each channel (frame 1)");
         assert_eq!(error("5 6 7 8", "5 6 NaN 8"), "line 18: found \"NaN\", expected a finite number (frame 1)");
         assert_eq!(error("5 6 7 8", ""), "line 18: found the end of the file after 1 frames, expected 2 frames");
         assert_eq!(error("5 6 7 8", "5 6 7 8\n9"), "line 19: found \"9\", expected the end of the file after 2 frames");

@@ -188,7 +188,7 @@ fn joints_that_names_do_not_tell_are_asked_for_and_taken_from_a_map() {
     (names[7], names[1]) = ("paw", "s1");
     let text = file(&names, &STANDING, &[[0.0, 10.0, 0.0, 0.0]]);
     let error = seen(&text, &Options::default()).unwrap_err().to_string();
-    assert!(error.starts_with("found no joint for l_wrist; say which of the file's they are"), "{error}");
+    assert!(error.starts_with("found no joint for l_wrist, expected one for each key point"), "{error}");
     assert!(error.contains("mixamorig:Hips, s1, mixamorig:Neck"), "{error}");
     let mapped = |map: &str| {
         let joints = JointMap::parse(map).unwrap();
@@ -232,13 +232,16 @@ fn what_cannot_be_seen_is_told() {
     let text = file(&USUAL, &STANDING, &frames);
     let error = |text: &str, options: &Options| seen(text, options).unwrap_err().to_string();
     let out = Options { frames: Some(1..=3), ..Options::default() };
-    assert_eq!(error(&text, &out), "frames 1 to 3: expected frames of the file, 0 to 2");
+    assert_eq!(error(&text, &out), "frames: found 1 to 3, expected frames of the file, 0 to 2");
     for fps in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e9] {
         assert!(error(&text, &Options { fps: Some(fps), ..Options::default() }).starts_with("frames a second: found"));
     }
     let point = file(&USUAL, &[[0.0; 3]; COUNT], &frames);
     assert!(error(&point, &Options::default()).starts_with("found a torso of length 0"));
     let far = text.replace("OFFSET 0 2 0", "OFFSET 0 1e308 0");
-    assert_eq!(error(&far, &Options::default()), "frame 0: found neck at no finite place");
+    assert_eq!(
+        error(&far, &Options::default()),
+        "frame 0: found neck at a position that is not finite, expected finite coordinates"
+    );
     assert!(error("HIERARCHY", &Options::default()).starts_with("line 1: found the end of the file"));
 }

@@ -138,7 +138,7 @@ fn busiest(postures: &[InSpace], left: DVec3, front: DVec3) -> f64 {
         }
     }
     if ll + ff <= 0.0 {
-        return std::f64::consts::FRAC_PI_2; // nothing moves: in profile
+        return std::f64::consts::FRAC_PI_2; // no motion: profile
     }
     let angle = 0.5 * (2.0 * lf).atan2(ll - ff); // of the larger eigenvector, from left towards front
     if angle < -std::f64::consts::FRAC_PI_4 { angle + std::f64::consts::PI } else { angle }
