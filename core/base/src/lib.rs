@@ -39,5 +39,6 @@
 
 pub mod curve;
 pub mod geometry;
+pub mod memory;
 pub mod numeric;
 pub mod scene;

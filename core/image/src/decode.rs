@@ -9,23 +9,22 @@
 //!   programs blend their antialiased edges. OpenEXR has light multiplied by alpha and is blended as light.
 //! - **Animations** (PNG, WebP) give their first frame.
 //!
+//! A file that is cut anywhere is an error, unless all pixels are in what is left ([`super::open`]).
+//!
 //! Limits: colour profiles, gamma chunks and the orientation noted by cameras are ignored. The decoder refuses TIFF
-//! with a palette and OpenEXR without R, G and B channels, with its own reason. A picture may use at most 2 GiB while
-//! it is decoded.
+//! with a palette and OpenEXR without R, G and B channels, with its own reason. The pixels of a picture may use at most
+//! 2 GiB while it is decoded. Damage inside of a JPEG scan is not found: the format has no checksums.
 
 use super::colour::{decode as to_light, encode};
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use super::open::{check_size, open};
+use image::{DynamicImage, ImageDecoder, ImageFormat};
 use rototoon_base::scene::{Colour, Raster};
-use std::fs::File;
-use std::io::{self, BufReader};
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 /// The grey with which transparent pixels are blended, sRGB-encoded.
 pub const BACKDROP: f32 = 0.5;
-
-/// Largest number of bytes that decoding may use.
-const MOST_BYTES: u64 = 2 << 30;
 
 /// The reason why a file gives no picture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -68,7 +67,7 @@ impl From<image::ImageError> for DecodeError {
 /// A file that does not exist or cannot be read as a picture.
 pub fn probe(path: &Path) -> Result<(usize, usize), DecodeError> {
     guarded(|| {
-        let (width, height) = open(path)?.into_dimensions()?;
+        let (width, height) = open(path, false)?.into_dimensions()?;
         Ok((width as usize, height as usize))
     })
 }
@@ -100,7 +99,7 @@ fn decoded<T: Copy>(
     pixels: impl FnOnce(DynamicImage, bool) -> Vec<T>,
 ) -> Result<Raster<T>, DecodeError> {
     guarded(|| {
-        let reader = open(path)?;
+        let reader = open(path, true)?;
         let multiplied = reader.format() == Some(ImageFormat::OpenExr);
         let decoder = reader.into_decoder()?;
         let (width, height) = decoder.dimensions();
@@ -108,31 +107,11 @@ fn decoded<T: Copy>(
         if expected.is_some_and(|size| size != (width, height)) {
             return Err(DecodeError::WrongSize { width, height });
         }
-        if decoder.total_bytes() > MOST_BYTES {
-            let reason =
-                format!("{width}x{height} pixels need {} bytes, expected at most {MOST_BYTES}", decoder.total_bytes());
-            return Err(DecodeError::Unreadable(reason));
-        }
+        check_size(&decoder, size_of::<T>())?;
         let pixels = pixels(DynamicImage::from_decoder(decoder)?, multiplied);
         Raster::from_vec(width, height, pixels)
             .ok_or_else(|| DecodeError::Unreadable(format!("fewer pixels than {width}x{height}")))
     })
-}
-
-/// Opens a file and finds its format.
-fn open(path: &Path) -> Result<ImageReader<BufReader<File>>, DecodeError> {
-    let file = File::open(path)?;
-    if file.metadata()?.is_dir() {
-        return Err(DecodeError::Unreadable("it is a folder, expected a file".into()));
-    }
-    let mut reader = ImageReader::new(BufReader::new(file)).with_guessed_format()?;
-    if reader.format().is_none() {
-        return Err(DecodeError::Unreadable("not a PNG, JPEG, TIFF, BMP, WebP or OpenEXR picture".into()));
-    }
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(MOST_BYTES);
-    reader.limits(limits);
-    Ok(reader)
 }
 
 /// Turns a panic of the decoder, on a broken file, into an error.
@@ -443,7 +422,10 @@ mod tests {
     #[test]
     fn a_small_file_that_claims_to_be_huge_is_refused() {
         let folder = folder();
-        let bytes = png([60000, 60000], 16, 6, &[], &[0], &[]);
-        assert!(matches!(decode(&file(&folder, "a.png", &bytes), None), Err(DecodeError::Unreadable(_))));
+        for (size, bits, kind) in [([60000, 60000], 16, 6), ([46000, 46000], 1, 0)] {
+            let bytes = png(size, bits, kind, &[], &[0], &[]);
+            let Err(DecodeError::Unreadable(reason)) = decode(&file(&folder, "a.png", &bytes), None) else { panic!() };
+            assert!(reason.contains("expected at most 2.1 GB"), "{reason}");
+        }
     }
 }

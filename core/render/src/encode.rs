@@ -2,9 +2,10 @@
 //!
 //! PNG contains display colours with 8 bits for each channel; mattes have 16 bits. OpenEXR contains 32-bit floats. Its
 //! colours are in linear light. Its mattes are white premultiplied by alpha, the form that compositors expect; its
-//! cutouts are premultiplied too.
+//! cutouts are premultiplied too. The same picture gives the same bytes: OpenEXR is written by [`super::layers`], line
+//! by line in their order. The parallel writer of the image library would write the blocks as they become ready.
 
-use image::codecs::openexr::OpenExrEncoder;
+use super::layers::{self, Channel};
 use image::codecs::png::PngEncoder;
 use image::{DynamicImage, ImageBuffer};
 use rototoon_base::scene::{Colour, Raster};
@@ -47,23 +48,20 @@ pub struct EncodeError {
 /// Encodes a colour picture (sRGB-encoded, 0 to 1).
 pub fn colours(picture: &Raster<Colour>, format: Format) -> Result<Vec<u8>, EncodeError> {
     let (width, height) = (picture.width() as u32, picture.height() as u32);
-    let image = match format {
+    match format {
         Format::Png => {
             let bytes = picture.data().iter().flatten().map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8).collect();
-            ImageBuffer::from_raw(width, height, bytes).map(DynamicImage::ImageRgb8)
+            let image = ImageBuffer::from_raw(width, height, bytes).map(DynamicImage::ImageRgb8);
+            png(image, picture.width(), picture.height())
         }
-        Format::Exr => {
-            let values = picture.data().iter().flatten().map(|&c| colour::decode(c)).collect();
-            ImageBuffer::from_raw(width, height, values).map(DynamicImage::ImageRgb32F)
-        }
-    };
-    bytes(image, format, picture.width(), picture.height())
+        Format::Exr => exr(picture, ["R", "G", "B"], |pixel, channel| colour::decode(pixel[channel])),
+    }
 }
 
 /// Encodes a picture with alpha as PNG. Its colours are sRGB-encoded and premultiplied.
 pub fn premultiplied(picture: &Raster<[f32; 4]>) -> Result<Vec<u8>, EncodeError> {
     let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
-    //     // Colours in PNG are not premultiplied.
+    // Colours in PNG are not premultiplied.
     let straight = |&[r, g, b, a]: &[f32; 4]| {
         let whole = if a > 0.0 { a } else { 1.0 };
         [byte(r / whole), byte(g / whole), byte(b / whole), byte(a)]
@@ -73,7 +71,7 @@ pub fn premultiplied(picture: &Raster<[f32; 4]>) -> Result<Vec<u8>, EncodeError>
         picture.height() as u32,
         picture.data().iter().flat_map(straight).collect(),
     );
-    bytes(image.map(DynamicImage::ImageRgba8), Format::Png, picture.width(), picture.height())
+    png(image.map(DynamicImage::ImageRgba8), picture.width(), picture.height())
 }
 
 /// Encodes linear light multiplied by alpha, and alpha.
@@ -89,40 +87,43 @@ pub fn layer(picture: &Raster<[f32; 4]>, format: Format) -> Result<Vec<u8>, Enco
             let shown = Raster::from_fn(width, height, |x, y| shown(&picture.get(x, y)));
             premultiplied(&shown)
         }
-        Format::Exr => {
-            let values = picture.data().iter().flatten().copied().collect();
-            let image = ImageBuffer::from_raw(width as u32, height as u32, values).map(DynamicImage::ImageRgba32F);
-            bytes(image, format, width, height)
-        }
+        Format::Exr => exr(picture, ["R", "G", "B", "A"], |pixel, channel| pixel[channel]),
     }
 }
 
 /// Encodes a matte (0 to 1).
 pub fn matte(picture: &Raster<f32>, format: Format) -> Result<Vec<u8>, EncodeError> {
     let (width, height) = (picture.width() as u32, picture.height() as u32);
-    let image = match format {
+    match format {
         Format::Png => {
             let values = picture.data().iter().map(|v| (v.clamp(0.0, 1.0) * 65535.0).round() as u16).collect();
-            ImageBuffer::from_raw(width, height, values).map(DynamicImage::ImageLuma16)
+            let image = ImageBuffer::from_raw(width, height, values).map(DynamicImage::ImageLuma16);
+            png(image, picture.width(), picture.height())
         }
-        Format::Exr => {
-            let values = picture.data().iter().flat_map(|&v| [v; 4]).collect();
-            ImageBuffer::from_raw(width, height, values).map(DynamicImage::ImageRgba32F)
-        }
-    };
-    bytes(image, format, picture.width(), picture.height())
+        Format::Exr => exr(picture, ["R", "G", "B", "A"], |&coverage, _| coverage),
+    }
 }
 
-fn bytes(image: Option<DynamicImage>, format: Format, width: usize, height: usize) -> Result<Vec<u8>, EncodeError> {
+/// Encodes as OpenEXR. `value` gives the value of a pixel in the channel of that index.
+fn exr<T: Copy, const N: usize>(
+    picture: &Raster<T>,
+    names: [&str; N],
+    value: impl Fn(&T, usize) -> f32,
+) -> Result<Vec<u8>, EncodeError> {
+    let channel = |(index, name): (usize, &str)| Channel {
+        name: name.to_owned(),
+        values: picture.data().iter().map(|pixel| value(pixel, index)).collect(),
+    };
+    let channels = names.into_iter().enumerate().map(channel).collect();
+    layers::encode(picture.width(), picture.height(), channels, &[])
+}
+
+fn png(image: Option<DynamicImage>, width: usize, height: usize) -> Result<Vec<u8>, EncodeError> {
     let failed = |reason: String| EncodeError { width, height, reason };
     let image = image.ok_or_else(|| failed("the size does not fit".to_owned()))?;
     let mut out = Cursor::new(Vec::new());
-    //     // The encoder is named, because a call for any format would compile all encoders.
-    let written = match format {
-        Format::Png => image.write_with_encoder(PngEncoder::new(&mut out)),
-        Format::Exr => image.write_with_encoder(OpenExrEncoder::new(&mut out)),
-    };
-    written.map_err(|error| failed(error.to_string()))?;
+    // The encoder is named, because a call for any format would compile all encoders.
+    image.write_with_encoder(PngEncoder::new(&mut out)).map_err(|error| failed(error.to_string()))?;
     Ok(out.into_inner())
 }
 
@@ -153,6 +154,20 @@ mod tests {
             for (pixel, value) in image.pixels().zip(picture.data()) {
                 assert!((pixel.0[0] - value).abs() < 1e-4, "{format:?}");
             }
+        }
+    }
+
+    #[test]
+    fn the_same_picture_gives_the_same_bytes() {
+        // Many blocks of lines, so that a parallel writer would finish them in changing order.
+        let noise = |x: usize, y: usize| ((x * 7919 + y * 104_729) % 1013) as f32 / 1013.0;
+        let colour = Raster::from_fn(200, 600, |x, y| [noise(x, y), noise(y, x), 0.5]);
+        let first = colours(&colour, Format::Exr).unwrap();
+        let shape = Raster::from_fn(200, 600, noise);
+        let first_matte = matte(&shape, Format::Exr).unwrap();
+        for _ in 0..12 {
+            assert!(colours(&colour, Format::Exr).unwrap() == first);
+            assert!(matte(&shape, Format::Exr).unwrap() == first_matte);
         }
     }
 

@@ -1,0 +1,90 @@
+//! Opens a picture file within limits: a regular file, a known format, a complete file, a bounded amount of memory.
+//!
+//! Files come from anywhere. A small file may claim to be huge, hide a huge compressed colour profile, or end in the
+//! middle. All of that is an error here, before memory is taken.
+
+use super::decode::DecodeError;
+use super::jpeg;
+use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
+use rototoon_base::memory::{self, Bytes};
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader, Cursor, Seek};
+use std::path::Path;
+
+/// Largest number of bytes that the pixels of a picture may take, as decoded and as converted together.
+pub const MOST_BYTES: u64 = 2 << 30;
+
+/// Largest number of bytes that a PNG decoder may take beside the pixels: for a line, a colour profile, texts.
+const MOST_EXTRA_BYTES: u64 = 32 << 20;
+
+/// A file whose format is known.
+pub type Reader = ImageReader<Box<dyn Source>>;
+
+/// Bytes of a file.
+pub trait Source: BufRead + Seek {}
+
+impl<T: BufRead + Seek> Source for T {}
+
+/// Opens a picture file and finds its format by its content. `complete` also checks a JPEG file for its end, which
+/// reads all of it.
+///
+/// # Errors
+///
+/// A [`DecodeError`] if there is no file, or no regular file (a folder, a pipe, a device), or its format is unknown, or
+/// it is cut.
+pub fn open(path: &Path, complete: bool) -> Result<Reader, DecodeError> {
+    let data = fs::metadata(path)?;
+    // Opening a pipe would wait for a writer.
+    if !data.is_file() {
+        let found = if data.is_dir() { "a folder" } else { "a pipe or a device" };
+        return Err(DecodeError::Unreadable(format!("it is {found}, expected a file")));
+    }
+    let file: Box<dyn Source> = Box::new(BufReader::new(File::open(path)?));
+    let mut reader = ImageReader::new(file).with_guessed_format()?;
+    let Some(format) = reader.format() else {
+        return Err(DecodeError::Unreadable("not a PNG, JPEG, TIFF, BMP, WebP or OpenEXR picture".into()));
+    };
+    if format == ImageFormat::Jpeg && complete {
+        reader = whole_jpeg(path, data.len())?;
+    }
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(if format == ImageFormat::Png { MOST_EXTRA_BYTES } else { MOST_BYTES });
+    reader.limits(limits);
+    Ok(reader)
+}
+
+/// A JPEG file in memory, where its decoder would copy it anyway.
+fn whole_jpeg(path: &Path, length: u64) -> Result<Reader, DecodeError> {
+    memory_for(length, "the file needs")?;
+    let bytes = fs::read(path)?;
+    if !jpeg::complete(&bytes) {
+        let reason = format!("the JPEG file is cut: its {} bytes end before the picture does", bytes.len());
+        return Err(DecodeError::Unreadable(reason));
+    }
+    let source: Box<dyn Source> = Box::new(Cursor::new(bytes));
+    Ok(ImageReader::with_format(source, ImageFormat::Jpeg))
+}
+
+/// An error if the pixels of a picture, as decoded and converted to `pixel` bytes each, take too much memory.
+pub fn check_size(decoder: &impl ImageDecoder, pixel: usize) -> Result<(), DecodeError> {
+    let (width, height) = decoder.dimensions();
+    let converted = u64::from(width) * u64::from(height) * pixel as u64;
+    let what = format!("{width}x{height} pixels need");
+    let bytes = decoder.total_bytes().saturating_add(converted);
+    memory_for(bytes, &what)?;
+    // Some decoders keep a second copy while they work.
+    ask(bytes.saturating_add(decoder.total_bytes()), &what)
+}
+
+/// An error if more than [`MOST_BYTES`] are needed, or more than the system grants.
+fn memory_for(bytes: u64, what: &str) -> Result<(), DecodeError> {
+    if bytes > MOST_BYTES {
+        let reason = format!("{what} {} of memory, expected at most {}", Bytes(bytes), Bytes(MOST_BYTES));
+        return Err(DecodeError::Unreadable(reason));
+    }
+    ask(bytes, what)
+}
+
+fn ask(bytes: u64, what: &str) -> Result<(), DecodeError> {
+    memory::ask(bytes).map_err(|error| DecodeError::Unreadable(format!("{what} too much memory: {error}")))
+}

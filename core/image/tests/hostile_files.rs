@@ -1,0 +1,63 @@
+//! Picture files that are cut, or that are no regular files.
+
+use image::{DynamicImage, ImageBuffer, ImageFormat, Rgb};
+use rototoon_image::{DecodeError, decode};
+use std::io::Cursor;
+use std::path::Path;
+
+/// A small drawing in a format: dark lines on paper, so that wrong pixels are found.
+fn drawing(format: ImageFormat) -> Vec<u8> {
+    let ink = |x: u32, y: u32| if (x + 2 * y) % 7 < 2 { [20u8, 30, 40] } else { [240, 235, (x * 9 + y * 5) as u8] };
+    let picture = DynamicImage::ImageRgb8(ImageBuffer::from_fn(23, 19, |x, y| Rgb(ink(x, y))));
+    let picture = match format {
+        ImageFormat::OpenExr => DynamicImage::ImageRgb32F(picture.to_rgb32f()),
+        _ => picture,
+    };
+    let mut bytes = Vec::new();
+    picture.write_to(&mut Cursor::new(&mut bytes), format).unwrap();
+    bytes
+}
+
+fn decoded(path: &Path, bytes: &[u8]) -> Result<Vec<[f32; 3]>, DecodeError> {
+    std::fs::write(path, bytes).unwrap();
+    decode(path, Some((23, 19))).map(|picture| picture.data().to_vec())
+}
+
+#[test]
+fn a_file_cut_anywhere_gives_an_error_or_all_of_its_pixels() {
+    use ImageFormat::{Bmp, Jpeg, OpenExr, Png, Tiff, WebP};
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("frame");
+    for format in [Png, Jpeg, Tiff, Bmp, WebP, OpenExr] {
+        let whole = drawing(format);
+        let pixels = decoded(&path, &whole).unwrap();
+        let mut refused = 0;
+        for length in 0..whole.len() {
+            match decoded(&path, &whole[..length]) {
+                Ok(found) => assert!(found == pixels, "{format:?}: {length} of {} bytes give other pixels", whole.len()),
+                Err(_) => refused += 1,
+            }
+        }
+        assert!(refused * 10 >= whole.len() * 9, "{format:?}: refused {refused} of {} lengths", whole.len());
+    }
+}
+
+#[test]
+fn a_cut_jpeg_names_the_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = drawing(ImageFormat::Jpeg);
+    let error = decoded(&folder.path().join("frame.jpg"), &whole[..whole.len() / 2]).unwrap_err().to_string();
+    assert!(error.starts_with("the JPEG file is cut: its "), "{error}");
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("frame_1.png");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for path in [&pipe, Path::new("/dev/zero")] {
+        let error = decode(path, None).unwrap_err().to_string();
+        assert_eq!(error, "it is a pipe or a device, expected a file");
+    }
+}
