@@ -73,7 +73,7 @@
 
 pub mod pipeline;
 
-pub use rototoon_base::{curve, geometry, numeric, scene};
+pub use rototoon_base::{curve, file, geometry, memory, numeric, scene};
 pub use rototoon_document as project;
 pub use rototoon_exchange::{export, import};
 pub use rototoon_fit as fit;

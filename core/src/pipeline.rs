@@ -157,7 +157,7 @@ pub fn store(scene: &mut Scene, tracking: &Tracking) {
         let now = &part.tracks;
         part.curves.retain(|frame, _| match (now.get(frame), before.get(frame)) {
             (Some(now), Some(before)) => same_contour(now, before),
-            //                 // The path was snapped from a key that had no track.
+            // The path was snapped from a key that had no track.
             (Some(now), None) => part.keys.get(frame).is_some_and(|key| same_contour(now, key)),
             _ => false,
         });

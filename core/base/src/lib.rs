@@ -38,6 +38,7 @@
 #![forbid(unsafe_code)]
 
 pub mod curve;
+pub mod file;
 pub mod geometry;
 pub mod memory;
 pub mod numeric;

@@ -3,6 +3,7 @@
 use crate::failure::{Failure, line};
 use crate::{arguments, project};
 use clap::{Arg, ArgMatches, Command, value_parser};
+use rototoon::file;
 use rototoon::pipeline::{self, ShapeFormat};
 use rototoon::project::Document;
 use rototoon::scene::FrameNumber;
@@ -48,7 +49,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     let format = if extension == "svg" { ShapeFormat::Svg { still } } else { ShapeFormat::Silhouette };
     let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", shapes.display()));
-    let text = std::fs::read_to_string(shapes).map_err(|error| failed(&format!("cannot read the shapes: {error}")))?;
+    let text = file::text(shapes).map_err(|error| failed(&format!("cannot read the shapes: {error}")))?;
     let warnings = pipeline::import(&mut document, &text, format).map_err(|error| failed(&error))?;
     for warning in warnings {
         line("warning", &format!("{}: {warning}", shapes.display()));

@@ -10,6 +10,8 @@
 
 use super::output::{WriteError, write_whole};
 use super::plain_clips as plain;
+use super::schema::{MAX_FPS, MIN_FPS};
+use rototoon_base::file;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Clip;
 use rototoon_base::scene::skeleton::{COUNT, NAMES, Posture};
@@ -97,8 +99,8 @@ impl Clips {
             None => 25.0,
             Some(value) => value
                 .as_f64()
-                .filter(|fps| *fps > 0.0)
-                .ok_or_else(|| reader.wrong("fps", value, "a positive number of frames a second"))?,
+                .filter(|fps| (MIN_FPS..=MAX_FPS).contains(fps))
+                .ok_or_else(|| reader.wrong("fps", value, &format!("a number of frames a second from {MIN_FPS} to {MAX_FPS}")))?,
         };
         reader.key_points(&document)?;
         let list = document.get("clips").unwrap_or(&Value::Null);
@@ -165,7 +167,7 @@ pub fn parse_key_poses(text: &str, origin: &str) -> Result<Vec<DrawnPose>, Clips
 }
 
 fn read(path: &Path) -> Result<String, ClipsError> {
-    std::fs::read_to_string(path)
+    file::text(path)
         .map_err(|e| ClipsError::Unreadable { origin: path.display().to_string(), reason: e.to_string() })
 }
 

@@ -7,6 +7,7 @@
 //! two for each corner. `max_error` is the largest distance between line and curve, in pixels. Other fields keep their
 //! places.
 
+use rototoon_base::file;
 use rototoon_base::geometry::Point;
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -88,7 +89,7 @@ impl Curves {
     pub fn load(path: &Path) -> Result<Self, CurvesError> {
         let origin = path.display().to_string();
         let unreadable = |reason: String| CurvesError::Unreadable { origin: origin.clone(), reason };
-        let bytes = std::fs::read(path).map_err(|error| unreadable(error.to_string()))?;
+        let bytes = file::bytes(path).map_err(|error| unreadable(error.to_string()))?;
         let text = String::from_utf8(bytes).map_err(|_| unreadable("it is not text in UTF-8".into()))?;
         Self::from_json(&text, &origin)
     }

@@ -8,6 +8,7 @@ use super::problem::Problems;
 use super::schema::{Field, Layout, VERSION};
 use super::shape::{Context, Entries, Flag, Frame, List, Number, Pair, Seed, Shape, Step, Text, Whole};
 use super::validate;
+use rototoon_base::file;
 use rototoon_base::scene::{Footage, FrameNumber, Part, Scene};
 use serde::de::{DeserializeSeed, Error, IgnoredAny, MapAccess, SeqAccess};
 use serde_json::error::Category;
@@ -84,7 +85,7 @@ impl Document {
     pub fn load(path: &Path) -> Result<Self, LoadError> {
         let origin = path.display().to_string();
         let unreadable = |reason: String| LoadError::Unreadable { origin: origin.clone(), reason };
-        let bytes = std::fs::read(path).map_err(|error| unreadable(error.to_string()))?;
+        let bytes = file::bytes(path).map_err(|error| unreadable(error.to_string()))?;
         let json = std::str::from_utf8(&bytes)
             .map_err(|error| unreadable(format!("byte {} is not UTF-8 text", error.valid_up_to())))?;
         Self::parse(json, &origin)

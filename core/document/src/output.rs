@@ -2,11 +2,27 @@
 //!
 //! The bytes go to a temporary file in the same folder and are flushed to the disk. Only then the temporary file takes
 //! the name of the target. After a full disk, a crash or a cancelled run the old file is still there. A target that is
-//! not a regular file (a pipe, a device) is written directly, since renaming would replace it.
+//! not a regular file (a pipe, a device) is written directly, since renaming would replace it. A symbolic link stays a
+//! link, also where its target does not exist yet.
+//!
+//! A process that is killed while it writes leaves its temporary file. The first write of a later process into the folder
+//! removes such files if they are more than an hour old.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+/// First letters of the names of temporary files.
+const PREFIX: &str = ".rototoon-";
+
+/// Number of random letters and digits that follow the prefix.
+const RANDOM: usize = 6;
+
+/// Age after which a temporary file is left over from a process that was killed. No write takes that long.
+const LEFT_OVER: Duration = Duration::from_secs(3600);
 
 /// A file could not be written. An earlier file is unchanged.
 #[derive(Debug, thiserror::Error)]
@@ -34,14 +50,14 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Some(data) if !data.is_file() => return OpenOptions::new().write(true).open(path)?.write_all(bytes),
         _ => {}
     }
-    // A link keeps its target; the target is replaced.
-    let target = if existing.is_some() { fs::canonicalize(path)? } else { path.to_owned() };
+    let target = if existing.is_some() { fs::canonicalize(path)? } else { end_of_links(path)? };
     if existing.as_ref().is_some_and(|data| data.permissions().readonly()) {
         return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
     }
     let folder = parent(&target);
+    remove_left_over(folder);
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".rototoon-");
+    builder.prefix(PREFIX).rand_bytes(RANDOM);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -75,9 +91,46 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
             Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"))
         }
         Ok(_) => tempfile::tempfile_in(parent(&fs::canonicalize(path)?)).map(drop),
-        Err(_) => tempfile::tempfile_in(parent(path)).map(drop),
+        // A name that is too long, or a folder that may not be entered.
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        Err(_) => tempfile::tempfile_in(parent(&end_of_links(path)?)).map(drop),
     };
     probe().map_err(|source| WriteError { path: path.to_owned(), source })
+}
+
+/// The path that symbolic links at `path` lead to, also where no file is there.
+fn end_of_links(path: &Path) -> io::Result<PathBuf> {
+    /// Most links on the way, as on Linux.
+    const MOST: usize = 40;
+    let mut path = path.to_owned();
+    for _ in 0..MOST {
+        match fs::read_link(&path) {
+            // A relative link starts in the folder of the link; joining an absolute one replaces the folder.
+            Ok(to) => path = parent(&path).join(to),
+            Err(_) => return Ok(path),
+        }
+    }
+    Err(io::Error::other("found a loop of symbolic links, expected a file"))
+}
+
+/// Removes the temporary files of processes that were killed, once for each folder: a folder may have thousands of
+/// frames, and each is written.
+fn remove_left_over(folder: &Path) {
+    static SEEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    if !SEEN.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
+        return;
+    }
+    let old = |entry: &fs::DirEntry| {
+        let name = entry.file_name();
+        let random = name.to_str().and_then(|name| name.strip_prefix(PREFIX));
+        let ours = random.is_some_and(|rest| rest.len() == RANDOM && rest.bytes().all(|b| b.is_ascii_alphanumeric()));
+        let age = || entry.metadata().ok().filter(|data| data.is_file())?.modified().ok()?.elapsed().ok();
+        ours && age().is_some_and(|age| age > LEFT_OVER)
+    };
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten().filter(old) {
+        // What cannot be removed stays: it does no harm.
+        let _ = fs::remove_file(entry.path());
+    }
 }
 
 fn parent(path: &Path) -> &Path {
@@ -124,6 +177,48 @@ mod tests {
         write_whole(&path, b"two").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"two");
         assert_eq!(names(folder.path()), ["a.json"]);
+    }
+
+    #[test]
+    fn files_left_over_by_killed_processes_are_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let old = std::time::SystemTime::now() - 2 * LEFT_OVER;
+        for name in [".rototoon-a1B2c3", ".rototoon-notes1.json", ".rototoon-ABCDEF"] {
+            let file = File::create(folder.path().join(name)).unwrap();
+            if name != ".rototoon-ABCDEF" {
+                file.set_modified(old).unwrap();
+            }
+        }
+        write_whole(&folder.path().join("a.json"), b"one").unwrap();
+        let mut left = names(folder.path());
+        left.sort();
+        assert_eq!(left, [".rototoon-ABCDEF", ".rototoon-notes1.json", "a.json"], "young files and files of others stay");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_to_a_file_that_does_not_exist_stays_a_link() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("disk")).unwrap();
+        symlink("disk/new.json", at("link")).unwrap();
+        symlink(at("link"), at("link to link")).unwrap();
+        check_writable(&at("link to link")).unwrap();
+        write_whole(&at("link to link"), b"one").unwrap();
+        assert_eq!(fs::read(at("disk/new.json")).unwrap(), b"one");
+        assert!(fs::symlink_metadata(at("link")).unwrap().is_symlink());
+        symlink("loop", at("loop")).unwrap();
+        assert!(check_writable(&at("loop")).is_err());
+        assert!(write_whole(&at("loop"), b"one").is_err());
+        symlink("none/new.json", at("lost")).unwrap();
+        assert!(check_writable(&at("lost")).is_err());
+    }
+
+    #[test]
+    fn a_name_that_is_too_long_is_found_before_the_work() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(check_writable(&folder.path().join("n".repeat(300))).is_err());
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! the types of the format ([`super::clips`]) are parsed directly. Any unexpected value makes [`read`] fail without a
 //! reason; the slow way then finds the error.
 
+use super::schema::{MAX_FPS, MIN_FPS};
 use rototoon_base::scene::Clip;
 use rototoon_base::scene::skeleton::{COUNT, NAMES, Posture};
 use serde::{Deserialize, Serialize, Serializer};
@@ -50,7 +51,7 @@ pub(super) fn read(text: &str) -> Option<(Vec<Clip>, f64)> {
         let labelled = !clip.character.is_empty() && !clip.motion.is_empty();
         labelled && !clip.points.is_empty() && seen.insert((&clip.character, &clip.motion))
     });
-    if !(1..=VERSION).contains(&file.rototoon_clips) || file.fps <= 0.0 || !named || !whole {
+    if !(1..=VERSION).contains(&file.rototoon_clips) || !(MIN_FPS..=MAX_FPS).contains(&file.fps) || !named || !whole {
         return None;
     }
     let clips = file.clips.into_iter().map(|clip| Clip::new(clip.character, clip.motion, clip.points)).collect();

@@ -14,6 +14,12 @@ pub const MAX_COORDINATE: f64 = 1e6;
 /// Largest width or height of a picture, in pixels.
 pub const MAX_SIZE: usize = 65_535;
 
+/// Least number of frames a second: one frame in seventeen minutes.
+pub const MIN_FPS: f64 = 1e-3;
+
+/// Largest number of frames a second.
+pub const MAX_FPS: f64 = 1e6;
+
 /// Largest number of frames of a footage: eleven hours at 24 frames a second.
 pub const MAX_FRAMES: i64 = 1_000_000;
 

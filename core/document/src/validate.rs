@@ -4,7 +4,7 @@
 //! mistakes (contours without area). Such data stay in the document, since the artist made them.
 
 use super::problem::Problems;
-use super::schema::{MAX_COORDINATE, MAX_FRAME_NUMBER, MAX_FRAMES, MAX_SIZE};
+use super::schema::{MAX_COORDINATE, MAX_FPS, MAX_FRAME_NUMBER, MAX_FRAMES, MAX_SIZE, MIN_FPS};
 use super::shape::part_place;
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{Footage, FrameNumber, FramePattern, Part, Scene};
@@ -61,9 +61,9 @@ impl RawFootage {
         let width = whole("width", self.width, 1, MAX_SIZE as i64);
         let height = whole("height", self.height, 1, MAX_SIZE as i64);
         let fps = self.fps.filter(|fps| {
-            let fits = fps.is_finite() && *fps > 0.0;
+            let fits = (MIN_FPS..=MAX_FPS).contains(fps);
             if !fits {
-                error("fps", format!("found {fps}, expected more than 0"));
+                error("fps", format!("found {fps:?}, expected {MIN_FPS} to {MAX_FPS}"));
             }
             fits
         });

@@ -6,6 +6,7 @@
 use super::decode::DecodeError;
 use super::jpeg;
 use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
+use rototoon_base::file;
 use rototoon_base::memory::{self, Bytes};
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Cursor, Seek};
@@ -33,19 +34,14 @@ impl<T: BufRead + Seek> Source for T {}
 /// A [`DecodeError`] if there is no file, or no regular file (a folder, a pipe, a device), or its format is unknown, or
 /// it is cut.
 pub fn open(path: &Path, complete: bool) -> Result<Reader, DecodeError> {
-    let data = fs::metadata(path)?;
-    // Opening a pipe would wait for a writer.
-    if !data.is_file() {
-        let found = if data.is_dir() { "a folder" } else { "a pipe or a device" };
-        return Err(DecodeError::Unreadable(format!("it is {found}, expected a file")));
-    }
+    let length = file::length(path)?;
     let file: Box<dyn Source> = Box::new(BufReader::new(File::open(path)?));
     let mut reader = ImageReader::new(file).with_guessed_format()?;
     let Some(format) = reader.format() else {
         return Err(DecodeError::Unreadable("not a PNG, JPEG, TIFF, BMP, WebP or OpenEXR picture".into()));
     };
     if format == ImageFormat::Jpeg && complete {
-        reader = whole_jpeg(path, data.len())?;
+        reader = whole_jpeg(path, length)?;
     }
     let mut limits = Limits::default();
     limits.max_alloc = Some(if format == ImageFormat::Png { MOST_EXTRA_BYTES } else { MOST_BYTES });

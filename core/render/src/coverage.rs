@@ -192,7 +192,7 @@ struct Scan<'a> {
 impl<'a> Scan<'a> {
     fn new(instant: &'a Instant, top: i64) -> Self {
         let above = top.saturating_mul(ROW);
-        //         // Sides are sorted by upper ends, so sides that end above the first row may be anywhere among the
+        // Sides are sorted by upper ends, so sides that end above the first row may be anywhere among the
         //         first ones.
         let next = instant.edges.partition_point(|edge| edge.top < above);
         let active = (0..next).filter(|&edge| instant.edges[edge].bottom > above).collect();
@@ -269,7 +269,7 @@ impl<'a> Scan<'a> {
     fn unite(&mut self, top: i64, bottom: i64, sink: &mut impl Sink) {
         self.winding.fill(0);
         let mut inside = 0;
-        //         // An interval is passed on when the next one begins apart from it. Polygons that touch make one
+        // An interval is passed on when the next one begins apart from it. Polygons that touch make one
         //         interval.
         let mut found: Option<(Side, Side)> = None;
         let mut left = None;
@@ -349,13 +349,13 @@ impl Area {
         }
         if last - first <= 1 {
             let own = (tall * ((first + 1) as f64 - 0.5 * (low + high))).round() as i32;
-            //             // A side in the column left of the window was handled with `last` above.
+            // A side in the column left of the window was handled with `last` above.
             let at = (first - self.left) as usize;
             self.delta[at] += sign * own;
             self.delta[at + 1] += sign * (height - own);
             return;
         }
-        //         // The area to the left of `x` and right of the side. Its differences are the areas within pixels.
+        // The area to the left of `x` and right of the side. Its differences are the areas within pixels.
         let (width, middle) = (high - low, 0.5 * (low + high));
         let until = |x: f64| {
             if x <= low {

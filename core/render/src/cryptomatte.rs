@@ -88,7 +88,7 @@ pub fn channels(scene: &Scene, visible: &Visible) -> Vec<Channel> {
     for (at, pixel) in visible.pixels().enumerate() {
         ranked.clear();
         ranked.extend(pixel);
-        //         // Of equal shares the nearer part comes first.
+        // Of equal shares the nearer part comes first.
         ranked.sort_by(|a, b| b.coverage.total_cmp(&a.coverage));
         for (rank, share) in ranked.iter().enumerate() {
             channels[2 * rank].values[at] = ids[share.part];

@@ -72,7 +72,7 @@ impl Bell {
     fn new(radius: f64) -> Self {
         let (p, q) = fraction(radius / 3.0);
         let cube = |x: f64| x.max(0.0).powi(3);
-        //         // The truncated powers that form a quadratic B-spline with knots at -3P, -P, P and 3P, in units of
+        // The truncated powers that form a quadratic B-spline with knots at -3P, -P, P and 3P, in units of
         //         1/Q pixel.
         let until = |x: f64| cube(x + 3.0 * p) - 3.0 * cube(x + p) + 3.0 * cube(x - p) - cube(x - 3.0 * p);
         let reach = reach(radius);
@@ -131,7 +131,7 @@ impl Line {
         let mut done = 0;
         for stretch in &self.stretches {
             let start = stretch.start.saturating_sub(bell.last).min(to.len());
-            //             // Without changes the row stays constant.
+            // Without changes the row stays constant.
             to[done.min(start)..start].fill(bell.rounded(sums[3]));
             for n in stretch.clone() {
                 let sum = summed(&mut sums, std::mem::take(&mut self.filtered[n]));

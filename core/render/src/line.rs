@@ -96,7 +96,7 @@ pub fn lines(
     window: Window,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Option<Raster<f32>> {
-    //     // A line thinner than a pixel is drawn one pixel wide, with its width as opacity.
+    // A line thinner than a pixel is drawn one pixel wide, with its width as opacity.
     let (half, strength) = (0.5 * width.max(1.0), width.clamp(0.0, 1.0) as f32);
     let stretches: Vec<Stretch> = polylines
         .iter()

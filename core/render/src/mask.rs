@@ -40,7 +40,7 @@ impl Mask {
         let tight = points.fold(None, |bounds: Option<Bounds>, &p| {
             Some(bounds.map_or(Bounds { least: p, most: p }, |b| Bounds { least: b.least.min(p), most: b.most.max(p) }))
         })?;
-        //         // Growing and feathering each end half a pixel further out.
+        // Growing and feathering each end half a pixel further out.
         let more = |by: f64| if by == 0.0 { 0.0 } else { by + 0.5 };
         let margin = Point::splat(more(self.grow) + more(self.feather));
         let bounds = Bounds { least: tight.least - margin, most: tight.most + margin };

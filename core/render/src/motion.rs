@@ -100,7 +100,7 @@ fn paths_between(part: &Part, first: FrameNumber, points: &[Point], share: f64) 
 fn carrier(from: [Point; 2], to: [Point; 2]) -> impl Fn(Point) -> Point {
     let (along, wanted) = (from[1] - from[0], to[1] - to[0]);
     let size = along.length_squared();
-    //     // The quotient of the two differences as complex numbers.
+    // The quotient of the two differences as complex numbers.
     let turn = if size > 0.0 { Point::new(along.dot(wanted), along.perp_dot(wanted)) / size } else { Point::X };
     move |p| to[0] + turn.rotate(p - from[0])
 }
@@ -133,7 +133,7 @@ mod tests {
             for (p, radius) in outline_at(&part, time, false).unwrap().iter().zip([10.0, 401f64.sqrt(), 401f64.sqrt()])
             {
                 assert!((p.length() - radius).abs() < 2e-3 * radius, "{time}: {}", p.length());
-                //         // On a straight way between the frames the radius would be half a per cent smaller.
+                // On a straight way between the frames the radius would be half a per cent smaller.
             }
         }
         let middle = outline_at(&part, 2.5, false).unwrap()[0];

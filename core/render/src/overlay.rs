@@ -102,7 +102,7 @@ impl Pen<'_> {
                 Some((polyline(line)?, FAINTEST + (1.0 - FAINTEST) * sure))
             })
             .collect();
-        //         // Borders are drawn first, so none covers a neighbouring line.
+        // Borders are drawn first, so none covers a neighbouring line.
         for (path, alpha) in &paths {
             stroke(layer, path, [0.0; 3], 0.5 * alpha, self.width * (1.0 + 2.0 * BORDER));
         }

@@ -100,7 +100,7 @@ fn outlines(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Vec<O
 fn bounds(points: &[Point]) -> Option<Window> {
     let whole = points.iter().all(|p| p.is_finite());
     let (least, most) = points.iter().fold((Point::MAX, Point::MIN), |(a, b), &p| (a.min(p), b.max(p)));
-    //     // A float beyond the range of integers becomes the largest integer.
+    // A float beyond the range of integers becomes the largest integer.
     (whole && !points.is_empty()).then(|| Window {
         left: least.x.floor() as i64,
         top: least.y.floor() as i64,

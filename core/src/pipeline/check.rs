@@ -101,7 +101,7 @@ fn pegs(read: &Drawings, problems: &mut Problems) {
 /// Place and message of a peg's error.
 fn described(k: usize, peg: &DrawnPeg, error: &PegError) -> (String, String) {
     let place = peg_place(k, &peg.name);
-    //     // Of several keys on one frame the later one is out of order.
+    // Of several keys on one frame the later one is out of order.
     let index = |frame: FrameNumber| peg.keys.iter().rposition(|key| key.frame == frame).unwrap_or_default();
     let key = |frame: FrameNumber| peg_key_place(&place, index(frame), frame);
     match error {
@@ -114,7 +114,7 @@ fn described(k: usize, peg: &DrawnPeg, error: &PegError) -> (String, String) {
         PegError::Pivot { x, y, .. } => {
             (format!("{place}.pivot"), format!("found [{x}, {y}], expected numbers between -1e9 and 1e9"))
         }
-        //         // The document has degrees, the peg radians.
+        // The document has degrees, the peg radians.
         PegError::Key { frame, field: "turn", .. } => (
             format!("{}.turn", key(*frame)),
             format!("found {:e}, expected a number between -5e10 and 5e10", peg.keys[index(*frame)].turn),

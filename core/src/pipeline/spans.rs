@@ -90,7 +90,7 @@ impl Sheet {
         let (first, second) = (&self.keys[key], &self.keys[key + 1]);
         let by_hand = self.by_hand.get(key).map_or(&[][..], Vec::as_slice);
         let alone = self.alone.get(key).map_or(&[][..], Vec::as_slice);
-        //         // A stroke without points has no counterpart.
+        // A stroke without points has no counterpart.
         let mut others = second.strokes.clone();
         for &stroke in alone {
             let count = others.len();
@@ -128,7 +128,7 @@ impl Sheet {
         let needed: Vec<usize> = needed.into_iter().collect();
         let counter = Counter { done: AtomicUsize::new(0), all: needed.len() + wanted.len(), progress };
         let found = match needed[..] {
-            //             // A single matching reports its own progress; several count as steps.
+            // A single matching reports its own progress; several count as steps.
             [key] => vec![self.matching(key, matching, &Half(progress))?],
             _ => {
                 let one = |&key: &usize| counter.step("matching strokes", || self.matching(key, matching, &Silent));
@@ -257,7 +257,7 @@ mod tests {
             let (old, new) = (draw(&before, &[0, 1, 2, 3]), draw(&after, &[0, 1, 2, 3]));
             let differ: Vec<usize> = (0..4).filter(|&k| old[k] != new[k]).collect();
             assert_eq!(differ, touched, "{spacing:?}");
-            //         // A span is the same whether drawn alone or with others.
+            // A span is the same whether drawn alone or with others.
             assert_eq!(draw(&after, &[2])[0], new[2]);
         }
     }

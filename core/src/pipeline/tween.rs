@@ -6,7 +6,9 @@ use crate::project::drawings::{
     Drawing, Drawings, DrawnBetween, DrawnPeg, DrawnStroke, WrittenTiming, drawing_place, peg_key_place, peg_place,
     read_pegs, read_timing,
 };
-use crate::scene::{Part, Progress, Scene};
+use crate::memory;
+use crate::project::schema::MAX_FRAMES;
+use crate::scene::{Cancelled, Part, Progress, Scene};
 use crate::tween::Stroke;
 use crate::tween::between::{Captured, GivenPegs, InBetween, Key, Options, Sequence, Spacing};
 use crate::tween::matching::{HandPair, InPieces, Matching, Options as MatchingOptions, match_strokes};
@@ -14,6 +16,7 @@ use crate::tween::peg::{Peg, PegKey, PegTree, Timing};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::{Value, json};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Matches the strokes of a document's drawings and puts the in-betweens into the document. With `follow`, strokes on
 /// tracked parts of the document follow these parts. It runs on the caller's rayon pool; the result does not depend on
@@ -35,6 +38,7 @@ pub fn tween(
         let found = read.drawings.len();
         return Err(PipelineError::Tween(format!("drawings: found {found}, expected at least two to draw between")));
     }
+    check_extent(&read.drawings)?;
     let keys = read.drawings.iter().enumerate().map(|(k, d)| key(d, k)).collect::<Result<Vec<_>, _>>()?;
     let pegs = given(&read)?;
     let mut matchings = Vec::new();
@@ -53,13 +57,35 @@ pub fn tween(
     if follow {
         sequence = sequence.following(captured(&document.scene));
     }
-    let drawn: Vec<DrawnBetween> = frames
-        .par_iter()
-        .map(|&frame| DrawnBetween { frame, strokes: sequence.at(frame).into_iter().map(stroke_of).collect() })
-        .collect();
+    let done = AtomicUsize::new(0);
+    let drawn = frames.par_iter().map(|&frame| {
+        let share = done.fetch_add(1, Ordering::Relaxed) as f64 / frames.len() as f64;
+        progress.report("drawing in-betweens", 0.8 + 0.2 * share)?;
+        Ok(DrawnBetween { frame, strokes: sequence.at(frame).into_iter().map(stroke_of).collect() })
+    });
+    let drawn = drawn.collect::<Result<Vec<_>, Cancelled>>()?;
     progress.report("drawing in-betweens", 1.0)?;
     document.set_in_betweens(matches, &drawn);
     Ok(())
+}
+
+/// Refuses drawings so far apart that their in-betweens would fill the memory.
+fn check_extent(drawings: &[Drawing]) -> Result<(), PipelineError> {
+    /// Bytes of a point in the document, in its text and while it is made.
+    const POINT: u64 = 200;
+    let (Some(first), Some(last)) = (drawings.first(), drawings.last()) else { return Ok(()) };
+    let frames = i64::from(last.frame) - i64::from(first.frame) + 1;
+    if frames > MAX_FRAMES {
+        let extent = format!("found {frames} frames from {} to {}", first.frame, last.frame);
+        return Err(PipelineError::Tween(format!("drawings: {extent}, expected at most {MAX_FRAMES}")));
+    }
+    let count = |drawing: &Drawing| drawing.strokes.iter().map(|stroke| stroke.points.len()).sum::<usize>() as u64;
+    let between = |pair: &[Drawing]| {
+        pair[0].frame.abs_diff(pair[1].frame).saturating_sub(1) as u64 * count(&pair[0]).max(count(&pair[1]))
+    };
+    let points: u64 = drawings.windows(2).map(between).sum();
+    memory::ask(points.saturating_mul(POINT))
+        .map_err(|error| PipelineError::Tween(format!("drawings: found {points} points of in-betweens: {error}")))
 }
 
 /// The tracked parts of a scene, for strokes to follow.

@@ -5,6 +5,7 @@ use crate::failure::{Failure, line};
 use crate::render;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use rototoon::file;
 use rototoon::import::bvh::{JointMap, Options, Up, View, seen};
 use rototoon::project::Inputs;
 use rototoon::project::clips::Clips;
@@ -91,7 +92,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let files: Vec<&PathBuf> = given.get_many("files").into_iter().flatten().collect();
     for (k, file) in files.iter().enumerate() {
         let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", file.display()));
-        let text = std::fs::read_to_string(file).map_err(|error| failed(&format!("cannot read: {error}")))?;
+        let text = file::text(file).map_err(|error| failed(&format!("cannot read: {error}")))?;
         let made = seen(&text, &options).map_err(|error| failed(&error))?;
         let (character, motion) = labels(given, file)?;
         if let Some(twin) = clips.iter().position(|clip| clip.character == character && clip.motion == motion) {
@@ -116,7 +117,7 @@ fn options(given: &ArgMatches) -> Result<Options, Failure> {
         None => JointMap::default(),
         Some(path) => {
             let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", path.display()));
-            let text = std::fs::read_to_string(path).map_err(|error| failed(&format!("cannot read: {error}")))?;
+            let text = file::text(path).map_err(|error| failed(&format!("cannot read: {error}")))?;
             JointMap::parse(&text).map_err(|error| failed(&error))?
         }
     };

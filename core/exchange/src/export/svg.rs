@@ -111,7 +111,7 @@ fn animate(out: &mut String, attribute: &str, seconds: f64, motion: Motion, valu
     let mut kept: Vec<(usize, &str)> = values.iter().copied().enumerate().collect();
     match motion {
         Motion::Hold => kept.dedup_by_key(|(_, value)| *value),
-        //             // The last frame lasts as long as the others.
+        // The last frame lasts as long as the others.
         Motion::Linear => kept.push((n, values[n - 1])),
     }
     let mode = if motion == Motion::Hold { "discrete" } else { "linear" };

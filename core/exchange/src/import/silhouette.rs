@@ -142,7 +142,7 @@ fn knot(node: Node, footage: &Footage) -> Result<Knot, ImportError> {
     let (width, height) = (footage.width as f64, footage.height as f64);
     let placed = |pair: &[f64]| Point::new(pair[0] * height + 0.5 * width, (pair[1] + 0.5) * height);
     match numbers.len() {
-        //         // A point of a B-spline may have a weight after its coordinates.
+        // A point of a B-spline may have a weight after its coordinates.
         2 | 3 => Ok([placed(&numbers); 3]),
         6.. => Ok([placed(&numbers), placed(&numbers[2..]), placed(&numbers[4..])]),
         _ => Err(ImportError::at(node, format!("found {text:?}, expected (x,y) or (x,y),(x,y),(x,y)"))),
@@ -172,7 +172,7 @@ fn beziers(key: &Key) -> Vec<Knot> {
         let (first, last) = (guides[0], guides[guides.len() - 1]);
         guides.insert(0, first);
         guides.push(last);
-        //         // The curve begins and ends at a guide that appears three times.
+        // The curve begins and ends at a guide that appears three times.
         guides.insert(0, first);
         guides.push(last);
     }

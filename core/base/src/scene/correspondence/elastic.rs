@@ -202,7 +202,7 @@ fn monotone_map(p: &Cut, q: &Cut, start: usize, cost: &impl Fn(usize, usize) -> 
         let (here, step) = (p.arcs[i] / p.length, (p.arcs[i] - p.arcs[i - 1]) / p.length);
         let mut next = vec![f64::INFINITY; states];
         let first = arcs.partition_point(|&s| s < here - BAND);
-        //         // The two grids differ, so a step may be off by one piece.
+        // The two grids differ, so a step may be off by one piece.
         let (shortest, longest) = (STRETCH.0 * step - 1.0 / DRAWN_PIECES, STRETCH.1 * step + 1.0 / DRAWN_PIECES);
         for j in (first..states).take_while(|&j| arcs[j] <= here + BAND) {
             let (mut best, mut from) = (f64::INFINITY, u32::MAX);
