@@ -32,6 +32,10 @@ const SLIVER: f64 = 1e-5;
 /// size in their bounding box.
 const MOST: [f64; 2] = [10.0, 4.0];
 
+/// Greatest number of edges around an outline. A character's part has 24 to 200; a hairy one has not ten times as many.
+/// A single point set far away by mistake gives any number.
+const MOST_EDGES: f64 = 4000.0;
+
 /// Why there is no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TriangulateError {
@@ -54,6 +58,21 @@ pub enum TriangulateError {
     /// There are no outlines, or the holes take all of the area.
     #[error("outlines: found no area inside of them and outside of the holes, expected some")]
     Nothing,
+    /// An outline is so long around its area that its mesh would grow without bound.
+    #[error(
+        "outline {outline}: found {length:.0} px around an area whose triangles have edges of {edge:.2} px, expected at \
+         most {MOST_EDGES} such edges; point {point} is far away"
+    )]
+    Long {
+        /// Index of the outline.
+        outline: usize,
+        /// Length of the outline in pixels.
+        length: f64,
+        /// The requested edge in pixels.
+        edge: f64,
+        /// Index of the point farthest from the median of the outline's points.
+        point: usize,
+    },
     /// The edge length is not positive and finite.
     #[error("edge: found {found}, expected a positive length")]
     Edge {
@@ -118,12 +137,27 @@ fn cleaned(outline: usize, ring: &[Point], edge: f64) -> Result<Vec<Point>, Tria
     if kept.len() < 3 || !encloses(&kept, 1e-6 * length * length) {
         return Err(TriangulateError::Flat { outline });
     }
+    if length > MOST_EDGES * edge {
+        return Err(TriangulateError::Long { outline, length, edge, point: farthest(ring) });
+    }
     let mut divided = Vec::with_capacity(kept.len());
     for (a, b) in polyline::segments(&kept, true) {
         let pieces = (a.distance(b) / edge).round().max(1.0);
         divided.extend((0..pieces as usize).map(|k| a.lerp(b, k as f64 / pieces)));
     }
     Ok(divided)
+}
+
+/// Index of the point farthest from the median of a ring's points.
+fn farthest(ring: &[Point]) -> usize {
+    let median = |of: fn(&Point) -> f64| {
+        let mut values: Vec<f64> = ring.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    let middle = Point::new(median(|p| p.x), median(|p| p.y));
+    let away = |k: &usize| ring[*k].distance_squared(middle);
+    (0..ring.len()).max_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0)
 }
 
 /// Whether a ring encloses more than an area. Loops of opposite orientation do not cancel.
@@ -324,6 +358,19 @@ mod tests {
         assert!(least_angle(&mesh) > 20.0, "{}", least_angle(&mesh));
         assert!((200..1200).contains(&mesh.triangles.len()), "{}", mesh.triangles.len());
         crate::arap::Mesh::new(mesh.vertices, mesh.triangles).unwrap();
+    }
+
+    #[test]
+    fn a_point_far_away_is_named() {
+        let spike = |far: f64| {
+            let ring = [[71.0, 22.0], [71.0, 58.0], [61.0, 58.0], [61.0, far], [61.0, 34.0], [61.0, 22.0]];
+            triangulate(&[ring.map(|[x, y]| Point::new(x, y)).into()], &[], 3.0)
+        };
+        assert!(spike(3000.0).is_ok());
+        for far in [1e5, 1e6, 1e9] {
+            let error = spike(far).unwrap_err();
+            assert!(matches!(error, TriangulateError::Long { outline: 0, point: 3, .. }), "{error}");
+        }
     }
 
     #[test]
