@@ -6,6 +6,7 @@
 
 mod check;
 mod reshape;
+pub mod room;
 pub mod spans;
 mod style;
 mod tween;
@@ -20,6 +21,7 @@ use crate::fit::{self, FitError};
 use crate::geometry::Point;
 use crate::image::Sequence;
 use crate::import::{self, ImportError};
+use crate::memory::TooMuch;
 use crate::project::curves::{CurveGuides, Curves};
 use crate::project::save::DECIMALS;
 use crate::project::{Document, Inputs, WriteError, output, validate, write_whole};
@@ -50,6 +52,16 @@ pub enum PipelineError {
     /// The caller cancelled the work.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The pictures are larger than the memory allows.
+    #[error("footage.width, height: found {width}x{height} pixels: {source}")]
+    Memory {
+        /// Width of the footage in pixels.
+        width: usize,
+        /// Height of the footage in pixels.
+        height: usize,
+        /// The memory that is needed.
+        source: TooMuch,
+    },
     /// A file could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -133,6 +145,7 @@ pub fn track(
     progress: &dyn Progress,
 ) -> Result<Tracking, PipelineError> {
     let frames = frames(document, folder)?;
+    room::to_follow(&document.scene.footage)?;
     let tracking = Tracker::new(*options).track(&in_effect(&document.scene), &frames, progress)?;
     store(&mut document.scene, &tracking);
     Ok(tracking)
@@ -184,6 +197,7 @@ pub fn snap(
     progress: &dyn Progress,
 ) -> Result<(), PipelineError> {
     let frames = frames(document, folder)?;
+    room::to_follow(&document.scene.footage)?;
     let curves = snap_scene(&document.scene, &frames, options, progress)?;
     for (part, curves) in document.scene.parts.iter_mut().zip(curves) {
         part.curves = curves;
@@ -244,7 +258,10 @@ pub fn render(
     let plan = plan(document, &sequence, job)?;
     let mut done = 0;
     progress.report("Rendering", 0.0)?;
-    for batch in plan.frames.chunks(rayon::current_num_threads().max(1)) {
+    let footage = &document.scene.footage;
+    let parts = plan.parts.as_ref().map_or(document.scene.parts.len(), Vec::len);
+    let at_once = room::frames_at_once(footage, &job.picture, parts, rayon::current_num_threads().max(1))?;
+    for batch in plan.frames.chunks(at_once) {
         let results: Vec<Result<(), PipelineError>> = batch
             .par_iter()
             .map(|(frame, path)| Ok(write_whole(path, &picture(document, &sequence, job, &plan, *frame)?)?))

@@ -1,16 +1,22 @@
 //! Runs long work on the requested number of threads. If standard error is a terminal, it shows a progress bar. Ctrl-C
-//! cancels the work in an orderly way, so that no file is half-written. A second Ctrl-C ends the process at once.
+//! cancels the work in an orderly way, so that no file is half-written. Where a step takes longer than [`GRACE`] to
+//! notice, the process ends without it; files are still complete or absent, because each is renamed when it is complete.
+//! A second Ctrl-C ends the process at once. SIGTERM and SIGHUP do the same as Ctrl-C.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, line};
 use indicatif::{ProgressBar, ProgressStyle};
 use rototoon::scene::{Cancelled, Progress};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// Number of steps of the bar.
 const STEPS: u64 = 1000;
 /// The exit status that shells report for a process ended by Ctrl-C.
 const INTERRUPTED: i32 = 130;
+
+/// Time that the work has to end after Ctrl-C.
+const GRACE: Duration = Duration::from_millis(1500);
 
 static STOP: AtomicBool = AtomicBool::new(false);
 
@@ -39,6 +45,11 @@ pub fn run<T: Send>(
         if STOP.swap(true, Ordering::Relaxed) {
             std::process::exit(INTERRUPTED);
         }
+        std::thread::spawn(|| {
+            std::thread::sleep(GRACE);
+            line("error", &Cancelled.to_string());
+            std::process::exit(INTERRUPTED);
+        });
     };
     ctrlc::set_handler(interrupt).map_err(|error| Failure::Other(format!("cannot catch Ctrl-C: {error}")))?;
     let pool = rayon::ThreadPoolBuilder::new()

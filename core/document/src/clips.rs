@@ -97,10 +97,9 @@ impl Clips {
         reader.version(&document)?;
         let fps = match document.get("fps") {
             None => 25.0,
-            Some(value) => value
-                .as_f64()
-                .filter(|fps| (MIN_FPS..=MAX_FPS).contains(fps))
-                .ok_or_else(|| reader.wrong("fps", value, &format!("a number of frames a second from {MIN_FPS} to {MAX_FPS}")))?,
+            Some(value) => value.as_f64().filter(|fps| (MIN_FPS..=MAX_FPS).contains(fps)).ok_or_else(|| {
+                reader.wrong("fps", value, &format!("a number of frames a second from {MIN_FPS} to {MAX_FPS}"))
+            })?,
         };
         reader.key_points(&document)?;
         let list = document.get("clips").unwrap_or(&Value::Null);
@@ -167,8 +166,7 @@ pub fn parse_key_poses(text: &str, origin: &str) -> Result<Vec<DrawnPose>, Clips
 }
 
 fn read(path: &Path) -> Result<String, ClipsError> {
-    file::text(path)
-        .map_err(|e| ClipsError::Unreadable { origin: path.display().to_string(), reason: e.to_string() })
+    file::text(path).map_err(|e| ClipsError::Unreadable { origin: path.display().to_string(), reason: e.to_string() })
 }
 
 fn place_of(index: usize, character: &str, motion: &str) -> String {

@@ -192,7 +192,11 @@ mod tests {
         write_whole(&folder.path().join("a.json"), b"one").unwrap();
         let mut left = names(folder.path());
         left.sort();
-        assert_eq!(left, [".rototoon-ABCDEF", ".rototoon-notes1.json", "a.json"], "young files and files of others stay");
+        assert_eq!(
+            left,
+            [".rototoon-ABCDEF", ".rototoon-notes1.json", "a.json"],
+            "young files and files of others stay"
+        );
     }
 
     #[cfg(unix)]

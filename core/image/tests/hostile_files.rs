@@ -34,7 +34,9 @@ fn a_file_cut_anywhere_gives_an_error_or_all_of_its_pixels() {
         let mut refused = 0;
         for length in 0..whole.len() {
             match decoded(&path, &whole[..length]) {
-                Ok(found) => assert!(found == pixels, "{format:?}: {length} of {} bytes give other pixels", whole.len()),
+                Ok(found) => {
+                    assert!(found == pixels, "{format:?}: {length} of {} bytes give other pixels", whole.len())
+                }
                 Err(_) => refused += 1,
             }
         }

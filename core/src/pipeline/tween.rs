@@ -1,12 +1,12 @@
 //! In-betweens from the drawings of a document.
 
 use super::PipelineError;
+use crate::memory;
 use crate::project::Document;
 use crate::project::drawings::{
     Drawing, Drawings, DrawnBetween, DrawnPeg, DrawnStroke, WrittenTiming, drawing_place, peg_key_place, peg_place,
     read_pegs, read_timing,
 };
-use crate::memory;
 use crate::project::schema::MAX_FRAMES;
 use crate::scene::{Cancelled, Part, Progress, Scene};
 use crate::tween::Stroke;

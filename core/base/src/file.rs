@@ -1,0 +1,88 @@
+//! Reads a file of a user within limits: a regular file of bounded length.
+//!
+//! A pipe would wait for a writer for ever, and a device such as `/dev/zero` has no end. Both are errors at once.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// Greatest length in bytes of a file that is read into memory at once.
+pub const LONGEST: u64 = 1 << 30;
+
+/// Checks that a path leads to a regular file, and returns its length in bytes.
+///
+/// # Errors
+///
+/// The error of the system, or that it is a folder, a pipe or a device.
+pub fn length(path: &Path) -> io::Result<u64> {
+    let data = std::fs::metadata(path)?;
+    if data.is_file() {
+        return Ok(data.len());
+    }
+    let found = if data.is_dir() { "a folder" } else { "a pipe or a device" };
+    Err(io::Error::other(format!("it is {found}, expected a file")))
+}
+
+/// The bytes of a file.
+///
+/// # Errors
+///
+/// As for [`length`]; a file longer than [`LONGEST`].
+pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+    let long = length(path)?;
+    if long > LONGEST {
+        return Err(io::Error::other(format!("found a file of {long} bytes, expected at most {LONGEST}")));
+    }
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(long as usize).map_err(io::Error::other)?;
+    // The file may grow while it is read.
+    File::open(path)?.take(LONGEST).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The text of a file in UTF-8.
+///
+/// # Errors
+///
+/// As for [`bytes`]; a byte that is not UTF-8 is named by its index.
+pub fn text(path: &Path) -> io::Result<String> {
+    String::from_utf8(bytes(path)?).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        io::Error::new(io::ErrorKind::InvalidData, format!("byte {at} is not UTF-8 text"))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_read_and_other_things_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        assert_eq!(text(&path).unwrap_err().kind(), io::ErrorKind::NotFound);
+        std::fs::write(&path, "ä\n").unwrap();
+        assert_eq!(text(&path).unwrap(), "ä\n");
+        std::fs::write(&path, b"ab\xFFc").unwrap();
+        assert_eq!(text(&path).unwrap_err().to_string(), "byte 2 is not UTF-8 text");
+        assert_eq!(bytes(folder.path()).unwrap_err().to_string(), "it is a folder, expected a file");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn pipes_devices_and_endless_files_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        for path in [&pipe, Path::new("/dev/zero")] {
+            assert_eq!(text(path).unwrap_err().to_string(), "it is a pipe or a device, expected a file");
+        }
+        // A file with a hole takes no space on the disk.
+        let long = folder.path().join("long");
+        std::fs::File::create(&long).unwrap().set_len(LONGEST + 1).unwrap();
+        assert_eq!(
+            text(&long).unwrap_err().to_string(),
+            "found a file of 1073741825 bytes, expected at most 1073741824"
+        );
+    }
+}
