@@ -94,7 +94,7 @@ fn all_errors_are_reported_at_once() {
             "p.json: footage: the field \"height\" is missing",
             "p.json: footage.pattern: pattern \"a.png\" has no frame number: expected one %d or %0Nd",
             "p.json: footage.width: found 0, expected 1 to 65535",
-            "p.json: footage.fps: found 0, expected more than 0",
+            "p.json: footage.fps: found 0.0, expected 0.001 to 1000000",
             "p.json: footage.last: found 2, expected at least the first frame, 5",
             "p.json: parts[0]: the field \"name\" is missing",
             "p.json: parts[2] \"a\".keys.\"0\"[0]: found a list of 1, expected a point [x, y]",
@@ -109,7 +109,7 @@ fn all_errors_are_reported_at_once() {
 fn impossible_footage_is_refused() {
     for (field, value, message) in [
         ("\"f_%03d.png\"", "\"%d/%d.png\"", "pattern \"%d/%d.png\" has 2 frame numbers: expected one %d or %0Nd"),
-        ("12.5", "-1", "footage.fps: found -1, expected more than 0"),
+        ("12.5", "-1", "footage.fps: found -1.0, expected 0.001 to 1000000"),
         ("64", "1.5", "footage.width: found 1.5, expected a whole number"),
         ("48", "70000", "footage.height: found 70000, expected 1 to 65535"),
         ("20", "1e18", "footage.last: found 1e18, expected a whole number"),

@@ -134,11 +134,11 @@ fn cleaned(outline: usize, ring: &[Point], edge: f64) -> Result<Vec<Point>, Tria
         kept.pop();
     }
     let length = polyline::length(&kept, true);
-    if kept.len() < 3 || !encloses(&kept, 1e-6 * length * length) {
-        return Err(TriangulateError::Flat { outline });
-    }
     if length > MOST_EDGES * edge {
         return Err(TriangulateError::Long { outline, length, edge, point: farthest(ring) });
+    }
+    if kept.len() < 3 || !encloses(&kept, 1e-6 * length * length) {
+        return Err(TriangulateError::Flat { outline });
     }
     let mut divided = Vec::with_capacity(kept.len());
     for (a, b) in polyline::segments(&kept, true) {
