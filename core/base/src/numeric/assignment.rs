@@ -1,14 +1,14 @@
 //! The linear assignment problem: rows to columns at the least total cost.
 //!
-//! Shortest augmenting paths with potentials (the Hungarian method in the form of Jonker & Volgenant 1987, without their
-//! heuristics for the start): rows enter one by one, each by a Dijkstra search over reduced costs. O(r² c) for r ≤ c. Of
-//! equally good columns the one of smaller index is taken, so the result is the same everywhere.
+//! The method is shortest augmenting paths with potentials: the Hungarian method in the form of Jonker & Volgenant 1987,
+//! without their heuristics for the start. Rows enter one by one, each by a Dijkstra search over reduced costs. The time is
+//! O(r² c) for r ≤ c. A tie goes to the column of the smaller index, so the result is the same everywhere.
 
 /// Why an assignment was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AssignmentError {
-    /// The table does not fit its size.
-    #[error("an assignment of {rows} rows to {columns} columns needs {} costs, but {found} are given", rows * columns)]
+    /// The number of costs is not `rows` × `columns`.
+    #[error("costs: found {found} values, expected {rows} rows x {columns} columns = {}", rows * columns)]
     Size {
         /// Number of rows.
         rows: usize,
@@ -17,7 +17,7 @@ pub enum AssignmentError {
         /// Costs given.
         found: usize,
     },
-    /// A cost is infinite or no number.
+    /// A cost is infinite or not a number.
     #[error("the cost of row {row} in column {column} is not a finite number")]
     NotFinite {
         /// The row.
@@ -27,8 +27,8 @@ pub enum AssignmentError {
     },
 }
 
-/// The column of each row so that the sum of costs is least and no column is taken twice; `costs` holds the rows one after
-/// the other. Every row gets a column where there are enough; otherwise every column gets a row.
+/// The column of each row. The sum of costs is least, and no column is taken twice. `costs` holds the rows one after the
+/// other. If there are enough columns, every row gets one; otherwise every column gets a row.
 pub fn assign(costs: &[f64], rows: usize, columns: usize) -> Result<Vec<Option<usize>>, AssignmentError> {
     if rows.checked_mul(columns) != Some(costs.len()) {
         return Err(AssignmentError::Size { rows, columns, found: costs.len() });
@@ -77,7 +77,7 @@ fn solve(rows: usize, columns: usize, cost: impl Fn(usize, usize) -> f64) -> Vec
                 taken => row = taken,
             }
         }
-        // Prices that keep all reduced costs non-negative and make those on the path zero.
+        // The new prices keep all reduced costs non-negative and make those on the path zero.
         row_price[entering] += reached;
         for c in (0..columns).filter(|&c| done[c] && c != last) {
             row_price[row_of[c]] += reached - distance[c];
@@ -151,6 +151,6 @@ mod tests {
         let error = assign(&[1.0, f64::NAN, 0.0, 2.0], 2, 2).unwrap_err();
         assert_eq!(error.to_string(), "the cost of row 0 in column 1 is not a finite number");
         let error = assign(&[1.0], 2, 2).unwrap_err();
-        assert_eq!(error.to_string(), "an assignment of 2 rows to 2 columns needs 4 costs, but 1 are given");
+        assert_eq!(error.to_string(), "costs: found 1 values, expected 2 rows x 2 columns = 4");
     }
 }

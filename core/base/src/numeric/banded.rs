@@ -1,11 +1,13 @@
 //! Cholesky factorisation of symmetric positive definite band matrices.
 //!
-//! A lattice numbered along its longer side couples only unknowns that are close in number. Its normal equations are
-//! then a band matrix of n rows and half width b, factored in n b²/2 multiplications (dense: n³/6), without any symbolic
-//! work. The outer product form (Golub & Van Loan, *Matrix Computations*, §4.2.5 and §4.3.5) on the upper triangle: a
-//! finished row is taken from the rows below it, and runs along memory as they do, so that the processor's vectors are
-//! full. `BLOCK` rows are finished before the rows below them are touched, which then are read and written once instead
-//! of `BLOCK` times.
+//! The unknowns of a lattice are numbered row by row, with rows along the shorter side, so coupled unknowns have numbers
+//! that are close. The normal equations are then a band matrix of n rows and half width b. Factoring it takes n b²/2
+//! multiplications (dense: n³/6) and no symbolic work.
+//!
+//! The method is the outer product form (Golub & Van Loan, *Matrix Computations*, §4.2.5 and §4.3.5) on the upper triangle.
+//! It subtracts multiples of a finished row from the rows below it. All these rows lie along memory, which suits vector
+//! instructions. The code finishes `BLOCK` rows before it changes the rows below them. Those are then read and written once
+//! instead of `BLOCK` times.
 //!
 //! nalgebra has no band factorisation. Its dense one takes 7 times as long for 120 rows of half width 18 (134 µs beside 20)
 //! and 27 times as long for 400 rows of half width 42 (6.1 ms beside 0.22): `cargo bench -p rototoon-base --bench dense`.
@@ -13,13 +15,13 @@
 use super::vector::vectorised;
 use std::ops::Range;
 
-/// Rows that are finished together.
+/// Number of rows that are finished before the rows below them change.
 const BLOCK: usize = 4;
-/// Values that are worked on together.
+/// Number of values in one vector operation.
 const LANES: usize = 4;
 
-/// Upper triangle of a symmetric band matrix: row `i` holds the columns `i ..= i + half`, and zeros behind them, so that
-/// the rows of a block may be read as if all were of one length, a multiple of `LANES`.
+/// Upper triangle of a symmetric band matrix. Row `i` holds the columns `i ..= i + half` and zeros after them. Because of the
+/// zeros all rows of a block can be read with one length, a multiple of `LANES`.
 #[derive(Clone, Debug)]
 pub struct BandMatrix {
     size: usize,
@@ -30,14 +32,14 @@ pub struct BandMatrix {
 
 /// The matrix is not positive definite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("row {row} of the band matrix makes it indefinite")]
+#[error("row {row} of the band matrix: found a pivot of 0 or less, expected a positive one")]
 pub struct Indefinite {
     /// First row whose pivot is not positive.
     pub row: usize,
 }
 
 impl BandMatrix {
-    /// The zero matrix of `size` rows; entries further than `half` from the diagonal stay zero.
+    /// The zero matrix of `size` rows. Entries farther than `half` from the diagonal stay zero.
     pub fn zeros(size: usize, half: usize) -> Self {
         let stride = half + 1 + (BLOCK - 1) + (LANES - 1);
         Self { size, half, stride, data: vec![0.0; size * stride] }
@@ -99,7 +101,7 @@ impl BandMatrix {
         Ok(())
     }
 
-    /// Finishes the rows of a block and takes them from the rows below.
+    /// Finishes the rows of a block and subtracts their multiples from the rows below.
     #[inline(always)]
     fn finish(&mut self, first: usize) -> Result<(), Indefinite> {
         let (half, stride) = (self.half, self.stride);
@@ -135,13 +137,13 @@ impl BandMatrix {
     }
 }
 
-/// Takes finished rows, from the target's first column on, from a row below. All are of one length, a multiple of
-/// [`LANES`].
+/// Subtracts multiples of finished rows from a row below them. The finished rows start at the target's first column. All
+/// slices have one length, a multiple of [`LANES`].
 #[inline(always)]
 fn take<const N: usize>(target: &mut [f64], rows: [&[f64]; N]) {
     let factors = rows.map(|row| row[0]);
     let rows = rows.map(|row| row.as_chunks::<LANES>().0);
-    // Plain loops: where little is optimised, as in tests, each step of an iterator is a call.
+    // Plain loops: with little optimisation, as in tests, each step of an iterator is a function call.
     for (g, group) in target.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
         let mut sum = [0.0; LANES];
         let mut n = 0;
@@ -162,16 +164,16 @@ fn take<const N: usize>(target: &mut [f64], rows: [&[f64]; N]) {
     }
 }
 
-/// U of Uᵀ U = A.
+/// The factor U of A = Uᵀ U.
 #[derive(Clone, Debug)]
 pub struct BandCholesky {
     matrix: BandMatrix,
-    /// Of the diagonal.
+    /// 1 / U[i][i] for each row.
     inverse: Vec<f64>,
 }
 
 impl BandCholesky {
-    /// Replaces `b` by the x of A x = b.
+    /// Replaces `b` by the solution x of A x = b.
     pub fn solve_in_place(&self, b: &mut [f64]) {
         assert_eq!(b.len(), self.matrix.size);
         vectorised(
@@ -183,7 +185,7 @@ impl BandCholesky {
     #[inline(always)]
     fn solve(&self, b: &mut [f64]) {
         let BandMatrix { size, half, stride, ref data } = self.matrix;
-        // Rows are filled up with zeros: all of them are of one length, and reach a little beyond the last unknown.
+        // Rows end in zeros, so all have one length and reach a little beyond the last unknown.
         let length = half.next_multiple_of(LANES);
         let mut x = vec![0.0; size + length];
         x[..size].copy_from_slice(b);
@@ -208,7 +210,7 @@ impl BandCholesky {
     }
 }
 
-/// Adds products of numbers in pairs.
+/// `sums[k] += a[k] * b[k]`, rounded once.
 #[inline(always)]
 fn add_product(sums: &mut [f64; LANES], a: &[f64; LANES], b: &[f64; LANES]) {
     for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {

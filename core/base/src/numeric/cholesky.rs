@@ -1,10 +1,10 @@
 //! Sparse Cholesky factorisation A = LLᵀ of symmetric positive definite matrices that share one pattern.
 //!
 //! Iterative methods factor the same pattern many times with other values. The order of elimination and the pattern of L
-//! depend on the pattern of A alone, so they are found once ([`SparseCholesky::new`]); each
-//! [`factor`](SparseCholesky::factor) fills in numbers. The work is faer's (approximate minimum degree ordering;
-//! supernodal or simplicial, whichever its flop count favours), always on the calling thread: a factor that depended on
-//! the number of threads would break the promise of equal bytes.
+//! depend on the pattern of A alone. [`SparseCholesky::new`] finds them once, and each
+//! [`factor`](SparseCholesky::factor) fills in numbers. faer does the work, with an approximate minimum degree ordering. It
+//! chooses the supernodal or the simplicial method by their operation counts. It always runs on the calling thread, so the
+//! factor does not depend on the number of threads.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::cholesky::{
@@ -13,7 +13,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side};
 
-/// The matrix is not positive definite to working precision (or holds a value that is not finite).
+/// The matrix is not positive definite to working precision, or has a value that is not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the matrix is not positive definite")]
 pub struct NotPositiveDefinite;
@@ -24,7 +24,7 @@ pub struct SparseCholesky {
     symbolic: SymbolicCholesky<usize>,
     factor: Vec<f64>,
     scratch: MemBuffer,
-    /// Right-hand sides that the scratch memory suffices for.
+    /// Number of right-hand sides that the scratch memory has room for.
     width: usize,
 }
 
@@ -32,7 +32,7 @@ impl SparseCholesky {
     /// Prepares for symmetric `n` × `n` matrices given by their lower triangle in compressed columns: column `j` holds
     /// rows `row_indices[column_starts[j]..column_starts[j + 1]]`, rising, all ≥ `j`.
     ///
-    /// Panics where the arrays do not describe such a triangle, or where memory does not suffice for the factor.
+    /// Panics if the arrays do not describe such a triangle, or if there is too little memory for the factor.
     pub fn new(n: usize, column_starts: Vec<usize>, row_indices: Vec<usize>) -> Self {
         let pattern = SymbolicSparseColMat::new_checked(n, n, column_starts, None, row_indices);
         let symbolic = factorize_symbolic_cholesky(
@@ -64,8 +64,8 @@ impl SparseCholesky {
             .map_err(|_| NotPositiveDefinite)
     }
 
-    /// Replaces each right-hand side b by the solution x of Ax = b, A the matrix factored last. `b` holds any number of
-    /// right-hand sides of `n` values one after the other; many at once are much faster than one by one.
+    /// Replaces each right-hand side b by the solution x of Ax = b, where A is the matrix factored last. `b` holds any
+    /// number of right-hand sides of `n` values, one after the other. Many at once are much faster than one by one.
     pub fn solve(&mut self, b: &mut [f64]) {
         let n = self.pattern.nrows();
         let count = b.len().checked_div(n).unwrap_or(0);

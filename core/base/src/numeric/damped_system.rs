@@ -1,8 +1,8 @@
 //! The damped normal equations (JᵀJ + λ diag(JᵀJ)) d = b, factored so that a few long rows of J stay cheap.
 //!
-//! A row of J that touches many variables fills a dense block of JᵀJ, and the factor with it. [`NormalEquations`] leaves
-//! such rows out of its triangle; here they come back as a correction of low rank. With S the sparse part, damping
-//! included, and U the long rows,
+//! A row of J with many variables makes a dense block in JᵀJ and in its factor. [`NormalEquations`] leaves such rows out of
+//! its triangle. This module adds them again as a correction of low rank. S is the sparse part with its damping, and U are
+//! the long rows:
 //!
 //! ```text
 //! (S + UᵀU)⁻¹ b = z − Z (I + U Z)⁻¹ U z,   z = S⁻¹ b,  Z = S⁻¹ Uᵀ
@@ -10,22 +10,22 @@
 //!
 //! (Sherman–Morrison–Woodbury). S is factored by sparse Cholesky, I + UZ by dense Cholesky.
 //!
-//! Limit: where S alone is nearly singular the correction loses digits; every variable should have short rows too.
+//! Limit: if S alone is nearly singular, the correction loses digits. Every variable should have short rows too.
 
 use super::cholesky::{NotPositiveDefinite, SparseCholesky};
 use super::normal_equations::NormalEquations;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Added to the diagonal, as a share of its mean, so that a variable without any residual keeps the matrix definite.
+/// Added to the diagonal, as a share of its mean. It keeps the matrix definite if a variable has no residual.
 const DIAGONAL_FLOOR: f64 = 1e-10;
 
 /// Factors the damped normal equations of one pattern and solves them.
 pub struct DampedSystem {
     cholesky: SparseCholesky,
     damped: Vec<f64>,
-    /// Z, one column a long row, one after the other.
+    /// Z: a column for each long row, one after the other.
     spread: Vec<f64>,
-    /// Of I + UZ.
+    /// The factor of I + UZ.
     small: Cholesky<f64, Dyn>,
 }
 
@@ -66,7 +66,7 @@ impl DampedSystem {
         Ok(())
     }
 
-    /// Replaces `b` by the solution for the equations factored last.
+    /// Replaces `b` by the solution of the equations that were factored last.
     pub fn solve(&mut self, equations: &NormalEquations, b: &mut [f64]) {
         self.cholesky.solve(b);
         if self.spread.is_empty() {

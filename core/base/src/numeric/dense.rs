@@ -10,7 +10,7 @@
 
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
-/// A pivot that is smaller than this share of its diagonal entry is rounding, and says nothing about the matrix.
+/// A pivot below this share of its diagonal entry is only rounding error. The matrix is then refused.
 const ROUNDING: f64 = 1e-14;
 
 /// The factor of a symmetric positive definite matrix.
@@ -20,7 +20,7 @@ pub struct DenseCholesky {
 }
 
 impl DenseCholesky {
-    /// Factors the `n` × `n` matrix given row by row; only its lower triangle is read. `None` where it is not positive
+    /// Factors the `n` × `n` matrix given row by row; only its lower triangle is read. `None` if it is not positive
     /// definite to working precision, or not finite.
     pub fn new(n: usize, rows: &[f64]) -> Option<Self> {
         let factor = DMatrix::from_row_slice(n, n, rows).cholesky()?;
@@ -43,7 +43,7 @@ impl DenseCholesky {
 
     /// A⁻¹ row by row, both triangles.
     pub fn inverse(&self) -> Vec<f64> {
-        // The inverse is symmetric up to rounding, so its columns stand for its rows.
+        // nalgebra stores columns. The inverse is symmetric up to rounding, so its columns are its rows.
         self.factor.inverse().data.into()
     }
 }

@@ -1,27 +1,27 @@
-//! An analytic Jacobian checked against central differences.
+//! Checks an analytic Jacobian against central differences.
 //!
-//! (r(x + h e) − r(x − h e)) / 2h differs from the derivative by O(h²) and by rounding of about ε|r|/h; with h near the cube
-//! root of ε both are small for residuals and variables of moderate size. Entries that the pattern leaves out are checked
-//! too: they must be zero. Choose x where r is smooth (not on the creases of a bilinear picture).
+//! (r(x + h e) − r(x − h e)) / 2h differs from the derivative by O(h²), and by a rounding error of about ε|r|/h. If h is near
+//! the cube root of ε, both are small for residuals and variables of moderate size. Entries outside of the pattern are checked
+//! too: they must be zero. Choose an x where r is smooth, for example not at the pixel borders of a bilinear picture.
 
 use super::sparse_least_squares::Problem;
 
-/// The entry of the Jacobian that differs most.
+/// The entry of the Jacobian with the greatest error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorstEntry {
-    /// Residual.
+    /// Index of the residual.
     pub row: usize,
-    /// Variable.
+    /// Index of the variable.
     pub column: usize,
-    /// What the problem says.
+    /// The analytic value.
     pub analytic: f64,
-    /// What the difference quotient says.
+    /// The central difference.
     pub numeric: f64,
     /// |analytic − numeric| / max(1, |numeric|).
     pub error: f64,
 }
 
-/// Compares every entry of the Jacobian at `x`, stepping each variable by `h`. `None` where there are no entries.
+/// Compares every entry of the Jacobian at `x`, stepping each variable by `h`. `None` if there are no entries.
 pub fn worst_entry(problem: &impl Problem, x: &[f64], h: f64) -> Option<WorstEntry> {
     let (n, m) = (problem.variables(), problem.residuals());
     let pattern = problem.pattern();
@@ -46,7 +46,7 @@ pub fn worst_entry(problem: &impl Problem, x: &[f64], h: f64) -> Option<WorstEnt
             let numeric = (after[row] - before[row]) / (2.0 * h);
             let analytic = analytic[column * m + row];
             let error = (analytic - numeric).abs() / numeric.abs().max(1.0);
-            // Written so that an error that is not a number counts as the worst.
+            // In this form an error that is not a number counts as the greatest.
             if !worst.is_some_and(|w| error <= w.error || w.error.is_nan()) {
                 worst = Some(WorstEntry { row, column, analytic, numeric, error });
             }

@@ -1,14 +1,13 @@
-//! Eight values that are worked on at once, written as if they were one.
+//! Arithmetic on eight values at once, written as if they were one value.
 //!
-//! The compiler makes one vector of them where a loop over the whole is compiled for this machine
-//! ([`super::vector::vectorised`]). Loops over arrays in closures it often leaves alone, or fills with shuffles: what is hot
-//! says what it means by these.
+//! Within [`super::vector::vectorised`] the compiler turns each operation into vector instructions. It often fails to do so
+//! for loops over arrays in closures, or adds shuffles. Hot code therefore uses this type.
 
 use glam::Vec4;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// [`Lanes`] of the values of an expression of their index. The loop is a plain one: where little is optimised, as in tests,
-/// each step of a range is a call.
+/// [`Lanes`] from an expression of the index. The loop is plain: with little optimisation, as in tests, each step of a range
+/// is a function call.
 macro_rules! each {
     ($v:ident => $value:expr) => {{
         let mut all = [0.0; LANES];
@@ -21,7 +20,7 @@ macro_rules! each {
     }};
 }
 
-/// Values that are worked on at once.
+/// Number of values in [`Lanes`].
 pub const LANES: usize = 8;
 
 /// [`LANES`] values.
@@ -30,13 +29,13 @@ pub const LANES: usize = 8;
 pub struct Lanes([f32; LANES]);
 
 impl Lanes {
-    /// The first of some values.
+    /// The first [`LANES`] values of a slice.
     #[inline(always)]
     pub fn read(values: &[f32]) -> Self {
-        Self(*values.first_chunk().expect("a row is filled up to whole lanes"))
+        Self(*values.first_chunk().expect("rows are padded to whole lanes"))
     }
 
-    /// The same value for each.
+    /// The same value in every lane.
     #[inline(always)]
     pub fn splat(value: f32) -> Self {
         Self([value; LANES])
@@ -48,32 +47,32 @@ impl Lanes {
         Self([first, first, first, first, second, second, second, second])
     }
 
-    /// Whole numbers.
+    /// Whole numbers as floating-point values.
     #[inline(always)]
     pub fn of_integers(values: &[i16; LANES]) -> Self {
         each!(v => f32::from(values[v]))
     }
 
-    /// The first and the second four.
+    /// The first four and the last four values.
     #[inline(always)]
     pub fn fours(self) -> [Vec4; 2] {
         let [a, b, c, d, e, f, g, h] = self.0;
         [Vec4::new(a, b, c, d), Vec4::new(e, f, g, h)]
     }
 
-    /// Product with `factor` plus `add`, rounded once; only where it is compiled for this machine.
+    /// `self * factor + add`, rounded once. Fast only within [`super::vector::vectorised`].
     #[inline(always)]
     pub fn mul_add(self, factor: Self, add: Self) -> Self {
         each!(v => self.0[v].mul_add(factor.0[v], add.0[v]))
     }
 
-    /// The lesser of each two.
+    /// The lesser value in each lane.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
         each!(v => if self.0[v] < other.0[v] { self.0[v] } else { other.0[v] })
     }
 
-    /// The greater of each two.
+    /// The greater value in each lane.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         each!(v => if self.0[v] > other.0[v] { self.0[v] } else { other.0[v] })
@@ -91,7 +90,7 @@ impl Lanes {
         self.0
     }
 
-    /// `value(v)` for each.
+    /// `value(v)` for each lane.
     pub fn from_fn(value: impl FnMut(usize) -> f32) -> Self {
         Self(std::array::from_fn(value))
     }
@@ -108,10 +107,10 @@ impl Lanes {
         self.0.iter().sum()
     }
 
-    /// Sets the first of some values.
+    /// Writes the values to the start of a slice.
     #[inline(always)]
     pub fn write(self, values: &mut [f32]) {
-        *values.first_chunk_mut().expect("a row is filled up to whole lanes") = self.0;
+        *values.first_chunk_mut().expect("rows are padded to whole lanes") = self.0;
     }
 
     /// The square root of each value.
@@ -120,7 +119,7 @@ impl Lanes {
         each!(v => self.0[v].sqrt())
     }
 
-    /// The first `count`, and zero for the others.
+    /// The first `count` values, and zero in the other lanes.
     #[inline(always)]
     pub fn first(self, count: usize) -> Self {
         each!(v => if v < count { self.0[v] } else { 0.0 })
@@ -133,7 +132,7 @@ impl Lanes {
         ([all[0], all[2], all[4], all[6]], [all[1], all[3], all[5], all[7]])
     }
 
-    /// These where `mask` is not zero, and zero elsewhere.
+    /// The value in each lane whose `mask` is not zero, and zero in the other lanes.
     #[inline(always)]
     pub fn kept(self, mask: Self) -> Self {
         each!(v => if mask.0[v] != 0.0 { self.0[v] } else { 0.0 })

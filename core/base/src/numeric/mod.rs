@@ -1,18 +1,18 @@
 //! Numerical methods that know nothing of pictures or contours.
 //!
-//! - [`assignment`]: pairs of least total cost
+//! - [`assignment`]: rows to columns at the least total cost
 //! - [`banded`]: Cholesky factorisation of symmetric band matrices
-//! - [`cholesky`]: sparse Cholesky factorisation with the symbolic half kept
-//! - [`damped_system`]: damped normal equations, long rows as a correction of low rank
+//! - [`cholesky`]: sparse Cholesky factorisation of many matrices with one pattern
+//! - [`damped_system`]: damped normal equations; long rows are a correction of low rank
 //! - [`dense`]: small dense positive definite systems
-//! - [`gradient_check`]: an analytic Jacobian against differences
-//! - `lanes`: eight values that are worked on at once
+//! - [`gradient_check`]: compares an analytic Jacobian with central differences
+//! - [`lanes`]: arithmetic on eight values at once
 //! - [`normal_equations`]: JᵀJ and Jᵀr of a sparse Jacobian of fixed pattern
 //! - [`roots`]: real roots of polynomials up to the quartic
-//! - [`sparse_assignment`]: the same where few pairs are allowed
-//! - [`sparse_least_squares`]: Levenberg–Marquardt on such problems
-//! - [`trust_region`]: Gauss–Newton within a trust region by conjugate gradients
-//! - `vector`: hot loops compiled for the machine they run on
+//! - [`sparse_assignment`]: assignment where each row may take few columns, or none
+//! - [`sparse_least_squares`]: Levenberg–Marquardt for sparse non-linear least squares
+//! - [`trust_region`]: Gauss–Newton within a trust region, solved by conjugate gradients
+//! - [`vector`]: compiles hot loops for the processor that runs them
 
 pub mod assignment;
 pub mod banded;

@@ -1,12 +1,12 @@
 //! The normal equations JᵀJ d = −Jᵀr of a sparse Jacobian whose pattern never changes.
 //!
-//! Row k of J adds the products of all pairs of its entries to JᵀJ. Which place of the triangle a pair goes to depends on
-//! the pattern alone: it is looked up once, and an assembly is one pass of multiply-adds over a list of places.
+//! Row k of J adds the products of all pairs of its entries to JᵀJ. The place of a pair in the triangle depends on the
+//! pattern alone. It is looked up once. An assembly is then one pass of multiplications and additions over a list of places.
 //!
-//! A row of m entries gives m(m + 1)/2 products. Rows of more than [`LONG_ROW`] entries are left out of the triangle, which
-//! would become dense, and handed on as they are ([`NormalEquations::long_rows`]); gradient and diagonal include them.
+//! A row of m entries gives m(m + 1)/2 products. Rows of more than [`LONG_ROW`] entries would make the triangle dense, so they
+//! are left out of it. [`NormalEquations::long_rows`] gives them. Gradient and diagonal include them.
 
-/// Entries above which a row is kept out of the triangle.
+/// A row with more entries than this is left out of the triangle.
 pub const LONG_ROW: usize = 96;
 
 /// Lower triangle of JᵀJ without the long rows (compressed columns) and Jᵀr, refilled for each new set of
@@ -16,9 +16,9 @@ pub struct NormalEquations {
     /// Entries of row k, repeated columns merged: `columns[row_starts[k]..row_starts[k + 1]]`, rising.
     row_starts: Vec<usize>,
     columns: Vec<u32>,
-    /// For each entry of the caller's pattern the merged entry that it adds to.
+    /// For each entry of the caller's pattern: the merged entry that it adds to.
     slots: Vec<u32>,
-    /// For each row and each pair (a, b ≤ a) of its merged entries, the place in `values`.
+    /// For each row and each pair (a, b ≤ a) of its merged entries: the place in `values`.
     places: Vec<u32>,
     column_starts: Vec<usize>,
     row_indices: Vec<usize>,
@@ -98,17 +98,17 @@ impl NormalEquations {
         self.variables
     }
 
-    /// Where the columns of the lower triangle start; one more than there are variables.
+    /// Start of each column of the lower triangle, and the end of the last column.
     pub fn column_starts(&self) -> &[usize] {
         &self.column_starts
     }
 
-    /// Row of each value of the lower triangle. The diagonal comes first in its column, and always is there.
+    /// Row of each value of the lower triangle. Each column starts with its diagonal entry.
     pub fn row_indices(&self) -> &[usize] {
         &self.row_indices
     }
 
-    /// The rows of J that are not in the triangle: columns, rising, and values.
+    /// The rows of J that are not in the triangle: rising columns, and values.
     pub fn long_rows(&self) -> impl Iterator<Item = (&[u32], &[f64])> {
         let ranges = self.row_starts.windows(2).map(|pair| pair[0]..pair[1]);
         ranges.filter(|range| range.len() > LONG_ROW).map(|range| (&self.columns[range.clone()], &self.merged[range]))

@@ -1,14 +1,15 @@
 //! Real roots of polynomials of degree four or less within an interval.
 //!
-//! Closed formulas for cubics and quartics lose most of their digits where roots are close together or the leading
-//! coefficient is small, and both are everyday cases for curves (a nearly straight piece, two curves that touch). Instead
-//! the roots of the derivative cut the interval into stretches on which the polynomial is monotone; each holds at most one
-//! root, and a change of sign says whether it does (Yuksel, "High-Performance Polynomial Root Finding for Graphics", 2022).
-//! The recursion ends at the quadratic, which is solved without cancellation (Press et al., *Numerical Recipes*, §5.6).
-//! Inside a bracket Newton's steps are taken as long as they stay in it, bisection otherwise.
+//! Closed formulas for cubics and quartics lose most of their digits if roots are close together or the leading coefficient
+//! is small. Both cases are common with curves: a nearly straight piece, or two curves that touch.
 //!
-//! A value below the rounding error of its own evaluation counts as zero. So a double root, where the polynomial only
-//! touches zero, is found once; a polynomial that is zero everywhere has no isolated roots and gives none.
+//! Instead, the roots of the derivative cut the interval into stretches on which the polynomial is monotone. Each stretch has
+//! at most one root, and has one if the sign changes (Yuksel, "High-Performance Polynomial Root Finding for Graphics", 2022).
+//! The recursion ends at the quadratic, which is solved without cancellation (Press et al., *Numerical Recipes*, §5.6).
+//! Within a stretch, a Newton step is taken if it stays inside of the bracket; otherwise the bracket is halved.
+//!
+//! A value below the rounding error of its own evaluation counts as zero. A double root, where the polynomial only touches
+//! zero, is therefore found once. A polynomial that is zero everywhere has no isolated roots, and the result is empty.
 
 use std::ops::Deref;
 
@@ -40,15 +41,15 @@ impl Deref for Roots {
     }
 }
 
-/// Value of a polynomial, coefficients in ascending order.
+/// Value of a polynomial. Coefficients are in ascending order.
 pub fn evaluate(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, &c| sum * x + c)
 }
 
 /// Roots of a polynomial (coefficients in ascending order, at most five) in the closed interval `low..=high`.
 ///
-/// Multiple roots are given once. None where the polynomial is constant, zero included, or where a coefficient is not
-/// finite.
+/// A multiple root is given once. There are no roots if the polynomial is constant (zero included) or if a coefficient is
+/// not finite.
 pub fn roots_in(coefficients: &[f64], low: f64, high: f64) -> Roots {
     assert!(coefficients.len() <= MAX_DEGREE + 1, "degree {} is above {MAX_DEGREE}", coefficients.len() - 1);
     let largest = coefficients.iter().fold(0.0f64, |most, c| most.max(c.abs()));
@@ -97,7 +98,7 @@ fn monotone_stretches(c: &[f64], low: f64, high: f64) -> Roots {
     roots
 }
 
-/// The polynomial's value, or zero where it drowns in rounding.
+/// The polynomial's value, or zero if it is below the rounding error.
 fn snapped(c: &[f64], x: f64) -> f64 {
     let value = evaluate(c, x);
     let magnitude = c.iter().rev().fold(0.0, |sum, &k| sum * x.abs() + k.abs());
@@ -122,7 +123,7 @@ fn quadratic(c: &[f64], low: f64, high: f64) -> Roots {
         found.swap(0, 1);
     }
     let mut roots = Roots::default();
-    // A root on the interval's end may come out a rounding beside it.
+    // Rounding may move a root at the end of the interval a little outside.
     let slack = 4.0 * f64::EPSILON * (low.abs().max(high.abs()));
     for x in found {
         if x >= low - slack && x <= high + slack {

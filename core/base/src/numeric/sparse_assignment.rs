@@ -1,8 +1,9 @@
-//! Assignment where each row can take few of the columns, or none at a price.
+//! Assignment where each row may take only a few columns, or none at a price.
 //!
 //! Successive shortest augmenting paths with potentials, as in [`super::assignment`], but over lists of allowed pairs and
-//! with a heap (Dijkstra): time and memory grow with the number of pairs, not with rows × columns. "None" is a column of the
-//! row's own, therefore there always is an answer. Ties go to the smaller column, so that the result is the same everywhere.
+//! with a heap (Dijkstra). Time and memory grow with the number of pairs, not with rows × columns. Each row has an extra column
+//! of its own that means "none", so there is always an answer. A tie goes to the column of the smaller index, so the result
+//! is the same everywhere.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -12,7 +13,7 @@ use std::collections::BinaryHeap;
 pub struct Choice {
     /// The column.
     pub column: usize,
-    /// What it costs; finite.
+    /// The cost; finite.
     pub cost: f64,
 }
 
@@ -26,7 +27,7 @@ impl Eq for Reached {}
 
 impl Ord for Reached {
     fn cmp(&self, other: &Self) -> Ordering {
-        // The heap gives the greatest first: the nearest, then the smallest.
+        // The heap returns the greatest first. That must be the nearest column, and of equals the one of the smallest index.
         other.distance.total_cmp(&self.distance).then(other.node.cmp(&self.node))
     }
 }
@@ -39,10 +40,10 @@ impl PartialOrd for Reached {
 
 const FREE: usize = usize::MAX;
 
-/// The column of each row, or `None`, so that the sum of costs is least, a row without column costing `none[row]`. Choices
-/// whose cost is not finite, or whose column is not below `columns`, are passed over.
+/// The column of each row, or `None`, so that the sum of costs is least. A row without a column costs `none[row]`. Choices
+/// whose cost is not finite, or whose column is not below `columns`, are ignored.
 pub fn assign_sparse(choices: &[Vec<Choice>], none: &[f64], columns: usize) -> Vec<Option<usize>> {
-    assert_eq!(choices.len(), none.len(), "one price of no column for each row");
+    assert_eq!(choices.len(), none.len(), "expected a price of having no column for each row");
     let mut solver = Solver::new(choices, none, columns);
     (0..choices.len()).for_each(|row| solver.enter(row));
     solver.column_of.iter().map(|&column| (column < columns).then_some(column)).collect()
@@ -52,7 +53,7 @@ struct Solver<'a> {
     choices: &'a [Vec<Choice>],
     none: &'a [f64],
     columns: usize,
-    /// By column; those of rows' own follow the given ones.
+    /// For each column. The rows' own columns follow the given ones.
     row_of: Vec<usize>,
     column_of: Vec<usize>,
     column_price: Vec<f64>,
@@ -118,7 +119,7 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Shortens the ways to the columns of a row that is reached at a distance, through the column that it holds.
+    /// Shortens the paths to the columns of a row. The row was reached at `distance`, through the column that it holds.
     fn relax(
         &mut self,
         row: usize,
@@ -130,7 +131,7 @@ impl<'a> Solver<'a> {
         let own = Choice { column: self.columns + row, cost: self.none[row] };
         let listed = self.choices[row].iter().filter(|c| c.cost.is_finite() && c.column < self.columns);
         let options: Vec<Choice> = listed.copied().chain([own]).collect();
-        // The row's price is what makes the reduced cost of the column that it holds vanish.
+        // The row's price makes the reduced cost of the column that it holds zero.
         let held = self.column_of[row];
         let held_cost = options.iter().filter(|c| c.column == held).map(|c| c.cost).fold(f64::INFINITY, f64::min);
         let price = if held == FREE { 0.0 } else { held_cost - self.column_price[held] };

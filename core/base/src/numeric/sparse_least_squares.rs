@@ -1,18 +1,18 @@
 //! Levenberg–Marquardt for sparse non-linear least squares, with linear equality constraints.
 //!
-//! Minimises E(x) = ‖r(x)‖² over x, subject to Cx = b where the problem asks for it. Each iteration solves
+//! Minimises E(x) = ‖r(x)‖² over x. A problem may add constraints Cx = b. Each iteration solves
 //!
 //! ```text
 //! (JᵀJ + λ diag(JᵀJ)) d = −Jᵀr − Cᵀμ,   Cd = 0
 //! ```
 //!
-//! and takes the step where it lowers E; otherwise λ grows and the same equations are solved again (Marquardt 1963;
-//! Nocedal & Wright, *Numerical Optimization*, 2006, §10.3). The left matrix M is factored by
-//! sparse Cholesky, its symbolic half once for all iterations ([`DampedSystem`]). μ comes from the small dense system (C M⁻¹ Cᵀ) μ = −C M⁻¹ Jᵀr: one more back substitution
-//! a constraint, so these should be few. A start that satisfies the constraints keeps them to rounding.
+//! and takes the step if it lowers E. Otherwise λ grows, and the same equations are solved again (Marquardt 1963; Nocedal &
+//! Wright, *Numerical Optimization*, 2006, §10.3). Sparse Cholesky factors the left matrix M; its pattern is analysed once
+//! for all iterations ([`DampedSystem`]). μ solves the small dense system (C M⁻¹ Cᵀ) μ = −C M⁻¹ Jᵀr. Each constraint costs one
+//! more back substitution, so there should be few. If the start satisfies the constraints, all points do, up to rounding.
 //!
-//! λ follows the gain ratio ρ between the decrease of E and the decrease that the linear model promised (Nielsen 1999):
-//! after a good step λ shrinks by max(1/3, 1 − (2ρ − 1)³), after each refusal in a row it grows by 2, 4, 8, ….
+//! The gain ratio ρ compares the decrease of E with the decrease that the linear model predicted, and sets λ (Nielsen 1999).
+//! After a good step λ shrinks by the factor max(1/3, 1 − (2ρ − 1)³). After each refusal in a row it grows by 2, 4, 8, ….
 
 use super::damped_system::DampedSystem;
 use super::normal_equations::NormalEquations;
@@ -36,20 +36,20 @@ pub trait Problem {
     /// Writes r(x) and the values of the Jacobian in the order of the pattern.
     fn linearise(&self, x: &[f64], residuals: &mut [f64], jacobian: &mut [f64]);
 
-    /// Rows of C as (variable, coefficient): sums that no step may change. The rows must be linearly independent.
+    /// Rows of C as (variable, coefficient). No step changes these sums. The rows must be linearly independent.
     fn constraints(&self) -> Vec<Vec<(usize, f64)>> {
         Vec::new()
     }
 }
 
-/// When to stop, and how boldly to start.
+/// When to stop, and the damping at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LmOptions {
-    /// At most so many steps taken or refused.
+    /// Greatest number of steps, taken and refused.
     pub max_iterations: usize,
     /// Stop when a step lowers the cost by less than this share of it.
     pub cost_tolerance: f64,
-    /// Stop when no variable moves further than this (in the variables' unit).
+    /// Stop when no variable moves farther than this, in the unit of the variables.
     pub step_tolerance: f64,
     /// λ at the start.
     pub initial_damping: f64,
@@ -87,15 +87,15 @@ pub struct LmSummary {
     pub iterations: usize,
     /// ‖r‖² at the start.
     pub initial_cost: f64,
-    /// ‖r‖² at the end; never above the initial.
+    /// ‖r‖² at the end; never above the one at the start.
     pub final_cost: f64,
 }
 
-/// Damping at which a step is shorter than anything that matters, so that the search for a descent is given up.
+/// Greatest damping. A step with more would be too short to matter, so the search for a descent ends.
 pub const MAX_DAMPING: f64 = 1e12;
 
-/// Minimises from `x`, which is replaced by the best point found. `each` is told the iteration and its cost before every
-/// linear system and may stop.
+/// Minimises from `x`, and replaces `x` by the best point found. Before every linear system `each` gets the iteration and its
+/// cost, and may stop the iteration.
 pub fn minimise(
     problem: &impl Problem,
     x: &mut [f64],
@@ -147,11 +147,11 @@ pub fn minimise(
 struct Step {
     /// Largest change of a variable.
     longest: f64,
-    /// Decrease of the cost that the linear model foretold.
+    /// Decrease of the cost that the linear model predicted.
     promised: f64,
 }
 
-/// The problem linearised at the present point, and the memory that iterations share.
+/// The problem linearised at the current point, and the memory that iterations share.
 struct State {
     equations: NormalEquations,
     system: DampedSystem,
@@ -189,7 +189,7 @@ impl State {
         self.equations.assemble(&self.jacobian, &self.residuals);
     }
 
-    /// Solves for a step and takes it where it lowers the cost.
+    /// Solves for a step and takes it if it lowers the cost.
     fn try_step(&mut self, problem: &impl Problem, x: &mut [f64], damping: f64) -> Option<Step> {
         let step = self.solve(damping)?;
         for ((trial, &x), &d) in self.trial.iter_mut().zip(&*x).zip(&step) {
@@ -206,7 +206,7 @@ impl State {
         Some(Step { longest, promised: self.promised(&step, damping) })
     }
 
-    /// −2 dᵀJᵀr − dᵀJᵀJd; along the step, dᵀJᵀJd = −dᵀJᵀr − λ dᵀDd.
+    /// −2 dᵀJᵀr − dᵀJᵀJd, where dᵀJᵀJd = −dᵀJᵀr − λ dᵀDd along the step.
     fn promised(&self, step: &[f64], damping: f64) -> f64 {
         let coefficients = self.equations.diagonal().iter().zip(self.equations.gradient());
         step.iter()
@@ -215,7 +215,7 @@ impl State {
             .sum()
     }
 
-    /// The damped step; `None` where the matrix cannot be factored.
+    /// The damped step; `None` if the matrix cannot be factored.
     fn solve(&mut self, damping: f64) -> Option<Vec<f64>> {
         self.system.factor(&self.equations, damping).ok()?;
         let mut step: Vec<f64> = self.equations.gradient().iter().map(|g| -g).collect();
@@ -224,7 +224,7 @@ impl State {
         step.iter().all(|d| d.is_finite()).then_some(step)
     }
 
-    /// Takes from a step what would change the constrained sums, in the metric of M.
+    /// Removes the part of a step that would change the constrained sums, in the metric of M.
     fn restrict(&mut self, step: &mut [f64]) -> Option<()> {
         if self.constraints.is_empty() {
             return Some(());

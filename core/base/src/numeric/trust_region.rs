@@ -1,4 +1,4 @@
-//! Gauss–Newton in a trust region, its steps by truncated conjugate gradients (Steihaug 1983).
+//! Gauss–Newton in a trust region, with steps by truncated conjugate gradients (Steihaug 1983).
 //!
 //! Minimises E(x) = ‖r(x)‖² over points in the plane. Each iteration minimises the model
 //!
@@ -6,25 +6,25 @@
 //! m(d) = E + 2 gᵀd + dᵀHd,   g = Jᵀr,  H = JᵀJ
 //! ```
 //!
-//! by preconditioned conjugate gradients from d = 0 until the residual is small or a point would leave the region, where
-//! the last direction is cut at the border. The region bounds the way of every single point, in the unit of the points:
-//! its radius keeps its meaning whatever the number of points. (Steihaug's proof that the steps grow is for the Euclidean
-//! norm of all variables; with the largest way instead the first crossing is taken, which is a descent all the same.)
+//! by preconditioned conjugate gradients from d = 0. They stop when the residual is small, or when a point would leave the
+//! region; the last direction is then cut at the border. The region bounds the distance that each single point moves, in the
+//! unit of the points. The meaning of its radius does not depend on the number of points. (Steihaug's proof that the steps
+//! grow is for the Euclidean norm of all variables. Here the first crossing of any point counts, which is a descent too.)
 //!
-//! With ρ the share of the promised decrease that came true, the radius is quartered where ρ < 1/4 and doubled where
-//! ρ > 3/4 and the border was reached; a step that does not lower E is refused (Nocedal & Wright 2006, algorithm 4.1).
+//! ρ is the decrease of E divided by the predicted decrease. The radius becomes a quarter if ρ < 1/4, and doubles if ρ > 3/4
+//! and the border was reached. A step that does not lower E is refused (Nocedal & Wright 2006, algorithm 4.1).
 //!
-//! Linear equality constraints enter as a projection: every vector is projected, so the iteration never leaves the
-//! subspace. H may be singular; directions that it does not know are left alone.
+//! Linear equality constraints are a projection. Every vector is projected, so the iteration never leaves the subspace. H may
+//! be singular: x does not change along its null space.
 
 use std::ops::ControlFlow;
 
-/// A sum of squares over points; variables are x and y of each in turn.
+/// A sum of squares over points. The variables are x and y of each point in turn.
 pub trait Objective {
     /// E at `x`.
     fn cost(&self, x: &[f64]) -> f64;
 
-    /// E at `x`; makes g and H those of `x`.
+    /// E at `x`. Also sets g and H to those of `x`.
     fn linearise(&mut self, x: &[f64]) -> f64;
 
     /// g = Jᵀr.
@@ -33,27 +33,27 @@ pub trait Objective {
     /// `product` = H `v`.
     fn multiply(&self, v: &[f64], product: &mut [f64]);
 
-    /// Replaces `v` by an approximation of H⁻¹ `v`; symmetric and positive definite.
+    /// Replaces `v` by an approximation of H⁻¹ `v`. The approximation must be symmetric and positive definite.
     fn precondition(&self, v: &mut [f64]);
 
-    /// Takes from `v` what the constraints forbid.
+    /// Removes the part of `v` that the constraints forbid.
     fn project(&self, v: &mut [f64]);
 }
 
-/// When to stop, and how far to step.
+/// When to stop, and how far a step may go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrustOptions {
-    /// Radius at the start, and the largest: how far a point moves in one step at the most.
+    /// Radius at the start, and the greatest: how far a point may move in one step.
     pub radius: f64,
     /// Stop when the radius falls below this.
     pub smallest_radius: f64,
-    /// Stop when no point moves further than this.
+    /// Stop when no point moves farther than this.
     pub step_tolerance: f64,
     /// Stop when a step lowers the cost by less than this share of it.
     pub cost_tolerance: f64,
-    /// At most so many steps taken or refused.
+    /// Greatest number of steps, taken and refused.
     pub max_iterations: usize,
-    /// At most so many conjugate directions a step.
+    /// Greatest number of conjugate directions for each step.
     pub max_directions: usize,
 }
 
@@ -81,14 +81,14 @@ pub struct TrustSummary {
     pub iterations: usize,
     /// E at the start.
     pub initial_cost: f64,
-    /// E at the end; never above the initial.
+    /// E at the end; never above the one at the start.
     pub final_cost: f64,
 }
 
-/// Share of the gradient's norm at which conjugate gradients stop.
+/// Conjugate gradients stop when the residual is below this share of the gradient's norm.
 const RESIDUAL: f64 = 1e-2;
 
-/// Minimises from `x`, which is replaced by the best found. `each` is told the iteration before every step and may stop.
+/// Minimises from `x`, and replaces `x` by the best point found. Before every step `each` gets the iteration and may stop it.
 ///
 /// Panics unless the number of variables is even.
 pub fn minimise(
@@ -143,7 +143,7 @@ struct Step {
     way: Vec<f64>,
     /// E − m(d), positive.
     promised: f64,
-    /// Whether the region's border cut it.
+    /// Whether the border of the region cut the step.
     cut: bool,
 }
 
@@ -196,7 +196,7 @@ fn truncated_step(objective: &impl Objective, radius: f64, max_directions: usize
     Step { way, promised: promised.max(f64::MIN_POSITIVE), cut }
 }
 
-/// How far along `direction` the first point reaches `radius`.
+/// The distance along `direction` at which the first point reaches `radius`.
 fn way_to_border(way: &[f64], direction: &[f64], radius: f64) -> f64 {
     let points = way.chunks_exact(2).zip(direction.chunks_exact(2));
     let of_point = |(w, d): (&[f64], &[f64])| {

@@ -1,18 +1,20 @@
-//! Lets a hot loop use the vector instructions of the machine it runs on.
+//! Lets a hot loop use the vector instructions of the processor that runs it.
 //!
-//! The program is compiled for every machine of its kind, so a loop is vectorised with the few instructions that all of
-//! them have. Here it is compiled once more for those that have more (AVX2, FMA), and the right one is chosen when it
-//! runs. Results do not change: no instruction rounds otherwise, and no sum is reordered. Hot loops say `mul_add` where one
-//! rounding of a product and a sum is meant; it is one instruction here, and a call on machines without FMA, which makes the
-//! same of it slowly. Outside of [`vectorised`] it should not be used.
+//! The program is compiled for all processors of one kind. The compiler may then use only the instructions that all of
+//! them have. [`vectorised`] compiles a loop a second time for processors with AVX2 and FMA, and chooses between the two
+//! when the program runs. Both give the same result: every operation rounds in the same way, and no sum is reordered.
+//!
+//! Hot loops call `mul_add` for a product and a sum that are rounded once. With FMA this is one instruction. Without FMA it
+//! is a slow function call with the same result. Use `mul_add` only within [`vectorised`].
 
-/// Runs `work`, compiled for this machine. It gains only if `work` and what it calls are marked `#[inline(always)]`.
+/// Runs `work`, compiled for this processor. `work` and all functions that it calls must be `#[inline(always)]`; otherwise
+/// they stay compiled for all processors.
 #[inline(always)]
 pub fn vectorised<R>(work: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(work)
 }
 
-/// Inner product in four interleaved sums: a fixed order, and the compiler can keep them in one register.
+/// Inner product in four interleaved sums. The order is fixed, and the compiler can keep the sums in one register.
 #[inline(always)]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
