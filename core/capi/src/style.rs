@@ -270,7 +270,7 @@ fn chosen<'a>(clips: &'a Clips, given: &ReshapeOptions) -> Result<&'a Clip, Fail
 pub fn library_add(folder: &str, clips: &str, source: &str) -> Result<(), Failure> {
     let clips = Clips::parse(clips, "clips").map_err(Failure::error)?;
     let mut library = Library::open(Path::new(folder));
-    clips.clips.iter().try_for_each(|clip| library.add(clip, clips.fps, source)).map_err(Failure::error)
+    library.add_all(&clips.clips, clips.fps, source).map(drop).map_err(Failure::error)
 }
 
 /// Finds the clips of a library whose character and motion contain given words, and reads them if requested.

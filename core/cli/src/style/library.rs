@@ -50,8 +50,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     if what == "add" {
         let from = arguments::path(given, "clips");
         let read = Clips::load(from).map_err(|e| Failure::Other(e.to_string()))?;
-        for clip in &read.clips {
-            library.add(clip, read.fps, arguments::choice(given, "source"))?;
+        let aside = library.add_all(&read.clips, read.fps, arguments::choice(given, "source"));
+        if let Some(path) = aside.map_err(|e| Failure::Other(e.to_string()))? {
+            line("note", &format!("the damaged index is kept as {}", path.display()));
         }
         return Ok(());
     }

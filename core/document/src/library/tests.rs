@@ -1,0 +1,208 @@
+use super::*;
+use rototoon_base::geometry::Point;
+
+fn clip(character: &str, motion: &str, frames: usize) -> Clip {
+    Clip::new(character, motion, (0..frames).map(|f| [Point::new(f as f64, 1.0); 17]).collect())
+}
+
+fn filled() -> (tempfile::TempDir, Library) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut library = Library::open(&folder.path().join("clips"));
+    library.add(&clip("Ann", "walk", 3), 12.0, "shot 7").unwrap();
+    library.add(&clip("Ann", "run", 2), 12.0, "").unwrap();
+    library.add(&clip("Bo/b", "walk", 4), 24.0, "").unwrap();
+    (folder, library)
+}
+
+#[test]
+fn what_is_added_is_found_again() {
+    let (folder, _) = filled();
+    let library = Library::open(&folder.path().join("clips"));
+    assert!(library.troubles().is_empty());
+    assert_eq!(library.entries().len(), 3);
+    assert_eq!((library.entries()[0].frames, library.entries()[0].source.as_str()), (3, "shot 7"));
+    assert_eq!(library.search("", "WALK").count(), 2);
+    let (clips, troubles) = library.read(library.search("ann", "run"));
+    assert_eq!((clips, troubles), (vec![clip("Ann", "run", 2)], vec![]));
+}
+
+#[test]
+fn a_clip_takes_the_place_of_the_same() {
+    let (folder, mut library) = filled();
+    library.add(&clip("Ann", "walk", 9), 12.0, "").unwrap();
+    let library = Library::open(&folder.path().join("clips"));
+    assert_eq!(library.entries().iter().map(|e| e.frames).collect::<Vec<_>>(), [9, 2, 4]);
+}
+
+#[test]
+fn of_a_damaged_library_the_rest_is_used() {
+    let (folder, library) = filled();
+    let folder = folder.path().join("clips");
+    fs::write(folder.join(&library.entries()[1].file), "{").unwrap();
+    let reopened = Library::open(&folder);
+    let (clips, troubles) = reopened.read(reopened.entries().iter());
+    assert_eq!((clips.len(), troubles.len()), (2, 1));
+    assert!(troubles[0].to_string().contains("ann-run.clip.json: not JSON"), "{}", troubles[0]);
+    let later = "{\"rototoon_clips\": 9, \"clips\": [], \"more\": {}}";
+    fs::write(folder.join(&library.entries()[1].file), later).unwrap();
+    let (clips, troubles) = reopened.read(reopened.entries().iter());
+    assert_eq!(clips.iter().map(|clip| clip.character.as_str()).collect::<Vec<_>>(), ["Ann", "Bo/b"]);
+    assert!(troubles[0].to_string().contains("found version 9, expected 1 or less"), "{}", troubles[0]);
+    for (index, said) in
+        [("[", "not an index of clips"), ("{\"rototoon_library\": 2, \"clips\": []}", "found version 2")]
+    {
+        fs::write(folder.join(INDEX), index).unwrap();
+        let rebuilt = Library::open(&folder);
+        assert_eq!(rebuilt.entries().len(), 2);
+        assert!(rebuilt.troubles().iter().any(|t| t.to_string().contains(said)));
+    }
+}
+
+#[test]
+fn files_put_into_the_folder_are_found_and_twins_reported() {
+    let (folder, library) = filled();
+    let folder = folder.path().join("clips");
+    fs::copy(folder.join(&library.entries()[0].file), folder.join("copy.clip.json")).unwrap();
+    Clips { clips: vec![clip("Cy", "bow", 1)], fps: 8.0 }.save(&folder.join("new.clip.json")).unwrap();
+    let reopened = Library::open(&folder);
+    assert_eq!(reopened.entries().last().map(|e| (e.character.as_str(), e.fps)), Some(("Cy", 8.0)));
+    assert!(matches!(reopened.troubles(), [Trouble::Twice { .. }]));
+}
+
+#[test]
+fn entries_that_cannot_be_used_are_named_and_the_rest_is_used() {
+    let folder = tempfile::tempdir().unwrap();
+    let entry = |file: &str, more: &str| {
+        format!(r#"{{"file": {file}, "character": "a", "motion": {file}, "frames": 1, "fps": 1{more}}}"#)
+    };
+    let cases = [
+        (
+            entry(r#""../x.clip.json""#, ""),
+            "clips[0].file: found \"../x.clip.json\", expected a name within the folder",
+        ),
+        (entry(r#""c:x.clip.json""#, ""), "clips[0].file: found"),
+        (entry(r#""library.json""#, ""), "that ends in .clip.json"),
+        (entry("7", ""), "clips[0].file: found 7, expected a text"),
+        (entry(r#""a.clip.json""#, r#", "fps": "x""#), "clips[0].fps: found \"x\", expected a positive number"),
+        (entry(r#""a.clip.json""#, r#", "frames": -1"#), "clips[0].frames: found -1, expected a whole number"),
+        ("[]".into(), "clips[0]: found [], expected an object"),
+        (entry(r#""B.clip.json""#, "") + "," + &entry(r#""b.clip.json""#, ""), "clips[1].file: found \"b.clip.json\""),
+    ];
+    for (clips, said) in cases {
+        let good = entry(r#""good.clip.json""#, "");
+        fs::write(folder.path().join(INDEX), format!(r#"{{"rototoon_library": 1, "clips": [{clips}, {good}]}}"#))
+            .unwrap();
+        let library = Library::open(folder.path());
+        assert_eq!(library.entries().last().unwrap().file, "good.clip.json", "{clips}");
+        let [trouble] = library.troubles() else { panic!("{:?}", library.troubles()) };
+        assert!(trouble.to_string().contains(said), "{trouble}");
+    }
+}
+
+#[test]
+fn fields_of_others_and_their_order_stay() {
+    let (folder, _) = filled();
+    let index = folder.path().join("clips").join(INDEX);
+    let text = fs::read_to_string(&index).unwrap();
+    let more = text.replacen("\"clips\"", "\"studio\": {\n    \"b\": 1,\n    \"a\": 2\n  },\n  \"clips\"", 1);
+    let more = more.replacen("\"source\": \"shot 7\"", "\"source\": \"shot 7\",\n      \"rating\": 5", 1);
+    fs::write(&index, &more).unwrap();
+    let mut library = Library::open(index.parent().unwrap());
+    library.add(&clip("Ann", "run", 2), 12.0, "").unwrap();
+    assert_eq!(fs::read_to_string(&index).unwrap(), more, "nothing else changes");
+    library.add(&clip("Ann", "walk", 9), 12.0, "new").unwrap();
+    let new = more.replacen("\"frames\": 3", "\"frames\": 9", 1).replacen("shot 7", "new", 1);
+    assert_eq!(fs::read_to_string(&index).unwrap(), new);
+}
+
+#[test]
+fn an_index_that_is_not_understood_is_never_changed() {
+    let (folder, mut library) = filled();
+    let index = folder.path().join("clips").join(INDEX);
+    let later = r#"{"rototoon_library": 2, "clips": [], "more": 1}"#;
+    fs::write(&index, later).unwrap();
+    let error = library.add(&clip("Cy", "bow", 1), 8.0, "").unwrap_err();
+    assert!(error.to_string().contains("found an index of version 2, expected 1 or less"), "{error}");
+    assert_eq!(fs::read_to_string(&index).unwrap(), later);
+    fs::remove_file(&index).unwrap();
+    fs::create_dir(&index).unwrap();
+    let reopened = Library::open(index.parent().unwrap());
+    assert!(reopened.troubles()[0].to_string().contains("cannot read the index: it is a folder"));
+    assert_eq!(reopened.entries().len(), 3, "the files are read instead");
+    assert!(matches!(library.add(&clip("Cy", "bow", 1), 8.0, "").unwrap_err(), AddError::Unreadable { .. }));
+    assert!(index.is_dir());
+    assert_eq!(fs::read_dir(index.parent().unwrap()).unwrap().count(), 5, "three clips, the folder and the lock");
+}
+
+#[test]
+fn damaged_indexes_are_set_aside() {
+    let (folder, _) = filled();
+    let folder = folder.path().join("clips");
+    let text = fs::read(folder.join(INDEX)).unwrap();
+    let at = text.windows(6).position(|w| w == b"shot 7").unwrap();
+    let mut latin = text.clone();
+    latin[at] = 0xFC;
+    for (number, damaged, sources) in [(1, &latin[..], 1), (2, &text[..at], 0)] {
+        fs::write(folder.join(INDEX), damaged).unwrap();
+        let mut library = Library::open(&folder);
+        assert_eq!(library.troubles().len(), 1, "{:?}", library.troubles());
+        let aside = library.add(&clip("Cy", "bow", 1), 8.0, "").unwrap().unwrap();
+        assert!(aside.ends_with(format!("library.damaged-{number}.json")));
+        assert_eq!(fs::read(aside).unwrap(), damaged);
+        let reopened = Library::open(&folder);
+        assert!(reopened.troubles().is_empty());
+        assert_eq!(reopened.entries().len(), 4);
+        assert_eq!(reopened.entries().iter().filter(|e| !e.source.is_empty()).count(), sources);
+    }
+}
+
+#[test]
+fn only_the_file_of_the_same_clip_is_replaced() {
+    let (folder, mut library) = filled();
+    let folder = folder.path().join("clips");
+    let other = folder.join("other.clip.json");
+    let kept = [b"{ not finished".to_vec(), fs::read(folder.join("ann-run.clip.json")).unwrap()];
+    for content in kept {
+        fs::write(&other, &content).unwrap();
+        let text = fs::read_to_string(folder.join(INDEX)).unwrap();
+        let file = Library::open(&folder).entries()[0].file.clone();
+        fs::write(folder.join(INDEX), text.replace(&file, "other.clip.json")).unwrap();
+        library.add(&clip("Ann", "walk", 7), 12.0, "").unwrap();
+        assert_eq!(fs::read(&other).unwrap(), content);
+        let reopened = Library::open(&folder);
+        let (clips, _) = reopened.read(reopened.search("ann", "walk"));
+        assert_eq!(clips, [clip("Ann", "walk", 7)]);
+    }
+}
+
+#[test]
+fn labels_of_any_length_have_a_file() {
+    let (folder, mut library) = filled();
+    let long = "ü".repeat(300);
+    library.add(&clip(&long, &long, 1), 8.0, "").unwrap();
+    library.add(&clip(&format!("{long}2"), &long, 1), 8.0, "").unwrap();
+    assert_eq!(Library::open(&folder.path().join("clips")).entries().len(), 5);
+}
+
+#[test]
+fn nothing_is_lost_if_many_add_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    std::thread::scope(|scope| {
+        for who in 0..8 {
+            let folder = folder.path();
+            scope.spawn(move || {
+                let mut library = Library::open(folder);
+                for what in 0..15 {
+                    let (who, what) = (format!("c{who}"), format!("m{what}"));
+                    library.add(&clip(&who, &what, 1), 12.0, &format!("shot {who} {what}")).unwrap();
+                }
+            });
+        }
+    });
+    let library = Library::open(folder.path());
+    assert!(library.troubles().is_empty());
+    assert_eq!(
+        library.entries().iter().filter(|e| e.source == format!("shot {} {}", e.character, e.motion)).count(),
+        120
+    );
+}
