@@ -134,10 +134,12 @@ fn cleaned(outline: usize, ring: &[Point], edge: f64) -> Result<Vec<Point>, Tria
         kept.pop();
     }
     let length = polyline::length(&kept, true);
-    if length > MOST_EDGES * edge {
+    let encloses = |share: f64| kept.len() >= 3 && encloses(&kept, share * length * length);
+    // Beside a point far away any area is a small share, so here only rounding counts as none.
+    if length > MOST_EDGES * edge && encloses(f64::EPSILON) {
         return Err(TriangulateError::Long { outline, length, edge, point: farthest(ring) });
     }
-    if kept.len() < 3 || !encloses(&kept, 1e-6 * length * length) {
+    if !encloses(1e-6) {
         return Err(TriangulateError::Flat { outline });
     }
     let mut divided = Vec::with_capacity(kept.len());
