@@ -55,7 +55,8 @@ _SHARED = {
         bpy.props.FloatProperty,
         {
             "name": "Strength",
-            "description": "Strength of the style. 1 is the most probable",
+            "description": "Strength of the style: 0 is none, 1 the most probable. A little more is recognised better. Only for "
+            "the method Rototoon",
             "default": 1.1,
             "min": 0,
             "max": 3,
@@ -75,11 +76,15 @@ _SHARED = {
     ),
     "first": (
         bpy.props.IntProperty,
-        {"name": "First", "description": "First frame of the scene", "default": 0},
+        {"name": "First", "description": "First frame of the clip, in scene frames", "default": 0},
     ),
     "last": (
         bpy.props.IntProperty,
-        {"name": "Last", "description": "Last frame of the scene", "default": 0},
+        {
+            "name": "Last",
+            "description": "Last frame of the clip, in scene frames. If it is not after the first, all tracked frames",
+            "default": 0,
+        },
     ),
 }
 """By name: the kind of property, and its arguments."""

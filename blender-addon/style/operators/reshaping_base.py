@@ -14,7 +14,12 @@ class Reshaping(OnContours, Long):
     """Reads the drawing, works in a thread, and writes generated frames after the drawing."""
 
     sub_keys: bpy.props.IntProperty(
-        name="Sub-key Points", description="Number of points of each limb that keep its shape", default=5, min=0, max=100
+        name="Sub-key Points",
+        description="Number of points along each limb, between its key points. They let a limb curve; with 0 it stays nearly "
+        "straight",
+        default=5,
+        min=0,
+        max=100,
     )
     folder: shared("folder")
 

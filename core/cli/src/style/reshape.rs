@@ -50,7 +50,7 @@ pub fn command() -> Command {
             Arg::new("sub_keys")
                 .long("sub-keys")
                 .value_name("N")
-                .help("Number of points of each limb between its key points, which keep its shape; 0 for none")
+                .help("Number of points along each limb, between its key points. They let a limb curve; with 0 it stays nearly straight")
                 .default_value("5")
                 .value_parser(value_parser!(i64).range(0..=MOST_SUB_KEYS)),
         )
