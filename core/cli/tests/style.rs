@@ -99,6 +99,71 @@ fn a_library_is_filled_listed_and_learned_from() {
     assert!(out.exists());
 }
 
+#[test]
+fn processes_that_add_at_the_same_time_lose_nothing() {
+    const PROCESSES: usize = 8;
+    const ADDS: usize = 15;
+    let folder = tempfile::tempdir().unwrap();
+    let shelf = folder.path().join("shelf");
+    std::fs::create_dir(&shelf).unwrap();
+    let kept = json!({"rototoon_library": 1, "studio": "ours", "clips": []}).to_string();
+    std::fs::write(shelf.join("library.json"), kept).unwrap();
+    let added = |process: usize| {
+        for number in 0..ADDS {
+            let name = format!("actor {process} {number}");
+            let points: Vec<Value> = (0..3).map(|f| posture(1.0, 0.1, f64::from(f))).collect();
+            let clip = json!({"character": name, "motion": "walk", "points": points});
+            let file = folder.path().join(format!("{process}-{number}.json"));
+            std::fs::write(&file, json!({"rototoon_clips": 1, "fps": 12, "clips": [clip]}).to_string()).unwrap();
+            let (to, from) = (shelf.to_str().unwrap(), file.to_str().unwrap());
+            let done =
+                rototoon(&["style", "library", "add", to, from, "--source", &format!("shot {process}-{number}")]);
+            assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        }
+    };
+    std::thread::scope(|scope| {
+        for process in 0..PROCESSES {
+            let added = &added;
+            scope.spawn(move || added(process));
+        }
+    });
+    let index: Value = serde_json::from_str(&std::fs::read_to_string(shelf.join("library.json")).unwrap()).unwrap();
+    assert_eq!(index["studio"], "ours");
+    let entries = index["clips"].as_array().unwrap();
+    let mut sources: Vec<&str> = entries.iter().map(|entry| entry["source"].as_str().unwrap()).collect();
+    sources.sort_unstable();
+    sources.dedup();
+    assert_eq!((entries.len(), sources.len()), (PROCESSES * ADDS, PROCESSES * ADDS));
+}
+
+#[test]
+fn a_library_of_a_later_version_is_left_alone_and_a_damaged_index_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let (clips, shelf) = (folder.path().join("clips.json"), folder.path().join("shelf"));
+    std::fs::write(&clips, library().to_string()).unwrap();
+    std::fs::create_dir(&shelf).unwrap();
+    let index = shelf.join("library.json");
+    let add = || rototoon(&["style", "library", "add", shelf.to_str().unwrap(), clips.to_str().unwrap()]);
+
+    let later = "{\"rototoon_library\": 2, \"clips\": [], \"more\": 1}";
+    std::fs::write(&index, later).unwrap();
+    let refused = add();
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("version 2"));
+    assert_eq!(std::fs::read_to_string(&index).unwrap(), later);
+    assert_eq!(
+        std::fs::read_dir(&shelf).unwrap().flatten().filter(|f| f.path().to_string_lossy().contains("clip")).count(),
+        0
+    );
+
+    let damaged = b"{\"rototoon_library\": 1, \"clips\": [{\"source\": \"caf\xe9\"}]}";
+    std::fs::write(&index, damaged).unwrap();
+    let done = add();
+    assert!(done.status.success());
+    assert!(String::from_utf8_lossy(&done.stderr).contains("library.damaged-1.json"));
+    assert_eq!(std::fs::read(shelf.join("library.damaged-1.json")).unwrap(), damaged);
+}
+
 /// A BVH file of a figure that stands and then lifts an arm. `hand` is the name of its left hand.
 fn captured(hand: &str) -> String {
     let limb = |names: [&str; 3], offsets: [[i32; 3]; 3]| -> String {
