@@ -99,6 +99,8 @@ class Session:
 
     def unpin(self, part: str, frame: int, point: int | None = None) -> None:
         """Releases a pin, or with ``point=None`` all pins of the frame. Does nothing if there is no pin."""
+        if point is not None and point < 0:
+            raise RototoonError(f"point: found {point}, expected 0 or more, or None for all pins")
         self._handle.call("rototoon_session_unpin", *text(part), frame, -1 if point is None else point)
 
     def set_center(self, part: str, frame: int, xy: Sequence[float]) -> None:

@@ -110,6 +110,13 @@ def test_cancel_changes_nothing(session, work, limit):
     assert session.document() == before
 
 
+@pytest.mark.parametrize("answer", [False, 0, 0.0, ""])
+def test_every_false_answer_of_progress_cancels(session, answer):
+    with pytest.raises(Cancelled):
+        session.track(progress=lambda _fraction, _step: answer)
+    assert session.track(progress=lambda _fraction, _step: None).solved == 4
+
+
 def test_exception_in_progress_cancels_and_comes_out(session):
     before = session.document()
 
@@ -267,6 +274,18 @@ def test_missing_frame_is_named(document, tmp_path):
         (lambda s: s.remove_key("red", 3), "no key on frame 3"),
         (lambda s: s.track("best"), 'preset: found "best", expected one of'),
         (lambda s: s.track(threads=10**6), "expected a whole number from 0 to 1024"),
+        (lambda s: s.pin("red", 2**32 + 5, 0, (1, 1)), "frame: found 4294967301, expected a whole number from -2147483648"),
+        (lambda s: s.pin("red", 3, 2**32, (1, 1)), "point: found 4294967296, expected a whole number from"),
+        (lambda s: s.unpin("red", 2**32 + 5), "frame: found 4294967301"),
+        (lambda s: s.unpin("red", 3, -1), "point: found -1, expected 0 or more"),
+        (lambda s: s.unpin("red", 3, 2**32 - 1), "point: found 4294967295"),
+        (lambda s: s.set_key("red", -(2**31) - 1, square(3, 0)), "frame: found -2147483649"),
+        (lambda s: s.remove_key("red", 2**32), "frame: found 4294967296"),
+        (lambda s: s.set_center("red", 2**32 + 5, (1, 1)), "frame: found 4294967301"),
+        (lambda s: s.clear_center("red", 2**32 + 5), "frame: found 4294967301"),
+        (lambda s: s.curves("red", 2**40), "frame: found 1099511627776"),
+        (lambda s: s.pin("red", 3.5, 0, (1, 1)), "frame: found 3.5, expected a whole number"),
+        (lambda s: s.track(threads=2**64), "expected a whole number from 0 to 1024"),
         (lambda s: s.set_document({"rototoon": 1}), "footage"),
         (lambda s: s.set_document({"rototoon": 99, "footage": {}, "parts": []}), "99"),
         (lambda s: s.set_document({"rototoon": float("nan")}), "not a JSON document"),

@@ -82,18 +82,33 @@ fn contract(root: &Path) -> Result<String> {
 enum Declaration {
     Constant { name: String, value: i64 },
     Callback { name: String, result: CType, parameters: Vec<CType> },
-    Function { name: String, result: CType, parameters: Vec<CType> },
+    Function { name: String, result: CType, parameters: Vec<Parameter> },
 }
 
 /// The ctypes expression of a type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CType(&'static str);
 
+/// A parameter of a function.
+#[derive(Clone, Debug, PartialEq)]
+struct Parameter {
+    kind: CType,
+    name: String,
+}
+
+impl CType {
+    /// Whether C takes the lowest bits of a Python number that is too large for the type.
+    fn wraps(self) -> bool {
+        ["ctypes.c_int32", "ctypes.c_uint32", "ctypes.c_uint64", "ctypes.c_size_t"].contains(&self.0)
+    }
+}
+
 /// The Python module for a header.
 fn bindings(header: &str) -> Result<String> {
     let mut constants = String::new();
     let mut callbacks = String::new();
     let mut functions = String::new();
+    let mut integers = String::new();
     for declaration in declarations(header)? {
         match declaration {
             Declaration::Constant { name, value } => writeln!(constants, "{name} = {value}")?,
@@ -108,19 +123,32 @@ fn bindings(header: &str) -> Result<String> {
                     continue;
                 }
                 writeln!(functions, "    library.{name}.argtypes = [")?;
-                for parameter in parameters {
-                    writeln!(functions, "        {},", parameter.0)?;
+                for parameter in &parameters {
+                    writeln!(functions, "        {},", parameter.kind.0)?;
                 }
+                integers += &integer_parameters(&name, &parameters);
                 writeln!(functions, "    ]")?;
             }
         }
     }
     Ok(format!(
         "\"\"\"Prototypes and constants of the C ABI. Generated from rototoon.h by `cargo xtask generate`; do not edit.\"\"\"\n\n\
-         import ctypes\n\nHEADER_HASH = 0x{:016x}\n\n{constants}\n{callbacks}\n\n\
+         import ctypes\nfrom typing import Any\n\nHEADER_HASH = 0x{:016x}\n\n{constants}\n{callbacks}\n\
+         INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {{\n{integers}}}\n\
+         \"\"\"For each function its whole numbers: index, name and type. ctypes wraps numbers that do not fit.\"\"\"\n\n\n\
          def declare(library: ctypes.CDLL) -> None:\n    \"\"\"Sets result and argument types of every function.\"\"\"\n{functions}",
         hash(header.as_bytes())
     ))
+}
+
+/// The entry of a function in the table of whole numbers; empty if the function takes none.
+fn integer_parameters(name: &str, parameters: &[Parameter]) -> String {
+    let of = |(index, parameter): (usize, &Parameter)| {
+        let Parameter { kind, name } = parameter;
+        kind.wraps().then(|| format!("        ({index}, \"{name}\", {}),\n", kind.0))
+    };
+    let list: String = parameters.iter().enumerate().filter_map(of).collect();
+    if list.is_empty() { list } else { format!("    \"{name}\": (\n{list}    ),\n") }
 }
 
 /// FNV-1a, 64 bits (Fowler, Noll, Vo). The library computes the same hash of the header that it is built with.
@@ -188,22 +216,27 @@ fn statement_declaration(statement: &str, enums: &[String]) -> Result<Option<Dec
             let (name, rest) = rest.split_once(')').ok_or_else(|| anyhow!("a ) is missing"))?;
             let name = name.trim().trim_start_matches('*').into();
             let result = c_type(front.trim_start_matches("typedef "), enums)?;
-            let parameters = parameter_types(rest.trim().trim_start_matches('('), enums)?;
+            let parameters = parameter_list(rest.trim().trim_start_matches('('), enums)?;
+            let parameters = parameters.into_iter().map(|parameter| parameter.kind).collect();
             return Ok(Some(Declaration::Callback { name, result, parameters }));
         }
         Some(halves) => halves,
     };
     let (result, name) = split_name(front);
-    let parameters = parameter_types(parameters, enums)?;
+    let parameters = parameter_list(parameters, enums)?;
     Ok(Some(Declaration::Function { name: name.into(), result: c_type(result, enums)?, parameters }))
 }
 
-fn parameter_types(list: &str, enums: &[String]) -> Result<Vec<CType>> {
+fn parameter_list(list: &str, enums: &[String]) -> Result<Vec<Parameter>> {
     let list = list.trim().strip_suffix(')').ok_or_else(|| anyhow!("a ) is missing"))?.trim();
     if list.is_empty() || list == "void" {
         return Ok(Vec::new());
     }
-    list.split(',').map(|parameter| c_type(split_name(parameter).0, enums)).collect()
+    let read = |parameter| {
+        let (kind, name) = split_name(parameter);
+        Ok(Parameter { kind: c_type(kind, enums)?, name: name.into() })
+    };
+    list.split(',').map(read).collect()
 }
 
 /// Splits `const double *points` into type and name.
@@ -247,10 +280,10 @@ mod tests {
             #ifdef __cplusplus\nextern \"C\" {\n#endif\n\
             Status thing_do(const struct Thing *thing,\n   size_t length, RototoonProgress progress);\n\
             void thing_free(Thing *thing);\nuint64_t hash(void);\n#ifdef __cplusplus\n}\n#endif\n";
-        let function = |name: &str, result, parameters: &[&'static str]| Declaration::Function {
+        let function = |name: &str, result, parameters: &[(&'static str, &str)]| Declaration::Function {
             name: name.into(),
             result: CType(result),
-            parameters: parameters.iter().map(|&t| CType(t)).collect(),
+            parameters: parameters.iter().map(|&(t, name)| Parameter { kind: CType(t), name: name.into() }).collect(),
         };
         let constant = |name: &str, value| Declaration::Constant { name: name.into(), value };
         let expected = vec![
@@ -262,11 +295,21 @@ mod tests {
                 result: CType("ctypes.c_int32"),
                 parameters: vec![CType("ctypes.c_void_p"), CType("ctypes.c_double")],
             },
-            function("thing_do", "ctypes.c_int32", &["ctypes.c_void_p", "ctypes.c_size_t", "RototoonProgress"]),
-            function("thing_free", "None", &["ctypes.c_void_p"]),
+            function(
+                "thing_do",
+                "ctypes.c_int32",
+                &[("ctypes.c_void_p", "thing"), ("ctypes.c_size_t", "length"), ("RototoonProgress", "progress")],
+            ),
+            function("thing_free", "None", &[("ctypes.c_void_p", "thing")]),
             function("hash", "ctypes.c_uint64", &[]),
         ];
         assert_eq!(declarations(header).unwrap(), expected);
+    }
+
+    #[test]
+    fn whole_numbers_are_listed_with_their_names() {
+        let page = bindings("int32_t f(double x, int32_t frame);\nvoid g(double x);\n").unwrap();
+        assert!(page.contains("    \"f\": (\n        (1, \"frame\", ctypes.c_int32),\n    ),\n}\n"), "{page}");
     }
 
     #[test]

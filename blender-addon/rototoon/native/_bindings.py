@@ -1,6 +1,7 @@
 """Prototypes and constants of the C ABI. Generated from rototoon.h by `cargo xtask generate`; do not edit."""
 
 import ctypes
+from typing import Any
 
 HEADER_HASH = 0x106896997068a156
 
@@ -18,6 +19,120 @@ ROTOTOON_STATUS_BAD_ARGUMENT = 4
 ROTOTOON_STATUS_BUSY = 5
 
 RototoonProgress = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p, ctypes.c_size_t)
+
+INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
+    "rototoon_match_contours": (
+        (1, "request_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_new": (
+        (1, "document_length", ctypes.c_size_t),
+        (3, "folder_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_open": (
+        (1, "path_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_set_document": (
+        (2, "document_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_save": (
+        (2, "path_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_set_footage": (
+        (2, "footage_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_add_part": (
+        (2, "part_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_remove_part": (
+        (2, "part_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_set_key": (
+        (2, "part_length", ctypes.c_size_t),
+        (3, "frame", ctypes.c_int32),
+        (5, "value_count", ctypes.c_size_t),
+    ),
+    "rototoon_session_remove_key": (
+        (2, "part_length", ctypes.c_size_t),
+        (3, "frame", ctypes.c_int32),
+    ),
+    "rototoon_session_pin": (
+        (2, "part_length", ctypes.c_size_t),
+        (3, "frame", ctypes.c_int32),
+        (4, "point", ctypes.c_int32),
+    ),
+    "rototoon_session_unpin": (
+        (2, "part_length", ctypes.c_size_t),
+        (3, "frame", ctypes.c_int32),
+        (4, "point", ctypes.c_int32),
+    ),
+    "rototoon_session_set_center": (
+        (2, "part_length", ctypes.c_size_t),
+        (3, "frame", ctypes.c_int32),
+    ),
+    "rototoon_session_clear_center": (
+        (2, "part_length", ctypes.c_size_t),
+        (3, "frame", ctypes.c_int32),
+    ),
+    "rototoon_session_track": (
+        (2, "options_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_snap": (
+        (2, "options_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_track_of": (
+        (2, "part_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_curves_of": (
+        (2, "part_length", ctypes.c_size_t),
+        (3, "frame", ctypes.c_int32),
+    ),
+    "rototoon_fit_strokes": (
+        (1, "stroke_count", ctypes.c_size_t),
+        (5, "channel_count", ctypes.c_size_t),
+    ),
+    "rototoon_hidden_lines": (
+        (1, "stroke_count", ctypes.c_size_t),
+    ),
+    "rototoon_capture_clip": (
+        (1, "document_length", ctypes.c_size_t),
+        (3, "options_length", ctypes.c_size_t),
+    ),
+    "rototoon_import_motion": (
+        (1, "motion_length", ctypes.c_size_t),
+        (3, "options_length", ctypes.c_size_t),
+    ),
+    "rototoon_translate_clip": (
+        (1, "clips_length", ctypes.c_size_t),
+        (3, "options_length", ctypes.c_size_t),
+    ),
+    "rototoon_reshape": (
+        (1, "document_length", ctypes.c_size_t),
+        (3, "clips_length", ctypes.c_size_t),
+        (5, "options_length", ctypes.c_size_t),
+    ),
+    "rototoon_library_add": (
+        (1, "folder_length", ctypes.c_size_t),
+        (3, "clips_length", ctypes.c_size_t),
+        (5, "source_length", ctypes.c_size_t),
+    ),
+    "rototoon_library_find": (
+        (1, "folder_length", ctypes.c_size_t),
+        (3, "wanted_length", ctypes.c_size_t),
+    ),
+    "rototoon_match_strokes": (
+        (1, "stroke_count", ctypes.c_size_t),
+        (7, "drawing_count", ctypes.c_size_t),
+        (9, "by_hand_count", ctypes.c_size_t),
+        (11, "options_length", ctypes.c_size_t),
+    ),
+    "rototoon_draw_in_betweens": (
+        (1, "stroke_count", ctypes.c_size_t),
+        (7, "drawing_count", ctypes.c_size_t),
+        (10, "by_hand_count", ctypes.c_size_t),
+        (12, "options_length", ctypes.c_size_t),
+    ),
+}
+"""For each function its whole numbers: index, name and type. ctypes wraps numbers that do not fit."""
 
 
 def declare(library: ctypes.CDLL) -> None:

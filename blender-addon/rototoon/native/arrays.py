@@ -5,9 +5,11 @@ from __future__ import annotations
 import array
 import ctypes
 import json
-from collections.abc import Mapping
+import operator
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+from . import _bindings
 from .errors import RototoonError
 
 
@@ -25,12 +27,36 @@ def as_json(value: Mapping[str, Any]) -> tuple[bytes, int]:
         raise RototoonError(f"not a JSON document: {error}") from error
 
 
+def check_integers(function: str, arguments: Sequence[Any]) -> None:
+    """Raises `RototoonError` if a whole number does not fit its C type. ctypes would take its lowest bits, and the call
+    would change another frame or point."""
+    for index, name, kind in _bindings.INTEGERS.get(function, ()):
+        if index >= len(arguments):
+            return
+        try:
+            number = operator.index(arguments[index])
+        except TypeError as error:
+            raise RototoonError(f"{name}: found {arguments[index]!r}, expected a whole number") from error
+        if kind(number).value != number:
+            low, high = limits(kind)
+            raise RototoonError(f"{name}: found {number}, expected a whole number from {low} to {high}")
+
+
+def limits(kind: Any) -> tuple[int, int]:
+    """The smallest and the largest value of a C integer type."""
+    values = 1 << 8 * ctypes.sizeof(kind)
+    return (-values // 2, values // 2 - 1) if kind(-1).value < 0 else (0, values - 1)
+
+
 def buffer(values: Any, kind: str) -> tuple[Any, int]:
     """A C array with a copy of the numbers of a buffer or flat sequence, and their count."""
     try:
         data = memoryview(values)
     except TypeError:
-        flat = array.array(kind, values)
+        try:
+            flat = array.array(kind, values)
+        except OverflowError as error:
+            raise RototoonError(f"found a number that does not fit type {kind}: {error}") from error
     else:
         if {"l": "i", "?": "B"}.get(data.format, data.format) != kind or data.itemsize != array.array(kind).itemsize:
             raise RototoonError(f"expected numbers of type {kind}, found {data.format}")

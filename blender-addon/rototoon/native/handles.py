@@ -9,11 +9,13 @@ from collections.abc import Callable, Iterator
 from typing import Any, ClassVar, Self
 
 from . import _bindings, library
+from .arrays import check_integers
 from .errors import Cancelled, RototoonError
 
 
 def call(name: str, *arguments: Any) -> None:
     """Calls a function whose last parameter is the error text. Raises the error that the function reports."""
+    check_integers(name, arguments)
     error = ctypes.c_void_p()
     status = getattr(library.load().functions, name)(*arguments, ctypes.byref(error))
     message = ""
@@ -302,7 +304,9 @@ def progress_callback(progress: Callable[[float, str], bool | None] | None) -> I
 
     def report(_user: int | None, fraction: float, step: int | None, length: int) -> int:
         try:
-            return int(progress(fraction, _copy(ctypes.c_void_p(step), length).decode()) is False)
+            # 0 and numpy's False cancel too. None is what a function without a result returns, so it does not.
+            answer = progress(fraction, _copy(ctypes.c_void_p(step), length).decode())
+            return int(answer is not None and not answer)
         except BaseException as error:  # noqa: BLE001 - KeyboardInterrupt must not be lost in the library either
             raised.append(error)
             return 1

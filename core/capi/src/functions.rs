@@ -2,6 +2,7 @@
 
 use crate::entry::{clear, entry, give, text};
 use crate::matching::answer;
+use crate::pool::install;
 use crate::status::RototoonStatus;
 use crate::text::RototoonText;
 use rototoon::scene::parameters;
@@ -93,7 +94,7 @@ pub unsafe extern "C" fn rototoon_match_contours(
         entry(error, || {
             clear(matches, std::ptr::null_mut(), "matches")?;
             let request = text(request, request_length, "request")?;
-            give(matches, RototoonText::new(answer(request)?));
+            give(matches, RototoonText::new(install(|| answer(request))?));
             Ok(())
         })
     }

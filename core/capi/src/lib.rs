@@ -45,6 +45,7 @@ pub mod functions;
 pub mod handles;
 pub mod matching;
 pub mod options;
+mod pool;
 pub mod session;
 pub mod session_abi;
 pub mod sheet;

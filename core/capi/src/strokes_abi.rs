@@ -1,6 +1,7 @@
 //! The exported functions of curve fitting and hidden lines.
 
 use crate::entry::{MAX_BYTES, clear, entry, free, give, handle, slice};
+use crate::pool::install;
 use crate::status::{Failure, RototoonStatus};
 use crate::strokes::{Placing, RototoonGuides, RototoonPieces, Strokes, fitted, pieces};
 use crate::text::RototoonText;
@@ -61,7 +62,7 @@ pub unsafe extern "C" fn rototoon_fit_strokes(
             let strokes = strokes(offsets, stroke_count, points, closed)?;
             let numbers = (strokes.points.len() / 2).saturating_mul(channel_count);
             let values = slice(values, numbers, "values")?;
-            give(guides, fitted(&strokes, values, channel_count, tolerance)?);
+            give(guides, install(|| fitted(&strokes, values, channel_count, tolerance))?);
             Ok(())
         })
     }
@@ -149,7 +150,7 @@ pub unsafe extern "C" fn rototoon_hidden_lines(
                 depths: slice(depths, 2 * stroke_count, "depths")?,
                 fills: slice(fills, stroke_count, "fills")?,
             };
-            give(cut, pieces(&strokes, &placing, &hidden::Options { border, sliver })?);
+            give(cut, install(|| pieces(&strokes, &placing, &hidden::Options { border, sliver }))?);
             Ok(())
         })
     }

@@ -2,6 +2,7 @@
 
 use crate::callback::{RototoonProgress, with_progress};
 use crate::entry::{clear, entry, give, text};
+use crate::pool::install;
 use crate::status::RototoonStatus;
 use crate::style;
 use crate::text::RototoonText;
@@ -30,7 +31,7 @@ pub unsafe extern "C" fn rototoon_capture_clip(
             clear(made, null_mut(), "made")?;
             let document = text(document, document_length, "document")?;
             let options = text(options, options_length, "options")?;
-            give(made, RototoonText::new(style::capture(document, options)?));
+            give(made, RototoonText::new(install(|| style::capture(document, options))?));
             Ok(())
         })
     }
@@ -65,7 +66,7 @@ pub unsafe extern "C" fn rototoon_import_motion(
             clear(made, null_mut(), "made")?;
             let motion = text(motion, motion_length, "motion")?;
             let options = text(options, options_length, "options")?;
-            give(made, RototoonText::new(style::import(motion, options)?));
+            give(made, RototoonText::new(install(|| style::import(motion, options))?));
             Ok(())
         })
     }
@@ -171,7 +172,8 @@ pub unsafe extern "C" fn rototoon_library_add(
         entry(error, || {
             let folder = text(folder, folder_length, "folder")?;
             let clips = text(clips, clips_length, "clips")?;
-            style::library_add(folder, clips, text(source, source_length, "source")?)
+            let source = text(source, source_length, "source")?;
+            install(|| style::library_add(folder, clips, source))
         })
     }
 }
@@ -198,7 +200,7 @@ pub unsafe extern "C" fn rototoon_library_find(
             clear(found, null_mut(), "found")?;
             let folder = text(folder, folder_length, "folder")?;
             let wanted = text(wanted, wanted_length, "wanted")?;
-            give(found, RototoonText::new(style::library_find(folder, wanted)?));
+            give(found, RototoonText::new(install(|| style::library_find(folder, wanted))?));
             Ok(())
         })
     }

@@ -5,6 +5,7 @@
 //! its own and writes its reports to a [`Board`]. The calling thread reads the board at a steady pace and calls back.
 //! It calls back even if nothing has changed, so that a host can notice a key press or a signal during a long step.
 
+use crate::pool::Pool;
 use crate::status::Failure;
 use rototoon::scene::{Cancelled, Progress, Silent};
 use std::sync::{Condvar, Mutex, PoisonError};
@@ -15,9 +16,6 @@ pub type GoOn<'a> = Option<&'a mut dyn FnMut(f64, &str) -> bool>;
 
 /// Time between two calls of the callback. It feels immediate and costs next to nothing.
 const PACE: Duration = Duration::from_millis(50);
-
-/// Most threads. More are a mistake of the caller, and each one costs a stack.
-const MAX_THREADS: usize = 1024;
 
 /// The latest report of the work, and whether the caller has cancelled it.
 #[derive(Default)]
@@ -70,15 +68,8 @@ pub fn run<T: Send>(
     go_on: GoOn<'_>,
     work: impl FnOnce(&dyn Progress) -> Result<T, Failure> + Send,
 ) -> Result<T, Failure> {
-    let pool = match threads {
-        0 => None,
-        1..=MAX_THREADS => Some(rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::error)?),
-        _ => return Err(Failure::Error(format!("threads: found {threads}, expected at most {MAX_THREADS}"))),
-    };
-    let in_pool = |progress: &dyn Progress| match &pool {
-        Some(pool) => pool.install(|| work(progress)),
-        None => work(progress),
-    };
+    let pool = Pool::of(threads)?;
+    let in_pool = |progress: &dyn Progress| pool.install(|| work(progress));
     let Some(go_on) = go_on else { return in_pool(&Silent) };
     if !go_on(0.0, "starting") {
         return Err(Failure::Cancelled);
@@ -173,11 +164,5 @@ mod tests {
             run(0, Some(&mut |_, _| true), |_| -> Result<(), Failure> { panic!("broken") })
         });
         assert_eq!(caught.unwrap_err().downcast_ref::<&str>(), Some(&"broken"));
-    }
-
-    #[test]
-    fn unreasonable_thread_counts_are_refused() {
-        let answer = run(MAX_THREADS + 1, None, |_| Ok(()));
-        assert_eq!(answer, Err(Failure::Error("threads: found 1025, expected at most 1024".into())));
     }
 }
