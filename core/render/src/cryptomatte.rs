@@ -16,6 +16,7 @@
 use super::layers::{Attribute, Channel};
 use super::visible::{Share, Visible};
 use rototoon_base::scene::Scene;
+use std::collections::BTreeMap;
 use std::io::Cursor;
 
 /// Name of the layers, without their number.
@@ -53,16 +54,15 @@ pub fn id(name: &str) -> u32 {
 /// [`SameId`] if two names have the same id.
 pub fn attributes(scene: &Scene, parts: Option<&[usize]>) -> Result<Vec<Attribute>, SameId> {
     let mut manifest = serde_json::Map::new();
-    let mut ids: Vec<(u32, &str)> = Vec::new();
+    let mut ids: BTreeMap<u32, &str> = BTreeMap::new();
     for (index, part) in scene.parts.iter().enumerate() {
         if !part.closed || parts.is_some_and(|parts| !parts.contains(&index)) {
             continue;
         }
         let id = id(&part.name);
-        if let Some((_, first)) = ids.iter().find(|(known, _)| *known == id) {
-            return Err(SameId { first: (*first).to_owned(), second: part.name.clone() });
+        if let Some(first) = ids.insert(id, &part.name) {
+            return Err(SameId { first: first.to_owned(), second: part.name.clone() });
         }
-        ids.push((id, &part.name));
         manifest.insert(part.name.clone(), format!("{id:08x}").into());
     }
     let key = &format!("{:08x}", murmur3(LAYER.as_bytes()))[..7];

@@ -5,8 +5,12 @@
 //! of opacities. Parts that touch along a border leave no third colour there, and the shares of all parts sum to their
 //! matte. Of parts of equal depth the later in the document is in front.
 //!
-//! Pictures are computed in bands of rows, and each part within its own bounds. The cost grows with the number of
-//! pixels that parts cover, not with pixels times parts.
+//! Most pixels need no union. If the nearer parts leave a pixel free, a part shows with its own coverage; if the part
+//! covers the pixel, it shows with what they leave. Only where the borders of several parts meet in a pixel is their
+//! union computed, and only from the parts that show there. So the cost grows with the number of pixels that parts
+//! cover, not with pixels times parts, and not with the number of parts that lie behind each other.
+//!
+//! Pictures are computed in bands of rows, and each part within its own bounds.
 //!
 //! Limits: the order follows `depth` of a part, not its depths on single frames.
 
@@ -117,26 +121,97 @@ fn common(a: Window, b: Window) -> Option<Window> {
 
 /// The shares of each pixel of a band.
 fn shares(outlines: &[Outline], band: Window) -> Vec<Vec<Share>> {
-    let mut pixels: Vec<Vec<Share>> = vec![Vec::new(); band.width() * band.height()];
-    let mut covered = Raster::new(band.width(), band.height(), 0.0f32);
+    let mut pixels = Pixels {
+        band,
+        shown: vec![Vec::new(); band.width() * band.height()],
+        covered: Raster::new(band.width(), band.height(), 0.0f32),
+    };
     for (index, outline) in outlines.iter().enumerate() {
         let Some(window) = common(outline.bounds, band) else { continue };
-        let near = outlines[..=index].iter().filter(|other| common(other.bounds, window).is_some());
-        let union: Vec<Vec<Point>> = near.map(|other| other.points.clone()).collect();
-        Shape::new(&[union]).rows(window, &mut |y, row| {
-            let first = (y - band.top) as usize * band.width() + (window.left - band.left) as usize;
-            let before = &mut covered.data_mut()[first..first + row.len()];
-            for (x, (before, &now)) in before.iter_mut().zip(row).enumerate() {
-                let coverage = now - *before;
-                if coverage >= LEAST {
-                    pixels[first + x].push(Share { part: outline.part, coverage });
-                    *before = now;
-                }
+        let mut union = Union { outlines, of: Vec::new(), shape: Shape::new(&[]) };
+        Shape::new(&[vec![outline.points.clone()]]).rows(window, &mut |y, row| {
+            let mixed = pixels.add(index, window.left, y, row);
+            pixels.mix(index, y, &mixed, &mut union);
+            true
+        });
+    }
+    let of_scene = |share: Share| Share { part: outlines[share.part].part, ..share };
+    pixels.shown.into_iter().map(|pixel| pixel.into_iter().map(of_scene).collect()).collect()
+}
+
+/// The pixels of a band. Parts are added from the nearest to the farthest.
+struct Pixels {
+    band: Window,
+    /// The shares of each pixel. Their parts are indices of outlines.
+    shown: Vec<Vec<Share>>,
+    /// The coverage of the union of all added parts.
+    covered: Raster<f32>,
+}
+
+impl Pixels {
+    fn at(&self, x: i64, y: i64) -> usize {
+        (y - self.band.top) as usize * self.band.width() + (x - self.band.left) as usize
+    }
+
+    /// Adds an outline's own coverage of a row from column `left` on. Returns the columns that need a union.
+    fn add(&mut self, index: usize, left: i64, y: i64, row: &[f32]) -> Vec<i64> {
+        let first = self.at(left, y);
+        let mut mixed = Vec::new();
+        for (x, &own) in row.iter().enumerate().filter(|(_, own)| **own > 0.0) {
+            let before = self.covered.data()[first + x];
+            if before == 0.0 || own == 1.0 {
+                self.show(first + x, index, own);
+            } else if before < 1.0 {
+                mixed.push(left + x as i64);
+            }
+        }
+        mixed
+    }
+
+    /// Adds an outline in columns of a row in which its border meets those of nearer parts.
+    fn mix(&mut self, index: usize, y: i64, mixed: &[i64], union: &mut Union) {
+        let (Some(&left), Some(&last)) = (mixed.first(), mixed.last()) else { return };
+        let mut met: Vec<usize> =
+            mixed.iter().flat_map(|&x| self.shown[self.at(x, y)].iter().map(|share| share.part)).collect();
+        met.push(index);
+        met.sort_unstable();
+        met.dedup();
+        let window = Window { left, top: y, right: last + 1, bottom: y + 1 };
+        union.of(met).rows(window, &mut |y, row| {
+            for &x in mixed {
+                self.show(self.at(x, y), index, row[(x - left) as usize]);
             }
             true
         });
     }
-    pixels
+
+    /// Adds an outline to a pixel. `now` is the coverage of the union with it.
+    fn show(&mut self, at: usize, index: usize, now: f32) {
+        let before = &mut self.covered.data_mut()[at];
+        let coverage = now - *before;
+        if coverage >= LEAST {
+            self.shown[at].push(Share { part: index, coverage });
+            *before = now;
+        }
+    }
+}
+
+/// The union of some outlines. It is kept, since neighbouring rows mostly need the same one.
+struct Union<'a> {
+    outlines: &'a [Outline],
+    of: Vec<usize>,
+    shape: Shape,
+}
+
+impl Union<'_> {
+    fn of(&mut self, outlines: Vec<usize>) -> &Shape {
+        if self.of != outlines {
+            let polygons = outlines.iter().map(|&index| self.outlines[index].points.clone()).collect();
+            self.shape = Shape::new(&[polygons]);
+            self.of = outlines;
+        }
+        &self.shape
+    }
 }
 
 #[cfg(test)]
@@ -199,7 +274,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn shares_are_what_unions_leave(corners in prop::collection::vec(prop::array::uniform6(-4.0f64..74.0), 1..5)) {
+        fn shares_are_what_unions_leave(corners in prop::collection::vec(prop::array::uniform6(-4.0f64..74.0), 1..9)) {
             let triangle = |c: &[f64; 6]| c.chunks(2).map(|p| Point::new(0.3 * p[0], p[1])).collect::<Vec<_>>();
             let parts: Vec<_> = corners.iter().enumerate().map(|(k, c)| (-(k as f64), triangle(c))).collect();
             let polygons: Vec<_> = parts.iter().map(|(_, points)| points.clone()).collect();
