@@ -26,8 +26,10 @@ use super::bound::{self, Line};
 use super::clean::Cleaned;
 use super::corners::Corner;
 use super::whole::Whole;
-use rototoon_base::curve::{Quadratic, Spline};
+use rototoon_base::curve::{PieceTree, Quadratic, Spline};
 use rototoon_base::geometry::Point;
+use std::cmp::Ordering;
+use std::collections::{BTreeSet, BinaryHeap};
 
 /// Smallest turn of a corner: 60°. (The paper leaves the threshold to the user.)
 const CORNER: f64 = std::f64::consts::FRAC_PI_3;
@@ -37,6 +39,9 @@ const SAMPLES: usize = 32;
 const TRIED: usize = 4;
 /// Largest number of guiding points of a parabola.
 const MOST: usize = 64;
+/// Number of parabolas on each side of a parabola that are assembled with it. The pieces around its guiding points and
+/// their neighbours take two guiding points beyond them, and the third parabola keeps the ends of the chain away.
+const NEARBY: usize = 3;
 /// Number of times that the shares of the tolerance may be halved.
 const STRICTER: usize = 6;
 
@@ -93,24 +98,87 @@ fn guides_of(arc: &Quadratic, n: usize) -> impl Iterator<Item = Point> + '_ {
 /// parabola, and the number of iterations.
 pub fn guides(arcs: &[Quadratic], corners: &[bool], closed: bool, tolerance: f64) -> (Spline, Vec<usize>, usize) {
     let n = arcs.len();
-    let mut counts = vec![1; n];
-    let (mut spline, mut starts) = assembled(arcs, corners, closed, &counts);
-    let mut missed: Vec<f64> = (0..n).map(|i| discrepancy(&arcs[i], &spline, starts[i], 1)).collect();
+    let mut growing = Growing { arcs, corners, closed, counts: vec![1; n] };
+    let mut missed: Vec<f64> = (0..n).map(|i| growing.missed(i)).collect();
+    let mut queue: BinaryHeap<Miss> = (0..n).map(|arc| Miss { by: missed[arc], arc }).collect();
     let mut iterations = 1;
-    loop {
-        let open = (0..n).filter(|&i| counts[i] < MOST);
-        let worst = open.fold(
-            None,
-            |worst: Option<usize>, i| if worst.is_none_or(|w| missed[i] > missed[w]) { Some(i) } else { worst },
-        );
-        let Some(worst) = worst.filter(|&i| missed[i] > tolerance) else { return (spline, counts, iterations) };
-        counts[worst] += 1;
-        iterations += 1;
-        (spline, starts) = assembled(arcs, corners, closed, &counts);
-        // One more guiding point moves the joints with the neighbours, and nothing beyond them.
-        for i in [(worst + n - 1) % n, worst, (worst + 1) % n] {
-            missed[i] = discrepancy(&arcs[i], &spline, starts[i], counts[i]);
+    while let Some(Miss { by, arc }) = queue.pop() {
+        if by <= tolerance {
+            break;
         }
+        // A miss that a later one replaced stays in the queue.
+        if by != missed[arc] || growing.counts[arc] == MOST {
+            continue;
+        }
+        growing.counts[arc] += 1;
+        iterations += 1;
+        // One more guiding point moves the joints with the neighbours, and nothing beyond them.
+        let touched = BTreeSet::from([(arc + n - 1) % n, arc, (arc + 1) % n]);
+        for i in touched {
+            missed[i] = growing.missed(i);
+            queue.push(Miss { by: missed[i], arc: i });
+        }
+    }
+    let (spline, _) = assembled(arcs, corners, closed, &growing.counts);
+    (spline, growing.counts, iterations)
+}
+
+/// How far the spline misses a parabola. The queue gives the largest miss first, and of equal ones the first parabola.
+#[derive(Clone, Copy, Debug)]
+struct Miss {
+    by: f64,
+    arc: usize,
+}
+
+impl Ord for Miss {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.by.total_cmp(&other.by).then(other.arc.cmp(&self.arc))
+    }
+}
+
+impl PartialOrd for Miss {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Miss {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Miss {}
+
+/// Parabolas whose numbers of guiding points grow.
+struct Growing<'a> {
+    arcs: &'a [Quadratic],
+    corners: &'a [bool],
+    closed: bool,
+    counts: Vec<usize>,
+}
+
+impl Growing<'_> {
+    /// How far the spline misses parabola `i`. The spline around it depends on the parabolas nearby only, so only
+    /// those are assembled.
+    fn missed(&self, i: usize) -> f64 {
+        let n = self.arcs.len();
+        if n <= 2 * NEARBY + 1 {
+            let (spline, starts) = assembled(self.arcs, self.corners, self.closed, &self.counts);
+            return discrepancy(&self.arcs[i], &spline, starts[i], self.counts[i]);
+        }
+        let (first, end) = if self.closed {
+            (i + n - NEARBY, i + n + NEARBY + 1)
+        } else {
+            (i.saturating_sub(NEARBY), (i + NEARBY + 1).min(n))
+        };
+        let place = if self.closed { NEARBY } else { i - first };
+        let nearby = || (first..end).map(|k| k % n);
+        let arcs: Vec<Quadratic> = nearby().map(|k| self.arcs[k]).collect();
+        let corners: Vec<bool> = nearby().map(|k| self.corners[k]).collect();
+        let counts: Vec<usize> = nearby().map(|k| self.counts[k]).collect();
+        let (spline, starts) = assembled(&arcs, &corners, false, &counts);
+        discrepancy(&self.arcs[i], &spline, starts[place], self.counts[i])
     }
 }
 
@@ -153,6 +221,11 @@ pub fn arcs(points: &[Point], closed: bool, tolerance: f64) -> (Vec<Quadratic>, 
     let n = points.len();
     let line: Vec<Point> = if closed { points.iter().chain([&points[0]]).copied().collect() } else { points.to_vec() };
     let knots: Vec<Knot> = (0..line.len()).map(|i| knot(points, i % n, closed, i == line.len() - 1)).collect();
+    // For each point the first corner from it on.
+    let mut next_corner = vec![line.len(); line.len() + 1];
+    for k in (0..line.len()).rev() {
+        next_corner[k] = if knots[k].is_corner() { k } else { next_corner[k + 1] };
+    }
     let (mut arcs, mut corners, mut start) = (Vec::new(), Vec::new(), 0);
     while start + 1 < line.len() {
         let fits = |end: usize| {
@@ -162,7 +235,7 @@ pub fn arcs(points: &[Point], closed: bool, tolerance: f64) -> (Vec<Quadratic>, 
                 || is_straight(&line[start..=end], tolerance);
             curved && line[start + 1..end].iter().all(|&p| arc.nearest(p).distance < tolerance)
         };
-        let corner = (start + 1..line.len()).find(|&k| knots[k].is_corner()).unwrap_or(line.len());
+        let corner = next_corner[start + 1];
         let (mut end, mut step) = (start + 1, 1);
         while end < corner.min(line.len() - 1) {
             // Long stretches grow by a sixteenth at a time, because each test of them takes long.
@@ -214,7 +287,8 @@ pub(super) fn fit(data: &Cleaned, closed: bool, tolerance: f64) -> Whole {
     for _ in 0..=STRICTER {
         let (arcs, corners) = arcs(&data.points, closed, share);
         let (spline, ..) = guides(&arcs, &corners, closed, share);
-        let parameters: Vec<f64> = data.points.iter().map(|&p| spline.nearest(p).parameter).collect();
+        let tree = PieceTree::new(&spline);
+        let parameters: Vec<f64> = data.points.iter().map(|&p| tree.nearest(p).parameter).collect();
         let mut feet = parameters.clone();
         let line = Line { points: &data.points, closed, parameters: &parameters };
         let (error, _) = bound::error(&spline, &line, &mut feet);
@@ -328,6 +402,44 @@ mod tests {
             let fitted = super::super::fit(points, closed, &options).unwrap();
             let count = fitted.spline.guides().len();
             assert!(fitted.max_error <= 2.0 && count < points.len() / 8, "{} {count}", fitted.max_error);
+        }
+    }
+
+    /// Step 2 with the complete spline in each iteration.
+    fn guides_naive(arcs: &[Quadratic], corners: &[bool], closed: bool, tolerance: f64) -> (Vec<usize>, usize) {
+        let n = arcs.len();
+        let (mut counts, mut iterations) = (vec![1; n], 1);
+        let miss = |counts: &[usize], i: usize| {
+            let (spline, starts) = assembled(arcs, corners, closed, counts);
+            discrepancy(&arcs[i], &spline, starts[i], counts[i])
+        };
+        let mut missed: Vec<f64> = (0..n).map(|i| miss(&counts, i)).collect();
+        loop {
+            let open = (0..n).filter(|&i| counts[i] < MOST);
+            let Some(worst) = open.max_by(|&a, &b| missed[a].total_cmp(&missed[b]).then(b.cmp(&a))) else { break };
+            if missed[worst] <= tolerance {
+                break;
+            }
+            counts[worst] += 1;
+            iterations += 1;
+            for i in [(worst + n - 1) % n, worst, (worst + 1) % n] {
+                missed[i] = miss(&counts, i);
+            }
+        }
+        (counts, iterations)
+    }
+
+    #[test]
+    fn parts_of_the_spline_say_what_the_complete_one_says() {
+        let wave: Vec<Point> = (0..240)
+            .map(|i| Point::new(f64::from(i), 30.0 * (0.23 * f64::from(i)).sin() + f64::from(i * 7 % 5)))
+            .collect();
+        for (points, closed) in [(&wave[..], false), (&wave[..], true), (&wave[..40], true), (&wave[..9], false)] {
+            let (arcs, corners) = arcs(points, closed, 2.0);
+            for tolerance in [1.0, 0.2, 0.01] {
+                let (_, counts, iterations) = guides(&arcs, &corners, closed, tolerance);
+                assert_eq!((counts, iterations), guides_naive(&arcs, &corners, closed, tolerance));
+            }
         }
     }
 

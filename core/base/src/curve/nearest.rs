@@ -46,7 +46,7 @@ impl Quadratic {
 }
 
 /// Distance of `p` from a box.
-fn box_distance(p: Point, (low, high): (Point, Point)) -> f64 {
+pub(super) fn box_distance(p: Point, (low, high): (Point, Point)) -> f64 {
     (low - p).max(p - high).max(Point::ZERO).length()
 }
 
