@@ -57,6 +57,8 @@ fn from_motions(grid: &Grid, known: &[usize], wanted: usize, k: usize) -> Vec<Ro
         clips[column / WIDTH][row / MODEL_FRAMES][row % MODEL_FRAMES][d] - shift[d]
     });
     let labels: Vec<usize> = (0..x.nrows()).map(|row| row / MODEL_FRAMES).collect();
+    // More codes than the matrix has rows or columns add nothing but time.
+    let k = k.min(x.nrows()).min(x.ncols());
     let options = FactorOptions { rank: k, class_weight: CLASS_WEIGHT, ..FactorOptions::default() };
     let Ok(found) = factor(x.as_ref(), &labels, &options) else { return mean_motion(grid, wanted) };
     let start = Mat::from_fn(k, WIDTH, |i, d| {
