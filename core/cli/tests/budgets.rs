@@ -106,8 +106,8 @@ fn every_command_ends_in_order_on_hostile_files() {
     let posture: Vec<[f64; 2]> = (0..17).map(|k| [f64::from(k % 3), f64::from(k)]).collect();
     let clip = json!({"character": "old", "motion": "walk", "points": [posture, posture]});
     fs::write(at("clips.json"), json!({"rototoon_clips": 1, "fps": 12, "clips": [clip]}).to_string()).unwrap();
-    let svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\">{}", "<g>".repeat(200));
-    fs::write(at("deep.svg"), svg + &"</g>".repeat(200) + "</svg>").unwrap();
+    let svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\">{}", "<g>".repeat(20_000));
+    fs::write(at("deep.svg"), svg + &"</g>".repeat(20_000) + "</svg>").unwrap();
     let mut runs = 0;
     for (name, document) in documents() {
         fs::write(at(name), document.to_string()).unwrap();

@@ -165,7 +165,7 @@ fn import_errors_are_named_and_nothing_is_written() {
         &format!("<Silhouette>\n<Object type=\"Shape\"><Property id=\"path\">{key}</Property></Object></Silhouette>"),
     );
     for (path, status, message) in [
-        (bad, 1, "bad.svg: line 2, column 2: <path>: d: found \"M0 0Lx\"…, expected path data"),
+        (bad, 1, "bad.svg: line 2, column 2: <path>: d: found \"M0 0Lx\", expected path data"),
         (
             late,
             1,

@@ -6,8 +6,12 @@
 //! - [`silhouette`]: Silhouette shapes
 //! - [`path`](mod@path): Bézier paths as contours with one number of points
 //! - [`problem`]: errors of a file, with their places
+//! - `limits`: what a file may ask for
+//! - `names`: names of shapes, each once
 
 pub mod bvh;
+mod limits;
+mod names;
 pub mod path;
 pub mod problem;
 pub mod silhouette;
@@ -45,22 +49,20 @@ pub struct Shapes {
 pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) {
     let nearest = scene.parts.iter().map(|part| part.depth).fold(f64::NEG_INFINITY, f64::max);
     let mut depth = if nearest.is_finite() { nearest.floor() + 1.0 } else { 0.0 };
+    let mut places: BTreeMap<String, usize> = BTreeMap::new();
+    for (place, part) in scene.parts.iter().enumerate() {
+        places.entry(part.name.clone()).or_insert(place);
+    }
     for Shape { name, closed, keys } in shapes {
-        if let Some(part) = scene.parts.iter_mut().find(|part| part.name == name) {
+        if let Some(&place) = places.get(&name) {
+            let part = &mut scene.parts[place];
             *part = Part { name, closed, keys, depth: part.depth, ..Part::default() };
         } else {
+            places.insert(name.clone(), scene.parts.len());
             scene.parts.push(Part { name, closed, keys, depth, ..Part::default() });
             depth += 1.0;
         }
     }
-}
-
-/// A name that no shape has yet: the requested name, with a number if necessary.
-fn free_name(wanted: &str, shapes: &[Shape]) -> String {
-    let wanted = if wanted.trim().is_empty() { "shape" } else { wanted.trim() };
-    let taken = |name: &String| shapes.iter().any(|shape| shape.name == *name);
-    let mut names = std::iter::once(wanted.to_owned()).chain((2u64..).map(|number| format!("{wanted} {number}")));
-    names.find(|name| !taken(name)).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -53,10 +53,9 @@ impl Path {
         self.closed = true;
     }
 
-    /// The path with `f` applied to all its points.
-    pub fn map(&self, f: impl Fn(Point) -> Point) -> Self {
-        let segments = self.segments.iter().map(|segment| segment.map(&f)).collect();
-        Self { start: f(self.start), segments, closed: self.closed }
+    /// All its points, to change them.
+    pub fn points_mut(&mut self) -> impl Iterator<Item = &mut Point> {
+        std::iter::once(&mut self.start).chain(self.segments.iter_mut().flatten())
     }
 
     fn cubics(&self) -> impl Iterator<Item = [Point; 4]> + '_ {
@@ -65,20 +64,42 @@ impl Path {
     }
 }
 
-/// The contours of the keys of a path; `None` if the keys differ in their number of segments or in being closed.
-pub fn contours(keys: &[Path]) -> Option<Vec<Vec<Point>>> {
-    let first = keys.first()?;
+/// Why keys of a path have no contours.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NoContours<E> {
+    /// The keys differ in their number of segments or in being closed.
+    Unequal,
+    /// The caller refused the number of points.
+    Refused(E),
+}
+
+/// The contours of the keys of a path. `allowed` gets the number of points of all contours together before they are
+/// made.
+///
+/// # Errors
+///
+/// [`NoContours`].
+pub fn contours<E>(
+    keys: &[Path],
+    allowed: impl FnOnce(usize) -> Result<(), E>,
+) -> Result<Vec<Vec<Point>>, NoContours<E>> {
+    let Some(first) = keys.first() else { return Err(NoContours::Unequal) };
     let mut count = first.segments.len();
     if keys.iter().any(|key| key.segments.len() != count || key.closed != first.closed) {
-        return None;
+        return Err(NoContours::Unequal);
     }
     // A drawing program may end a closed path at its start before it closes it.
     let returns = |key: &Path| key.cubics().last().is_some_and(|[from, .., to]| from.distance(to) < STRAIGHT);
     if first.closed && count > 1 && keys.iter().all(returns) {
         count -= 1;
     }
-    let steps: Vec<usize> =
-        (0..count).map(|at| keys.iter().filter_map(|key| key.cubics().nth(at)).map(steps).max().unwrap_or(1)).collect();
+    let mut most = vec![1; count];
+    for key in keys {
+        most.iter_mut().zip(key.cubics()).for_each(|(most, cubic)| *most = steps(cubic).max(*most));
+    }
+    let steps = most;
+    let points = steps.iter().sum::<usize>() + 1;
+    allowed(points.saturating_mul(keys.len())).map_err(NoContours::Refused)?;
     let contour = |key: &Path| {
         let mut points = Vec::new();
         for (cubic, &steps) in key.cubics().zip(&steps) {
@@ -89,7 +110,7 @@ pub fn contours(keys: &[Path]) -> Option<Vec<Vec<Point>>> {
         }
         points
     };
-    Some(keys.iter().map(contour).collect())
+    Ok(keys.iter().map(contour).collect())
 }
 
 /// The number of steps that a cubic needs.
@@ -116,23 +137,34 @@ mod tests {
         Point::new(x, y)
     }
 
+    fn made(keys: &[Path]) -> Result<Vec<Vec<Point>>, NoContours<usize>> {
+        contours(keys, |_| Ok(()))
+    }
+
+    #[test]
+    fn the_number_of_points_is_asked_before_they_are_made() {
+        let mut path = Path::new(p(0.0, 0.0));
+        path.cubic(p(0.0, 1e7), p(1e7, 1e7), p(1e7, 0.0));
+        assert_eq!(contours(&[path.clone(), path], Err), Err(NoContours::Refused(402)));
+    }
+
     #[test]
     fn straight_paths_keep_their_points() {
         let mut path = Path::new(p(1.0, 1.0));
         path.line(p(9.0, 1.0));
         path.line(p(9.0, 7.0));
-        assert_eq!(contours(&[path.clone()]).unwrap(), [[p(1.0, 1.0), p(9.0, 1.0), p(9.0, 7.0)]]);
+        assert_eq!(made(&[path.clone()]).unwrap(), [[p(1.0, 1.0), p(9.0, 1.0), p(9.0, 7.0)]]);
         path.close();
-        assert_eq!(contours(&[path.clone()]).unwrap()[0].len(), 3);
+        assert_eq!(made(&[path.clone()]).unwrap()[0].len(), 3);
         // Handles at their points, as in Silhouette, also make straight sides.
         path.segments[0] = [path.start, p(9.0, 1.0), p(9.0, 1.0)];
-        assert_eq!(contours(&[path.clone()]).unwrap()[0].len(), 3);
+        assert_eq!(made(&[path.clone()]).unwrap()[0].len(), 3);
         let mut twice = Path::new(p(1.0, 1.0));
         for to in [p(9.0, 1.0), p(9.0, 7.0), p(1.0, 1.0)] {
             twice.line(to);
         }
         twice.close();
-        assert_eq!(contours(&[twice]).unwrap()[0].len(), 3);
+        assert_eq!(made(&[twice]).unwrap()[0].len(), 3);
     }
 
     #[test]
@@ -143,7 +175,7 @@ mod tests {
             path.cubic(p(radius, radius * ROUND), p(radius * ROUND, radius), p(0.0, radius));
             path
         };
-        let found = contours(&[quarter(3.0), quarter(80.0)]).unwrap();
+        let found = made(&[quarter(3.0), quarter(80.0)]).unwrap();
         assert_eq!(found[0].len(), found[1].len());
         for pair in found[1].windows(2) {
             let middle = pair[0].midpoint(pair[1]).length();
@@ -156,7 +188,7 @@ mod tests {
     fn keys_that_are_built_differently_are_refused() {
         let mut longer = Path::new(Point::ZERO);
         longer.line(Point::ONE);
-        assert_eq!(contours(&[Path::new(Point::ZERO), longer]), None);
-        assert_eq!(contours(&[Path::new(Point::ONE)]).unwrap(), [[Point::ONE]]);
+        assert_eq!(made(&[Path::new(Point::ZERO), longer]), Err(NoContours::Unequal));
+        assert_eq!(made(&[Path::new(Point::ONE)]).unwrap(), [[Point::ONE]]);
     }
 }

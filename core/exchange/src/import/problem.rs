@@ -1,5 +1,6 @@
 //! Errors of a file of shapes, with their places.
 
+use super::limits;
 use roxmltree::{Document, Node, ParsingOptions};
 use std::fmt;
 
@@ -34,6 +35,9 @@ pub enum ImportError {
         /// The found and the expected value.
         message: String,
     },
+    /// The file is too large.
+    #[error("found more than {0} elements and texts, expected fewer")]
+    Large(u32),
     /// The file contains no shape.
     #[error("found no shape, expected {0}")]
     Nothing(&'static str),
@@ -53,17 +57,62 @@ pub(super) fn place(node: Node) -> Place {
     Place { line: position.row, column: position.col }
 }
 
-/// Parses a text. Document type declarations are allowed, since drawing programs write them.
-pub(super) fn parsed(text: &str) -> Result<Document<'_>, ImportError> {
-    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
-    Document::parse_with_options(text, options).map_err(|error| ImportError::Syntax(error.to_string()))
+/// Elements that are left out, with the reasons.
+#[derive(Debug, Default)]
+pub(super) struct LeftOut(Vec<(usize, String)>);
+
+impl LeftOut {
+    pub(super) fn push(&mut self, node: Node, reason: String) {
+        self.0.push((node.range().start, reason));
+    }
+
+    /// A line for each element, with its place in the text. All places are found in one pass over the text, since a
+    /// file may have any number of such elements.
+    pub(super) fn lines(mut self, text: &str) -> Vec<String> {
+        self.0.sort_by_key(|(start, _)| *start);
+        let (mut at, mut place) = (0, Place { line: 1, column: 1 });
+        let line = |(start, reason): (usize, String)| {
+            for c in text[at..start].chars() {
+                let ends = c == '\n';
+                place.line += u32::from(ends);
+                place.column = if ends { 1 } else { place.column + 1 };
+            }
+            at = start;
+            format!("{place}: {reason}")
+        };
+        self.0.into_iter().map(line).collect()
+    }
 }
+
+/// Parses a text, and requires that it keeps the [`limits`](super::limits). Document type declarations are allowed,
+/// since drawing programs write them. The parser itself refuses entities that grow without end.
+pub(super) fn parsed(text: &str) -> Result<Document<'_>, ImportError> {
+    let options = ParsingOptions { allow_dtd: true, nodes_limit: limits::MOST_NODES, ..ParsingOptions::default() };
+    let document = Document::parse_with_options(text, options).map_err(|error| match error {
+        roxmltree::Error::NodesLimitReached => ImportError::Large(limits::MOST_NODES),
+        other => ImportError::Syntax(other.to_string()),
+    })?;
+    limits::shallow(&document)?;
+    Ok(document)
+}
+
+/// An attribute as a message quotes it.
+pub(super) fn quoted(text: Option<&str>) -> String {
+    match text.map(|text| (text, text.char_indices().nth(QUOTED))) {
+        None => "nothing".into(),
+        Some((text, Some((end, _)))) => format!("{:?}", format!("{}…", &text[..end])),
+        Some((text, None)) => format!("{text:?}"),
+    }
+}
+
+/// Greatest number of characters of a quotation.
+const QUOTED: usize = 40;
 
 /// The number in an attribute; `None` if the attribute is missing.
 pub(super) fn number(node: Node, name: &str) -> Result<Option<f64>, ImportError> {
     let Some(text) = node.attribute(name) else { return Ok(None) };
     match text.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(Some(value)),
-        _ => Err(ImportError::at(node, format!("{name}: found {text:?}, expected a number"))),
+        _ => Err(ImportError::at(node, format!("{name}: found {}, expected a number", quoted(Some(text))))),
     }
 }

@@ -11,9 +11,11 @@
 //! - Transformed layers are an error, since their shapes would be in the wrong place. Animated opacity is ignored.
 //!   Hidden shapes are left out with a warning.
 
-use super::path::{Path, contours};
-use super::problem::{number, parsed, place};
-use super::{ImportError, Shape, Shapes, free_name};
+use super::limits::{Points, near};
+use super::names::Names;
+use super::path::{NoContours, Path, contours};
+use super::problem::{LeftOut, number, parsed, quoted};
+use super::{ImportError, Shape, Shapes};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber};
 use roxmltree::Node;
@@ -42,7 +44,8 @@ pub fn silhouette(text: &str, footage: &Footage) -> Result<Shapes, ImportError> 
         return Err(ImportError::at(root, "expected <Silhouette>, the root of a Silhouette shape file"));
     }
     let first = number(root, "sessionStartFrame")?.unwrap_or(footage.first.into());
-    let mut found = Shapes::default();
+    let (mut shapes, mut left_out) = (Vec::new(), LeftOut::default());
+    let (mut names, mut points) = (Names::default(), Points::all());
     for node in root.descendants().filter(Node::is_element) {
         let kind = node.attribute("type").unwrap_or(node.tag_name().name());
         match (node.tag_name().name(), kind) {
@@ -51,20 +54,20 @@ pub fn silhouette(text: &str, footage: &Footage) -> Result<Shapes, ImportError> 
                 if node.attribute("hidden").is_some_and(|text| text.eq_ignore_ascii_case("true")) =>
             {
                 let name = node.attribute("label").unwrap_or("");
-                found.warnings.push(format!("{}: the hidden shape {name:?} is left out", place(node)));
+                left_out.push(node, format!("the hidden shape {name:?} is left out"));
             }
             ("Object" | "Shape", "Shape") => {
-                let name = free_name(node.attribute("label").unwrap_or(""), &found.shapes);
-                found.shapes.push(shape(node, name, first, footage)?);
+                let name = names.free(node.attribute("label").unwrap_or(""));
+                shapes.push(shape(node, name, first, footage, &mut points)?);
             }
             _ => {}
         }
     }
-    if found.shapes.is_empty() {
+    if shapes.is_empty() {
         return Err(ImportError::Nothing("an <Object type=\"Shape\"> that is not hidden"));
     }
-    found.shapes.reverse();
-    Ok(found)
+    shapes.reverse();
+    Ok(Shapes { shapes, warnings: left_out.lines(text) })
 }
 
 /// Requires that the matrices of a layer are identities.
@@ -82,7 +85,7 @@ fn untransformed(property: Node) -> Result<(), ImportError> {
     Ok(())
 }
 
-fn shape(node: Node, name: String, first: f64, footage: &Footage) -> Result<Shape, ImportError> {
+fn shape(node: Node, name: String, first: f64, footage: &Footage, points: &mut Points) -> Result<Shape, ImportError> {
     let properties = node.descendants().filter(|n| n.tag_name().name() == "Property");
     let Some(property) = properties.into_iter().find(|n| n.attribute("id") == Some("path")) else {
         return Err(ImportError::at(node, format!("shape {name:?}: found no <Property id=\"path\">, expected one")));
@@ -97,15 +100,25 @@ fn shape(node: Node, name: String, first: f64, footage: &Footage) -> Result<Shap
     };
     let swapped = length(&keys, true) < length(&keys, false);
     let paths: Vec<Path> = keys.iter().map(|key| built(key, swapped)).collect();
-    let Some(contours) = contours(&paths) else {
-        let counts: Vec<_> = keys.iter().map(|key| format!("{} on frame {}", key.knots.len(), key.frame)).collect();
-        let found = counts.join(", ");
-        let message =
-            format!("shape {name:?}: found keys of {found} points, expected the same number and kind on each");
-        return Err(ImportError::at(property, message));
-    };
+    let contours = contours(&paths, |count| points.take(count, property)).map_err(|error| match error {
+        NoContours::Unequal => {
+            let found = counted(&keys);
+            let message =
+                format!("shape {name:?}: found keys of {found} points, expected the same number and kind on each");
+            ImportError::at(property, message)
+        }
+        NoContours::Refused(error) => error,
+    })?;
     let keys: BTreeMap<_, _> = keys.iter().map(|key| key.frame).zip(contours).collect();
     Ok(Shape { name, closed, keys })
+}
+
+/// The first two keys that differ in their number of points, or the first two keys.
+fn counted(keys: &[Key]) -> String {
+    let other = keys.iter().position(|key| key.knots.len() != keys[0].knots.len()).unwrap_or(1);
+    let shown = [0, other].into_iter().filter_map(|k| keys.get(k));
+    let counts: Vec<_> = shown.map(|key| format!("{} on frame {}", key.knots.len(), key.frame)).collect();
+    counts.join(", ")
 }
 
 fn key(node: Node, first: f64, footage: &Footage) -> Result<Key, ImportError> {
@@ -140,12 +153,15 @@ fn knot(node: Node, footage: &Footage) -> Result<Knot, ImportError> {
         text.split(',').map(|part| part.trim().trim_matches(['(', ')']).parse().ok()).collect();
     let numbers = numbers.filter(|numbers| numbers.iter().all(|n| n.is_finite())).unwrap_or_default();
     let (width, height) = (footage.width as f64, footage.height as f64);
-    let placed = |pair: &[f64]| Point::new(pair[0] * height + 0.5 * width, (pair[1] + 0.5) * height);
+    let placed = |pair: &[f64]| near(Point::new(pair[0] * height + 0.5 * width, (pair[1] + 0.5) * height), node);
     match numbers.len() {
         // A point of a B-spline may have a weight after its coordinates.
-        2 | 3 => Ok([placed(&numbers); 3]),
-        6.. => Ok([placed(&numbers), placed(&numbers[2..]), placed(&numbers[4..])]),
-        _ => Err(ImportError::at(node, format!("found {text:?}, expected (x,y) or (x,y),(x,y),(x,y)"))),
+        2 | 3 => Ok([placed(&numbers)?; 3]),
+        6.. => Ok([placed(&numbers)?, placed(&numbers[2..])?, placed(&numbers[4..])?]),
+        _ => {
+            let found = quoted(Some(text));
+            Err(ImportError::at(node, format!("found {found}, expected (x,y) or (x,y),(x,y),(x,y)")))
+        }
     }
 }
 

@@ -8,17 +8,19 @@
 //! its form changes, and where a held form ends. Other shapes have one key, on a frame that the caller gives.
 //!
 //! Limits: content that is not drawn in place (definitions, clips, masks, patterns, symbols) is ignored. Text, pictures
-//! and `use` are left out with a warning.
+//! and `use` are left out with a warning. Nesting, coordinates and points are bounded (`limits`).
 
-use super::path::{Path, contours};
-use super::problem::{number, parsed, place};
+use super::limits::{FARTHEST, Points, near};
+use super::names::Names;
+use super::path::{NoContours, Path, contours};
+use super::problem::{LeftOut, number, parsed, quoted};
 use super::svg_animation::{Keyed, keyed};
-use super::{ImportError, Shape, Shapes, free_name};
+use super::{ImportError, Shape, Shapes};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber};
 use roxmltree::Node;
 use std::str::FromStr;
-use svgtypes::{PointsParser, SimplePathSegment, SimplifyingPathParser, Transform, ViewBox};
+use svgtypes::{PathParser, PathSegment, PointsParser, SimplePathSegment, SimplifyingPathParser, Transform, ViewBox};
 
 /// Elements whose content is not drawn in place.
 const NOT_DRAWN: [&str; 9] =
@@ -40,13 +42,20 @@ pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, 
     if root.tag_name().name() != "svg" {
         return Err(ImportError::at(root, "expected <svg>, the root of an SVG document"));
     }
-    let mut reader = Reader { footage, still, found: Shapes::default() };
+    let mut reader = Reader {
+        footage,
+        still,
+        shapes: Vec::new(),
+        names: Names::default(),
+        points: Points::all(),
+        left_out: LeftOut::default(),
+    };
     let over = laid_over(root, footage)?;
     reader.group(root, over)?;
-    if reader.found.shapes.is_empty() {
+    if reader.shapes.is_empty() {
         return Err(ImportError::Nothing("a path, polygon, polyline, line, rect, circle or ellipse"));
     }
-    Ok(reader.found)
+    Ok(Shapes { shapes: reader.shapes, warnings: reader.left_out.lines(text) })
 }
 
 /// The transformation from units of the document to pixels of the footage.
@@ -85,7 +94,10 @@ fn pixels(node: Node, name: &str) -> Result<Option<f64>, ImportError> {
 struct Reader<'a> {
     footage: &'a Footage,
     still: FrameNumber,
-    found: Shapes,
+    shapes: Vec<Shape>,
+    names: Names,
+    points: Points,
+    left_out: LeftOut,
 }
 
 impl Reader<'_> {
@@ -96,7 +108,7 @@ impl Reader<'_> {
                 continue;
             }
             if WITHOUT_OUTLINE.contains(&name) {
-                self.found.warnings.push(format!("{}: <{name}> has no outline here and is left out", place(child)));
+                self.left_out.push(child, format!("<{name}> has no outline here and is left out"));
                 continue;
             }
             let inner = joined(outer, own_transform(child)?);
@@ -116,21 +128,32 @@ impl Reader<'_> {
         };
         let mut frames = Vec::new();
         for key in &keys {
-            let paths = paths(node, &key.text)?.iter().map(|path| path.map(|p| moved(p, transform))).collect();
-            let paths: Vec<Path> = paths;
+            let mut paths = paths(node, &key.text, &mut self.points)?;
+            for path in &mut paths {
+                for p in path.points_mut() {
+                    *p = near(moved(*p, transform), node)?;
+                }
+            }
             frames.push((key.frame, paths));
         }
         let Some((first, start)) = frames.first() else { return Ok(()) };
         for number in 0..start.len() {
             let own: Vec<Path> = frames.iter().filter_map(|(_, paths)| paths.get(number).cloned()).collect();
-            let contours = contours(&own).filter(|contours| contours.len() == frames.len()).ok_or_else(|| {
+            let unequal = || {
                 let message =
                     format!("found paths of several kinds, expected the commands of frame {first} on each key");
                 ImportError::at(node, message)
+            };
+            if own.len() != frames.len() {
+                return Err(unequal());
+            }
+            let contours = contours(&own, |count| self.points.take(count, node)).map_err(|error| match error {
+                NoContours::Unequal => unequal(),
+                NoContours::Refused(error) => error,
             })?;
-            let name = free_name(&name(node), &self.found.shapes);
+            let name = self.names.free(&name(node));
             let keys = frames.iter().map(|(frame, _)| *frame).zip(contours).collect();
-            self.found.shapes.push(Shape { name, closed: start[number].closed, keys });
+            self.shapes.push(Shape { name, closed: start[number].closed, keys });
         }
         Ok(())
     }
@@ -150,7 +173,7 @@ fn name(node: Node) -> String {
 fn own_transform(node: Node) -> Result<Transform, ImportError> {
     let Some(text) = node.attribute("transform") else { return Ok(Transform::default()) };
     Transform::from_str(text).map_err(|error| {
-        ImportError::at(node, format!("transform: found {text:?}, expected transformations ({error})"))
+        ImportError::at(node, format!("transform: found {}, expected transformations ({error})", quoted(Some(text))))
     })
 }
 
@@ -176,7 +199,10 @@ fn outline(node: Node) -> Result<Option<String>, ImportError> {
     let value = |name: &str| number(node, name).map(Option::unwrap_or_default);
     let positive = |name: &str| match number(node, name)? {
         Some(value) if value >= 0.0 => Ok(value),
-        found => Err(ImportError::at(node, format!("{name}: found {found:?}, expected a number from 0"))),
+        _ => {
+            let found = quoted(node.attribute(name));
+            Err(ImportError::at(node, format!("{name}: found {found}, expected a number from 0")))
+        }
     };
     Ok(Some(match node.tag_name().name() {
         "path" => node.attribute("d").unwrap_or("").to_owned(),
@@ -201,7 +227,7 @@ fn listed(node: Node) -> Result<String, ImportError> {
     let points: Vec<_> = PointsParser::from(text).map(|(x, y)| format!("{x} {y}")).collect();
     let numbers = text.split([' ', ',', '\t', '\n', '\r']).filter(|part| !part.is_empty()).count();
     if points.is_empty() || numbers % 2 != 0 {
-        return Err(ImportError::at(node, format!("points: found {text:?}, expected pairs of numbers")));
+        return Err(ImportError::at(node, format!("points: found {}, expected pairs of numbers", quoted(Some(text)))));
     }
     Ok(format!("M{}", points.join(" ")))
 }
@@ -220,14 +246,39 @@ fn rectangle([x, y]: [f64; 2], [width, height]: [f64; 2], [rx, ry]: [f64; 2]) ->
     format!("M{} {y}h{along}{a}v{down}{b}h{}{c}v{}{d}Z", x + rx, -along, -down)
 }
 
+/// Requires that the numbers of path data are within [`FARTHEST`]. The parser makes more curves of an arc, the larger
+/// its radius is, so this is asked before.
+fn bounded(node: Node, text: &str) -> Result<(), ImportError> {
+    // Text that is no path data gets its error from the parser that makes curves.
+    for segment in PathParser::from(text).map_while(Result::ok) {
+        let numbers = match segment {
+            PathSegment::MoveTo { x, y, .. } | PathSegment::LineTo { x, y, .. } => [x, y, 0.0, 0.0, 0.0, 0.0],
+            PathSegment::HorizontalLineTo { x, .. } => [x, 0.0, 0.0, 0.0, 0.0, 0.0],
+            PathSegment::VerticalLineTo { y, .. } => [0.0, y, 0.0, 0.0, 0.0, 0.0],
+            PathSegment::CurveTo { x1, y1, x2, y2, x, y, .. } => [x1, y1, x2, y2, x, y],
+            PathSegment::SmoothCurveTo { x2, y2, x, y, .. } => [x2, y2, x, y, 0.0, 0.0],
+            PathSegment::Quadratic { x1, y1, x, y, .. } => [x1, y1, x, y, 0.0, 0.0],
+            PathSegment::SmoothQuadratic { x, y, .. } => [x, y, 0.0, 0.0, 0.0, 0.0],
+            PathSegment::EllipticalArc { rx, ry, x_axis_rotation, x, y, .. } => [rx, ry, x_axis_rotation, x, y, 0.0],
+            PathSegment::ClosePath { .. } => [0.0; 6],
+        };
+        if let Some(far) = numbers.into_iter().find(|number| number.is_nan() || number.abs() > FARTHEST) {
+            let message = format!("d: found {far:e}, expected numbers from {:e} to {FARTHEST:e}", -FARTHEST);
+            return Err(ImportError::at(node, message));
+        }
+    }
+    Ok(())
+}
+
 /// The sub-paths of path data that have segments.
-fn paths(node: Node, text: &str) -> Result<Vec<Path>, ImportError> {
+fn paths(node: Node, text: &str, points: &mut Points) -> Result<Vec<Path>, ImportError> {
+    bounded(node, text)?;
     let mut paths: Vec<Path> = Vec::new();
     for segment in SimplifyingPathParser::from(text) {
         let segment = segment.map_err(|error| {
-            let start: String = text.chars().take(40).collect();
-            ImportError::at(node, format!("d: found {start:?}…, expected path data ({error})"))
+            ImportError::at(node, format!("d: found {}, expected path data ({error})", quoted(Some(text))))
         })?;
+        points.take(1, node)?;
         if let SimplePathSegment::MoveTo { x, y } = segment {
             paths.push(Path::new(Point::new(x, y)));
             continue;
@@ -299,7 +350,13 @@ mod tests {
     fn errors_name_the_element_and_what_was_expected() {
         for (content, place, message) in [
             ("\n <path d=\"M0 0 L5\"/>", "line 2, column 2: <path>: d: found", "expected path data"),
-            ("<circle r=\"-1\"/>", "<circle>", "r: found Some(-1.0), expected a number from 0"),
+            ("<circle r=\"-1\"/>", "<circle>", "r: found \"-1\", expected a number from 0"),
+            ("<circle/>", "<circle>", "r: found nothing, expected a number from 0"),
+            ("<path d=\"M0 0A5 1e40 0 0 1 9 9\"/>", "<path>", "d: found 1e40, expected numbers from -1e7 to 1e7"),
+            ("<path d=\"M0 0a5e62 5 0 0 1 9 9\"/>", "<path>", "d: found 5e62, expected numbers"),
+            ("<path d=\"M0 0h9999999h9999999\"/>", "<path>", "found a point at (1.33"),
+            ("<g transform=\"scale(1e300)\"><path d=\"M1 1h1\"/></g>", "<path>", "found a point at ("),
+            ("<circle r=\"1e30\"/>", "<circle>", "d: found 1e30, expected numbers"),
             ("<rect width=\"a\" height=\"1\"/>", "<rect>", "width: found \"a\", expected a number"),
             ("<polygon points=\"1 2 3\"/>", "<polygon>", "expected pairs of numbers"),
             ("<g transform=\"turn(3)\"><path d=\"M0 0h1\"/></g>", "<g>", "transform: found \"turn(3)\""),

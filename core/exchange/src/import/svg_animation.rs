@@ -8,6 +8,7 @@
 //! an animation is left out, since it is one frame after the footage.
 
 use super::ImportError;
+use super::problem::quoted;
 use rototoon_base::scene::{Footage, FrameNumber};
 use roxmltree::Node;
 
@@ -31,22 +32,48 @@ pub(super) fn keyed(node: Node, footage: &Footage) -> Result<Option<Vec<Keyed>>,
     let Some(data) = animation(node, "d", footage)? else { return Ok(None) };
     let visibility = animation(node, "visibility", footage)?;
     let count = i64::from(footage.last) - i64::from(footage.first) + 1;
-    let visible = |frame: i64| {
-        let now = visibility.as_ref().and_then(|shown| shown.values.iter().rev().find(|(start, _)| *start <= frame));
-        now.is_none_or(|(_, value)| *value != "hidden")
-    };
-    let current = |frame: i64| data.values.iter().rposition(|(start, _)| *start <= frame);
     let mut keys = Vec::new();
-    for frame in 0..count {
-        let Some(index) = current(frame).filter(|_| visible(frame)) else { continue };
-        let same = |other: i64| (0..count).contains(&other) && visible(other) && current(other) == Some(index);
-        let wanted = if data.held { !same(frame - 1) || !same(frame + 1) } else { data.values[index].0 == frame };
-        if wanted {
-            let text = data.values[index].1.to_owned();
-            keys.push(Keyed { frame: (frame + i64::from(footage.first)) as FrameNumber, text });
-        }
+    for Run { value, first, last } in runs(&data, visibility.as_ref(), count) {
+        let (start, text) = data.values[value];
+        let mut frames = if data.held { vec![first, last] } else { vec![start] };
+        frames.retain(|frame| (first..=last).contains(frame));
+        frames.dedup();
+        let key = |frame| Keyed { frame: (frame + i64::from(footage.first)) as FrameNumber, text: text.to_owned() };
+        keys.extend(frames.into_iter().map(key));
     }
     Ok(Some(keys))
+}
+
+/// Frames, counted from the first of the footage, on which one value is shown.
+struct Run {
+    /// Index of the value.
+    value: usize,
+    first: i64,
+    last: i64,
+}
+
+/// The runs of an animation that are visible, within the `count` frames of the footage. Their number depends on the
+/// values alone: a footage may have any number of frames.
+fn runs(data: &Animation, visibility: Option<&Animation>, count: i64) -> Vec<Run> {
+    let shown = visibility.map_or(&[][..], |visibility| &visibility.values);
+    // Between two neighbouring starts nothing changes.
+    let mut starts: Vec<i64> = data.values.iter().chain(shown).map(|(start, _)| *start).chain([0]).collect();
+    starts.retain(|start| (0..count).contains(start));
+    starts.sort_unstable();
+    starts.dedup();
+    let current =
+        |values: &[(i64, &str)], frame: i64| values.partition_point(|(start, _)| *start <= frame).checked_sub(1);
+    let mut runs: Vec<Run> = Vec::new();
+    for (k, &first) in starts.iter().enumerate() {
+        let last = starts.get(k + 1).copied().unwrap_or(count) - 1;
+        let visible = current(shown, first).is_none_or(|k| shown[k].1 != "hidden");
+        let Some(value) = current(&data.values, first).filter(|_| visible) else { continue };
+        match runs.last_mut() {
+            Some(run) if run.value == value && run.last + 1 == first => run.last = last,
+            _ => runs.push(Run { value, first, last }),
+        }
+    }
+    runs
 }
 
 fn animation<'a>(node: Node<'a, 'a>, attribute: &str, footage: &Footage) -> Result<Option<Animation<'a>>, ImportError> {
@@ -54,8 +81,8 @@ fn animation<'a>(node: Node<'a, 'a>, attribute: &str, footage: &Footage) -> Resu
         |child: &Node| child.tag_name().name() == "animate" && child.attribute("attributeName") == Some(attribute);
     let Some(animate) = node.children().find(is_it) else { return Ok(None) };
     let expect = |name: &str, message: &str| {
-        let found = animate.attribute(name);
-        ImportError::at(animate, format!("{name}: found {found:?}, expected {message}"))
+        let found = quoted(animate.attribute(name));
+        ImportError::at(animate, format!("{name}: found {found}, expected {message}"))
     };
     let list = |name: &str| {
         animate.attribute(name).map(|text| text.trim().trim_end_matches(';').split(';').map(str::trim).collect())
@@ -138,10 +165,10 @@ mod tests {
     #[test]
     fn errors_say_what_was_expected() {
         for (from, to, message) in [
-            ("1s", "soon", "dur: found Some(\"soon\"), expected seconds"),
+            ("1s", "soon", "dur: found \"soon\", expected seconds"),
             ("1s", "3s", "at most the footage's 10 frames at 10 a second"),
             ("0;0.3", "0.5;0.3", "expected 3 rising numbers from 0 to 1"),
-            ("values", "to", "values: found None"),
+            ("values", "to", "values: found nothing"),
         ] {
             let error = keys(&HELD.replace(from, to)).unwrap_err().to_string();
             assert!(error.contains("line 1, column 7: <animate>: ") && error.contains(message), "{error}");
