@@ -6,6 +6,7 @@ use clap::{ArgMatches, Command};
 use rototoon::pipeline;
 use rototoon::project::{Document, Severity};
 use rototoon::scene::parameters::Stage;
+use std::path::{Component, Path};
 
 /// The subcommand.
 pub fn command() -> Command {
@@ -21,6 +22,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let document = Document::load(path)?;
     let problems =
         progress::run(arguments::threads(given), |bar| Ok(pipeline::check(&document, project::folder(path), bar)?))?;
+    if let Some(outside) = outside(&document.scene.footage.pattern) {
+        line("note", &format!("{}: footage.pattern: {outside}", path.display()));
+    }
     for problem in problems.iter() {
         let kind = if problem.severity == Severity::Error { "error" } else { "warning" };
         line(kind, &format!("{}: {problem}", path.display()));
@@ -31,4 +35,39 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         }
     }
     if problems.error_count() > 0 { Err(Failure::Reported) } else { Ok(()) }
+}
+
+/// Says that the frames are not below the document's folder. Every command then reads files from elsewhere.
+fn outside(pattern: &str) -> Option<String> {
+    let path = Path::new(pattern);
+    let mut depth = 0i64;
+    let leaves = path.components().any(|component| {
+        depth += match component {
+            Component::ParentDir => -1,
+            Component::Normal(_) => 1,
+            Component::CurDir | Component::RootDir | Component::Prefix(_) => 0,
+        };
+        depth < 0
+    });
+    (path.is_absolute() || leaves)
+        .then(|| format!("the frames {pattern:?} are read from outside the document's folder"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_that_leave_the_folder_are_named() {
+        for (pattern, leaves) in [
+            ("f_%03d.png", false),
+            ("frames/../frames/f_%03d.png", false),
+            ("./a/b_%d.png", false),
+            ("../f_%03d.png", true),
+            ("a/../../f_%d.png", true),
+            ("/tmp/f_%d.png", true),
+        ] {
+            assert_eq!(outside(pattern).is_some(), leaves, "{pattern}");
+        }
+    }
 }

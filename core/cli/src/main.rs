@@ -8,6 +8,8 @@
 //!
 //! The exit status is 0 for success, 1 for failure and 2 for wrong arguments.
 
+#![forbid(unsafe_code)]
+
 mod arguments;
 mod check;
 mod export;
