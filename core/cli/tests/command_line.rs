@@ -151,9 +151,9 @@ fn a_document_written_elsewhere_finds_its_frames() {
     let out = other.join("out.json");
     good(&["track", text(&project), "-o", text(&out)]);
     assert_eq!(read(&out)["footage"]["pattern"], "../../frames/f_%03d.png");
-    let said = good(&["check", text(&out)]);
-    assert!(said.starts_with("note: ") && said.contains("outside the document's folder"), "{said}");
-    assert_eq!(said.lines().count(), 1, "{said}");
+    let note = good(&["check", text(&out)]);
+    assert!(note.starts_with("note: ") && note.contains("outside the document's folder"), "{note}");
+    assert_eq!(note.lines().count(), 1, "{note}");
     // Back from a folder whose own name contains a pattern for a number.
     fs::rename(cartoon.path("frames"), other.join("frames")).unwrap();
     fs::copy(&project, other.join("p.json")).unwrap();
