@@ -1,5 +1,6 @@
 //! Development commands of Rototoon.
 
+mod audit;
 mod bundle;
 mod demo;
 mod docs;
@@ -44,6 +45,8 @@ enum Command {
         #[arg(long, value_name = "NAME")]
         step: Option<String>,
     },
+    /// Check licences, sources and known weaknesses of all dependencies, and write bills of materials to target/sbom.
+    Audit,
     /// Build and validate the extension's zip and the OpenFX bundle.
     Bundle,
     /// Write the C header and the Python bindings.
@@ -81,6 +84,7 @@ fn main() -> anyhow::Result<()> {
         Command::Demo { project, blender } => demo::demo(project, blender),
         Command::Test { step: Some(step), release, .. } => test::step(&step, build(release)),
         Command::Test { valgrind, release, step: None } => test::test(valgrind, build(release)),
+        Command::Audit => audit::audit(),
         Command::Bundle => bundle::bundle(&bundle::Packager::from_wheel()?, bundle::Build::Installed).map(|_| ()),
         Command::Generate { check } => generate::generate(check),
         Command::BenchFit(rest) => measure::run("bench-fit", &rest),
