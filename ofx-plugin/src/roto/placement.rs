@@ -44,7 +44,8 @@ impl Placement {
         Ok(Self::new(footage, region, aspect, render_scale, fitting.is_some() || known.is_empty()))
     }
 
-    fn new(footage: &Footage, region: &Region, aspect: f64, render_scale: [f64; 2], matches: bool) -> Self {
+    /// Stretches the footage over a region of canonical coordinates. `aspect` is the width of a pixel over its height.
+    pub fn new(footage: &Footage, region: &Region, aspect: f64, render_scale: [f64; 2], matches: bool) -> Self {
         let scale = Point::new(render_scale[0] / aspect, render_scale[1]);
         let size = Point::new(region.x2 - region.x1, region.y2 - region.y1);
         let factor = size * scale / Point::new(footage.width.max(1) as f64, footage.height.max(1) as f64);
