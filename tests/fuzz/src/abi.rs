@@ -173,14 +173,18 @@ impl Session {
         let mut track: *mut RototoonTrack = null_mut();
         // SAFETY: a living session, a text with its length, locals; arrays are read before their handle is freed.
         unsafe {
-            let fine = done(|error| {
-                rototoon_session_track_of(self.0, part.as_ptr(), part.len(), &mut track, error)
-            });
+            let fine = done(|error| rototoon_session_track_of(self.0, part.as_ptr(), part.len(), &mut track, error));
             if fine {
                 let (mut frames, mut points, mut confidence) = (null(), null(), null());
                 let (mut count, mut each) = (0, 0);
                 assert!(done(|error| rototoon_track_read(
-                    track, &mut count, &mut each, &mut frames, &mut points, &mut confidence, error
+                    track,
+                    &mut count,
+                    &mut each,
+                    &mut frames,
+                    &mut points,
+                    &mut confidence,
+                    error
                 )));
                 read(frames, count);
                 read(points, 2 * count * each);
@@ -196,9 +200,8 @@ impl Session {
         let mut curves: *mut RototoonCurves = null_mut();
         // SAFETY: a living session, a text with its length, locals; arrays are read before their handle is freed.
         unsafe {
-            let fine = done(|error| {
-                rototoon_session_curves_of(self.0, part.as_ptr(), part.len(), frame, &mut curves, error)
-            });
+            let fine =
+                done(|error| rototoon_session_curves_of(self.0, part.as_ptr(), part.len(), frame, &mut curves, error));
             if fine {
                 let (mut count, mut offsets, mut points) = (0, null(), null());
                 assert!(done(|error| rototoon_curves_read(curves, &mut count, &mut offsets, &mut points, error)));
@@ -292,7 +295,17 @@ impl Strokes {
             let (forms, labels) = (self.forms.as_ptr(), self.labels.as_ptr());
             let fine = done(|error| {
                 rototoon_hidden_lines(
-                    offsets, count, points, closed, forms, labels, labels, border, sliver, &mut pieces, error,
+                    offsets,
+                    count,
+                    points,
+                    closed,
+                    forms,
+                    labels,
+                    labels,
+                    border,
+                    sliver,
+                    &mut pieces,
+                    error,
                 )
             });
             rototoon_pieces_free(pieces);

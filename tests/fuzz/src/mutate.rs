@@ -2,8 +2,8 @@
 //!
 //! It sees nothing of the code that it runs, so it finds less than libFuzzer. It runs everywhere.
 
-use crate::targets::Target;
 use crate::seeds;
+use crate::targets::Target;
 use std::fs;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -61,7 +61,7 @@ targets! {
     image_webp: 1.0,
     openfx: 1.0,
     reshape: 1.0,
-    session: 1.0,
+    session: 0.5,
     silhouette: 1.0,
     style: 1.0,
     svg: 1.0,

@@ -22,7 +22,9 @@ fn main() -> ExitCode {
 
 fn command(words: &[&str]) -> io::Result<ExitCode> {
     let wrong = |what: String| io::Error::new(io::ErrorKind::InvalidInput, what);
-    let known = |name: &str| targets::find(name).ok_or_else(|| wrong(format!("found target {name:?}, expected one of the list")));
+    let known = |name: &str| {
+        targets::find(name).ok_or_else(|| wrong(format!("found target {name:?}, expected one of the list")))
+    };
     match words {
         ["list"] => targets::ALL.iter().for_each(|target| println!("{}", target.name)),
         ["seeds", name, folder] => {
@@ -34,7 +36,8 @@ fn command(words: &[&str]) -> io::Result<ExitCode> {
         }
         ["once", name, file] => (known(name)?.run)(&std::fs::read(file)?),
         ["run", name, seconds, folder] => {
-            let seconds = seconds.parse().map_err(|_| wrong(format!("found {seconds:?}, expected a number of seconds")))?;
+            let seconds =
+                seconds.parse().map_err(|_| wrong(format!("found {seconds:?}, expected a number of seconds")))?;
             // Every run goes another way; the finding's file is what makes it repeatable.
             let start = SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |time| time.as_nanos() as u64);
             let ran = mutate::run(known(name)?, Duration::from_secs(seconds), Path::new(folder), start)?;

@@ -15,7 +15,7 @@ const FRAMES: usize = 4;
 /// The text of a document: mostly a valid one.
 pub fn document(u: &mut Unstructured) -> Result<String> {
     let footage = footage(u)?;
-    let count = u.int_in_range(0..=PARTS)?;
+    let count = if u.ratio(1u8, 16)? { 0 } else { u.int_in_range(1..=PARTS)? };
     let parts = (0..count).map(|k| part(u, k)).collect::<Result<Vec<_>>>()?;
     let mut fields = vec![
         "\"rototoon\": 1".to_owned(),
@@ -25,7 +25,7 @@ pub fn document(u: &mut Unstructured) -> Result<String> {
     if u.ratio(3u8, 4)? {
         fields.push(drawings(u)?);
     }
-    if u.ratio(1u8, 2)? {
+    if u.ratio(3u8, 4)? {
         fields.push(limbs(u)?);
     }
     if u.ratio(1u8, 8)? {
@@ -36,15 +36,15 @@ pub fn document(u: &mut Unstructured) -> Result<String> {
 
 /// The text of a footage.
 pub fn footage(u: &mut Unstructured) -> Result<String> {
-    let (mut first, mut last) = (0, 5);
+    let (mut first, mut last) = (0, 9);
     let (mut fps, mut size) = ("12".to_owned(), SIZE);
-    if u.ratio(1u8, 8)? {
+    if u.ratio(1u8, 16)? {
         (first, last) = (frame(u)?, frame(u)?);
         fps = json_number(number(u)?);
         size = [u.int_in_range(0..=128)?, u.int_in_range(0..=128)?];
     }
     let patterns = ["f%03d.png", "%d.png", "/x/%04d.exr", "f.png", "%%%d", "%99999d", "%0d"];
-    let pattern = if u.ratio(1u8, 8)? { *u.choose(&patterns)? } else { patterns[0] };
+    let pattern = if u.ratio(1u8, 32)? { *u.choose(&patterns)? } else { patterns[0] };
     let [width, height] = size;
     Ok(format!(
         "{{\"pattern\": {}, \"first\": {first}, \"last\": {last}, \"fps\": {fps}, \"width\": {width}, \"height\": {height}}}",
@@ -55,13 +55,12 @@ pub fn footage(u: &mut Unstructured) -> Result<String> {
 /// The text of a part. `index` gives it the name that limbs know.
 pub fn part(u: &mut Unstructured, index: usize) -> Result<String> {
     // Names are unique, or the document is refused.
-    let own = if u.ratio(7u8, 8)? { ["near arm", "coat", "a", "b"][index % 4].to_owned() } else { name(u)? };
-    let count = u.int_in_range(1..=POINTS)?;
-    let mut fields =
-        vec![format!("\"name\": {}", json_text(&own)), format!("\"closed\": {}", u.arbitrary::<bool>()?)];
+    let own = if u.ratio(31u8, 32)? { ["near arm", "coat", "a", "b"][index % 4].to_owned() } else { name(u)? };
+    let count = if u.ratio(1u8, 8)? { u.int_in_range(1..=3)? } else { u.int_in_range(4..=POINTS)? };
+    let mut fields = vec![format!("\"name\": {}", json_text(&own)), format!("\"closed\": {}", u.arbitrary::<bool>()?)];
     let contour = |u: &mut Unstructured| {
         // One contour with another number of points now and then: it is no contour of the part.
-        let least = if u.ratio(1u8, 32)? { 0 } else { count };
+        let least = if u.ratio(1u8, 128)? { 0 } else { count };
         Ok(json_points(&points(u, least, count)?))
     };
     fields.push(format!("\"keys\": {}", by_frame(u, 1, FRAMES, contour)?));
@@ -83,7 +82,7 @@ pub fn part(u: &mut Unstructured, index: usize) -> Result<String> {
 /// Pins and centres.
 fn corrections(u: &mut Unstructured, count: usize) -> Result<[String; 2]> {
     let pin = |u: &mut Unstructured| {
-        let index = if u.ratio(1u8, 16)? { u.arbitrary::<u64>()? } else { u.int_in_range(0..=count as u64)? };
+        let index = if u.ratio(1u8, 32)? { u.arbitrary::<u64>()? } else { u.int_in_range(0..=count as u64 - 1)? };
         let p = point(u)?;
         Ok(format!("{{\"{index}\": [{}, {}]}}", json_number(p.x), json_number(p.y)))
     };

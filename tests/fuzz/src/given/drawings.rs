@@ -9,16 +9,15 @@ const STROKES: usize = 4;
 const POINTS: usize = 12;
 
 /// The movement functions by name.
-const TIMINGS: [&str; 8] =
-    ["constant", "linear", "ease_in", "ease_out", "ease_in_out", "cosine", "bounce", "smooth"];
+const TIMINGS: [&str; 8] = ["constant", "linear", "ease_in", "ease_out", "ease_in_out", "cosine", "bounce", "smooth"];
 
 /// The names of the pegs.
-const PEGS: [&str; 3] = ["arm", "body", ""];
+const PEGS: [&str; 3] = ["arm", "body", "leg"];
 
 /// Drawings, pairs and pegs, as fields of a document.
 pub fn drawings(u: &mut Unstructured) -> Result<String> {
-    let count = u.int_in_range(0..=4usize)?;
-    let mut on = frame(u)?;
+    let count = if u.ratio(1u8, 8)? { 1 } else { u.int_in_range(2..=4usize)? };
+    let mut on = if u.ratio(1u8, 8)? { frame(u)? } else { 0 };
     let mut drawn = Vec::with_capacity(count);
     let hung = u.ratio(1u8, 4)?;
     for _ in 0..count {
@@ -27,10 +26,10 @@ pub fn drawings(u: &mut Unstructured) -> Result<String> {
     }
     let mut fields = vec![format!("\"drawings\": [{}]", drawn.join(", "))];
     if u.ratio(1u8, 4)? {
-        fields.push(format!("\"pairs\": {}", list(u, 0, 3, pair)?));
+        fields.push(format!("\"pairs\": {}", list(u, 0, 1, pair)?));
     }
     if hung {
-        let known = u.int_in_range(0..=2usize)?;
+        let known = u.int_in_range(1..=2usize)?;
         let pegs = (0..=known).map(|k| peg(u, k)).collect::<Result<Vec<_>>>()?;
         fields.push(format!("\"pegs\": [{}]", pegs.join(", ")));
     }
@@ -57,7 +56,7 @@ fn stroke(u: &mut Unstructured, hung: bool) -> Result<String> {
     if u.ratio(1u8, 4)? {
         fields.push(format!("\"colour\": [{}, 0.5, 1]", json_number(f64::from(u.arbitrary::<u8>()?) / 255.0)));
         fields.push(format!("\"material\": {}", u.int_in_range(0..=2u8)?));
-        fields.push(format!("\"layer\": {}", if u.ratio(1u8, 8)? { u.arbitrary()? } else { 1u64 }));
+        fields.push(format!("\"layer\": {}", if u.ratio(1u8, 64)? { u.arbitrary()? } else { 1u64 }));
     }
     if hung && u.arbitrary()? {
         fields.push(format!("\"peg\": {}", json_text(u.choose(&PEGS[..2])?)));
@@ -67,7 +66,11 @@ fn stroke(u: &mut Unstructured, hung: bool) -> Result<String> {
 
 fn pair(u: &mut Unstructured) -> Result<String> {
     let to = if u.ratio(1u8, 4)? { "null".to_owned() } else { u.int_in_range(0..=3u8)?.to_string() };
-    Ok(format!("{{\"frame\": {}, \"from\": {}, \"to\": {to}}}", frame(u)?, u.int_in_range(0..=3u8)?))
+    Ok(format!(
+        "{{\"frame\": {}, \"from\": {}, \"to\": {to}}}",
+        if u.ratio(1u8, 4)? { frame(u)? } else { 0 },
+        u.int_in_range(0..=3u8)?
+    ))
 }
 
 fn peg(u: &mut Unstructured, index: usize) -> Result<String> {
@@ -83,7 +86,8 @@ fn peg(u: &mut Unstructured, index: usize) -> Result<String> {
             timing(u)?
         ))
     })?;
-    let parent = if u.ratio(1u8, 3)? { format!("\"parent\": {}, ", json_text(u.choose(&PEGS[..2])?)) } else { String::new() };
+    let parent =
+        if u.ratio(1u8, 3)? { format!("\"parent\": {}, ", json_text(u.choose(&PEGS[..2])?)) } else { String::new() };
     let pivot = format!("[{}, {}]", json_number(pivot.x), json_number(pivot.y));
     Ok(format!("{{\"name\": {}, {parent}\"pivot\": {pivot}, \"keys\": {keys}}}", json_text(PEGS[index % 3])))
 }
@@ -91,8 +95,8 @@ fn peg(u: &mut Unstructured, index: usize) -> Result<String> {
 /// A movement function or a spacing chart.
 fn timing(u: &mut Unstructured) -> Result<String> {
     Ok(match u.int_in_range(0..=5u8)? {
-        0 => list(u, 0, 4, |u| Ok(json_number(number(u)?)))?,
-        1 => format!("{{\"bounce\": {}}}", if u.ratio(1u8, 4)? { u.arbitrary()? } else { 3u32 }),
+        0 => list(u, 0, 3, |u| Ok(json_number(number(u)? / 64.0)))?,
+        1 => format!("{{\"bounce\": {}}}", if u.ratio(1u8, 16)? { u.arbitrary()? } else { 3u32 }),
         2 => {
             let places = list(u, 0, 4, |u| {
                 let p = point(u)?;

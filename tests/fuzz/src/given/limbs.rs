@@ -20,9 +20,9 @@ pub fn limbs(u: &mut Unstructured) -> Result<String> {
         let k = u.int_in_range(1..=COUNT - 1)?;
         found.push(limb(u, k)?);
     }
-    let swaps = list(u, 0, 2, |u| Ok(format!("[{}, {}]", frame(u)?, frame(u)?)))?;
+    let swaps = list(u, 0, 1, range)?;
     let mut fields = vec![format!("\"limbs\": [{}]", found.join(", ")), format!("\"limb_swaps\": {swaps}")];
-    if u.ratio(1u8, 4)? {
+    if u.ratio(1u8, 8)? {
         fields.push(format!("\"depth_marks\": {}", list(u, 0, 3, mark)?));
     }
     Ok(fields.join(", "))
@@ -39,7 +39,11 @@ fn limb(u: &mut Unstructured, k: usize) -> Result<String> {
     if u.ratio(1u8, 4)? {
         let carried = |u: &mut Unstructured| {
             let part = json_text(u.choose(&PARTS)?);
-            Ok(if u.arbitrary()? { part } else { format!("{{\"part\": {part}, \"turn\": {}}}", json_number(share(u)?)) })
+            Ok(if u.arbitrary()? {
+                part
+            } else {
+                format!("{{\"part\": {part}, \"turn\": {}}}", json_number(share(u)?))
+            })
         };
         fields.push(format!("\"carries\": {}", list(u, 0, 3, carried)?));
     }
@@ -59,14 +63,20 @@ fn end(u: &mut Unstructured) -> Result<String> {
 }
 
 fn calibration(u: &mut Unstructured) -> Result<String> {
-    let part = json_text(if u.ratio(1u8, 4)? { u.choose(&PARTS)? } else { PARTS[0] });
+    let part = json_text(if u.ratio(1u8, 8)? { u.choose(&PARTS)? } else { PARTS[0] });
     Ok(if u.ratio(3u8, 4)? {
-        format!("{{\"part\": {part}, \"at\": {}}}", json_number(f64::from(u.int_in_range(0..=32u8)?) / 2.0))
+        format!("{{\"part\": {part}, \"at\": {}}}", json_number(f64::from(u.int_in_range(0..=12u8)?) / 4.0))
     } else if u.arbitrary()? {
         format!("{{\"part\": {part}, \"at\": {}}}", json_number(number(u)?))
     } else {
         format!("{{\"part\": {part}, \"drawn\": {}}}", by_frame(u, 0, 3, place)?)
     })
+}
+
+/// Two frames, mostly the first one first.
+fn range(u: &mut Unstructured) -> Result<String> {
+    let (a, b) = (frame(u)?, frame(u)?);
+    Ok(if u.ratio(1u8, 16)? { format!("[{a}, {b}]") } else { format!("[{}, {}]", a.min(b), a.max(b)) })
 }
 
 fn place(u: &mut Unstructured) -> Result<String> {
@@ -75,11 +85,12 @@ fn place(u: &mut Unstructured) -> Result<String> {
 }
 
 fn share(u: &mut Unstructured) -> Result<f64> {
-    if u.ratio(1u8, 8)? { number(u) } else { Ok(f64::from(u.arbitrary::<u8>()?) / 255.0) }
+    if u.ratio(1u8, 64)? { number(u) } else { Ok(f64::from(u.arbitrary::<u8>()?) / 255.0) }
 }
 
 fn mark(u: &mut Unstructured) -> Result<String> {
-    let (front, behind) = (json_text(u.choose(&PARTS)?), json_text(u.choose(&PARTS)?));
-    let range = if u.arbitrary()? { format!(", \"first\": {}, \"last\": {}", frame(u)?, frame(u)?) } else { String::new() };
+    let (front, behind) = (json_text(u.choose(&PARTS[..2])?), json_text(u.choose(&PARTS[..2])?));
+    let range =
+        if u.arbitrary()? { format!(", \"first\": {}, \"last\": {}", frame(u)?, frame(u)?) } else { String::new() };
     Ok(format!("{{\"front\": {front}, \"behind\": {behind}{range}}}"))
 }

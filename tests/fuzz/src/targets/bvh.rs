@@ -6,8 +6,24 @@ use rototoon::import::bvh::{Options, seen};
 
 /// The joints of a decoded hierarchy: those that the import needs, and a few more.
 const JOINTS: [&str; 18] = [
-    "Hips", "Spine", "Neck", "Head", "LeftArm", "LeftForeArm", "LeftHand", "RightArm", "RightForeArm", "RightHand",
-    "LeftUpLeg", "LeftLeg", "LeftFoot", "RightUpLeg", "RightLeg", "RightFoot", "Tail", "",
+    "Hips",
+    "Spine",
+    "Neck",
+    "Head",
+    "LeftArm",
+    "LeftForeArm",
+    "LeftHand",
+    "RightArm",
+    "RightForeArm",
+    "RightHand",
+    "LeftUpLeg",
+    "LeftLeg",
+    "LeftFoot",
+    "RightUpLeg",
+    "RightLeg",
+    "RightFoot",
+    "Tail",
+    "",
 ];
 /// The parent of each joint.
 const PARENTS: [usize; 18] = [0, 0, 1, 2, 1, 4, 5, 1, 7, 8, 0, 10, 11, 0, 13, 14, 0, 16];
@@ -43,7 +59,11 @@ fn hierarchy(u: &mut Unstructured) -> Result<String> {
 
 fn joint(u: &mut Unstructured, k: usize, count: usize, channels: &mut usize) -> Result<String> {
     let offset: [String; 3] = [json_number(number(u)?), json_number(number(u)?), json_number(number(u)?)];
-    let kinds = if k == 0 { "6 Xposition Yposition Zposition Zrotation Xrotation Yrotation" } else { "3 Zrotation Xrotation Yrotation" };
+    let kinds = if k == 0 {
+        "6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
+    } else {
+        "3 Zrotation Xrotation Yrotation"
+    };
     *channels += if k == 0 { 6 } else { 3 };
     let word = if k == 0 { "ROOT" } else { "JOINT" };
     let mut text = format!("{word} {}\n{{\nOFFSET {}\nCHANNELS {kinds}\n", JOINTS[k], offset.join(" "));

@@ -40,8 +40,8 @@ fn footage() -> &'static str {
     FOLDER.get_or_init(|| {
         let folder = pictures::folder().path().join("footage");
         std::fs::create_dir_all(&folder).expect("a temporary folder can be made");
-        for on in 0..=5u32 {
-            let square = |x: u32, y: u32| (8 + 2 * on..24 + 2 * on).contains(&x) && (10..30).contains(&y);
+        for on in 0..=9u32 {
+            let square = |x: u32, y: u32| (8 + on..24 + on).contains(&x) && (10..30).contains(&y);
             let ink = |x: u32, y: u32| if square(x, y) { Rgb([40u8, 30, 60]) } else { Rgb([240, 235, 220]) };
             let picture = ImageBuffer::from_fn(given::SIZE[0], given::SIZE[1], ink);
             picture.save(folder.join(format!("f{on:03}.png"))).expect("a temporary file can be written");
@@ -61,7 +61,7 @@ fn called(session: &Session, u: &mut Unstructured, slow: &mut usize) -> Result<(
 
 fn one_call(session: &Session, u: &mut Unstructured, slow: &mut usize) -> Result<bool> {
     let part = name(u)?;
-    Ok(match u.int_in_range(0..=13u8)? {
+    Ok(match u.int_in_range(0..=15u8)? {
         0 => {
             let values: Vec<f64> = points(u, 0, 8)?.iter().flat_map(|p| [p.x, p.y]).collect();
             let odd = usize::from(!values.is_empty() && u.ratio(1u8, 16)?);
@@ -78,8 +78,11 @@ fn one_call(session: &Session, u: &mut Unstructured, slow: &mut usize) -> Result
         9 => session.text(call::rototoon_session_set_document, &document(u)?),
         10 => session.track_of(&part),
         11 => session.curves_of(&part, frame(u)?),
-        12 => session.out(call::rototoon_session_parts).is_some() && session.out(call::rototoon_session_weakest_frame).is_some(),
-        _ if *slow < MOST_CALLS[1] && short(session) => {
+        12 => {
+            session.out(call::rototoon_session_parts).is_some()
+                && session.out(call::rototoon_session_weakest_frame).is_some()
+        }
+        13 if *slow < MOST_CALLS[1] && short(session) => {
             *slow += 1;
             worked(session, u)?
         }
@@ -132,7 +135,11 @@ fn without_session(u: &mut Unstructured, document: &str) -> Result<()> {
             abi::request(rototoon_match_contours, &text);
         }
         1 => {
-            let options = format!("{{\"character\": \"a\", \"motion\": \"b\", \"first\": {}, \"last\": {}}}", frame(u)?, frame(u)?);
+            let options = format!(
+                "{{\"character\": \"a\", \"motion\": \"b\", \"first\": {}, \"last\": {}}}",
+                frame(u)?,
+                frame(u)?
+            );
             abi::pair(rototoon_capture_clip, [document, &options]);
         }
         2 => {
