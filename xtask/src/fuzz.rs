@@ -78,6 +78,7 @@ fn build(target_name: Option<&str>) -> Result<()> {
     run(nightly(&program)
         .args(["fuzz", "build", "--fuzz-dir", FOLDER, "--target", TRIPLE])
         .args(target_name)
+        .env_remove("CARGO_BUILD_BUILD_DIR")
         .env("CARGO_TARGET_DIR", libfuzzer_target()))
 }
 
@@ -128,7 +129,9 @@ fn with_libfuzzer(name: &str, seconds: u64) -> Result<Outcome> {
     prefix.push(artifacts.join(""));
     let begun = Instant::now();
     let program = libfuzzer_target().join(TRIPLE).join("release").join(name);
+    let words = root().join(FOLDER).join("dictionaries").join(format!("{name}.dict"));
     let output = command(&program)
+        .args(words.is_file().then(|| format!("-dict={}", words.display())))
         .args([&corpus, &seeds])
         .args(LIMITS)
         .arg(format!("-max_total_time={seconds}"))
