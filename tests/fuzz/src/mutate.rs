@@ -47,7 +47,7 @@ pub fn changed(input: &[u8], other: &[u8], random: &mut Random) -> Vec<u8> {
 fn change(bytes: &mut Vec<u8>, other: &[u8], random: &mut Random) {
     let at = random.below(bytes.len() + 1);
     let length = 1 + random.below(16);
-    match random.below(7) {
+    match random.below(9) {
         0 if at < bytes.len() => bytes[at] ^= 1 << random.below(8),
         1 if at < bytes.len() => bytes[at] = random.below(256) as u8,
         2 => drop(bytes.drain(at..bytes.len().min(at + length))),
@@ -66,6 +66,8 @@ fn change(bytes: &mut Vec<u8>, other: &[u8], random: &mut Random) {
             bytes.truncate(at);
             bytes.extend(&other[from..]);
         }
+        // The decoders make an odd number of it.
+        7 | 8 if at + 2 <= bytes.len() => bytes[at..at + 2].copy_from_slice(&[128 + random.below(128) as u8, 0xFF]),
         _ => bytes.push(random.below(256) as u8),
     }
 }

@@ -82,7 +82,7 @@ fn one_call(session: &Session, u: &mut Unstructured, slow: &mut usize) -> Result
             session.out(call::rototoon_session_parts).is_some()
                 && session.out(call::rototoon_session_weakest_frame).is_some()
         }
-        13 if *slow < MOST_CALLS[1] && short(session) => {
+        13 if *slow < MOST_CALLS[1] && u.ratio(1u8, 2)? && short(session) => {
             *slow += 1;
             worked(session, u)?
         }
