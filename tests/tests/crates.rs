@@ -31,11 +31,12 @@ fn graph() -> Graph {
     let metadata: Value = serde_json::from_slice(&cargo.stdout).expect("cargo writes JSON");
     let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    let product = |name: &str| name.starts_with("rototoon") && !name.ends_with("-tests") && !name.contains("-ofx-host");
+    let development = ["rototoon-tests", "rototoon-ofx-host", "rototoon-features", "rototoon-fuzz"];
+    let product = |name: &str| name.starts_with("rototoon") && !development.contains(&name);
     let mut graph = Graph::new();
     for package in list(&metadata["packages"]) {
         let name = text(&package["name"]);
-        if !product(&name) || name == "rototoon-features" {
+        if !product(&name) {
             continue;
         }
         let used = list(&package["dependencies"]).into_iter().filter(|d| d["kind"].is_null() && d["path"].is_string());

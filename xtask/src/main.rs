@@ -5,6 +5,7 @@ mod bundle;
 mod demo;
 mod docs;
 mod elf;
+mod fuzz;
 mod generate;
 mod measure;
 mod ofx;
@@ -75,6 +76,14 @@ enum Command {
         #[arg(long)]
         check: bool,
     },
+    /// Run the fuzz targets, with libFuzzer if there is a nightly compiler.
+    Fuzz {
+        /// One target; all by default.
+        target: Option<String>,
+        /// Minutes for each target.
+        #[arg(long, default_value_t = 1.0)]
+        minutes: f64,
+    },
     /// Photograph every panel and Match Strokes in a real Blender window (Debian sid in a chroot; needs root and debootstrap).
     Photograph,
 }
@@ -93,6 +102,7 @@ fn main() -> anyhow::Result<()> {
         Command::BenchTween(rest) => measure::run("bench-tween", &rest),
         Command::Bless => measure::run("bless", &measure::Rest::default()),
         Command::Docs { check } => docs::docs(check),
+        Command::Fuzz { target, minutes } => fuzz::fuzz(target.as_deref(), minutes),
         Command::Photograph => photograph::photograph(),
     }
 }

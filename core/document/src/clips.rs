@@ -288,6 +288,13 @@ mod tests {
     }
 
     #[test]
+    fn the_largest_numbers_are_read_again() {
+        let text = posture().replacen("1.5", "-1.5e305", 1).replacen("-2", "1e12", 1);
+        let clips = Clips::parse(&file(&format!("[{text}]")), "f").unwrap();
+        assert_eq!(Clips::parse(&clips.text(), "f").unwrap(), clips);
+    }
+
+    #[test]
     fn what_is_written_is_read_again() {
         let clips = Clips::parse(&file(&format!("[{}]", posture())), "f").unwrap();
         assert_eq!(clips.fps, 12.0);

@@ -82,6 +82,8 @@ struct Rounded(f64);
 impl Serialize for Rounded {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let rounded = (self.0 * 1e6).round() / 1e6;
+        // The largest numbers have no decimals, and a million of them is infinite, which JSON cannot say.
+        let rounded = if rounded.is_finite() { rounded } else { self.0 };
         serializer.serialize_f64(if rounded == 0.0 { 0.0 } else { rounded })
     }
 }

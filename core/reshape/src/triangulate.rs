@@ -5,7 +5,7 @@
 //! No triangle is much larger than an equilateral triangle on the requested edge.
 //!
 //! Drawn outlines are not always clean, so they are repaired first. Points at one spot count once, and long segments
-//! are divided. Where lines cross, the crossing becomes a vertex. The winding number defines the enclosed area: it is
+//! are divided. Where lines cross, the crossing becomes a vertex (`constraints.rs`). The winding number defines the enclosed area: it is
 //! not 0 in the outlines and 0 in the holes. As in rendering, an outline that folds over itself has no hole at the
 //! fold.
 //!
@@ -13,8 +13,12 @@
 //! of the requested edge is smoothed away. Triangles that remain slivers, at crossings of a tiny angle, are left out.
 
 use rototoon_base::geometry::{Point, polygon, polyline};
-use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
+use spade::{AngleLimit, RefinementParameters, Triangulation};
 use std::collections::BTreeMap;
+
+mod constraints;
+
+use constraints::{Mesh, constrain};
 
 /// Smallest angle of refined triangles in degrees. Refinement is proven to end below 20.7; at this angle it nearly
 /// always ends.
@@ -102,10 +106,8 @@ pub fn triangulate(outlines: &[Vec<Point>], holes: &[Vec<Point>], edge: f64) -> 
     let rings: Vec<Vec<Point>> =
         outlines.iter().chain(holes).enumerate().map(|(k, ring)| cleaned(k, ring, edge)).collect::<Result<_, _>>()?;
     let (outside, inside) = rings.split_at(outlines.len());
-    let mut mesh = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
-    for ring in &rings {
-        constrain(&mut mesh, ring);
-    }
+    let mut mesh = Mesh::new();
+    constrain(&mut mesh, &rings);
     let largest = LARGEST * 3f64.sqrt() / 4.0 * edge * edge;
     // The area outside of the outlines is not refined: the flat angles between an outline and its hull would produce
     // tiny triangles.
@@ -168,17 +170,6 @@ fn encloses(ring: &[Point], least: f64) -> bool {
     polygon::signed_area(ring).abs() > least || fan > 4.0 * least
 }
 
-fn constrain(mesh: &mut ConstrainedDelaunayTriangulation<Point2<f64>>, ring: &[Point]) {
-    // Coordinates are finite and of usable size here; insertion requires no more.
-    let handles: Vec<_> = ring.iter().filter_map(|p| mesh.insert(Point2::new(p.x, p.y)).ok()).collect();
-    for k in 0..handles.len() {
-        let (from, to) = (handles[k], handles[(k + 1) % handles.len()]);
-        if from != to {
-            mesh.add_constraint_and_split(from, to, |crossing| crossing);
-        }
-    }
-}
-
 /// Greatest number of vertices to add. Sharp ends would need ever more of them.
 fn most(rings: &[Vec<Point>], largest: f64) -> usize {
     let points: Vec<Point> = rings.iter().flatten().copied().collect();
@@ -197,11 +188,7 @@ fn winding(ring: &[Point], p: Point) -> i32 {
         .sum()
 }
 
-fn collect(
-    mesh: &ConstrainedDelaunayTriangulation<Point2<f64>>,
-    outlines: &[Vec<Point>],
-    holes: &[Vec<Point>],
-) -> Result<Triangles, TriangulateError> {
+fn collect(mesh: &Mesh, outlines: &[Vec<Point>], holes: &[Vec<Point>]) -> Result<Triangles, TriangulateError> {
     let mut number = vec![usize::MAX; mesh.num_vertices()];
     let mut found = Triangles { vertices: Vec::new(), triangles: Vec::new() };
     for face in mesh.inner_faces() {
@@ -397,6 +384,33 @@ mod tests {
         twice.extend([v(0.0, 0.0), v(20.0, 0.0), v(20.0, 20.0), v(0.0, 20.0)]);
         let mesh = triangulate(&[twice], &[], 5.0).unwrap();
         assert!((area(&mesh) - 900.0).abs() < 1.0, "{}", area(&mesh));
+    }
+
+    #[test]
+    fn an_outline_that_runs_back_nearly_over_itself_is_filled_by_winding() {
+        // Found by fuzzing: rounded crossings lie so that they change the order along a line.
+        let ring = [
+            [8.056640625, 11.0478515625],
+            [27.849609375, 29.1083984375],
+            [8.056640625, 11.0478515625],
+            [14.6201171875, 24.3486328125],
+            [25.34765625, 29.109375],
+            [8.6123046875, 14.533203125],
+            [12.0361328125, 25.0498046875],
+            [27.609375, 8.6005859375],
+            [8.53125, 26.349609375],
+            [29.1123046875, 14.533203125],
+            [8.056640625, 11.0478515625],
+            [8.53125, 24.35546875],
+            [8.61328125, 8.056640625],
+            [8.04296875, 25.533203125],
+        ]
+        .map(|[x, y]| Point::new(x, y));
+        let mesh = triangulate(&[ring.into()], &[], 2.272419664151746).unwrap();
+        let inside =
+            |k: i32| winding(&ring, Point::new(f64::from(k % 300), f64::from(k / 300)) * 0.1 + Point::splat(5.03));
+        let wanted = (0..300 * 300).filter(|&k| inside(k) != 0).count() as f64 * 0.01;
+        assert!((area(&mesh) / wanted - 1.0).abs() < 0.01, "found {}, expected {wanted}", area(&mesh));
     }
 
     #[test]

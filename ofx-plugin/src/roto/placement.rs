@@ -44,7 +44,8 @@ impl Placement {
         Ok(Self::new(footage, region, aspect, render_scale, fitting.is_some() || known.is_empty()))
     }
 
-    fn new(footage: &Footage, region: &Region, aspect: f64, render_scale: [f64; 2], matches: bool) -> Self {
+    /// Stretches the footage over a region of canonical coordinates. `aspect` is the width of a pixel over its height.
+    pub fn new(footage: &Footage, region: &Region, aspect: f64, render_scale: [f64; 2], matches: bool) -> Self {
         let scale = Point::new(render_scale[0] / aspect, render_scale[1]);
         let size = Point::new(region.x2 - region.x1, region.y2 - region.y1);
         let factor = size * scale / Point::new(footage.width.max(1) as f64, footage.height.max(1) as f64);
@@ -81,7 +82,9 @@ impl Placement {
 
 /// Converts a rectangle of the host's pixels to a window with y turned down.
 pub fn window(bounds: &Bounds) -> Window {
-    Window { left: bounds.x1.into(), top: (-bounds.y2).into(), right: bounds.x2.into(), bottom: (-bounds.y1).into() }
+    // Turned down in 64 bits: a host may say "infinite" with the least 32-bit number, which has no positive counterpart.
+    let [left, y1, right, y2] = [bounds.x1, bounds.y1, bounds.x2, bounds.y2].map(i64::from);
+    Window { left, top: -y2, right, bottom: -y1 }
 }
 
 fn format(effect: &Effect) -> Option<Region> {
@@ -119,5 +122,12 @@ mod tests {
     fn rows_are_turned_down() {
         let bounds = Bounds { x1: 1, y1: 2, x2: 5, y2: 9 };
         assert_eq!(window(&bounds), Window { left: 1, top: -9, right: 5, bottom: -2 });
+    }
+
+    #[test]
+    fn infinite_rectangles_are_turned_down_too() {
+        let all = Bounds { x1: i32::MIN, y1: i32::MIN, x2: i32::MAX, y2: i32::MAX };
+        let (least, most) = (i64::from(i32::MIN), i64::from(i32::MAX));
+        assert_eq!(window(&all), Window { left: least, top: -most, right: most, bottom: -least });
     }
 }

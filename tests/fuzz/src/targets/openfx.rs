@@ -1,0 +1,118 @@
+//! The OpenFX plugin without a host: stored texts, names of parts, pixels, and the pictures of decoded settings.
+
+use crate::given::{self, name, number};
+use arbitrary::{Result, Unstructured};
+use rototoon::project::Document;
+use rototoon::scene::Raster;
+use rototoon_ofx::ofx::Bounds;
+use rototoon_ofx::ofx::effect::Region;
+use rototoon_ofx::pixels::{CLEAR, Depth, Format, Layout, Premultiplication};
+use rototoon_ofx::roto::parts::selected;
+use rototoon_ofx::roto::picture::Picture;
+use rototoon_ofx::roto::placement::{Placement, window};
+use rototoon_ofx::roto::settings::{Output, Settings};
+use rototoon_ofx::roto::stored;
+
+/// The largest side of a window in pixels.
+const MOST_SIDE: i32 = 32;
+
+/// Reads the bytes as a text that a host stored, then draws a decoded document.
+pub fn openfx(data: &[u8]) {
+    let said = String::from_utf8_lossy(data);
+    let _ = stored::decode(&said);
+    assert_eq!(stored::decode(&stored::encode(&said)).as_deref(), Ok(&*said), "a stored text changed");
+    let (text, mut u) = given::text_and_rest(data, "{", given::document::document);
+    let Ok(document) = Document::parse(&text, "fuzz") else { return };
+    let _ = drawn(&document, &mut u);
+}
+
+/// Draws into a window and writes the pixels in a host's format.
+fn drawn(document: &Document, u: &mut Unstructured) -> Result<()> {
+    let settings = settings(u)?;
+    let placement = placement(document, u)?;
+    let bounds = bounds(u)?;
+    if bounds.is_empty() || bounds.width() > MOST_SIDE as usize {
+        return Ok(());
+    }
+    let (parts, _) = selected(&document.scene.parts, &settings.parts);
+    let picture = Picture::new(&document.scene, &parts, &settings, &placement);
+    let window = window(&bounds);
+    let _ = picture.changes_nothing(window);
+    if let (Some(found), _) = picture.bounds() {
+        let _ = placement.canonical(&found);
+    }
+    let mut pixels = Raster::from_fn(window.width(), window.height(), |_, _| CLEAR);
+    let mut rows = u.int_in_range(0..=255u8)?;
+    let painted = picture.paint(window, &mut pixels, &mut || {
+        rows = rows.saturating_sub(1);
+        rows != 1
+    });
+    if painted.is_some() {
+        assert!(pixels.data().iter().flatten().all(|v| v.is_finite()), "a pixel is not finite");
+    }
+    let format = format(u)?;
+    let mut bytes = vec![0; format.bytes() * pixels.data().len()];
+    format.write(pixels.data(), &mut bytes);
+    let mut again = vec![CLEAR; pixels.data().len()];
+    format.read(&bytes, &mut again);
+    Ok(())
+}
+
+fn settings(u: &mut Unstructured) -> Result<Settings> {
+    // What the plugin reads of a host is made finite, as in `Settings::read`.
+    let finite = |u: &mut Unstructured| number(u).map(|v| if v.is_finite() { v } else { 0.0 });
+    let output = *u.choose(&[Output::Cutout, Output::Matte, Output::Overlay, Output::Ids])?;
+    let parts = if u.ratio(1u8, 4)? { name(u)? } else { String::new() };
+    let colour = [0.5, 1.0, 0.0, f32::from(u.arbitrary::<u8>()?) / 255.0];
+    let mut shape = [0.0; 4];
+    for value in &mut shape {
+        *value = if u.ratio(1u8, 2)? { finite(u)? } else { 0.0 };
+    }
+    let [grow, feather, shutter, width] = shape;
+    Ok(Settings {
+        output,
+        document_time: finite(u)?,
+        parts,
+        curves: u.arbitrary()?,
+        invert: u.arbitrary()?,
+        grow: if u.arbitrary()? { -grow } else { grow },
+        feather: feather.max(0.0),
+        shutter: shutter.max(0.0),
+        samples: u.int_in_range(1..=4)?,
+        line_width: width.max(0.0),
+        line_colour: colour,
+    })
+}
+
+fn placement(document: &Document, u: &mut Unstructured) -> Result<Placement> {
+    let footage = &document.scene.footage;
+    let mut region = Region { x1: 0.0, y1: 0.0, x2: footage.width as f64, y2: footage.height as f64 };
+    let (mut scale, mut aspect) = ([1.0; 2], 1.0);
+    if u.ratio(1u8, 4)? {
+        region = Region { x1: number(u)?, y1: number(u)?, x2: number(u)?, y2: number(u)? };
+        (scale, aspect) = ([number(u)?, number(u)?], number(u)?);
+    }
+    Ok(Placement::new(footage, &region, aspect, scale, u.arbitrary()?))
+}
+
+fn bounds(u: &mut Unstructured) -> Result<Bounds> {
+    let start = |u: &mut Unstructured| if u.ratio(1u8, 8)? { u.arbitrary() } else { u.int_in_range(-8..=40) };
+    let (x1, y1): (i32, i32) = (start(u)?, start(u)?);
+    let (x2, y2) = (u.int_in_range(0..=MOST_SIDE)?, u.int_in_range(0..=MOST_SIDE)?);
+    let one = Bounds { x1, y1, x2: x1.saturating_add(x2), y2: y1.saturating_add(y2) };
+    let any = Bounds { x1: u.arbitrary()?, y1: u.arbitrary()?, x2: u.arbitrary()?, y2: u.arbitrary()? };
+    let _ = (one.shared(&any).is_empty(), any.width(), window(&any));
+    Ok(one)
+}
+
+fn format(u: &mut Unstructured) -> Result<Format> {
+    Ok(Format {
+        depth: *u.choose(&[Depth::Byte, Depth::Short, Depth::Half, Depth::Float])?,
+        layout: *u.choose(&[Layout::Rgba, Layout::Rgb, Layout::Alpha])?,
+        premultiplication: *u.choose(&[
+            Premultiplication::Opaque,
+            Premultiplication::Multiplied,
+            Premultiplication::Separate,
+        ])?,
+    })
+}

@@ -1,0 +1,22 @@
+//! SVG drawings and animations of other programs.
+
+use crate::given;
+use rototoon::import::{into_scene, svg::svg as import};
+use rototoon::project::Document;
+use rototoon::scene::Scene;
+
+/// Reads the bytes as SVG and puts the shapes into a scene.
+pub fn svg(data: &[u8]) {
+    let text = String::from_utf8_lossy(data);
+    let footage = given::footage();
+    if let Ok(found) = import(&text, &footage, 2) {
+        let mut scene = Scene { footage, parts: Vec::new() };
+        into_scene(&mut scene, found.shapes);
+        // Coordinates may be too large for a document; then it is not saved, with a message.
+        let _ = Document::new(scene.clone()).problems();
+        for part in &scene.parts {
+            let count = part.point_count();
+            assert!(part.keys.values().all(|points| points.len() == count), "keys with different numbers of points");
+        }
+    }
+}
