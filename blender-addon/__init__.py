@@ -1,11 +1,11 @@
 """Rototoon: follows the contours of drawn characters through a film. The Blender extension.
 
-This file only registers. The code is in rooms. The `__init__.py` of each room says what belongs there and what it may import:
+This file only registers. The code is in packages. The `__init__.py` of each package says what belongs there and what it may import:
 
 ====================  ==============================================================================
 `rototoon`            the Python package; it needs no Blender
 `blender`             Blender's data
-`common`              what operators of all rooms share
+`common`              what operators of all packages share
 `capture`             contours: footage, keys, tracking, live, snapping
 `strokes`             light curves and hidden lines, for any drawing
 `tween`               drawings between keys
@@ -15,7 +15,7 @@ This file only registers. The code is in rooms. The `__init__.py` of each room s
 `ui`                  panels, lists, overlays, preferences
 ====================  ==============================================================================
 
-`properties` puts the properties of the rooms together. `handlers` runs when files are opened, saved and changed.
+`properties` puts the properties of the packages together. `handlers` runs when files are opened, saved and changed.
 """
 
 

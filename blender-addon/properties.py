@@ -1,4 +1,4 @@
-"""The properties of objects and of the window. Each room defines its own; this file puts them together."""
+"""The properties of objects and of the window. Each package defines its own; this file puts them together."""
 
 import bpy
 

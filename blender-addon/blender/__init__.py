@@ -1,6 +1,6 @@
 """Blender's data: drawings, layers, cameras, pictures, bones, masks.
 
-`grease_pencil` wraps Blender's Grease Pencil API. Only this room uses that API. The other modules:
+`grease_pencil` wraps Blender's Grease Pencil API. Only this package uses that API. The other modules:
 
 ====================================  ==============================================================
 `strokes`, `stroke_lines`, `colours`  complete drawings as arrays; strokes as lines; their visible colours

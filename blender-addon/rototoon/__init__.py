@@ -30,7 +30,7 @@ nothing has changed then.
 `native`              the native library: loading, handles, errors
 ====================  ==============================================================================
 
-May import: no other room, and nothing beside Python's standard library.
+May import: no other package, and nothing beside Python's standard library.
 """
 
 from . import style, tween

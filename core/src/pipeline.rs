@@ -5,8 +5,8 @@
 //! or when cancelled, the document is unchanged.
 
 mod check;
+pub mod memory;
 mod reshape;
-pub mod room;
 pub mod spans;
 mod style;
 mod tween;
@@ -145,7 +145,7 @@ pub fn track(
     progress: &dyn Progress,
 ) -> Result<Tracking, PipelineError> {
     let frames = frames(document, folder)?;
-    room::to_follow(&document.scene.footage)?;
+    memory::to_follow(&document.scene.footage)?;
     let tracking = Tracker::new(*options).track(&in_effect(&document.scene), &frames, progress)?;
     store(&mut document.scene, &tracking);
     Ok(tracking)
@@ -197,7 +197,7 @@ pub fn snap(
     progress: &dyn Progress,
 ) -> Result<(), PipelineError> {
     let frames = frames(document, folder)?;
-    room::to_follow(&document.scene.footage)?;
+    memory::to_follow(&document.scene.footage)?;
     let curves = snap_scene(&document.scene, &frames, options, progress)?;
     for (part, curves) in document.scene.parts.iter_mut().zip(curves) {
         part.curves = curves;
@@ -260,7 +260,7 @@ pub fn render(
     progress.report("Rendering", 0.0)?;
     let footage = &document.scene.footage;
     let parts = plan.parts.as_ref().map_or(document.scene.parts.len(), Vec::len);
-    let at_once = room::frames_at_once(footage, &job.picture, parts, rayon::current_num_threads().max(1))?;
+    let at_once = memory::frames_at_once(footage, &job.picture, parts, rayon::current_num_threads().max(1))?;
     for batch in plan.frames.chunks(at_once) {
         let results: Vec<Result<(), PipelineError>> = batch
             .par_iter()

@@ -50,7 +50,7 @@ def test_hidden_parts_are_blends_of_the_given_points():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda s: fit_strokes(s, 0.0), "tolerance 0 px"),
+        (lambda s: fit_strokes(s, 0.0), "tolerance: found 0 px"),
         (lambda s: fit_strokes(s, math.nan), "tolerance NaN px"),
         (lambda s: fit_strokes(s, 1.0, [1.0], 1), "values: 1 numbers, expected 2"),
         (lambda s: fit_strokes(strokes([[(0.0, math.nan)]]), 1.0), "stroke 0: point 0"),

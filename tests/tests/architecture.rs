@@ -1,15 +1,15 @@
-//! Which module may use which, and that no files import each other in a ring.
+//! Which module may use which, and that no files import each other in a cycle.
 //!
 //! Cargo holds the arrows between the crates. Within a crate this test holds them:
 //!
 //! - `core/base`: `numeric ← geometry ← {curve, scene}`; `file` and `memory` use none of them.
 //! - `core/track`: `contract ← shared ← {zhou2011, rotoscope, rototoon} ← tracker`. The presets do not use each other.
-//! - In every crate: files of different folders make no ring, and no more than two files of one folder do.
+//! - In every crate: no import cycle joins files of different folders, or more than two files of one folder.
 //!
 //! [`imports`] reads the imports, and says which of them count between a `mod.rs` and its files.
 
+mod cycles;
 mod imports;
-mod rings;
 mod tokens;
 
 use imports::{Arrows, Sources};
@@ -94,8 +94,8 @@ fn no_files_import_each_other_in_a_ring() {
         let sources = Sources::read(&src);
         let arrows = sources.arrows();
         read += arrows.len();
-        for ring in rings::rings(&sources, &arrows).iter().filter(|ring| !rings::allowed(&sources, ring)) {
-            wrong += &format!("{}:\n{}", src.display(), rings::described(&sources, &arrows, ring));
+        for cycle in cycles::cycles(&sources, &arrows).iter().filter(|cycle| !cycles::allowed(&sources, cycle)) {
+            wrong += &format!("{}:\n{}", src.display(), cycles::described(&sources, &arrows, cycle));
         }
     }
     assert!(wrong.is_empty(), "{wrong}");

@@ -1,7 +1,7 @@
 //! The cross-crate tests, one module a topic.
 //!
 //! - `documents`: reading and writing project documents, good and bad
-//! - `architecture`: which module may use which, and no ring of imports
+//! - `architecture`: which module may use which, and no cycle of imports
 //! - `crates`: the picture of the crates in the documentation
 //! - `pages`: the documentation's tables of parameters
 //! - `features`: nothing that packages share is compiled twice

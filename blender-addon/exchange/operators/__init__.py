@@ -1,4 +1,4 @@
-"""The operators of this room, one a file."""
+"""The operators of this package, one a file."""
 
 from . import contours_to_mask, export_document, import_document
 

@@ -1,4 +1,4 @@
-"""The operators of this room, one a file."""
+"""The operators of this package, one a file."""
 
 from . import clear_in_betweens, in_between, match_strokes, update_in_betweens
 

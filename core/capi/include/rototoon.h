@@ -23,6 +23,8 @@
 //   several threads may read them.
 // - Progress callbacks run on the thread that made the call. They must not use the session of that call.
 // - A call that does not succeed leaves the session's document as it was.
+// - A process may be forked while no call runs. Each call of the child makes threads of its own, and the handles that
+//   it inherits work.
 
 
 

@@ -167,7 +167,7 @@ impl Session {
         let options = Options::parse(options, Stage::Track)?;
         let (preset, id) = preset(options.choice("preset"))?;
         let pictures = pictures(&mut self.pictures, &self.document, &self.folder)?;
-        pipeline::room::to_follow(&self.document.scene.footage).map_err(Failure::error)?;
+        pipeline::memory::to_follow(&self.document.scene.footage).map_err(Failure::error)?;
         let scene = pipeline::in_effect(&self.document.scene);
         let tracker =
             self.trackers.entry(id).or_insert_with(|| Tracker::new(TrackOptions { preset, ..TrackOptions::default() }));
@@ -186,7 +186,7 @@ impl Session {
         let options = Options::parse(options, Stage::Snap)?;
         let snapping = snap_options(&options)?;
         let pictures = pictures(&mut self.pictures, &self.document, &self.folder)?;
-        pipeline::room::to_follow(&self.document.scene.footage).map_err(Failure::error)?;
+        pipeline::memory::to_follow(&self.document.scene.footage).map_err(Failure::error)?;
         let scene = &self.document.scene;
         let found = work::run(options.number("threads") as usize, go_on, |progress: &dyn Progress| {
             snap_scene(scene, pictures, &snapping, progress).map_err(|error| match error {

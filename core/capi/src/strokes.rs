@@ -265,7 +265,7 @@ mod tests {
             fitted(&strokes, &[], 0, tolerance).err().unwrap().to_string()
         };
         assert!(message(&[0, 1, 2], &[0.0, 0.0, f64::NAN, 1.0], 1.0).starts_with("stroke 1: point 0"));
-        assert!(message(&[0, 1], &[0.0, 0.0], 0.0).contains("tolerance 0"));
+        assert!(message(&[0, 1], &[0.0, 0.0], 0.0).contains("tolerance: found 0"));
         assert!(message(&[0, 2], &[0.0, 0.0], 1.0).starts_with("points:"));
         assert!(message(&[0, 2, 1], &[0.0; 2], 1.0).starts_with("offsets:"));
         assert!(message(&[], &[], 1.0).starts_with("offsets:"));

@@ -478,7 +478,7 @@ fn fit_names_what_is_wrong_and_writes_nothing() {
     let far = r#"{"curves": [{"closed": true, "points": [[0, 0], [1e12, 0]]}]}"#;
     let kind = r#"{"curves": [{"closed": 1, "points": [[0, 0]]}]}"#;
     for (document, message) in [
-        (empty, "curves[1].points: no points, expected at least one"),
+        (empty, "curves[1].points: found no points, expected at least one"),
         (far, "curves[0].points[1]: found (1000000000000, 0), expected numbers between -1e9 and 1e9"),
         (kind, "curves[0].closed: found 1, expected true or false"),
         ("{", "line 1, column 1: EOF while parsing an object"),

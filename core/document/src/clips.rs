@@ -33,7 +33,7 @@ pub enum ClipsError {
         reason: String,
     },
     /// The text is not JSON.
-    #[error("{origin}: not JSON (which has no NaN or Infinity either): {reason}")]
+    #[error("{origin}: found text that is not JSON (JSON has no NaN and no Infinity): {reason}")]
     Syntax {
         /// The file.
         origin: String,
@@ -312,7 +312,10 @@ mod tests {
             error(&file(&format!("[{}, {bad}]", posture()))),
             format!("{place}, frame 1, pelvis: found [1.5,\"x\"], expected two numbers")
         );
-        assert!(error(&file("[[[NaN, 1]]]")).starts_with("f.json: not JSON (which has no NaN or Infinity either)"));
+        assert!(
+            error(&file("[[[NaN, 1]]]"))
+                .starts_with("f.json: found text that is not JSON (JSON has no NaN and no Infinity)")
+        );
         assert!(error(r#"{"rototoon_clips": 2}"#).contains("found version 2, expected 1 or less"));
         assert!(error(r#"{"rototoon_clips": 1}"#).contains("clips: found nothing, expected a list of clips"));
         assert!(error(r#"{"rototoon_clips": 1, "keypoints": ["pelvis"]}"#).contains("found 1 names, expected 17"));

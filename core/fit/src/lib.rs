@@ -128,10 +128,10 @@ impl Preset {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
     /// It has no points.
-    #[error("no points, expected at least one")]
+    #[error("found no points, expected at least one")]
     Empty,
     /// A coordinate of a point is not a number or too large.
-    #[error("point {index} is ({x}, {y}), expected numbers between -1e9 and 1e9")]
+    #[error("point {index}: found ({x}, {y}), expected numbers between -1e9 and 1e9")]
     Point {
         /// Index of the point.
         index: usize,
@@ -141,19 +141,19 @@ pub enum FitError {
         y: f64,
     },
     /// The tolerance is not a positive, finite number.
-    #[error("tolerance {found} px, expected a positive number")]
+    #[error("tolerance: found {found} px, expected a positive number")]
     Tolerance {
         /// The value found.
         found: f64,
     },
     /// Among curves fitted together, one cannot take the common number of guiding points.
-    #[error("no fit with exactly {count} guiding points keeps the tolerance")]
+    #[error("found no fit with exactly {count} guiding points within the tolerance, expected one")]
     Guides {
         /// The common number of guiding points.
         count: usize,
     },
     /// An attribute does not have one value for each point.
-    #[error("{found} values, expected one for each of {expected} points")]
+    #[error("values at the points: found {found}, expected one for each of {expected} points")]
     Values {
         /// Number of values.
         found: usize,

@@ -82,11 +82,11 @@ fn bad_input_is_named() {
     assert_eq!(fit(&[], true, &options), Err(FitError::Empty));
     for bad in [f64::NAN, f64::INFINITY, 1e10] {
         let error = fit(&[Point::ZERO, Point::new(bad, 1.0)], false, &options).unwrap_err();
-        assert!(error.to_string().starts_with(&format!("point 1 is ({bad}, 1), expected")), "{error}");
+        assert!(error.to_string().starts_with(&format!("point 1: found ({bad}, 1), expected")), "{error}");
     }
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = fit(&[Point::ZERO], false, &Options::new(bad)).unwrap_err();
-        assert_eq!(error.to_string(), format!("tolerance {bad} px, expected a positive number"));
+        assert_eq!(error.to_string(), format!("tolerance: found {bad} px, expected a positive number"));
     }
     let fit = fitted(&[Point::ZERO, Point::X], false, 1.0);
     assert_eq!(fit.attribute(&[1.0]), Err(FitError::Values { found: 1, expected: 2 }));

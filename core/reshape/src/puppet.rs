@@ -90,7 +90,7 @@ pub enum PuppetError {
     #[error(transparent)]
     Mesh(#[from] ArapError),
     /// No limb carries the part.
-    #[error("found no limb that carries it, expected at least one")]
+    #[error("carries: found no limb for the part, expected at least one")]
     NoCarrier,
 }
 

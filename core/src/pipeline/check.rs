@@ -106,7 +106,7 @@ fn described(k: usize, peg: &DrawnPeg, error: &PegError) -> (String, String) {
     let key = |frame: FrameNumber| peg_key_place(&place, index(frame), frame);
     match error {
         PegError::Parent { parent, count, .. } => {
-            (format!("{place}.parent"), format!("found {parent}, expected less than {count}"))
+            (format!("{place}.parent"), format!("found {parent}, expected a number below {count}"))
         }
         PegError::Loop { .. } => {
             (format!("{place}.parent"), "the peg is its own ancestor, expected parents without a loop".to_owned())

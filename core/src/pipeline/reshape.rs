@@ -168,7 +168,7 @@ fn fitted(set: &LimbSet, parts: &[Part], rest: FrameNumber, clip: &Clip) -> Resu
     if let Some(frame) = clip.postures.iter().position(|p| p.iter().any(|q| !q.is_finite())) {
         let (character, motion) = (&clip.character, &clip.motion);
         return Err(wrong(format!(
-            "clip ({character:?}, {motion:?}), frame {frame}: found no posture of finite numbers"
+            "clip ({character:?}, {motion:?}), frame {frame}: found a coordinate that is not finite, expected finite coordinates"
         )));
     }
     let drawn = capture(set, parts, rest..=rest).map_err(wrong)?;

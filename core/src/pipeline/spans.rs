@@ -95,7 +95,7 @@ impl Sheet {
         for &stroke in alone {
             let count = others.len();
             let Some(other) = others.get_mut(stroke) else {
-                let text = format!("found stroke {stroke} of the second drawing, expected less than {count}");
+                let text = format!("found stroke {stroke} of the second drawing, expected a number below {count}");
                 return Err(PipelineError::Tween(text));
             };
             other.points = Vec::new();
@@ -121,7 +121,7 @@ impl Sheet {
     ) -> Result<(Vec<DrawnSpan>, Vec<Option<Matching>>), PipelineError> {
         let spans = self.keys.len().saturating_sub(1);
         if let Some(found) = wanted.iter().map(|w| w.key).find(|&key| key >= spans) {
-            return Err(PipelineError::Tween(format!("found span {found}, expected less than {spans}")));
+            return Err(PipelineError::Tween(format!("found span {found}, expected a number below {spans}")));
         }
         let needed: BTreeSet<usize> =
             wanted.iter().flat_map(|w| keys_of(&self.keys, w.key).skip(1)).map(|k| k - 1).collect();
@@ -297,10 +297,10 @@ mod tests {
             let found = sheet.draw(&[wanted], &Options::default(), &MatchingOptions::default(), &Silent);
             found.unwrap_err().to_string()
         };
-        assert!(said(&sheet, wanted(4)).contains("found span 4, expected less than 4"));
+        assert!(said(&sheet, wanted(4)).contains("found span 4, expected a number below 4"));
         let outside = Wanted { key: 0, frames: vec![8] };
         assert!(said(&sheet, outside).contains("found frame 8, expected one between 0 and 8"));
         sheet.alone = vec![vec![7]];
-        assert!(said(&sheet, wanted(0)).contains("found stroke 7 of the second drawing, expected less than 2"));
+        assert!(said(&sheet, wanted(0)).contains("found stroke 7 of the second drawing, expected a number below 2"));
     }
 }

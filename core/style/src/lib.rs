@@ -217,7 +217,9 @@ pub enum StyleError {
         motion: String,
     },
     /// A clip holds what is not finite, or nothing.
-    #[error("clip ({character:?}, {motion:?}), frame {frame}: found no posture of finite numbers")]
+    #[error(
+        "clip ({character:?}, {motion:?}), frame {frame}: found a coordinate that is not finite, expected finite coordinates"
+    )]
     Broken {
         /// The clip's character.
         character: String,

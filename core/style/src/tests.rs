@@ -214,7 +214,10 @@ fn broken_clips_are_named() {
     let error = |clips: &[Clip]| translate(clips, &request(&[]), &Options::default(), &Silent).unwrap_err().to_string();
     let mut nan = library();
     nan[2].postures[5][3].x = f64::NAN;
-    assert_eq!(error(&nan), "clip (\"plain\", \"stroll\"), frame 5: found no posture of finite numbers");
+    assert_eq!(
+        error(&nan),
+        "clip (\"plain\", \"stroll\"), frame 5: found a coordinate that is not finite, expected finite coordinates"
+    );
     let mut flat = library();
     flat.iter_mut().filter(|c| c.character == "shy").for_each(|c| c.postures.fill([Point::ZERO; COUNT]));
     assert!(error(&flat).contains("character \"shy\": found a torso of length 0"));

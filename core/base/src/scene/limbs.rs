@@ -120,7 +120,7 @@ pub enum BindingError {
         last: f64,
     },
     /// The part has no contour on the frame of a drawn point.
-    #[error("drawn, frame {frame}: found no contour of {part:?} there")]
+    #[error("drawn, frame {frame}: found no contour of {part:?}, expected a frame with one")]
     NoContour {
         /// The part.
         part: String,
@@ -289,7 +289,7 @@ mod tests {
         let far = Binding::Drawn(BTreeMap::from([(0, Point::new(8.0, 0.0))]));
         assert_eq!(said(far), "drawn, frame 0: found a point 4.0 px from the contour of \"box\", expected at most 1.6");
         let none = Binding::Drawn(BTreeMap::from([(3, Point::ZERO)]));
-        assert_eq!(said(none), "drawn, frame 3: found no contour of \"box\" there");
+        assert_eq!(said(none), "drawn, frame 3: found no contour of \"box\", expected a frame with one");
         let other = Calibration { part: "arm".into(), binding: Binding::Place(0.0) };
         assert_eq!(other.bind(&parts).unwrap_err().to_string(), "part: found \"arm\", expected one of box");
     }

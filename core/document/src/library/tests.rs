@@ -42,7 +42,7 @@ fn of_a_damaged_library_the_rest_is_used() {
     let reopened = Library::open(&folder);
     let (clips, troubles) = reopened.read(reopened.entries().iter());
     assert_eq!((clips.len(), troubles.len()), (2, 1));
-    assert!(troubles[0].to_string().contains("ann-run.clip.json: not JSON"), "{}", troubles[0]);
+    assert!(troubles[0].to_string().contains("ann-run.clip.json: found text that is not JSON"), "{}", troubles[0]);
     let later = "{\"rototoon_clips\": 9, \"clips\": [], \"more\": {}}";
     fs::write(folder.join(&library.entries()[1].file), later).unwrap();
     let (clips, troubles) = reopened.read(reopened.entries().iter());

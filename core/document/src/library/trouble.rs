@@ -66,7 +66,9 @@ pub enum Trouble {
         found: usize,
     },
     /// Another file already has the clip of this character and motion.
-    #[error("{origin}: found another clip of {character:?}, {motion:?}; the one of {first} is used")]
+    #[error(
+        "{origin}: found a second clip of character {character:?} and motion {motion:?}; the clip in {first} is used"
+    )]
     Twice {
         /// Path of the file.
         origin: String,
@@ -102,7 +104,7 @@ pub enum AddError {
         reason: String,
     },
     /// Another process holds the library.
-    #[error("{}: another program has held the library for {seconds} s, expected it to be free", path.display())]
+    #[error("{}: another program has locked the library for {seconds} s, expected it to be free; close that program or try again later", path.display())]
     Locked {
         /// Path of the lock file.
         path: PathBuf,

@@ -215,7 +215,10 @@ fn what_is_wrong_is_named_and_changes_nothing() {
     );
     let mut broken = motion.clone();
     broken.postures[1][5].x = f64::NAN;
-    assert_eq!(said(&document, &job(&broken)), "clip (\"b\", \"wave\"), frame 1: found no posture of finite numbers");
+    assert_eq!(
+        said(&document, &job(&broken)),
+        "clip (\"b\", \"wave\"), frame 1: found a coordinate that is not finite, expected finite coordinates"
+    );
     struct Never;
     impl Progress for Never {
         fn report(&self, _: &str, done: f64) -> Result<(), Cancelled> {

@@ -34,7 +34,7 @@ pub enum BetweenError {
         expected: usize,
     },
     /// A matching names a stroke that does not exist.
-    #[error("matching of frame {frame} and the next key: found stroke {found}, expected less than {count}")]
+    #[error("matching of frame {frame} and the next key: found stroke {found}, expected a number below {count}")]
     Stroke {
         /// Frame of the earlier key.
         frame: FrameNumber,
@@ -52,7 +52,7 @@ pub enum BetweenError {
         source: SpacingError,
     },
     /// A stroke hangs on a peg that does not exist.
-    #[error("frame {frame}, stroke {stroke}: found peg {found}, expected less than {count}")]
+    #[error("frame {frame}, stroke {stroke}: found peg {found}, expected a number below {count}")]
     Peg {
         /// Frame of the key.
         frame: FrameNumber,
@@ -64,7 +64,7 @@ pub enum BetweenError {
         count: usize,
     },
     /// The strength of arcs is outside 0 to 1.
-    #[error("arcs are {found}, expected 0 to 1")]
+    #[error("arcs: found {found}, expected a number from 0 to 1")]
     Arcs {
         /// The value found.
         found: f64,

@@ -144,7 +144,7 @@ fn unusable_input_is_reported() {
     let two = |a: i32, b: i32| vec![key(a, vec![line(1.0)]), key(b, vec![line(2.0)])];
     assert_eq!(run(two(4, 4), &[by_index(1)]), "found a key on frame 4 after one on frame 4, expected a later frame");
     assert!(run(two(1, 4), &[]).starts_with("found 0 matchings, expected one for each of 1 spans"));
-    assert!(run(two(1, 4), &[by_index(2)]).contains("found stroke 1, expected less than 1"));
+    assert!(run(two(1, 4), &[by_index(2)]).contains("found stroke 1, expected a number below 1"));
     let nan = vec![key(1, vec![line(f64::NAN)]), key(2, vec![])];
     assert!(run(nan, &[Matching::default()]).starts_with("frame 1: stroke 0: point 1 is (NaN, 0)"));
     let mut chart = two(1, 4);
@@ -155,10 +155,10 @@ fn unusable_input_is_reported() {
     assert!(run(chart, &[by_index(1)]).contains("share 0 of the spacing chart is inf"));
     let options = Options { arcs: f64::NAN, ..Options::default() };
     let error = Sequence::new(vec![], &[], &GivenPegs::default(), &options).unwrap_err();
-    assert_eq!(error.to_string(), "arcs are NaN, expected 0 to 1");
+    assert_eq!(error.to_string(), "arcs: found NaN, expected a number from 0 to 1");
     let pegs = GivenPegs { of: vec![vec![Some(3)]], ..GivenPegs::default() };
     let error = Sequence::new(two(1, 4), &[by_index(1)], &pegs, &Options::default()).unwrap_err();
-    assert_eq!(error.to_string(), "frame 1, stroke 0: found peg 3, expected less than 0");
+    assert_eq!(error.to_string(), "frame 1, stroke 0: found peg 3, expected a number below 0");
     assert!(Sequence::new(vec![], &[], &GivenPegs::default(), &Options::default()).unwrap().at(0).is_empty());
 }
 

@@ -8,7 +8,7 @@ use rototoon_base::geometry::{Point, polyline};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PathError {
     /// There are no points.
-    #[error("no points, expected at least one")]
+    #[error("found no points, expected at least one")]
     Empty,
     /// A coordinate is not a number, or outside −1e9 to 1e9.
     #[error("point {index} is ({x}, {y}), expected numbers between -1e9 and 1e9")]

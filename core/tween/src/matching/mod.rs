@@ -123,7 +123,7 @@ pub enum MatchingError {
     #[error("second drawing: {0}")]
     Second(BadPoint),
     /// A pair made by hand names a stroke that does not exist.
-    #[error("pair {pair}: found stroke {found} of the {drawing} drawing, expected less than {count}")]
+    #[error("pair {pair}: found stroke {found} of the {drawing} drawing, expected a number below {count}")]
     Missing {
         /// Index of the pair made by hand.
         pair: usize,

@@ -111,8 +111,8 @@ fn wrong_hand_made_pairs_are_named() {
         match_strokes(&strokes, &strokes, hands, &Options::default(), &Silent).unwrap_err().to_string()
     };
     let pair = |from, to| HandPair { from, to };
-    assert_eq!(said(&[pair(2, None)]), "pair 0: found stroke 2 of the first drawing, expected less than 1");
-    assert_eq!(said(&[pair(0, Some(4))]), "pair 0: found stroke 4 of the second drawing, expected less than 1");
+    assert_eq!(said(&[pair(2, None)]), "pair 0: found stroke 2 of the first drawing, expected a number below 1");
+    assert_eq!(said(&[pair(0, Some(4))]), "pair 0: found stroke 4 of the second drawing, expected a number below 1");
     assert_eq!(
         said(&[pair(0, Some(0)), pair(0, None)]),
         "pair 1: stroke 0 of the first drawing has a pair made by hand already"

@@ -72,7 +72,7 @@ pub struct Peg {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PegError {
     /// A parent does not exist.
-    #[error("peg {name:?}: found parent {parent}, expected less than {count}")]
+    #[error("peg {name:?}: found parent {parent}, expected a number below {count}")]
     Parent {
         /// Name of the peg.
         name: String,

@@ -91,7 +91,7 @@ fn pegs_that_form_no_tree_are_refused() {
     let wrong = said(vec![peg("a", Some(1)), peg("b", Some(2)), peg("c", Some(1))]);
     assert_eq!(wrong, "peg \"b\" is its own ancestor, expected parents without a loop");
     assert!(said(vec![peg("a", Some(0))]).contains("is its own ancestor"));
-    assert_eq!(said(vec![peg("a", Some(7))]), "peg \"a\": found parent 7, expected less than 1");
+    assert_eq!(said(vec![peg("a", Some(7))]), "peg \"a\": found parent 7, expected a number below 1");
     let far = Peg { pivot: p(f64::INFINITY, 0.0), ..peg("a", None) };
     assert_eq!(said(vec![far]), "peg \"a\": the pivot is (inf, 0), expected numbers between -1e9 and 1e9");
     let zero = moving("a", None, Point::ZERO, Point::ZERO, 0.0, 0.0);

@@ -94,7 +94,7 @@ pub enum MotionError {
         point: &'static str,
     },
     /// The torso has no positive, finite length.
-    #[error("found a torso of length {found} (pelvis over chest to neck), expected a positive length")]
+    #[error("torso (pelvis to chest to neck): found length {found}, expected a positive length")]
     Torso {
         /// Its length.
         found: f64,

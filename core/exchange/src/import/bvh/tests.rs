@@ -237,7 +237,7 @@ fn what_cannot_be_seen_is_told() {
         assert!(error(&text, &Options { fps: Some(fps), ..Options::default() }).starts_with("frames a second: found"));
     }
     let point = file(&USUAL, &[[0.0; 3]; COUNT], &frames);
-    assert!(error(&point, &Options::default()).starts_with("found a torso of length 0"));
+    assert!(error(&point, &Options::default()).starts_with("torso (pelvis to chest to neck): found length 0"));
     let far = text.replace("OFFSET 0 2 0", "OFFSET 0 1e308 0");
     assert_eq!(
         error(&far, &Options::default()),

@@ -1,6 +1,6 @@
-"""The rooms of the add-on: which may import which, no rings, and one room for Blender's Grease Pencil API.
+"""The packages of the add-on: which may import which, no cycles, and one package for Blender's Grease Pencil API.
 
-Each room says in the docstring of its `__init__.py` what it may import. These tests read the source and start nothing of it.
+Each package says in the docstring of its `__init__.py` what it may import. These tests read the source and start nothing of it.
 """
 
 import ast
@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from conftest import ADDON
 
-ROOMS = sorted(path.parent.name for path in ADDON.glob("*/__init__.py"))
+PACKAGES = sorted(path.parent.name for path in ADDON.glob("*/__init__.py"))
 GREASE_PENCIL = {
     "add_strokes", "attributes", "curve_offsets", "frame_number", "grease_pencil", "grease_pencils", "grease_pencils_v3",
     "keyframe_type", "layer_groups", "matrix_parent_inverse", "parent_bone", "parent_group", "remove_strokes",
@@ -54,36 +54,36 @@ def imports(name: str) -> set[str]:
     return found
 
 
-def room(name: str) -> str:
-    """The room of a module; "" for the files beside the rooms."""
+def package(name: str) -> str:
+    """The package of a module; "" for the files beside the packages."""
     first = name.split(".")[0]
-    return first if first in ROOMS else ""
+    return first if first in PACKAGES else ""
 
 
 def allowed(name: str) -> set[str]:
-    """The rooms that a room may import, as its docstring says."""
+    """The packages that a package may import, as its docstring says."""
     said = ast.get_docstring(tree(name)) or ""
     found = re.search(r"May import: ([^\n]*)", said)
     assert found, f'{name}/__init__.py: expected a docstring with a line "May import: …"'
-    return set(ROOMS) if found[1] == "every room." else set(re.findall(r"`(\w+)`", found[1]))
+    return set(PACKAGES) if found[1] == "every package." else set(re.findall(r"`(\w+)`", found[1]))
 
 
 def test_all_files_lie_in_rooms():
-    assert ROOMS == ["blender", "bones", "capture", "common", "exchange", "rototoon", "strokes", "style", "tween", "ui"]
-    assert [name for name in modules() if not room(name)] == ["", "handlers", "properties"]
+    assert PACKAGES == ["blender", "bones", "capture", "common", "exchange", "rototoon", "strokes", "style", "tween", "ui"]
+    assert [name for name in modules() if not package(name)] == ["", "handlers", "properties"]
 
 
-@pytest.mark.parametrize("name", ROOMS)
-def test_rooms_import_what_they_may(name):
+@pytest.mark.parametrize("name", PACKAGES)
+def test_packages_import_what_they_may(name):
     may = allowed(name) | {name}
-    assert may <= set(ROOMS)
-    for module in (each for each in modules() if room(each) == name):
+    assert may <= set(PACKAGES)
+    for module in (each for each in modules() if package(each) == name):
         for other in imports(module):
-            assert room(other) in may, f"{module} imports {other}; {name} may import {sorted(may)}"
+            assert package(other) in may, f"{module} imports {other}; {name} may import {sorted(may)}"
 
 
-def rings(arrows: dict[str, set[str]]) -> list[list[str]]:
-    """The rings of a graph, each once for the place where it was entered."""
+def cycles(arrows: dict[str, set[str]]) -> list[list[str]]:
+    """The cycles of a graph, each once for the place where it was entered."""
     found, done = [], set()
 
     def visit(name: str, way: list[str]) -> None:
@@ -100,21 +100,21 @@ def rings(arrows: dict[str, set[str]]) -> list[list[str]]:
 
 
 def test_rings_are_found():
-    assert rings({"a": {"b"}, "b": {"c"}, "c": {"a"}}) == [["a", "b", "c", "a"]]
-    assert rings({"a": {"b", "c"}, "b": {"c"}}) == []
+    assert cycles({"a": {"b"}, "b": {"c"}, "c": {"a"}}) == [["a", "b", "c", "a"]]
+    assert cycles({"a": {"b", "c"}, "b": {"c"}}) == []
 
 
 def test_no_import_ring_among_modules():
-    assert rings({name: imports(name) for name in modules()}) == []
+    assert cycles({name: imports(name) for name in modules()}) == []
 
 
 def test_no_ring_among_rooms():
-    assert rings({name: allowed(name) - {name} for name in ROOMS}) == []
+    assert cycles({name: allowed(name) - {name} for name in PACKAGES}) == []
 
 
 def test_the_package_needs_nothing_but_python():
     for name in modules():
-        if room(name) != "rototoon":
+        if package(name) != "rototoon":
             continue
         for node in ast.walk(tree(name)):
             if isinstance(node, ast.Import):
@@ -144,7 +144,7 @@ def test_uses_of_the_grease_pencil_api_are_found():
 
 def test_only_the_room_blender_knows_the_grease_pencil_api():
     for name in modules():
-        if room(name) == "blender":
+        if package(name) == "blender":
             continue
         aliases = (alias for node in ast.walk(tree(name)) if isinstance(node, ast.ImportFrom) for alias in node.names)
         ours = {alias.asname or alias.name for alias in aliases}

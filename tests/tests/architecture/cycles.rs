@@ -1,16 +1,16 @@
-//! Files that import each other in a ring.
+//! Files that import each other in a cycle.
 
 use super::imports::{Arrows, Sources};
 use std::collections::BTreeSet;
 
-/// Each ring of more than one file, as indices of files.
-pub fn rings(sources: &Sources, arrows: &Arrows) -> Vec<BTreeSet<usize>> {
+/// Each cycle of more than one file, as indices of files.
+pub fn cycles(sources: &Sources, arrows: &Arrows) -> Vec<BTreeSet<usize>> {
     let reached: Vec<BTreeSet<usize>> = (0..sources.files.len()).map(|file| reached(file, arrows)).collect();
-    let ring = |file: usize| -> BTreeSet<usize> {
+    let cycle = |file: usize| -> BTreeSet<usize> {
         reached[file].iter().copied().filter(|&other| reached[other].contains(&file)).collect()
     };
-    let all: BTreeSet<BTreeSet<usize>> = (0..sources.files.len()).map(ring).collect();
-    all.into_iter().filter(|ring| ring.len() > 1).collect()
+    let all: BTreeSet<BTreeSet<usize>> = (0..sources.files.len()).map(cycle).collect();
+    all.into_iter().filter(|cycle| cycle.len() > 1).collect()
 }
 
 /// The files that a file needs, directly or by others.
@@ -23,16 +23,16 @@ fn reached(file: usize, arrows: &Arrows) -> BTreeSet<usize> {
     found
 }
 
-/// Whether a ring is allowed: two files of one folder may need each other.
-pub fn allowed(sources: &Sources, ring: &BTreeSet<usize>) -> bool {
-    let folders: BTreeSet<&[String]> = ring.iter().map(|&file| sources.files[file].folder(sources)).collect();
-    ring.len() == 2 && folders.len() == 1
+/// Whether a cycle is allowed: two files of one folder may need each other.
+pub fn allowed(sources: &Sources, cycle: &BTreeSet<usize>) -> bool {
+    let folders: BTreeSet<&[String]> = cycle.iter().map(|&file| sources.files[file].folder(sources)).collect();
+    cycle.len() == 2 && folders.len() == 1
 }
 
-/// The arrows of a ring, one a line.
-pub fn described(sources: &Sources, arrows: &Arrows, ring: &BTreeSet<usize>) -> String {
+/// The arrows of a cycle, one a line.
+pub fn described(sources: &Sources, arrows: &Arrows, cycle: &BTreeSet<usize>) -> String {
     let path = |file: usize| sources.files[file].path.display();
-    let inside = arrows.iter().filter(|((from, to), _)| ring.contains(from) && ring.contains(to));
+    let inside = arrows.iter().filter(|((from, to), _)| cycle.contains(from) && cycle.contains(to));
     inside
         .map(|(&(from, to), names)| {
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
@@ -45,16 +45,16 @@ pub fn described(sources: &Sources, arrows: &Arrows, ring: &BTreeSet<usize>) -> 
 mod tests {
     use super::*;
 
-    /// The rings of some files, and whether each is allowed.
+    /// The cycles of some files, and whether each is allowed.
     fn found(files: &[(&str, &str)]) -> Vec<(Vec<String>, bool)> {
         let sources = Sources::of(files.iter().map(|(path, text)| (path.into(), (*text).to_owned())));
         let paths =
-            |ring: &BTreeSet<usize>| ring.iter().map(|&f| sources.files[f].path.display().to_string()).collect();
-        let rings = rings(&sources, &sources.arrows());
-        rings.iter().map(|ring| (paths(ring), allowed(&sources, ring))).collect()
+            |cycle: &BTreeSet<usize>| cycle.iter().map(|&f| sources.files[f].path.display().to_string()).collect();
+        let cycles = cycles(&sources, &sources.arrows());
+        cycles.iter().map(|cycle| (paths(cycle), allowed(&sources, cycle))).collect()
     }
 
-    fn ring(files: &[&str], allowed: bool) -> Vec<(Vec<String>, bool)> {
+    fn cycle(files: &[&str], allowed: bool) -> Vec<(Vec<String>, bool)> {
         vec![(files.iter().map(|&file| file.to_owned()).collect(), allowed)]
     }
 
@@ -67,17 +67,17 @@ mod tests {
             ("b/mod.rs", "pub mod two;"),
             ("b/two.rs", "pub struct Two; fn f() { crate::a::one::One; }"),
         ];
-        assert_eq!(found(&files), ring(&["a/one.rs", "b/two.rs"], false));
+        assert_eq!(found(&files), cycle(&["a/one.rs", "b/two.rs"], false));
     }
 
     #[test]
     fn two_files_of_a_folder_may_make_a_ring_and_three_may_not() {
         let two = [("lib.rs", "mod a; mod b;"), ("a.rs", "use super::b::B;"), ("b.rs", "use crate::a::A;")];
-        assert_eq!(found(&two), ring(&["a.rs", "b.rs"], true));
+        assert_eq!(found(&two), cycle(&["a.rs", "b.rs"], true));
         let three =
             [("a.rs", "use super::b::B;"), ("b.rs", "use crate::c::C;"), ("c.rs", "use super::a; type A = a::A;")];
         let files: Vec<_> = [("lib.rs", "mod a; mod b; mod c;")].into_iter().chain(three).collect();
-        assert_eq!(found(&files), ring(&["a.rs", "b.rs", "c.rs"], false));
+        assert_eq!(found(&files), cycle(&["a.rs", "b.rs", "c.rs"], false));
     }
 
     #[test]
@@ -88,7 +88,7 @@ mod tests {
             ("a/in_a.rs", ""),
             ("b.rs", "use crate::a::A; pub struct B;"),
         ];
-        assert_eq!(found(&files), ring(&["a.rs", "b.rs"], false));
+        assert_eq!(found(&files), cycle(&["a.rs", "b.rs"], false));
     }
 
     #[test]
