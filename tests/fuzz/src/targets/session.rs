@@ -93,9 +93,18 @@ fn one_call(session: &Session, u: &mut Unstructured, slow: &mut usize) -> Result
 /// Whether tracking is short: few frames of the size that the pictures have.
 fn short(session: &Session) -> bool {
     let text = session.out(call::rototoon_session_document).unwrap_or_default();
-    let fields: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-    let number = |field: &str| fields["footage"][field].as_i64().unwrap_or_default();
-    number("last").saturating_sub(number("first")) <= MOST_FRAMES && number("width").max(number("height")) <= 128
+    few_frames(&text) && footage_number(&text, "width").max(footage_number(&text, "height")) <= 128
+}
+
+/// Whether a document's footage has few frames.
+fn few_frames(document: &str) -> bool {
+    footage_number(document, "last").saturating_sub(footage_number(document, "first")) <= MOST_FRAMES
+}
+
+/// A whole number of a document's footage; 0 where there is none.
+fn footage_number(document: &str, field: &str) -> i64 {
+    let fields: serde_json::Value = serde_json::from_str(document).unwrap_or_default();
+    fields["footage"][field].as_i64().unwrap_or_default()
 }
 
 /// Tracking or snapping.
@@ -140,7 +149,9 @@ fn without_session(u: &mut Unstructured, document: &str) -> Result<()> {
                 frame(u)?,
                 frame(u)?
             );
-            abi::pair(rototoon_capture_clip, [document, &options]);
+            if few_frames(document) {
+                abi::pair(rototoon_capture_clip, [document, &options]);
+            }
         }
         2 => {
             let text = clips(u, 1, 2)?.text();
