@@ -51,7 +51,7 @@ def test_hidden_parts_are_blends_of_the_given_points():
     ("call", "message"),
     [
         (lambda s: fit_strokes(s, 0.0), "tolerance: found 0 px"),
-        (lambda s: fit_strokes(s, math.nan), "tolerance NaN px"),
+        (lambda s: fit_strokes(s, math.nan), "tolerance: found NaN px"),
         (lambda s: fit_strokes(s, 1.0, [1.0], 1), "values: 1 numbers, expected 2"),
         (lambda s: fit_strokes(strokes([[(0.0, math.nan)]]), 1.0), "stroke 0: point 0"),
         (lambda s: fit_strokes(Strokes([0, 2], s.points[:2], [0]), 1.0), "points: 2 numbers"),
