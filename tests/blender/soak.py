@@ -51,7 +51,7 @@ WORK = {
 CHANGES_KEYS = {"move_point", "move_part", "drop_key", "fit", "undo"}
 """The work that may change the artist's contours."""
 
-REFUSED = ["is a key already", "Nothing to snap", "Nothing to clear", "Nothing to release"]
+REFUSED = ["is a key already", "Nothing to snap", "Nothing to clear", "Nothing to release", "No drawings to fit"]
 """Refusals that may follow from what the artist did before. Fitted contours, for example, are the artist's, even on a
 frame that is still marked as generated."""
 
@@ -176,8 +176,11 @@ class Artist:
         assert bpy.ops.rototoon.fit_strokes() == {"FINISHED"}
         return True
 
-    def undo(self) -> None:
+    def undo(self):
+        if not bpy.ops.ed.undo.poll():
+            return False
         bpy.ops.ed.undo()
+        return True
 
     def reopen(self) -> None:
         self.compare()

@@ -16,6 +16,7 @@ const AT_ONCE: usize = 2;
 /// Names of the steps that others need.
 const ENVIRONMENTS: &str = "Python environments";
 const RUST_BUILD: &str = "Rust build";
+const RUST_DOCS: &str = "Rust documentation";
 const BUNDLE: &str = "extension bundle";
 const FILES: &str = "sample cartoon";
 
@@ -55,6 +56,7 @@ fn steps(valgrind: bool, build: Build) -> Vec<Step> {
         Step::new(ENVIRONMENTS, || environments().map(|()| None)),
         Step::new("clippy", clippy).builds(),
         Step::new(RUST_BUILD, rust_build).builds().after("clippy"),
+        Step::new(RUST_DOCS, rust_docs).builds().after("clippy").after(RUST_BUILD),
         Step::new(BUNDLE, move || bundle(&Packager::from_wheel()?, build).map(|_| None))
             .after(ENVIRONMENTS)
             .after(bundled),
@@ -88,6 +90,12 @@ fn environments() -> Result<()> {
 fn clippy() -> Result<Option<String>> {
     let arguments = [&["clippy", "--quiet"], &TESTED[..], &["--all-targets", "--", "-D", "warnings"]].concat();
     component("clippy", "clippy", &arguments)
+}
+
+/// The pages of all items, also private ones: every link in them must lead somewhere.
+fn rust_docs() -> Result<Option<String>> {
+    let arguments = ["doc", "--quiet", "--workspace", "--exclude", OFX_HOST, "--no-deps", "--document-private-items"];
+    run(cargo().args(arguments).env("RUSTDOCFLAGS", "-D warnings")).map(|()| None)
 }
 
 /// Compiles what the Rust tests and the extension need, and runs nothing.

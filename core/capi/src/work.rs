@@ -2,7 +2,7 @@
 //!
 //! The core reports progress from any of its threads. The foreign callback must not be called from there: hosts allow
 //! their API on one thread only, and every worker would wait for the interpreter lock. So the work runs on a thread of
-//! its own and writes its reports to a [`Board`]. The calling thread reads the board at a steady pace and calls back.
+//! its own and writes its reports to a `Board`. The calling thread reads the board at a steady pace and calls back.
 //! It calls back even if nothing has changed, so that a host can notice a key press or a signal during a long step.
 
 use crate::pool::Pool;

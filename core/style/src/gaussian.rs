@@ -67,7 +67,7 @@ struct Shared<'a> {
 struct Styles {
     /// Precision matrices, by the motion left out.
     precisions: Vec<Vec<f64>>,
-    /// Σ_t (K_s⁻¹)[s, t] Z[t], by character s and the motion left out.
+    /// Σ_t `(K_s⁻¹)[s, t] Z[t]`, by character s and the motion left out.
     mixed: Vec<Vec<Vec<f64>>>,
 }
 

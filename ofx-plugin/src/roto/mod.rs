@@ -2,7 +2,7 @@
 //!
 //! - [`describe`]: describes clips and parameters
 //! - [`settings`]: the parameters' values at a time
-//! - [`instance`]: the data of an instance: its document, and the messages that the user has seen
+//! - [`instance`](mod@instance): the data of an instance: its document, and the messages that the user has seen
 //! - [`stored`]: encodes the document as a text that the host stores
 //! - [`placement`]: places the footage's pixels in the host's picture
 //! - [`parts`]: selects parts by name

@@ -11,7 +11,7 @@
 //! only up to third order.
 //!
 //! **In.** A chain of quadratics is a uniform spline exactly if each joint is the midpoint of the middle control points
-//! around it ([`Spline::from_quadratics`]). Any other chain must be fitted to a tolerance, see [`crate::fit`].
+//! around it ([`Spline::from_quadratics`]). Any other chain must be fitted to a tolerance, see the crate `rototoon-fit`.
 
 use super::{Quadratic, Spline, SplineError};
 use crate::geometry::Point;

@@ -168,7 +168,7 @@ fn take<const N: usize>(target: &mut [f64], rows: [&[f64]; N]) {
 #[derive(Clone, Debug)]
 pub struct BandCholesky {
     matrix: BandMatrix,
-    /// 1 / U[i][i] for each row.
+    /// 1 / `U[i][i]` for each row.
     inverse: Vec<f64>,
 }
 

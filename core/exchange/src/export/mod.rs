@@ -1,8 +1,8 @@
 //! Exports the tracked parts to other programs.
 //!
-//! - [`svg`]: one animated path for each part
-//! - [`nuke`]: a RotoPaint node for Nuke
-//! - [`silhouette`]: Silhouette shapes
+//! - [`svg`](mod@svg): one animated path for each part
+//! - [`nuke`](mod@nuke): a RotoPaint node for Nuke
+//! - [`silhouette`](mod@silhouette): Silhouette shapes
 //! - [`outlines`]: contours with the same number of points on every frame
 //! - [`xml`]: escaping of text for XML
 

@@ -84,7 +84,7 @@ impl LeftOut {
     }
 }
 
-/// Parses a text, and requires that it keeps the [`limits`](super::limits). Document type declarations are allowed,
+/// Parses a text, and requires that it keeps the [`limits`]. Document type declarations are allowed,
 /// since drawing programs write them. The parser itself refuses entities that grow without end.
 pub(super) fn parsed(text: &str) -> Result<Document<'_>, ImportError> {
     let options = ParsingOptions { allow_dtd: true, nodes_limit: limits::MOST_NODES, ..ParsingOptions::default() };

@@ -3,7 +3,7 @@
 //! A. Agarwala, A. Hertzmann, D. H. Salesin, S. M. Seitz: "Keyframe-based tracking for rotoscoping and animation", ACM
 //! Transactions on Graphics 23 (3), 2004.
 //!
-//! The preset minimises the [energy](super::rotoscope) of shape, image and edges over all frames between two keys, from
+//! The preset minimises the [energy](super) of shape, image and edges over all frames between two keys, from
 //! coarse to fine ([`solve`]). The weights, the window, the sample spacing, the cost of hidden places and the trust
 //! region are those of the authors' published system.
 //!

@@ -1,4 +1,4 @@
-//! The terms of one level joined into the energy, as an objective for [`trust_region`](crate::numeric::trust_region).
+//! The terms of one level joined into the energy, as an objective for [`trust_region`](rototoon_base::numeric::trust_region).
 //!
 //! The variables are the coordinates of all control points on all frames, in working pixels. Keys, pins and corrected
 //! centres are kept by projection.

@@ -3,9 +3,9 @@
 //! D. Liang et al.: "Style factorization and character reshaping for 2D cartoons", Journal of Zhejiang University –
 //! Science C 13 (3), 2012, section 3.
 //!
-//! The preset minimises the [energy](super::rotoscope) of [`agarwala2004`](super::agarwala2004) with two changes. The
-//! image term samples a [ribbon](super::rotoscope::ribbon) on both sides of the curve (1). A [colour
-//! penalty](super::rotoscope::colours) compares every frame with the colours of the keys.
+//! The preset minimises the [energy](super) of [`agarwala2004`](super::agarwala2004) with two changes. The
+//! image term samples a [ribbon](super::ribbon) on both sides of the curve (1). A [colour
+//! penalty](super::colours) compares every frame with the colours of the keys.
 //!
 //! The paper gives neither the width of the ribbon nor the form and weight of the penalty. Our choices are documented
 //! in these two modules; the weight is that of the image term.

@@ -25,7 +25,7 @@
 //! - [`profile`]: places along a normal, with derivatives
 //! - [`views`]: pictures on a pyramid, and the occlusion of the part
 //! - [`blocks`]: JᵀJ as a block-tridiagonal matrix
-//! - [`energy`]: the terms joined, as an objective for [`trust_region`](crate::numeric::trust_region)
+//! - [`energy`]: the terms joined, as an objective for [`trust_region`](rototoon_base::numeric::trust_region)
 //! - [`solve`]: minimisation from coarse to fine
 //! - [`sureness`]: confidence of the points
 //!

@@ -2,7 +2,7 @@
 //!
 //! 1. The curves start as the linear blend of the keys. The artist's corrections are spread to the frames around them.
 //! 2. On each level of the pyramid, the coarsest first, the [energy](super::energy) is minimised over all frames at
-//!    once by [Gauss–Newton in a trust region](crate::numeric::trust_region). No point moves more than 10 working
+//!    once by [Gauss–Newton in a trust region](rototoon_base::numeric::trust_region). No point moves more than 10 working
 //!    pixels per step.
 //!
 //! The steps come from conjugate gradients, as in the authors' system. JᵀJ is block-tridiagonal with narrow bands and

@@ -6,15 +6,15 @@
 //!
 //! **How.**
 //!
-//! 1. **Pools.** Each key gives a [`Model`](super::propagate::Model): the part's colours on a lattice that bends. Both
+//! 1. **Pools.** Each key gives a [`Model`](propagate::Model): the part's colours on a lattice that bends. Both
 //!    models are carried drawing by drawing through the span, one forwards and one backwards, and each is always
 //!    compared with its own key. Where they disagree, both are searched in the complete picture ([`pool`]). The
 //!    artist's corrections add to the pools ([`corrected`]).
 //! 2. **Choice.** All parts of a stretch of time choose their paths through the pools together ([`joint`]): nearer
 //!    parts hide farther ones, and connected parts stay together. The choice adds hypotheses to the pools, and is made
-//!    again ([`mend`]).
+//!    again ([`mend`](mod@mend)).
 //! 3. **Finish.** The chosen poses are aligned once more to the samples that nearer parts leave visible, and their
-//!    contours are refined ([`finish`]).
+//!    contours are refined ([`finish`](mod@finish)).
 //! 4. **Outward.** Parts with a single key are followed from it, after all others ([`outward`]).
 //!
 //! **Memory.** Each step is a pure function of its input, and its last result is kept. A pin on one part does not
@@ -64,7 +64,7 @@ use stage::{Kit, Stage};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Largest ratio of width to height of a picture. The tracker works on [540 lines](super::features), so a strip of few
+/// Largest ratio of width to height of a picture. The tracker works on [540 lines](crate::shared::features), so a strip of few
 /// lines would be enlarged to hundreds of millions of pixels.
 pub const WIDEST: usize = 32;
 

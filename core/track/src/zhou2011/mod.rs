@@ -3,9 +3,9 @@
 //! J. Zhou, J. Xiao: "Cartoon capture by key-frame based contour tracking", 2011. The control points of all frames
 //! between two keys are found together:
 //!
-//! 1. The [region search](super::region) finds the part's centre on each frame from the colours of both keys.
+//! 1. The [region search](region) finds the part's centre on each frame from the colours of both keys.
 //! 2. The curves start as the linear blend of the keys, each shifted to the centre that was found.
-//! 3. Levenberg–Marquardt minimises the [six-term energy](super::energy) over all frames at once.
+//! 3. Levenberg–Marquardt minimises the [six-term energy](energy) over all frames at once.
 //!
 //! Keys, pins and corrected centres are exact. The paper does not say where the minimisation starts. From the centres
 //! that were found it needs fewer iterations and converges to wrong edges less often than from the plain blend.

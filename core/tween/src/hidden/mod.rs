@@ -15,7 +15,7 @@
 //! # How
 //!
 //! The meetings of the pieces are computed exactly ([`rototoon_base::curve::intersect`]). Between two meetings the winding
-//! number decides ([`cover`], [`against`]). Trees of bounding boxes ([`tree`]) find the pieces and shapes that are near
+//! number decides ([`cover`], [`against`](mod@against)). Trees of bounding boxes ([`tree`]) find the pieces and shapes that are near
 //! each other, so the cost per stroke grows little with the number of strokes.
 //!
 //! # From frame to frame

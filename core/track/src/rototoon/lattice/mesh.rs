@@ -177,7 +177,7 @@ impl Mesh {
         every.matrix()
     }
 
-    /// The unknowns of an alignment on a level of the pyramid (index in [`LEVELS`](crate::track::features::LEVELS)).
+    /// The unknowns of an alignment on a level of the pyramid (index in [`LEVELS`](crate::shared::features::LEVELS)).
     pub fn unknowns(&self, level: usize) -> &Unknowns {
         &self.unknowns[usize::from(level >= COARSE_LEVELS)]
     }
