@@ -79,11 +79,14 @@ def drawings(count: int) -> dict:
     """Two drawings of strokes in a grid; the second one is moved and in another order."""
     side = math.ceil(math.sqrt(count))
     strokes = [
-        {"points": [[30 * (k % side) + 3 * i, 30 * (k // side) + (k * 7 % 11) * math.sin(i)] for i in range(8)]}
+        [[30 * (k % side) + 3 * i, 30 * (k // side) + (k * 7 % 11) * math.sin(i)] for i in range(8)]
         for k in range(count)
     ]
-    moved = [{"points": [[x + 6, y + 4] for x, y in stroke["points"]]} for stroke in reversed(strokes)]
-    made = [{"frame": 0, "strokes": strokes}, {"frame": 4, "strokes": moved}]
+    moved = [[[x + 6, y + 4] for x, y in stroke] for stroke in reversed(strokes)]
+    made = [
+        {"frame": frame, "strokes": [{"closed": False, "points": points} for points in each]}
+        for frame, each in ((0, strokes), (4, moved))
+    ]
     return {**document([], 4), "drawings": made}
 
 

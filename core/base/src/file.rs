@@ -3,7 +3,7 @@
 //! A pipe would wait for a writer for ever, and a device such as `/dev/zero` has no end. Both are errors at once.
 
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
 /// Greatest length in bytes of a file that is read into memory at once.
@@ -52,9 +52,51 @@ pub fn text(path: &Path) -> io::Result<String> {
     })
 }
 
+/// A reader that repeats a call which a signal interrupted.
+///
+/// On a slow or remote disk a signal may end a call before it has read anything. The standard library's functions for a
+/// whole file repeat such a call. Decoders that read step by step do not all do so.
+#[derive(Debug)]
+pub struct Repeating<R>(pub R);
+
+impl<R: Read> Read for Repeating<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        loop {
+            match self.0.read(buffer) {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                other => return other,
+            }
+        }
+    }
+}
+
+impl<R: Seek> Seek for Repeating<R> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.0.seek(to)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn interrupted_calls_are_repeated() {
+        struct Interrupted(u8);
+        impl Read for Interrupted {
+            fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+                self.0 += 1;
+                if self.0 < 3 {
+                    return Err(io::ErrorKind::Interrupted.into());
+                }
+                buffer[0] = 7;
+                Ok(1)
+            }
+        }
+        let mut buffer = [0; 4];
+        assert_eq!(Repeating(Interrupted(0)).read(&mut buffer).unwrap(), 1);
+        assert_eq!(buffer[0], 7);
+    }
 
     #[test]
     fn files_are_read_and_other_things_refused() {

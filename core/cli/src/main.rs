@@ -2,7 +2,7 @@
 //!
 //! - [`arguments`]: options made from the core's list of parameters
 //! - [`project`]: reads and writes documents
-//! - [`progress`]: the progress bar, and Ctrl-C
+//! - [`progress`]: threads, the progress bar, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
 //! - [`track`], [`snap`], [`render`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`]: the subcommands
 //!
@@ -57,7 +57,8 @@ fn main() -> ExitCode {
     let matches = top.get_matches();
     let Some((name, arguments)) = matches.subcommand() else { return ExitCode::from(failure::WRONG_USE) };
     let run = commands.iter().find(|(command, _)| command.get_name() == name).map(|(_, run)| run);
-    match run.map_or(Ok(()), |run| run(arguments)) {
+    let work = || run.map_or(Ok(()), |run| run(arguments));
+    match progress::catch_signals().and_then(|()| work()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }

@@ -1,10 +1,13 @@
-//! Runs long work on the requested number of threads. If standard error is a terminal, it shows a progress bar. Ctrl-C
-//! cancels the work in an orderly way, so that no file is half-written. Where a step takes longer than [`GRACE`] to
-//! notice, the process ends without it; files are still complete or absent, because each is renamed when it is complete.
-//! A second Ctrl-C ends the process at once. SIGTERM and SIGHUP do the same as Ctrl-C.
+//! Runs long work on the requested number of threads. If standard error is a terminal, it shows a progress bar.
+//!
+//! Ctrl-C cancels the work in an orderly way, so that no file is half-written. Where a step takes longer than [`GRACE`] to
+//! notice, the process ends without it. Files are still complete or absent, because each is renamed when it is complete,
+//! and temporary files are removed. A second Ctrl-C ends the process at once. SIGTERM and SIGHUP do the same as Ctrl-C.
+//! Commands without long work are ended in the same way.
 
 use crate::failure::{Failure, line};
 use indicatif::{ProgressBar, ProgressStyle};
+use rototoon::project::unfinished;
 use rototoon::scene::{Cancelled, Progress};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,22 +39,32 @@ impl Progress for Bar {
     }
 }
 
+/// Lets Ctrl-C, SIGTERM and SIGHUP end the program in order.
+pub fn catch_signals() -> Result<(), Failure> {
+    let interrupt = || {
+        if STOP.swap(true, Ordering::Relaxed) {
+            end();
+        }
+        std::thread::spawn(|| {
+            std::thread::sleep(GRACE);
+            line("error", &Cancelled.to_string());
+            end();
+        });
+    };
+    ctrlc::set_handler(interrupt).map_err(|error| Failure::Other(format!("cannot catch Ctrl-C: {error}")))
+}
+
+/// Ends the process. The work goes on until then, so its temporary files are removed here.
+fn end() -> ! {
+    unfinished::remove_all();
+    std::process::exit(INTERRUPTED)
+}
+
 /// Runs `work` on `threads` threads; 0 for one per core.
 pub fn run<T: Send>(
     threads: usize,
     work: impl FnOnce(&dyn Progress) -> Result<T, Failure> + Send,
 ) -> Result<T, Failure> {
-    let interrupt = || {
-        if STOP.swap(true, Ordering::Relaxed) {
-            std::process::exit(INTERRUPTED);
-        }
-        std::thread::spawn(|| {
-            std::thread::sleep(GRACE);
-            line("error", &Cancelled.to_string());
-            std::process::exit(INTERRUPTED);
-        });
-    };
-    ctrlc::set_handler(interrupt).map_err(|error| Failure::Other(format!("cannot catch Ctrl-C: {error}")))?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()

@@ -14,6 +14,7 @@
 //! - [`curves`]: files of curves to fit
 //! - [`clips`], `plain_clips`: files of skeleton clips, and the quick way to read and write them
 //! - [`output`]: files that appear whole or not at all
+//! - [`unfinished`]: temporary files, and their removal when the process ends early
 //!
 //! Fields that this version does not know are kept where they stood. A document of a newer major version is refused.
 //!
@@ -57,6 +58,7 @@ pub mod problem;
 pub mod save;
 pub mod schema;
 mod shape;
+pub mod unfinished;
 pub mod validate;
 
 pub use fields::FieldError;

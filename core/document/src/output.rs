@@ -5,9 +5,11 @@
 //! not a regular file (a pipe, a device) is written directly, since renaming would replace it. A symbolic link stays a
 //! link, also where its target does not exist yet.
 //!
-//! A process that is killed while it writes leaves its temporary file. The first write of a later process into the folder
+//! A process that ends early removes its temporary files where it can ([`crate::unfinished`]). One that is killed while it
+//! writes leaves its temporary file. The first write of a later process into the folder
 //! removes such files if they are more than an hour old.
 
+use crate::unfinished::Unfinished;
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -63,13 +65,13 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666)); // reduced by the user's mask, as for any new file
     }
-    let mut file = builder.tempfile_in(folder)?;
-    file.write_all(bytes)?;
+    let file = Unfinished::new(&builder, folder)?;
+    file.as_file().write_all(bytes)?;
     if let Some(data) = existing {
         file.as_file().set_permissions(data.permissions())?;
     }
     file.as_file().sync_all()?;
-    file.persist(&target).map_err(|error| error.error)?;
+    file.persist(&target)?;
     // The new name is on the disk only after the folder is flushed. On systems that cannot open folders, the system
     // does this.
     if let Ok(folder) = File::open(folder) {

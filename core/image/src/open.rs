@@ -35,7 +35,7 @@ impl<T: BufRead + Seek> Source for T {}
 /// it is cut.
 pub fn open(path: &Path, complete: bool) -> Result<Reader, DecodeError> {
     let length = file::length(path)?;
-    let file: Box<dyn Source> = Box::new(BufReader::new(File::open(path)?));
+    let file: Box<dyn Source> = Box::new(BufReader::new(file::Repeating(File::open(path)?)));
     let mut reader = ImageReader::new(file).with_guessed_format()?;
     let Some(format) = reader.format() else {
         return Err(DecodeError::Unreadable("not a PNG, JPEG, TIFF, BMP, WebP or OpenEXR picture".into()));
