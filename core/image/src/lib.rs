@@ -54,6 +54,7 @@ pub mod pyramid;
 pub mod resize;
 pub mod sample;
 pub mod sequence;
+mod tiles;
 
 pub use decode::{DecodeError, decode, probe};
 pub use sequence::Sequence;

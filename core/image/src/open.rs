@@ -4,7 +4,7 @@
 //! middle. All of that is an error here, before memory is taken.
 
 use super::decode::DecodeError;
-use super::jpeg;
+use super::{jpeg, tiles};
 use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
 use rototoon_base::file;
 use rototoon_base::memory::{self, Bytes};
@@ -27,12 +27,12 @@ pub trait Source: BufRead + Seek {}
 impl<T: BufRead + Seek> Source for T {}
 
 /// Opens a picture file and finds its format by its content. `complete` also checks a JPEG file for its end, which
-/// reads all of it.
+/// reads all of it, and the tiles of an OpenEXR file.
 ///
 /// # Errors
 ///
 /// A [`DecodeError`] if there is no file, or no regular file (a folder, a pipe, a device), or its format is unknown, or
-/// it is cut.
+/// it is cut, or its tiles are too large.
 pub fn open(path: &Path, complete: bool) -> Result<Reader, DecodeError> {
     let length = file::length(path)?;
     let file: Box<dyn Source> = Box::new(BufReader::new(file::Repeating(File::open(path)?)));
@@ -42,6 +42,12 @@ pub fn open(path: &Path, complete: bool) -> Result<Reader, DecodeError> {
     };
     if format == ImageFormat::Jpeg && complete {
         reader = whole_jpeg(path, length)?;
+    }
+    if format == ImageFormat::OpenExr && complete {
+        let mut file = reader.into_inner();
+        tiles::check(&mut file)?;
+        file.rewind()?;
+        reader = ImageReader::with_format(file, format);
     }
     let mut limits = Limits::default();
     limits.max_alloc = Some(if format == ImageFormat::Png { MOST_EXTRA_BYTES } else { MOST_BYTES });
