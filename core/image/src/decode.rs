@@ -16,49 +16,15 @@
 //! 2 GiB while it is decoded. Damage inside of a JPEG scan is not found: the format has no checksums.
 
 use super::colour::{decode as to_light, encode};
+use super::error::DecodeError;
 use super::open::{check_size, open};
 use image::{DynamicImage, ImageDecoder, ImageFormat};
 use rototoon_base::scene::{Colour, Raster};
-use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 /// The grey with which transparent pixels are blended, sRGB-encoded.
 pub const BACKDROP: f32 = 0.5;
-
-/// The reason why a file gives no picture.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum DecodeError {
-    /// The file does not exist.
-    #[error("no such file")]
-    Missing,
-    /// The file cannot be read as a picture. The text is the reason given by the decoder or the system.
-    #[error("{0}")]
-    Unreadable(String),
-    /// The picture does not have the expected size.
-    #[error("the picture is {width}x{height} pixels")]
-    WrongSize {
-        /// Width of the picture in the file.
-        width: usize,
-        /// Height of the picture in the file.
-        height: usize,
-    },
-}
-
-impl From<io::Error> for DecodeError {
-    fn from(error: io::Error) -> Self {
-        match error.kind() {
-            io::ErrorKind::NotFound => Self::Missing,
-            _ => Self::Unreadable(error.to_string()),
-        }
-    }
-}
-
-impl From<image::ImageError> for DecodeError {
-    fn from(error: image::ImageError) -> Self {
-        Self::Unreadable(error.to_string())
-    }
-}
 
 /// Width and height of the picture in a file, in pixels. It reads the header of the file only.
 ///

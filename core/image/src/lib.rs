@@ -44,6 +44,7 @@ pub mod colour;
 pub mod correlation;
 pub mod decode;
 pub mod distance_transform;
+mod error;
 pub mod flow;
 pub mod gaussian;
 mod jpeg;
@@ -56,5 +57,6 @@ pub mod sample;
 pub mod sequence;
 mod tiles;
 
-pub use decode::{DecodeError, decode, probe};
+pub use decode::{decode, probe};
+pub use error::DecodeError;
 pub use sequence::Sequence;

@@ -3,7 +3,7 @@
 //! Files come from anywhere. A small file may claim to be huge, hide a huge compressed colour profile, or end in the
 //! middle. All of that is an error here, before memory is taken.
 
-use super::decode::DecodeError;
+use super::error::DecodeError;
 use super::{jpeg, tiles};
 use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
 use rototoon_base::file;

@@ -5,7 +5,8 @@
 //! Decoding happens outside the lock, so several threads decode at the same time. Two threads that need the same
 //! picture at the same moment may both decode it. That costs time, but it cannot deadlock within a pool of threads.
 
-use super::decode::{DecodeError, decode, decode_layer};
+use super::decode::{decode, decode_layer};
+use super::error::DecodeError;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::scene::{Colour, Footage, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Raster};
 use std::collections::BTreeMap;

@@ -3,7 +3,7 @@
 //! A decoder takes memory for one tile as its header describes it, before it reads the tile. A header of a few hundred
 //! bytes could ask for any amount that way.
 
-use super::decode::DecodeError;
+use super::error::DecodeError;
 use exr::meta::{BlockDescription, MetaData, header::Header};
 use rototoon_base::memory::Bytes;
 use std::io::Read;
@@ -38,7 +38,8 @@ fn check_part(header: &Header) -> Result<(), DecodeError> {
 
 #[cfg(test)]
 mod tests {
-    use crate::decode::{DecodeError, decode};
+    use crate::decode::decode;
+    use crate::error::DecodeError;
     use exr::prelude::{Blocks, Encoding, Image, Layer, LayerAttributes, SpecificChannels, Vec2, WritableImage};
 
     /// A file of 4 × 4 pixels in one tile. The height of the tile in the header is replaced.

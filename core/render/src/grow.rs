@@ -8,10 +8,11 @@
 //! The border comes from [`super::coverage`]. Sides steeper than 45° bound intervals of rows, the other sides intervals
 //! of columns.
 
-use super::coverage::{Edge, Shape, Side, Sink, Window, edges, intervals};
+use super::coverage::{Edge, Shape, Side, Sink, Window, border, edges};
 use super::line::{Stretch, squared_distances};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;
+use std::ops::Range;
 
 /// Coverage of the union of polygons in a window, grown by `amount` pixels (shrunk if negative). `None` if `go_on`,
 /// called for each row, returns false.
@@ -61,14 +62,14 @@ impl Exchanged for Point {
 /// The pieces of sides with a slope of at least 45° that bound the union.
 fn steep(shape: &Shape, window: Window) -> Vec<Stretch> {
     let edges = edges(shape);
-    let mut border = Border { edges, last: vec![None; edges.len()], pieces: Vec::new() };
-    intervals(shape, window, &mut border);
+    let mut found = Border { edges, last: vec![None; edges.len()], pieces: Vec::new() };
+    border(shape, window, &mut found);
     let share = |edge: &Edge, height: i64| (height - edge.top) as f64 / (edge.bottom - edge.top) as f64;
     let stretch = |&(index, top, bottom): &(usize, i64, i64)| {
         let edge: &Edge = &edges[index];
         Stretch { ends: edge.ends, from: share(edge, top), to: share(edge, bottom) }
     };
-    border.pieces.iter().map(stretch).collect()
+    found.pieces.iter().map(stretch).collect()
 }
 
 struct Border<'a> {
@@ -80,21 +81,28 @@ struct Border<'a> {
 }
 
 impl Sink for Border<'_> {
-    fn interval(&mut self, left: &Side, right: &Side, top: i64, bottom: i64) {
-        for index in [left.edge, right.edge] {
-            let [a, b] = self.edges[index].ends;
-            if (b.x - a.x).abs() > (b.y - a.y).abs() {
-                continue;
-            }
-            match self.last[index].map(|piece| &mut self.pieces[piece]) {
-                Some(piece) if piece.2 == top => piece.2 = bottom,
-                _ => {
-                    self.last[index] = Some(self.pieces.len());
-                    self.pieces.push((index, top, bottom));
-                }
+    fn begin(&mut self, _columns: Range<i64>) -> bool {
+        true
+    }
+
+    fn inside(&mut self, _top: i64, _bottom: i64) {}
+
+    fn side(&mut self, side: &Side, top: i64, bottom: i64, _enters: bool) {
+        let index = side.edge;
+        let [a, b] = self.edges[index].ends;
+        if (b.x - a.x).abs() > (b.y - a.y).abs() {
+            return;
+        }
+        match self.last[index].map(|piece| &mut self.pieces[piece]) {
+            Some(piece) if piece.2 == top => piece.2 = bottom,
+            _ => {
+                self.last[index] = Some(self.pieces.len());
+                self.pieces.push((index, top, bottom));
             }
         }
     }
+
+    fn end(&mut self) {}
 }
 
 #[cfg(test)]

@@ -8,6 +8,10 @@ use super::{feather, grow};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;
 
+/// Largest number of pixels by which a mask is grown, shrunk or feathered. A picture in a window needs the pixels within
+/// this distance of it, so memory would have no limit without this one.
+pub const MOST_REACH: f64 = 2048.0;
+
 /// A mask, prepared for drawing.
 #[derive(Clone, Debug)]
 pub struct Mask {
@@ -28,10 +32,12 @@ pub struct Bounds {
 
 impl Mask {
     /// A mask of the closed polygons of each instant, grown by `grow` pixels (shrunk if negative), then feathered by a
-    /// radius of `feather` pixels.
+    /// radius of `feather` pixels. Both count as [`MOST_REACH`] where they are larger, and as 0 if they are no number.
     pub fn new(instants: Vec<Vec<Vec<Point>>>, grow: f64, feather: f64) -> Self {
         let shape = Shape::new(&instants);
-        Self { instants, shape, grow, feather: feather.max(0.0) }
+        let number = |value: f64| if value.is_nan() { 0.0 } else { value };
+        let (grow, feather) = (number(grow).clamp(-MOST_REACH, MOST_REACH), number(feather).clamp(0.0, MOST_REACH));
+        Self { instants, shape, grow, feather }
     }
 
     /// A rectangle that contains the mask; `None` if the mask is empty.
@@ -120,6 +126,21 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_huge_reach_is_limited() {
+        let window = Window { left: 0, top: 0, right: 3, bottom: 2 };
+        let huge = |grow, feather| Mask::new(vec![vec![square(0.0, 0.0, 2.0)]], grow, feather);
+        let limited = huge(0.0, MOST_REACH);
+        let drawn = limited.draw(window, &mut || true).unwrap();
+        assert!(drawn.data().iter().all(|value| (0.0..1.0).contains(value)), "{drawn:?}");
+        for feather in [1e12, 1e300, f64::INFINITY] {
+            assert_eq!(huge(0.0, feather).bounds(), limited.bounds());
+            assert_eq!(huge(0.0, feather).draw(window, &mut || true).unwrap(), drawn);
+        }
+        assert_eq!(huge(f64::INFINITY, 0.0).draw(window, &mut || true).unwrap().data(), [1.0; 6]);
+        assert_eq!(huge(f64::NAN, f64::NAN).draw(window, &mut || true).unwrap().data(), [1.0, 1.0, 0.0, 1.0, 1.0, 0.0]);
     }
 
     #[test]
