@@ -141,7 +141,9 @@ class Bench:
         times, peak = [], 0.0
         launch = [sys.executable, "-I", "-S", "-c", LAUNCHER, self.program, *words]
         for _ in range(3):
-            run = subprocess.run(launch, cwd=self.folder, capture_output=True, text=True, check=True)
+            run = subprocess.run(launch, cwd=self.folder, capture_output=True, text=True, check=False)
+            if run.returncode != 0:
+                raise SystemExit(f"cannot start {self.program}: {run.stderr}")
             status, seconds, memory = run.stdout.split()
             if status != "0":
                 raise SystemExit(f"{' '.join(words)}: exit status {status}: {run.stderr}")

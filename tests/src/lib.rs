@@ -14,6 +14,8 @@
 //! - [`tweening`]: measurements of matching and in-betweens
 //! - [`chart`], [`drawing`], [`lettering`]: plots as SVG and PNG
 
+#![forbid(unsafe_code)]
+
 pub mod artist;
 pub mod benchmark;
 pub mod chart;

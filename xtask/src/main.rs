@@ -1,5 +1,7 @@
 //! Development commands of Rototoon.
 
+#![forbid(unsafe_code)]
+
 mod audit;
 mod bundle;
 mod demo;

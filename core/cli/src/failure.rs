@@ -9,6 +9,8 @@ use std::process::ExitCode;
 pub const FAILED: u8 = 1;
 /// The arguments are wrong.
 pub const WRONG_USE: u8 = 2;
+/// All shots of a batch came out, and some want keys.
+const WANTS_KEYS: u8 = 3;
 
 /// Why a subcommand failed.
 #[derive(Debug, thiserror::Error)]
@@ -37,6 +39,9 @@ pub enum Failure {
     /// The subcommand has already printed its errors.
     #[error("failed")]
     Reported,
+    /// Some shots of a batch want keys. They have already been named.
+    #[error("some shots want keys")]
+    WantsKeys,
 }
 
 impl Failure {
@@ -44,6 +49,7 @@ impl Failure {
     pub fn report(self) -> ExitCode {
         match &self {
             Self::Reported => {}
+            Self::WantsKeys => return ExitCode::from(WANTS_KEYS),
             Self::Load(error) => error.lines().iter().for_each(|text| line("error", text)),
             other => other.to_string().lines().for_each(|text| line("error", text)),
         }

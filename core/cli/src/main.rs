@@ -4,18 +4,22 @@
 //! - [`project`]: reads and writes documents
 //! - [`progress`]: threads, the progress bar, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
-//! - [`track`], [`snap`], [`render`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`]: the subcommands
+//! - [`track`], [`snap`], [`render`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`]: the
+//!   subcommands
+//! - [`usage`]: the memory that the program took
 //!
-//! The exit status is 0 for success, 1 for failure and 2 for wrong arguments.
+//! The exit status is 0 for success, 1 for failure, 2 for wrong arguments, and 3 for a batch whose shots want keys.
 
 #![forbid(unsafe_code)]
 
 mod arguments;
+mod batch;
 mod check;
 mod export;
 mod failure;
 mod fit;
 mod import;
+mod job;
 mod progress;
 mod project;
 mod render;
@@ -23,6 +27,7 @@ mod snap;
 mod style;
 mod track;
 mod tween;
+mod usage;
 
 use clap::{ArgMatches, Command};
 use failure::Failure;
@@ -32,7 +37,7 @@ use std::process::ExitCode;
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 /// Each subcommand with the function that runs it.
-fn subcommands() -> [(Command, Run); 9] {
+fn subcommands() -> [(Command, Run); 11] {
     [
         (track::command(), track::run),
         (snap::command(), snap::run),
@@ -43,6 +48,8 @@ fn subcommands() -> [(Command, Run); 9] {
         (fit::command(), fit::run),
         (tween::command(), tween::run),
         (style::command(), style::run),
+        (batch::command(), batch::run),
+        (job::command(), job::run),
     ]
 }
 
@@ -58,7 +65,9 @@ fn main() -> ExitCode {
     let Some((name, arguments)) = matches.subcommand() else { return ExitCode::from(failure::WRONG_USE) };
     let run = commands.iter().find(|(command, _)| command.get_name() == name).map(|(_, run)| run);
     let work = || run.map_or(Ok(()), |run| run(arguments));
-    match progress::catch_signals().and_then(|()| work()) {
+    let result = progress::catch_signals().and_then(|()| work());
+    usage::tell();
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }

@@ -39,6 +39,11 @@ impl Progress for Bar {
     }
 }
 
+/// Whether the program was asked to end.
+pub fn stopped() -> bool {
+    STOP.load(Ordering::Relaxed)
+}
+
 /// Lets Ctrl-C, SIGTERM and SIGHUP end the program in order.
 pub fn catch_signals() -> Result<(), Failure> {
     let interrupt = || {

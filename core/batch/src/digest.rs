@@ -1,0 +1,90 @@
+//! Hashes of what a step reads: the document, the frames, the words of its command, and the version of the program.
+//!
+//! A step is done again only if this hash changes. Times of files play no part, since they change by copying and since
+//! the clocks of a farm's machines disagree. BLAKE3 reads faster than a disk.
+
+use crate::step::Step;
+use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+use rototoon::file::Repeating;
+use rototoon::scene::{Footage, FramePattern};
+use std::fs::File;
+use std::io;
+use std::path::Path;
+
+/// The hash of a file's bytes, as 64 hexadecimal digits.
+///
+/// # Errors
+///
+/// The file cannot be read, or is no regular file.
+pub fn of_file(path: &Path) -> io::Result<String> {
+    rototoon::file::length(path)?;
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(Repeating(File::open(path)?))?;
+    Ok(hasher.finalize().to_hex().to_string())
+}
+
+/// The hash of all frames of a footage in `folder`. A frame that is missing or cannot be read has a hash too.
+pub fn of_footage(footage: &Footage, folder: &Path) -> String {
+    let Ok(pattern) = FramePattern::parse(&footage.pattern) else { return String::new() };
+    let frames: Vec<String> = (footage.first..=footage.last)
+        .into_par_iter()
+        .map(|frame| of_file(&folder.join(pattern.path(frame))).unwrap_or_else(|error| error.kind().to_string()))
+        .collect();
+    of_texts(frames.iter().map(String::as_str))
+}
+
+/// The hash of a step: what it reads, and how.
+pub fn of_step(step: &Step, document: &str, footage: &str) -> String {
+    let footage = if step.reads_footage() { footage } else { "" };
+    let words = step.words("", "");
+    let texts = [env!("CARGO_PKG_VERSION"), document, footage].into_iter().chain(words.iter().map(String::as_str));
+    of_texts(texts)
+}
+
+/// The hash of texts in their order. Each has its length before it, so no two lists run together.
+fn of_texts<'a>(texts: impl Iterator<Item = &'a str>) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for text in texts {
+        hasher.update(&(text.len() as u64).to_le_bytes()).update(text.as_bytes());
+    }
+    hasher.finalize().to_hex().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn each_thing_that_a_step_reads_changes_its_hash() {
+        let step = |value| Step::read(&value).unwrap();
+        let (track, export) = (step(json!({"do": "track"})), step(json!({"do": "export", "to": "a.svg"})));
+        let other = step(json!({"do": "track", "preset": "zhou2011"}));
+        let all = [
+            of_step(&track, "d", "f"),
+            of_step(&track, "e", "f"),
+            of_step(&track, "d", "g"),
+            of_step(&other, "d", "f"),
+        ];
+        for (k, hash) in all.iter().enumerate() {
+            assert!(all[k + 1..].iter().all(|next| next != hash));
+        }
+        assert_eq!(of_step(&export, "d", "f"), of_step(&export, "d", "g"), "an export reads no frames");
+        assert_ne!(of_texts(["ab", "c"].into_iter()), of_texts(["a", "bc"].into_iter()));
+    }
+
+    #[test]
+    fn frames_that_change_or_go_change_the_hash() {
+        let folder = tempfile::tempdir().unwrap();
+        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 2, fps: 24.0, width: 4, height: 4 };
+        let mut seen = Vec::new();
+        for (name, text) in [("0.png", "a"), ("1.png", "a"), ("1.png", "b"), ("2.png", "c"), ("3.png", "d")] {
+            std::fs::write(folder.path().join(name), text).unwrap();
+            seen.push(of_footage(&footage, folder.path()));
+        }
+        assert_eq!(seen[3], seen[4], "frame 3 is not of the footage");
+        seen.pop();
+        seen.dedup();
+        assert_eq!(seen.len(), 4);
+    }
+}

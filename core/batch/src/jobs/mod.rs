@@ -1,0 +1,34 @@
+//! Templates for render farms. Each calls the command line program alone: once for a number of shots, and in the end once
+//! for the page.
+//!
+//! [`words`] describes these two calls. The templates differ only in how an engine writes a place in a list of shots.
+//!
+//! | engine | template |
+//! | --- | --- |
+//! | OpenJD (AWS Deadline Cloud and others) | [`openjd`]: a job template of a manifest |
+//! | Flamenco | [`flamenco`]: a job type, which a manager installs once |
+
+pub mod flamenco;
+pub mod openjd;
+
+/// What a call of the program works on. Each text may be a place that the engine fills.
+#[derive(Clone, Copy, Debug)]
+pub struct Places<'a> {
+    /// The manifest.
+    pub manifest: &'a str,
+    /// The folder of the results.
+    pub output: &'a str,
+}
+
+/// The words of the call for some shots (`--shots A-B`), or for the page if `shots` is `None`.
+///
+/// A shot that fails would fail again, so it is no reason for an engine to repeat a task: the status of the calls for
+/// shots is 0. The call for the page has the status of the whole batch.
+pub fn words(places: Places, shots: Option<&str>) -> Vec<String> {
+    let mut words: Vec<&str> = vec!["batch", places.manifest, "-o", places.output];
+    match shots {
+        Some(shots) => words.extend(["--shots", shots, "--fine", "all"]),
+        None => words.extend(["--summary", "--fine", "keys"]),
+    }
+    words.into_iter().map(str::to_owned).collect()
+}

@@ -1,0 +1,44 @@
+//! Many shots, unattended.
+//!
+//! A *manifest* names shots (project documents) and steps (subcommands of the command line). [`run`] works through them,
+//! several shots at a time, within a memory budget. It starts the command line program for each step, so a step that
+//! fails, or that the system ends for want of memory, ends nothing else.
+//!
+//! - [`manifest`]: the manifest and everything that may be wrong with it
+//! - [`step`]: the steps; each is described once, as the words of a subcommand
+//! - [`digest`]: hashes of what a step reads
+//! - [`record`]: what was done for a shot, so that it is not done again
+//! - [`lock`]: one worker a shot
+//! - [`child`]: starts the command line program
+//! - [`shot`]: all steps of a shot
+//! - [`budget`]: how many shots fit into the memory
+//! - [`findings`]: confidence, lost parts and the keys that would help most
+//! - [`report`]: JSON lines while it runs
+//! - [`summary`]: what all records together say
+//! - [`page`]: the same for a person, as one HTML file
+//! - [`jobs`]: templates for render farms
+//!
+//! # Safe to end at any moment
+//!
+//! A step writes to files whose names begin with `.new-`. Their hashes enter the record before they get their final
+//! names. A worker that is killed therefore leaves one of three states: the step is not done; it is done but files keep
+//! their first names, and the next worker renames them; it is done. A file that no worker wrote is never replaced.
+//!
+//! No decision depends on a clock or on the time of a file: machines of a farm disagree about both.
+
+#![forbid(unsafe_code)]
+
+pub mod budget;
+pub mod child;
+pub mod digest;
+pub mod findings;
+pub mod jobs;
+pub mod lock;
+pub mod manifest;
+pub mod page;
+pub mod record;
+pub mod report;
+pub mod run;
+pub mod shot;
+pub mod step;
+pub mod summary;

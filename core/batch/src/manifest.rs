@@ -1,0 +1,294 @@
+//! The manifest: shots and the steps to take for each.
+//!
+//! ```json
+//! {
+//!   "rototoon_batch": 1,
+//!   "steps": [{"do": "track"}, {"do": "render", "what": "matte", "to": "matte_%04d.exr"}],
+//!   "shots": [{"name": "sh010", "project": "sh010/project.json"}]
+//! }
+//! ```
+//!
+//! `project` and `blend` are relative to the manifest's folder. A shot may have `steps` of its own.
+
+use crate::step::{self, Step};
+use rototoon::file;
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Version of the format.
+pub const VERSION: u64 = 1;
+/// Greatest number of shots.
+pub const MOST_SHOTS: usize = 100_000;
+/// Greatest number of bytes of a shot's name. It becomes the name of a folder.
+const LONGEST_NAME: usize = 120;
+/// Number of problems that are listed.
+const MOST_PROBLEMS: usize = 20;
+
+/// Shots with their steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Manifest {
+    /// The shots in the order of the manifest.
+    pub shots: Vec<Shot>,
+}
+
+/// A shot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shot {
+    /// Unique name, also that of its folder.
+    pub name: String,
+    /// Its project document.
+    pub project: PathBuf,
+    /// The Blender file in which a person corrects it.
+    pub blend: Option<PathBuf>,
+    /// What to do.
+    pub steps: Vec<Step>,
+}
+
+/// What is wrong with a manifest.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub struct ManifestError {
+    /// Path of the manifest.
+    pub path: PathBuf,
+    /// One line for each problem: place, what was found, and what was expected.
+    pub problems: Vec<String>,
+}
+
+impl fmt::Display for ManifestError {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        for (k, problem) in self.problems.iter().take(MOST_PROBLEMS).enumerate() {
+            let end = if k == 0 { "" } else { "\n" };
+            write!(out, "{end}{}: {problem}", self.path.display())?;
+        }
+        match self.problems.len().saturating_sub(MOST_PROBLEMS) {
+            0 => Ok(()),
+            more => write!(out, "\n{}: and {more} more problems", self.path.display()),
+        }
+    }
+}
+
+/// Says what is wrong with the words of a subcommand.
+pub type CheckWords<'a> = &'a dyn Fn(&[String]) -> Result<(), String>;
+
+impl Manifest {
+    /// Reads a manifest. `check` is asked about the words of each step.
+    ///
+    /// # Errors
+    ///
+    /// A [`ManifestError`] with every problem: the file cannot be read, is no manifest or one of a later version; a step
+    /// or an option is unknown; names are missing, unsafe or used twice; two steps of a shot write the same file.
+    pub fn load(path: &Path, check: CheckWords) -> Result<Self, ManifestError> {
+        let failed = |problems| ManifestError { path: path.to_owned(), problems };
+        let text = file::text(path).map_err(|error| failed(vec![error.to_string()]))?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse(&text, folder, check).map_err(failed)
+    }
+
+    /// Reads the text of a manifest in `folder`.
+    ///
+    /// # Errors
+    ///
+    /// All problems, a line each.
+    pub fn parse(text: &str, folder: &Path, check: CheckWords) -> Result<Self, Vec<String>> {
+        let value: Value = serde_json::from_str(text).map_err(|error| vec![format!("no JSON: {error}")])?;
+        let Value::Object(fields) = value else { return Err(vec!["found no object, expected one".into()]) };
+        match fields.get("rototoon_batch").and_then(Value::as_u64) {
+            Some(VERSION) => {}
+            Some(found) => return Err(vec![format!("rototoon_batch: found {found}, expected {VERSION}")]),
+            None => return Err(vec![format!("rototoon_batch: found nothing, expected the version {VERSION}")]),
+        }
+        let mut reader = Reader { folder, check, problems: Vec::new(), names: BTreeMap::new() };
+        reader.unknown("", &fields, &["rototoon_batch", "steps", "shots"]);
+        let common = fields.get("steps").map(|steps| reader.steps("steps", steps)).unwrap_or_default();
+        let shots = reader.shots(fields.get("shots"), &common);
+        if reader.problems.is_empty() { Ok(Self { shots }) } else { Err(reader.problems) }
+    }
+}
+
+struct Reader<'a> {
+    folder: &'a Path,
+    check: CheckWords<'a>,
+    problems: Vec<String>,
+    /// Names in small letters, with the index of their shot.
+    names: BTreeMap<String, usize>,
+}
+
+impl Reader<'_> {
+    fn shots(&mut self, value: Option<&Value>, common: &[Step]) -> Vec<Shot> {
+        let Some(Value::Array(list)) = value else {
+            self.problems.push("shots: expected a list of shots".into());
+            return Vec::new();
+        };
+        if list.is_empty() || list.len() > MOST_SHOTS {
+            self.problems.push(format!("shots: found {} shots, expected 1 to {MOST_SHOTS}", list.len()));
+            return Vec::new();
+        }
+        list.iter().enumerate().filter_map(|(index, value)| self.shot(index, value, common)).collect()
+    }
+
+    fn shot(&mut self, index: usize, value: &Value, common: &[Step]) -> Option<Shot> {
+        let place = format!("shots[{index}]");
+        let Value::Object(fields) = value else {
+            self.problems.push(format!("{place}: expected an object"));
+            return None;
+        };
+        self.unknown(&format!("{place}."), fields, &["name", "project", "blend", "steps"]);
+        let name = self.name(index, fields.get("name"));
+        let project = self.path(&format!("{place}.project"), fields.get("project"));
+        let blend = match fields.get("blend") {
+            None => None,
+            value => self.path(&format!("{place}.blend"), value),
+        };
+        let steps = match fields.get("steps") {
+            Some(steps) => self.steps(&format!("{place}.steps"), steps),
+            None => common.to_vec(),
+        };
+        if steps.is_empty() && fields.get("steps").is_none() {
+            self.problems.push(format!("{place}: found no steps, expected `steps` here or for all shots"));
+        }
+        Some(Shot { name: name?, project: project?, blend, steps })
+    }
+
+    fn name(&mut self, index: usize, value: Option<&Value>) -> Option<String> {
+        let place = format!("shots[{index}].name");
+        let name = value.and_then(Value::as_str).unwrap_or_default();
+        if let Err(expected) = safe_name(name) {
+            self.problems.push(format!("{place}: found {name:?}, expected {expected}"));
+            return None;
+        }
+        // Some systems do not tell large letters from small ones.
+        if let Some(before) = self.names.insert(name.to_lowercase(), index) {
+            self.problems
+                .push(format!("{place}: found {name:?}, which shots[{before}] has too; both would write one folder"));
+            return None;
+        }
+        Some(name.to_owned())
+    }
+
+    fn path(&mut self, place: &str, value: Option<&Value>) -> Option<PathBuf> {
+        match value.and_then(Value::as_str) {
+            Some(text) if !text.is_empty() && !text.contains('\0') => Some(self.folder.join(text)),
+            _ => {
+                self.problems.push(format!("{place}: expected the path of a file"));
+                None
+            }
+        }
+    }
+
+    fn steps(&mut self, place: &str, value: &Value) -> Vec<Step> {
+        let Value::Array(list) = value else {
+            self.problems.push(format!("{place}: expected a list of steps"));
+            return Vec::new();
+        };
+        let mut steps: Vec<Step> = Vec::new();
+        for (index, value) in list.iter().enumerate() {
+            let place = format!("{place}[{index}]");
+            match Step::read(value).and_then(|step| (self.check)(&step.words("a.json", "")).map(|()| step)) {
+                Ok(step) => {
+                    let same = |other: &&Step| step::same_output(&step, other);
+                    if let Some(other) = steps.iter().find(same) {
+                        let file = other.output.as_deref().unwrap_or_default();
+                        self.problems.push(format!(
+                            "{place}: found a second step that writes {file:?}, expected another name in `to`"
+                        ));
+                    }
+                    steps.push(step);
+                }
+                Err(problem) => self.problems.push(format!("{place}: {problem}")),
+            }
+        }
+        steps
+    }
+
+    fn unknown(&mut self, place: &str, fields: &Map<String, Value>, known: &[&str]) {
+        for name in fields.keys().filter(|name| !known.contains(&name.as_str())) {
+            self.problems.push(format!("{place}{name}: not a field of a manifest; known are {}", known.join(", ")));
+        }
+    }
+}
+
+/// Checks a name that becomes that of a file or folder on any system.
+///
+/// # Errors
+///
+/// What was expected.
+pub fn safe_name(name: &str) -> Result<(), String> {
+    let wrong = |c: char| c.is_control() || "/\\:*?\"<>|".contains(c);
+    if name.is_empty() || name.len() > LONGEST_NAME {
+        return Err(format!("a name of 1 to {LONGEST_NAME} bytes"));
+    }
+    if name.contains(wrong) {
+        return Err("a name without / \\ : * ? \" < > |".into());
+    }
+    if name.starts_with('.') || name.ends_with(['.', ' ']) {
+        return Err("a name that does not begin with a dot, nor end with a dot or a blank".into());
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fine(_: &[String]) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn problems(text: &str) -> Vec<String> {
+        Manifest::parse(text, Path::new("in"), &fine).err().unwrap_or_default()
+    }
+
+    #[test]
+    fn shots_take_the_common_steps_or_their_own() {
+        let text = r#"{"rototoon_batch": 1, "steps": [{"do": "track"}], "shots": [
+            {"name": "a", "project": "a/p.json"}, {"name": "b", "project": "/b.json", "blend": "b.blend", "steps": [{"do": "check"}]}]}"#;
+        let manifest = Manifest::parse(text, Path::new("in"), &fine).unwrap();
+        let steps: Vec<_> = manifest.shots.iter().map(|shot| shot.steps[0].name()).collect();
+        assert_eq!(steps, ["track", "check"]);
+        assert_eq!(manifest.shots[0].project, Path::new("in/a/p.json"));
+        assert_eq!(manifest.shots[1].project, Path::new("/b.json"));
+        assert_eq!(manifest.shots[1].blend.as_deref(), Some(Path::new("in/b.blend")));
+    }
+
+    #[test]
+    fn each_problem_has_a_line() {
+        assert_eq!(problems("[]"), ["found no object, expected one"]);
+        assert_eq!(problems("{}"), ["rototoon_batch: found nothing, expected the version 1"]);
+        assert_eq!(problems(r#"{"rototoon_batch": 2}"#), ["rototoon_batch: found 2, expected 1"]);
+        let text = r#"{"rototoon_batch": 1, "step": 1, "steps": [{"do": "fly"}, {"do": "track"}, {"do": "track"}], "shots": [
+            {"name": "a/b", "project": "p"}, {"name": "x", "project": "p"}, {"name": "X", "project": ""}, 7]}"#;
+        let found = problems(text);
+        let begins = [
+            "step: not a field",
+            "steps[0]: do: found \"fly\"",
+            "steps[2]: found a second step that writes \"tracked.json\"",
+            "shots[0].name: found \"a/b\"",
+            "shots[2].name: found \"X\", which shots[1] has too",
+            "shots[2].project: expected the path",
+            "shots[3]: expected an object",
+        ];
+        assert_eq!(found.len(), begins.len(), "{found:#?}");
+        for (found, begin) in found.iter().zip(begins) {
+            assert!(found.starts_with(begin), "{found} / {begin}");
+        }
+    }
+
+    #[test]
+    fn words_are_checked() {
+        let refuse = |words: &[String]| Err(format!("unknown {}", words.len()));
+        let text = r#"{"rototoon_batch": 1, "steps": [{"do": "snap"}], "shots": [{"name": "a", "project": "p"}]}"#;
+        let found = Manifest::parse(text, Path::new(""), &refuse).unwrap_err();
+        assert_eq!(found[0], "steps[0]: unknown 4");
+    }
+
+    #[test]
+    fn names_are_those_of_folders_everywhere() {
+        for name in ["sh010", "Szene 3", "鳥"] {
+            assert_eq!(safe_name(name), Ok(()), "{name}");
+        }
+        for name in ["", "..", ".a", "a.", "a b ", "a:b", "a\nb", &"a".repeat(121)] {
+            assert!(safe_name(name).is_err(), "{name}");
+        }
+    }
+}

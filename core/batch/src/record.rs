@@ -1,0 +1,138 @@
+//! What was done for a shot: `batch.json` in the shot's folder.
+//!
+//! The record knows each file that a worker wrote, by its hash. So a file of the same name that somebody else wrote, or
+//! changed afterwards, is recognised and never replaced.
+
+use crate::findings::Findings;
+use rototoon::project::{WriteError, write_whole};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// Name of the file.
+pub const RECORD: &str = "batch.json";
+/// Version of the format.
+const VERSION: u64 = 1;
+
+/// What was done for a shot.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// Version of the format.
+    pub rototoon_record: u64,
+    /// The steps that are done, in their order.
+    pub steps: Vec<Done>,
+    /// Hash of each file that a worker wrote.
+    #[serde(default)]
+    pub files: BTreeMap<String, String>,
+    /// Hash of each file that still has its first name.
+    #[serde(default)]
+    pub pending: BTreeMap<String, String>,
+    /// Why the shot failed; empty if it did not.
+    #[serde(default)]
+    pub failure: String,
+    /// Hash of what the findings and the contact sheet were made of.
+    #[serde(default)]
+    pub seen: String,
+    /// What the newest document says.
+    #[serde(default)]
+    pub findings: Findings,
+}
+
+/// A step that is done.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Done {
+    /// The subcommand.
+    pub step: String,
+    /// Hash of what it read.
+    pub reads: String,
+    /// The files that it wrote.
+    pub outputs: Vec<String>,
+    /// Seconds that it took.
+    pub seconds: f64,
+    /// The most memory that it held, in bytes; 0 where the system does not say it.
+    pub peak_bytes: u64,
+    /// Its warnings and notes.
+    pub messages: Vec<String>,
+}
+
+impl Record {
+    /// Reads the record of a folder. One that cannot be read is set aside under another name: its path is returned too.
+    ///
+    /// # Errors
+    ///
+    /// The damaged record cannot be renamed.
+    pub fn read(folder: &Path) -> Result<(Self, Option<PathBuf>), WriteError> {
+        let path = folder.join(RECORD);
+        let empty = Self { rototoon_record: VERSION, ..Self::default() };
+        let text = match rototoon::file::text(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok((empty, None)),
+            Err(_) => String::new(),
+        };
+        match serde_json::from_str::<Self>(&text) {
+            Ok(record) if record.rototoon_record == VERSION => Ok((record, None)),
+            _ => Ok((empty, Some(set_aside(folder, &path)?))),
+        }
+    }
+
+    /// Writes the record.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), WriteError> {
+        let text = serde_json::to_string_pretty(self).unwrap_or_default() + "\n";
+        write_whole(&folder.join(RECORD), text.as_bytes())
+    }
+
+    /// The most memory that any step held.
+    pub fn peak_bytes(&self) -> u64 {
+        self.steps.iter().map(|done| done.peak_bytes).max().unwrap_or(0)
+    }
+
+    /// Seconds of all steps.
+    pub fn seconds(&self) -> f64 {
+        self.steps.iter().map(|done| done.seconds).sum()
+    }
+}
+
+fn set_aside(folder: &Path, path: &Path) -> Result<PathBuf, WriteError> {
+    let free = |path: &PathBuf| fs::symlink_metadata(path).is_err();
+    let to = (1..u32::MAX).map(|n| folder.join(format!("batch.damaged-{n}.json"))).find(free).unwrap_or_default();
+    fs::rename(path, &to).map_err(|source| WriteError { path: path.to_owned(), source })?;
+    Ok(to)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_record_is_read_as_it_was_written() {
+        let folder = tempfile::tempdir().unwrap();
+        assert_eq!(Record::read(folder.path()).unwrap().0.steps, []);
+        let done = Done {
+            step: "track".into(),
+            reads: "1".into(),
+            outputs: vec!["a".into()],
+            seconds: 0.1,
+            ..Done::default()
+        };
+        let record = Record { rototoon_record: 1, steps: vec![done], failure: "no".into(), ..Record::default() };
+        record.write(folder.path()).unwrap();
+        assert_eq!(Record::read(folder.path()).unwrap(), (record, None));
+    }
+
+    #[test]
+    fn a_damaged_record_is_kept_under_another_name() {
+        let folder = tempfile::tempdir().unwrap();
+        for (n, text) in ["{", r#"{"rototoon_record": 9, "steps": []}"#].iter().enumerate() {
+            fs::write(folder.path().join(RECORD), text).unwrap();
+            let (record, aside) = Record::read(folder.path()).unwrap();
+            assert_eq!(record.steps, []);
+            assert_eq!(fs::read_to_string(aside.unwrap()).unwrap(), *text, "{n}");
+        }
+    }
+}

@@ -1,0 +1,332 @@
+//! All steps of a shot, in its folder.
+
+use crate::child::{self, Ended};
+use crate::findings::Findings;
+use crate::lock::Lock;
+use crate::manifest::Shot;
+use crate::record::{Done, Record};
+use crate::step::Step;
+use crate::{digest, page};
+use rototoon::project::{Document, WriteError};
+use rototoon::scene::Footage;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What the names of files begin with until they enter the record.
+const NEW: &str = ".new-";
+
+/// What shots share.
+pub struct Worker<'a> {
+    /// The command line program.
+    pub program: &'a Path,
+    /// Threads of a step; 0 for one a core.
+    pub threads: usize,
+    /// Whether the batch was asked to end.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
+    /// Is told of each step.
+    pub told: &'a (dyn Fn(&Shot, &StepEnd) + Sync),
+}
+
+/// The end of a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepEnd {
+    /// The subcommand.
+    pub step: &'static str,
+    /// Whether it was done, found done, or failed.
+    pub outcome: StepOutcome,
+    /// Seconds that it took.
+    pub seconds: f64,
+    /// The most memory that it held, in bytes.
+    pub peak_bytes: u64,
+    /// Warnings, notes and errors.
+    pub messages: Vec<String>,
+}
+
+/// What became of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepOutcome {
+    /// It was done.
+    Done,
+    /// It was done before, and nothing that it reads has changed.
+    Unchanged,
+    /// It failed.
+    Failed,
+}
+
+impl StepOutcome {
+    /// As in the report.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Unchanged => "unchanged",
+            Self::Failed => "failed",
+        }
+    }
+}
+
+/// Why a shot did not come to its end.
+#[derive(Debug, thiserror::Error)]
+pub enum ShotError {
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A file cannot be read or renamed.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The error of the system.
+        source: io::Error,
+    },
+    /// A file of the same name is not the batch's.
+    #[error("{}: found a file that the batch did not write, or that was changed since; move it away or choose another name in `to`", .0.display())]
+    Foreign(PathBuf),
+    /// A step failed.
+    #[error("{0}")]
+    Step(String),
+    /// The batch was stopped.
+    #[error("stopped")]
+    Stopped,
+}
+
+/// A shot while its steps run.
+struct Work<'a> {
+    shot: &'a Shot,
+    worker: &'a Worker<'a>,
+    folder: PathBuf,
+    lock: &'a Lock,
+    record: Record,
+}
+
+/// Runs the steps of a shot that are not done, in `folder`. The record then says how it went. What is wrong with the shot
+/// is in the record's `failure`; only what concerns the record itself is an error.
+///
+/// # Errors
+///
+/// The record cannot be read or written; the batch was stopped.
+pub fn run(shot: &Shot, folder: &Path, lock: &Lock, worker: &Worker) -> Result<Record, ShotError> {
+    let (record, aside) = Record::read(folder)?;
+    let mut work = Work { shot, worker, folder: absolute(folder), lock, record };
+    let result = work.steps();
+    work.record.failure = match result {
+        Ok(()) => String::new(),
+        Err(ShotError::Stopped) => return Err(ShotError::Stopped),
+        Err(error) => error.to_string(),
+    };
+    if let Some(aside) = aside {
+        let note = format!("the damaged record is now {}", aside.display());
+        work.record.failure =
+            [work.record.failure, note].into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join("; ");
+    }
+    work.record.write(folder)?;
+    Ok(work.record)
+}
+
+impl Work<'_> {
+    fn steps(&mut self) -> Result<(), ShotError> {
+        let mut document = absolute(&self.shot.project);
+        let footage = self.footage(&document)?;
+        let frames = if self.shot.steps.iter().any(Step::reads_footage) {
+            digest::of_footage(&footage, document.parent().unwrap_or(Path::new("")))
+        } else {
+            String::new()
+        };
+        for (index, step) in self.shot.steps.iter().enumerate() {
+            if (self.worker.stop)() {
+                return Err(ShotError::Stopped);
+            }
+            let hash =
+                digest::of_file(&document).map_err(|source| ShotError::File { path: document.clone(), source })?;
+            self.step(index, step, &document, &digest::of_step(step, &hash, &frames))?;
+            if let (true, Some(output)) = (step.writes_document(), &step.output) {
+                document = self.folder.join(output);
+            }
+        }
+        self.record.steps.truncate(self.shot.steps.len());
+        self.find(&document, &frames)
+    }
+
+    fn footage(&self, document: &Path) -> Result<Footage, ShotError> {
+        match Document::load(document) {
+            Ok(document) => Ok(document.scene.footage),
+            Err(error) => Err(ShotError::Step(error.lines().join("; "))),
+        }
+    }
+
+    /// Reads what the newest document says, and draws its contact sheet.
+    fn find(&mut self, path: &Path, frames: &str) -> Result<(), ShotError> {
+        let hash = digest::of_file(path).map_err(|source| ShotError::File { path: path.to_owned(), source })?;
+        let seen = format!("{hash} {frames}");
+        if self.record.seen == seen && !page::sheet::read(&self.folder).is_empty() {
+            return Ok(());
+        }
+        let document = Document::load(path).map_err(|error| ShotError::Step(error.lines().join("; ")))?;
+        let findings = Findings::of(&document.scene);
+        let folder = path.parent().unwrap_or(Path::new(""));
+        page::sheet::write(&document, folder, &findings, &self.folder, self.worker.threads)?;
+        (self.record.findings, self.record.seen) = (findings, seen);
+        Ok(())
+    }
+
+    fn step(&mut self, index: usize, step: &Step, document: &Path, reads: &str) -> Result<(), ShotError> {
+        if self.is_done(index, reads)? {
+            self.tell(step, StepOutcome::Unchanged, None);
+            return Ok(());
+        }
+        self.clear()?;
+        let ended = self.start(step, document)?;
+        if ended.stopped {
+            self.clear()?;
+            return Err(ShotError::Stopped);
+        }
+        if ended.status != Some(0) {
+            self.clear()?;
+            self.tell(step, StepOutcome::Failed, Some(&ended));
+            return Err(ShotError::Step(failure(step, &ended)));
+        }
+        self.finish(index, step, reads, &ended)?;
+        self.tell(step, StepOutcome::Done, Some(&ended));
+        Ok(())
+    }
+
+    /// Whether a step was done with the same input. Files that still have their first names get their own.
+    fn is_done(&mut self, index: usize, reads: &str) -> Result<bool, ShotError> {
+        let Some(done) = self.record.steps.get(index).filter(|done| done.reads == reads) else { return Ok(false) };
+        let outputs = done.outputs.clone();
+        self.place()?;
+        Ok(outputs.iter().all(|name| self.record.files.get(name).is_some_and(|hash| self.has(name, hash))))
+    }
+
+    /// Whether a file of the folder has a hash.
+    fn has(&self, name: &str, hash: &str) -> bool {
+        digest::of_file(&self.folder.join(name)).is_ok_and(|found| found == hash)
+    }
+
+    /// Removes what a step left that did not come to its end.
+    fn clear(&self) -> Result<(), ShotError> {
+        for name in self.new_files()? {
+            let path = self.folder.join(&name);
+            fs::remove_file(&path).map_err(|source| ShotError::File { path, source })?;
+        }
+        Ok(())
+    }
+
+    /// Files with their first names, sorted.
+    fn new_files(&self) -> Result<Vec<String>, ShotError> {
+        let failed = |source| ShotError::File { path: self.folder.clone(), source };
+        let mut names = Vec::new();
+        for entry in fs::read_dir(&self.folder).map_err(failed)? {
+            names.extend(entry.map_err(failed)?.file_name().into_string().ok().filter(|name| name.starts_with(NEW)));
+        }
+        names.sort();
+        Ok(names)
+    }
+
+    fn start(&self, step: &Step, document: &Path) -> Result<Ended, ShotError> {
+        let prefix = format!("{}{NEW}", folder_text(&self.folder));
+        let mut words = step.words(&document.to_string_lossy(), &prefix);
+        if step.reads_footage() {
+            words.extend(["--threads".to_owned(), self.worker.threads.to_string()]);
+        }
+        let failed = |source| ShotError::File { path: self.worker.program.to_owned(), source };
+        let lock = self.lock.shared().map_err(failed)?;
+        child::run(self.worker.program, &words, &self.folder, lock, &self.worker.stop).map_err(failed)
+    }
+
+    /// Enters a step into the record, and gives its files their names.
+    fn finish(&mut self, index: usize, step: &Step, reads: &str, ended: &Ended) -> Result<(), ShotError> {
+        let mut pending = BTreeMap::new();
+        for new in self.new_files()? {
+            let path = self.folder.join(&new);
+            let hash = digest::of_file(&path).map_err(|source| ShotError::File { path, source })?;
+            pending.insert(new[NEW.len()..].to_owned(), hash);
+        }
+        let outputs: Vec<String> = pending.keys().cloned().collect();
+        let before = self.record.steps.get(index).map(|done| done.outputs.clone()).unwrap_or_default();
+        self.record.pending = pending;
+        let done = Done {
+            step: step.name().into(),
+            reads: reads.into(),
+            outputs: outputs.clone(),
+            seconds: ended.seconds,
+            peak_bytes: ended.peak_bytes,
+            messages: ended.messages.clone(),
+        };
+        // Later steps stay: if they read what has changed, their hashes say so.
+        match self.record.steps.get_mut(index) {
+            Some(place) => *place = done,
+            None => self.record.steps.push(done),
+        }
+        self.record.write(&self.folder)?;
+        self.place()?;
+        self.remove_old(before.iter().filter(|name| !outputs.contains(name)))
+    }
+
+    /// Gives pending files their names. A file that is there must be one of the batch.
+    fn place(&mut self) -> Result<(), ShotError> {
+        if self.record.pending.is_empty() {
+            return Ok(());
+        }
+        for (name, hash) in self.record.pending.clone() {
+            let (from, to) = (self.folder.join(format!("{NEW}{name}")), self.folder.join(&name));
+            let found = digest::of_file(&to).ok();
+            let own =
+                found.is_none() || found.as_ref() == Some(&hash) || found.as_ref() == self.record.files.get(&name);
+            if !own || (found.is_none() && fs::symlink_metadata(&to).is_ok()) {
+                return Err(ShotError::Foreign(to));
+            }
+            if self.has(&format!("{NEW}{name}"), &hash) {
+                fs::rename(&from, &to).map_err(|source| ShotError::File { path: to, source })?;
+            }
+            self.record.files.insert(name, hash);
+        }
+        self.record.pending.clear();
+        Ok(self.record.write(&self.folder)?)
+    }
+
+    /// Removes files of an earlier run that the step no longer writes, if nobody changed them.
+    fn remove_old<'b>(&mut self, names: impl Iterator<Item = &'b String>) -> Result<(), ShotError> {
+        for name in names {
+            let Some(hash) = self.record.files.remove(name) else { continue };
+            if self.has(name, &hash) {
+                let path = self.folder.join(name);
+                fs::remove_file(&path).map_err(|source| ShotError::File { path, source })?;
+            }
+        }
+        Ok(self.record.write(&self.folder)?)
+    }
+
+    fn tell(&self, step: &Step, outcome: StepOutcome, ended: Option<&Ended>) {
+        let end = StepEnd {
+            step: step.name(),
+            outcome,
+            seconds: ended.map_or(0.0, |ended| ended.seconds),
+            peak_bytes: ended.map_or(0, |ended| ended.peak_bytes),
+            messages: ended.map(|ended| ended.messages.clone()).unwrap_or_default(),
+        };
+        (self.worker.told)(self.shot, &end);
+    }
+}
+
+/// Why a step failed, in one line.
+fn failure(step: &Step, ended: &Ended) -> String {
+    let errors: Vec<&str> = ended.messages.iter().filter_map(|line| line.strip_prefix("error: ")).collect();
+    let why = match ended.status {
+        None => format!("ended by the system ({})", ended.description),
+        Some(_) if errors.is_empty() => format!("ended with {}", ended.description),
+        Some(_) => errors.join("; "),
+    };
+    format!("{}: {why}", step.name())
+}
+
+/// A folder with a separator at its end, as text.
+fn folder_text(folder: &Path) -> String {
+    folder.join("").to_string_lossy().into_owned()
+}
+
+/// A path that means the same in any folder.
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
