@@ -5,7 +5,6 @@
 //! some 10 MB.
 
 use crate::findings::Findings;
-use crate::shot::ShotError;
 use image::codecs::jpeg::JpegEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 use rototoon::image::resize::resize;
@@ -41,9 +40,9 @@ pub fn write(
     findings: &Findings,
     shot: &Path,
     threads: usize,
-) -> Result<(), ShotError> {
+) -> Result<(), WriteError> {
     let sheet = shot.join(SHEET);
-    let failed = |source| ShotError::File { path: sheet.clone(), source };
+    let failed = |source| WriteError { path: sheet.clone(), source };
     // What is in this folder is the batch's own.
     match fs::remove_dir_all(&sheet) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(failed(error)),
@@ -56,8 +55,7 @@ pub fn write(
     let Ok(frames) = pictures::Sequence::keeping(footage, folder, 0) else { return Ok(()) };
     for frame in chosen(footage.first, footage.last, findings) {
         if let Some(bytes) = pool.install(|| picture(document, &frames, frame)) {
-            write_whole(&sheet.join(format!("{frame}.jpg")), &bytes)
-                .map_err(|error: WriteError| ShotError::Write(error))?;
+            write_whole(&sheet.join(format!("{frame}.jpg")), &bytes)?;
         }
     }
     Ok(())
