@@ -6,7 +6,7 @@
 builds the program and the environments and runs this script. To run it by hand, with NumPy, SciPy and cu2qu, and Node.js
 with fit-curve and paper:
 
-    python3 tests/bench_fit.py --own target/release/bench-fit [--node FOLDER] [--tolerance 1] [--svg FILE]
+    python3 tests/bench_fit.py --own target/release/bench-fit [--node FOLDER] [--tolerance 1] [--svg FILE] [--sweep]
 
 --node is the folder whose node_modules contains fit-curve and paper. Without it these are left out, and so is cu2qu, whose
 input are the cubics of fit-curve.
@@ -19,6 +19,13 @@ Each method is measured with the fewest pieces with which its true error keeps t
 - paper.js Path.simplify and fit-curve (Schneider 1990): of 90 values of their tolerance parameter the one with the fewest
   pieces is used. The time is that of the one call with it. Their pieces are cubic.
 - cu2qu (quadratics from cubics) works on fit-curve's cubics. Each of the two gets half of the tolerance parameter.
+
+- kurbo (simplify_bezpath, by subdivision; its optimisation takes minutes for each outline) works on the polyline. Of 90 values of its accuracy near the tolerance, and of three angles below
+  which a join is smooth, the fewest cubics are used.
+
+--sweep prints one table instead: the pieces of each method on other outlines (swept in bench_fit_outlines.py) at tolerances
+from 0.25 to 5 px. On points rounded to pixels, Rototoon takes a tolerance below 1 px for the line before rounding. Its bound
+is then the tolerance plus half a pixel, at most 1 px. The others get the same bound.
 
 The true error is measured in the same way for all. Each curve is sampled every hundredth of a pixel. The error is the
 largest distance from a given point to the polyline of the samples, or from a sample to the polyline of the points.
@@ -39,10 +46,11 @@ import numpy as np
 from scipy.interpolate import splev, splprep
 from scipy.spatial import cKDTree
 
-from bench_fit_outlines import outlines
+from bench_fit_outlines import outlines, swept
 
 SPACING = 0.01
 BISECTIONS = 24
+SWEPT = (0.25, 0.5, 1.0, 2.0, 3.0, 5.0)
 
 
 def quadratics_of(guides, closed):
@@ -96,10 +104,15 @@ def true_error(beziers, points, closed):
     return max(to_polyline(points, samples, False).max(), to_polyline(samples, points, closed).max())
 
 
-def own(program, outline, tolerance):
+def asked(program, outline, *arguments):
+    """What the program bench-fit says about one outline."""
     job = {"curves": [{"closed": outline["closed"], "points": outline["points"].tolist()}]}
-    said = subprocess.run([program, str(tolerance)], input=json.dumps(job), capture_output=True, text=True, check=True)
-    result = json.loads(said.stdout)[0]
+    said = subprocess.run([program, *arguments], input=json.dumps(job), capture_output=True, text=True, check=True)
+    return json.loads(said.stdout)
+
+
+def own(program, outline, tolerance, rounds=40):
+    result = asked(program, outline, str(tolerance), "--rounds", str(rounds))[0]
     return quadratics_of(result["guides"], outline["closed"]), result["ms"], result["max_error"]
 
 
@@ -159,9 +172,9 @@ def node(folder, method, outline, tolerances, repeats=5):
     return json.loads(said.stdout)
 
 
-def searched(outline, tolerance, run):
+def searched(outline, tolerance, run, values=90):
     """Finds the fewest pieces over many values of a method's own tolerance, then measures the time of the best one."""
-    ladder = tolerance * np.geomspace(0.05, 6.0, 90)
+    ladder = tolerance * np.geomspace(*getattr(run, "range", (0.05, 6.0)), values)
     best = None
     for parameter, pieces in zip(ladder, run(ladder, 1)):
         if len(pieces[0]) and true_error_quick(pieces[0], outline["points"], outline["closed"]) <= tolerance:
@@ -176,6 +189,19 @@ def searched(outline, tolerance, run):
 def cubic_method(folder, method):
     def run(outline):
         return lambda ladder, repeats: [(r["cubics"], r["ms"]) for r in node(folder, method, outline, ladder, repeats)]
+
+    return run
+
+
+def kurbo(program):
+    def run(outline):
+        def at(ladder, repeats):
+            results = asked(program, outline, "--rounds", str(repeats), "--kurbo", ",".join(str(t) for t in ladder))
+            return [(r["cubics"], r["ms"]) for r in results]
+
+        # kurbo's accuracy bounds the distance, so much smaller and much larger values are of no use.
+        at.range = (0.4, 2.0)
+        return at
 
     return run
 
@@ -205,6 +231,36 @@ def through_cu2qu(folder):
     return run
 
 
+def sweep(given):
+    """Prints the pieces of each method at each tolerance, and then where a quadratic peer needs fewer."""
+    peers = {"kurbo, cubic": kurbo(given.own)}
+    if given.node:
+        peers |= {"paper.js, cubic": cubic_method(given.node, "paper"), "fit-curve, cubic": cubic_method(given.node, "fit-curve")}
+        peers["cu2qu"] = through_cu2qu(given.node)
+    names = ["Rototoon", "corners", "FITPACK", *peers]
+    print(f"| outline | px | {' | '.join(names)} |\n| --- | ---: |{' ---: |' * len(names)}")
+    beaten = []
+    for outline in swept():
+        rounded = np.all(np.abs(outline["points"] - np.floor(outline["points"]) - 0.5) < 1e-9)
+        for tolerance in SWEPT:
+            bound = max(tolerance, min(tolerance + 0.5, 1.0)) if rounded else tolerance
+            pieces, _, said = own(given.own, outline, tolerance, 1)
+            error = true_error_quick(pieces, outline["points"], outline["closed"])
+            if error > said + 1e-3 or said > bound + 1e-9:
+                sys.exit(f"{outline['name']}, {tolerance} px: found the error {error}, said {said}, expected at most {bound}")
+            corners = len(asked(given.own, outline, str(tolerance), "--rounds", "1")[0]["corners"])
+            row = {"Rototoon": len(pieces), "corners": corners, "FITPACK": len(fitpack(outline, bound)[0])}
+            for name, method in peers.items():
+                found = searched(outline, bound, method(outline), 8 if name.startswith("kurbo") else 24)
+                row[name] = len(found[0]) if found else "–"
+            quadratic = [row[name] for name in ("FITPACK", "cu2qu") if isinstance(row.get(name), int)]
+            if quadratic and min(quadratic) < len(pieces):
+                beaten.append(f"{outline['name']} at {tolerance} px: {len(pieces)} pieces, a quadratic peer {min(quadratic)}")
+            print(f"| {outline['name']} | {tolerance:g} | {' | '.join(str(row[name]) for name in names)} |", flush=True)
+    for line in beaten:
+        print(f"fewer pieces elsewhere: {line}")
+
+
 def picture(path, shown):
     """Draws each outline's points with Rototoon's curve and the joints of its pieces, as SVG."""
     parts, top = [], 0.0
@@ -231,7 +287,10 @@ def main():
     parser.add_argument("--node", help="folder whose node_modules contains fit-curve and paper")
     parser.add_argument("--tolerance", type=float, default=1.0, help="largest distance between line and curve, in pixels")
     parser.add_argument("--svg", help="SVG file for a picture of Rototoon's curves")
+    parser.add_argument("--sweep", action="store_true", help="tolerances from 0.25 to 5 px on other outlines instead")
     given = parser.parse_args()
+    if given.sweep:
+        return sweep(given)
     print(f"| outline | method | pieces | true error, px | ms |\n| --- | --- | ---: | ---: | ---: |")
     shown = []
     for outline in outlines():
@@ -245,12 +304,13 @@ def main():
         rows.append(("Rototoon", pieces, f"{ms:.1f}"))
         pieces, whole, one = fitpack(outline, given.tolerance)
         rows.append(("SciPy FITPACK", pieces, f"{whole:.0f} (one call {one:.1f})"))
+        peers = [("kurbo simplify, cubic", kurbo(given.own))]
         if given.node:
-            peers = [("paper.js simplify, cubic", cubic_method(given.node, "paper"))]
+            peers += [("paper.js simplify, cubic", cubic_method(given.node, "paper"))]
             peers += [("fit-curve, cubic", cubic_method(given.node, "fit-curve")), ("fit-curve + cu2qu", through_cu2qu(given.node))]
-            for name, method in peers:
-                found = searched(outline, given.tolerance, method(outline))
-                rows.append((name, *((found[0], f"{found[1]:.1f}") if found else (None, "–"))))
+        for name, method in peers:
+            found = searched(outline, given.tolerance, method(outline))
+            rows.append((name, *((found[0], f"{found[1]:.1f}") if found else (None, "–"))))
         for name, pieces, ms in rows:
             what = f"{outline['name']}, {len(points)} points"
             figures = (len(pieces), f"{true_error(pieces, points, closed):.3f}") if pieces is not None else ("–", "–")

@@ -1,4 +1,5 @@
-"""Six different outlines, for the comparison of curve fitting. The seed is fixed, so the points are always the same.
+"""Outlines for the comparison of curve fitting: six different ones (outlines), and those of the sweep of tolerances (swept).
+The seed is fixed, so the points are always the same.
 
 Each outline is a dict with `name`, `closed` and `points` (in pixels). All but the noisy stroke are sampled about every pixel
 and rounded to pixel centres, like the output of a bitmap tracer. So neighbouring points may be equal.
@@ -107,6 +108,76 @@ def outlines():
         {"name": "spiral", "closed": False, "points": _rounded(spiral())},
         {"name": "blob", "closed": True, "points": _rounded(blob())},
     ]
+
+
+def zigzag():
+    """Twelve tips of 24 px between straight legs, open."""
+    k = np.arange(14)
+    return _by_length(np.column_stack([20.3 + 14.0 * k, 50.4 + 24.0 * (k % 2)]), 0.05)
+
+
+def gear():
+    """Eighteen teeth of 24 px, which have 72 corners."""
+    tips = [((k + share) * np.pi / 9, radius) for k in range(18) for share, radius in ((0, 150), (0.32, 150), (0.42, 126), (0.9, 126))]
+    tips = np.array([[170 + r * np.cos(a), 170 + r * np.sin(a)] for a, r in tips])
+    return _by_length(np.vstack([tips, tips[:1]]), 0.05)
+
+
+def eight():
+    """A figure eight, smooth and closed."""
+    t = np.linspace(0, 2 * np.pi, 20001)
+    return 140 + np.column_stack([120 * np.sin(t), 72 * np.sin(2 * t)])
+
+
+def s_curve():
+    """Two and a half waves, smooth and open."""
+    t = np.linspace(0, 1, 20001)
+    return np.column_stack([20 + 900 * t, 150 + 90 * np.sin(5 * np.pi * t)])
+
+
+def glyph(start, parts):
+    """A contour of straight lines (one point) and cubics (three points), twice as large, with 20 px of room."""
+    t = np.linspace(0, 1, 2000, endpoint=False)[:, None]
+    at, lines = np.array(start, float), []
+    for part in parts:
+        c = np.array(part, float)
+        if c.ndim == 1:
+            lines.append(at + t * (c - at))
+            at = c
+        else:
+            lines.append((1 - t) ** 3 * at + 3 * (1 - t) ** 2 * t * c[0] + 3 * (1 - t) * t * t * c[1] + t**3 * c[2])
+            at = c[2]
+    outline = 20 + 2 * np.vstack(lines)
+    return np.vstack([outline, outline[:1]])
+
+
+def glyph_d():
+    """A D with serifs: stems, a bowl, brackets."""
+    return glyph((0, 0), [(40, 0), ((85, 0), (100, 25), (100, 50)), ((100, 75), (85, 100), (40, 100)), (0, 100), (0, 94),
+                          ((7, 94), (11, 93), (11, 86)), (11, 14), ((11, 7), (7, 6), (0, 6)), (0, 0)])
+
+
+def glyph_s():
+    """An S with four corners."""
+    return glyph((70, 25), [((70, 12), (55, 8), (42, 8)), ((28, 8), (16, 14), (16, 26)), ((16, 48), (82, 38), (82, 72)),
+                            ((82, 90), (62, 100), (40, 100)), ((18, 100), (2, 90), (2, 70)), (14, 70),
+                            ((14, 84), (26, 91), (42, 91)), ((58, 91), (69, 84), (69, 74)), ((69, 52), (4, 62), (4, 28)),
+                            ((4, 10), (22, 0), (42, 0)), ((66, 0), (82, 10), (82, 25)), (70, 25)])
+
+
+def swept():
+    """The outlines of the sweep. Each is rounded to pixels, and zigzag, figure eight and S-curve are there unrounded too."""
+    random = np.random.default_rng(SEED + 1)
+    shapes = [("zigzag", False, zigzag()), ("gear", True, gear()), ("figure eight", True, eight()), ("S-curve", False, s_curve()),
+              ("glyph D", True, glyph_d()), ("glyph S", True, glyph_s())]
+    found = [{"name": f"{name}, pixels", "closed": closed, "points": _rounded(shape)} for name, closed, shape in shapes]
+    for name, closed, shape in (shapes[0], shapes[2], shapes[3]):
+        points = _by_length(shape, 1.0)
+        points = points[:-1] if closed else points
+        found.append({"name": name, "closed": closed, "points": points})
+    points = _by_length(s_curve(), 1.0)
+    jitter = points + random.normal(0, 0.2, points.shape)
+    return found + [{"name": "S-curve, hand jitter", "closed": False, "points": jitter}]
 
 
 if __name__ == "__main__":

@@ -74,6 +74,8 @@ def match_contours(request: Mapping[str, Any]) -> Any:
 
 def fit_strokes(strokes: Strokes, tolerance: float, values: Any = None, channels: int = 0) -> Guides:
     """Fits quadratic B-splines with few guiding points. No point is farther than `tolerance` pixels from its curve.
+    Where points are rounded to pixels and the tolerance is below a pixel, it is meant for the line before rounding: points are
+    then within the tolerance plus half a pixel, at most one pixel.
 
     `values` (float64, N × `channels`) are numbers of the given points; the guiding points get blended ones. A point that is
     not finite is an error that names its stroke. A stroke without points gives no guiding points.

@@ -87,7 +87,7 @@ struct Carrying {
     carried: Vec<Vec<f64>>,
 }
 
-/// Fits all strokes to within `tolerance` pixels. `values` has `channels` numbers for each point.
+/// Fits all strokes to within `tolerance` pixels (on points rounded to pixels see `rototoon_fit::Options`). `values` has `channels` numbers for each point.
 pub fn fitted(strokes: &Strokes, values: &[f64], channels: usize, tolerance: f64) -> Result<RototoonGuides, Failure> {
     let count = strokes.checked()?;
     let expected = channels.saturating_mul(strokes.points.len() / 2);

@@ -11,6 +11,8 @@ const SPACING: f64 = 6.0;
 /// At most about this many points are added for each given one, plus [`FEW`].
 const MOST: f64 = 3.0;
 const FEW: f64 = 200.0;
+/// A segment is long beside the usual one if it is longer than this multiple of the median.
+const USUAL: f64 = 2.0;
 
 /// A polyline prepared for fitting.
 #[derive(Clone, Debug)]
@@ -24,6 +26,8 @@ pub(super) struct Cleaned {
     pub total: f64,
     /// For each point that was given, the index of its like in `points`.
     pub places: Vec<usize>,
+    /// A fit with a limit below this follows the noise of the points, in pixels. 0 where that is not known.
+    pub floor: f64,
 }
 
 /// The points without repetitions, and for each given point the index of its copy.
@@ -45,11 +49,27 @@ pub(super) fn distinct(points: &[Point], closed: bool) -> (Vec<Point>, Vec<usize
 
 /// Prepares a polyline of at least one point for fitting.
 pub(super) fn cleaned(points: &[Point], closed: bool, tolerance: f64) -> Cleaned {
+    prepared(points, closed, |_| SPACING * tolerance)
+}
+
+/// The same line with gaps filled that are long beside the usual step, whatever the tolerance.
+pub(super) fn filled(points: &[Point], closed: bool) -> Cleaned {
+    prepared(points, closed, |steps| {
+        let length: f64 = steps.iter().sum();
+        let middle = steps.len() / 2;
+        let usual = if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+        (USUAL * usual).min(length / FEW)
+    })
+}
+
+/// Prepares a polyline. `spacing` gives the intended largest spacing from the lengths of the segments.
+fn prepared(points: &[Point], closed: bool, spacing: impl FnOnce(&mut [f64]) -> f64) -> Cleaned {
     let (kept, mut places) = distinct(points, closed);
     let n = kept.len();
     let segments = if closed && n > 1 { n } else { n - 1 };
-    let length: f64 = (0..segments).map(|i| kept[i].distance(kept[(i + 1) % n])).sum();
-    let spacing = (SPACING * tolerance).max(length / (MOST * n as f64 + FEW));
+    let mut steps: Vec<f64> = (0..segments).map(|i| kept[i].distance(kept[(i + 1) % n])).collect();
+    let length: f64 = steps.iter().sum();
+    let spacing = spacing(&mut steps).max(length / (MOST * n as f64 + FEW));
     let (mut all, mut lengths, mut indices) = (Vec::with_capacity(n), Vec::with_capacity(n), Vec::with_capacity(n));
     let mut walked = 0.0;
     for i in 0..segments {
@@ -70,7 +90,7 @@ pub(super) fn cleaned(points: &[Point], closed: bool, tolerance: f64) -> Cleaned
         lengths.push(walked);
     }
     places.iter_mut().for_each(|place| *place = indices[*place]);
-    Cleaned { points: all, lengths, total: walked, places }
+    Cleaned { points: all, lengths, total: walked, places, floor: 0.0 }
 }
 
 #[cfg(test)]

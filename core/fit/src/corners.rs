@@ -1,18 +1,31 @@
 //! Corners, found by the turning angle over a stretch of arc length.
 //!
-//! The direction before a point is that of the straight line that fits the points best within a reach of arc length
-//! before it. The direction after it is found in the same way. Over the reach, the steps of a pixel staircase average
-//! out; the directions between neighbouring points would be multiples of 45°. A corner turns by at least
-//! [`LEAST_TURN`], turns more than its surroundings, and turns suddenly: on a round bend, a wider reach sees
-//! proportionally more of the turn; at a corner it sees hardly more.
+//! **Where.** The direction before a point is that of the straight line that fits the points best within a reach of arc
+//! length before it. The direction after it is found in the same way. A corner turns by at least [`LEAST_TURN`], turns more
+//! than its surroundings, and turns suddenly: on a round bend, a wider reach sees proportionally more of the turn; at a
+//! corner it sees hardly more. The reach comes from the grain of the line ([`super::grain`]) and from the spacing of its
+//! points. Over the reach, the steps of a pixel staircase average out. It does not depend on the tolerance: the crest of a
+//! wave is round, however large the tolerance is.
 //!
-//! The place of the corner is the intersection of both lines if that is near the point, because the point itself is
-//! rounded. Otherwise it is the point. This applies to sharp tips, whose nearly parallel lines may meet anywhere.
+//! **How large.** A tolerance as large as a corner makes the corner invisible. The size of a corner is half of its height
+//! over the chord between its legs' ends: a straight line through the middle of a zigzag is that far from its tips. A leg
+//! ends at the next corner, or where the line has turned back. The smallest corner is dropped first, which makes the
+//! legs of its neighbours longer, until all that are left are larger than the tolerance. The order of dropping does not
+//! depend on the tolerance. So the corners of a larger tolerance are among those of a smaller one.
+//!
+//! **Place.** The place of the corner is the intersection of both lines if that is near the point, because the point
+//! itself is rounded. Otherwise it is the point. This applies to sharp tips, whose nearly parallel lines may meet anywhere.
 
+use super::clean::Cleaned;
+use super::grain::Grain;
 use rototoon_base::geometry::Point;
+use rototoon_base::geometry::polyline::nearest_on_segment;
+use std::collections::BTreeSet;
 
-/// Reach to each side, in tolerances.
-const REACH: f64 = 8.0;
+/// Reach to each side, in standard deviations of the noise.
+const REACH: f64 = 34.0;
+/// Least reach, in mean steps between points.
+const STEPS: f64 = 4.0;
 /// Smallest number of points on a side.
 const LEAST_POINTS: usize = 3;
 /// Smallest turn of a corner in radians: 40°.
@@ -25,8 +38,16 @@ const SUDDEN: f64 = 0.76;
 const NEAR: f64 = 0.8;
 /// The tip is searched within this share of the reach.
 const TIP: f64 = 0.6;
-/// Stretch on each side of the tip that its lines leave out, in tolerances.
-const SKIP: f64 = 1.5;
+/// The lines that meet in a corner's place have this length and leave out this stretch on each side of the tip, both as
+/// multiples of the reach.
+const LINE: f64 = 1.4;
+const SKIP: f64 = 0.26;
+/// Legs of this turn, as a share of [`LEAST_TURN`], still belong to the corner.
+const STILL: f64 = 0.7;
+/// Ratio of the leg lengths at which the height of a corner is measured.
+const LONGER: f64 = std::f64::consts::SQRT_2;
+/// Longest leg, as a share of the complete line.
+const LEG: f64 = 0.25;
 
 /// A corner of the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,36 +75,35 @@ struct Line {
     direction: Point,
 }
 
-/// The corners in order. `lengths` are the arc lengths of the points, `total` is that of the complete line.
-pub(super) fn corners(points: &[Point], lengths: &[f64], total: f64, closed: bool, tolerance: f64) -> Vec<Corner> {
-    let n = points.len();
+/// The corners of a line as given, larger than the tolerance, in order. Their indices are those of `data`, the same line
+/// as it is fitted; `fine` is the same line with its gaps filled.
+pub(super) fn corners(data: &Cleaned, fine: &Cleaned, closed: bool, grain: Grain, tolerance: f64) -> Vec<Corner> {
+    let found = found(fine, closed, grain.noise, tolerance);
+    let last = data.points.len() - 1;
+    let index = |s: f64| {
+        let after = data.lengths.partition_point(|&l| l < s).min(last);
+        let before = after.saturating_sub(1);
+        if s - data.lengths[before] < data.lengths[after] - s { before } else { after }
+    };
+    let mut all: Vec<Corner> =
+        found.into_iter().map(|corner| Corner { index: index(fine.lengths[corner.index]), ..corner }).collect();
+    all.dedup_by_key(|corner| corner.index);
+    all
+}
+
+/// The corners of a line with even gaps.
+fn found(fine: &Cleaned, closed: bool, noise: f64, tolerance: f64) -> Vec<Corner> {
+    let Cleaned { points, lengths, total, .. } = fine;
+    let (n, total) = (points.len(), *total);
     if n < 2 * LEAST_POINTS {
         return Vec::new();
     }
     let sums = Sums::new(points, lengths, total, closed);
     // The reach must contain a few points and must leave most of the curve outside.
-    let spacing = total / n as f64;
-    let reach = (REACH * tolerance).max(4.0 * spacing).min(0.2 * total);
-    let turns: Vec<f64> = (0..n).map(|j| sums.turn(j, reach).abs()).collect();
-    let mut found = Vec::new();
-    for j in 0..n {
-        if turns[j] < LEAST_TURN || !sums.is_peak(&turns, j, reach) {
-            continue;
-        }
-        if turns[j] >= SUDDEN * sums.turn(j, (WIDER * reach).min(0.3 * total)).abs() {
-            let tip = sums.tip(j, reach);
-            found.push(Corner { index: tip, place: sums.meeting(tip, reach, tolerance) });
-        }
-    }
-    found.sort_by_key(|corner| corner.index);
-    // Peaks with the same tip, or with tips that noise moved apart by a step, are one corner.
-    found.dedup_by(|next, kept| lengths[next.index] - lengths[kept.index] < TIP * reach);
-    if let (true, [first, .., last]) = (closed, &found[..])
-        && lengths[first.index] + total - lengths[last.index] < TIP * reach
-    {
-        found.pop();
-    }
-    found
+    let reach = (REACH * noise).max(STEPS * total / n as f64).min(0.2 * total);
+    let mut tips = sums.tips(reach);
+    sums.drop_small(&mut tips, reach, tolerance);
+    tips.into_iter().map(|tip| Corner { index: tip, place: sums.meeting(tip, reach, tolerance) }).collect()
 }
 
 impl<'a> Sums<'a> {
@@ -99,6 +119,109 @@ impl<'a> Sums<'a> {
             sums.push(sum);
         }
         Self { points, lengths, total, closed, sums }
+    }
+
+    /// The indices of the points that are corners of any size.
+    fn tips(&self, reach: f64) -> Vec<usize> {
+        let n = self.points.len();
+        let turns: Vec<f64> = (0..n).map(|j| self.turn(j, reach).abs()).collect();
+        let wider = (WIDER * reach).min(0.3 * self.total);
+        let is_corner = |&j: &usize| {
+            turns[j] >= LEAST_TURN && self.is_peak(&turns, j, reach) && turns[j] >= SUDDEN * self.turn(j, wider).abs()
+        };
+        let mut tips: Vec<usize> = (0..n).filter(is_corner).map(|j| self.tip(j, reach)).collect();
+        tips.sort_unstable();
+        // Peaks with the same tip, or with tips that noise moved apart by a step, are one corner.
+        tips.dedup_by(|next, kept| self.lengths[*next] - self.lengths[*kept] < TIP * reach);
+        if let (true, [first, .., last]) = (self.closed, &tips[..])
+            && self.lengths[*first] + self.total - self.lengths[*last] < TIP * reach
+        {
+            tips.pop();
+        }
+        tips
+    }
+
+    /// Drops the smallest tip until all are larger than the tolerance.
+    fn drop_small(&self, tips: &mut Vec<usize>, reach: f64, tolerance: f64) {
+        let count = tips.len();
+        let mut around: Vec<[Option<usize>; 2]> = (0..count)
+            .map(|k| match self.closed {
+                true if count > 1 => [Some((k + count - 1) % count), Some((k + 1) % count)],
+                true => [None; 2],
+                false => [k.checked_sub(1), Some(k + 1).filter(|&k| k < count)],
+            })
+            .collect();
+        let size = |k: usize, around: &[Option<usize>; 2]| {
+            let legs = [0, 1].map(|side| self.leg(tips[k], around[side].map(|other| tips[other]), side));
+            self.size(tips[k], legs, reach)
+        };
+        let mut sizes: Vec<f64> = (0..count).map(|k| size(k, &around[k])).collect();
+        let mut order: BTreeSet<(u64, usize)> = (0..count).map(|k| (sizes[k].to_bits(), k)).collect();
+        let mut kept = vec![true; count];
+        while let Some(&(_, k)) = order.first()
+            && sizes[k] <= tolerance
+        {
+            order.pop_first();
+            kept[k] = false;
+            let [before, after] = around[k];
+            for (side, at, other) in [(1, before, after), (0, after, before)] {
+                let Some(at) = at.filter(|&at| kept[at]) else { continue };
+                around[at][side] = other.filter(|&other| other != at);
+                order.remove(&(sizes[at].to_bits(), at));
+                sizes[at] = size(at, &around[at]);
+                order.insert((sizes[at].to_bits(), at));
+            }
+        }
+        let mut left = kept.into_iter();
+        tips.retain(|_| left.next().unwrap_or(false));
+    }
+
+    /// The length of a tip's leg to the tip before it (side 0) or after it (side 1), or to the end.
+    fn leg(&self, tip: usize, other: Option<usize>, side: usize) -> f64 {
+        let s = self.lengths[tip];
+        let length = match (other, self.closed) {
+            (Some(other), _) => {
+                let apart = if side == 0 { s - self.lengths[other] } else { self.lengths[other] - s };
+                if apart <= 0.0 { apart + self.total } else { apart }
+            }
+            (None, true) => self.total,
+            (None, false) if side == 0 => s,
+            (None, false) => self.total - s,
+        };
+        length.min(LEG * self.total)
+    }
+
+    /// Half of the height of a tip over the chord between its legs' ends, in pixels; the largest over leg lengths up to
+    /// the given ones, as long as the legs turn.
+    fn size(&self, tip: usize, legs: [f64; 2], reach: f64) -> f64 {
+        let (p, s) = (self.points[tip], self.lengths[tip]);
+        let (mut reached, mut height) = (reach, 0.0f64);
+        loop {
+            let [before, after] = legs.map(|leg| leg.min(reached));
+            let (Some(arriving), Some(leaving)) = (self.line(s - before, s), self.line(s, s + after)) else { break };
+            if arriving.direction.angle_to(leaving.direction).abs() < STILL * LEAST_TURN {
+                break;
+            }
+            let (a, b) = (self.at(s - before), self.at(s + after));
+            height = height.max(p.distance(nearest_on_segment(p, a, b)));
+            if reached >= legs[0].max(legs[1]) {
+                break;
+            }
+            reached *= LONGER;
+        }
+        0.5 * height
+    }
+
+    /// The place at an arc length, which may be beyond the ends of a closed curve.
+    fn at(&self, s: f64) -> Point {
+        let s = if self.closed { s.rem_euclid(self.total) } else { s };
+        let n = self.points.len();
+        let k = self.lengths.partition_point(|&l| l <= s).saturating_sub(1);
+        let (next, end) =
+            if k + 1 < n { (k + 1, self.lengths[k + 1]) } else { (if self.closed { 0 } else { k }, self.total) };
+        let width = end - self.lengths[k];
+        let share = if width > 0.0 { ((s - self.lengths[k]) / width).clamp(0.0, 1.0) } else { 0.0 };
+        self.points[k].lerp(self.points[next], share)
     }
 
     /// The line through the points at arc lengths `from ..= to`, which may be beyond the ends of a closed curve.
@@ -176,8 +299,8 @@ impl<'a> Sums<'a> {
     }
 
     fn meeting(&self, j: usize, reach: f64, tolerance: f64) -> Point {
-        let (p, s, skip) = (self.points[j], self.lengths[j], SKIP * tolerance);
-        let (from, to) = (s - skip - reach, s + skip + reach);
+        let (p, s, skip) = (self.points[j], self.lengths[j], SKIP * reach);
+        let (from, to) = (s - skip - LINE * reach, s + skip + LINE * reach);
         if !self.closed && (from < 0.0 || to > self.total) {
             return p;
         }
@@ -191,22 +314,16 @@ impl<'a> Sums<'a> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::clean;
     use super::*;
 
-    fn lengths(points: &[Point], closed: bool) -> (Vec<f64>, f64) {
-        let mut sum = 0.0;
-        let mut all = vec![0.0];
-        for pair in points.windows(2) {
-            sum += pair[0].distance(pair[1]);
-            all.push(sum);
-        }
-        let closing = points[0].distance(points[points.len() - 1]);
-        (all, if closed { sum + closing } else { sum })
+    fn found(points: &[Point], closed: bool) -> Vec<Corner> {
+        larger_than(1.0, points, closed)
     }
 
-    fn found(points: &[Point], closed: bool) -> Vec<Corner> {
-        let (lengths, total) = lengths(points, closed);
-        corners(points, &lengths, total, closed, 1.0)
+    fn larger_than(tolerance: f64, points: &[Point], closed: bool) -> Vec<Corner> {
+        let (data, fine) = (clean::cleaned(points, closed, tolerance), clean::filled(points, closed));
+        corners(&data, &fine, closed, Grain::of(points, &fine), tolerance)
     }
 
     /// The centres of the pixels along a dense outline.

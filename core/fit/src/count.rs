@@ -24,6 +24,8 @@ const DENSE: usize = 3;
 /// Largest number of nodes tried: this multiple of the predicted number, plus [`SPARE`].
 const AMPLE: f64 = 1.6;
 const SPARE: usize = 5;
+/// The stricter limit, as a share of the limit.
+const STRICT: f64 = 0.7;
 /// Number of fits that may be spent on removing nodes.
 const BELOW: usize = 16;
 /// Number of nodes that are tried one by one for removal in each step, the most promising first.
@@ -47,8 +49,22 @@ pub(super) enum Unfit {
 
 /// The fit with the fewest nodes found, starting from the profile of the points.
 pub(super) fn fewest(given: &Given, grown: Profile) -> Result<Trial, Unfit> {
-    let found = border(given, grown)?;
-    Ok(below(given, found))
+    let found = border(given, grown).map(|trial| below(given, trial));
+    match &found {
+        Err(Unfit::Noise) => return found,
+        Ok(trial) if trial.nodes.len() == given.ends.least() => return found,
+        _ if STRICT * given.limit < given.floor => return found,
+        _ => {}
+    }
+    // A second search begins where a stricter limit ends. It often ends lower, and it may succeed where the first fails.
+    let strict = Given { limit: STRICT * given.limit, ..given.clone() };
+    let again = border(&strict, Profile::grown(given.points, given.lengths, strict.limit));
+    let again = again.map(|trial| below(given, below(&strict, trial)));
+    match (found, again) {
+        (Ok(found), Ok(again)) if again.nodes.len() < found.nodes.len() => Ok(again),
+        (Err(_), Ok(again)) => Ok(again),
+        (found, _) => found,
+    }
 }
 
 /// A fit with this number of nodes, if one keeps the limit.

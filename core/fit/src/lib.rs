@@ -5,7 +5,8 @@
 //!
 //! [`fit`] takes a drawn or traced line and returns a uniform quadratic B-spline ([`rototoon_base::curve::Spline`]). No point
 //! of the line is farther than the tolerance from the curve, and no place of the continuous curve is farther than the
-//! tolerance from the line. The largest distance is returned; `bound` describes how it is measured.
+//! tolerance from the line. The largest distance is returned; `bound` describes how it is measured. Rounding to pixels is
+//! not fitted (`grain`).
 //!
 //! # The default method
 //!
@@ -15,14 +16,15 @@
 //! banded and cheap. What remains is to find a good start and the smallest number of guiding points.
 //!
 //! 1. `clean` removes repeated points and fills long segments.
-//! 2. `corners` finds corners by the turning angle over a stretch of arc length; a pixel staircase does not disturb
-//!    it. Corners cut the line into sections, which are fitted separately.
+//! 2. `grain` estimates rounding and noise. `corners` finds corners by the turning angle over a stretch of arc length; a
+//!    pixel staircase does not disturb it. Corners cut the line into sections, which are fitted separately.
 //! 3. `profile` estimates how long a parabola may be along the line.
 //! 4. `trial` makes a fit with a given number of nodes: a linear solve, least squares, then the reduction of the
 //!    *largest* error.
 //! 5. `count` finds the smallest number of nodes for which that succeeds. `long` does the same in chunks, in linear
 //!    time.
 //! 6. `whole` joins the sections and measures the curve. `polygon` is used where nothing smooth fits.
+//! 7. `steady` compares the fit with those for smaller limits, so that a larger tolerance takes no more pieces or corners.
 //!
 //! `attributes` transfers pressure and similar values to the guiding points. `together` gives several curves the
 //! same number of guiding points.
@@ -68,12 +70,14 @@ mod clean;
 mod corners;
 mod count;
 mod feet;
+mod grain;
 mod grow;
 mod long;
 mod polygon;
 mod profile;
 mod section;
 mod solve;
+mod steady;
 mod together;
 mod trial;
 mod whole;
@@ -91,6 +95,9 @@ use rototoon_base::geometry::{Point, polyline};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Largest distance between line and curve, in pixels; positive and finite.
+    ///
+    /// Below one pixel, and on points that are rounded to pixels, it is meant for the line before rounding. With the
+    /// default method the largest distance is then the tolerance plus half a pixel, at most one pixel.
     pub tolerance: f64,
     /// The method.
     pub preset: Preset,
@@ -203,16 +210,16 @@ impl Fitted {
 /// A tolerance that is not positive and finite; no points; a point that cannot be used.
 pub fn fit(points: &[Point], closed: bool, options: &Options) -> Result<Fitted, FitError> {
     checked(points, options.tolerance)?;
-    let data = clean::cleaned(points, closed, options.tolerance);
-    if data.points.len() == 1 {
+    if points.iter().all(|p| *p == points[0]) {
         return Ok(Fitted::point(vec![points[0]], closed, points.len()));
     }
-    let whole = match options.preset {
-        Preset::Rototoon => {
-            let corners = corners::corners(&data.points, &data.lengths, data.total, closed, options.tolerance);
-            whole::fit(&data, closed, &corners, options.tolerance)
+    let (data, whole) = match options.preset {
+        Preset::Rototoon => steady::fit(points, closed, options.tolerance),
+        Preset::Yang1986 => {
+            let data = clean::cleaned(points, closed, options.tolerance);
+            let whole = yang1986::fit(&data, closed, options.tolerance);
+            (data, whole)
         }
-        Preset::Yang1986 => yang1986::fit(&data, closed, options.tolerance),
     };
     Ok(finished(whole, &data))
 }

@@ -65,7 +65,8 @@ impl Chunk {
         let lengths: Vec<f64> = self.points.iter().map(length).collect();
         let total = lengths[lengths.len() - 1];
         let ends = Ends::Open(self.ends.0, self.ends.1);
-        let part = Given { points: &points, lengths: &lengths, total, ends, held: self.held, limit: given.limit };
+        let held = self.held;
+        let part = Given { points: &points, lengths: &lengths, total, ends, held, ..given.clone() };
         fewest(&part, Profile::grown(&points, &lengths, given.limit))
     }
 }

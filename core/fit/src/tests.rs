@@ -101,9 +101,24 @@ fn a_huge_tolerance_leaves_the_fewest_guides() {
 
 #[test]
 fn a_tolerance_below_the_noise_is_kept_by_straight_lines() {
-    let points = pixels(600, bean);
+    let points: Vec<Point> = pixels(600, bean).iter().map(|p| p.floor() * 1.1).collect();
     let fit = fitted(&points, true, 0.05);
     assert!(fit.max_error <= 0.05 && true_error(&fit, &points) <= 0.05 + 1e-9);
+}
+
+#[test]
+fn rounding_to_pixels_is_not_fitted() {
+    let points = pixels(1000, bean);
+    let unrounded: Vec<Point> = (0..1000).map(|i| bean(f64::from(i) / 1000.0)).collect();
+    for (tolerance, bound) in [(0.05, 0.55), (0.25, 0.75), (0.5, 1.0), (0.9, 1.0)] {
+        let fit = fitted(&points, true, tolerance);
+        assert!(fit.max_error <= bound && true_error(&fit, &points) <= bound, "{tolerance}: {}", fit.max_error);
+        let most = if tolerance < 0.2 { 100 } else { 40 };
+        assert!(fit.spline.guides().len() <= most, "{tolerance}: {}", fit.spline.guides().len());
+        // It is nearer to the line before rounding than to the pixels.
+        let off = unrounded.iter().map(|&p| fit.spline.nearest(p).distance).fold(0.0, f64::max);
+        assert!(off < bound + 0.25, "{tolerance}: {off}");
+    }
 }
 
 #[test]

@@ -7,6 +7,7 @@
 //! procedure repeats.
 
 use super::corners::corners;
+use super::grain::Grain;
 use super::{FitError, Fitted, Options, checked, clean, finished, fit, whole};
 use rototoon_base::geometry::Point;
 
@@ -53,8 +54,11 @@ fn exactly((points, closed): Polyline, options: &Options, guides: usize) -> Resu
         // A point stays a point, however often it is repeated.
         return Ok(Some(Fitted::point(vec![points[0]; guides], closed, points.len())));
     }
-    let found = corners(&data.points, &data.lengths, data.total, closed, options.tolerance);
-    Ok(whole::fit_exactly(&data, closed, &found, options.tolerance, guides).map(|whole| finished(whole, &data)))
+    let fine = clean::filled(points, closed);
+    let grain = Grain::of(points, &fine);
+    let limit = grain.limit(options.tolerance);
+    let found = corners(&data, &fine, closed, grain, limit);
+    Ok(whole::fit_exactly(&data, closed, &found, limit, guides).map(|whole| finished(whole, &data)))
 }
 
 #[cfg(test)]

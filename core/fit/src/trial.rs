@@ -58,6 +58,8 @@ pub(super) struct Given<'a> {
     pub held: [Point; 4],
     /// Largest distance allowed, in pixels.
     pub limit: f64,
+    /// A limit below this follows the noise of the points, in pixels.
+    pub floor: f64,
 }
 
 /// A fitted section.

@@ -27,6 +27,8 @@ const TIP: f64 = 2.0;
 const MARGIN: f64 = 0.998;
 /// Rounds with a smaller limit where the curve strays between points.
 const STRICTER: usize = 4;
+/// Rounds in which sections that stray become straight lines.
+const STRAIGHT: usize = 64;
 
 /// A fitted section.
 #[derive(Clone, Debug)]
@@ -54,6 +56,8 @@ pub(super) struct Whole {
     pub spline: Spline,
     pub parameters: Vec<f64>,
     pub error: f64,
+    /// Index of a point at the largest error.
+    worst: usize,
 }
 
 /// Fits a cleaned polyline of at least two points.
@@ -66,8 +70,69 @@ pub(super) fn fit(data: &Cleaned, closed: bool, corners: &[Corner], tolerance: f
         }
         limit *= (0.95 * tolerance / whole.error).min(0.9);
     }
-    let on_points = corners.iter().map(|corner| Corner { place: data.points[corner.index], ..*corner }).collect();
-    measured(data, closed, &sections(data, closed, on_points, MARGIN * tolerance, 0))
+    let on_points: Vec<Corner> =
+        corners.iter().map(|corner| Corner { place: data.points[corner.index], ..*corner }).collect();
+    partly_straight(data, closed, &on_points, tolerance)
+        .unwrap_or_else(|| measured(data, closed, &sections(data, closed, on_points, MARGIN * tolerance, 0)))
+}
+
+/// Fits with straight lines for those sections that stray. `None` where that is not enough.
+fn partly_straight(data: &Cleaned, closed: bool, corners: &[Corner], tolerance: f64) -> Option<Whole> {
+    let limit = MARGIN * tolerance;
+    let n = data.points.len();
+    let mut parts = sections(data, closed, corners.to_vec(), limit, ROUNDS);
+    let mut made = vec![false; parts.len()];
+    for _ in 0..STRAIGHT {
+        let whole = measured(data, closed, &parts);
+        if whole.error <= tolerance {
+            return Some(whole);
+        }
+        let around = |(span, _): &(Span, Part)| (whole.worst + n - span.from) % n < span.count;
+        let strays: Vec<usize> = (0..parts.len()).filter(|&k| !made[k] && around(&parts[k])).collect();
+        if strays.is_empty() {
+            return None;
+        }
+        for k in strays {
+            make_straight(data, closed, &mut parts, k, limit);
+            made[k] = true;
+        }
+    }
+    None
+}
+
+/// Replaces a section by straight lines between points. Its corners move to their points, for its neighbours too.
+fn make_straight(data: &Cleaned, closed: bool, parts: &mut [(Span, Part)], k: usize, limit: f64) {
+    let count = parts.len();
+    let span = &mut parts[k].0;
+    span.start.1 = data.points[span.from];
+    span.end.1 = data.points[(span.from + span.count - 1) % data.points.len()];
+    let span = *span;
+    parts[k].1 = straight(data, &span, limit);
+    if span.periodic {
+        return;
+    }
+    if k > 0 || closed {
+        let (before, part) = &mut parts[(k + count - 1) % count];
+        before.end.1 = span.start.1;
+        if let Some(node) = part.nodes.last_mut() {
+            node.0 = span.start.1;
+        }
+    }
+    if k + 1 < count || closed {
+        let (after, part) = &mut parts[(k + 1) % count];
+        after.start.1 = span.end.1;
+        part.nodes[0].0 = span.end.1;
+    }
+}
+
+/// The guiding points are the points themselves. The curve cuts each corner by a quarter of the points' second difference
+/// at most, so it keeps the tolerance on pixels, with as many guiding points as points. `None` where it does not.
+pub(super) fn on_points(data: &Cleaned, closed: bool, tolerance: f64) -> Option<Whole> {
+    let last = data.points.len() as f64 - 2.0;
+    let parameter = |k: usize| if closed { k as f64 + 0.5 } else { (k as f64 - 0.5).clamp(0.0, last.max(1.0)) };
+    let parameters: Vec<f64> = (0..data.points.len()).map(parameter).collect();
+    let whole = complete(data, closed, data.points.clone(), parameters);
+    (whole.error <= tolerance).then_some(whole)
 }
 
 /// Fits with exactly `guides` guiding points. `None` where this number is too small, or the fit does not keep the
@@ -236,7 +301,7 @@ fn given<'a>(data: &Cleaned, span: &Span, points: &'a [Point], lengths: &'a [f64
     let ends = if span.periodic { Ends::Periodic } else { Ends::Open(span.start.0, span.end.0) };
     let total = if span.periodic { data.total } else { lengths[span.count - 1] };
     let (a, b) = (span.start.1, span.end.1);
-    Given { points, lengths, total, ends, held: [a, a, b, b], limit }
+    Given { points, lengths, total, ends, held: [a, a, b, b], limit, floor: data.floor }
 }
 
 fn part_of(span: &Span, trial: Trial) -> Part {
@@ -300,15 +365,27 @@ fn measured(data: &Cleaned, closed: bool, parts: &[(Span, Part)]) -> Whole {
         let end = if span.periodic || !closed { part.nodes.len() } else { part.nodes.len() - 1 };
         part.nodes[1..end].iter().for_each(|&node| push(&mut guides, node));
     }
+    complete(data, closed, guides, parameters)
+}
+
+/// The curve with these guiding points. `parameters` are approximate places of the points on it.
+fn complete(data: &Cleaned, closed: bool, guides: Vec<Point>, mut parameters: Vec<f64>) -> Whole {
     let spline = Spline::of_finite(guides, closed);
     let count = spline.piece_count() as f64;
     for t in &mut parameters {
         *t = if closed { t.rem_euclid(count) } else { t.clamp(0.0, count) };
     }
-    let mut feet = parameters.clone();
-    let line = Line { points: &data.points, closed, parameters: &parameters };
-    let (error, _) = bound::error(&spline, &line, &mut feet);
-    Whole { spline, parameters: feet, error }
+    Whole::of(spline, data, &parameters)
+}
+
+impl Whole {
+    /// Measures a curve. `parameters` are places of the points near their feet.
+    pub fn of(spline: Spline, data: &Cleaned, parameters: &[f64]) -> Self {
+        let mut feet = parameters.to_vec();
+        let line = Line { points: &data.points, closed: spline.is_closed(), parameters };
+        let (error, worst) = bound::error(&spline, &line, &mut feet);
+        Self { spline, parameters: feet, error, worst }
+    }
 }
 
 fn push(guides: &mut Vec<Point>, (node, corner): (Point, bool)) {

@@ -22,7 +22,6 @@
 //! are halved and both steps run again. If six halvings do not help, the default method takes over. This happens on a
 //! staircase of pixels, where the slopes of neighbours make every step a corner.
 
-use super::bound::{self, Line};
 use super::clean::Cleaned;
 use super::corners::Corner;
 use super::whole::Whole;
@@ -289,10 +288,7 @@ pub(super) fn fit(data: &Cleaned, closed: bool, tolerance: f64) -> Whole {
         let (spline, ..) = guides(&arcs, &corners, closed, share);
         let tree = PieceTree::new(&spline);
         let parameters: Vec<f64> = data.points.iter().map(|&p| tree.nearest(p).parameter).collect();
-        let mut feet = parameters.clone();
-        let line = Line { points: &data.points, closed, parameters: &parameters };
-        let (error, _) = bound::error(&spline, &line, &mut feet);
-        let whole = Whole { spline, parameters: feet, error };
+        let whole = Whole::of(spline, data, &parameters);
         if best.as_ref().is_none_or(|old| whole.error < old.error) {
             best = Some(whole);
         }

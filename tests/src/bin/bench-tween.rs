@@ -6,8 +6,10 @@ use anyhow::{Context, Result};
 use clap::Parser;
 use rototoon::tween::between::Options;
 use rototoon_tests::tweening::between::{
-    Errors, PlaceErrors, measure as measure_between, measure_captured, measure_one_way, measure_places, rows_of_keys,
+    BreakdownErrors, Errors, PlaceErrors, measure as measure_between, measure_breakdowns, measure_captured,
+    measure_one_way, measure_places, rows_of_keys,
 };
+use rototoon_tests::tweening::fragments::{InkErrors, measure as measure_fragments};
 use rototoon_tests::tweening::matching::{Chance, Score, measure};
 use rototoon_tests::tweening::{GAPS, Set, sheet};
 use std::path::{Path, PathBuf};
@@ -19,11 +21,18 @@ struct Arguments {
     out: PathBuf,
     /// Folders with project.json and truth.json.
     folders: Vec<PathBuf>,
+    /// Only breakdowns and fragmented drawings.
+    #[arg(long)]
+    keys_only: bool,
 }
 
 fn main() -> Result<()> {
-    let Arguments { out, folders } = Arguments::parse();
+    let Arguments { out, folders, keys_only } = Arguments::parse();
     let mut sets = folders.iter().map(|folder| Set::load(folder)).collect::<Result<Vec<_>>>()?;
+    if keys_only {
+        breakdowns(&sets)?;
+        return fragments(&sets);
+    }
     matching(&sets, false)?;
     matching(&sets, true)?;
     places(&sets)?;
@@ -34,9 +43,73 @@ fn main() -> Result<()> {
         set.capture(folder)?;
     }
     between(&sets, "strokes that follow the tracked parts of the project", measure_captured)?;
+    breakdowns(&sets)?;
+    fragments(&sets)?;
     for set in &sets {
         sheets(set, &out)?;
     }
+    Ok(())
+}
+
+/// Two keys 12 frames apart, every six frames.
+fn spans_of_twelve(set: &Set) -> Vec<(i32, i32)> {
+    let (first, last) = set.frames;
+    (first..=last - 12).step_by(6).map(|f| (f, f + 12)).collect()
+}
+
+fn breakdowns(sets: &[Set]) -> Result<()> {
+    println!(
+        "breakdowns: two keys 12 frames apart and true drawings between; error divided by that of linear without them"
+    );
+    println!(
+        "{:22}{:>8}{:>8}{:>8}{:>8}{:>10}{:>10}{:>8}",
+        "", "none", "one", "two", "best 1", "best 2", "hold", "spans"
+    );
+    for set in sets {
+        let mut all = BreakdownErrors::default();
+        let spans = spans_of_twelve(set);
+        for &span in &spans {
+            let found = measure_breakdowns(set, span, &Options::default())?;
+            all.linear += found.linear;
+            all.held += found.held;
+            all.even = std::array::from_fn(|k| all.even[k] + found.even[k]);
+            all.best = std::array::from_fn(|k| all.best[k] + found.best[k]);
+        }
+        let of = |sum: f64| sum / all.linear.max(f64::MIN_POSITIVE);
+        let ([none, one, two], [best_one, best_two]) = (all.even.map(of), all.best.map(of));
+        let held = of(all.held);
+        println!(
+            "{:22}{none:8.2}{one:8.2}{two:8.2}{best_one:8.2}{best_two:10.2}{held:10.2}{:8}",
+            set.name,
+            spans.len()
+        );
+    }
+    println!();
+    Ok(())
+}
+
+fn fragments(sets: &[Set]) -> Result<()> {
+    println!(
+        "fragmented drawings: keys 12 frames apart, contours in pieces; mean distance between drawn and true ink in px"
+    );
+    println!(
+        "{:22}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>10}",
+        "", "pieces", "hold", "ours", "ratio", "spans", "worse", "wrong %"
+    );
+    for set in sets {
+        for most in [1, 3, 6] {
+            let (mut all, mut chance) = (InkErrors::default(), Chance(29));
+            for span in spans_of_twelve(set) {
+                all.add(measure_fragments(set, span, most, &mut chance)?);
+            }
+            let n = all.frames.max(1) as f64;
+            let wrong = 100.0 * all.pairs.1 as f64 / (all.pairs.0 + all.pairs.1).max(1) as f64;
+            let (held, ours, ratio) = (all.held / n, all.ours / n, all.ours / all.held.max(f64::MIN_POSITIVE));
+            let (spans, worse) = all.spans;
+            println!("{:22}{most:8}{held:8.2}{ours:8.2}{ratio:8.2}{spans:8}{worse:8}{wrong:10.1}", set.name);
+        }
+    }
+    println!();
     Ok(())
 }
 

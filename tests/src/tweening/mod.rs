@@ -1,10 +1,12 @@
 //! Measures matching and in-betweens on sets with known truth.
 //!
 //! - [`between`]: compares in-betweens with the true frames
+//! - [`fragments`]: compares in-betweens of fragmented drawings with the true ink
 //! - [`matching`]: matches strokes that are drawn in another way
 //! - [`sheet`]: draws in-betweens over the truth
 
 pub mod between;
+pub mod fragments;
 pub mod matching;
 pub mod sheet;
 

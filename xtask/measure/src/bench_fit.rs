@@ -1,4 +1,4 @@
-//! `bench-fit`: compares curve fitting with SciPy's FITPACK, paper.js, fit-curve and cu2qu on the same six outlines.
+//! `bench-fit`: compares curve fitting with SciPy's FITPACK, kurbo, paper.js, fit-curve and cu2qu on the same outlines.
 //!
 //! It makes a Python environment under `target/bench-fit`, and with Node.js also a folder with the two JavaScript libraries.
 //! Then it builds the optimised program and runs `tests/bench_fit.py`, which says what it measures and how.
@@ -20,6 +20,9 @@ pub struct Arguments {
     /// Largest distance between line and curve, in pixels.
     #[arg(long, value_name = "PX", default_value_t = 1.0)]
     tolerance: f64,
+    /// Sweep the tolerance from 0.25 to 5 px on other outlines instead.
+    #[arg(long)]
+    sweep: bool,
 }
 
 /// Runs the benchmark.
@@ -34,6 +37,9 @@ pub fn bench_fit(arguments: &Arguments) -> Result<()> {
     let mut measure = command(&interpreter);
     measure.arg(root().join("tests/bench_fit.py")).arg("--own").arg(own).arg("--svg").arg(&picture);
     measure.arg("--tolerance").arg(arguments.tolerance.to_string());
+    if arguments.sweep {
+        measure.arg("--sweep");
+    }
     match peers(folder.join("node")) {
         Ok(node) => {
             measure.arg("--node").arg(node);
@@ -41,6 +47,9 @@ pub fn bench_fit(arguments: &Arguments) -> Result<()> {
         Err(reason) => println!("paper.js, fit-curve and cu2qu are left out: {reason:#}"),
     }
     run(&mut measure)?;
+    if arguments.sweep {
+        return Ok(());
+    }
     println!(
         "\n{} shows Rototoon's curves over the points",
         picture.strip_prefix(root()).unwrap_or(&picture).display()

@@ -7,14 +7,26 @@
 //! closed line a gap remains; it is spread over the edges in proportion to their lengths, which is least squares. Both
 //! end shapes are met exactly.
 //!
+//! **Tangles.** A limb that bends the other way turns its edges against each other, and the spread gap may push one side
+//! of it through the other. So the shapes between are tried. If they cross themselves where neither end shape does, or
+//! turn inside out, other changes are tried: turns over shorter stretches (a knee that swings through more than half a
+//! turn turns the right way only if its own edges are seen), turns that are smoothed over longer ones, then one turn for the
+//! complete line with straight movement in the turned frame, then straight movement. The first without a tangle is taken,
+//! or else the one with the fewest crossings.
+//!
 //! Limits: a closed line whose turning number changes, such as a circle that becomes a figure eight, moves along
-//! straight lines.
+//! straight lines. A joint that swings through more than half a turn may be taken to swing the other way round, and then
+//! every change that is tried may tangle.
 
-use rototoon_base::geometry::Point;
-use rototoon_base::geometry::polygon;
+use super::tangle;
+use rototoon_base::geometry::{Point, polygon};
 
-/// Number of edges on each side that decide an edge's turn, as a share of all edges.
+/// Number of edges on each side that decide an edge's turn, as a share of all edges: usually, and where the line would
+/// tangle.
 const WINDOW: f64 = 1.0 / 24.0;
+const OTHERS: [f64; 8] = [1.0 / 96.0, 1.0 / 48.0, 1.0 / 16.0, 1.0 / 12.0, 1.0 / 8.0, 1.0 / 6.0, 1.0 / 4.0, 1.0 / 3.0];
+/// Number of equal parts of the change between which the shapes are tried.
+const TRIED: usize = 32;
 /// A turn in radians so small that its effect is below a rounding error of single precision.
 const NO_TURN: f64 = 1e-9;
 /// Share of the edges' products that must agree for their turn to count.
@@ -36,10 +48,44 @@ impl Deform {
     pub fn new(from: &[Point], to: &[Point], closed: bool, rigid: bool) -> Self {
         assert_eq!(from.len(), to.len(), "the two shapes must have the same number of points");
         let (a, b) = (edges(from, closed), edges(to, closed));
-        let turns = if rigid && from.len() > 2 { turns(&a, &b, closed) } else { None };
-        let back = |(turn, (a, b)): (f64, (&Point, &Point))| (turn, *a, Point::from_angle(-turn).rotate(*b));
-        let turns = turns.map(|turns| turns.into_iter().zip(a.iter().zip(&b)).map(back).collect());
-        Self { from: from.into(), to: to.into(), closed, turns }
+        let with = |turns: Option<Vec<f64>>| {
+            let back = |(turn, (a, b)): (f64, (&Point, &Point))| (turn, *a, Point::from_angle(-turn).rotate(*b));
+            let turns = turns.map(|turns| turns.into_iter().zip(a.iter().zip(&b)).map(back).collect());
+            Self { from: from.into(), to: to.into(), closed, turns }
+        };
+        if !rigid || from.len() < 3 {
+            return with(None);
+        }
+        let usual = with(turns(&a, &b, closed, WINDOW));
+        let given = Shape::of_keys(from, to, closed);
+        let mut least = usual.tangles(&given);
+        if least == 0 {
+            return usual;
+        }
+        let others = OTHERS.into_iter().filter_map(|window| turns(&a, &b, closed, window)).map(Some);
+        let mut best = usual;
+        for turns in others.chain([one_turn(&a, &b), None]) {
+            let next = with(turns);
+            let tangles = next.tangles(&given);
+            if tangles < least {
+                (best, least) = (next, tangles);
+            }
+            if least == 0 {
+                break;
+            }
+        }
+        best
+    }
+
+    /// The number of places where the shapes between are tangled more than the keys.
+    fn tangles(&self, given: &Shape) -> usize {
+        let more = |k: usize| {
+            let points = self.at(k as f64 / TRIED as f64);
+            let shape = Shape::of(&points, self.closed);
+            let inside_out = given.orientation != 0 && shape.orientation != given.orientation;
+            shape.crossings.saturating_sub(given.crossings) + usize::from(inside_out)
+        };
+        (1..TRIED).map(more).sum()
     }
 
     /// The points at a share. The share may be outside 0..1.
@@ -70,6 +116,32 @@ impl Deform {
     }
 }
 
+/// How tangled a line is.
+struct Shape {
+    crossings: usize,
+    /// The direction round its inside; 0 where that is not clear, or differs between the keys.
+    orientation: i8,
+}
+
+impl Shape {
+    fn of(points: &[Point], closed: bool) -> Self {
+        let orientation = if closed { tangle::orientation(points) } else { 0 };
+        Self { crossings: tangle::crossings(points, closed), orientation }
+    }
+
+    fn of_keys(from: &[Point], to: &[Point], closed: bool) -> Self {
+        let (a, b) = (Self::of(from, closed), Self::of(to, closed));
+        let orientation = if a.orientation == b.orientation { a.orientation } else { 0 };
+        Self { crossings: a.crossings.max(b.crossings), orientation }
+    }
+}
+
+/// The same turn for all edges: that of the best rotation of the complete line.
+fn one_turn(a: &[Point], b: &[Point]) -> Option<Vec<f64>> {
+    let sum: Point = a.iter().zip(b).map(|(p, q)| Point::new(p.dot(*q), p.perp_dot(*q))).sum();
+    (sum != Point::ZERO).then(|| vec![sum.to_angle(); a.len()])
+}
+
 /// A vector turned by an angle. Most edges of a rigid shape do not turn, so zero is handled without work.
 fn turned(v: Point, angle: f64) -> Point {
     if angle.abs() < NO_TURN { v } else { Point::from_angle(angle).rotate(v) }
@@ -81,9 +153,9 @@ fn edges(points: &[Point], closed: bool) -> Vec<Point> {
 }
 
 /// The turn of each edge. `None` where a closed line does not return to the turn with which it began.
-fn turns(a: &[Point], b: &[Point], closed: bool) -> Option<Vec<f64>> {
+fn turns(a: &[Point], b: &[Point], closed: bool, window: f64) -> Option<Vec<f64>> {
     let n = a.len();
-    let reach = ((n as f64 * WINDOW) as usize).max(1);
+    let reach = ((n as f64 * window) as usize).max(1);
     let products: Vec<(Point, f64)> =
         a.iter().zip(b).map(|(p, q)| (Point::new(p.dot(*q), p.perp_dot(*q)), p.length() * q.length())).collect();
     let sums = Running::new(&products);
@@ -194,6 +266,45 @@ mod tests {
         let deform = Deform::new(&circle, &eight, true, true);
         assert_eq!(deform.turns, None);
         assert_eq!(deform.at(0.5)[7], circle[7].midpoint(eight[7]));
+    }
+
+    /// The outline of a leg of two bones with a knee, `width` px wide.
+    fn leg(hip: f64, knee: f64, width: f64) -> Vec<Point> {
+        let at = |s: f64| {
+            let (thigh, shin) = (Point::from_angle(hip), Point::from_angle(hip + knee));
+            // The knee is round, so that the outline has no spikes.
+            let bend = ((s - 45.0) / 10.0).clamp(0.0, 1.0);
+            let straight = thigh * s.min(50.0) + shin * (s - 50.0).max(0.0);
+            (straight, Point::from_angle(hip + knee * bend).perp())
+        };
+        let place = |k: i32, side: f64| at(2.0 * f64::from(k)).0 + at(2.0 * f64::from(k)).1 * (side * width * 0.5);
+        (0..=50).map(|k| place(k, 1.0)).chain((0..=50).rev().map(|k| place(k, -1.0))).collect()
+    }
+
+    #[test]
+    fn legs_that_bend_the_other_way_do_not_tangle() {
+        let wide: &[f64] = &[6.0, 14.0, 20.0];
+        for (hips, knees, widths) in [
+            ((0.6, 1.9), (1.2, -1.2), wide),
+            ((1.0, 2.2), (0.9, -1.9), wide),
+            // A knee that is bent by 115° has no room for a wide leg: its outline crosses itself on the keys.
+            ((0.3, 2.8), (2.0, -2.0), &wide[..1]),
+        ] {
+            for &width in widths {
+                let (a, b) = (leg(hips.0, knees.0, width), leg(hips.1, knees.1, width));
+                let deform = Deform::new(&a, &b, true, true);
+                let most = tangle::crossings(&a, true).max(tangle::crossings(&b, true));
+                for k in 1..32 {
+                    let points = deform.at(f64::from(k) / 32.0);
+                    assert!(tangle::crossings(&points, true) <= most, "{hips:?} {knees:?} {width}: {k}/32");
+                    assert_eq!(
+                        tangle::orientation(&points),
+                        tangle::orientation(&a),
+                        "{hips:?} {knees:?} {width}: {k}/32"
+                    );
+                }
+            }
+        }
     }
 
     proptest! {

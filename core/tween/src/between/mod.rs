@@ -1,6 +1,7 @@
 //! In-betweens: the drawings between drawings on key frames.
 //!
-//! 1. `tracks` chains matched strokes through all drawings. It follows the places of a stroke by proportional arc
+//! 1. `sure` leaves out pairs that are not sure and would fly across the drawing. `tracks` chains matched strokes through
+//!    all drawings. It follows the places of a stroke by proportional arc
 //!    length between corners ([`correspond`], `corners`).
 //! 2. [`super::peg::propose`] finds groups of strokes that move together, with the hinges between them. `motion`
 //!    carries each group from key to key along arcs. Pegs that the user gives replace the groups.
@@ -8,6 +9,8 @@
 //!    group's frame, as rigid as possible.
 //! 4. `join` makes movements and changes of shape run through several keys with one velocity.
 //! 5. `contacts` keeps strokes together that touch on both keys.
+//! 6. `credible` looks at the drawing half way. Where strokes are matched unsurely and it is farther from both keys than they
+//!    are from each other, the earlier key is held.
 //!
 //! Where the movement between the keys was captured from footage, strokes follow it instead: `captured`,
 //! [`Sequence::following`].
@@ -22,9 +25,12 @@ mod check;
 mod contacts;
 mod corners;
 mod correspond;
+mod credible;
 mod deform;
 mod join;
 mod motion;
+mod sure;
+mod tangle;
 mod tracks;
 
 pub use captured::Captured;
@@ -170,6 +176,8 @@ pub struct Sequence {
     captured: Arc<[Captured]>,
     /// By track and span: how it follows a captured part, if it does.
     followed: Vec<Vec<Option<Following>>>,
+    /// By span: whether the earlier key is held, because the movement cannot be believed.
+    held: Vec<bool>,
     options: Options,
 }
 
@@ -215,6 +223,12 @@ impl Sequence {
         base: Option<usize>,
     ) -> Result<Self, BetweenError> {
         check::check(&keys, matchings, pegs, options)?;
+        let sureness: Vec<f64> =
+            keys.iter().zip(matchings).map(|(key, matching)| credible::sureness(&key.strokes, matching)).collect();
+        let pairs = keys.windows(2).zip(matchings);
+        let matchings: Vec<Matching> =
+            pairs.map(|(two, matching)| sure::carried_out(&two[0].strokes, &two[1].strokes, matching)).collect();
+        let matchings = &matchings[..];
         let tracks = match base {
             Some(base) => tracks::around(&keys, matchings, base.min(matchings.len())),
             None => tracks::chained(&keys, matchings),
@@ -240,14 +254,30 @@ impl Sequence {
             .collect();
         let followed = vec![vec![None; spans]; tracks.len()];
         let (contacts, captured) = (vec![Vec::new(); spans], Arc::default());
+        let held = vec![false; spans];
         let mut sequence =
-            Self { keys, tracks, motion, changes, local, contacts, captured, followed, options: *options };
+            Self { keys, tracks, motion, changes, local, contacts, captured, followed, held, options: *options };
         if options.contacts {
             let wanted = |k: &usize| base.is_none_or(|base| base == *k);
             let touching = |k: usize| if wanted(&k) { sequence.touching(k) } else { Vec::new() };
             sequence.contacts = (0..spans).into_par_iter().map(touching).collect();
         }
+        let wanted = (0..spans).filter(|k| base.is_none_or(|base| base == *k));
+        for k in wanted.filter(|&k| sureness[k] < 1.0).collect::<Vec<_>>() {
+            sequence.held[k] = !sequence.is_believed(k, sureness[k]);
+        }
         Ok(sequence)
+    }
+
+    /// Whether the movement in a span can be believed.
+    fn is_believed(&self, k: usize, sureness: f64) -> bool {
+        let (from, to) = (&self.keys[k], &self.keys[k + 1]);
+        let half = || -> credible::Lines {
+            let maps = self.motion.maps(k, 0.5, 0.5 * (f64::from(from.frame) + f64::from(to.frame)));
+            let there = |t: usize| (self.moved(t, k, 0.5, &self.motion.of_track(t, &maps)).0, self.tracks[t].closed);
+            self.present(k).into_iter().map(there).collect()
+        };
+        credible::is_believed(sureness, &from.strokes, &to.strokes, half)
     }
 
     /// Lets strokes without a given peg follow the captured part on which they are drawn, where there is one.
@@ -260,6 +290,10 @@ impl Sequence {
         };
         self.followed = self.tracks.par_iter().enumerate().map(of).collect();
         self.captured = captured;
+        // Footage shows the movement.
+        for k in 0..self.held.len() {
+            self.held[k] &= self.followed.iter().all(|spans| spans[k].is_none());
+        }
         self
     }
 
@@ -341,6 +375,9 @@ impl Sequence {
         let present = self.present(k);
         let mut points = vec![Vec::new(); self.tracks.len()];
         let mut opacity = vec![1.0; self.tracks.len()];
+        if self.held[k] {
+            return present.into_iter().map(|t| self.held_at(t, k)).collect();
+        }
         for &t in &present {
             let moved = || self.moved(t, k, u, &self.motion.of_track(t, &maps));
             (points[t], opacity[t]) = self.followed_at(t, k, frame).map_or_else(moved, |points| (points, 1.0));
@@ -353,6 +390,17 @@ impl Sequence {
             opacity: opacity[t],
         });
         drawn.collect()
+    }
+
+    /// A track in a span in which the earlier key is held. What that key does not have is a point out of sight.
+    fn held_at(&self, t: usize, k: usize) -> InBetween {
+        let look = self.look(t, k, 0.0);
+        if let Some(points) = self.tracks[t].points(k) {
+            return InBetween { stroke: Stroke { points: points.clone(), ..look }, track: t, opacity: 1.0 };
+        }
+        let later = self.tracks[t].points(k + 1).map_or(&[][..], Vec::as_slice);
+        let points = vec![polygon::center(later); later.len()];
+        InBetween { stroke: Stroke { points, ..look }, track: t, opacity: 0.0 }
     }
 
     /// The points of a track that follows a captured part, on a frame.

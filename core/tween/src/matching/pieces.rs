@@ -16,7 +16,7 @@ use rototoon_base::geometry::Point;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Widest gap between two pieces, as a share of their joint length.
-const GAP: f64 = 0.1;
+const GAP: f64 = 0.25;
 /// Gap, in pixels, that is always allowed.
 const LEAST_GAP: f64 = 3.0;
 /// A longer chain of pieces must cost this much less than the chain before.

@@ -130,6 +130,31 @@ fn colour_and_layer_tell_equal_strokes_apart() {
 }
 
 #[test]
+fn pieces_with_gaps_between_them_are_put_together() {
+    // A brow of 40 points of which the second drawing lacks 5, and a mouth in three pieces.
+    let brow = |count: std::ops::Range<usize>| {
+        let all = arc((-35.0, -88.0), 22.0, 3.6, 5.6, 40);
+        Stroke::new(all[count].to_vec(), false)
+    };
+    let mouth = |part: std::ops::Range<usize>| Stroke::new(arc((0.0, -78.0), 16.0, 0.3, 2.8, 30)[part].to_vec(), false);
+    let (mut a, mut b) = (figure(Point::ZERO, 0.0, 0.0, 0.0), figure(Point::new(14.0, 5.0), 0.0, 0.2, -0.1));
+    let first = a.len();
+    a.extend([brow(0..40), mouth(0..30)]);
+    let shifted = |mut stroke: Stroke| {
+        stroke.points.iter_mut().for_each(|p| *p += Point::new(14.0, 5.0));
+        stroke
+    };
+    b.extend([brow(0..18), brow(23..40), mouth(0..8), mouth(11..20), mouth(23..30)].map(shifted));
+    let found = run(&a, &b);
+    let split: Vec<(usize, usize)> = found.split.iter().map(|s| (s.whole, s.pieces.len())).collect();
+    assert_eq!(split, [(first, 2), (first + 1, 3)], "{found:?}");
+    assert_eq!((found.pairs.len(), found.vanished.len(), found.appeared.len()), (first, 0, 0), "{found:?}");
+    let back = run(&b, &a);
+    let joined: Vec<(usize, usize)> = back.joined.iter().map(|s| (s.whole, s.pieces.len())).collect();
+    assert_eq!(joined, [(first, 2), (first + 1, 3)], "{back:?}");
+}
+
+#[test]
 fn a_stroke_drawn_in_pieces_is_put_together() {
     let whole = |shift: f64| arc((shift, 0.0), 60.0, 0.2, 3.0, 57);
     let other = Stroke::new(arc((0.0, 90.0), 25.0, 0.0, 6.0, 30), true);

@@ -6,7 +6,8 @@
 //! joint movement explains both best. It ends when every join would leave more than a small share of their size
 //! unexplained.
 //!
-//! The largest group is the root. Every other group hangs on the larger group to which it stays nearest. If a group
+//! The largest group is the root. Every other group hangs on the larger group to which it stays nearest. A group that no
+//! two neighbouring keys have hangs on the nearest one whose movement is known, so that it goes with what is around it. If a group
 //! turns relative to its parent, its hinge is the fixed point of this relative turn, provided that the point is near
 //! the strokes of both. Otherwise the hinge is the place where the two groups meet, or the middle of the group if they
 //! are far apart.
@@ -133,6 +134,11 @@ impl Growing {
         self.sums.iter().find(|sums| sums.count > 0.0).map_or(0.0, Sums::radius)
     }
 
+    /// Whether two neighbouring keys show its movement.
+    fn moves(&self) -> bool {
+        self.sums.iter().any(|sums| sums.count > 0.0)
+    }
+
     /// Distance of a place from the group's samples, each stroke on the first key that has it.
     fn distance(&self, p: Point, samples: &[Vec<Option<Vec<Point>>>]) -> f64 {
         let places = self.members.iter().filter_map(|&i| samples[i].iter().flatten().next()).flatten();
@@ -168,7 +174,11 @@ pub fn groups(strokes: &[Moving]) -> Vec<Group> {
     link_neighbours(&mut all, &samples);
     join_all(&mut all);
     all.retain(|group| !group.members.is_empty());
-    let order = |a: &Growing, b: &Growing| b.length.total_cmp(&a.length).then(a.members[0].cmp(&b.members[0]));
+    // Groups whose movement no drawing shows come last: they hang on those that move, however long they are.
+    let order = |a: &Growing, b: &Growing| {
+        let longer = b.length.total_cmp(&a.length).then(a.members[0].cmp(&b.members[0]));
+        b.moves().cmp(&a.moves()).then(longer)
+    };
     all.sort_by(order);
     hung(&all, &samples)
 }
@@ -288,7 +298,10 @@ fn hung(all: &[Growing], samples: &[Vec<Option<Vec<Point>>>]) -> Vec<Group> {
         .collect();
     let mut groups = Vec::with_capacity(all.len());
     for (g, group) in all.iter().enumerate() {
-        let mut before: Vec<usize> = (0..g).collect();
+        let mut before: Vec<usize> = (0..g).filter(|&other| group.moves() || all[other].moves()).collect();
+        if before.is_empty() {
+            before.extend(0..g);
+        }
         let nearer = |a: &usize, b: &usize| {
             let from = |other: usize| middles[other].distance_squared(middles[g]);
             from(*a).total_cmp(&from(*b)).then(a.cmp(b))

@@ -1,0 +1,76 @@
+//! The default fit, made steady: a larger tolerance does not take more pieces or corners.
+//!
+//! A fit for a smaller tolerance is a fit for every larger one. The search for the fewest guiding points is local, so it may
+//! miss that. The fit is therefore compared with that for the next rung of a fixed ladder of smaller limits. If that one has
+//! fewer pieces or fewer corners, it is taken, and the next rung below is tried in the same way.
+//!
+//! **Not more guiding points than points.** Where noise is as large as the limit, straight lines between some of the points
+//! are what is left, and each has two guiding points. The points themselves may then do better: as guiding points they give
+//! a curve that is within half a pixel of all of them where they are pixels. Only a line whose corners are farther apart
+//! than the tolerance can need more guiding points than it has points: each corner needs two.
+//!
+//! Limits: two tolerances between the same two rungs are not compared with each other. No rung is tried that is as small
+//! as the noise of the points.
+
+use super::clean::{self, Cleaned};
+use super::grain::Grain;
+use super::whole::Whole;
+use super::{corners, whole};
+use rototoon_base::geometry::Point;
+
+/// Rungs of the ladder for each doubling of the limit.
+const RUNGS: f64 = 2.0;
+
+/// Fits a line of at least two different points. Returns the line as it was fitted, and the fit.
+pub(super) fn fit(points: &[Point], closed: bool, tolerance: f64) -> (Cleaned, Whole) {
+    let fine = clean::filled(points, closed);
+    let grain = Grain::of(points, &fine);
+    let source = Source { points, closed, fine, grain };
+    let mut limit = grain.limit(tolerance);
+    let mut best = source.fit(limit);
+    let mut rung = (RUNGS * limit.log2()).ceil() - 1.0;
+    loop {
+        limit = (rung / RUNGS).exp2();
+        if limit < f64::MIN_POSITIVE || limit <= source.grain.floor() {
+            return best;
+        }
+        let stricter = source.fit(limit);
+        let fewer = |size: fn(&Whole) -> usize| size(&stricter.1) < size(&best.1);
+        if !(fewer(pieces) || fewer(corner_count)) {
+            return best;
+        }
+        best = stricter;
+        rung -= 1.0;
+    }
+}
+
+fn pieces(whole: &Whole) -> usize {
+    whole.spline.piece_count()
+}
+
+fn corner_count(whole: &Whole) -> usize {
+    whole.spline.corners().len()
+}
+
+/// A line to fit.
+struct Source<'a> {
+    points: &'a [Point],
+    closed: bool,
+    fine: Cleaned,
+    grain: Grain,
+}
+
+impl Source<'_> {
+    /// The fit with this limit, by itself.
+    fn fit(&self, limit: f64) -> (Cleaned, Whole) {
+        let data = Cleaned { floor: self.grain.floor(), ..clean::cleaned(self.points, self.closed, limit) };
+        let corners = corners::corners(&data, &self.fine, self.closed, self.grain, limit);
+        let found = whole::fit(&data, self.closed, &corners, limit);
+        if found.spline.guides().len() > data.points.len()
+            && let Some(on_points) = whole::on_points(&data, self.closed, limit)
+        {
+            return (data, on_points);
+        }
+        (data, found)
+    }
+}

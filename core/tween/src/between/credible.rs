@@ -1,0 +1,104 @@
+//! Whether the movement between two drawings can be believed.
+//!
+//! Where few strokes are matched surely (fragmented drawings, whose strokes all look alike), the movement may be wrong
+//! throughout. Then the drawing half way is far from the ink of both keys: a true movement passes between them, so half
+//! way it is about half as far from each as they are from each other. Where the drawing half way is farther from the keys
+//! than they are from each other, drawing nothing new is better, and the earlier key is held.
+//!
+//! Only spans whose matching is mostly unsure are judged. A sure movement may leave the ink of both keys: a bar that turns by
+//! half a turn lies on itself on both.
+
+use super::super::grid::Grid;
+use super::super::matching::Matching;
+use super::super::stroke::Stroke;
+use rototoon_base::geometry::{Point, polyline};
+
+/// Lines of points, each with whether it is closed.
+pub(super) type Lines = Vec<(Vec<Point>, bool)>;
+
+/// A matching with this share of its ink matched surely is believed.
+const SURE: f64 = 0.6;
+/// Confidence of a stroke in pieces.
+const IN_PIECES: f64 = 0.5;
+/// Distance of the samples along the ink, as a share of the size of the first drawing.
+const STEP: f64 = 1.0 / 100.0;
+/// Largest number of samples of a stroke.
+const MOST: f64 = 256.0;
+
+/// The share of the first drawing's ink that is matched, weighted by confidence, 0 to 1.
+pub(super) fn sureness(first: &[Stroke], matching: &Matching) -> f64 {
+    let mut sure = vec![0.0f64; first.len()];
+    for pair in &matching.pairs {
+        sure[pair.from] = if pair.by_hand { 1.0 } else { pair.confidence };
+    }
+    matching.split.iter().for_each(|split| sure[split.whole] = IN_PIECES);
+    matching.joined.iter().flat_map(|joined| &joined.pieces).for_each(|piece| sure[piece.0] = IN_PIECES);
+    let lengths: Vec<f64> = first.iter().map(Stroke::length).collect();
+    let total: f64 = lengths.iter().sum();
+    if total > 0.0 { lengths.iter().zip(&sure).map(|(length, sure)| length * sure).sum::<f64>() / total } else { 1.0 }
+}
+
+/// Whether a drawing half way can be believed, given how surely the keys are matched. Each drawing is a list of lines.
+pub(super) fn is_believed(sureness: f64, first: &[Stroke], second: &[Stroke], half: impl FnOnce() -> Lines) -> bool {
+    if sureness >= SURE {
+        return true;
+    }
+    let (low, high) = first
+        .iter()
+        .flat_map(|s| &s.points)
+        .fold((Point::INFINITY, Point::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
+    let step = (STEP * low.distance(high)).max(1e-6);
+    let ink = |lines: &mut dyn Iterator<Item = (&[Point], bool)>| -> Vec<Point> {
+        lines.flat_map(|(points, closed)| samples(points, closed, step)).collect()
+    };
+    let a = ink(&mut first.iter().map(|s| (&s.points[..], s.closed)));
+    let b = ink(&mut second.iter().map(|s| (&s.points[..], s.closed)));
+    let half = half();
+    let between = ink(&mut half.iter().map(|(points, closed)| (&points[..], *closed)));
+    if a.is_empty() || b.is_empty() || between.is_empty() {
+        return true;
+    }
+    let (on_a, on_b) = (Grid::new(&a), Grid::new(&b));
+    let passing = 0.5 * (apart(&between, &a, &on_a) + apart(&between, &b, &on_b));
+    let keys = 0.5 * (apart(&a, &b, &on_b) + apart(&b, &a, &on_a));
+    passing <= keys
+}
+
+fn samples(points: &[Point], closed: bool, step: f64) -> Vec<Point> {
+    let length = polyline::length(points, closed);
+    if points.len() < 2 || length <= 0.0 {
+        return points.first().copied().into_iter().collect();
+    }
+    polyline::resample(points, closed, (length / step).ceil().clamp(2.0, MOST) as usize)
+}
+
+/// The mean distance from samples to the nearest of others, in pixels.
+fn apart(from: &[Point], to: &[Point], grid: &Grid) -> f64 {
+    let nearest = |p: &Point| grid.nearest(*p, 1).first().map_or(0.0, |&i| to[i].distance(*p));
+    from.iter().map(nearest).sum::<f64>() / from.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(x: f64, y: f64) -> Vec<Stroke> {
+        let bar = |k: i32| {
+            Stroke::new((0..9).map(|i| Point::new(x + 3.0 * f64::from(i), y + 12.0 * f64::from(k))).collect(), false)
+        };
+        (0..4).map(bar).collect()
+    }
+
+    fn lines(strokes: &[Stroke]) -> Lines {
+        strokes.iter().map(|s| (s.points.clone(), s.closed)).collect()
+    }
+
+    #[test]
+    fn a_mess_between_the_keys_is_not_believed_unless_it_is_sure() {
+        let (a, b) = (row(0.0, 0.0), row(16.0, 2.0));
+        let (passing, mess) = (lines(&row(8.0, 1.0)), lines(&row(60.0, -50.0)));
+        assert!(is_believed(0.1, &a, &b, || passing) && !is_believed(0.1, &a, &b, || mess.clone()));
+        assert!(is_believed(0.9, &a, &b, || mess.clone()));
+        assert!(is_believed(0.0, &a, &[], || mess) && is_believed(0.0, &[], &[], Vec::new));
+    }
+}
