@@ -62,7 +62,7 @@ class Reshaped:
     document: dict[str, Any]
     """The document with tracks, depths and strokes on every frame."""
     given: list[dict[str, str]]
-    """Parts that no limb carries: `part`, and the nearest limb (`from`, `to`), which carries it instead."""
+    """Parts that no limb carries: `part`, and in words what it `follows` instead."""
     rigid: list[str]
     """Parts that move without bending."""
     points: dict[str, list[list[list[float]]]]

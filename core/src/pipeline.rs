@@ -12,8 +12,8 @@ mod style;
 mod tween;
 
 pub use check::{check, drawing_problems};
-pub use reshape::{ReshapeJob, Reshaped, reshape};
-pub use style::{CapturedClip, ClipJob, clip, translate};
+pub use reshape::{Given, ReshapeJob, Reshaped, reshape};
+pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
 pub use tween::{captured, pegs_of, spacing_of, tween};
 
 use crate::export::{self, SvgOptions, svg};

@@ -47,5 +47,5 @@ class Reshaping(OnContours, Long):
     def finish(self, context, work) -> str:
         """Writes the frames."""
         frames = reshaping.finish(self._ob, self._drawing, work.result)
-        given = ", ".join(f"{entry['part']} ({entry['from']} to {entry['to']})" for entry in work.result.given)
-        return f"{frames} frames after frame {self._drawing.frame}" + (f"; carried by the nearest limb: {given}" if given else "")
+        given = ", ".join(f"{entry['part']}: {entry['follows']}" for entry in work.result.given)
+        return f"{frames} frames after frame {self._drawing.frame}" + (f"; no limb carries {given}" if given else "")

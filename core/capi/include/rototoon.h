@@ -508,8 +508,8 @@ RototoonStatus rototoon_translate_clip(const uint8_t *clips,
 // `made` is a JSON object:
 //
 // - `document`: the document with tracks, depths and strokes on every frame.
-// - `given`: `[{"part", "from", "to"}]`, the parts that no limb carries, each with the key points of the nearest limb,
-//   which it follows.
+// - `given`: `[{"part", "follows"}]`, the parts that no limb carries and for which the document does not say what they
+//   follow, each with what it follows, in words.
 // - `rigid`: the names of the parts that do not bend.
 // - `points`: `{part: [[[x, y]]]}`, for each frame the places of the further points.
 RototoonStatus rototoon_reshape(const uint8_t *document,

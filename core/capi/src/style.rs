@@ -222,9 +222,9 @@ pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Resu
     let job = ReshapeJob { clip, fps: clips.fps, rest: given.rest, over: None, options: how, points: given.points() };
     run(given.threads, go_on, |progress| {
         let made = pipeline::reshape(&mut document, &job, progress).map_err(failed)?;
-        let nearest: Vec<Value> =
-            made.given.iter().map(|(part, (from, to))| json!({"part": part, "from": from, "to": to})).collect();
-        let (given, rigid) = (Value::Array(nearest), json!(made.rigid));
+        let loose: Vec<Value> =
+            made.given.iter().map(|(part, given)| json!({"part": part, "follows": given.to_string()})).collect();
+        let (given, rigid) = (Value::Array(loose), json!(made.rigid));
         let pair = |p: &Point| [p.x, p.y];
         let frames = |frames: &Vec<Vec<Point>>| {
             json!(frames.iter().map(|f| f.iter().map(pair).collect()).collect::<Vec<Vec<_>>>())

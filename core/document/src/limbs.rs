@@ -8,7 +8,8 @@
 //!   "end": {"points": [{"part": "near arm", "drawn": {"0": [x, y], "23": [x, y]}}, {"part": "near arm", "at": 7.5}]},
 //!   "carries": ["near arm", {"part": "near mitten", "turn": 0.5}], "bends": {"0": [x, y]}, "rigidity": 1}, "…"],
 //! "limb_swaps": [[14, 23]],
-//! "depth_marks": [{"front": "near arm", "behind": "coat", "first": 0, "last": 9}, "…"]
+//! "depth_marks": [{"front": "near arm", "behind": "coat", "first": 0, "last": 9}, "…"],
+//! "follows": [{"part": "shadow", "what": "contact"}, {"part": "badge", "of": "coat"}, "…"]
 //! ```
 //!
 //! - `from` and `to`: key points by name ([`rototoon_base::scene::skeleton::NAMES`]). Each end is between two calibration
@@ -23,13 +24,15 @@
 //! - `limb_swaps`: from a first to a last frame, both included, the contours show the other side: left and right change
 //!   places.
 //! - `depth_marks`: one part is in front of another. Without `first` or `last` the range of frames is open at that end.
+//! - `follows`: what parts follow that no limb carries: another part (`of`), or `what` is `root` (the way of the pelvis),
+//!   `contact` (the ground below the figure) or `nothing`.
 
 use super::Document;
 use super::drawings::lines;
 use super::fields::{FieldError, array, described, frame, given, number, object, point, wrong};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::FrameNumber;
-use rototoon_base::scene::limbs::{Binding, Calibration, Carried, DepthMark, Limb, LimbEnd, LimbSet};
+use rototoon_base::scene::limbs::{Binding, Calibration, Carried, DepthMark, Follow, Limb, LimbEnd, LimbSet};
 use rototoon_base::scene::skeleton::NAMES;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -50,10 +53,13 @@ impl Document {
         let swaps = swaps.iter().enumerate().map(|(k, value)| swap(value, &format!("limb_swaps[{k}]")));
         let marks = self.other_list("depth_marks")?;
         let marks = marks.iter().enumerate().map(|(k, value)| self.mark(value, &format!("depth_marks[{k}]")));
+        let follows = self.other_list("follows")?;
+        let follows = follows.iter().enumerate().map(|(k, value)| self.follow(value, &format!("follows[{k}]")));
         Ok(LimbSet {
             limbs: limbs.collect::<Result<_, _>>()?,
             swaps: swaps.collect::<Result<_, _>>()?,
             marks: marks.collect::<Result<_, _>>()?,
+            follows: follows.collect::<Result<_, _>>()?,
         })
     }
 
@@ -69,17 +75,43 @@ impl Document {
             Value::Object(fields)
         };
         self.set_other_field("depth_marks", lines(set.marks.iter().map(mark)));
+        let follow = |(part, follow): &(String, Follow)| match follow {
+            Follow::Part(of) => json!({"part": part, "of": of}),
+            Follow::Root => json!({"part": part, "what": "root"}),
+            Follow::Contact => json!({"part": part, "what": "contact"}),
+            Follow::Nothing => json!({"part": part, "what": "nothing"}),
+        };
+        self.set_other_field("follows", lines(set.follows.iter().map(follow)));
+    }
+
+    /// The name of a part in a field.
+    fn part_in(&self, fields: &Map<String, Value>, place: &str, name: &str) -> Result<String, FieldError> {
+        let found = fields.get(name);
+        let known = found.and_then(Value::as_str).filter(|n| self.scene.parts.iter().any(|part| part.name == *n));
+        known
+            .map(str::to_owned)
+            .ok_or_else(|| wrong(&format!("{place}.{name}"), &described(found), "the name of a part"))
+    }
+
+    fn follow(&self, value: &Value, place: &str) -> Result<(String, Follow), FieldError> {
+        let fields = object(value, place)?;
+        let part = self.part_in(fields, place, "part")?;
+        let follow = match (fields.get("what").map(|v| v.as_str()), fields.contains_key("of")) {
+            (None, true) => Follow::Part(self.part_in(fields, place, "of")?),
+            (Some(Some("root")), false) => Follow::Root,
+            (Some(Some("contact")), false) => Follow::Contact,
+            (Some(Some("nothing")), false) => Follow::Nothing,
+            _ => {
+                let expected = "one of root, contact, nothing, or in its place the field of with the name of a part";
+                return Err(wrong(&format!("{place}.what"), &described(fields.get("what")), expected));
+            }
+        };
+        Ok((part, follow))
     }
 
     fn mark(&self, value: &Value, place: &str) -> Result<DepthMark, FieldError> {
         let fields = object(value, place)?;
-        let part = |name: &str| {
-            let found = fields.get(name);
-            let known = found.and_then(Value::as_str).filter(|n| self.scene.parts.iter().any(|part| part.name == *n));
-            known
-                .map(str::to_owned)
-                .ok_or_else(|| wrong(&format!("{place}.{name}"), &described(found), "the name of a part"))
-        };
+        let part = |name: &str| self.part_in(fields, place, name);
         Ok(DepthMark {
             front: part("front")?,
             behind: part("behind")?,
@@ -247,10 +279,13 @@ mod tests {
     fn what_is_written_is_read_again() {
         let more = r#", "carries": ["arm", {"part": "hand", "turn": 0.5}], "bends": {"3": [4, 5]}, "rigidity": 2"#;
         let fields = format!(
-            r#"{}, "limb_swaps": [[3, 9]], "depth_marks": [{{"front": "arm", "behind": "body", "first": 2}}]"#,
+            r#"{}, "limb_swaps": [[3, 9]], "depth_marks": [{{"front": "arm", "behind": "body", "first": 2}}],
+            "follows": [{{"part": "arm", "of": "body"}}, {{"part": "body", "what": "contact"}}]"#,
             limb_text(more)
         );
         let set = document(&fields).limbs().unwrap();
+        let follows = [("arm", Follow::Part("body".into())), ("body", Follow::Contact)];
+        assert_eq!(set.follows, follows.map(|(part, follow)| (part.to_owned(), follow)));
         assert_eq!((set.limbs[0].from, set.limbs[0].to, set.limbs[0].rigidity), (9, 10, 2.0));
         assert_eq!(set.limbs[0].carries[1], Carried { part: "hand".into(), turn: 0.5 });
         assert_eq!(set.swaps, [(3, 9)]);
@@ -294,5 +329,7 @@ mod tests {
             said(r#""depth_marks": [{"front": "arm", "behind": "leg"}]"#),
             "depth_marks[0].behind: found \"leg\", expected the name of a part"
         );
+        assert!(said(r#""follows": [{"part": "arm", "what": "shin"}]"#).starts_with("follows[0].what: found \"shin\""));
+        assert!(said(r#""follows": [{"part": "arm", "of": "leg"}]"#).starts_with("follows[0].of: found \"leg\""));
     }
 }

@@ -5,8 +5,9 @@
 //!
 //! 1. A part is missing on a frame: the offset from the parent key point is interpolated linearly between frames that
 //!    have it. Before the first and after the last of them it stays constant.
-//! 2. A limb is defined nowhere: the offset is copied from the other side of the body, if that is known.
-//! 3. Otherwise the template's proportions serve: the torso stands upright through its known points, and limbs hang
+//! 2. An elbow or knee is defined nowhere, but what it joins is: it is on the way between them, as in the template.
+//! 3. A limb is defined nowhere: the offset is copied from the other side of the body, if that is known.
+//! 4. Otherwise the template's proportions serve: the torso stands upright through its known points, and limbs hang
 //!    down.
 //!
 //! [`Captured::guessed`] counts the filled-in key points. On frames where the contours show the other side
@@ -17,7 +18,7 @@
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::limbs::{BindingError, Bound, LimbSet};
 use rototoon_base::scene::proportions::TEMPLATE;
-use rototoon_base::scene::skeleton::{COUNT, MIRROR, NAMES, PARENTS, Posture};
+use rototoon_base::scene::skeleton::{COUNT, GIRDLES, MIRROR, NAMES, PARENTS, Posture};
 use rototoon_base::scene::{FrameNumber, Part};
 use std::ops::RangeInclusive;
 
@@ -189,13 +190,17 @@ fn filled(seen: &[Seen]) -> Vec<Posture> {
             let ways: Vec<_> = seen.iter().map(|frame| Some(frame[k]? - frame[PARENTS[k]].or(frame[0])?)).collect();
             in_between(&ways)
         };
-        let found = way(k).or_else(|| way(MIRROR[k]));
+        let own = way(k);
+        let joins = own.is_none() && GIRDLES.contains(&PARENTS[k]);
+        let found = own.or_else(|| way(MIRROR[k]));
         for frame in 0..seen.len() {
             let parent = made[frame][PARENTS[k]];
-            made[frame][k] = match (seen[frame][k], &found) {
-                (Some(p), _) => p,
-                (None, Some(ways)) => parent + ways[frame],
-                (None, None) => parent + template_way(k, &made[frame]),
+            let end = seen[frame].get(k + 1).copied().flatten().filter(|_| joins);
+            made[frame][k] = match (seen[frame][k], end, &found) {
+                (Some(p), ..) => p,
+                (None, Some(end), _) => parent.lerp(end, TEMPLATE.0[k - 1] / (TEMPLATE.0[k - 1] + TEMPLATE.0[k])),
+                (None, None, Some(ways)) => parent + ways[frame],
+                (None, None, None) => parent + template_way(k, &made[frame]),
             };
         }
     }
@@ -303,6 +308,15 @@ mod tests {
         assert!(clip.postures[0][4].y < clip.postures[0][3].y && clip.postures[0][3].y < 0.0);
         assert!(clip.postures[0][10].y > clip.postures[0][9].y);
         assert!(clip.postures.iter().flatten().all(|p| p.is_finite()));
+    }
+
+    #[test]
+    fn a_knee_that_no_limb_shows_is_on_the_way_to_the_ankle() {
+        let (mut set, parts) = figure();
+        set.limbs[2].to = 16;
+        let clip = capture(&set, &parts, 0..=4).unwrap();
+        let [hip, knee, ankle] = [14, 15, 16].map(|k| clip.postures[1][k]);
+        assert!(knee.distance(hip.lerp(ankle, 0.8 / 1.55)) < 1e-12, "{hip} {knee} {ankle}");
     }
 
     #[test]

@@ -4,9 +4,12 @@
 //! invent motions (`rototoon-style`).
 //!
 //! - [`capture`]: key points from contours
+//! - [`fit`]: a clip in a drawing's proportions and place
+//! - [`contacts`]: when feet stand; [`stand`]: feet on the ground
 //! - [`limb`]: quadratic Bézier limbs, sub-key points
 //! - [`triangulate`]: a triangle mesh of what outlines enclose
 //! - [`puppet`]: a drawn part that follows its limbs
+//! - [`examples`]: what other drawings of a part teach about its shape (Lewis et al. 2000); [`mean_value`] coordinates
 //! - [`arap`]: as-rigid-as-possible manipulation of a triangle mesh in two linear steps (Igarashi et al. 2005)
 //! - [`depth`]: which part is in front, from a few marks (Sýkora et al. 2010)
 //!
@@ -39,7 +42,12 @@
 
 pub mod arap;
 pub mod capture;
+pub mod contacts;
 pub mod depth;
+pub mod examples;
+pub mod fit;
 pub mod limb;
+pub mod mean_value;
 pub mod puppet;
+pub mod stand;
 pub mod triangulate;

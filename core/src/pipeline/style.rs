@@ -6,7 +6,7 @@ use crate::project::clips::Clips;
 use crate::reshape::capture::capture;
 use crate::scene::skeleton::{COUNT, NAMES};
 use crate::scene::{Clip, FrameNumber, Progress};
-use crate::style::{self, Options, Request, StyleError};
+use crate::style::{self, Options, Request, StyleError, Sure};
 use std::ops::RangeInclusive;
 
 /// The clip to make of a document.
@@ -73,9 +73,24 @@ pub fn translate(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Clips, PipelineError> {
-    let made = style::translate(&clips.clips, request, options, progress).map_err(|error| match error {
+    translate_and_judge(clips, request, options, progress).map(|(made, _)| made)
+}
+
+/// Like [`translate`], and says how sure the result is where the library tells.
+///
+/// # Errors
+///
+/// Those of [`translate`].
+pub fn translate_and_judge(
+    clips: &Clips,
+    request: &Request,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<(Clips, Option<Sure>), PipelineError> {
+    let made = style::translate_and_judge(&clips.clips, request, options, progress);
+    let (made, sure) = made.map_err(|error| match error {
         StyleError::Cancelled(cancelled) => PipelineError::Cancelled(cancelled),
         other => PipelineError::Style(other.to_string()),
     })?;
-    Ok(Clips { clips: vec![made], fps: clips.fps })
+    Ok((Clips { clips: vec![made], fps: clips.fps }, sure))
 }

@@ -256,5 +256,5 @@ pub(super) fn spread(grid: &Grid, mut rows: Vec<Row>, errors: &[Vec<Row>], keys:
         }
     }
     let deviation = vec![variance.map(f64::sqrt); rows.len()];
-    Prediction { rows, deviation }
+    Prediction { rows, deviation, sure: None }
 }

@@ -21,6 +21,7 @@
 //!   these four settings, not a constant.
 //! - **Stance.** The mean of a clip over time is most of what can be predicted. It comes from a process of its own:
 //!   `stance`.
+//! - **Few clips of a style.** Whether they tell anything is rehearsed on the other characters: `episodes`.
 //! - **Uncertainty.** The covariance of the leave-one-out errors over time, axis by axis, serves as the covariance of
 //!   the prediction. `key_pose` conditions on drawn postures with it.
 //!
@@ -32,7 +33,7 @@ use super::cells::Cells;
 use super::grid::{Grid, Row, WIDTH, mean};
 use super::kernels::{Kernels, Weights};
 use super::key_pose::{Errors, condition, deviation};
-use super::{Prediction, STEP, stance};
+use super::{Prediction, STEP, episodes, stance};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::numeric::dense::DenseCholesky;
 use rototoon_base::numeric::vector::dot;
@@ -252,7 +253,7 @@ fn averaged(cells: &Cells, found: &[Vec<Vec<f64>>], target: (usize, usize)) -> (
         .filter(|&(s, m)| cells.known[s * motions + m] && (s, m) != target)
         .collect();
     let sharpness = WEIGHT_PER_CLIP * clips.len() as f64;
-    let mut errors = Errors::new(d, clips.iter().map(|(_, m)| *m).collect());
+    let mut errors = Errors::new(d, clips.clone());
     let mut coefficients = vec![0.0; COSINES * d];
     for axis in 0..d {
         for band in [0..1, 1..COSINES] {
@@ -318,14 +319,24 @@ pub(super) fn predict(
     let found: Vec<Vec<LeftOut>> = found.collect::<Result<_, Cancelled>>()?;
     let found: Vec<Vec<Vec<f64>>> = found.into_iter().flatten().flatten().collect();
     let (mut coefficients, errors) = averaged(&cells, &found, target);
-    if let Some(stance) = stance::predict(&cells, &kernels, axes.even, target) {
+    let mut sure = None;
+    if let Some(mut stance) = stance::predict(&cells, &kernels, axes.even, target) {
+        let asked = (target.0, target.1, grid.content);
+        sure = episodes::judge(&cells, &kernels, axes.even, asked, &mut stance);
         coefficients[..stance.len()].copy_from_slice(&stance);
+    }
+    if sure.is_some() {
+        let share = episodes::moving_share(&cells, grid.content, &errors.by_clip());
+        let content = cells.block(grid.content, grid.motion);
+        for (c, v) in coefficients.iter_mut().zip(content).skip(axes.len()) {
+            *c += share * (v - *c);
+        }
     }
     let mean = cells.mean_of(grid.motion, grid.style);
     for (c, mean) in coefficients.iter_mut().zip(&mean) {
         *c = strength * (*c - mean);
     }
-    Ok(assemble(grid, &axes, coefficients, &errors, keys))
+    Ok(Prediction { sure, ..assemble(grid, &axes, coefficients, &errors, keys) })
 }
 
 /// The clip from its offset to the mean motion, conditioned on the key poses.
@@ -345,5 +356,5 @@ fn assemble(grid: &Grid, axes: &Axes, coefficients: Vec<f64>, errors: &Errors, k
         }
         row
     });
-    Prediction { rows: rows.collect(), deviation: deviation(&covariances, axes, &basis) }
+    Prediction { rows: rows.collect(), deviation: deviation(&covariances, axes, &basis), sure: None }
 }

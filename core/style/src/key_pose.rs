@@ -24,15 +24,22 @@ const DRAWN: f64 = 1e-3;
 /// Errors of the predictions of known clips, by clip, cosine and axis.
 pub(super) struct Errors {
     axes: usize,
-    motions: Vec<usize>,
+    /// Character and motion of each clip.
+    clips: Vec<(usize, usize)>,
     values: Vec<f64>,
 }
 
 impl Errors {
-    /// No errors yet, for clips of these motions.
-    pub fn new(axes: usize, motions: Vec<usize>) -> Self {
-        let values = vec![0.0; motions.len() * COSINES * axes];
-        Self { axes, motions, values }
+    /// No errors yet, for these clips (character, motion).
+    pub fn new(axes: usize, clips: Vec<(usize, usize)>) -> Self {
+        let values = vec![0.0; clips.len() * COSINES * axes];
+        Self { axes, clips, values }
+    }
+
+    /// The errors of each clip, cosines × axes.
+    pub fn by_clip(&self) -> Vec<((usize, usize), Vec<f64>)> {
+        let size = (COSINES * self.axes).max(1);
+        self.clips.iter().copied().zip(self.values.chunks_exact(size).map(<[f64]>::to_vec)).collect()
     }
 
     /// Stores an error.
@@ -47,7 +54,7 @@ impl Errors {
     /// Sum over clips of the products of errors, cosines × cosines.
     fn products(&self, axis: usize) -> Vec<f64> {
         let mut sum = vec![0.0; COSINES * COSINES];
-        for clip in 0..self.motions.len() {
+        for clip in 0..self.clips.len() {
             for (k, value) in sum.iter_mut().enumerate() {
                 *value += self.get(clip, k / COSINES, axis) * self.get(clip, k % COSINES, axis);
             }
@@ -61,7 +68,8 @@ impl Errors {
         let squares: Vec<f64> =
             self.values.chunks_exact(size.max(1)).map(|clip| clip.iter().map(|e| e * e).sum()).collect();
         let average = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
-        let own: Vec<f64> = squares.iter().zip(&self.motions).filter(|(_, m)| **m == motion).map(|(e, _)| *e).collect();
+        let own: Vec<f64> =
+            squares.iter().zip(&self.clips).filter(|(_, clip)| clip.1 == motion).map(|(e, _)| *e).collect();
         let sum = own.iter().sum::<f64>() + COMMON * average;
         if average > 0.0 { sum / ((own.len() as f64 + COMMON) * average) } else { 1.0 }
     }
@@ -78,7 +86,7 @@ impl Errors {
         } else {
             (0..COSINES).for_each(|k| pooled[k * COSINES + k] = if k == 0 { 0.8 } else { 0.2 / (COSINES - 1) as f64 });
         }
-        let clips = self.motions.len() as f64;
+        let clips = self.clips.len() as f64;
         let scale = self.scale(motion) / clips.max(1.0);
         let mixed = |own: &Vec<f64>| {
             let size = trace(own).max(1e-12);

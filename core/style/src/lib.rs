@@ -5,6 +5,7 @@
 //!
 //! - [`align`]: clips of one motion brought together in time
 //! - [`gaussian`]: what a character adds to a motion, predicted from what it adds to others; `cells`: the clips as numbers
+//! - `episodes`: how far few clips of a style are to be trusted ([`Sure`])
 //! - [`bilinear`]: style and content matrices (Tenenbaum & Freeman 2000)
 //! - [`factorisation`]: non-negative style factorisation (Liang et al. 2012)
 //! - [`liang2012`]: translation with it
@@ -61,6 +62,7 @@ pub mod align;
 mod basis;
 pub mod bilinear;
 mod cells;
+mod episodes;
 pub mod factorisation;
 pub mod finish;
 pub mod gaussian;
@@ -69,6 +71,8 @@ mod kernels;
 mod key_pose;
 pub mod liang2012;
 mod stance;
+
+pub use episodes::Sure;
 
 use grid::{Grid, Row};
 use rototoon_base::scene::clip::resample;
@@ -261,6 +265,7 @@ pub enum StyleError {
 pub(crate) struct Prediction {
     rows: Vec<Row>,
     deviation: Vec<[f64; COUNT]>,
+    sure: Option<Sure>,
 }
 
 /// Re-makes a motion in another character's manner.
@@ -277,6 +282,21 @@ pub fn translate(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Clip, StyleError> {
+    translate_and_judge(clips, request, options, progress).map(|(clip, _)| clip)
+}
+
+/// Like [`translate`], and says how sure the result is, if the preset is [`Preset::Rototoon`] and the library has enough
+/// other characters to tell.
+///
+/// # Errors
+///
+/// Those of [`translate`].
+pub fn translate_and_judge(
+    clips: &[Clip],
+    request: &Request,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<(Clip, Option<Sure>), StyleError> {
     progress.report(STEP, 0.0)?;
     let grid = Grid::new(clips, request)?;
     let keys = keys(&grid, request);
@@ -307,7 +327,7 @@ pub fn translate(
         align::change_pace(&mut clip, align::pace(clips, request));
     }
     progress.report(STEP, 1.0)?;
-    Ok(clip)
+    Ok((clip, made.sure))
 }
 
 /// Key poses as numbers, one a frame (the last given for it).

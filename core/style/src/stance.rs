@@ -35,20 +35,42 @@ const FEWEST_MOTIONS: usize = 3;
 /// Predicts the stance of the target's character in its motion, the motion's mean included. Returns the coefficient of
 /// the constant cosine for each axis; the first `even` axes are even. `None` if too little is known.
 pub(super) fn predict(cells: &Cells, kernels: &Kernels, even: usize, target: (usize, usize)) -> Option<Vec<f64>> {
+    let keep = |s: usize, m: usize| cells.known[s * cells.motions + m] && (s, m) != target;
+    from(cells, kernels, even, target, &keep)
+}
+
+/// The mean stance of a motion over the clips that `keep` accepts; 0 if there are none.
+pub(super) fn mean(cells: &Cells, motion: usize, keep: &dyn Fn(usize, usize) -> bool) -> Vec<f64> {
+    let mut sum = vec![0.0; cells.axes];
+    let mut count = 0.0;
+    for s in (0..cells.characters).filter(|&s| keep(s, motion)) {
+        count += 1.0;
+        sum.iter_mut().zip(cells.block(s, motion)).for_each(|(a, b)| *a += b);
+    }
+    sum.iter_mut().for_each(|v| *v /= f64::max(count, 1.0));
+    sum
+}
+
+/// Like [`predict`], from the clips (character, motion) that `keep` accepts.
+pub(super) fn from(
+    cells: &Cells,
+    kernels: &Kernels,
+    even: usize,
+    target: (usize, usize),
+    keep: &dyn Fn(usize, usize) -> bool,
+) -> Option<Vec<f64>> {
     let motions = cells.motions;
     if motions < FEWEST_MOTIONS {
         return None;
     }
-    let means: Vec<Vec<f64>> = (0..motions).map(|m| cells.mean_of(m, usize::MAX)).collect();
-    let known: Vec<(usize, usize)> = (0..cells.characters)
-        .flat_map(|s| (0..motions).map(move |m| (s, m)))
-        .filter(|&(s, m)| cells.known[s * motions + m] && (s, m) != target)
-        .collect();
+    let means: Vec<Vec<f64>> = (0..motions).map(|m| mean(cells, m, keep)).collect();
+    let known: Vec<(usize, usize)> =
+        (0..cells.characters).flat_map(|s| (0..motions).map(move |m| (s, m))).filter(|&(s, m)| keep(s, m)).collect();
     let added = |(s, m): (usize, usize)| -> Vec<f64> {
         cells.block(s, m)[..cells.axes].iter().zip(&means[m]).map(|(a, b)| a - b).collect()
     };
     let likeness = likeness(cells.characters, &known, target.1, &added);
-    let mut result = means[target.1][..cells.axes].to_vec();
+    let mut result = means[target.1].clone();
     for (columns, side) in [(0..even, true), (even..cells.axes, false)] {
         let among = kernels.stances(side);
         let covariance = |(a, b): (usize, usize), (e, f): (usize, usize)| {

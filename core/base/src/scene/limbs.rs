@@ -86,6 +86,19 @@ pub struct DepthMark {
     pub last: FrameNumber,
 }
 
+/// What a part follows that no limb carries.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Follow {
+    /// Another part, by name: it moves as what carries that part.
+    Part(String),
+    /// The way of the pelvis: it moves without turning.
+    Root,
+    /// The contact with the ground: it goes along the ground with the pelvis, as a cast shadow does.
+    Contact,
+    /// Nothing: it stays where it is drawn.
+    Nothing,
+}
+
 /// The limbs of a character, and the marks needed to read its drawing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LimbSet {
@@ -96,6 +109,8 @@ pub struct LimbSet {
     pub swaps: Vec<(FrameNumber, FrameNumber)>,
     /// Marks of the order in depth.
     pub marks: Vec<DepthMark>,
+    /// By name what parts follow that no limb carries.
+    pub follows: Vec<(String, Follow)>,
 }
 
 /// Why a calibration point cannot be bound.

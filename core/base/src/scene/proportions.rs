@@ -5,7 +5,7 @@
 //! ([`Proportions::unify`]), or those of any two characters ([`Proportions::to`]). A limb that looks shorter because it
 //! points towards the viewer stays shorter by the same share.
 
-use super::skeleton::{COUNT, GIRDLES, LIMBS, PARENTS, Posture, limb_lengths, torso};
+use super::skeleton::{COUNT, LIMBS, PARENTS, Posture, limb_lengths, torso};
 
 /// Limbs shorter than this share of the torso have no direction along which to scale them.
 const NO_LENGTH: f64 = 1e-6;
@@ -38,21 +38,6 @@ impl Proportions {
             let (own, wanted) = (self.0[k - 1], other.0[k - 1]);
             let ratio = if own > NO_LENGTH * self.torso() { wanted / own } else { size };
             moved[k] = moved[PARENTS[k]] + (posture[k] - posture[PARENTS[k]]) * ratio;
-        }
-        moved
-    }
-
-    /// Like [`Self::to`], for a drawing whose limbs hang on its body where they are drawn.
-    ///
-    /// A body that turns towards the viewer shows its shoulders and hips several times as far apart as in profile, but
-    /// a drawing does not turn. Therefore shoulders and hips stay within their drawn distance from neck and pelvis;
-    /// their arms and legs move with them.
-    pub fn to_drawing(&self, drawing: &Self, posture: &Posture) -> Posture {
-        let mut moved = self.to(drawing, posture);
-        for joint in GIRDLES {
-            let way = moved[joint] - moved[PARENTS[joint]];
-            let shift = way.clamp_length_max(drawing.0[joint - 1]) - way;
-            (joint..joint + 3).for_each(|k| moved[k] += shift);
         }
         moved
     }
@@ -91,20 +76,6 @@ mod tests {
         let back = TEMPLATE.to(&own, &there);
         assert!(back.iter().zip(&posture(5.0)).all(|(a, b)| a.distance(*b) < 1e-12));
         assert_eq!(there[0], posture(5.0)[0]);
-    }
-
-    #[test]
-    fn a_drawing_s_limbs_stay_on_its_body() {
-        let own = Proportions::of(&[posture(0.0)]);
-        let mut wide = posture(0.0);
-        (5..8).for_each(|k| wide[k] = posture(0.0)[k] + (posture(0.0)[5] - posture(0.0)[2]) * 3.0);
-        let found = own.to_drawing(&own, &wide);
-        assert!((found[2].distance(found[5]) - own.0[4]).abs() < 1e-12);
-        assert!((found[6] - found[5]).distance(wide[6] - wide[5]) < 1e-12, "the arm goes with its shoulder");
-        assert_eq!((found[9], found[16]), (own.to(&own, &wide)[9], own.to(&own, &wide)[16]));
-        let mut narrow = posture(0.0);
-        narrow[14] = narrow[0].lerp(narrow[14], 0.4);
-        assert_eq!(own.to_drawing(&own, &narrow)[14], own.to(&own, &narrow)[14]);
     }
 
     #[test]

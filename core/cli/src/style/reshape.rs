@@ -84,8 +84,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         let made = pipeline::reshape(&mut document, &job, bar).map_err(|error| named(error, from))?;
         Ok((document, made))
     })?;
-    for (part, (start, end)) in &made.given {
-        let text = format!("part {part:?}: no limb carries it, so it follows the nearest one, {start} to {end}");
+    for (part, given) in &made.given {
+        let text = format!("part {part:?}: no limb carries it, so {given}");
         line("warning", &format!("{}: {text}", from.display()));
     }
     project::save(document, from, to)

@@ -1,7 +1,7 @@
 //! `rototoon style translate`: makes a motion in another character's style.
 
 use super::{load, name, named};
-use crate::failure::Failure;
+use crate::failure::{Failure, line};
 use crate::{arguments, progress};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Command, value_parser};
@@ -10,7 +10,7 @@ use rototoon::project::Inputs;
 use rototoon::project::clips::load_key_poses;
 use rototoon::project::output::check_writable;
 use rototoon::scene::parameters::Stage;
-use rototoon::style::{KeyPose, Options, Pace, Preset, Request};
+use rototoon::style::{KeyPose, Options, Pace, Preset, Request, Sure};
 use std::path::PathBuf;
 
 fn on_or_off(id: &'static str, help: &'static str) -> Arg {
@@ -114,8 +114,27 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         keep_contacts: text("contacts") == "on",
     };
     let request = Request { style: text("style"), motion: text("motion"), content: text("content"), keys: &keys };
-    let made = progress::run(arguments::threads(given), |bar| {
-        pipeline::translate(&clips, &request, &options, bar).map_err(|error| named(error, from))
+    let (made, sure) = progress::run(arguments::threads(given), |bar| {
+        pipeline::translate_and_judge(&clips, &request, &options, bar).map_err(|error| named(error, from))
     })?;
+    if let Some(sure) = sure {
+        line("note", &format!("{}: {}", from.display(), said(&sure)));
+    }
     Ok(made.save(to)?)
+}
+
+/// How sure a result is, in words.
+fn said(sure: &Sure) -> String {
+    let (share, rehearsals) = (100.0 * sure.of_copying, sure.episodes);
+    let expected = format!(
+        "expect {share:.0} % of the error of copying, in the posture that is held ({rehearsals} rehearsals on other characters)"
+    );
+    match (sure.offset, sure.content) {
+        (1.0, 0.0) => expected,
+        (offset, content) => format!(
+            "{expected}; the style's clips tell little about this motion, so {:.0} % of the change is made, and {:.0} % of the posture is the content's",
+            100.0 * offset,
+            100.0 * content
+        ),
+    }
 }

@@ -3,7 +3,7 @@
 //! Parts get keys on the first and the last frame of the clip, and tracks on all frames between. Strokes become
 //! in-betweens. Depths that differ from the part's depth are stored by frame.
 
-use super::{Body, Moved};
+use super::bodies::{Body, Moved};
 use crate::geometry::Point;
 use crate::project::Document;
 use crate::project::drawings::{DrawnBetween, DrawnStroke};

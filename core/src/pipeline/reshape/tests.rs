@@ -2,7 +2,9 @@
 
 use super::*;
 use crate::pipeline::{ClipJob, clip};
+use crate::scene::limbs::Follow;
 use crate::scene::skeleton::COUNT;
+use crate::scene::skeleton::Posture;
 use crate::scene::{Cancelled, Silent};
 
 fn ring(x: f64, top: f64, bottom: f64, half: f64) -> String {
@@ -182,9 +184,127 @@ fn parts_without_a_limb_are_told() {
     document.scene.parts.push(hat);
     let motion = waving(&document, 2);
     let made = reshape(&mut document, &job(&motion), &Silent).unwrap();
-    assert_eq!(made.given, [("hat".to_owned(), ("pelvis", "neck"))]);
+    assert_eq!(made.given, [("hat".to_owned(), Given::Part("body".into()))]);
     let hat = &document.scene.parts[5];
     assert!((hat.tracks[&1][0] - hat.tracks[&0][0]).distance(Point::new(5.0, 0.0)) < 1e-6);
+}
+
+/// The figure tracked through frames on which its arm is raised, its body leans and its leg bulges as no mesh would.
+fn tracked(frames: i32) -> Document {
+    let mut document = figure("");
+    for (index, part) in document.scene.parts.iter_mut().enumerate() {
+        let rest = part.keys[&0].clone();
+        for frame in 0..frames {
+            let t = f64::from(frame);
+            let lean = Point::from_angle(0.04 * t);
+            let about = Point::new(50.0, 62.0);
+            let moved = |(k, p): (usize, &Point)| {
+                let own = match index {
+                    0 => Point::new(0.6 * t * (0.2 * (p.y - 60.0)).sin(), 0.4 * t * (k % 2) as f64),
+                    3 => Point::from_angle(-0.2 * t).rotate(*p - Point::new(66.0, 22.0)) + Point::new(66.0, 22.0) - *p,
+                    _ => Point::ZERO,
+                };
+                let p = *p + own;
+                (if index > 1 { about + lean.rotate(p - about) } else { p }) + Point::new(3.0 * t, (1.1 * t).sin())
+            };
+            part.tracks.insert(frame, rest.iter().enumerate().map(moved).collect());
+        }
+        part.keys.insert(frames - 1, part.tracks[&(frames - 1)].clone());
+    }
+    document
+}
+
+/// The greatest distance of a point of a closed part on a frame of `made` from the one on the frame `shift` later in `truth`.
+fn farthest(made: &Document, truth: &Document, shift: i32) -> f64 {
+    let parts = made.scene.parts.iter().zip(&truth.scene.parts).filter(|(part, _)| part.closed);
+    parts
+        .flat_map(|(part, other)| {
+            part.tracks.iter().map(move |(frame, points)| (points, &other.tracks[&(frame + shift)]))
+        })
+        .flat_map(|(a, b)| a.iter().zip(b).map(|(p, q)| p.distance(*q)))
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn the_own_clip_on_the_own_drawing_is_the_identity() {
+    let with_pelvis = |document: &mut Document| {
+        let mut set = document.limbs().unwrap();
+        let mut bone = set.limbs[3].clone();
+        (bone.from, bone.to) = (0, 14);
+        (bone.start, bone.end) = (set.limbs[0].start.clone(), set.limbs[3].start.clone());
+        bone.carries.clear();
+        set.limbs.push(bone);
+        document.set_limbs(&set);
+    };
+    let without_arm = |document: &mut Document| {
+        let mut set = document.limbs().unwrap();
+        set.limbs.retain(|limb| !(8..11).contains(&limb.to));
+        document.set_limbs(&set);
+    };
+    for (what, change) in [
+        ("as it is", &(|_: &mut Document| {}) as &dyn Fn(&mut Document)),
+        ("with a bone to the hip", &with_pelvis),
+        ("without limbs of the arm", &without_arm),
+    ] {
+        let mut document = tracked(10);
+        change(&mut document);
+        for (rest, frames) in [(0, 0..=9), (4, 0..=9), (0, 3..=8)] {
+            let job = ClipJob { character: "a".into(), motion: "go".into(), frames: Some(frames.clone()) };
+            let own = clip(&document, &job).unwrap().clips.clips.remove(0);
+            let mut made = document.clone();
+            let asked = ReshapeJob { rest: Some(rest), ..self::job(&own) };
+            reshape(&mut made, &asked, &Silent).unwrap();
+            let off = farthest(&made, &document, *frames.start());
+            assert!(off < 0.5, "{what}, at rest on {rest}, frames {frames:?}: {off} px");
+        }
+    }
+}
+
+#[test]
+fn parts_away_from_the_figure_stay_and_shadows_follow_the_ground() {
+    let mut document = figure("");
+    let like = |document: &mut Document, name: &str, low: Point, high: Point| {
+        let ring = ring(0.5 * (low.x + high.x), low.y, high.y, 0.5 * (high.x - low.x));
+        let points: Vec<[f64; 2]> = serde_json::from_str(&ring).unwrap();
+        let keys = BTreeMap::from([(0, points.into_iter().map(Point::from).collect())]);
+        document.scene.parts.push(Part { name: name.into(), closed: true, keys, ..Part::default() });
+    };
+    like(&mut document, "shadow", Point::new(28.0, 105.0), Point::new(76.0, 109.0));
+    like(&mut document, "house", Point::new(-200.0, -200.0), Point::new(400.0, 200.0));
+    like(&mut document, "ball", Point::new(68.0, 88.0), Point::new(78.0, 98.0));
+    like(&mut document, "star", Point::new(300.0, 10.0), Point::new(310.0, 20.0));
+    like(&mut document, "button", Point::new(45.0, 30.0), Point::new(49.0, 34.0));
+    let mut motion = waving(&document, 4);
+    for (frame, posture) in motion.postures.iter_mut().enumerate() {
+        posture.iter_mut().for_each(|p| p.y -= 6.0 * frame as f64);
+    }
+    let before = document.clone();
+    let made = reshape(&mut document, &job(&motion), &Silent).unwrap();
+    let wanted = [
+        ("shadow", Given::Contact, Point::new(15.0, 0.0)),
+        ("house", Given::Nothing, Point::ZERO),
+        ("ball", Given::Root, Point::new(15.0, -9.0)),
+        ("star", Given::Nothing, Point::ZERO),
+        ("button", Given::Part("body".into()), Point::new(15.0, -9.0)),
+    ];
+    for (k, (name, given, shift)) in wanted.into_iter().enumerate() {
+        assert_eq!(made.given[k], (name.to_owned(), given));
+        let part = &document.scene.parts[5 + k];
+        let moved = part.tracks[&3][0] - part.keys[&0][0];
+        assert!(moved.distance(shift) < 1e-6, "{name}: {moved}");
+    }
+    let mut asked = before.clone();
+    let mut set = asked.limbs().unwrap();
+    set.follows = vec![("shadow".into(), Follow::Nothing), ("star".into(), Follow::Part("arm".into()))];
+    asked.set_limbs(&set);
+    let told = reshape(&mut asked, &job(&motion), &Silent).unwrap();
+    assert_eq!(told.given.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["house", "ball", "button"]);
+    assert_eq!(asked.scene.parts[5].tracks[&3], before.scene.parts[5].keys[&0]);
+    set.follows = vec![("star".into(), Follow::Part("house".into()))];
+    let mut wrong = before.clone();
+    wrong.set_limbs(&set);
+    let error = reshape(&mut wrong, &job(&motion), &Silent).unwrap_err().to_string();
+    assert_eq!(error, "follows.\"star\": found part \"house\", expected a closed part that a limb carries");
 }
 
 #[test]

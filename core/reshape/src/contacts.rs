@@ -1,0 +1,202 @@
+//! When the feet of a clip stand on the ground.
+//!
+//! Clips come with the character's way through the picture, on the spot (a treadmill), or with the pelvis fixed in one
+//! place. One rule serves all of them. The ground moves by u, the median velocity of the lower ankle: 0 for a clip with
+//! its way, the speed of the walk backwards for the others. A foot stands while
+//!
+//! - it moves nearly as the ground does,
+//! - it is about as low as the lower one of both feet, and
+//! - the figure is not in the air.
+//!
+//! The figure is in the air where even its lower foot is clearly above the level at which it usually is. A clip with a
+//! fixed pelvis does not tell a jump from crouching: both bring the feet nearer to the pelvis. There only feet that pass
+//! each other quickly, as in a run, count as in the air.
+//!
+//! Limits: the ground is level. A foot that slides on purpose does not stand.
+
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::skeleton::{LEGS, Posture};
+
+/// A foot moves as the ground if the difference is below this share of the ground's speed,
+const OF_GROUND: f64 = 0.35;
+/// of a fast foot's speed,
+const OF_SWING: f64 = 0.2;
+/// or of the leg in a frame.
+const OF_LEG: f64 = 0.01;
+/// A foot is low if it is no more than this share of the leg above the lower one.
+const LOW: f64 = 0.06;
+/// The figure is in the air if its lower foot is above its usual level by this share of the leg.
+const AIR: f64 = 0.12;
+/// Share of the frames whose lower foot is no lower than the usual level.
+const USUAL: f64 = 0.75;
+/// Feet pass each other quickly if they do so at this share of their fastest speed.
+const PASSING: f64 = 0.5;
+
+/// When feet stand.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contacts {
+    /// For each leg of [`LEGS`] and each frame whether its foot stands.
+    pub stands: [Vec<bool>; 2],
+    /// For each frame whether the figure is in the air.
+    pub air: Vec<bool>,
+    /// The ground's velocity along x in the unit of the clip a frame.
+    pub ground: f64,
+    /// Whether the clip has a way: its pelvis moves.
+    pub way: bool,
+}
+
+impl Contacts {
+    /// Finds the contacts of a clip.
+    pub fn of(clip: &[Posture]) -> Self {
+        let n = clip.len();
+        let leg = leg_length(clip);
+        let way = clip.iter().any(|p| p[0].distance(clip[0][0]) > 1e-3 * leg);
+        let ankles = LEGS.map(|leg| clip.iter().map(|p| p[leg[2]]).collect::<Vec<Point>>());
+        let speeds = [velocities(&ankles[0]), velocities(&ankles[1])];
+        let lower: Vec<usize> = (0..n).map(|t| usize::from(ankles[1][t].y > ankles[0][t].y)).collect();
+        let low: Vec<f64> = (0..n).map(|t| ankles[lower[t]][t].y).collect();
+        let level = quantile(low.clone(), USUAL);
+        let passing: Vec<f64> = (0..n).map(|t| (speeds[0][t].x - speeds[1][t].x).abs()).collect();
+        let quick = PASSING * quantile(passing.clone(), 0.9);
+        let air: Vec<bool> =
+            (0..n).map(|t| low[t] < level - AIR * leg && (way || (quick > 0.0 && passing[t] > quick))).collect();
+        let ground = quantile((0..n).filter(|&t| !air[t]).map(|t| speeds[lower[t]][t].x).collect(), 0.5);
+        let fast = quantile(speeds.iter().flatten().map(|v| v.length()).collect(), 0.9);
+        let slow = (OF_GROUND * ground.abs()).max(OF_SWING * fast).max(OF_LEG * leg);
+        let stands = [0, 1].map(|foot| {
+            let one = |t: usize| {
+                let apart = (speeds[foot][t] - Point::new(ground, 0.0)).length();
+                !air[t] && apart < slow && ankles[foot][t].y > low[t] - LOW * leg
+            };
+            steady((0..n).map(one).collect())
+        });
+        Self { stands, air, ground, way }
+    }
+
+    /// The runs of frames during which a foot stands.
+    pub fn runs(&self, foot: usize) -> Vec<std::ops::Range<usize>> {
+        let mut found: Vec<std::ops::Range<usize>> = Vec::new();
+        for (t, _) in self.stands[foot].iter().enumerate().filter(|(_, stands)| **stands) {
+            match found.last_mut() {
+                Some(run) if run.end == t => run.end = t + 1,
+                _ => found.push(t..t + 1),
+            }
+        }
+        found
+    }
+}
+
+/// The length of a straight leg: the median over the frames, of the longer leg.
+pub(crate) fn leg_length(clip: &[Posture]) -> f64 {
+    let of = |[hip, knee, ankle]: [usize; 3]| {
+        quantile(clip.iter().map(|p| p[hip].distance(p[knee]) + p[knee].distance(p[ankle])).collect(), 0.5)
+    };
+    LEGS.map(of).into_iter().fold(0.0, f64::max)
+}
+
+/// Velocities by central differences, one-sided at the ends.
+fn velocities(points: &[Point]) -> Vec<Point> {
+    let last = points.len().saturating_sub(1);
+    let at = |t: usize| {
+        let (a, b) = (t.saturating_sub(1), (t + 1).min(last));
+        if a == b { Point::ZERO } else { (points[b] - points[a]) / (b - a) as f64 }
+    };
+    (0..points.len()).map(at).collect()
+}
+
+/// Without gaps of one frame and without contacts of one frame.
+fn steady(mut stands: Vec<bool>) -> Vec<bool> {
+    for wanted in [true, false] {
+        let before = stands.clone();
+        for t in 1..stands.len().saturating_sub(1) {
+            if before[t - 1] == wanted && before[t + 1] == wanted {
+                stands[t] = wanted;
+            }
+        }
+    }
+    stands
+}
+
+/// The value below which the given share of the values lies; 0 without values.
+pub(crate) fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let at = values.len().saturating_sub(1) as f64 * share;
+    let (low, high) = (at.floor() as usize, at.ceil() as usize);
+    match (values.get(low), values.get(high)) {
+        (Some(a), Some(b)) => a + (b - a) * (at - at.floor()),
+        _ => 0.0,
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use rototoon_base::scene::skeleton::COUNT;
+    use std::f64::consts::TAU;
+
+    /// A walk of 24 frames a cycle, seen from the side: each foot stands for 14 frames and swings for ten.
+    pub(crate) fn walk(frames: usize, way: bool) -> Vec<Posture> {
+        let step = 4.0; // pixels a frame
+        (0..frames)
+            .map(|t| {
+                let bob = 2.0 * (2.0 * TAU * t as f64 / 24.0).cos();
+                let pelvis = Point::new(step * t as f64, -90.0 + bob);
+                let mut p = [pelvis; COUNT];
+                p[1] = pelvis - Point::new(0.0, 25.0);
+                p[2] = pelvis - Point::new(0.0, 50.0);
+                for (leg, shift) in [(LEGS[0], 0), (LEGS[1], 12)] {
+                    let (cycle, phase) = ((t + shift) / 24, (t + shift) % 24);
+                    let stood = step * (24.0 * cycle as f64 - shift as f64 + 7.0);
+                    let (x, up) = match phase {
+                        0..14 => (stood, 0.0),
+                        _ => {
+                            let s = (phase - 13) as f64 / 11.0;
+                            (stood + 24.0 * step * (0.5 - 0.5 * (0.5 * TAU * s).cos()), 22.0 * (0.5 * TAU * s).sin())
+                        }
+                    };
+                    p[leg[0]] = pelvis;
+                    p[leg[2]] = Point::new(x, -up);
+                    p[leg[1]] = p[leg[0]].midpoint(p[leg[2]]) + Point::new(12.0, 0.0);
+                }
+                if way { p } else { p.map(|q| q - pelvis) }
+            })
+            .collect()
+    }
+
+    fn wrong(found: &Contacts, frames: usize) -> usize {
+        let truth = |foot: usize, t: usize| (t + 12 * foot) % 24 < 14;
+        (0..2)
+            .flat_map(|foot| (1..frames - 1).map(move |t| (foot, t)))
+            .filter(|&(f, t)| found.stands[f][t] != truth(f, t))
+            .count()
+    }
+
+    #[test]
+    fn a_walk_is_read_with_its_way_and_with_a_fixed_pelvis() {
+        for (way, most) in [(true, 8), (false, 10)] {
+            let found = Contacts::of(&walk(48, way));
+            assert_eq!(found.way, way);
+            assert!((found.ground - if way { 0.0 } else { -4.0 }).abs() < 0.3, "{}", found.ground);
+            assert!(wrong(&found, 48) <= most, "{} of 92 wrong: {found:?}", wrong(&found, 48));
+            assert!(!found.air.iter().any(|air| *air));
+        }
+    }
+
+    #[test]
+    fn a_jump_leaves_the_ground_and_crouching_does_not() {
+        let height = |t: usize| if (10..20).contains(&t) { 40.0 * (0.05 * TAU * (t - 10) as f64).sin() } else { 0.0 };
+        let stand = walk(1, true)[0];
+        let jump: Vec<Posture> = (0..30).map(|t| stand.map(|p| p - Point::new(0.0, height(t)))).collect();
+        let found = Contacts::of(&jump);
+        assert!(found.air[15] && !found.air[5] && !found.stands[0][15] && found.stands[1][4]);
+        let crouch: Vec<Posture> = (0..30)
+            .map(|t| {
+                let mut p = stand.map(|q| q - stand[0]);
+                LEGS.iter().for_each(|leg| p[leg[2]].y -= height(t));
+                p
+            })
+            .collect();
+        assert!(!Contacts::of(&crouch).air.iter().any(|air| *air));
+        assert_eq!(Contacts::of(&[]).air, [false; 0]);
+    }
+}
