@@ -1,10 +1,11 @@
 //! `rototoon job`: writes the template of a batch for a render farm.
 
-use crate::arguments;
 use crate::batch;
 use crate::failure::{Failure, line};
+use crate::{arguments, project};
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Command, value_parser};
+use rototoon::project::output::moved_pattern;
 use rototoon::project::{Inputs, write_whole};
 use rototoon_batch::jobs::{flamenco, openjd};
 use std::path::{Path, PathBuf};
@@ -62,14 +63,22 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
             let results = arguments::path(given, "results");
             let name = path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
             let chunk = given.get_one::<u16>("chunk").map_or(1, |chunk| usize::from(*chunk));
-            let (manifest_path, results) = (whole(path), whole(results));
-            format!("{:#}\n", openjd::template(&name, manifest.shots.len(), chunk, &manifest_path, &results))
+            let (place, results) = (from_template(path, to), from_template(results, to));
+            let count = manifest.shots.len();
+            format!("{:#}\n", openjd::template(&name, count, chunk, place.as_deref(), results.as_deref()))
         }
     };
     Ok(write_whole(to, text.as_bytes())?)
 }
 
-/// A path that means the same in any folder.
-fn whole(path: &Path) -> String {
-    std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).to_string_lossy().into_owned()
+/// A path relative to the folder of the template, with forward slashes; `None` if there is none.
+fn from_template(path: &Path, template: &Path) -> Option<String> {
+    let text = path.to_str()?;
+    let moved = if path.is_absolute() {
+        let folder = std::path::absolute(template).ok()?;
+        path.strip_prefix(folder.parent()?).ok()?.to_str()?.to_owned()
+    } else {
+        moved_pattern(text, Path::new(""), project::folder(template))
+    };
+    Path::new(&moved).is_relative().then(|| moved.replace('\\', "/"))
 }

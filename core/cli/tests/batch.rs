@@ -339,7 +339,12 @@ fn jobs_are_written_for_farms() {
     assert_eq!(job(&["-o", "job.json", "--chunk", "2"]).0, Some(0));
     let template: Value = serde_json::from_slice(&fs::read(season.path("job.json")).unwrap()).unwrap();
     assert_eq!(template["specificationVersion"], "jobtemplate-2023-09");
-    assert_eq!(template["parameterDefinitions"][0]["default"], season.path("m.json").to_str().unwrap());
+    let default = |template: &Value, k: usize| template["parameterDefinitions"][k]["default"].clone();
+    assert_eq!((default(&template, 0), default(&template, 1)), (json!("m.json"), json!("results")));
+    // The specification wants paths that begin in the template's folder.
+    assert_eq!(job(&["-o", "in/job.json", "--results", season.path("in/night").to_str().unwrap()]).0, Some(0));
+    let template: Value = serde_json::from_slice(&fs::read(season.path("in/job.json")).unwrap()).unwrap();
+    assert_eq!((default(&template, 0), default(&template, 1)), (json!("../m.json"), json!("night")));
     assert_eq!(job(&["-o", "rototoon.js", "--for", "flamenco"]).0, Some(0));
     assert!(fs::read_to_string(season.path("rototoon.js")).unwrap().contains("function compileJob(job)"));
     let (status, said) = job(&["-o", "in/sh0/project.json"]);

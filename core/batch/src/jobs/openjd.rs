@@ -9,21 +9,28 @@ use serde_json::{Value, json};
 /// Greatest number of letters of a job's name.
 const LONGEST_NAME: usize = 128;
 
-/// The template for a number of shots. `manifest` and `output` are the defaults of its parameters; `chunk` is the number of
-/// shots that the program gets at a time.
-pub fn template(name: &str, shots: usize, chunk: usize, manifest: &str, output: &str) -> Value {
+/// The template for a number of shots. `chunk` is the number of shots that the program gets at a time. `manifest` and
+/// `output` are the defaults of the parameters, relative to the template's folder: the specification allows no others. A
+/// parameter without a default is asked for when the job is sent.
+pub fn template(name: &str, shots: usize, chunk: usize, manifest: Option<&str>, output: Option<&str>) -> Value {
     let places = Places { manifest: "{{Param.Manifest}}", output: "{{Param.Output}}" };
     let run = |shots: Option<&str>| json!({"onRun": {"command": "{{Param.Program}}", "args": words(places, shots)}});
+    let path = |name: &str, kind: &str, flow: &str, default: Option<&str>, description: &str| {
+        let mut parameter =
+            json!({"name": name, "type": "PATH", "objectType": kind, "dataFlow": flow, "description": description});
+        if let Some(default) = default {
+            parameter["default"] = json!(default);
+        }
+        parameter
+    };
     let chunks = json!({"defaultTaskCount": chunk.max(1), "rangeConstraint": "CONTIGUOUS"});
     json!({
         "specificationVersion": "jobtemplate-2023-09",
         "extensions": ["TASK_CHUNKING"],
         "name": job_name(name),
         "parameterDefinitions": [
-            {"name": "Manifest", "type": "PATH", "objectType": "FILE", "dataFlow": "IN", "default": manifest,
-                "description": "The file that names shots and steps"},
-            {"name": "Output", "type": "PATH", "objectType": "DIRECTORY", "dataFlow": "OUT", "default": output,
-                "description": "The folder of the results"},
+            path("Manifest", "FILE", "IN", manifest, "The file that names shots and steps"),
+            path("Output", "DIRECTORY", "OUT", output, "The folder of the results"),
             {"name": "Program", "type": "STRING", "default": "rototoon", "description": "The command line program"}
         ],
         "steps": [
@@ -51,10 +58,12 @@ mod tests {
 
     #[test]
     fn each_shot_is_in_the_range() {
-        let template = template("night {7}", 20, 3, "m.json", "out");
+        let template = template("night {7}", 20, 3, Some("m.json"), None);
         let space = &template["steps"][0]["parameterSpace"]["taskParameterDefinitions"][0];
         assert_eq!((&space["range"], &space["chunks"]["defaultTaskCount"]), (&json!("1-20"), &json!(3)));
         assert_eq!(template["name"], "Rototoon night 7");
+        let default = |parameter: usize| template["parameterDefinitions"][parameter].get("default");
+        assert_eq!((default(0), default(1)), (Some(&json!("m.json")), None));
         let args = |step: usize| template["steps"][step]["script"]["actions"]["onRun"]["args"].clone();
         let common = ["batch", "{{Param.Manifest}}", "-o", "{{Param.Output}}"];
         assert_eq!(args(0), json!([&common[..], &["--shots", "{{Task.Param.Shot}}", "--fine", "all"]].concat()));
