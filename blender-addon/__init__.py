@@ -12,6 +12,8 @@ This file only registers. The code is in packages. The `__init__.py` of each pac
 `style`               a character's motion given to another drawing
 `bones`               armatures
 `exchange`            documents and masks
+`sample`              a small cartoon to try everything on
+`scripting`           functions for scripts, beside the operators
 `ui`                  panels, lists, overlays, preferences
 ====================  ==============================================================================
 
@@ -24,37 +26,36 @@ def _classes():
     from .bones.operators import CLASSES as bones
     from .capture.operators import CLASSES as capture
     from .exchange.operators import CLASSES as exchange
+    from .sample.operators import CLASSES as sample
     from .strokes.operators import CLASSES as strokes
     from .style.operators import CLASSES as style
     from .tween.operators import CLASSES as tween
 
-    return properties.CLASSES + capture + strokes + tween + style + bones + exchange + ui.CLASSES
+    return properties.CLASSES + capture + strokes + tween + style + bones + exchange + sample + ui.CLASSES
 
 
 def register():
     """Called by Blender."""
     import bpy
 
-    from . import handlers, properties
-    from .ui import clip_preview, overlay
+    from . import handlers, properties, ui
 
     for cls in _classes():
         bpy.utils.register_class(cls)
     properties.attach()
     handlers.register()
-    overlay.register()
-    clip_preview.register()
+    for part in ui.PARTS:
+        part.register()
 
 
 def unregister():
     """Called by Blender."""
     import bpy
 
-    from . import handlers, properties
-    from .ui import clip_preview, overlay
+    from . import handlers, properties, ui
 
-    clip_preview.unregister()
-    overlay.unregister()
+    for part in reversed(ui.PARTS):
+        part.unregister()
     handlers.unregister()
     properties.detach()
     for cls in reversed(_classes()):

@@ -1,4 +1,5 @@
-"""Handlers for opening, saving and changing files: they close sessions, keep footage paths right, and start live tracking."""
+"""Handlers for opening, saving and changing files: they close sessions, keep footage paths right, notice new contours, and start live
+tracking."""
 
 from __future__ import annotations
 
@@ -7,8 +8,8 @@ import os
 import bpy
 from bpy.app.handlers import persistent
 
-from .blender import footage
-from .capture import live, sessions
+from .blender import footage, guard
+from .capture import arrivals, live, sessions, stand
 from .style import clip_browser
 
 _FIELDS = ("pattern", "movie")
@@ -35,16 +36,31 @@ def _saved(path: str = "", *_args) -> None:
 
 def _rebase(old: str, new: str) -> None:
     for ob in bpy.data.objects:
-        if ob.library is not None:
+        if guard.refusal(ob, guard.SETTINGS):
             continue
         for name in _FIELDS:
-            value = getattr(ob.rototoon, name)
-            if not value or (value.startswith("//") and not old):
-                continue
-            absolute = os.path.normpath(os.path.join(os.path.dirname(old), value[2:])) if value[:2] == "//" else value
-            based = footage.relative(absolute, new)
-            if based != value:
-                setattr(ob.rototoon, name, based)
+            _move(ob, name, old, new)
+
+
+def _move(ob: bpy.types.Object, name: str, old: str, new: str) -> None:
+    """Makes a path that was relative to the file `old` relative to the file `new`; absolute if that is not saved yet."""
+    value = getattr(ob.rototoon, name)
+    if not value or (value.startswith("//") and not old):
+        return
+    absolute = os.path.normpath(os.path.join(os.path.dirname(old), value[2:])) if value[:2] == "//" else value
+    based = footage.relative(absolute, new)
+    if based != value:
+        setattr(ob.rototoon, name, based)
+
+
+@persistent
+def _imported(context, *_args) -> None:
+    """Makes footage paths of appended objects relative to this file: Blender knows only its own paths."""
+    for item in context.import_items:
+        ob, library = item.id, item.source_library
+        if isinstance(ob, bpy.types.Object) and library is not None and not guard.refusal(ob, guard.SETTINGS):
+            for name in _FIELDS:
+                _move(ob, name, bpy.path.abspath(library.filepath), bpy.data.filepath)
 
 
 @persistent
@@ -54,12 +70,20 @@ def _list_clips(*_args) -> None:
 
 _HOOKS = (
     ("load_pre", live.closing),
+    ("load_pre", arrivals.reset),
+    ("load_post", stand.clear),
     ("load_post", _loaded),
     ("load_post", live.opened),
     ("load_post", _list_clips),
+    ("depsgraph_update_post", arrivals.changed),
     ("depsgraph_update_post", live.changed),
+    ("undo_post", stand.clear),
+    ("redo_post", stand.clear),
+    ("undo_post", arrivals.undone),
+    ("redo_post", arrivals.undone),
     ("undo_post", live.undone),
     ("redo_post", live.undone),
+    ("blend_import_post", _imported),
     ("save_pre", _saving),
     ("save_post", _saved),
 )
@@ -78,4 +102,6 @@ def unregister() -> None:
         if hook in hooks:
             hooks.remove(hook)
     live.reset()
+    arrivals.reset()
+    stand.clear()
     sessions.clear()

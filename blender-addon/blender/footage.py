@@ -100,14 +100,26 @@ def pattern_of(ob) -> str:
     settings = ob.rototoon
     if not settings.pattern:
         raise Problem("No footage chosen: choose it in the panel Footage")
-    if settings.pattern.startswith("//") and not bpy.data.filepath:
+    if settings.pattern.startswith("//") and not bpy.data.filepath and _file_of(ob) is None:
         raise Problem(f"The footage {settings.pattern} is relative to a file that is not saved: choose it again")
-    pattern = os.path.normpath(bpy.path.abspath(settings.pattern))
+    pattern = absolute(ob, settings.pattern)
     for number in (settings.first, settings.last):
         path = picture(pattern, number)
         if not os.path.isfile(path):
             raise Problem(f"No picture {path}: the footage was moved or renamed; choose it again in the panel Footage")
     return pattern
+
+
+def absolute(ob, path: str) -> str:
+    """The absolute form of a path that an object keeps. Of a linked or overridden object it is relative to the object's file."""
+    import bpy
+
+    return os.path.normpath(bpy.path.abspath(path, library=_file_of(ob)))
+
+
+def _file_of(ob):
+    """The library that an object comes from; `None` for the open file."""
+    return (ob.override_library.reference if ob.override_library is not None else ob).library
 
 
 def number_of(path: str) -> int | None:

@@ -5,6 +5,7 @@ If the camera and the object do not move, one mapping serves all frames. Otherwi
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 
 import bpy
@@ -84,7 +85,7 @@ def placement_in(camera: bpy.types.Object, ob: bpy.types.Object) -> cameras.Plac
         source, entry = footage.background_source(camera)
     except Problem:
         return cameras.Placement()
-    if not _shows(source, ob.rototoon):
+    if not _shows(source, ob):
         return cameras.Placement()
     return cameras.Placement(
         entry.frame_method,
@@ -96,13 +97,14 @@ def placement_in(camera: bpy.types.Object, ob: bpy.types.Object) -> cameras.Plac
     )
 
 
-def _shows(source: footage.Source, settings) -> bool:
+def _shows(source: footage.Source, ob: bpy.types.Object) -> bool:
+    settings = ob.rototoon
     if source.movie:
-        return bool(settings.movie) and bpy.path.abspath(settings.movie) == source.path
+        return bool(settings.movie) and footage.absolute(ob, settings.movie) == os.path.normpath(source.path)
     number = footage.number_of(source.path)
     if number is None:
         return False
-    return footage.picture(bpy.path.abspath(settings.pattern), number) == source.path
+    return footage.picture(footage.absolute(ob, settings.pattern), number) == os.path.normpath(source.path)
 
 
 def _moves(ob: bpy.types.Object) -> bool:

@@ -20,11 +20,16 @@ def threads() -> int:
     return preferences().threads
 
 
+def data_folder(name: str) -> str:
+    """A folder of the extension's own data. It is made if it does not exist."""
+    return bpy.utils.extension_path_user(EXTENSION, path=name, create=True)
+
+
 def cache_folder() -> str:
     """The folder of the cache. It is made if it does not exist."""
     chosen = preferences().cache_folder
     if not chosen:
-        return bpy.utils.extension_path_user(EXTENSION, path="movies", create=True)
+        return data_folder("movies")
     folder = bpy.path.abspath(chosen)
     os.makedirs(folder, exist_ok=True)
     return folder

@@ -10,7 +10,7 @@ import bpy
 from mathutils import Matrix
 
 from . import camera as cameras
-from . import footage
+from . import footage, guard
 from . import grease_pencil as gp
 
 WIDTH = 10.0
@@ -48,16 +48,14 @@ def build(context, shot: Shot, plane: str, name: str, match_scene: bool) -> bpy.
     """Makes a camera background or a reference image, and a Grease Pencil object with the footage, which becomes active."""
     scene = context.scene
     if match_scene:
-        scene.render.resolution_x, scene.render.resolution_y = shot.width, shot.height
-        scene.frame_start = shot.frame_of_first
-        scene.frame_end = shot.frame_of_first + shot.last - shot.first
+        _match(scene, shot)
     ob = gp.new_object(name, context.collection or scene.collection)
     assign(ob, shot)
     ob.rototoon.plane = plane
     if plane == "REFERENCE":
         ob.rototoon.reference = _reference(context, shot, name)
     else:
-        camera = _camera(context)
+        camera = ob.rototoon.camera = _camera(context, shot, name)
         _background(camera, shot)
         ob.matrix_world = _facing(scene, camera)
     layer = gp.layer(ob, ob.rototoon.contours_layer)
@@ -67,17 +65,91 @@ def build(context, shot: Shot, plane: str, name: str, match_scene: bool) -> bpy.
     return ob
 
 
-def _camera(context):
+def _users(scene) -> list[bpy.types.Object]:
+    """The scene's objects that have footage."""
+    return [ob for ob in scene.objects if ob.rototoon.pattern]
+
+
+def _match(scene, shot: Shot) -> None:
+    """Gives the scene the footage's size and frames. If other footage uses the scene, the size stays, and frames are only added."""
+    last = shot.frame_of_first + shot.last - shot.first
+    if _users(scene):
+        scene.frame_start, scene.frame_end = min(scene.frame_start, shot.frame_of_first), max(scene.frame_end, last)
+        return
+    scene.render.resolution_x, scene.render.resolution_y = shot.width, shot.height
+    scene.frame_start, scene.frame_end = shot.frame_of_first, last
+    if not scene.frame_start <= scene.frame_current <= last:
+        scene.frame_set(scene.frame_start)
+
+
+def _camera(context, shot: Shot, name: str):
+    """The scene's camera if it is free, otherwise a new one, which becomes the scene's."""
     scene = context.scene
-    if scene.camera is not None:
+    if scene.camera is not None and _is_free(scene.camera, shot):
         return scene.camera
-    data = bpy.data.cameras.new("Camera")
+    data = bpy.data.cameras.new("Camera" if scene.camera is None else f"{name} Camera")
     data.type, data.ortho_scale = "ORTHO", WIDTH
-    camera = bpy.data.objects.new("Camera", data)
-    camera.matrix_world = Matrix.Translation((0, -DISTANCE, 0)) @ Matrix.Rotation(math.pi / 2, 4, "X")
+    camera = bpy.data.objects.new(data.name, data)
+    aside = 1.5 * WIDTH * sum(len(other.data.background_images) > 0 for other in scene.objects if other.type == "CAMERA")
+    camera.matrix_world = Matrix.Translation((aside, -DISTANCE, 0)) @ Matrix.Rotation(math.pi / 2, 4, "X")
     (context.collection or scene.collection).objects.link(camera)
+    # Footage that was seen through the scene's camera is seen through the same camera afterwards.
+    for ob in _users(scene):
+        if ob.rototoon.plane == "CAMERA" and ob.rototoon.camera is None and not guard.refusal(ob, guard.SETTINGS):
+            ob.rototoon.camera = scene.camera
     scene.camera = camera
     return camera
+
+
+def _is_free(camera, shot: Shot) -> bool:
+    """Whether a camera can show footage without a change of what it was made for: it shows no other picture and does not move.
+
+    The camera of Blender's new file is free too, but it looks down at a slant. Footage is easier to draw on from the front.
+    """
+    data = camera.data
+    if _is_default(camera):
+        return False
+    if camera.library is not None or data.library is not None or data.type not in {"PERSP", "ORTHO"}:
+        return False
+    if camera.parent is not None or len(camera.constraints) or camera.animation_data is not None:
+        return False
+    wanted = os.path.normpath(footage.picture(shot.pattern, shot.first))
+    for entry in data.background_images:
+        image = entry.image if entry.source == "IMAGE" else entry.clip
+        if image is not None and os.path.normpath(bpy.path.abspath(image.filepath)) != wanted:
+            return False
+    return data.animation_data is None
+
+
+DEFAULT_CAMERA = (7.35889, -6.92579, 4.95831)
+"""Place of the camera that a new file of Blender contains."""
+
+
+def _is_default(camera) -> bool:
+    place = camera.matrix_world.translation
+    return camera.name == "Camera" and max(abs(a - b) for a, b in zip(place, DEFAULT_CAMERA)) < 1e-4
+
+
+CUBE = 24.0
+"""Sum of the absolute coordinates of the cube that a new file of Blender contains."""
+
+
+def hide_default_cube(scene) -> bool:
+    """Hides the cube of Blender's new file, which stands between the camera and the footage. Returns whether it was there.
+
+    A cube that somebody has moved, scaled, edited or animated stays as it is.
+    """
+    cube = scene.objects.get("Cube")
+    if cube is None or cube.type != "MESH" or cube.library is not None or not cube.visible_get():
+        return False
+    corners = cube.data.vertices
+    untouched = len(corners) == 8 and abs(sum(abs(x) for v in corners for x in v.co) - CUBE) < 1e-4
+    touched = len(cube.modifiers) or cube.animation_data is not None or cube.parent is not None or cube.children
+    if not untouched or touched or cube.matrix_world != Matrix.Identity(4):
+        return False
+    cube.hide_set(True)
+    cube.hide_render = True
+    return True
 
 
 def load_sequence(shot: Shot):
@@ -98,9 +170,11 @@ def _time(user, shot: Shot) -> None:
 def _background(camera, shot: Shot) -> None:
     camera.data.show_background_images = True
     image = load_sequence(shot)
-    entry = next((e for e in camera.data.background_images if e.source == "IMAGE" and e.image == image), None)
+    shown = camera.data.background_images
+    entry = next((e for e in shown if e.source == "IMAGE" and e.image in {image, None}), None)
     if entry is None:
-        entry = camera.data.background_images.new()
+        entry = shown.new()
+    if entry.image is None:
         entry.image, entry.frame_method, entry.alpha = image, "FIT", 1.0
     _time(entry.image_user, shot)
 

@@ -13,6 +13,7 @@ import bpy
 import numpy as np
 
 from . import grease_pencil as gp
+from . import guard
 
 CATMULL_ROM, POLY, BEZIER, NURBS = range(4)
 _TYPE_NAMES = ("CATMULL_ROM", "POLY", "BEZIER", "NURBS")
@@ -153,11 +154,20 @@ def shown_frame(layer, frame: int) -> int | None:
 def editable_layers(ob, active: bool) -> list:
     """The layers whose strokes may be replaced, the lowest first. With `active`, only the active layer.
 
-    Locked layers are left out, and so are layers with contours, since tracking knows their points by index.
+    Locked and hidden layers are left out (see `guard`), and so are layers with contours, since tracking knows their points by
+    index. Raises a `Problem` that names the active layer, or all layers, if it leaves out none but closed ones.
     """
+    wanted = drawn_layers(ob, active)
+    guard.need_some(wanted)
+    return guard.open_layers(wanted)
+
+
+def drawn_layers(ob, active: bool) -> list:
+    """The layers with drawings but for those with contours, closed ones too. With `active`, only the active layer."""
     layers = [ob.data.layers.active] if active else list(ob.data.layers)
     contours = {layer.name for layer in gp.layers(ob, ob.rototoon.contours_layer)}
-    return [layer for layer in layers if layer is not None and not layer.lock and layer.name not in contours]
+    layers = [layer for layer in layers if layer is not None and layer.name not in contours]
+    return layers if active else [layer for layer in layers if len(layer.frames)]
 
 
 def filled(ob, content: Content) -> np.ndarray:
@@ -184,7 +194,7 @@ def line_material(ob, index: int) -> int:
     for place, other in enumerate(materials):
         if other is not None and other.name == name:
             return place
-    copy = bpy.data.materials.get(name) or material.copy()
+    copy = bpy.data.materials.get((name, None)) or material.copy()
     copy.name = name
     copy.grease_pencil.show_fill = False
     materials.append(copy)

@@ -8,17 +8,19 @@ of others.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..blender import grease_pencil as gp
+from ..blender import guard
 from . import correspondence
 
 
-@dataclass
+@dataclass(slots=True)
 class Stroke:
-    """One stroke of a drawing."""
+    """One stroke of a drawing. A film has tens of thousands, so it has no dictionary."""
 
     layer: int
     """Index among the contour layers; the lowest layer is 0."""
@@ -45,24 +47,54 @@ class Stroke:
         return correspondence.sample(self.points, self.where, closed)
 
 
+POINT_STYLE = ("radius", "opacity", "rotation", "vertex_color")
+CURVE_STYLE = (
+    "cyclic", "material_index", "fill_color", "fill_opacity", "fill_id", "softness", "aspect_ratio", "start_cap", "end_cap",
+    "u_translation", "u_scale", "uv_rotation", "uv_translation", "uv_scale",
+)  # fmt: skip
+_IDENTITY = (gp.PART, "cyclic", gp.MADE, gp.CONTROL)
+_OF_MADE = (gp.TRACKED, gp.PIN, gp.CENTER)
+
+
 @dataclass
 class Drawing:
-    """The arrays of one drawing."""
+    """The arrays of one drawing, read from a copy (see `grease_pencil.copied`)."""
 
     starts: np.ndarray
     points: np.ndarray
     handle: object
+    """The drawing itself, to write."""
     kind: str
+    names: frozenset[str]
+    """The attributes that it has."""
     strokes: list[Stroke] = field(default_factory=list)
     _values: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def has(self, name: str) -> bool:
+        """Whether the drawing has an attribute."""
+        return name in self.names
 
     def value(self, name: str) -> np.ndarray:
         """An attribute, or its defaults if it is missing. It is read once, and must not be changed."""
         if name not in self._values:
-            count = len(self.points) if gp.TYPES[name][1] == "POINT" else len(self.starts) - 1
-            self._values[name] = gp.value(self.handle, name, count)
-            self._values[name].flags.writeable = False
+            self.take(self.handle, name)
         return self._values[name]
+
+    def corrected(self) -> np.ndarray:
+        """Which strokes have a pin, a corrected centre, or a point that is not where tracking put it."""
+        if gp.TRACKED not in self.names:
+            return np.zeros(len(self.strokes), bool)
+        touched = self.value(gp.PIN) | (self.value(gp.TRACKED) != self.points).any(1)
+        before = np.concatenate([[0], np.cumsum(touched)])
+        return (before[self.starts[1:]] > before[self.starts[:-1]]) | (self.value(gp.CENTER)[:, 2] != 0)
+
+    def take(self, handle, *names: str) -> None:
+        """Reads attributes from `handle`, which is this drawing or a copy."""
+        for name in names:
+            count = len(self.points) if gp.TYPES[name][1] == "POINT" else len(self.starts) - 1
+            values = gp.value(handle, name, count) if name in self.names else gp.blank(name, count)
+            values.flags.writeable = False
+            self._values[name] = values
 
 
 @dataclass
@@ -91,21 +123,32 @@ class Contours:
     loose: list[Stroke]
     """The artist's strokes without a part, sorted by frame, layer and drawing order."""
     layer_names: list[str]
+    closed: frozenset[int] = frozenset()
+    """Indices of locked layers. They are read, but never written, so strokes without a part do not count there."""
+
+    @property
+    def closed_names(self) -> tuple[str, ...]:
+        """Names of the locked layers."""
+        return tuple(self.layer_names[index] for index in sorted(self.closed))
 
     def part(self, number: int) -> Part | None:
         """The part with a number."""
         return next((part for part in self.parts if part.number == number), None)
 
 
-def read(ob) -> Contours:
-    """Reads the contour layers of a Grease Pencil object."""
+def read(ob, more: tuple[str, ...] = ()) -> Contours:
+    """Reads the contour layers of a Grease Pencil object. `more` are attributes of generated strokes that will be needed too."""
     settings = ob.rototoon
     layers = gp.layers(ob, settings.contours_layer)
     parts = [Part(p.number, p.name, p.closed, p.depth, p.count, p.extra) for p in settings.parts]
-    found = Contours({}, parts, [], [layer.name for layer in layers])
-    for index, layer in enumerate(layers):
-        for frame, (handle, kind) in gp.drawings(layer).items():
-            found.drawings[index, frame] = read_drawing(handle, kind, index, frame)
+    closed = frozenset(index for index, layer in enumerate(layers) if guard.closed(layer, hidden=True))
+    found = Contours({}, parts, [], [layer.name for layer in layers], closed)
+    with gp.copied(ob.data) as data:
+        for index, layer in enumerate(layers):
+            own = gp.drawings(layer)
+            for frame, (handle, kind) in gp.drawings(data.layers[layer.name]).items():
+                drawing = found.drawings[index, frame] = read_drawing(handle, kind, index, frame, more)
+                drawing.handle = own[frame][0]
     by_number = {part.number: part for part in parts}
     for place in sorted(found.drawings, key=lambda place: (place[1], place[0])):
         for stroke in found.drawings[place].strokes:
@@ -113,20 +156,26 @@ def read(ob) -> Contours:
     return found
 
 
-def read_drawing(handle, kind: str, layer: int, frame: int) -> Drawing:
-    """The strokes of one drawing."""
+def read_drawing(handle, kind: str, layer: int, frame: int, more: tuple[str, ...] = ()) -> Drawing:
+    """The strokes of one drawing, with the attributes that are needed of them, and `more` if some are generated."""
     starts = gp.offsets(handle)
     strokes, total = len(starts) - 1, int(starts[-1])
-    drawing = Drawing(starts, gp.positions(handle, total), handle, kind)
+    drawing = Drawing(starts, gp.positions(handle, total), handle, kind, gp.names(handle))
+    drawing.take(handle, *_IDENTITY)
+    if drawing.value(gp.MADE).any():
+        drawing.take(handle, *_OF_MADE, *more)
+    if not drawing.value(gp.MADE).all():
+        drawing.take(handle, *POINT_STYLE, *CURVE_STYLE)
     part, cyclic = drawing.value(gp.PART), drawing.value("cyclic")
     made, control = drawing.value(gp.MADE), drawing.value(gp.CONTROL)
     if kind != gp.GENERATED and made.all():
         made = np.zeros(strokes, bool)
-    for i in range(strokes):
-        span = slice(int(starts[i]), int(starts[i + 1]))
+    bounds = starts.tolist()
+    rows = zip(bounds, bounds[1:], part.tolist(), made.tolist(), cyclic.tolist())
+    for i, (start, end, number, is_made, is_closed) in enumerate(rows):
+        span = slice(start, end)
         points = drawing.points[span]
-        stroke = Stroke(layer, frame, i, span, int(part[i]), bool(made[i]), bool(cyclic[i]), points, control[span])
-        drawing.strokes.append(stroke)
+        drawing.strokes.append(Stroke(layer, frame, i, span, number, is_made, is_closed, points, control[span]))
     return drawing
 
 
@@ -134,22 +183,34 @@ def _file(found: Contours, stroke: Stroke, part: Part | None) -> None:
     """Adds a stroke to its part, if it is the part's first stroke on the frame."""
     if part is None or len(stroke.points) == 0:
         if not stroke.made and len(stroke.points):
-            stroke.part = 0
-            found.loose.append(stroke)
+            _loosen(found, stroke)
         return
     if stroke.made and len(stroke.points) != part.count:
         stroke.made = False
     if stroke.made:
-        stroke.where = np.arange(part.count, dtype=np.float64)
+        stroke.where = _whole(part.count)
         part.made.setdefault(stroke.frame, stroke)
         return
     stroke.where = where_of(stroke, part)
     if stroke.where is None or stroke.frame in part.keys:
-        stroke.part = 0
-        found.loose.append(stroke)
+        _loosen(found, stroke)
         return
     part.keys[stroke.frame] = stroke
     part.layer = stroke.layer
+
+
+def _loosen(found: Contours, stroke: Stroke) -> None:
+    stroke.part = 0
+    if stroke.layer not in found.closed:
+        found.loose.append(stroke)
+
+
+@functools.lru_cache(maxsize=1024)
+def _whole(count: int) -> np.ndarray:
+    """0, 1, …, count - 1. All generated strokes of a part share it."""
+    where = np.arange(count, dtype=np.float64)
+    where.flags.writeable = False
+    return where
 
 
 def where_of(stroke: Stroke, part: Part) -> np.ndarray | None:

@@ -39,17 +39,16 @@ class Corrections:
 
 def detect(found: Contours, mapper: Mapper) -> dict[int, Corrections]:
     """Corrections by part number, on frames strictly between two keys of the part, or beside its only key."""
-    return {part.number: _of_part(part, found, mapper) for part in found.parts}
+    corrected = {place: drawing.corrected() for place, drawing in found.drawings.items()}
+    return {part.number: _of_part(part, found, corrected, mapper) for part in found.parts}
 
 
-def _of_part(part: Part, found: Contours, mapper: Mapper) -> Corrections:
+def _of_part(part: Part, found: Contours, corrected: dict[tuple[int, int], np.ndarray], mapper: Mapper) -> Corrections:
     corrections = Corrections()
     for frame, stroke in part.made.items():
-        if not correctable(part.keys, frame):
+        if not corrected[stroke.layer, frame][stroke.index] or not correctable(part.keys, frame):
             continue
         drawing = found.drawings[stroke.layer, frame]
-        if not gp.has(drawing.handle, gp.TRACKED):
-            continue
         pinned = drawing.value(gp.PIN)[stroke.span].copy()
         center = drawing.value(gp.CENTER)[stroke.index].astype(np.float64)
         tracked = drawing.value(gp.TRACKED)[stroke.span]

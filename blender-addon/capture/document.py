@@ -38,7 +38,7 @@ def read(ob, results: bool = False) -> Reading:
     """Reads an object. Changes nothing. With `results`, the document has tracks, confidence and snapped curves."""
     settings = ob.rototoon
     pattern = footage.pattern_of(ob)
-    found = contours.read(ob)
+    found = contours.read(ob, (gp.CONFIDENCE,) if results else ())
     if not found.layer_names:
         name = settings.contours_layer
         raise Problem(f'"{ob.name}" has no layer "{name}": draw the contours on a layer of that name')
@@ -65,10 +65,10 @@ def read(ob, results: bool = False) -> Reading:
     return Reading(found, mapper, decisions, corrected, document, os.path.dirname(pattern))
 
 
-def mapper_of(ob, found: contours.Contours) -> Mapper:
-    """The mappings of an object's contour layers."""
+def mapper_of(ob, found: contours.Contours, *more: int) -> Mapper:
+    """The mappings of an object's contour layers, on the frames of all drawings, those between them, and `more`."""
     drawn: dict[int, list[np.ndarray]] = {}
-    frames = {frame for _, frame in found.drawings}
+    frames = {frame for _, frame in found.drawings} | set(more)
     for (layer, _), drawing in found.drawings.items():
         drawn.setdefault(layer, []).extend(stroke.points for stroke in drawing.strokes if not stroke.made)
     points = {layer: np.concatenate(rows) for layer, rows in drawn.items() if rows}

@@ -15,7 +15,7 @@ from ..blender.placement import Mapper
 from . import correspondence, sessions
 from .contours import Contours, Part, Stroke
 
-CLOSING_GAP = 0.03
+CLOSING_GAP = 0.05
 """A stroke also counts as closed if the distance of its ends is less than this share of its length."""
 
 
@@ -106,8 +106,25 @@ def match(
     def plain(contours):
         return [{"closed": bool(closed), "points": points.tolist()} for closed, points in contours]
 
-    answer = sessions.matcher({"references": plain(references), "drawn": plain(drawn)})
+    answer = _asked({"references": plain(references), "drawn": plain(drawn)})
     return [(m["reference"], m["drawn"], np.asarray(m["points"], np.float64)) for m in answer["matches"]]
+
+
+_answers: list[tuple[object, dict, dict]] = []
+KEPT = 64
+"""Number of answers that are kept. A drawing is matched again whenever the contours are read, until its parts are written."""
+
+
+def _asked(request: dict) -> dict:
+    """The matcher's answer. The last answers are kept, so what a thread has asked costs the main thread nothing."""
+    matcher = sessions.matcher
+    for known, asked, answer in reversed(_answers):
+        if known is matcher and asked == request:
+            return answer
+    answer = matcher(request)
+    _answers.append((matcher, request, answer))
+    del _answers[:-KEPT]
+    return answer
 
 
 def candidate_closed(stroke: Stroke, shape: np.ndarray) -> bool:
@@ -159,7 +176,10 @@ def _check_names(found: Contours) -> None:
 
 
 def write(ob, found: Contours, decisions: Decisions) -> None:
-    """Writes decisions into strokes and the object's list of parts. Parts without a stroke are removed from the list."""
+    """Writes decisions into strokes and the object's list of parts. Parts without a stroke are removed from the list.
+
+    Locked layers are not written. The decisions on their strokes are made again at each reading.
+    """
     touched: dict[tuple[int, int], list[tuple[Stroke, Part, np.ndarray]]] = {}
     for entry in decisions.strokes:
         touched.setdefault((entry[0].layer, entry[0].frame), []).append(entry)
@@ -168,10 +188,13 @@ def write(ob, found: Contours, decisions: Decisions) -> None:
         for stroke in part.keys.values():
             if found.drawings[stroke.layer, stroke.frame].value(gp.MADE)[stroke.index]:
                 touched.setdefault((stroke.layer, stroke.frame), [])
+    touched = {place: entries for place, entries in touched.items() if place[0] not in found.closed}
     for place, entries in touched.items():
         _write_drawing(found, place, entries)
     for index, name in enumerate(found.layer_names):
         types = {frame: gp.KEYFRAME for (layer, frame) in touched if layer == index}
+        if not types:
+            continue
         layer = gp.find_layer(ob, name)
         kinds = {frame: kind for frame, (_, kind) in gp.drawings(layer).items()}
         gp.set_keyframe_type(layer, {f: k for f, k in types.items() if kinds.get(f) == gp.GENERATED})

@@ -29,7 +29,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..blender import grease_pencil as gp
-from ..blender import windows
+from ..blender import guard, windows
 from ..blender.errors import Problem
 from ..blender.preferences import EXTENSION
 from ..common import jobs
@@ -63,8 +63,8 @@ class _Due:
 
 _due: dict[int, _Due] = {}
 _run: tracking.Run | None = None
-_known: dict[int, tuple[dict, str]] = {}
-"""By object: document and method that were found when the file was opened, or that cannot be tracked."""
+_known: dict[int, tuple] = {}
+"""By object: the `_state` that was found when the file was opened, or that cannot be tracked."""
 _messages: dict[int, str] = {}
 _quiet = False
 """Whether the changes that Blender reports are the add-on's own."""
@@ -99,7 +99,7 @@ def _quietly() -> Iterator[None]:
 
 
 def _is_live(ob: bpy.types.Object) -> bool:
-    return gp.is_drawing(ob) and ob.rototoon.live and ob.library is None and ob.data.library is None
+    return gp.is_drawing(ob) and ob.rototoon.live and not guard.refusal(ob)
 
 
 @persistent
@@ -164,7 +164,7 @@ def step(now: float | None = None) -> float | None:
     if all is done."""
     if _run is None and not _due:
         return None
-    if _held_off():
+    if held_off():
         return BLOCKED
     now = time.monotonic() if now is None else now
     if _run is not None:
@@ -177,12 +177,13 @@ def step(now: float | None = None) -> float | None:
 
 def status(ob: bpy.types.Object) -> tuple[str, str]:
     """A line of text for the panel, and its icon."""
-    message = _messages.get(ob.session_uid)
+    message = guard.refusal(ob) or _messages.get(ob.session_uid)
     if message:
         return message, "ERROR"
     if _run is not None and _run.uid == ob.session_uid:
         return f"Tracking {_run.worker.fraction:.0%}", "TIME"
-    return "Follows your edits", "CHECKMARK"
+    left = guard.left_out(tracking.contour_layers(ob), hidden=True)
+    return "Follows your edits" + (left and f"; {left}"), "CHECKMARK"
 
 
 def give_way() -> None:
@@ -220,7 +221,7 @@ def _tick() -> float | None:
         return None
 
 
-def _held_off() -> bool:
+def held_off() -> bool:
     """Whether something runs that uses the strokes."""
     if bpy.app.is_job_running("RENDER"):
         return True
@@ -255,7 +256,7 @@ def _attend(now: float) -> None:
         run.worker.cancel()
     elif not run.worker.cancelled and _settled(run.uid, now):
         reading = _read(ob)
-        if reading is not None and reading.document == run.inputs and ob.rototoon.preset == run.preset:
+        if reading is not None and _state(ob, reading) == (run.inputs, run.preset, run.closed):
             # The edit was undone and redone. The run writes its result as planned.
             del _due[run.uid]
         else:
@@ -279,7 +280,7 @@ def _end(ob: bpy.types.Object, run: tracking.Run) -> None:
         if not _write(ob, run):
             note(ob)
     except (Problem, RototoonError) as problem:
-        _known[run.uid] = (run.inputs, run.preset)
+        _known[run.uid] = (run.inputs, run.preset, run.closed)
         _messages[run.uid] = _line(problem)
 
 
@@ -312,7 +313,7 @@ def _begin(ob: bpy.types.Object, why: Why) -> bool:
     reading = _read(ob)
     if reading is None:
         return False
-    uid, now = ob.session_uid, (reading.document, ob.rototoon.preset)
+    uid, now = ob.session_uid, _state(ob, reading)
     if why == Why.OPENED or not tracking.can_track(reading, ob.rototoon.preset):
         _known[uid] = now
         _messages.pop(uid, None)
@@ -324,7 +325,7 @@ def _begin(ob: bpy.types.Object, why: Why) -> bool:
         return False
     try:
         run = tracking.begin(ob, reading, ob.rototoon.preset)
-    except RototoonError as error:
+    except (Problem, RototoonError) as error:
         _known[uid] = now
         _messages[uid] = _line(error)
         return False
@@ -335,7 +336,12 @@ def _begin(ob: bpy.types.Object, why: Why) -> bool:
 
 def _tracked(ob: bpy.types.Object) -> tuple | None:
     entry = sessions.known(ob)
-    return None if entry is None else (entry.inputs, entry.preset)
+    return None if entry is None else (entry.inputs, entry.preset, entry.closed)
+
+
+def _state(ob: bpy.types.Object, reading: document.Reading) -> tuple:
+    """What a result depends on: document, method, and the layers that are locked."""
+    return reading.document, ob.rototoon.preset, reading.found.closed_names
 
 
 def _read(ob: bpy.types.Object) -> document.Reading | None:

@@ -7,10 +7,27 @@ import bpy
 from . import live
 
 PRESETS = (
-    ("rototoon", "Rototoon", "Follows each part as a textured lattice from both keys. The most exact method"),
-    ("zhou2011", "Zhou & Xiao 2011", "Space-time energy of contours, edges and regions, as published"),
-    ("agarwala2004", "Agarwala et al. 2004", "Keyframe-based rotoscoping: space-time energy of shape, image and edges"),
-    ("liang2012", "Liang et al. 2012", "As Agarwala et al. 2004, with a two-sided ribbon and a colour penalty"),
+    (
+        "rototoon",
+        "Cartoon",
+        "Follows each part as a textured lattice from both keys, and a part with one key as far as it can be trusted. "
+        "The most exact method",
+    ),
+    (
+        "zhou2011",
+        "Contours and Regions",
+        "Shapes, edges and colours of the regions over the whole time between two keys. As published by Zhou and Xiao, 2011",
+    ),
+    (
+        "agarwala2004",
+        "Rotoscope",
+        "Shape, picture and edges over the whole time between two keys. As published by Agarwala and others, 2004",
+    ),
+    (
+        "liang2012",
+        "Rotoscope with Colour",
+        "As Rotoscope, with a ribbon on both sides of the line and a penalty on colour. As published by Liang and others, 2012",
+    ),
 )
 PLANES = (
     ("CAMERA", "Camera", "The camera shows the footage in its background"),

@@ -22,6 +22,8 @@ class Entry:
     inputs: Mapping[str, Any] | None = None
     preset: str = ""
     """The method in the panel when `inputs` was tracked."""
+    closed: tuple[str, ...] = ()
+    """Names of the layers that were locked then, and got no result."""
 
 
 _entries: dict[int, Entry] = {}

@@ -69,7 +69,9 @@ def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, 
             for part in parts
             if curves.get((part.number, frame))
         ]
-        gp.replace_made(drawings[frame][0], _rows(strokes))
+        rows = _rows(strokes)
+        if not gp.has_made(drawings[frame][0], rows):
+            gp.replace_made(drawings[frame][0], rows)
         written += len(strokes)
     return written
 
@@ -119,12 +121,15 @@ def read(ob) -> dict[tuple[int, int], list[np.ndarray]]:
     layer = gp.find_layer(ob, ob.rototoon.snapped_layer)
     if layer is None or not gp.frame_numbers(layer):
         return {}
-    drawings = {f: read_drawing(handle, kind, 0, f) for f, (handle, kind) in gp.drawings(layer).items()}
+    with gp.copied(ob.data) as data:
+        handles = gp.drawings(data.layers[layer.name])
+        drawings = {f: read_drawing(handle, kind, 0, f) for f, (handle, kind) in handles.items()}
+        owners = {f: gp.get(handles[f][0], gp.SEGMENT, len(drawing.points)) for f, drawing in drawings.items()}
     closed = {part.number: part.closed for part in ob.rototoon.parts}
     mapper = Mapper(ob, drawings, {}, [layer.name])
     found = {}
     for frame, drawing in drawings.items():
-        owner = gp.get(drawing.handle, gp.SEGMENT, len(drawing.points))
+        owner = owners[frame]
         if owner is None:
             continue
         for stroke in drawing.strokes:

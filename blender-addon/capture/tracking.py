@@ -5,13 +5,14 @@ The button Track and live tracking both use it. Nothing in the file changes befo
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import preferences
+from ..blender import guard, preferences
 from ..blender.errors import Problem
 from ..common import jobs
 from . import document, ends, identity, sessions, writing
@@ -30,8 +31,15 @@ class Run:
     """The document that it tracks."""
     preset: str
     """The method in the panel at the beginning."""
+    closed: tuple[str, ...]
+    """Names of the locked layers at the beginning."""
     entry: sessions.Entry
     worker: jobs.Worker
+
+
+def contour_layers(ob) -> list:
+    """The layers that Track writes, if they are not locked. Hidden ones too: a hidden part is tracked with the others."""
+    return gp.layers(ob, ob.rototoon.contours_layer)
 
 
 def can_track(reading: document.Reading, preset: str) -> bool:
@@ -41,32 +49,42 @@ def can_track(reading: document.Reading, preset: str) -> bool:
 
 
 def begin(ob, reading: document.Reading, preset: str) -> Run:
-    """Makes a run. The caller starts its worker."""
+    """Makes a run. The caller starts its worker. Raises a `Problem` if no contour layer may be written."""
+    guard.need_some(contour_layers(ob), hidden=True)
     entry = sessions.get(ob, reading.document, reading.folder)
     entry.inputs = None
     threads = preferences.threads()
     worker = jobs.Worker(lambda progress: entry.session.track(preset, progress, threads=threads))
-    return Run(ob.session_uid, reading.document, ob.rototoon.preset, entry, worker)
+    return Run(ob.session_uid, reading.document, ob.rototoon.preset, reading.found.closed_names, entry, worker)
 
 
 def finish(ob, run: Run) -> int | None:
-    """Writes the result of a run. Returns the number of strokes.
+    """Writes the result of a run. Returns the number of strokes; `None` if the object no longer fits (`finishing`)."""
+    return jobs.drained(finishing(ob, run))
+
+
+def finishing(ob, run: Run) -> Iterator[float]:
+    """Writes the result of a run in steps, and yields the finished share. Returns the number of strokes.
 
     If the object's document has changed since the run began, it writes nothing and returns `None`.
     """
+    guard.need(ob)
     reading = document.read(ob)
+    yield 0.0
     if reading.document != run.inputs:
         return None
+    yield 0.0
     identity.write(ob, reading.found, reading.decisions)
-    strokes = write_tracks(ob, reading, run.entry.session)
+    strokes = yield from writing_tracks(ob, reading, run.entry.session)
     note_ends(ob, reading, run.worker.result.ends)
     run.entry.inputs, run.entry.preset = reading.document, run.preset
+    run.entry.closed = reading.found.closed_names
     ob.data.update_tag()
     return strokes
 
 
-def write_tracks(ob, reading: document.Reading, session) -> int:
-    """Writes a session's tracks into the object's contour layers. Returns the number of strokes."""
+def writing_tracks(ob, reading: document.Reading, session) -> Iterator[float]:
+    """Writes a session's tracks into the object's contour layers that are not locked, in steps. Returns the number of strokes."""
     offset = ob.rototoon.frame_offset
     tracks = {}
     for part in reading.found.parts:
@@ -77,14 +95,16 @@ def write_tracks(ob, reading: document.Reading, session) -> int:
         if len(frames):
             confidence = np.asarray(session.confidence(part.name))
             tracks[part.number] = writing.Track(frames + offset, np.asarray(track.points), confidence)
-    blocks = [
-        writing.lay_out(index, reading.found.parts, tracks, reading.found, reading.mapper, reading.corrections)
-        for index in range(len(reading.found.layer_names))
-    ]
+        yield 0.0
+    found, blocks = reading.found, {}
+    for index, name in enumerate(found.layer_names):
+        if index not in found.closed:
+            laid = writing.laying_out(index, found.parts, tracks, found, reading.mapper, reading.corrections)
+            blocks[name] = yield from laid
     written = 0
-    for name, block in zip(reading.found.layer_names, blocks, strict=True):
+    for name, block in blocks.items():
         layer = gp.find_layer(ob, name)
-        written += writing.write(layer, block, list(gp.drawings(layer)))
+        written += yield from writing.write_steps(layer, block, list(gp.drawings(layer)))
     return written
 
 
@@ -98,12 +118,55 @@ def note_ends(ob, reading: document.Reading, found) -> None:
         ends.put(item, by_number.get(item.number, []))
 
 
-def wanted_keys(summary) -> str:
-    """A message about parts that were lost; empty if there are none."""
-    lost = sorted({end.part for end in summary.ends if end.reason == ends.LOST})
-    if not lost:
-        return ""
-    return f"{len(lost)} parts need a key" if len(lost) > 1 else f'"{lost[0]}" needs a key'
+DOUBTFUL = 0.5
+"""Below this mean confidence a contour is more likely off than right: confidence is the probability of a good point."""
+NAMED = 3
+"""Largest number of parts that a message names."""
+
+
+def told(run: Run, strokes: int) -> str:
+    """What a run has done."""
+    frames: set[int] = set()
+    for part in run.inputs["parts"]:
+        drawn = np.asarray(run.entry.session.tracks(part["name"]).frames).astype(int)
+        frames.update(set(drawn.tolist()) - {int(frame) for frame in part["keys"]})
+    text = f"{counted(strokes, 'contour')} drawn on {counted(len(frames), 'frame')}"
+    return text if run.worker.result.solved or not strokes else "Nothing had changed: " + text
+
+
+def where_to_look(ob, run: Run) -> str:
+    """The parts that were lost or are most likely off, and where; empty if there are none."""
+    offset, session = ob.rototoon.frame_offset, run.entry.session
+    lost: dict[str, list[int]] = {}
+    for end in run.worker.result.ends:
+        if end.reason == ends.LOST:
+            lost.setdefault(end.part, []).append(end.frame + offset)
+    said = [f'"{name}" needs a key on {listed(frames)}' for name, frames in lost.items()]
+    for part in run.inputs["parts"]:
+        drawn = np.asarray(session.tracks(part["name"]).frames).astype(int)
+        if len(drawn) and part["name"] not in lost:
+            off = drawn[np.asarray(session.confidence(part["name"])).mean(1) < DOUBTFUL] + offset
+            said += [f'"{part["name"]}" is most likely off on {listed(off.tolist())}'] if len(off) else []
+    if len(said) > NAMED:
+        said[NAMED:] = [f"{counted(len(said) - NAMED, 'more part')} to look at"]
+    return "; ".join(said)
+
+
+def counted(number: int, noun: str) -> str:
+    """A number with its noun: 1 frame, 2 frames."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def listed(frames: list[int]) -> str:
+    """Frame numbers as a text; neighbours become spans: 3 to 5, 9 and 12."""
+    spans: list[list[int]] = []
+    for frame in sorted(frames):
+        if spans and frame == spans[-1][1] + 1:
+            spans[-1][1] = frame
+        else:
+            spans.append([frame, frame])
+    texts = [str(a) if a == b else f"{a} {'and' if b == a + 1 else 'to'} {b}" for a, b in spans]
+    return texts[0] if len(texts) == 1 else ", ".join(texts[:-1]) + f" and {texts[-1]}"
 
 
 def nothing_to_track() -> Problem:

@@ -6,19 +6,18 @@ with one more. Radius, opacity, colours, material and fill come from the key str
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..blender import grease_pencil as gp
 from ..blender.placement import Mapper
+from ..common import jobs
 from . import correspondence
-from .contours import Contours, Drawing, Part, Stroke
+from .contours import CURVE_STYLE, POINT_STYLE, Contours, Drawing, Part, Stroke
 from .corrections import Corrections
 
-POINT_STYLE = ("radius", "opacity", "rotation", "vertex_color")
-CURVE_STYLE = ("cyclic", "material_index", "fill_color", "softness", "fill_id")
 FILL_BASE = 1_000_000
 """Added to a part's number for its `fill_id`, so that it differs from those of strokes that the artist filled."""
 
@@ -61,10 +60,10 @@ def styles(part: Part, found: Contours) -> tuple[dict[str, np.ndarray], dict[str
     point, curve = {}, {}
     drawings = [found.drawings[part.keys[f].layer, f] for f in frames]
     for name in POINT_STYLE:
-        if any(gp.has(d.handle, name) for d in drawings) or name in gp.DEFAULTS:
+        if any(d.has(name) for d in drawings) or name in gp.DEFAULTS:
             point[name] = np.stack([_point_style(part, part.keys[f], d, name) for f, d in zip(frames, drawings)])
     for name in CURVE_STYLE:
-        if any(gp.has(d.handle, name) for d in drawings) or name == "cyclic":
+        if any(d.has(name) for d in drawings) or name == "cyclic":
             curve[name] = np.stack([d.value(name)[part.keys[f].index] for f, d in zip(frames, drawings)])
     if "fill_id" in curve:
         curve["fill_id"] = np.where(curve["fill_id"] != 0, FILL_BASE + part.number, 0)
@@ -98,6 +97,13 @@ def lay_out(
     layer: int, parts: list[Part], tracks: dict[int, Track], found: Contours, mapper: Mapper, fixed: dict
 ) -> Block:
     """The block of a layer. `fixed` are `Corrections` by part number."""
+    return jobs.drained(laying_out(layer, parts, tracks, found, mapper, fixed))
+
+
+def laying_out(
+    layer: int, parts: list[Part], tracks: dict[int, Track], found: Contours, mapper: Mapper, fixed: dict
+) -> Iterator[float]:
+    """As `lay_out`, with a step for each part."""
     parts = sorted((p for p in parts if p.number in tracks and p.layer == layer), key=lambda p: p.depth)
     frames = np.unique(np.concatenate([tracks[p.number].frames for p in parts] or [np.zeros(0, int)]))
     sizes = np.array([p.count for p in parts], np.int32)
@@ -105,15 +111,26 @@ def lay_out(
     columns = [slice(ends[i], ends[i + 1]) for i in range(len(parts))]
     block = Block(frames, sizes, np.zeros((len(frames), len(parts)), bool), columns)
     count, total = len(frames), int(ends[-1])
-    for name in (gp.TRACKED, gp.PIN, gp.CONFIDENCE, gp.CONTROL):
-        block.point[name] = np.repeat(gp.blank(name, total)[None], count, 0)
-    block.point["position"] = np.zeros((count, total, 3), np.float32)
+    for name in (gp.PIN, gp.CONFIDENCE, gp.CONTROL):
+        block.point[name] = _blanks(name, count, total)
+    # What tracking wrote is where the points are.
+    block.point["position"] = block.point[gp.TRACKED] = np.zeros((count, total, 3), np.float32)
     for name in (gp.PART, gp.MADE, gp.CENTER):
-        block.curve[name] = np.repeat(gp.blank(name, len(parts))[None], count, 0)
+        block.curve[name] = _blanks(name, count, len(parts))
     for index, part in enumerate(parts):
         _fill_part(block, index, part, tracks[part.number], mapper, fixed.get(part.number, Corrections()))
         _fill_style(block, index, part, found)
+        yield 0.0
     return block
+
+
+def _blanks(name: str, frames: int, count: int) -> np.ndarray:
+    """(frames, count[, k]): an attribute's default values."""
+    like = gp.blank(name, count)
+    if not like.any():
+        # The system gives zeros for nothing.
+        return np.zeros((frames, *like.shape), like.dtype)
+    return np.repeat(like[None], frames, 0)
 
 
 def _fill_part(block: Block, index: int, part: Part, track: Track, mapper: Mapper, fixed: Corrections) -> None:
@@ -138,7 +155,6 @@ def _fill_part(block: Block, index: int, part: Part, track: Track, mapper: Mappe
             continue
         block.curve[gp.CENTER][rows[row_of[frame]], index] = (center[0], center[1], 1.0)
     block.point["position"][rows, columns] = points
-    block.point[gp.TRACKED][rows, columns] = points
     block.point[gp.CONFIDENCE][rows, columns] = track.confidence
     block.point[gp.CONTROL][:, columns] = correspondence.identity(part.count)
     block.curve[gp.PART][:, index] = part.number
@@ -150,27 +166,45 @@ def _fill_style(block: Block, index: int, part: Part, found: Contours) -> None:
     point, curve, frames = styles(part, found)
     for name, values in point.items():
         if name not in block.point:
-            shape = (len(block.frames), int(block.sizes.sum()))
-            block.point[name] = np.repeat(gp.blank(name, shape[1])[None], shape[0], 0)
+            block.point[name] = _blanks(name, len(block.frames), int(block.sizes.sum()))
         block.point[name][:, block.columns[index]] = blend(values, frames, block.frames)
     for name, values in curve.items():
         if name not in block.curve:
-            block.curve[name] = np.repeat(gp.blank(name, len(block.sizes))[None], len(block.frames), 0)
+            block.curve[name] = _blanks(name, len(block.frames), len(block.sizes))
         block.curve[name][:, index] = held(values, frames, block.frames)
 
 
 def write(layer, block: Block, before: Iterable[int]) -> int:
     """Writes a block into a layer, and removes generated strokes from the other frames of `before`.
 
-    Returns the number of strokes written.
+    Drawings that hold their strokes already are not touched. Returns the number of strokes of the block.
     """
+    return jobs.drained(write_steps(layer, block, before))
+
+
+def write_steps(layer, block: Block, before: Iterable[int]) -> Iterator[float]:
+    """As `write`, with a step for each frame; yields the finished share."""
     wanted = {int(frame): row for row, frame in enumerate(block.frames) if block.present[row].any()}
+    old = wanted.keys() & set(gp.frame_numbers(layer))
     gp.make_frames(layer, wanted, gp.GENERATED)
+    kept = _kept(layer, block, {frame: wanted[frame] for frame in old})
+    yield 0.0
     drawings = gp.drawings(layer)
-    for frame, row in wanted.items():
-        gp.replace_made(drawings[frame][0], rows_of(block, row))
+    for done, (frame, row) in enumerate(wanted.items()):
+        if frame not in kept:
+            gp.replace_made(drawings[frame][0], rows_of(block, row))
+        yield (done + 1) / len(wanted)
     clear(layer, [frame for frame in before if frame not in wanted])
     return int(block.present.sum())
+
+
+def _kept(layer, block: Block, wanted: dict[int, int]) -> set[int]:
+    """The frames whose generated strokes are those of the block."""
+    if not wanted:
+        return set()
+    with gp.copied(layer.id_data) as data:
+        drawings = gp.drawings(data.layers[layer.name])
+        return {frame for frame, row in wanted.items() if gp.has_made(drawings[frame][0], rows_of(block, row))}
 
 
 def rows_of(block: Block, row: int) -> gp.Rows:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Generator
+from types import GeneratorType
 
 import bpy
 
 from ..blender import grease_pencil as gp
+from ..blender import guard
 from ..blender.errors import Problem
 from ..rototoon import Cancelled, RototoonError
-from . import jobs
+from . import jobs, reports
 
 NAVIGATION = {
     "MIDDLEMOUSE",
@@ -26,43 +29,56 @@ NAVIGATION = {
     "WINDOW_DEACTIVATE",
 }
 """Events that the window still gets while work runs: navigation changes nothing."""
+WAITING = "editing and playback wait"
+ESC = f"Esc: stop, {WAITING}"
+SLICE = 0.05
+"""Seconds of writing between two redraws of the window."""
 
 
 class OnDrawing:
-    """An operator that needs an active Grease Pencil object of this file."""
+    """An operator that needs an active Grease Pencil object that it may change."""
+
+    changes = guard.DRAWINGS
+    """What it changes: see `guard`."""
 
     @classmethod
     def poll(cls, context) -> bool:
         """Called by Blender."""
-        if not gp.is_drawing(context.object):
-            cls.poll_message_set("Make a Grease Pencil object active first, or use Set Up")
-            return False
-        if context.object.library is not None or context.object.data.library is not None:
-            cls.poll_message_set("The Grease Pencil object is linked from another file and cannot be changed")
-            return False
-        return True
+        why = cls.lacking(context.object, cls.changes)
+        if why:
+            cls.poll_message_set(why)
+        return not why
+
+    @classmethod
+    def lacking(cls, ob, changes: str) -> str:
+        """What is missing for work on an object that `changes` something of it; empty if nothing is."""
+        if not gp.is_drawing(ob):
+            return "Make a Grease Pencil object active first, or use Set Up Footage"
+        return guard.refusal(ob, changes)
 
 
 class OnContours(OnDrawing):
     """An operator that needs an active Grease Pencil object with footage and contours."""
 
     @classmethod
-    def poll(cls, context) -> bool:
-        """Called by Blender."""
-        if not super().poll(context):
-            return False
-        settings = context.object.rototoon
+    def lacking(cls, ob, changes: str) -> str:
+        """As `OnDrawing.lacking`."""
+        why = super().lacking(ob, changes)
+        if why:
+            return why
+        settings = ob.rototoon
         if not settings.pattern:
-            cls.poll_message_set("Choose the footage first, in the panel Footage")
-            return False
-        if not any(gp.frame_numbers(layer) for layer in gp.layers(context.object, settings.contours_layer)):
-            cls.poll_message_set(f'Draw contours on the layer "{settings.contours_layer}" first')
-            return False
-        return True
+            return "Choose the footage first, in the panel Footage"
+        if not any(gp.has_strokes(layer) for layer in gp.layers(ob, settings.contours_layer)):
+            return f'Draw contours on the layer "{settings.contours_layer}" first'
+        return ""
 
 
 class OnArmature:
-    """An operator that needs an active armature of this file."""
+    """An operator that needs an active armature that it may change."""
+
+    changes = guard.ANIMATION
+    """What it changes: see `guard`."""
 
     @classmethod
     def poll(cls, context) -> bool:
@@ -71,8 +87,11 @@ class OnArmature:
         if ob is None or ob.type != "ARMATURE":
             cls.poll_message_set("Make an armature active first")
             return False
-        if ob.library is not None or context.mode == "EDIT_ARMATURE":
-            cls.poll_message_set("The armature is linked from another file, or in Edit Mode")
+        why = guard.refusal(ob, cls.changes)
+        if context.mode == "EDIT_ARMATURE":
+            why = "The armature is in Edit Mode: leave it first"
+        if why:
+            cls.poll_message_set(why)
             return False
         return True
 
@@ -89,22 +108,43 @@ class InObjectMode:
         return True
 
 
+class Stopped(Exception):
+    """The artist has stopped the work."""
+
+
 class Reporting:
     """An operator that reports what it did, or why it could not."""
+
+    _warnings: tuple[str, ...] = ()
+
+    def warn(self, text: str) -> None:
+        """Adds a text that needs attention to the report at the end, which becomes a warning. An empty text adds nothing."""
+        if text:
+            self._warnings += (text,)
 
     def attempt(self, do: Callable[[], set[str]]) -> set[str]:
         """Calls `do` and returns its result. A `Problem` or `RototoonError` becomes an error report."""
         try:
             return do()
+        except Stopped as stopped:
+            self._say("WARNING", str(stopped))
+            return {"CANCELLED"}
         except (Problem, RototoonError) as problem:
-            self.report({"ERROR"}, str(problem))
+            self._say("ERROR", str(problem))
             return {"CANCELLED"}
 
     def done(self, message: str | None) -> set[str]:
-        """Reports the message, if there is one."""
-        if message:
-            self.report({"INFO"}, message)
+        """Reports the message and the warnings, if there are any."""
+        text = "; ".join(filter(None, (message, *self._warnings)))
+        if text:
+            self._say("WARNING" if self._warnings else "INFO", text)
         return {"FINISHED"}
+
+    def _say(self, kind: str, text: str) -> None:
+        # Blender writes ROTOTOON_OT_track where the class says rototoon.track.
+        name = self.bl_idname.rpartition("_OT_")[2].rpartition(".")[2]
+        reports.note(reports.Report(name, kind, text, self._warnings))
+        self.report({kind}, text)
 
 
 class Guarded(Reporting):
@@ -118,11 +158,14 @@ class Guarded(Reporting):
 class Long(Reporting):
     """An operator with long work: `begin(context)` makes a `Worker` or `Stepper`, `finish(context, work)` writes.
 
-    Nothing changes before `finish`, so Esc leaves everything as it was.
+    Nothing changes before `finish`, so Esc leaves everything as it was. `finish` returns a message, or is a generator of finished shares
+    that returns the message. In a window a generator writes in slices, between which the window is redrawn. Writing is not
+    interrupted: it is short, and half a result is worth nothing.
     """
 
     _work = None
     _timer = None
+    _writing: Generator[float, None, str | None] | None = None
     _picked = False
     """Whether a file browser was opened. Its end calls `execute`, and there is a window in which to follow the work."""
 
@@ -160,21 +203,45 @@ class Long(Reporting):
 
     def modal(self, context, event):
         """Called by Blender."""
-        if event.type == "ESC" and event.value == "PRESS":
+        if self._writing is None and event.type == "ESC" and event.value == "PRESS":
             self._work.cancel()
         if event.type != "TIMER":
             return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
-        if not self._work.advance():
-            share = f"{self._work.fraction:4.0%}"
-            context.workspace.status_text_set(f"{self.bl_label}: {self._work.step}  {share}   (Esc: stop)")
+        if self._writing is None and not self._work.advance():
+            self._show(context, self._work.step, self._work.fraction, ESC)
             return {"RUNNING_MODAL"}
-        self._close(context)
-        return self.attempt(lambda: self._end(context))
+        done = self.attempt(lambda: self._go_on(context))
+        if done != {"RUNNING_MODAL"}:
+            self._close(context)
+        return done
+
+    def _show(self, context, step: str, share: float, hint: str) -> None:
+        text = ": ".join(filter(None, (self.bl_label, step)))
+        context.workspace.status_text_set(f"{text}  {share:.0%}     {hint}")
+
+    def _go_on(self, context) -> set[str]:
+        """Begins to write, or writes for a slice of time."""
+        if self._writing is None:
+            self._refuse_unfinished()
+            found = self.finish(context, self._work)
+            if not isinstance(found, GeneratorType):
+                return self.done(found)
+            self._writing = found
+        until, share = time.perf_counter() + SLICE, 0.0
+        while time.perf_counter() < until:
+            try:
+                share = next(self._writing)
+            except StopIteration as end:
+                return self.done(end.value)
+        self._show(context, "writing the strokes", share, WAITING)
+        return {"RUNNING_MODAL"}
 
     def cancel(self, context):
         """Called by Blender when it loads a file or quits during the work."""
         self._work.cancel()
         self._work.join()
+        if self._writing is not None:
+            self._writing.close()
         self._close(context)
 
     def _wait(self, context) -> None:
@@ -198,10 +265,14 @@ class Long(Reporting):
             context.workspace.status_text_set(None)
 
     def _end(self, context):
+        self._refuse_unfinished()
+        found = self.finish(context, self._work)
+        return self.done(jobs.drained(found) if isinstance(found, GeneratorType) else found)
+
+    def _refuse_unfinished(self) -> None:
+        """Raises what ended the work early."""
         error = self._work.error
         if self._work.cancelled or isinstance(error, Cancelled):
-            self.report({"WARNING"}, f"{self.bl_label}: stopped, nothing was changed")
-            return {"CANCELLED"}
+            raise Stopped(f"{self.bl_label}: stopped, nothing was changed")
         if error is not None:
             raise error
-        return self.done(self.finish(context, self._work))

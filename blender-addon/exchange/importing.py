@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import placement
+from ..blender import guard, placement
 from ..capture import contours, corrections, correspondence, document, ends, snapping, writing
 from ..rototoon.documents import by_frame
 from . import files
@@ -37,6 +37,13 @@ def apply(ob, project: dict[str, Any], material: int = 0) -> None:
     curves = _curves(project, settings.frame_offset)
     if curves:
         snapping.write(ob, curves, found, mapper)
+
+
+def need_open(ob) -> None:
+    """Raises a `Problem` if the contours of an object cannot be replaced: the object or one of the layers is closed."""
+    guard.need(ob)
+    settings = ob.rototoon
+    guard.need_open(gp.layers(ob, settings.contours_layer) + gp.layers(ob, settings.snapped_layer), hidden=True)
 
 
 def _empty(ob) -> None:

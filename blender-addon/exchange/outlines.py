@@ -18,7 +18,7 @@ def outlines(document: dict, offset: int, snapped: bool) -> list[Outline]:
     found = []
     for part in sorted(document["parts"], key=lambda part: -part["depth"]):
         points = by_frame(part["keys"]) | by_frame(part.get("tracks"))
-        curves = by_frame(part.get("curves")) if snapped else {}
+        curves = _whole(by_frame(part.get("curves")), points, part["closed"]) if snapped else {}
         counts = _counts(curves)
         frames = {
             frame + offset: _line(np.asarray(points[frame], np.float64), curves.get(frame), counts, part["closed"])
@@ -28,6 +28,13 @@ def outlines(document: dict, offset: int, snapped: bool) -> list[Outline]:
         if frames:
             found.append(Outline(part["name"], part["closed"], frames))
     return found
+
+
+def _whole(curves: dict[int, list], points: dict[int, list], closed: bool) -> dict[int, list]:
+    """The snapped lines that have a path for each segment. Lines that were fitted or cut since have other numbers of them."""
+    return {
+        frame: paths for frame, paths in curves.items() if len(paths) == len(points.get(frame, ())) - (0 if closed else 1)
+    }
 
 
 def _counts(curves: dict[int, list]) -> np.ndarray:

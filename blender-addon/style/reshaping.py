@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import placement
+from ..blender import guard, placement
 from ..blender.errors import Problem
 from ..capture import document, identity, writing
 from ..rototoon import documents
@@ -55,7 +55,8 @@ def begin(ob, frame: int) -> Drawing:
 
 
 def finish(ob, drawing: Drawing, made) -> int:
-    """Writes the result. Returns the number of frames."""
+    """Writes the result, on hidden layers too, not on locked ones. Returns the number of frames."""
+    guard.need(ob)
     reading = document.read(ob)
     if reading.document != drawing.inputs:
         raise Problem("The drawing changed while it was reshaped, so the result was dropped: do it again")
@@ -73,6 +74,8 @@ def finish(ob, drawing: Drawing, made) -> int:
         part.layer = part.keys[drawing.frame].layer if part.keys else part.layer
     parts = [part for part in by_number.values() if part.keys]
     for index, name in enumerate(names):
+        if index in reading.found.closed:
+            continue
         block = writing.lay_out(index, parts, tracks, reading.found, reading.mapper, {})
         block.order = _order(block, index, parts, tracks, made.document)
         layer = gp.find_layer(ob, name)

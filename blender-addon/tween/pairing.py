@@ -11,7 +11,7 @@ import numpy as np
 
 from ..blender import camera as cameras
 from ..blender import grease_pencil as gp
-from ..blender import stroke_lines
+from ..blender import guard, stroke_lines
 from ..blender import strokes as st
 from ..rototoon import tween
 from . import keys as ks
@@ -144,6 +144,7 @@ class Pairing:
 
     def store(self) -> None:
         """Stores the numbers of the strokes of all keys."""
+        guard.need_open(gp.find_layer(self._ob, layer.name) for layer in self._layers)
         plan = tweening.Plan(records=records.read(self._ob.data))
         for layer in self._layers:
             record = plan.records.setdefault(layer.name, records.Layer())

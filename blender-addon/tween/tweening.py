@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import hierarchy
+from ..blender import guard, hierarchy
 from ..blender.errors import Problem
 from ..rototoon import tween
 from . import between, captured, layer_pegs, records, sheets, surroundings
@@ -172,7 +172,9 @@ class Done:
 
 
 def finish(ob, plan: Plan) -> Done:
-    """Writes a drawn plan."""
+    """Writes a drawn plan. Raises a `Problem` if one of its layers is closed by now."""
+    guard.need(ob)
+    guard.need_open(gp.find_layer(ob, name) for name in plan.frames)
     done = Done()
     for name, found in plan.frames.items():
         done.keys += len(found.edited)

@@ -5,17 +5,16 @@ import bpy
 from ..style import clip_browser
 from ..style.limbs import POINTS
 from .clips import draw_browser
+from .panel import Panel
 
 NAMES = {name: label for name, label, _ in POINTS}
 """Labels of the key points."""
 
 
-class ROTOTOON_PT_bones(bpy.types.Panel):
+class ROTOTOON_PT_bones(Panel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_bones"
     bl_label = "Bones"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Rototoon"
+    page = "artist/bones.html"
 
     @classmethod
     def poll(cls, context):

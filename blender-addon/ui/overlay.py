@@ -12,7 +12,6 @@ import numpy as np
 
 from ..blender import camera
 from ..blender import grease_pencil as gp
-from ..capture import contours
 
 SURE = np.array([0.15, 0.85, 0.35, 1.0], np.float32)
 UNSURE = np.array([0.95, 0.75, 0.1, 1.0], np.float32)
@@ -46,31 +45,33 @@ def gather(ob, frame: int) -> list[Marks]:
         found = gp.drawings(layer).get(frame)
         if layer.hide or found is None:
             continue
-        drawing = contours.read_drawing(*found, 0, frame)
-        made = [stroke for stroke in drawing.strokes if stroke.made and len(stroke.points)]
-        if not made:
+        handle, kind = found
+        starts = gp.offsets(handle)
+        made = gp.value(handle, gp.MADE, len(starts) - 1)
+        if not made.any() or (kind != gp.GENERATED and made.all()):
             continue
-        matrix = camera.layer_to_world(ob, layer)
-        every = np.concatenate([np.arange(s.span.start, s.span.stop) for s in made])
-        world = drawing.points @ matrix[:3, :3].T + matrix[:3, 3]
+        total, matrix = int(starts[-1]), camera.layer_to_world(ob, layer)
+        points, every = gp.positions(handle, total), np.repeat(made, np.diff(starts))
         if settings.show_confidence:
-            marks.append(Marks(world[every], colours(drawing.value(gp.CONFIDENCE)[every]), 6.0))
+            sure = gp.value(handle, gp.CONFIDENCE, total)[every]
+            marks.append(Marks(_world(points[every], matrix), colours(sure), 6.0))
         if settings.show_pins:
-            pinned = drawing.value(gp.PIN) | _moved(drawing)
-            chosen = every[pinned[every]]
-            marks.append(Marks(world[chosen], np.tile(PIN_COLOUR, (len(chosen), 1)), 9.0))
-            fixed = [s for s in made if drawing.value(gp.CENTER)[s.index, 2] != 0]
-            middle = np.array([world[s.span].mean(0) for s in fixed]).reshape(-1, 3)
-            marks.append(Marks(middle, np.tile(CENTER_COLOUR, (len(fixed), 1)), 12.0))
+            chosen = points[every & (gp.value(handle, gp.PIN, total) | _moved(handle, points))]
+            marks.append(Marks(_world(chosen, matrix), np.tile(PIN_COLOUR, (len(chosen), 1)), 9.0))
+            fixed = np.flatnonzero(made & (gp.value(handle, gp.CENTER, len(made))[:, 2] != 0) & (np.diff(starts) > 0))
+            middle = np.array([points[starts[i] : starts[i + 1]].mean(0) for i in fixed]).reshape(-1, 3)
+            marks.append(Marks(_world(middle, matrix), np.tile(CENTER_COLOUR, (len(fixed), 1)), 12.0))
     return [mark for mark in marks if len(mark.points)]
 
 
-def _moved(drawing: contours.Drawing) -> np.ndarray:
+def _world(points: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    return points @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def _moved(handle, points: np.ndarray) -> np.ndarray:
     """Points that the artist moved since the last Track."""
-    tracked = gp.get(drawing.handle, gp.TRACKED, len(drawing.points))
-    if tracked is None:
-        return np.zeros(len(drawing.points), bool)
-    return (tracked != drawing.points).any(1)
+    tracked = gp.get(handle, gp.TRACKED, len(points))
+    return np.zeros(len(points), bool) if tracked is None else (tracked != points).any(1)
 
 
 def _draw() -> None:

@@ -1,47 +1,35 @@
-"""The panels in the order of the work: footage, parts, track, snap, strokes, tween, style, document."""
+"""The panels below the steps, in the order of the work: footage, parts, track, snap, strokes, tween, style, document.
+
+Only what an artist needs all the time is open at first.
+"""
 
 import bpy
 
-from ..blender import grease_pencil as gp
-from ..capture import ends, live
+from ..capture import ends, live, stand
 from ..style import clip_browser, limbs
 from ..tween import spacing_curve
 from .clips import draw_browser
+from .lists import headings
+from .panel import DrawingPanel, Panel, settings_of
+from .start import wrapped
+
+CLOSED = {"DEFAULT_CLOSED"}
 
 
-class _Panel:
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Rototoon"
-
-
-class _DrawingPanel(_Panel):
-    """A panel of Grease Pencil objects."""
-
-    @classmethod
-    def poll(cls, context):
-        return _settings(context) is not None
-
-
-def _settings(context):
-    return context.object.rototoon if gp.is_drawing(context.object) else None
-
-
-class ROTOTOON_PT_footage(_Panel, bpy.types.Panel):
+class ROTOTOON_PT_footage(Panel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_footage"
     bl_label = "Footage"
+    bl_options = CLOSED
+    page = "artist/panels.html#footage"
 
     def draw(self, context):
-        layout, settings = self.layout, _settings(context)
+        layout, settings = self.layout, settings_of(context)
         layout.operator("rototoon.setup", icon="ADD")
-        if settings is None:
-            layout.label(text="No Grease Pencil object active", icon="INFO")
-            return
         column = layout.column(align=True)
         column.operator("rototoon.footage_from_file", text="From File", icon="FILE_FOLDER")
         column.operator("rototoon.footage_from_camera", text="From Camera", icon="CAMERA_DATA")
         column.operator("rototoon.footage_from_reference", text="From Reference Image", icon="IMAGE_REFERENCE")
-        if not settings.pattern:
+        if settings is None or not settings.pattern:
             return
         column = layout.column()
         column.use_property_split = True
@@ -56,20 +44,38 @@ class ROTOTOON_PT_footage(_Panel, bpy.types.Panel):
         layout.label(text=f"{settings.width} x {settings.height} pixels")
 
 
-class ROTOTOON_PT_parts(_DrawingPanel, bpy.types.Panel):
+class ROTOTOON_PT_parts(DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_parts"
     bl_label = "Parts"
+    page = "artist/panels.html#parts"
 
     def draw(self, context):
-        layout, settings = self.layout, _settings(context)
+        layout, settings = self.layout, settings_of(context)
         layout.use_property_decorate = False
+        headings(layout)
         layout.template_list("ROTOTOON_UL_parts", "", settings, "parts", settings, "active_part", rows=4)
-        if not settings.parts:
-            layout.label(text=f'Draw contours on the layer "{settings.contours_layer}"', icon="INFO")
-        layout.prop(settings, "contours_layer", text="Layer")
+        now = stand.of(context.object)
+        text = said_of_contours(settings, now)
+        if text:
+            wrapped(layout, text)
         column = layout.column(align=True)
+        column.operator("rototoon.draw_contours", icon="GREASEPENCIL")
         column.operator("rototoon.new_key", icon="KEY_HLT")
-        column.operator("rototoon.match_contours", icon="UV_SYNC_SELECT")
+        if now.loose:
+            column.operator("rototoon.match_contours", icon="UV_SYNC_SELECT")
+        layout.prop(settings, "contours_layer", text="Layer")
+
+
+def said_of_contours(settings, now: stand.Stand) -> str:
+    """What the list of parts does not show: that nothing is drawn, or which strokes wait for their part."""
+    if not now.keys:
+        return f'Nothing is drawn on the layer "{settings.contours_layer}" yet'
+    if not now.loose:
+        return ""
+    count, frames = sum(now.loose.values()), sorted(now.loose)
+    new = "1 new contour" if count == 1 else f"{count} new contours"
+    where = f"frame {frames[0]}" if len(frames) == 1 else f"{len(frames)} frames"
+    return f"{new} on {where}: Track finds the part of each"
 
 
 ENDS = {
@@ -98,12 +104,13 @@ def _draw_ends(layout, settings) -> None:
             column.label(text=text, icon=icon)
 
 
-class ROTOTOON_PT_track(_DrawingPanel, bpy.types.Panel):
+class ROTOTOON_PT_track(DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_track"
     bl_label = "Track"
+    page = "artist/panels.html#track"
 
     def draw(self, context):
-        layout, settings = self.layout, _settings(context)
+        layout, settings = self.layout, settings_of(context)
         layout.prop(settings, "preset", text="")
         row = layout.row()
         row.scale_y = 1.5
@@ -121,23 +128,29 @@ class ROTOTOON_PT_track(_DrawingPanel, bpy.types.Panel):
         column.operator("rototoon.show_confidence", icon=icon, depress=settings.show_confidence)
         layout.prop(settings, "show_pins")
         row = layout.row(align=True)
+        # Blender draws a menu of an operator as if it could always be chosen.
+        row.enabled = bpy.ops.rototoon.release_pins.poll()
         row.operator_menu_enum("rototoon.release_pins", "which", text="Release Pins", icon="UNPINNED")
         layout.operator("rototoon.clear_generated", icon="TRASH")
 
 
-class ROTOTOON_PT_snap(_DrawingPanel, bpy.types.Panel):
+class ROTOTOON_PT_snap(DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_snap"
     bl_label = "Snap"
+    bl_options = CLOSED
+    page = "artist/panels.html#snap"
 
     def draw(self, context):
-        settings = _settings(context)
+        settings = settings_of(context)
         self.layout.operator("rototoon.snap", icon="SNAP_ON")
         self.layout.prop(settings, "snapped_layer", text="Layer")
 
 
-class ROTOTOON_PT_strokes(_DrawingPanel, bpy.types.Panel):
+class ROTOTOON_PT_strokes(DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_strokes"
     bl_label = "Strokes"
+    bl_options = CLOSED
+    page = "artist/strokes.html"
 
     def draw(self, _context):
         column = self.layout.column(align=True)
@@ -153,9 +166,11 @@ SPACINGS = (
 """Rows of buttons that draw in-betweens with a certain spacing."""
 
 
-class ROTOTOON_PT_tween(_DrawingPanel, bpy.types.Panel):
+class ROTOTOON_PT_tween(DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_tween"
     bl_label = "Tween"
+    bl_options = CLOSED
+    page = "artist/tween.html"
 
     def draw(self, context):
         layout = self.layout
@@ -183,12 +198,14 @@ class ROTOTOON_PT_tween(_DrawingPanel, bpy.types.Panel):
         layout.operator("rototoon.clear_in_betweens", icon="TRASH")
 
 
-class ROTOTOON_PT_style(_DrawingPanel, bpy.types.Panel):
+class ROTOTOON_PT_style(DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_style"
     bl_label = "Style"
+    bl_options = CLOSED
+    page = "artist/style.html"
 
     def draw(self, context):
-        layout, settings = self.layout, _settings(context)
+        layout, settings = self.layout, settings_of(context)
         layout.use_property_decorate = False
         layout.operator_menu_enum("rototoon.define_limbs", "point", text="Define Limbs", icon="BONE_DATA")
         count = len(limbs.defined(context.object))
@@ -211,9 +228,11 @@ class ROTOTOON_PT_style(_DrawingPanel, bpy.types.Panel):
             apply.content, apply.motion = chosen.character, chosen.motion
 
 
-class ROTOTOON_PT_document(_Panel, bpy.types.Panel):
+class ROTOTOON_PT_document(Panel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_document"
     bl_label = "Document"
+    bl_options = CLOSED
+    page = "artist/panels.html#document"
 
     def draw(self, _context):
         row = self.layout.row(align=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ..blender.preferences import EXTENSION
+from . import keymap
 
 
 class RototoonPreferences(bpy.types.AddonPreferences):
@@ -35,7 +36,13 @@ class RototoonPreferences(bpy.types.AddonPreferences):
         default="",
     )
 
-    def draw(self, _context) -> None:
+    help_address: bpy.props.StringProperty(
+        name="Help Address",
+        description="Web address of the documentation for the help buttons. If empty, the pages that come with the extension",
+        default="",
+    )
+
+    def draw(self, context) -> None:
         """Called by Blender."""
         column = self.layout.column()
         column.use_property_split = True
@@ -43,6 +50,9 @@ class RototoonPreferences(bpy.types.AddonPreferences):
         column.prop(self, "cache_folder")
         column.prop(self, "cache_limit")
         column.prop(self, "clips_folder")
+        column.prop(self, "help_address")
+        self.layout.label(text="Keys in the 3D View")
+        keymap.draw(self.layout.column(), context)
 
 
 CLASSES = (RototoonPreferences,)

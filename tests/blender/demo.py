@@ -1,8 +1,8 @@
 """The main job in one Blender: install the zip, import a project, track, snap, save, render.
 
 Started by `cargo xtask demo`, either by the Python of a `bpy` wheel or by Blender itself with `--background --python`.
-Writes into --out: demo.blend, tracked.json, renders/*.png (strokes on nothing), report.json, and blender.log with what
-Blender says meanwhile.
+Writes into --out: demo.blend (first as soon as contours are tracked), tracked.json, renders/*.png (strokes on nothing), report.json,
+and blender.log with what Blender says meanwhile.
 """
 
 import argparse
@@ -71,6 +71,14 @@ def prepare_rendering(scene: bpy.types.Scene) -> None:
     scene.display.render_aa = "8"
 
 
+def first_result(own, out: Path) -> None:
+    """Saves the tracked file as soon as there is something to see."""
+    path = out / "demo.blend"
+    bpy.context.preferences.filepaths.save_version = 0
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=True)
+    print(f"first result: the tracked contours are in {path}; snapped lines and pictures follow", file=own)
+
+
 def render(scene: bpy.types.Scene, out: Path, count: int, seconds: dict[str, float]) -> dict[str, str]:
     """Renders `count` frames spread over the scene; returns file names by frame number."""
     first, last = scene.frame_start, scene.frame_end
@@ -95,6 +103,7 @@ def main(options: argparse.Namespace, out: Path, own) -> None:
     project, tracked = str(options.project.resolve()), str(out / "tracked.json")
     timed(own, seconds, "import", bpy.ops.rototoon.import_document, filepath=project, keep_numbers=True)
     timed(own, seconds, "track", bpy.ops.rototoon.track)
+    first_result(own, out)
     timed(own, seconds, "snap", bpy.ops.rototoon.snap)
     timed(own, seconds, "export", bpy.ops.rototoon.export_document, filepath=tracked, check_existing=False)
     timed(own, seconds, "save", bpy.ops.wm.save_as_mainfile, filepath=str(out / "demo.blend"), compress=True)

@@ -20,10 +20,14 @@ class Layout:
     def _part(self, **options):
         return Layout(self.said)
 
-    row = column = box = split = grid_flow = column_flow = _part
+    row = column = box = split = grid_flow = column_flow = menu_pie = _part
 
     def separator(self, **options):
         pass
+
+    def menu(self, name, **options):
+        assert hasattr(bpy.types, name), name
+        self.said.append(("menu", name))
 
     def label(self, text="", icon="NONE", icon_value=0):
         assert icon in ICONS, icon

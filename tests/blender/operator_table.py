@@ -12,20 +12,32 @@ HEAD = """<!-- Generated from the registered operators. Change those, run the te
 
 Each operator is `bpy.ops.rototoon.NAME`. [Background Blender](../scripts/blender.md) shows how to call them from a script.
 """
+WINDOW = {"rna_type", "filter_glob", "check_existing"}
+"""Properties that only the file browser uses."""
+KINDS = {"COLLECTION": "list", "POINTER": "data-block"}
 RANGE = 1e6
 """Limits beyond this are none: Blender's own are the largest numbers of the type."""
 
 
 def page() -> str:
     """The page of all operators of the enabled add-on."""
-    return HEAD + "".join(map(section, sorted(dir(bpy.ops.rototoon))))
+    return HEAD + "".join(map(section, sorted(dir(bpy.ops.rototoon)))) + settings()
+
+
+def settings() -> str:
+    """The settings of an object: the properties of `object.rototoon`."""
+    rna = bpy.types.Object.bl_rna.properties["rototoon"].fixed_type
+    own = [prop for prop in rna.properties if prop.identifier not in ("rna_type", "name") and prop.description]
+    text = "\n## Settings of an object\n\nThey are the properties of `object.rototoon`.\n"
+    text += "\n| property | values | default | what it is |\n| --- | --- | --- | --- |\n"
+    return text + "".join(row(prop) for prop in own)
 
 
 def section(name: str) -> str:
     """An operator: its label, what it does, and its properties."""
     rna = getattr(bpy.ops.rototoon, name).get_rna_type()
     text = f"\n## {name}\n\n**{rna.name}**: {sentence(rna.description)}\n"
-    own = [prop for prop in rna.properties if prop.identifier != "rna_type" and not prop.is_hidden]
+    own = [prop for prop in rna.properties if prop.identifier not in WINDOW]
     if not own:
         return text + "\nIt has no properties.\n"
     text += "\n| property | values | default | what it does |\n| --- | --- | --- | --- |\n"
@@ -54,6 +66,8 @@ def described(prop) -> tuple[str, str]:
         elif low is not None:
             kind += f" from {low:.6g}"
         return kind, f"`{prop.default:.6g}`"
+    if prop.type in KINDS:
+        return KINDS[prop.type], ""
     return {"FILE_PATH": "file", "DIR_PATH": "folder"}.get(prop.subtype, "text"), f'`"{prop.default}"`'
 
 

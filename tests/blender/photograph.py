@@ -29,6 +29,8 @@ EDGE = 8
 PATIENCE = 120
 """Seconds until the tab must be there."""
 CLIPS = OUT / "clips"
+ALONE: list[type] = []
+"""The open copy of a panel that is in the tab alone."""
 BONES = {
     "hips": ("", (0, 0, 1.0), (0, 0, 1.15)),
     "spine": ("hips", (0, 0, 1.15), (0, 0, 1.3)),
@@ -73,9 +75,13 @@ def cleared() -> None:
         bpy.data.objects.remove(ob)
 
 
-def tracked() -> None:
-    """The sample with its tracks and snapped lines, and its motions in a library."""
+def imported() -> None:
+    """The sample with its keys."""
     finished(bpy.ops.rototoon.import_document, filepath=str(SAMPLE / "project.json"), keep_numbers=True)
+
+
+def tracked() -> None:
+    """The imported sample with its tracks and snapped lines, and its motions in a library."""
     finished(bpy.ops.rototoon.track)
     finished(bpy.ops.rototoon.snap)
     for motion, first, last in (("walk", 0, 11), ("jump", 12, 23)):
@@ -248,13 +254,20 @@ def registered(cls) -> bool:
 
 
 def only(panels: list, name: str | None) -> None:
-    """Leaves the panel `name` alone in the tab, or all panels in their order."""
+    """Leaves the panel `name` alone in the tab, open, or all panels in their order."""
+    for cls in list(ALONE):
+        bpy.utils.unregister_class(cls)
+        ALONE.remove(cls)
     for cls in panels:
         if registered(cls):
             bpy.utils.unregister_class(cls)
     for cls in panels:
-        if name is None or cls.bl_idname == name:
+        if name is None:
             bpy.utils.register_class(cls)
+        elif cls.bl_idname == name:
+            # Blender remembers by its name that a panel is closed.
+            ALONE.append(type(f"{cls.__name__}_open", (cls,), {"bl_idname": f"{name}_open", "bl_options": set()}))
+            bpy.utils.register_class(ALONE[-1])
 
 
 # -- the session: yields the seconds until it goes on -------------------------------------------------------------
@@ -328,6 +341,8 @@ def looked_from_front() -> None:
 
 def capture(panels: list):
     """Pictures of the tracked sample."""
+    imported()
+    yield from panels_photographed(panels, ["start"])
     tracked()
     looked_through_camera()
     yield from sidebar_shown()
@@ -365,7 +380,7 @@ def session():
     prepare()
     cleared()
     panels = sorted(tab_panels(), key=lambda cls: cls.bl_idname)
-    order = {name: place for place, name in enumerate("footage parts track snap strokes tween style document bones".split())}
+    order = {name: place for place, name in enumerate("start footage parts track snap strokes tween style document bones".split())}
     panels.sort(key=lambda cls: order.get(cls.bl_idname.removeprefix("ROTOTOON_PT_"), len(order)))
     yield 1.0
     yield from capture(panels)

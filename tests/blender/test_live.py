@@ -240,7 +240,7 @@ def test_held_off_while_a_tool_runs(addon, fake, live, tmp_path, monkeypatch):
     shots.move(addon, ob, 3, 2, (5.0, -3.0), which=[1])
     bpy.context.view_layer.update()
     before = shots.snapshot(ob)
-    monkeypatch.setattr(live, "_held_off", lambda: True)
+    monkeypatch.setattr(live, "held_off", lambda: True)
     assert live.step(math.inf) is not None
     assert shots.snapshot(ob) == before and live._run is None
     monkeypatch.undo()

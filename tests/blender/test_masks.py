@@ -179,3 +179,16 @@ def test_ids_are_keyed_by_blender(addon, cli, tmp_path, part):
     keyer.matte_id = part
     found = composite(keyer, "Matte", tmp_path / "keyed.exr")[..., 0]
     assert expected.sum() > 50 and np.abs(found - expected).max() < 1 / 255
+
+
+def test_lines_that_were_cut_after_snapping_follow_the_control_points(addon, fake, tmp_path):
+    """Fit Strokes and Remove Hidden Lines leave snapped lines with other numbers of segments."""
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.track()
+    bpy.ops.rototoon.snap()
+    outlines, document = addon("exchange.outlines"), addon("capture.document")
+    whole = document.read(ob, results=True).document
+    whole["parts"][0]["curves"]["5"] = whole["parts"][0]["curves"]["5"][:2]
+    found = outlines.outlines(whole, 0, True)
+    assert {len(points) for points in found[1].frames.values()} == {len(found[1].frames[5])}
+    assert bpy.ops.rototoon.contours_to_mask() == {"FINISHED"}

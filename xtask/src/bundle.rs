@@ -4,7 +4,7 @@
 //! linker (cargo-zigbuild and ziglang from PyPI, in an environment under `target/`). A check reads the symbol versions that
 //! the library needs. Blender's own packager builds and validates the zip.
 
-use crate::{elf, ofx};
+use crate::{docs, elf, ofx};
 use anyhow::{Context, Result, bail, ensure};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -42,6 +42,9 @@ pub enum Build {
     Installed,
     /// The same, and with it the development commands that need the core, so that the core is compiled once for both.
     WithMeasure,
+    /// Optimised, but for systems like this one: no tools that build against an old glibc, no OpenFX plugin. With the development
+    /// commands that need the core.
+    Here,
     /// What the Rust tests are built from: little optimised, and only for systems like this one. Nothing is compiled for it
     /// once the tests are built.
     Tested,
@@ -50,7 +53,11 @@ pub enum Build {
 impl Bundle {
     /// Where a build leaves it.
     pub fn of(build: Build) -> Self {
-        let built = if build == Build::Tested { target().join("debug") } else { target().join(TRIPLE).join("release") };
+        let built = match build {
+            Build::Tested => target().join("debug"),
+            Build::Here => target().join("release"),
+            Build::Installed | Build::WithMeasure => target().join(TRIPLE).join("release"),
+        };
         let zip = target().join(format!("rototoon-{}-linux_x64.zip", env!("CARGO_PKG_VERSION")));
         Self {
             zip,
@@ -76,16 +83,24 @@ pub fn bundle(packager: &Packager, build: Build) -> Result<Bundle> {
     ensure!(cfg!(all(target_os = "linux", target_arch = "x86_64")), "the bundle is built on Linux x86-64 only");
     let bundle = Bundle::of(build);
     let plugin = bundle.library.with_file_name(PLUGIN);
-    if build == Build::Tested {
-        compile_tested()?;
-    } else {
-        compile_installed(build)?;
-        for file in [&bundle.library, &bundle.cli, &plugin] {
-            elf::assert_glibc(file, GLIBC)?;
+    match build {
+        Build::Tested => compile_tested()?,
+        Build::Here => compile_here()?,
+        Build::Installed | Build::WithMeasure => {
+            compile_installed(build)?;
+            for file in [&bundle.library, &bundle.cli, &plugin] {
+                elf::assert_glibc(file, GLIBC)?;
+            }
         }
     }
-    ofx::lay_out(&plugin)?;
-    pack(packager, &stage(&bundle.library)?, &bundle.zip)?;
+    if build != Build::Here {
+        ofx::lay_out(&plugin)?;
+    }
+    let staged = stage(&bundle.library)?;
+    if matches!(build, Build::Installed | Build::WithMeasure) {
+        docs::put_into(&staged.join("help"))?;
+    }
+    pack(packager, &staged, &bundle.zip)?;
     println!("bundle: {}", bundle.zip.display());
     Ok(bundle)
 }
@@ -98,6 +113,13 @@ pub fn tools() -> Result<PathBuf> {
 /// Everything that the Rust tests use, in the same selection of packages: another one would compile dependencies again.
 pub fn compile_tested() -> Result<()> {
     run(cargo().args(["build", "--quiet"]).args(TESTED))
+}
+
+/// Library, command line and development commands, for this machine. Cargo shows its progress.
+fn compile_here() -> Result<()> {
+    run(cargo()
+        .args(["build", "--release", "-p", "rototoon-capi", "-p", "rototoon-cli", "-p", "xtask-measure"])
+        .env("CARGO_PROFILE_RELEASE_DEBUG", "none"))
 }
 
 /// Library, command line and OpenFX plugin as artists install them.

@@ -1,11 +1,19 @@
 //! `demo`: runs the main workflow in real Blender, on the sample cartoon or on any project document.
+//!
+//! It says what it will do before it begins, shows the progress of downloads and of the build, and names each result as soon as it
+//! exists. It builds for this machine only, which needs neither the tools for an old glibc nor the OpenFX plugin.
 
 use crate::bundle::{Build, Bundle, Packager, bundle};
 use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Instant;
 use xtask_shell::shell::{command, empty_folder, root, run, target};
 
+/// How long the first run takes: most of it is the compiler's.
+const FIRST_TIME: &str = "5 to 15 minutes on two free cores, more on a busy machine,";
+/// What the first run needs on disk: the package with Blender, and what the compiler leaves.
+const DISK: &str = "2 GB";
 /// Number of pictures on the contact sheet.
 const PICTURES: usize = 12;
 
@@ -15,21 +23,28 @@ pub fn demo(project: Option<PathBuf>, blender: Option<PathBuf>) -> Result<()> {
         blender.map(|path| path.canonicalize().with_context(|| format!("no Blender at {path:?}"))).transpose()?;
     let project =
         project.map(|path| path.canonicalize().with_context(|| format!("no project at {path:?}"))).transpose()?;
+    let mut steps = Steps::new(blender.is_none());
     let packager = match blender {
         Some(binary) => Packager::Blender(binary),
-        None => Packager::from_wheel()?,
+        None => {
+            steps.begin("Blender as a Python package");
+            Packager::from_wheel()?
+        }
     };
-    let bundle = bundle(&packager, Build::WithMeasure)?;
+    steps.begin("the extension");
+    let bundle = bundle(&packager, Build::Here)?;
     let out = target().join("demo");
     empty_folder(&out)?;
     let project = match project {
         Some(path) => path,
         None => {
+            steps.begin("the sample cartoon");
             run(command(&bundle.measure).arg("sample").arg(&out))?;
+            println!("demo: its pictures are in {}", shown(&out.join("sample/frames")));
             out.join("sample/project.json")
         }
     };
-    println!("demo: {} in Blender", project.display());
+    steps.begin(&format!("{} in Blender: import, track, snap, save, render", shown(&project)));
     run(script(&packager)
         .args(["--pictures", &PICTURES.to_string(), "--zip"])
         .arg(&bundle.zip)
@@ -37,6 +52,7 @@ pub fn demo(project: Option<PathBuf>, blender: Option<PathBuf>) -> Result<()> {
         .arg(&project)
         .arg("--out")
         .arg(&out))?;
+    steps.begin("the report");
     let tracked = out.join("tracked.json");
     export(&bundle, &tracked, &out.join("tracks.svg"))?;
     run(command(&bundle.measure).arg("report").arg(&project).arg(&out))?;
@@ -49,9 +65,50 @@ pub fn demo(project: Option<PathBuf>, blender: Option<PathBuf>) -> Result<()> {
     ] {
         let path = out.join(file);
         ensure!(path.exists(), "{path:?} was not written");
-        println!("{:<32} {what}", path.strip_prefix(root()).unwrap_or(&path).display());
+        println!("{:<32} {what}", shown(&path));
     }
+    steps.end();
     Ok(())
+}
+
+/// A path below the workspace's folder without that folder.
+fn shown(path: &Path) -> String {
+    path.strip_prefix(root()).unwrap_or(path).display().to_string()
+}
+
+/// Says what the demo does, and how long each of its steps took.
+struct Steps {
+    started: Instant,
+    step: Option<Instant>,
+}
+
+impl Steps {
+    fn new(with_wheel: bool) -> Self {
+        println!("demo: builds the extension, installs it in a Blender of its own, and captures a cartoon there.");
+        println!("demo: the first time this takes {FIRST_TIME} and {DISK} below {}.", shown(&target()));
+        if with_wheel {
+            println!("demo: Blender is downloaded as a package of about 0.4 GB, if it is not there yet.");
+        }
+        println!("demo: your own Blender, its settings and its files are not touched. Ctrl-C stops; nothing is lost.");
+        Self { started: Instant::now(), step: None }
+    }
+
+    fn begin(&mut self, name: &str) {
+        self.finish();
+        println!("\ndemo: {name}");
+        self.step = Some(Instant::now());
+    }
+
+    fn finish(&mut self) {
+        if let Some(started) = self.step.take() {
+            println!("demo: done in {:.0} s", started.elapsed().as_secs_f64());
+        }
+    }
+
+    fn end(&mut self) {
+        self.finish();
+        println!("\ndemo: all of it took {:.0} s", self.started.elapsed().as_secs_f64());
+    }
 }
 
 /// The command that runs the script inside Blender, with a Blender configuration of its own.

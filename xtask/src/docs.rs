@@ -8,7 +8,7 @@ mod links;
 use anyhow::{Context, Result, bail, ensure};
 use std::path::{Path, PathBuf};
 use xtask_shell::python;
-use xtask_shell::shell::{capture, cargo, command, root, run, target};
+use xtask_shell::shell::{capture, cargo, command, copy_folder, root, run, target};
 
 /// The mdBook that the book is written for; `docs/mdbook.txt` names the same.
 const VERSION: &str = "0.5.4";
@@ -32,6 +32,16 @@ pub fn docs(check: bool) -> Result<()> {
     }
     println!("docs: {}", book.join("index.html").display());
     Ok(())
+}
+
+/// Files of a built book that only a web server needs, or that repeat the pages.
+const LEFT_OUT: [&str; 3] = ["print.html", "404.html", "favicon.png"];
+
+/// Puts the book's pages into the folder `help`, for the help buttons of the Blender extension.
+pub fn put_into(help: &Path) -> Result<()> {
+    let book = target().join("book");
+    build(&mdbook()?, &book)?;
+    copy_folder(&book, help, &|name| !name.starts_with('.') && !LEFT_OUT.contains(&name))
 }
 
 /// Runs mdBook. It reports some problems on standard error only and succeeds: these fail here.

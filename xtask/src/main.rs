@@ -70,6 +70,8 @@ enum Command {
     /// Measure matching and in-betweens on sets with known truth, with sheets in target/bench-tween.
     #[command(disable_help_flag = true)]
     BenchTween(measure::Rest),
+    /// Measure in a real Blender window for how long Track holds the main thread (as `photograph`, needs root and debootstrap).
+    BenchWindow,
     /// Accept the golden pictures and the generated pages that the tests last wrote.
     Bless,
     /// Build the documentation into target/book.
@@ -102,6 +104,7 @@ fn main() -> anyhow::Result<()> {
         Command::BenchStyle(rest) => measure::run("bench-style", &rest),
         Command::BenchTracking(rest) => measure::run("bench-tracking", &rest),
         Command::BenchTween(rest) => measure::run("bench-tween", &rest),
+        Command::BenchWindow => photograph::bench_window(),
         Command::Bless => measure::run("bless", &measure::Rest::default()),
         Command::Docs { check } => docs::docs(check),
         Command::Fuzz { target, minutes } => fuzz::fuzz(target.as_deref(), minutes),

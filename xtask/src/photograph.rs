@@ -1,4 +1,5 @@
-//! `photograph`: the documentation's pictures of every panel and of Match Strokes, taken in a real Blender window.
+//! `photograph`: the documentation's pictures of every panel and of Match Strokes, taken in a real Blender window. `bench-window`:
+//! for how long Track holds that window's main thread.
 //!
 //! The `bpy` wheels have no windows, but Debian sid packages a current Blender. debootstrap installs it into a folder of its
 //! own. There it runs on a virtual screen (Xvfb), of which a picture is taken. Sid changes over time, and debootstrap and
@@ -25,55 +26,91 @@ const PACKAGES: [&str; 9] = [
     "ca-certificates",
 ];
 
-/// Starts Blender under Xvfb, waits until the script says that all pictures are taken, and makes them small.
+/// Starts Blender under Xvfb with `$SCRIPT` and its `$WORDS`, and waits until the script says that it has ended.
 const SESSION: &str = r#"
 set -u
 cd /photograph
 export DISPLAY=:77 LIBGL_ALWAYS_SOFTWARE=1 HOME=/photograph BLENDER_USER_RESOURCES=/photograph/resources
-rm -rf ready pictures resources
+rm -rf ready pictures resources table.md
 # Without saved preferences the first start asks for a quick set-up in front of everything.
 blender --background --python-expr "import bpy; bpy.context.preferences.view.show_splash = False; bpy.ops.wm.save_userpref()" \
   >blender.log 2>&1
 Xvfb :77 -screen 0 1600x1280x24 >xvfb.log 2>&1 &
 screen=$!
 sleep 2
-blender --window-geometry 0 0 1600 1280 --python photograph.py -- rototoon.zip sample pictures ready >>blender.log 2>&1 &
+blender --window-geometry 0 0 1600 1280 --python $SCRIPT -- $WORDS >>blender.log 2>&1 &
 blender=$!
-for second in $(seq 900); do
+for second in $(seq $PATIENCE); do
   [ -f ready ] && break
   kill -0 "$blender" 2>/dev/null || break
   sleep 1
 done
 kill "$blender" "$screen" 2>/dev/null
-mogrify -resize "1200x>" -strip +dither -colors 256 -define png:compression-level=9 pictures/*.png
+[ -d pictures ] && mogrify -resize "1200x>" -strip +dither -colors 256 -define png:compression-level=9 pictures/*.png
 cat ready 2>/dev/null || { echo "Blender ended early:"; tail -n 20 blender.log; }
 "#;
 
+/// A script that runs in the window.
+struct Script {
+    /// Its file in `tests/blender`, and files beside it that it imports.
+    files: &'static [&'static str],
+    /// Its arguments; it writes the file `ready` at the end.
+    words: &'static str,
+    /// Seconds until it must have ended.
+    patience: u32,
+}
+
+const PHOTOGRAPH: Script =
+    Script { files: &["photograph.py"], words: "rototoon.zip sample pictures ready", patience: 900 };
+const BENCH: Script =
+    Script { files: &["bench_window.py", "shots.py"], words: "rototoon.zip table.md ready", patience: 3600 };
+
 /// Writes the pictures of the documentation, or says why it can't.
 pub fn photograph() -> Result<()> {
+    match in_window("photograph", &PHOTOGRAPH)? {
+        Some(stage) => accept(&stage.join("pictures"), &root().join(PICTURES)),
+        None => Ok(()),
+    }
+}
+
+/// Prints for how long Track holds the main thread of a window, or says why it can't.
+pub fn bench_window() -> Result<()> {
+    let Some(stage) = in_window("bench-window", &BENCH)? else { return Ok(()) };
+    let table = std::fs::read_to_string(stage.join("table.md")).context("the script left no table")?;
+    println!("{table}");
+    Ok(())
+}
+
+/// Runs a script in a Blender window with the built extension. Returns the folder that the script worked in; `None`, after a word
+/// about the reason, where this machine has no such window.
+fn in_window(name: &str, script: &Script) -> Result<Option<PathBuf>> {
     if let Some(reason) = cannot() {
-        println!("photograph: not done: {reason}");
-        return Ok(());
+        println!("{name}: not done: {reason}");
+        return Ok(None);
     }
     let bundle = bundle(&Packager::from_wheel()?, Build::WithMeasure)?;
     let system = target().join("photograph/debian");
     if let Err(reason) = install(&system) {
-        println!("photograph: not done: {reason:#}");
-        return Ok(());
+        println!("{name}: not done: {reason:#}");
+        return Ok(None);
     }
     let stage = system.join("photograph");
     std::fs::create_dir_all(&stage)?;
     std::fs::copy(&bundle.zip, stage.join("rototoon.zip"))?;
-    std::fs::copy(root().join("tests/blender/photograph.py"), stage.join("photograph.py"))?;
+    for file in script.files {
+        std::fs::copy(root().join("tests/blender").join(file), stage.join(file))?;
+    }
     run(command(&bundle.measure).arg("sample").arg(&stage))?;
     let said = {
         let _proc = Mount::proc(&system)?;
-        capture(chroot(&system).args(["sh", "-c", SESSION]))?
+        let mut session = chroot(&system);
+        session.env("SCRIPT", script.files[0]).env("WORDS", script.words);
+        capture(session.env("PATIENCE", script.patience.to_string()).args(["sh", "-c", SESSION]))?
     };
     if said.trim() != "ready" {
-        bail!("the pictures were not taken: {said}");
+        bail!("{name}: {said}");
     }
-    accept(&stage.join("pictures"), &root().join(PICTURES))
+    Ok(Some(stage))
 }
 
 /// Copies the pictures into the documentation. They are looked at before they are committed.

@@ -64,7 +64,7 @@ class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Oper
         before = actions.give(ob, "OBJECT", f"{ob.name} {self.motion}{manner}", frames, curves)
         said = f"{len(found[0])} bones on frames {frames[0]:g} to {frames[-1]:g}"
         held = [name for name in found[0] if any(not c.mute for c in ob.pose.bones[name].constraints)]
-        said += f"; constraints also move {', '.join(held)}" if held else ""
+        self.warn(f"constraints also move {', '.join(held)}" if held else "")
         return said + (f'; the action "{before}" is kept' if before else "")
 
 

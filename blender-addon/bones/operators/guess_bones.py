@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...blender import guard
 from ...common.operators import Guarded, OnArmature
 from ...rototoon.style import KEY_POINTS
 from .. import key_points
@@ -12,6 +13,7 @@ class ROTOTOON_OT_guess_bones(Guarded, OnArmature, bpy.types.Operator):
     bl_label = "Guess Bones"
     bl_description = "Find the bones of the key points by their names. Your choices stay"
     bl_options = {"REGISTER", "UNDO"}
+    changes = guard.SETTINGS
 
     def run(self, context) -> str:
         found = key_points.guess(context.object)

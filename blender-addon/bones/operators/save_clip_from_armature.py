@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...blender import armatures
+from ...blender import armatures, guard
 from ...common import jobs
 from ...common.operators import Long, OnArmature
 from ...rototoon.style import add_to_library
@@ -17,6 +17,7 @@ class ROTOTOON_OT_save_clip_from_armature(Long, Performance, OnArmature, bpy.typ
     bl_label = "Save Clip from Armature"
     bl_description = "Save the motion of the armature's bones, seen from a side, as a skeleton clip in the library"
     bl_options = {"REGISTER"}
+    changes = guard.NOTHING
 
     last: shared(
         "last", description="Last frame. If it is not after the first frame, the frames of the action"

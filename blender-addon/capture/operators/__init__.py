@@ -2,6 +2,7 @@
 
 from . import (
     clear_generated,
+    draw_contours,
     footage_from_camera,
     footage_from_file,
     footage_from_reference,
@@ -20,6 +21,7 @@ _MODULES = (
     footage_from_file,
     footage_from_camera,
     footage_from_reference,
+    draw_contours,
     new_key,
     match_contours,
     track,

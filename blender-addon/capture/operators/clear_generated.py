@@ -3,14 +3,16 @@
 import bpy
 
 from ...blender import grease_pencil as gp
-from ...common.operators import Guarded, OnDrawing
+from ...blender import guard
+from ...common.operators import Guarded
 from .. import writing
+from ..polls import WithGenerated
 
 
-class ROTOTOON_OT_clear_generated(Guarded, OnDrawing, bpy.types.Operator):
+class ROTOTOON_OT_clear_generated(Guarded, WithGenerated, bpy.types.Operator):
     bl_idname = "rototoon.clear_generated"
     bl_label = "Clear Generated"
-    bl_description = "Remove the results of Track and Snap to Ink. Your keys stay"
+    bl_description = "Remove the results of Track and Snap to Ink. Your keys stay, and so do locked and hidden layers"
     bl_options = {"REGISTER", "UNDO"}
 
     frames: bpy.props.EnumProperty(
@@ -29,14 +31,19 @@ class ROTOTOON_OT_clear_generated(Guarded, OnDrawing, bpy.types.Operator):
         snapped = gp.find_layer(ob, ob.rototoon.snapped_layer)
         if snapped is not None and self.snapped:
             layers.append((snapped, False))
+        every = [layer for layer, _ in layers if len(layer.frames)]
+        guard.need_some(every)
         cleared, kept = 0, 0
         for layer, keep in layers:
+            if guard.closed(layer):
+                continue
             drawings = gp.drawings(layer)
             frames = [f for f in drawings if self.frames == "ALL" or f == current]
             if keep:
                 kept += sum(writing.is_corrected(drawings[f][0]) for f in frames)
             cleared += writing.clear(layer, frames, keep_corrected=keep)
         ob.data.update_tag()
+        self.warn(guard.left_out(every))
         return f"{cleared} generated drawings removed" + (f", {kept} with corrections kept" if kept else "")
 
 

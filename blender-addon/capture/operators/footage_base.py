@@ -34,7 +34,8 @@ class FootageOperator(Long):
     def finish(self, context, _work) -> str:
         """Reads the size of the pictures, and applies them."""
         shot, note = self._movie_shot(context) if self._source.movie else self._sequence_shot(context)
-        return self.apply(context, shot) + note
+        self.warn(note)
+        return self.apply(context, shot)
 
     def _movie_shot(self, context) -> tuple[stage.Shot, str]:
         frames = movie.cached(self._source.path, self._cache)
@@ -47,7 +48,7 @@ class FootageOperator(Long):
         shot = stage.Shot(
             frames.pattern, frames.first, frames.last, width, height, frames.fps, start, self._source.path
         )
-        return shot, f"; {removed} older movies were removed from the cache" if removed else ""
+        return shot, f"{removed} older movies were removed from the cache" if removed else ""
 
     def _sequence_shot(self, context) -> tuple[stage.Shot, str]:
         sequence, scene = self._sequence, context.scene
@@ -55,13 +56,13 @@ class FootageOperator(Long):
         start = footage.first_frame(self._source, sequence, scene.frame_start)
         fps = scene.render.fps / scene.render.fps_base
         shot = stage.Shot(sequence.pattern, sequence.first, sequence.last, width, height, fps, start)
-        return shot, f"; {sequence.missing} pictures beyond a gap are left out" if sequence.missing else ""
+        return shot, f"{sequence.missing} pictures beyond a gap are left out" if sequence.missing else ""
 
 
 def used_folders() -> set[str]:
     """Folders of the cache that the objects of this file use."""
-    patterns = [ob.rototoon.pattern for ob in bpy.data.objects if ob.rototoon.movie]
-    return {os.path.basename(os.path.dirname(bpy.path.abspath(pattern))) for pattern in patterns}
+    patterns = [footage.absolute(ob, ob.rototoon.pattern) for ob in bpy.data.objects if ob.rototoon.movie]
+    return {os.path.basename(os.path.dirname(pattern)) for pattern in patterns}
 
 
 def described(shot: stage.Shot) -> str:

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...blender import footage, placement
+from ...blender import footage, guard, placement
 from ...blender.errors import Problem
 from ...common.operators import OnDrawing
 from .footage_base import FootageOperator, assign_to_active
@@ -13,6 +13,7 @@ class ROTOTOON_OT_footage_from_camera(FootageOperator, OnDrawing, bpy.types.Oper
     bl_label = "Footage from Camera"
     bl_description = "Use the image sequence, movie or clip in the camera's background, with its timing"
     bl_options = {"REGISTER", "UNDO"}
+    changes = guard.SETTINGS
 
     @classmethod
     def poll(cls, context):

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import bpy
 
-from ...blender import footage
+from ...blender import footage, guard
 from ...blender.errors import Problem
 from ...common.operators import OnDrawing
 from .footage_base import FootageOperator, assign_to_active
@@ -16,7 +16,7 @@ class FilePicker:
     """A file, and the frame of its first picture."""
 
     filepath: bpy.props.StringProperty(
-        name="File", description="Any picture of the sequence, or a movie", subtype="FILE_PATH"
+        name="File", description="Any picture of the sequence, or a movie", subtype="FILE_PATH", options={"SKIP_SAVE"}
     )
     filter_glob: bpy.props.StringProperty(default=FILTER, options={"HIDDEN"})
     at_scene_start: bpy.props.BoolProperty(
@@ -27,7 +27,9 @@ class FilePicker:
     )
 
     def invoke(self, context, _event):
-        """Called by Blender: opens the file browser."""
+        """Called by Blender: opens the file browser. A file that was dropped into the window is taken at once."""
+        if self.filepath:
+            return self._follow(context)
         self._picked = True
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
@@ -56,6 +58,7 @@ class ROTOTOON_OT_footage_from_file(FilePicker, FootageOperator, OnDrawing, bpy.
     bl_label = "Footage from File"
     bl_description = "Choose one picture of the footage, and the sequence around it is found. Movies work too"
     bl_options = {"REGISTER", "UNDO"}
+    changes = guard.SETTINGS
 
     def apply(self, context, shot):
         return assign_to_active(context, self.timed(context, shot))

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...blender import footage
+from ...blender import footage, guard
 from ...blender.errors import Problem
 from ...common.operators import OnDrawing
 from .footage_base import FootageOperator, assign_to_active
@@ -21,6 +21,7 @@ class ROTOTOON_OT_footage_from_reference(FootageOperator, OnDrawing, bpy.types.O
     bl_label = "Footage from Reference Image"
     bl_description = "Use the image of the selected reference image (an empty that shows an image), with its timing"
     bl_options = {"REGISTER", "UNDO"}
+    changes = guard.SETTINGS
 
     @classmethod
     def poll(cls, context):

@@ -2,8 +2,9 @@
 
 import bpy
 
+from ...blender import guard
 from ...common.operators import Guarded, OnContours
-from .. import document, identity
+from .. import document, identity, tracking
 
 
 class ROTOTOON_OT_match_contours(Guarded, OnContours, bpy.types.Operator):
@@ -11,15 +12,19 @@ class ROTOTOON_OT_match_contours(Guarded, OnContours, bpy.types.Operator):
     bl_label = "Match Contours"
     bl_description = (
         "Find the part of each new stroke. Order, direction, starting point and number of points may differ. "
-        "Strokes without a match become new parts. Track does this too"
+        "Strokes without a match become new parts. Track does this too. On hidden layers too, "
+        "not on locked ones"
     )
     bl_options = {"REGISTER", "UNDO"}
 
     def run(self, context) -> str:
         ob = context.object
+        layers = tracking.contour_layers(ob)
+        guard.need_some(layers, hidden=True)
         reading = document.read(ob)
         identity.write(ob, reading.found, reading.decisions)
         ob.data.update_tag()
+        self.warn(guard.left_out(layers, hidden=True))
         return f"{reading.decisions.matched} strokes matched, {len(reading.decisions.created)} new parts"
 
 

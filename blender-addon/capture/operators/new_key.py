@@ -3,6 +3,7 @@
 import bpy
 
 from ...blender import grease_pencil as gp
+from ...blender import guard
 from ...blender.errors import Problem
 from ...common.operators import Guarded, OnContours
 from .. import contours, document, identity
@@ -12,7 +13,8 @@ class ROTOTOON_OT_new_key(Guarded, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.new_key"
     bl_label = "New Key Here"
     bl_description = (
-        "Copy the contours to this frame as your key: the tracked contours if there are any, otherwise those of the last key"
+        "Copy the contours to this frame as your key: the tracked contours if there are any, otherwise those of the last key. "
+        "On hidden layers too, not on locked ones"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -30,16 +32,19 @@ class ROTOTOON_OT_new_key(Guarded, OnContours, bpy.types.Operator):
         wanted = self._wanted(ob, found)
         if not wanted:
             raise Problem(f"Frame {frame} is a key already")
+        named = [gp.find_layer(ob, found.layer_names[index]) for index in sorted({_source(part, frame).layer for part in wanted})]
+        guard.need_some(named, hidden=True)
         identity.write(ob, found, decisions)
         made = 0
         for index, name in enumerate(found.layer_names):
             sources: dict[int, list[contours.Stroke]] = {}
             for part in wanted:
                 stroke = _source(part, frame)
-                if stroke.layer == index:
+                if stroke.layer == index and index not in found.closed:
                     sources.setdefault(stroke.frame, []).append(stroke)
             made += _make_key(gp.find_layer(ob, name), sources, frame)
         ob.data.update_tag()
+        self.warn(guard.left_out(named, hidden=True))
         return f"Key on frame {frame}: {made} contours"
 
     def _wanted(self, ob, found):

@@ -3,14 +3,19 @@
 import bpy
 
 from ...blender import grease_pencil as gp
-from ...common.operators import Guarded, OnContours
+from ...blender import guard
+from ...common.operators import Guarded
 from .. import corrections
+from ..polls import OnTracked
 
 
-class ROTOTOON_OT_release_pins(Guarded, OnContours, bpy.types.Operator):
+class ROTOTOON_OT_release_pins(Guarded, OnTracked, bpy.types.Operator):
     bl_idname = "rototoon.release_pins"
     bl_label = "Release Pins"
-    bl_description = "Release points and parts that you fixed on generated frames, so that Track moves them again"
+    bl_description = (
+        "Release points and parts that you fixed on generated frames, so that Track moves them again. "
+        "Locked and hidden layers stay as they are"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     which: bpy.props.EnumProperty(
@@ -26,8 +31,9 @@ class ROTOTOON_OT_release_pins(Guarded, OnContours, bpy.types.Operator):
 
     def run(self, context) -> str:
         ob, current = context.object, context.scene.frame_current
-        released = 0
-        for layer in gp.layers(ob, ob.rototoon.contours_layer):
+        layers, released = gp.layers(ob, ob.rototoon.contours_layer), 0
+        guard.need_some(layers)
+        for layer in guard.open_layers(layers):
             drawings = gp.drawings(layer)
             frames = list(drawings) if self.which == "ALL" else [f for f in drawings if f == current]
             for frame in frames:
@@ -35,6 +41,7 @@ class ROTOTOON_OT_release_pins(Guarded, OnContours, bpy.types.Operator):
                 mask = gp.selected_points(drawing) if self.which == "SELECTED" else None
                 released += corrections.release(drawing, mask)
         ob.data.update_tag()
+        self.warn(guard.left_out(layers))
         if not released:
             return "There was nothing to release"
         return f"{released} pins released" + ("" if ob.rototoon.live else ": press Track")

@@ -2,14 +2,17 @@
 
 import bpy
 
-from ...common.operators import Guarded, OnDrawing
+from ...blender import guard
+from ...common.operators import Guarded
+from ..polls import OnTracked
 
 
-class ROTOTOON_OT_show_confidence(Guarded, OnDrawing, bpy.types.Operator):
+class ROTOTOON_OT_show_confidence(Guarded, OnTracked, bpy.types.Operator):
     bl_idname = "rototoon.show_confidence"
     bl_label = "Show Confidence"
     bl_description = "Colour the tracked points by confidence: green is high, red is low. Press again to hide the colours"
     bl_options = {"REGISTER", "UNDO"}
+    changes = guard.SETTINGS
 
     def run(self, context) -> None:
         settings = context.object.rototoon

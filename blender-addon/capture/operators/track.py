@@ -2,9 +2,11 @@
 
 import bpy
 
+from ...blender import guard
 from ...blender.errors import Problem
+from ...common import jobs
 from ...common.operators import Long, OnContours
-from .. import document, properties, tracking
+from .. import contours, document, identity, properties, stand, tracking
 
 
 class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
@@ -12,7 +14,8 @@ class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
     bl_label = "Track"
     bl_description = (
         "Follow the contours from key to key, and from a single key as far as they can be trusted. Points and parts that you "
-        "moved on generated frames stay where you put them. Only what you changed since the last time is tracked again"
+        "moved on generated frames stay where you put them. Only what you changed since the last time is tracked again. Hidden "
+        "layers are tracked too, locked ones are not changed"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -24,6 +27,14 @@ class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
 
     def begin(self, context):
         self._ob = context.object
+        if not stand.read(self._ob).loose:
+            return self._begin_to_track()
+        found = contours.read(self._ob)
+        # Matching new contours takes long, so a thread asks first. When the contours are read again, the answers are known.
+        mapper, number = document.mapper_of(self._ob, found), self._ob.rototoon.next_number
+        return jobs.Chain(jobs.Worker(lambda progress: _match(progress, found, mapper, number)), self._begin_to_track)
+
+    def _begin_to_track(self):
         reading = document.read(self._ob)
         preset = self._ob.rototoon.preset if self.method == "SETTINGS" else self.method
         if not tracking.can_track(reading, preset):
@@ -31,13 +42,18 @@ class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
         self._tracking = tracking.begin(self._ob, reading, preset)
         return self._tracking.worker
 
-    def finish(self, context, work) -> str:
-        strokes = tracking.finish(self._ob, self._tracking)
+    def finish(self, _context, _work):
+        strokes = yield from tracking.finishing(self._ob, self._tracking)
         if strokes is None:
             raise Problem("The contours changed while they were tracked, so the result was dropped: press Track again")
-        summary = work.result
-        wanted = tracking.wanted_keys(summary)
-        return f"{strokes} contours: {summary.solved} spans tracked, {summary.reused} kept{wanted and '; ' + wanted}"
+        self.warn(tracking.where_to_look(self._ob, self._tracking))
+        self.warn(guard.left_out(tracking.contour_layers(self._ob), hidden=True))
+        return tracking.told(self._tracking, strokes)
+
+
+def _match(progress, found: contours.Contours, mapper, number: int) -> None:
+    progress(0.0, "finding the parts of new contours")
+    identity.decide(found, mapper, number)
 
 
 CLASSES = (ROTOTOON_OT_track,)

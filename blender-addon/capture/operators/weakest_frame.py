@@ -1,48 +1,26 @@
 """Go to Weakest Frame: where the next key helps most."""
 
 import bpy
-import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender.errors import Problem
-from ...common.operators import Guarded, OnContours
+from ...blender import guard
+from ...common.operators import Guarded
 from .. import contours
+from ..doubt import weakest
+from ..polls import OnTracked
 
 
-class ROTOTOON_OT_weakest_frame(Guarded, OnContours, bpy.types.Operator):
+class ROTOTOON_OT_weakest_frame(Guarded, OnTracked, bpy.types.Operator):
     bl_idname = "rototoon.weakest_frame"
     bl_label = "Go to Weakest Frame"
     bl_description = "Go to the frame with the least confidence. The next key helps most there"
     bl_options = {"REGISTER", "UNDO"}
+    changes = guard.NOTHING
 
     def run(self, context) -> str:
-        frame, doubt = weakest(contours.read(context.object))
+        frame, doubt = weakest(contours.read(context.object, (gp.CONFIDENCE,)))
         context.scene.frame_set(frame)
-        return f"Frame {frame}: {doubt:.0%} doubt"
-
-
-def weakest(found: contours.Contours) -> tuple[int, float]:
-    """The scene frame with the most doubt, and its doubt.
-
-    The doubt of a frame is the mean of 1 - confidence over a part's points, summed over parts. It is smoothed over three frames
-    for the choice. Frames beside a key are chosen only if there are no others. The returned doubt is the mean over parts.
-    """
-    doubts: dict[int, float] = {}
-    for part in found.parts:
-        for frame, stroke in part.made.items():
-            sure = found.drawings[stroke.layer, frame].value(gp.CONFIDENCE)[stroke.span]
-            doubts[frame] = doubts.get(frame, 0.0) + float(np.mean(1 - sure))
-    if not doubts:
-        raise Problem("No generated frame: press Track first")
-    smooth = {
-        frame: (doubts.get(frame - 1, 0.0) + 2 * doubt + doubts.get(frame + 1, 0.0)) / 4
-        for frame, doubt in doubts.items()
-    }
-    keys = {frame for part in found.parts for frame in part.keys}
-    beside = {frame + step for frame in keys for step in (-1, 0, 1)}
-    smooth = {frame: doubt for frame, doubt in smooth.items() if frame not in beside} or smooth
-    frame = max(sorted(smooth), key=lambda number: smooth[number])
-    return frame, doubts[frame] / max(sum(frame in part.made for part in found.parts), 1)
+        return f"Frame {frame} is the least certain one ({doubt:.0%} doubt): look for contours that are off"
 
 
 CLASSES = (ROTOTOON_OT_weakest_frame,)

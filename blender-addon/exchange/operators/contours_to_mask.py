@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...blender import masks
+from ...blender import guard, masks
 from ...blender.errors import Problem
 from ...capture import document
 from ...common.operators import Guarded, OnContours
@@ -14,6 +14,7 @@ class ROTOTOON_OT_contours_to_mask(Guarded, OnContours, bpy.types.Operator):
     bl_label = "Contours to Mask"
     bl_description = "Make a mask of the contours, with a layer for each part and a shape key for every frame"
     bl_options = {"REGISTER", "UNDO"}
+    changes = guard.NOTHING
 
     name: bpy.props.StringProperty(
         name="Mask",
@@ -30,8 +31,8 @@ class ROTOTOON_OT_contours_to_mask(Guarded, OnContours, bpy.types.Operator):
         settings = ob.rototoon
         name = self.name or ob.name
         known = bpy.data.masks.get(name)
-        if known is not None and known.library is not None:
-            raise Problem(f'The mask "{name}" is linked from another file and cannot be changed')
+        if known is not None:
+            guard.need_own(known)
         reading = document.read(ob, results=True)
         parts = outlines.outlines(reading.document, settings.frame_offset, self.use_snapped)
         if not parts:

@@ -4,6 +4,7 @@ import os
 
 import bpy
 
+from ...blender import guard
 from ...blender.errors import Problem
 from ...capture import document
 from ...common.operators import Guarded, OnContours
@@ -15,6 +16,7 @@ class ROTOTOON_OT_export_document(Guarded, OnContours, bpy.types.Operator):
     bl_label = "Export Document"
     bl_description = "Write keys, corrections, tracks and snapped lines as a Rototoon project document"
     bl_options = {"REGISTER"}
+    changes = guard.NOTHING
 
     filepath: bpy.props.StringProperty(name="File", description="The file to write", subtype="FILE_PATH")
     filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})

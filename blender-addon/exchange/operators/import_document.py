@@ -17,14 +17,14 @@ class ROTOTOON_OT_import_document(Guarded, InObjectMode, bpy.types.Operator):
     bl_description = "Make strokes from a Rototoon project document: keys, corrections, tracks and snapped lines"
     bl_options = {"REGISTER", "UNDO"}
 
-    filepath: bpy.props.StringProperty(name="File", description="The project document", subtype="FILE_PATH")
+    filepath: bpy.props.StringProperty(name="File", description="The project document", subtype="FILE_PATH", options={"SKIP_SAVE"})
     filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
     into: bpy.props.EnumProperty(
         name="Into",
         description="The object that gets the contours",
         items=(
             ("NEW", "New Object", "A new Grease Pencil object, with a camera if the scene has none"),
-            ("ACTIVE", "Active Object", "The active Grease Pencil object. Its contours are replaced"),
+            ("ACTIVE", "Active Object", "The active Grease Pencil object. Its contours are replaced, on hidden layers too"),
         ),
     )
     keep_numbers: bpy.props.BoolProperty(
@@ -34,6 +34,9 @@ class ROTOTOON_OT_import_document(Guarded, InObjectMode, bpy.types.Operator):
     )
 
     def invoke(self, context, _event):
+        """Called by Blender: opens the file browser. A file that was dropped into the window is taken at once."""
+        if self.filepath:
+            return self.execute(context)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
@@ -45,6 +48,7 @@ class ROTOTOON_OT_import_document(Guarded, InObjectMode, bpy.types.Operator):
             ob = context.object
             if ob is None or ob.type != "GREASEPENCIL":
                 raise Problem("Make a Grease Pencil object active, or import into a new one")
+            importing.need_open(ob)
             stage.assign(ob, shot)
         else:
             name = os.path.splitext(os.path.basename(path))[0]

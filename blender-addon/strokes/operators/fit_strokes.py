@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import projection
+from ...blender import guard, projection
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common import jobs
@@ -48,7 +48,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
     )
     layers: bpy.props.EnumProperty(
         name="Layers",
-        description="Layers to fit. Locked layers are not changed",
+        description="Layers to fit. Locked and hidden layers are not changed",
         items=(("ACTIVE", "Active", "The active layer"), ("ALL", "All", "All layers")),
         default="ALL",
     )
@@ -58,6 +58,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
 
     def begin(self, context):
         self._ob = context.object
+        self.warn(guard.left_out(st.drawn_layers(self._ob, self.layers == "ACTIVE")))
         self._drawings = [
             (layer.name, number)
             for layer in st.editable_layers(self._ob, self.layers == "ACTIVE")
@@ -109,6 +110,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
         return scale, self.tolerance
 
     def finish(self, context, work) -> str:
+        guard.need_open(gp.find_layer(self._ob, name) for name in {name for name, *_ in self._done})
         for name, number, fitted in self._done:
             st.write(gp.drawings(gp.find_layer(self._ob, name))[number][0], fitted.content)
         self._ob.data.update_tag()

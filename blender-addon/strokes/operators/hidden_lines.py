@@ -3,6 +3,7 @@
 import bpy
 
 from ...blender import grease_pencil as gp
+from ...blender import guard
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...blender.frames import kept
@@ -14,7 +15,10 @@ from .. import hidden
 class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
     bl_idname = "rototoon.hidden_lines"
     bl_label = "Remove Hidden Lines"
-    bl_description = "Cut lines exactly where filled strokes in front cover them, on the frames that you choose"
+    bl_description = (
+        "Cut lines exactly where filled strokes in front cover them, on the frames that you choose. Locked and "
+        "hidden layers are not cut"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     order: bpy.props.EnumProperty(
@@ -59,8 +63,16 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
             raise Problem("No drawings are visible: draw something, or show a layer")
         if not st.editable_layers(self._ob, active=False):
             raise Problem("No layer can be cut: unlock one. Contours are not changed, since tracking needs their points")
+        self._need_open()
+        self.warn(guard.left_out(st.drawn_layers(self._ob, active=False)))
         self._cuts = []
         return jobs.Stepper(self._steps(scene), "Looking at frames")
+
+    def _need_open(self) -> None:
+        """Raises a `Problem` if a layer that gets hidden lines may not be written."""
+        if self.action == "MOVE":
+            layers = st.editable_layers(self._ob, active=False)
+            guard.need_open(gp.find_layer(self._ob, layer.name + hidden.SUFFIX) for layer in layers)
 
     def _steps(self, scene):
         choices = hidden.Choices(closed=self.covers == "CLOSED", by_stroke=self.order == "STROKES")
@@ -72,6 +84,8 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
                 yield (index + 1) / len(self._frames)
 
     def finish(self, context, work) -> str:
+        guard.need_open(gp.find_layer(self._ob, name) for name in {cut.layer for cut in self._cuts if cut.changed})
+        self._need_open()
         drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
         self._ob.data.update_tag()
         return f"{parts} hidden lines on {drawings} drawings" if drawings else "Nothing is hidden"

@@ -19,7 +19,7 @@ class ROTOTOON_OT_apply_motion(Manner, _Content, Reshaping, bpy.types.Operator):
     bl_label = "Apply Motion in Style of…"
     bl_description = (
         "Re-make a motion of the library in another character's style, and make the drawing at the playhead follow it, on "
-        "generated frames after the drawing"
+        "generated frames after the drawing. On hidden layers too, not on locked ones"
     )
     bl_options = {"REGISTER", "UNDO"}
 

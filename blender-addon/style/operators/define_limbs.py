@@ -2,6 +2,8 @@
 
 import bpy
 
+from ...blender import grease_pencil as gp
+from ...blender import guard
 from ...capture import document, identity
 from ...common.operators import Guarded, OnContours
 from .. import limbs
@@ -20,6 +22,7 @@ class ROTOTOON_OT_define_limbs(Guarded, OnContours, bpy.types.Operator):
 
     def run(self, context) -> str:
         ob = context.object
+        guard.need_open([gp.find_layer(ob, limbs.LAYER)])
         limbs.name_lines(ob, context.scene.frame_current, self.point)
         # New strokes get their parts here, since limbs refer to parts by name.
         reading = document.read(ob)

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...blender import guard
 from ...blender.errors import Problem
 from ...common.operators import Guarded, OnContours
 from .. import limbs
@@ -12,6 +13,7 @@ class ROTOTOON_OT_depth_mark(Guarded, OnContours, bpy.types.Operator):
     bl_label = "In Front / Behind"
     bl_description = "Put one part in front of another when the drawing is reshaped. A few such marks are enough for all parts"
     bl_options = {"REGISTER", "UNDO"}
+    changes = guard.SETTINGS
 
     front: bpy.props.StringProperty(name="In Front", description="Name of the part in front")
     behind: bpy.props.StringProperty(name="Behind", description="Name of the part behind it")

@@ -28,8 +28,15 @@ class ROTOTOON_OT_import_motion(Guarded, bpy.types.Operator):
     bl_options = {"REGISTER"}
 
     filepath: bpy.props.StringProperty(name="File", description="A BVH file", subtype="FILE_PATH")
-    directory: bpy.props.StringProperty(subtype="DIR_PATH", options={"HIDDEN"})
-    files: bpy.props.CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
+    directory: bpy.props.StringProperty(
+        name="Folder", description="Folder of several files", subtype="DIR_PATH", options={"HIDDEN"}
+    )
+    files: bpy.props.CollectionProperty(
+        name="Files",
+        description='Several files of the folder, each {"name": file name}',
+        type=bpy.types.OperatorFileListElement,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
     filter_glob: bpy.props.StringProperty(default="*.bvh", options={"HIDDEN"})
     character: bpy.props.StringProperty(
         name="Character", description="The character who moves. If empty, the name of the file's folder"

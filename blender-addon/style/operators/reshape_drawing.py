@@ -11,7 +11,10 @@ from .reshaping_base import Reshaping
 class ROTOTOON_OT_reshape_drawing(Reshaping, bpy.types.Operator):
     bl_idname = "rototoon.reshape_drawing"
     bl_label = "Reshape Drawing"
-    bl_description = "Make the drawing at the playhead follow a clip of the library, on generated frames after the drawing"
+    bl_description = (
+        "Make the drawing at the playhead follow a clip of the library, on generated frames after the drawing. "
+        "On hidden layers too, not on locked ones"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     character: shared("character", names=lambda _self: clip_browser.characters())

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...blender import picture_mesh, picture_source
+from ...blender import guard, picture_mesh, picture_source
 from ...blender.errors import Problem
 from .. import picture_pieces
 from ..clip_library import clips_of, folder_of
@@ -18,6 +18,7 @@ class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
         "is or in another character's style. The result is a mesh with a shape key for each frame. Picture and drawing stay"
     )
     bl_options = {"REGISTER", "UNDO"}
+    changes = guard.SETTINGS
 
     picture: bpy.props.StringProperty(
         name="Picture", description="An image empty, or a plane with an image texture. If empty, the footage"

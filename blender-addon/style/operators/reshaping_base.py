@@ -2,7 +2,8 @@
 
 import bpy
 
-from ...blender import preferences
+from ...blender import guard, preferences
+from ...capture import tracking
 from ...common import jobs
 from ...common.operators import Long, OnContours
 from ...rototoon.style import reshape
@@ -33,6 +34,8 @@ class Reshaping(OnContours, Long):
         further options.
         """
         self._ob = context.object
+        if self.changes == guard.DRAWINGS:
+            guard.need_some(tracking.contour_layers(self._ob), hidden=True)
         self._drawing = drawing = reshaping.begin(self._ob, context.scene.frame_current)
         threads, sub_keys = preferences.threads(), self.sub_keys
         further = more(drawing) if more is not None else {}
@@ -46,6 +49,9 @@ class Reshaping(OnContours, Long):
 
     def finish(self, context, work) -> str:
         """Writes the frames."""
+        layers = tracking.contour_layers(self._ob)
+        guard.need_some(layers, hidden=True)
         frames = reshaping.finish(self._ob, self._drawing, work.result)
+        self.warn(guard.left_out(layers, hidden=True))
         given = ", ".join(f"{entry['part']}: {entry['follows']}" for entry in work.result.given)
         return f"{frames} frames after frame {self._drawing.frame}" + (f"; no limb carries {given}" if given else "")

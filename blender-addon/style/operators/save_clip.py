@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...blender import guard
 from ...capture import document
 from ...common.operators import Guarded, OnContours
 from ...rototoon.style import add_to_library, capture_clip
@@ -15,6 +16,7 @@ class ROTOTOON_OT_save_clip(Guarded, Performance, OnContours, bpy.types.Operator
     bl_label = "Save Clip"
     bl_description = "Save the motion of the tracked contours and their limbs as a skeleton clip in the library"
     bl_options = {"REGISTER"}
+    changes = guard.NOTHING
 
     last: shared("last")
     folder: shared("folder")

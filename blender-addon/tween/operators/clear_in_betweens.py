@@ -3,6 +3,7 @@
 import bpy
 
 from ...blender import grease_pencil as gp
+from ...blender import guard
 from ...blender import strokes as st
 from ...common.operators import Guarded, OnDrawing
 from .. import keys as ks
@@ -26,6 +27,13 @@ class ROTOTOON_OT_clear_in_betweens(Guarded, OnDrawing, bpy.types.Operator):
     )
     layers: bpy.props.EnumProperty(name="Layers", description="On which layers", items=LAYERS, default="ALL")
 
+    @classmethod
+    def lacking(cls, ob, changes: str) -> str:
+        """As `OnDrawing.lacking`. No array is read."""
+        why = super().lacking(ob, changes)
+        handles = (handle for layer in gp.every_layer(ob) for handle, _ in gp.drawings(layer).values()) if not why else ()
+        return why or ("" if any(gp.has(handle, gp.TWEENED) for handle in handles) else "There are no in-betweens")
+
     def run(self, context) -> str:
         ob = context.object
         removed = 0
@@ -37,6 +45,7 @@ class ROTOTOON_OT_clear_in_betweens(Guarded, OnDrawing, bpy.types.Operator):
                 if span is None:
                     continue
             removed += tweening.clear(ob, [layer], *span)
+        self.warn(guard.left_out(st.drawn_layers(ob, self.layers == "ACTIVE")))
         return f"{removed} in-betweens removed" if removed else "There are no in-betweens"
 
 

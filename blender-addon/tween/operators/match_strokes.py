@@ -3,8 +3,8 @@
 import bpy
 import numpy as np
 
+from ...blender import guard, windows
 from ...blender import strokes as st
-from ...blender import windows
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import NAVIGATION, OnDrawing, Reporting
@@ -50,6 +50,7 @@ class ROTOTOON_OT_match_strokes(OnDrawing, Reporting, bpy.types.Operator):
 
     def _begin(self, context) -> None:
         ob = context.object
+        self.warn(guard.left_out(st.drawn_layers(ob, self.layers == "ACTIVE")))
         layers = st.editable_layers(ob, self.layers == "ACTIVE")
         self._pairing = pairing.Pairing(ob, layers, context.scene.frame_current)
         if not len(self._pairing):

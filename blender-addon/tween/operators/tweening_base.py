@@ -2,7 +2,7 @@
 
 
 from ...blender import grease_pencil as gp
-from ...blender import preferences
+from ...blender import guard, preferences
 from ...blender import strokes as st
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
@@ -10,7 +10,7 @@ from .. import keys as ks
 from .. import tweening
 from ..charts import Choices
 
-LAYERS = (("ACTIVE", "Active", "The active layer"), ("ALL", "All", "All layers that are not locked"))
+LAYERS = (("ACTIVE", "Active", "The active layer"), ("ALL", "All", "All layers that are neither locked nor hidden"))
 
 
 class OnKeys(OnDrawing):
@@ -41,6 +41,7 @@ class Tweening(OnKeys, Long):
     def begin(self, context):
         self._ob = context.object
         self._current = context.scene.frame_current
+        self.warn(guard.left_out(st.drawn_layers(self._ob, active=getattr(self, "layers", "ALL") == "ACTIVE")))
         self._plan = tweening.plan(self._ob, self.chosen_layers(context), self.choose)
         if not self._plan.calls and not self._plan.current:
             raise tweening.nothing_to_draw(self._plan)
@@ -56,5 +57,5 @@ class Tweening(OnKeys, Long):
         if done.keys:
             said += f", {done.keys} drawings that you had changed are keys now"
         if self._plan.blank:
-            said += f", {self._plan.blank} spans with a blank key were left out"
+            self.warn(f"{self._plan.blank} spans with a blank key were left out")
         return said

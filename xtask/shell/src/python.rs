@@ -72,7 +72,8 @@ pub fn venv(name: &str, python: &Path, requirements: &[&str]) -> Result<PathBuf>
 }
 
 fn install(python: &Path, interpreter: &Path, requirements: &[&str]) -> Result<()> {
-    let flags = ["install", "--quiet", "--disable-pip-version-check"];
+    // Packages of this size are downloaded once, so pip keeps no second copy of them.
+    let flags = ["install", "--disable-pip-version-check", "--no-cache-dir"];
     if capture(command(interpreter).args(["-m", "pip", "--version"])).is_ok() {
         return run(command(interpreter).args(["-m", "pip"]).args(flags).args(requirements));
     }

@@ -96,6 +96,35 @@ pub(crate) fn assemble(scene: &Scene, tasks: &[Task], done: Vec<Option<(SpanTrac
     tracking
 }
 
+/// Counts the finished steps of one kind that run in parallel.
+pub(crate) struct Steps<'a> {
+    listener: &'a dyn Progress,
+    name: &'static str,
+    all: usize,
+    done: Mutex<usize>,
+}
+
+impl<'a> Steps<'a> {
+    pub fn new(listener: &'a dyn Progress, name: &'static str, all: usize) -> Self {
+        Self { listener, name, all, done: Mutex::new(0) }
+    }
+
+    /// Does one step, and reports before and after it.
+    pub fn step<T, E: From<Cancelled>>(&self, work: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+        self.tell(0)?;
+        let result = work()?;
+        self.tell(1)?;
+        Ok(result)
+    }
+
+    fn tell(&self, more: usize) -> Result<(), Cancelled> {
+        // The listener is called under the lock, so that the reported share never decreases.
+        let mut done = self.done.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        *done += more;
+        self.listener.report(self.name, *done as f64 / self.all.max(1) as f64)
+    }
+}
+
 /// Adds up the progress of jobs that run in parallel. The weight of a job grows with its number of points and frames.
 pub(crate) struct SharedProgress<'a> {
     listener: &'a dyn Progress,

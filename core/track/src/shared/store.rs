@@ -8,6 +8,7 @@ use super::drawings::same_drawing;
 use super::features::Features;
 use super::sought::Sought;
 use crate::contract::error::TrackError;
+use crate::contract::tasks::Steps;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::scene::{FrameNumber, FrameSource, Progress};
 use rototoon_image::flow::{Flow, Pyramid, dense_flow};
@@ -103,10 +104,9 @@ impl Store {
         let Some((first, rest)) = numbers.split_first() else { return Ok(()) };
         let one = self.features(frames, *first)?.bytes();
         let most = BUDGET / 2 / one.max(1);
-        rest[..rest.len().min(most)].par_iter().with_max_len(1).try_for_each(|&frame| {
-            progress.report("Reading frames", 0.0)?;
-            self.features(frames, frame).map(|_| ())
-        })
+        let rest = &rest[..rest.len().min(most)];
+        let steps = Steps::new(progress, "Reading frames", rest.len());
+        rest.par_iter().with_max_len(1).try_for_each(|&frame| steps.step(|| self.features(frames, frame).map(|_| ())))
     }
 
     /// The flow from the drawing of one frame to that of another, in pixels of the level [`FLOW_LEVEL`].

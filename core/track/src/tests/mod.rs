@@ -4,5 +4,6 @@
 mod borders;
 mod memory;
 mod outward;
+mod progress;
 mod rotoscope;
 mod scene;

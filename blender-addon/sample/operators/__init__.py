@@ -1,0 +1,5 @@
+"""The operators of this package, one a file."""
+
+from . import open_sample
+
+CLASSES = open_sample.CLASSES

@@ -1,0 +1,39 @@
+"""Scripting: what scripts need beside the operators, as plain Python functions on objects and NumPy arrays.
+
+    from bl_ext.user_default.rototoon import scripting
+
+    scripting.set_key(ob, 1, {"arm": polygon})        # pixels (N, 2)
+    found = scripting.track(ob)                       # found.lost, found.warnings
+    points = scripting.tracks(ob)["arm"].pixels       # (F, N, 2)
+
+Frames are scene frames. Pixels are those of the footage: x right, y down, the origin at the outer top-left corner of the picture.
+World points are in scene units. Every function takes an object of the current scene, and needs no active object and no window.
+
+Where an operator would report an error, a function raises `RuntimeError` with the same text, and nothing has changed. `keys` writes
+keys, `reading` reads contours, `work` tracks. `take_reports` gives what operators said.
+
+May import: `rototoon`, `blender`, `common`, `capture`.
+"""
+
+from ..common.reports import Report
+from ..common.reports import take as take_reports
+from .keys import set_key
+from .reading import End, Part, Track, ends, lost_frames, parts, tracks, wanted_keys, weakest_frame
+from .work import Tracked, track
+
+__all__ = [
+    "End",
+    "Part",
+    "Report",
+    "Track",
+    "Tracked",
+    "ends",
+    "lost_frames",
+    "parts",
+    "set_key",
+    "take_reports",
+    "track",
+    "tracks",
+    "wanted_keys",
+    "weakest_frame",
+]

@@ -1,0 +1,97 @@
+"""The first panel: the steps of the work, which tick themselves, and the button for the next one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+
+from ..blender import grease_pencil as gp
+from ..capture import stand
+from .panel import Panel
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step of the work and the button that does it."""
+
+    done: bool
+    text: str
+    operator: str
+    icon: str
+    hint: str = ""
+    """What the artist does with the button or beside it."""
+
+
+def steps_of(ob) -> list[Step]:
+    """The steps of the work on an object; `None` is for no object."""
+    now = stand.of(ob) if ob is not None else stand.Stand()
+    keys = len(now.keys)
+    return [
+        Step(now.footage, "Choose footage", "rototoon.setup", "FILE_FOLDER"),
+        Step(keys > 0, "Draw contours", "rototoon.draw_contours", "GREASEPENCIL", "One closed line around each part"),
+        Step(
+            keys > 1 or (keys > 0 and now.tracked > 0),
+            "Set a second key",
+            "rototoon.new_key",
+            "KEY_HLT",
+            "First go to a later frame. After it, fit the lines in Edit Mode",
+        ),
+        Step(now.tracked > 0, "Track", "rototoon.track", "TRACKING_FORWARDS"),
+        _correction(now),
+        Step(now.snapped, "Snap to the ink", "rototoon.snap", "SNAP_ON"),
+    ]
+
+
+def _correction(now: stand.Stand) -> Step:
+    if now.moved:
+        return Step(False, "Correct", "rototoon.track", "TRACKING_FORWARDS", "You moved points. Track again, and the frames beside follow")
+    done = now.corrected or (now.snapped and now.tracked > 0)
+    hint = "In Edit Mode, press 2 and click a line that is off. Move it (G), turn it (R), then Track"
+    return Step(done, "Correct", "rototoon.weakest_frame", "FRAME_NEXT", hint)
+
+
+def next_of(steps: list[Step]) -> Step | None:
+    """The first step that is not done."""
+    return next((step for step in steps if not step.done), None)
+
+
+class ROTOTOON_PT_start(Panel, bpy.types.Panel):
+    bl_idname = "ROTOTOON_PT_start"
+    bl_label = "Steps"
+    page = "artist/tutorial.html"
+
+    def draw(self, context):
+        layout, ob = self.layout, context.object if gp.is_drawing(context.object) else None
+        steps = steps_of(ob)
+        following = next_of(steps)
+        column = layout.column(align=True)
+        for step in steps:
+            icon = "CHECKBOX_HLT" if step.done else "RIGHTARROW" if step is following else "CHECKBOX_DEHLT"
+            row = column.row()
+            row.active = step is following or not step.done
+            row.label(text=step.text, icon=icon)
+        if following is None:
+            layout.label(text="All steps are done", icon="CHECKMARK")
+            return
+        column = layout.column(align=True)
+        row = column.row()
+        row.scale_y = 1.5
+        row.operator(following.operator, icon=following.icon)
+        if not steps[0].done:
+            column.operator("rototoon.open_sample", icon="OUTLINER_OB_IMAGE")
+        if following.hint:
+            wrapped(layout, following.hint)
+
+
+def wrapped(layout, text: str, width: int = 34) -> None:
+    """A text as lines of labels."""
+    column, line = layout.column(align=True), ""
+    for word in [*text.split(), ""]:
+        if not word or (line and len(line) + len(word) >= width):
+            column.label(text=line)
+            line = ""
+        line = f"{line} {word}".strip()
+
+
+CLASSES = (ROTOTOON_PT_start,)
