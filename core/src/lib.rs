@@ -7,6 +7,7 @@
 //! | [`numeric`], [`geometry`], [`curve`], [`scene`] | `rototoon-base` | what all stages share |
 //! | [`image`] | `rototoon-image` | pictures from files, filters, optical flow |
 //! | [`fit`] | `rototoon-fit` | quadratic B-splines from points |
+//! | [`lines`] | `rototoon-lines` | drawn lines as strokes, the same on all frames |
 //! | [`track`] | `rototoon-track` | contours from key frames to every frame |
 //! | [`snap`] | `rototoon-snap` | tracked contours onto the drawn ink |
 //! | [`tween`] | `rototoon-tween` | matched strokes, in-betweens, hidden lines |
@@ -78,6 +79,7 @@ pub use rototoon_document as project;
 pub use rototoon_exchange::{export, import};
 pub use rototoon_fit as fit;
 pub use rototoon_image as image;
+pub use rototoon_lines as lines;
 pub use rototoon_render as render;
 pub use rototoon_reshape as reshape;
 pub use rototoon_snap as snap;

@@ -9,14 +9,16 @@ pub mod memory;
 mod reshape;
 pub mod spans;
 mod style;
+mod trace;
 mod tween;
 
 pub use check::{check, drawing_problems};
 pub use reshape::{Given, ReshapeJob, Reshaped, reshape};
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
+pub use trace::trace;
 pub use tween::{captured, pegs_of, spacing_of, tween};
 
-use crate::export::{self, SvgOptions, svg};
+use crate::export::{self, SvgOptions, svg_with_strokes};
 use crate::fit::{self, FitError};
 use crate::geometry::Point;
 use crate::image::Sequence;
@@ -338,9 +340,13 @@ fn indices(scene: &Scene, names: &[String]) -> Result<Vec<usize>, PipelineError>
     names.iter().map(index).collect()
 }
 
-/// Exports the document as an animated SVG.
-pub fn export_svg(document: &Document, options: &SvgOptions) -> String {
-    svg(&document.scene, options)
+/// Exports the document as an animated SVG: its parts, and its traced strokes over them.
+///
+/// # Errors
+///
+/// [`PipelineError::Request`] if the field `traced` cannot be read.
+pub fn export_svg(document: &Document, options: &SvgOptions) -> Result<String, PipelineError> {
+    Ok(svg_with_strokes(&document.scene, &trace::strokes_to_export(document)?, options))
 }
 
 /// Exports the document as a RotoPaint node for Nuke. Points of snapped paths are about `spacing` pixels apart.

@@ -15,6 +15,8 @@ pub enum Kind {
     Track,
     /// Snaps contours to the ink.
     Snap,
+    /// Traces drawn lines as strokes.
+    Trace,
     /// Makes in-betweens.
     Tween,
     /// Draws pictures.
@@ -24,10 +26,11 @@ pub enum Kind {
 }
 
 /// Each kind with its subcommand and the document that it writes; those without one need `to` or write nothing.
-const KINDS: [(Kind, &str, Option<&str>); 6] = [
+const KINDS: [(Kind, &str, Option<&str>); 7] = [
     (Kind::Check, "check", None),
     (Kind::Track, "track", Some("tracked.json")),
     (Kind::Snap, "snap", Some("snapped.json")),
+    (Kind::Trace, "trace", Some("traced.json")),
     (Kind::Tween, "tween", Some("tweened.json")),
     (Kind::Render, "render", None),
     (Kind::Export, "export", None),
@@ -80,7 +83,7 @@ impl Step {
 
     /// Whether it writes a document that later steps read.
     pub fn writes_document(&self) -> bool {
-        matches!(self.kind, Kind::Track | Kind::Snap | Kind::Tween)
+        matches!(self.kind, Kind::Track | Kind::Snap | Kind::Trace | Kind::Tween)
     }
 
     /// The words of the command that reads `document`. The output's name gets `prefix` before it.
@@ -100,7 +103,7 @@ fn output(kind: Kind, default: Option<&str>, to: Option<&Value>) -> Result<Optio
         Kind::Check => return Ok(None),
         Kind::Render => "matte_%04d.exr",
         Kind::Export => "shapes.svg",
-        Kind::Track | Kind::Snap | Kind::Tween => "result.json",
+        Kind::Track | Kind::Snap | Kind::Trace | Kind::Tween => "result.json",
     };
     let Some(name) = to.map_or(default, Value::as_str) else {
         return Err(format!("to: expected the name of what is written, such as {example:?}"));

@@ -37,7 +37,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let text = match extension.as_str() {
         "nk" => pipeline::export_nuke(&document, spacing),
         "fxs" => pipeline::export_silhouette(&document, spacing),
-        _ => pipeline::export_svg(&document, &SvgOptions { motion, spacing }),
+        _ => pipeline::export_svg(&document, &SvgOptions { motion, spacing })?,
     };
     Ok(write_whole(to, text.as_bytes())?)
 }

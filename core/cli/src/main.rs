@@ -4,7 +4,7 @@
 //! - [`project`]: reads and writes documents
 //! - [`progress`]: threads, the progress bar, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
-//! - [`track`], [`snap`], [`render`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`]: the
+//! - [`track`], [`snap`], [`trace`], [`render`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`]: the
 //!   subcommands
 //! - [`usage`]: the memory that the program took
 //!
@@ -25,6 +25,7 @@ mod project;
 mod render;
 mod snap;
 mod style;
+mod trace;
 mod track;
 mod tween;
 mod usage;
@@ -37,10 +38,11 @@ use std::process::ExitCode;
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 /// Each subcommand with the function that runs it.
-fn subcommands() -> [(Command, Run); 11] {
+fn subcommands() -> [(Command, Run); 12] {
     [
         (track::command(), track::run),
         (snap::command(), snap::run),
+        (trace::command(), trace::run),
         (render::command(), render::run),
         (export::command(), export::run),
         (import::command(), import::run),

@@ -10,6 +10,7 @@
 //! - [`load`], [`save`]: documents from and to files
 //! - [`validate`]: what a document must hold beyond being well-formed
 //! - [`drawings`]: drawings on key frames, pairs, pegs and in-betweens
+//! - [`traced`]: strokes that tracing found on every frame
 //! - [`limbs`]: limbs on contours, swapped sides, which part is in front
 //! - [`curves`]: files of curves to fit
 //! - [`clips`], `plain_clips`: files of skeleton clips, and the quick way to read and write them
@@ -58,6 +59,7 @@ pub mod problem;
 pub mod save;
 pub mod schema;
 mod shape;
+pub mod traced;
 pub mod unfinished;
 pub mod validate;
 

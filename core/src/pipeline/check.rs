@@ -47,12 +47,15 @@ fn shape(footage: &Footage, problems: &mut Problems) {
     }
 }
 
-/// All problems of a document's drawings, pairs and pegs. Invalid fields come first. Only if all fields are valid,
+/// All problems of a document's drawings, pairs, pegs and traced strokes. Invalid fields come first. Only if all fields are valid,
 /// tweening's further conditions are checked.
 pub fn drawing_problems(document: &Document) -> Problems {
     let mut problems = Problems::default();
     let (read, wrong) = document.drawings_and_problems();
     for error in &wrong {
+        problems.error(&*error.place, format!("found {}, expected {}", error.found, error.expected));
+    }
+    if let Err(error) = document.traced() {
         problems.error(&*error.place, format!("found {}, expected {}", error.found, error.expected));
     }
     if wrong.is_empty() {

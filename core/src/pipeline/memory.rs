@@ -14,6 +14,8 @@ const RENDER: u64 = 70;
 const RENDER_PART: u64 = 8;
 /// Bytes for each pixel of the pictures that tracking or snapping holds at once.
 const FOLLOW: u64 = 45;
+/// Bytes for each pixel of the two pictures that tracing holds at once.
+const TRACE: u64 = 120;
 
 /// Number of frames, at most `threads`, that can be rendered at the same time.
 ///
@@ -39,6 +41,15 @@ pub fn frames_at_once(
 /// [`PipelineError::Memory`].
 pub fn to_follow(footage: &Footage) -> Result<(), PipelineError> {
     ask(footage, pixels(footage).saturating_mul(FOLLOW))
+}
+
+/// Checks that there is memory to trace the pictures of a footage.
+///
+/// # Errors
+///
+/// [`PipelineError::Memory`].
+pub fn to_trace(footage: &Footage) -> Result<(), PipelineError> {
+    ask(footage, pixels(footage).saturating_mul(TRACE))
 }
 
 fn pixels(footage: &Footage) -> u64 {

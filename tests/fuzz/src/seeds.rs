@@ -56,7 +56,11 @@ fn made(target: &str) -> Vec<Vec<u8>> {
         "image_png" => ImageFormat::Png,
         "image_tiff" => ImageFormat::Tiff,
         "image_webp" => ImageFormat::WebP,
-        "svg" => return exported(|document| export_svg(document, &SvgOptions::default())),
+        "svg" => {
+            return exported(|document| {
+                export_svg(document, &SvgOptions::default()).expect("seeds have no traced strokes")
+            });
+        }
         "silhouette" => return exported(|document| export_silhouette(document, 2.0)),
         _ => return (1..=8).map(noise).collect(),
     };

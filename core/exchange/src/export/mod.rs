@@ -1,6 +1,6 @@
 //! Exports the tracked parts to other programs.
 //!
-//! - [`svg`](mod@svg): one animated path for each part
+//! - [`svg`](mod@svg): one animated path for each part and each stroke
 //! - [`nuke`](mod@nuke): a RotoPaint node for Nuke
 //! - [`silhouette`](mod@silhouette): Silhouette shapes
 //! - [`outlines`]: contours with the same number of points on every frame
@@ -14,7 +14,7 @@ pub mod xml;
 
 pub use nuke::nuke;
 pub use silhouette::silhouette;
-pub use svg::{Motion, SvgOptions, svg};
+pub use svg::{Motion, SvgOptions, SvgStroke, svg, svg_with_strokes};
 
 use rototoon_base::scene::Scene;
 

@@ -8,8 +8,10 @@
 use super::outlines::Outlines;
 use super::xml::escaped;
 use rototoon_base::geometry::Point;
+use rototoon_base::geometry::polyline::resample;
 use rototoon_base::scene::palette;
-use rototoon_base::scene::{FrameNumber, Scene};
+use rototoon_base::scene::{Colour, FrameNumber, Scene};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Motion of a path between two frames.
@@ -52,8 +54,29 @@ const LINE_WIDTH: f64 = 2.0;
 /// Opacity of fills, low enough to show what is behind a part.
 const FILL_OPACITY: f64 = 0.35;
 
+/// A stroke on several frames.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SvgStroke {
+    /// Its number.
+    pub track: usize,
+    /// Its points on each frame, in pixels of the footage.
+    pub points: BTreeMap<FrameNumber, Vec<Point>>,
+    /// Whether the last point joins the first.
+    pub closed: bool,
+    /// Its width in pixels.
+    pub width: f64,
+    /// Its colour, sRGB-encoded, 0 to 1.
+    pub colour: Colour,
+}
+
 /// The scene as an SVG document, in pixels of the footage.
 pub fn svg(scene: &Scene, options: &SvgOptions) -> String {
+    svg_with_strokes(scene, &[], options)
+}
+
+/// The scene and strokes over it as an SVG document, in pixels of the footage. Each stroke is a path with the id
+/// `stroke-` and its number.
+pub fn svg_with_strokes(scene: &Scene, strokes: &[SvgStroke], options: &SvgOptions) -> String {
     let footage = &scene.footage;
     let (width, height) = (footage.width, footage.height);
     let mut out = format!(
@@ -64,28 +87,52 @@ pub fn svg(scene: &Scene, options: &SvgOptions) -> String {
     let mut order: Vec<usize> = (0..scene.parts.len()).collect();
     order.sort_by(|&a, &b| scene.parts[a].depth.total_cmp(&scene.parts[b].depth));
     for index in order {
-        path(&mut out, scene, index, options);
+        part(&mut out, scene, index, options);
+    }
+    for drawn in strokes {
+        stroke(&mut out, scene, drawn, options);
     }
     out + "</g>\n</svg>\n"
 }
 
-fn path(out: &mut String, scene: &Scene, index: usize, options: &SvgOptions) {
+fn part(out: &mut String, scene: &Scene, index: usize, options: &SvgOptions) {
     let part = &scene.parts[index];
-    let frames: Vec<FrameNumber> = (scene.footage.first..=scene.footage.last).collect();
     let outlines = Outlines::new(part, options.spacing);
-    let shape = |&frame: &FrameNumber| Some(data(&outlines.at(frame)?, part.closed));
-    let shapes: Vec<Option<String>> = frames.iter().map(shape).collect();
-    let Some(start) = shapes.iter().flatten().next().cloned() else { return };
+    let shape = |frame: FrameNumber| Some(data(&outlines.at(frame)?, part.closed));
     let colour = palette::hex(palette::distinct(index));
     let fill = if part.closed { colour.as_str() } else { "none" };
-    let _ = writeln!(
-        out,
-        "<path id=\"part-{index}\" fill=\"{fill}\" fill-opacity=\"{FILL_OPACITY}\" stroke=\"{colour}\" d=\"{start}\">\n<title>{}</title>",
-        escaped(&part.name)
-    );
-    let seconds = frames.len() as f64 / scene.footage.fps;
+    let style = format!("id=\"part-{index}\" fill=\"{fill}\" fill-opacity=\"{FILL_OPACITY}\" stroke=\"{colour}\"");
+    path(out, scene, &style, &escaped(&part.name), options.motion, shape);
+}
+
+fn stroke(out: &mut String, scene: &Scene, stroke: &SvgStroke, options: &SvgOptions) {
+    // The same number of points on every frame, as for parts.
+    let most = stroke.points.values().map(Vec::len).max().unwrap_or(0);
+    let shape = |frame: FrameNumber| {
+        let points = stroke.points.get(&frame).filter(|points| !points.is_empty())?;
+        let even = if points.len() == most { points.clone() } else { resample(points, stroke.closed, most) };
+        Some(data(&even, stroke.closed))
+    };
+    let (track, colour, width) = (stroke.track, palette::hex(stroke.colour), decimal(stroke.width, 2));
+    let style = format!("id=\"stroke-{track}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"");
+    path(out, scene, &style, &format!("stroke {track}"), options.motion, shape);
+}
+
+/// A path with its title and its animation. `shape` gives its data on a frame.
+fn path(
+    out: &mut String,
+    scene: &Scene,
+    style: &str,
+    title: &str,
+    motion: Motion,
+    shape: impl Fn(FrameNumber) -> Option<String>,
+) {
+    let shapes: Vec<Option<String>> = (scene.footage.first..=scene.footage.last).map(shape).collect();
+    let Some(start) = shapes.iter().flatten().next().cloned() else { return };
+    let _ = writeln!(out, "<path {style} d=\"{start}\">\n<title>{title}</title>");
+    let seconds = shapes.len() as f64 / scene.footage.fps;
     let filled = nearest(&shapes, &start);
-    animate(out, "d", seconds, options.motion, &filled);
+    animate(out, "d", seconds, motion, &filled);
     let visible: Vec<_> = shapes.iter().map(|shape| if shape.is_some() { "visible" } else { "hidden" }).collect();
     if visible.contains(&"hidden") {
         animate(out, "visibility", seconds, Motion::Hold, &visible);
@@ -157,7 +204,6 @@ fn decimal(value: f64, digits: i32) -> f64 {
 mod tests {
     use super::*;
     use rototoon_base::scene::{Footage, Part};
-    use std::collections::BTreeMap;
 
     fn scene() -> Scene {
         let at = |x: f64| vec![Point::new(x, 0.0), Point::new(x + 8.0, 0.0), Point::new(x, 8.0)];
@@ -212,6 +258,20 @@ mod tests {
             attribute(&text, "values")[0].split(';').map(|value| value.split([' ', 'L']).count()).collect();
         assert_eq!(lengths.len(), 3, "{text}");
         assert!(lengths[0] > 60 && lengths.iter().all(|length| *length == lengths[0]), "{lengths:?}");
+    }
+
+    #[test]
+    fn a_stroke_is_a_path_that_is_hidden_where_it_is_not() {
+        let at = |x: f64, count: usize| (0..count).map(|k| Point::new(x + k as f64, 5.0)).collect::<Vec<_>>();
+        let points = BTreeMap::from([(1, at(0.0, 2)), (2, at(3.0, 4))]);
+        let stroke = SvgStroke { track: 7, points, closed: false, width: 2.5, colour: [1.0, 0.0, 0.0] };
+        let bare = Scene { parts: Vec::new(), ..scene() };
+        let text = svg_with_strokes(&bare, &[stroke], &SvgOptions::default());
+        assert!(text.contains("id=\"stroke-7\" fill=\"none\" stroke=\"#ff0000\" stroke-width=\"2.5\""), "{text}");
+        let values = attribute(&text, "values");
+        assert_eq!(values[1], "hidden;visible;hidden");
+        let counts: Vec<usize> = values[0].split(';').map(|d| d.split([' ', 'L']).count()).collect();
+        assert!(counts.iter().all(|count| *count == counts[0]), "{values:?}");
     }
 
     #[test]

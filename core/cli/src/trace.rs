@@ -1,0 +1,75 @@
+//! `rototoon trace`: line drawings as strokes, the same on every frame.
+
+use crate::failure::Failure;
+use crate::{arguments, progress, project, render};
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{Arg, ArgMatches, Command};
+use rototoon::lines::{Options, Style};
+use rototoon::pipeline;
+use rototoon::project::output::check_writable;
+use rototoon::scene::FrameNumber;
+use rototoon::scene::parameters::Stage;
+use std::ops::RangeInclusive;
+
+/// The subcommand.
+pub fn command() -> Command {
+    let styles = PossibleValuesParser::new([
+        PossibleValue::new("auto").help("Found from each drawing"),
+        PossibleValue::new("clean").help("Each line is drawn once"),
+        PossibleValue::new("rough").help("Lines are sketched with several strokes of the pencil, which become one"),
+    ]);
+    Command::new("trace")
+        .about(
+            "Traces the lines of the first drawing as strokes and carries them to every frame. Strokes in the document's \
+             drawings are followed instead",
+        )
+        .arg(arguments::project())
+        .arg(arguments::output("OUT", "The document to write, with traced strokes"))
+        .arg(
+            Arg::new("frames")
+                .long("frames")
+                .value_name("A-B")
+                .help("First and last frame, or one frame [default: all frames of the footage]")
+                .allow_hyphen_values(true)
+                .value_parser(render::range),
+        )
+        .arg(
+            Arg::new("line_style")
+                .long("style")
+                .help("The kind of drawing")
+                .default_value("auto")
+                .value_parser(styles),
+        )
+        .arg(
+            Arg::new("sensitivity")
+                .long("sensitivity")
+                .value_name("NUMBER")
+                .help("Sensitivity to faint ink, from 0.1 to 10: with 2, ink may be half as dark as usual")
+                .default_value("1")
+                .value_parser(|text: &str| match text.parse::<f64>() {
+                    Ok(value) if (0.1..=10.0).contains(&value) => Ok(value),
+                    _ => Err("expected a number from 0.1 to 10"),
+                }),
+        )
+        .args(arguments::of_stage(Stage::Run))
+}
+
+/// Runs the subcommand.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
+    let mut document = project::load(from)?;
+    project::inputs(&document, from).check(to)?;
+    check_writable(to)?;
+    let style = match arguments::choice(given, "line_style") {
+        "clean" => Style::Clean,
+        "rough" => Style::Rough,
+        _ => Style::Auto,
+    };
+    let sensitivity = given.get_one::<f64>("sensitivity").copied().unwrap_or(1.0);
+    let frames = given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned();
+    let document = progress::run(arguments::threads(given), |bar| {
+        pipeline::trace(&mut document, project::folder(from), frames, &Options { style, sensitivity }, bar)?;
+        Ok(document)
+    })?;
+    project::save(document, from, to)
+}

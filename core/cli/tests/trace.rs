@@ -1,0 +1,123 @@
+//! Tests of `rototoon trace` from the command line.
+
+use image::{ImageBuffer, Rgb};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A cross and a ring that move 4 px to the right on each of four frames, as footage of a document with these fields.
+fn project(fields: Value) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    for frame in 0..4u32 {
+        let picture = ImageBuffer::from_fn(160, 120, |x, y| {
+            let (x, y) = (f64::from(x) + 0.5 - 4.0 * f64::from(frame), f64::from(y) + 0.5);
+            let bar = (y - 60.0).abs() < 1.5 && (20.0..90.0).contains(&x);
+            let post = (x - 50.0).abs() < 1.5 && (20.0..100.0).contains(&y);
+            let ring = ((x - 110.0).hypot(y - 40.0) - 15.0).abs() < 1.5;
+            Rgb([if bar || post || ring { 20u8 } else { 250 }; 3])
+        });
+        picture.save(folder.path().join(format!("f_{frame:03}.png"))).unwrap();
+    }
+    let footage = json!({"pattern": "f_%03d.png", "first": 0, "last": 3, "fps": 12, "width": 160, "height": 120});
+    let mut document = json!({"rototoon": 1, "footage": footage, "parts": [], "note": "kept"});
+    document.as_object_mut().unwrap().extend(fields.as_object().unwrap().clone());
+    let path = folder.path().join("project.json");
+    fs::write(&path, document.to_string()).unwrap();
+    (folder, path)
+}
+
+fn trace(from: &Path, to: &Path, more: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_rototoon")).arg("trace").arg(from).arg("-o").arg(to).args(more).output().unwrap()
+}
+
+fn read(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// The numbers of the strokes on each frame, ascending.
+fn numbers(document: &Value) -> Vec<(i64, Vec<u64>)> {
+    let drawings = document["traced"].as_array().unwrap().iter();
+    drawings
+        .map(|drawing| {
+            let strokes = drawing["strokes"].as_array().unwrap().iter();
+            let mut numbers: Vec<u64> = strokes.map(|stroke| stroke["track"].as_u64().unwrap()).collect();
+            numbers.sort_unstable();
+            (drawing["frame"].as_i64().unwrap(), numbers)
+        })
+        .collect()
+}
+
+#[test]
+fn three_lines_are_the_same_three_strokes_on_every_frame() {
+    let (folder, path) = project(json!({}));
+    let out = folder.path().join("traced.json");
+    let output = trace(&path, &out, &[]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let document = read(&out);
+    assert_eq!(document["note"], "kept");
+    let expected: Vec<(i64, Vec<u64>)> = (0..4).map(|frame| (frame, vec![0, 1, 2])).collect();
+    assert_eq!(numbers(&document), expected);
+    for drawing in document["traced"].as_array().unwrap() {
+        for stroke in drawing["strokes"].as_array().unwrap() {
+            let count = stroke["points"].as_array().unwrap().len();
+            assert_eq!(stroke["widths"].as_array().unwrap().len(), count);
+            assert_eq!(stroke["colour"].as_array().unwrap().len(), 3);
+        }
+    }
+    let again = folder.path().join("again.json");
+    assert!(trace(&path, &again, &["--threads", "1"]).status.success());
+    assert_eq!(fs::read(&out).unwrap(), fs::read(&again).unwrap(), "one thread gives the same bytes");
+}
+
+#[test]
+fn drawn_strokes_are_kept_and_followed_both_ways() {
+    let post = json!({"points": [[58, 20], [58, 100]], "closed": false});
+    let drawings = json!([{"frame": 2, "strokes": [post]}]);
+    let (folder, path) = project(json!({"drawings": drawings}));
+    let out = folder.path().join("traced.json");
+    assert!(trace(&path, &out, &[]).status.success());
+    let document = read(&out);
+    assert_eq!(document["drawings"], drawings);
+    let own = &document["traced"][2]["strokes"];
+    assert_eq!(own.as_array().unwrap().len(), 1, "the artist's frame is as it was drawn");
+    assert_eq!(own[0]["points"], json!([[58.0, 20.0], [58.0, 100.0]]));
+    for (frame, numbers) in numbers(&document) {
+        assert_eq!(numbers[0], 0, "frame {frame}");
+        let strokes = document["traced"][frame as usize]["strokes"].as_array().unwrap();
+        let stroke = strokes.iter().find(|stroke| stroke["track"] == 0).unwrap();
+        let middle = 50.0 + 4.0 * frame as f64;
+        let far = |p: &Value| (p[0].as_f64().unwrap() - middle).abs();
+        assert!(stroke["points"].as_array().unwrap().iter().all(|p| far(p) < 2.0), "frame {frame}: {stroke}");
+    }
+}
+
+#[test]
+fn a_range_is_traced_and_earlier_results_beside_it_stay() {
+    let earlier = json!([{"frame": 0, "strokes": [{"track": 7, "points": [[1, 1], [9, 9]], "closed": false}]},
+        {"frame": 2, "strokes": []}]);
+    let (folder, path) = project(json!({"traced": earlier}));
+    let out = folder.path().join("traced.json");
+    assert!(trace(&path, &out, &["--frames", "2-3"]).status.success());
+    let found = numbers(&read(&out));
+    assert_eq!(found[0], (0, vec![7]));
+    assert_eq!(found[1..].iter().map(|f| f.0).collect::<Vec<_>>(), [2, 3]);
+    assert!(found[1].1.len() == 3 && found[1].1.iter().all(|n| *n != 7), "a number means one stroke: {found:?}");
+}
+
+#[test]
+fn what_is_wrong_is_said_and_nothing_is_written() {
+    let (folder, path) = project(json!({}));
+    let out = folder.path().join("traced.json");
+    let said = |more: &[&str], status: i32| {
+        let output = trace(&path, &out, more);
+        assert_eq!(output.status.code(), Some(status));
+        assert!(!out.exists());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(said(&["--frames", "2-9"], 2).contains("frames 2 to 9: expected frames of the footage, 0 to 3"));
+    assert!(said(&["--style", "messy"], 2).contains("messy"));
+    assert!(said(&["--sensitivity", "0"], 2).contains("expected a number from 0.1 to 10"));
+    fs::remove_file(folder.path().join("f_001.png")).unwrap();
+    assert!(said(&[], 1).contains("f_001.png"));
+}

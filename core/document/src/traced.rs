@@ -1,0 +1,196 @@
+//! Strokes that tracing found on the drawings of a footage.
+//!
+//! ```json
+//! "traced": [{"frame": 0, "strokes": [{"track": 0, "points": [[x, y], "…"], "closed": false, "widths": [2.5, "…"],
+//!   "colour": [r, g, b]}, "…"]}, "…"]
+//! ```
+//!
+//! - Frames ascend. `track` is the number of a stroke, the same on all frames; on one frame each number occurs once.
+//! - `widths` has one width in pixels for each point. `widths` and `colour` (sRGB, 0 to 1) are optional.
+
+use super::Document;
+use super::drawings::lines;
+use super::fields::{FieldError, array, count, flag, frame, given, number, object, point, wrong};
+use super::save::DECIMALS;
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Colour, FrameNumber};
+use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
+
+/// A stroke on one frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TracedStroke {
+    /// Its number on all frames.
+    pub track: usize,
+    /// Points in pixels.
+    pub points: Vec<Point>,
+    /// Whether the last point joins the first.
+    pub closed: bool,
+    /// Width in pixels at each point; may be empty.
+    pub widths: Vec<f64>,
+    /// Colour, sRGB-encoded, 0 to 1.
+    pub colour: Option<Colour>,
+}
+
+/// The strokes of one frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TracedDrawing {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// Strokes from back to front.
+    pub strokes: Vec<TracedStroke>,
+}
+
+impl Document {
+    /// The traced strokes of the document; empty if it has none.
+    ///
+    /// # Errors
+    ///
+    /// The first invalid field.
+    pub fn traced(&self) -> Result<Vec<TracedDrawing>, FieldError> {
+        let list = self.other_list("traced")?;
+        let mut drawings: Vec<TracedDrawing> = Vec::new();
+        for (k, value) in list.iter().enumerate() {
+            let drawing = drawing(value, k)?;
+            if let Some(last) = drawings.last().filter(|last| last.frame >= drawing.frame) {
+                let expected = format!("more than {}, that of traced[{}]", last.frame, k - 1);
+                return Err(wrong(&format!("traced[{k}].frame"), &drawing.frame.to_string(), &expected));
+            }
+            drawings.push(drawing);
+        }
+        Ok(drawings)
+    }
+
+    /// Puts traced strokes into the document, in place of earlier ones.
+    pub fn set_traced(&mut self, drawings: &[TracedDrawing]) {
+        let written = drawings.iter().map(|drawing| {
+            let strokes: Vec<Value> = drawing.strokes.iter().map(written).collect();
+            json!({"frame": drawing.frame, "strokes": strokes})
+        });
+        self.set_other_field("traced", lines(written));
+    }
+}
+
+fn drawing(value: &Value, k: usize) -> Result<TracedDrawing, FieldError> {
+    let place = format!("traced[{k}]");
+    let fields = object(value, &place)?;
+    let on = frame(fields.get("frame"), &format!("{place}.frame"))?;
+    let place = format!("{place} (frame {on})");
+    let list = array(fields.get("strokes"), &format!("{place}.strokes"))?;
+    let mut tracks = BTreeSet::new();
+    let read = |(i, value): (usize, &Value)| {
+        let place = format!("{place}.strokes[{i}]");
+        let stroke = stroke(value, &place)?;
+        match tracks.insert(stroke.track) {
+            true => Ok(stroke),
+            false => Err(wrong(&format!("{place}.track"), &stroke.track.to_string(), "a number once on a frame")),
+        }
+    };
+    Ok(TracedDrawing { frame: on, strokes: list.iter().enumerate().map(read).collect::<Result<_, _>>()? })
+}
+
+fn stroke(value: &Value, place: &str) -> Result<TracedStroke, FieldError> {
+    let fields = object(value, place)?;
+    let each = |name: &str| Ok((format!("{place}.{name}"), array(fields.get(name), &format!("{place}.{name}"))?));
+    let (at, list) = each("points")?;
+    let points: Vec<Point> =
+        list.iter().enumerate().map(|(i, v)| point(Some(v), &format!("{at}[{i}]"))).collect::<Result<_, _>>()?;
+    let mut widths = Vec::new();
+    if fields.contains_key("widths") {
+        let (at, list) = each("widths")?;
+        widths =
+            list.iter().enumerate().map(|(i, v)| number(Some(v), &format!("{at}[{i}]"))).collect::<Result<_, _>>()?;
+        if widths.len() != points.len() {
+            return Err(wrong(&at, &format!("a list of {}", widths.len()), &format!("a list of {}", points.len())));
+        }
+    }
+    Ok(TracedStroke {
+        track: count(fields.get("track"), &format!("{place}.track"))?,
+        points,
+        closed: flag(fields.get("closed"), &format!("{place}.closed"))?,
+        widths,
+        colour: given(fields, place, "colour", colour)?,
+    })
+}
+
+fn colour(value: Option<&Value>, place: &str) -> Result<Colour, FieldError> {
+    let list = array(value, place)?;
+    if list.len() != 3 {
+        return Err(wrong(place, &format!("a list of {}", list.len()), "a list of 3"));
+    }
+    let mut colour = [0.0; 3];
+    for (k, channel) in colour.iter_mut().enumerate() {
+        *channel = number(list.get(k), &format!("{place}[{k}]"))? as f32;
+    }
+    Ok(colour)
+}
+
+fn written(stroke: &TracedStroke) -> Value {
+    let rounded = |v: f64| (v * 10f64.powi(DECIMALS)).round() / 10f64.powi(DECIMALS);
+    let mut fields = Map::new();
+    fields.insert("track".into(), json!(stroke.track));
+    let points: Vec<Value> = stroke.points.iter().map(|p| json!([rounded(p.x), rounded(p.y)])).collect();
+    fields.insert("points".into(), Value::Array(points));
+    fields.insert("closed".into(), json!(stroke.closed));
+    if !stroke.widths.is_empty() {
+        fields.insert("widths".into(), json!(stroke.widths.iter().map(|&w| rounded(w)).collect::<Vec<_>>()));
+    }
+    if let Some(colour) = stroke.colour {
+        fields.insert("colour".into(), json!(colour.map(|c| (f64::from(c) * 1e4).round() / 1e4)));
+    }
+    Value::Object(fields)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn document(traced: &str) -> Document {
+        let text = format!(
+            r#"{{"rototoon": 1, "footage": {{"pattern": "f_%d.png", "first": 0, "last": 9, "fps": 24, "width": 64,
+            "height": 48}}, "parts": [], "note": 1, "traced": {traced}}}"#
+        );
+        Document::parse(&text, "a.json").unwrap()
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let stroke = TracedStroke {
+            track: 3,
+            points: vec![Point::new(1.5, 2.0), Point::new(7.25, 2.0)],
+            closed: false,
+            widths: vec![2.0, 2.5],
+            colour: Some([0.0, 0.5, 1.0]),
+        };
+        let outline = TracedStroke { track: 0, points: vec![Point::ONE; 3], closed: true, ..stroke.clone() };
+        let outline = TracedStroke { widths: Vec::new(), colour: None, ..outline };
+        let drawings = [
+            TracedDrawing { frame: -2, strokes: vec![stroke, outline] },
+            TracedDrawing { frame: 4, strokes: Vec::new() },
+        ];
+        let mut doc = document("[7]");
+        doc.set_traced(&drawings);
+        let again = Document::parse(&doc.to_json(), "b.json").unwrap();
+        assert_eq!(again.traced().unwrap(), drawings);
+        assert_eq!(again.to_json(), doc.to_json());
+        assert!(doc.to_json().contains(r#""note": 1"#));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_place() {
+        let said = |traced: &str| document(traced).traced().unwrap_err().to_string();
+        assert_eq!(said("7"), "traced: found 7, expected a list");
+        assert_eq!(said(r#"[{"frame": 1, "strokes": 2}]"#), "traced[0] (frame 1).strokes: found 2, expected a list");
+        let stroke = r#"{"track": 0, "points": [[1, 2]], "closed": false}"#;
+        assert_eq!(
+            said(&format!(r#"[{{"frame": 1, "strokes": [{stroke}, {stroke}]}}]"#)),
+            "traced[0] (frame 1).strokes[1].track: found 0, expected a number once on a frame"
+        );
+        assert_eq!(
+            said(r#"[{"frame": 1, "strokes": []}, {"frame": 1, "strokes": []}]"#),
+            "traced[1].frame: found 1, expected more than 1, that of traced[0]"
+        );
+        let widths = r#"[{"frame": 1, "strokes": [{"track": 0, "points": [[1, 2]], "closed": false, "widths": []}]}]"#;
+        assert_eq!(said(widths), "traced[0] (frame 1).strokes[0].widths: found a list of 0, expected a list of 1");
+    }
+}

@@ -1,0 +1,126 @@
+//! The same strokes on the next drawing.
+//!
+//! 1. [`register`] finds roughly where every point of every stroke is.
+//! 2. [`follow`] lays each stroke onto the ink there. A stroke that is mostly off the ink has ended.
+//! 3. [`rest`]: ink that no stroke explains lengthens strokes or begins new ones, with numbers of their own.
+
+mod belief;
+mod context;
+mod follow;
+mod identify;
+mod register;
+mod rest;
+mod samples;
+
+pub use identify::identify;
+
+use crate::drawing::Drawing;
+use crate::finish;
+use crate::stroke::{Stroke, Tracked};
+use crate::strokes::Walked;
+use follow::Followed;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rototoon_base::geometry::{Point, polyline};
+use std::ops::Range;
+
+/// Share of a stroke that must be on ink, or it has ended.
+const ON_INK: f64 = 0.4;
+/// Steps off the ink over which an open stroke goes on: another line may hide it, or the pen left a gap.
+const AWAY: usize = 10;
+/// Distance in which a stroke explains ink, at 540 lines, added to half the width.
+const EXPLAINS: f64 = 0.75;
+/// Length of the shortest new stroke, at 540 lines, added to the width.
+const NEW: f64 = 3.0;
+
+/// The strokes of the drawing `from` on the drawing `to`. New strokes get numbers from `next` on, which is raised.
+pub fn carry(from: &Drawing, strokes: &[Tracked], to: &Drawing, next: &mut usize) -> Vec<Tracked> {
+    let unit = to.unit;
+    let strokes: Vec<Tracked> = strokes.iter().filter(|s| s.stroke.points.len() > 1).cloned().collect();
+    let registered = register::register(from, &strokes, to);
+    let ink = follow::Ink::new(samples::of_ink(to, 0.5 * follow::STEP * unit), unit);
+    let laid: Vec<Option<(Vec<Point>, bool)>> = strokes
+        .par_iter()
+        .enumerate()
+        .map(|(k, tracked)| {
+            let expected = moved(&tracked.stroke, &registered.lengths[k], &registered.shifts[k]);
+            kept(ink.follow(&expected, tracked.stroke.closed), tracked.stroke.closed)
+        })
+        .collect();
+    let (numbers, mut lines): (Vec<usize>, Vec<(Vec<Point>, bool)>) =
+        laid.into_iter().enumerate().filter_map(|(k, line)| Some((k, line?))).unzip();
+    let reach = EXPLAINS * unit + 0.5 * to.width;
+    let covered: Vec<Point> = lines
+        .iter()
+        .flat_map(|(points, closed)| samples::of_line(points, *closed, 0.5 * reach))
+        .map(|s| s.place)
+        .collect();
+    let rests = rest::left(&to.lines(), &covered, reach, NEW * unit);
+    let mut rests = rest::lengthened(&mut lines, rests, reach);
+    rests.retain(|rest| polyline::length(&rest.points, rest.closed) >= NEW * unit + to.width);
+    let mut out: Vec<Tracked> = numbers
+        .par_iter()
+        .zip(&lines)
+        .map(|(&k, (points, closed))| finished(&strokes[k], points, *closed, to))
+        .collect();
+    for rest in rests {
+        out.push(Tracked { track: *next, stroke: finish::finished(&rest, &to.picture, unit) });
+        *next += 1;
+    }
+    out
+}
+
+/// A stroke at its expected place: shifts between its registered points are interpolated.
+fn moved(stroke: &Stroke, lengths: &[f64], shifts: &[Point]) -> Vec<Point> {
+    let mut at = 0.0;
+    let mut k = 0;
+    let shift = |i: usize| {
+        if i > 0 {
+            at += stroke.points[i].distance(stroke.points[i - 1]);
+        }
+        while k + 1 < lengths.len() && lengths[k + 1] < at {
+            k += 1;
+        }
+        let next = if k + 1 < lengths.len() {
+            k + 1
+        } else if stroke.closed {
+            0
+        } else {
+            k
+        };
+        let way = if next > k { lengths[next] - lengths[k] } else { (at - lengths[k]).max(1e-9) };
+        let share = ((at - lengths[k]) / way.max(1e-9)).clamp(0.0, 1.0);
+        let share = if next == k { 0.0 } else { share };
+        stroke.points[i] + shifts[k].lerp(shifts[next], share)
+    };
+    (0..stroke.points.len()).map(shift).collect()
+}
+
+/// The stroke without the ends that are off the ink; `None` if too little is on it.
+fn kept(followed: Followed, closed: bool) -> Option<(Vec<Point>, bool)> {
+    let Followed { mut points, on } = followed;
+    let count = on.iter().filter(|&&on| on).count();
+    if count < 2 || (count as f64) < ON_INK * on.len() as f64 {
+        return None;
+    }
+    if !closed {
+        let kept = longest(&on);
+        points = points[kept].to_vec();
+    }
+    points.dedup_by(|a, b| a.distance(*b) < 1e-6);
+    (points.len() > 1).then_some((points, closed))
+}
+
+/// The longest stretch of steps that is on ink at both ends and nowhere off it for more than [`AWAY`] steps.
+fn longest(on: &[bool]) -> Range<usize> {
+    let steps: Vec<usize> = (0..on.len()).filter(|&k| on[k]).collect();
+    let runs = steps.chunk_by(|&a, &b| b - a <= AWAY + 1);
+    let found = runs.max_by_key(|run| (run[run.len() - 1] - run[0], std::cmp::Reverse(run[0])));
+    found.map_or(0..0, |run| run[0]..run[run.len() - 1] + 1)
+}
+
+fn finished(before: &Tracked, points: &[Point], closed: bool, to: &Drawing) -> Tracked {
+    let widths = &before.stroke.widths;
+    let radius = 0.5 * if widths.is_empty() { to.width } else { widths.iter().sum::<f64>() / widths.len() as f64 };
+    let walked = Walked { points: points.to_vec(), radii: vec![radius; points.len()], closed, free: [true; 2] };
+    Tracked { track: before.track, stroke: finish::finished(&walked, &to.picture, to.unit) }
+}

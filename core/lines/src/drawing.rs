@@ -1,0 +1,56 @@
+//! A drawing: a picture, its ink as a graph, and its strokes.
+
+use crate::graph::Graph;
+use crate::stroke::{Options, Stroke, Style};
+use crate::strokes::Walked;
+use crate::{centre, economy, finish, ink, pairing, sketch, strokes};
+use rayon::prelude::{IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator};
+use rototoon_base::scene::{Colour, Raster};
+use std::sync::Arc;
+
+/// A picture of which the ink is known.
+pub struct Drawing {
+    pub(crate) picture: Arc<Raster<Colour>>,
+    pub(crate) graph: Graph,
+    /// Usual width of lines in pixels.
+    pub(crate) width: f64,
+    /// Size of a pixel of 540 lines.
+    pub(crate) unit: f64,
+    rough: bool,
+}
+
+impl Drawing {
+    /// Finds the ink of a picture.
+    pub fn new(picture: Arc<Raster<Colour>>, options: &Options) -> Self {
+        let mut ink = ink::measure(&picture, options.sensitivity);
+        let mut graph = Graph::new(&ink);
+        let width = graph.width();
+        let slivers = sketch::Slivers::new(&ink, width);
+        let rough = match options.style {
+            Style::Clean => false,
+            Style::Rough => true,
+            Style::Auto => slivers.are_many(graph.length(), width),
+        };
+        if rough {
+            ink = slivers.filled(ink);
+            graph = Graph::new(&ink);
+        }
+        graph.branches.par_iter_mut().for_each(|branch| centre::centred(branch, &ink.darkness));
+        let unit = picture.height() as f64 / 540.0;
+        Self { picture, graph, width, unit, rough }
+    }
+
+    /// The strokes of the drawing.
+    pub fn strokes(&self) -> Vec<Stroke> {
+        let kept = self.lines();
+        kept.par_iter().map(|line| finish::finished(line, &self.picture, self.unit)).collect()
+    }
+
+    /// The strokes before they are fitted.
+    pub(crate) fn lines(&self) -> Vec<Walked> {
+        let pairing = pairing::Pairing::new(&self.graph, economy::stub(self.width, self.unit));
+        let walked = strokes::walked(&self.graph, &pairing);
+        let style = if self.rough { Style::Rough } else { Style::Clean };
+        economy::thrifty(walked, self.width, self.unit, style)
+    }
+}

@@ -1,0 +1,53 @@
+//! Strokes as they are handed out, and the options of tracing.
+
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::Colour;
+
+/// A traced stroke.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stroke {
+    /// Points in pixels (x right, y down, a pixel's centre at +0.5).
+    pub points: Vec<Point>,
+    /// Whether the last point joins the first.
+    pub closed: bool,
+    /// Width in pixels at each point.
+    pub widths: Vec<f64>,
+    /// Colour, sRGB-encoded, 0 to 1.
+    pub colour: Colour,
+}
+
+/// What kind of drawing it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Style {
+    /// Each line is drawn once.
+    Clean,
+    /// A line may be drawn with several strokes of the pencil; they become one.
+    Rough,
+    /// Found from the drawing.
+    #[default]
+    Auto,
+}
+
+/// Options of tracing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// The kind of drawing.
+    pub style: Style,
+    /// Sensitivity to faint ink; 1 takes the level that is found in the picture.
+    pub sensitivity: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { style: Style::Auto, sensitivity: 1.0 }
+    }
+}
+
+/// A stroke with its number, which is the same on all drawings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tracked {
+    /// The number.
+    pub track: usize,
+    /// The stroke.
+    pub stroke: Stroke,
+}

@@ -1,0 +1,128 @@
+//! Strokes carried over drawings whose lines are known on every frame.
+
+mod common;
+
+use common::{Line, covered, draw, line, ring, white};
+use rototoon_base::geometry::{Point, polyline};
+use rototoon_lines::{Drawing, Options, Stroke, Tracked, carry, identify};
+
+/// A figure: head, two eyes, body, arms, legs, a crossing belt.
+fn figure() -> Vec<Line> {
+    let curve = |points: &[(f64, f64)]| line(points);
+    vec![
+        ring(Point::new(200.0, 80.0), 42.0),
+        ring(Point::new(185.0, 72.0), 6.0),
+        ring(Point::new(216.0, 72.0), 6.0),
+        curve(&[(182.0, 98.0), (200.0, 105.0), (220.0, 97.0)]),
+        curve(&[(170.0, 125.0), (150.0, 190.0), (165.0, 260.0)]),
+        curve(&[(230.0, 125.0), (252.0, 190.0), (238.0, 260.0)]),
+        curve(&[(140.0, 215.0), (200.0, 226.0), (262.0, 212.0)]),
+        curve(&[(160.0, 150.0), (105.0, 175.0), (70.0, 235.0)]),
+        curve(&[(242.0, 150.0), (300.0, 165.0), (345.0, 225.0)]),
+        curve(&[(165.0, 260.0), (150.0, 330.0), (160.0, 390.0), (130.0, 394.0)]),
+        curve(&[(238.0, 260.0), (255.0, 330.0), (250.0, 390.0), (282.0, 395.0)]),
+        curve(&[(165.0, 260.0), (201.0, 290.0), (238.0, 260.0)]),
+    ]
+}
+
+/// The figure at a time: it walks, leans, and swings its arms.
+fn posed(time: f64) -> Vec<Line> {
+    let hip = Point::new(200.0, 250.0);
+    let place = |k: usize, p: Point| {
+        let swing = match k {
+            7 => Some((Point::new(160.0, 150.0), 0.16)),
+            8 => Some((Point::new(242.0, 150.0), -0.14)),
+            _ => None,
+        };
+        let p = swing.map_or(p, |(joint, turn)| joint + Point::from_angle(turn * time).rotate(p - joint));
+        let lean = Point::from_angle(0.05 * time).rotate(p - hip);
+        hip + Point::new(lean.x, lean.y * (1.0 - 0.015 * time)) + Point::new(9.0 * time, -4.0 * time)
+    };
+    let moved = |(k, line): (usize, Line)| {
+        let points = polyline::resample(&line.points, line.closed, 40);
+        Line { points: points.into_iter().map(|p| place(k, p)).collect(), ..line }
+    };
+    figure().into_iter().enumerate().map(moved).collect()
+}
+
+fn drawing(lines: &[Line]) -> Drawing {
+    Drawing::new(draw(460, 420, lines, white), &Options::default())
+}
+
+fn tracked(lines: &[Line]) -> Vec<Tracked> {
+    let stroke = |line: &Line| Stroke { points: line.points.clone(), closed: line.closed, ..Stroke::default() };
+    lines.iter().enumerate().map(|(track, line)| Tracked { track, stroke: stroke(line) }).collect()
+}
+
+/// The share of the length of `lines` that lies on the stroke with its number.
+fn right(strokes: &[Tracked], lines: &[Line]) -> f64 {
+    let (mut good, mut all) = (0.0, 0.0);
+    for (k, line) in lines.iter().enumerate() {
+        let length = polyline::length(&line.points, line.closed);
+        all += length;
+        if let Some(found) = strokes.iter().find(|s| s.track == k) {
+            good += length * covered(&line.points, line.closed, &found.stroke.points, found.stroke.closed, 2.5);
+        }
+    }
+    good / all
+}
+
+#[test]
+fn strokes_keep_their_numbers_over_four_drawings() {
+    let (mut from, mut strokes, mut next) = (drawing(&posed(0.0)), tracked(&posed(0.0)), 12);
+    for time in 1..=4 {
+        let lines = posed(f64::from(time));
+        let to = drawing(&lines);
+        strokes = carry(&from, &strokes, &to, &mut next);
+        let share = right(&strokes, &lines);
+        assert!(share >= 0.95, "drawing {time}: {share}");
+        from = to;
+    }
+    assert!(next <= 14, "{} strokes are new in a drawing that has none", next - 12);
+}
+
+#[test]
+fn a_stroke_without_ink_ends_and_new_ink_is_a_new_stroke() {
+    let before = posed(0.0);
+    let mut after = posed(1.0);
+    after.remove(3);
+    after.push(line(&[(60.0, 40.0), (90.0, 100.0), (60.0, 120.0)]));
+    let mut next = 12;
+    let strokes = carry(&drawing(&before), &tracked(&before), &drawing(&after), &mut next);
+    assert!(strokes.iter().all(|s| s.track != 3), "the mouth is gone");
+    let new: Vec<&Tracked> = strokes.iter().filter(|s| s.track >= 12).collect();
+    let last = &after[after.len() - 1];
+    assert!(new.iter().any(|s| covered(&last.points, false, &s.stroke.points, false, 2.0) > 0.9), "{new:?}");
+}
+
+#[test]
+fn a_held_drawing_changes_nothing() {
+    let lines = posed(2.0);
+    let mut next = 12;
+    let strokes = carry(&drawing(&lines), &tracked(&lines), &drawing(&lines), &mut next);
+    assert!(right(&strokes, &lines) > 0.99);
+    assert_eq!(next, 12);
+}
+
+#[test]
+fn drawings_without_ink_end_all_strokes() {
+    let lines = posed(0.0);
+    let (full, empty) = (drawing(&lines), drawing(&[]));
+    let mut next = 12;
+    assert!(carry(&full, &tracked(&lines), &empty, &mut next).is_empty());
+    let fresh = carry(&empty, &[], &full, &mut next);
+    assert!(fresh.len() >= 10 && fresh[0].track == 12);
+}
+
+#[test]
+fn drawn_strokes_get_the_numbers_of_what_they_lie_on() {
+    let lines = posed(1.0);
+    let mut carried = tracked(&lines);
+    carried.iter_mut().for_each(|s| s.track += 100);
+    let mut own: Vec<Stroke> = carried.iter().rev().map(|s| s.stroke.clone()).collect();
+    own.push(Stroke { points: vec![Point::new(5.0, 5.0), Point::new(40.0, 9.0)], ..Stroke::default() });
+    let mut next = 300;
+    let found: Vec<usize> = identify(&carried, own, &drawing(&lines), &mut next).iter().map(|s| s.track).collect();
+    let expected: Vec<usize> = (100..112).rev().chain([300]).collect();
+    assert_eq!((found, next), (expected, 301));
+}
