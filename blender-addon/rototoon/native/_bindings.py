@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0x9cc5479fc1f06fe6
+HEADER_HASH = 0x0c4a64205159f118
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
