@@ -1,7 +1,7 @@
 //! Drawn lines as strokes: ink, centre lines, and the same strokes on every drawing.
 //!
 //! [`trace`] turns a picture of a line drawing into strokes with width and colour, as long and as few as a person would
-//! draw. [`carry`] finds the same strokes on the next drawing: a stroke keeps its number, ink that no stroke explains gets
+//! draw. [`carry()`] finds the same strokes on the next drawing: a stroke keeps its number, ink that no stroke explains gets
 //! a new one, and a stroke without ink ends. [`identify`] gives the numbers to strokes that an artist drew there.
 //!
 //! This crate finds lines in pictures. It does not follow contours of painted parts (`rototoon-track`) and makes no

@@ -7,7 +7,7 @@
 //!
 //! Two branches that meet alone are one line whatever their angle: a corner.
 //!
-//! Afterwards free ends of the ink that point at each other over a short gap are joined ([`bridge`]).
+//! Afterwards free ends of the ink that point at each other over a short gap are joined.
 
 use crate::graph::{Branch, Graph};
 use rototoon_base::geometry::{Point, polyline};

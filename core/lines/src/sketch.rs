@@ -1,9 +1,9 @@
 //! Rough drawings: one line sketched with several strokes of the pencil.
 //!
 //! Between such strokes lie slivers of paper. They are narrower than the lines themselves, and a person who inks the
-//! drawing does not see them. [`filled`] makes them ink, so that the strokes have one centre line.
+//! drawing does not see them. The fill makes them ink, so that the strokes have one centre line.
 //!
-//! A drawing is rough if it has many slivers for the number of its lines ([`is_rough`]).
+//! A drawing is rough if it has many slivers for the number of its lines.
 
 use crate::ink::{Ink, distance};
 use rototoon_base::scene::Raster;

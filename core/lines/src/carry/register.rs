@@ -6,7 +6,7 @@
 //! and turn little against each other, as far as their candidates allow (the as-rigid-as-possible energy on edges; Sorkine
 //! & Alexa 2007). A pair costs at most a fixed amount, so parts may also move apart.
 //!
-//! The choice is smoothed ([`smoothed`]), which drops outliers. A second round looks near the smoothed place only, with
+//! The choice is smoothed, which drops outliers. A second round looks near the smoothed place only, with
 //! smaller contexts and with the directions that the first round found.
 
 use super::belief::{Tie, choose};
