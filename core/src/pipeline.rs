@@ -5,6 +5,7 @@
 //! or when cancelled, the document is unchanged.
 
 mod check;
+mod error;
 pub mod memory;
 mod reshape;
 pub mod spans;
@@ -13,96 +14,28 @@ mod trace;
 mod tween;
 
 pub use check::{check, drawing_problems};
+pub use error::PipelineError;
 pub use reshape::{Given, ReshapeJob, Reshaped, reshape};
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
 pub use trace::trace;
 pub use tween::{captured, pegs_of, spacing_of, tween};
 
 use crate::export::{self, SvgOptions, svg_with_strokes};
-use crate::fit::{self, FitError};
+use crate::fit;
 use crate::geometry::Point;
 use crate::image::Sequence;
 use crate::import::{self, ImportError};
-use crate::memory::TooMuch;
 use crate::project::curves::{CurveGuides, Curves};
 use crate::project::save::DECIMALS;
-use crate::project::{Document, Inputs, WriteError, output, validate, write_whole};
-use crate::render::{self, EncodeError, Format, OverlayOptions};
-use crate::scene::{Cancelled, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
-use crate::snap::{SnapError, SnapOptions, snap_scene};
-use crate::track::{TrackError, TrackOptions, Tracker, Tracking};
+use crate::project::{Document, Inputs, output, validate, write_whole};
+use crate::render::{self, Format, OverlayOptions};
+use crate::scene::{FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
+use crate::snap::{SnapOptions, snap_scene};
+use crate::track::{TrackOptions, Tracker, Tracking};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Why the pipeline stopped. The document is unchanged.
-#[derive(Debug, thiserror::Error)]
-pub enum PipelineError {
-    /// The footage's pattern is invalid.
-    #[error("footage: {0}")]
-    Pattern(#[from] PatternError),
-    /// Tracking failed.
-    #[error(transparent)]
-    Track(#[from] TrackError),
-    /// Snapping failed.
-    #[error(transparent)]
-    Snap(#[from] SnapError),
-    /// A frame could not be read.
-    #[error(transparent)]
-    Frame(#[from] FrameError),
-    /// The caller cancelled the work.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// The pictures are larger than the memory allows.
-    #[error("footage.width, height: found {width}x{height} pixels: {source}")]
-    Memory {
-        /// Width of the footage in pixels.
-        width: usize,
-        /// Height of the footage in pixels.
-        height: usize,
-        /// The memory that is needed.
-        source: TooMuch,
-    },
-    /// A file could not be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// A picture could not be encoded.
-    #[error("frame {frame}: {source}")]
-    Encode {
-        /// The frame.
-        frame: FrameNumber,
-        /// The error of the encoder.
-        source: EncodeError,
-    },
-    /// A curve could not be fitted.
-    #[error("curves[{curve}].{}", fit_place(source))]
-    Fit {
-        /// Index of the curve.
-        curve: usize,
-        /// The error of the fit.
-        source: FitError,
-    },
-    /// The drawings cannot be tweened.
-    #[error("{0}")]
-    Tween(String),
-    /// Clips or limbs do not fit the request.
-    #[error("{0}")]
-    Style(String),
-    /// The request does not fit the document.
-    #[error("{0}")]
-    Request(String),
-}
-
-/// The place of an error within its curve, and the error.
-fn fit_place(error: &FitError) -> String {
-    match error {
-        FitError::Point { index, x, y } => {
-            format!("points[{index}]: found ({x}, {y}), expected numbers between -1e9 and 1e9")
-        }
-        other => format!("points: {other}"),
-    }
-}
 
 /// The pictures of a document in `folder`.
 ///

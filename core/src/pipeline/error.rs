@@ -1,0 +1,77 @@
+//! Why the pipeline stopped.
+
+use crate::fit::FitError;
+use crate::memory::TooMuch;
+use crate::project::WriteError;
+use crate::render::EncodeError;
+use crate::scene::{Cancelled, FrameError, FrameNumber, PatternError};
+use crate::snap::SnapError;
+use crate::track::TrackError;
+
+/// Why the pipeline stopped. The document is unchanged.
+#[derive(Debug, thiserror::Error)]
+pub enum PipelineError {
+    /// The footage's pattern is invalid.
+    #[error("footage: {0}")]
+    Pattern(#[from] PatternError),
+    /// Tracking failed.
+    #[error(transparent)]
+    Track(#[from] TrackError),
+    /// Snapping failed.
+    #[error(transparent)]
+    Snap(#[from] SnapError),
+    /// A frame could not be read.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// The caller cancelled the work.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The pictures are larger than the memory allows.
+    #[error("footage.width, height: found {width}x{height} pixels: {source}")]
+    Memory {
+        /// Width of the footage in pixels.
+        width: usize,
+        /// Height of the footage in pixels.
+        height: usize,
+        /// The memory that is needed.
+        source: TooMuch,
+    },
+    /// A file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A picture could not be encoded.
+    #[error("frame {frame}: {source}")]
+    Encode {
+        /// The frame.
+        frame: FrameNumber,
+        /// The error of the encoder.
+        source: EncodeError,
+    },
+    /// A curve could not be fitted.
+    #[error("curves[{curve}].{}", fit_place(source))]
+    Fit {
+        /// Index of the curve.
+        curve: usize,
+        /// The error of the fit.
+        source: FitError,
+    },
+    /// The drawings cannot be tweened.
+    #[error("{0}")]
+    Tween(String),
+    /// Clips or limbs do not fit the request.
+    #[error("{0}")]
+    Style(String),
+    /// The request does not fit the document.
+    #[error("{0}")]
+    Request(String),
+}
+
+/// The place of an error within its curve, and the error.
+fn fit_place(error: &FitError) -> String {
+    match error {
+        FitError::Point { index, x, y } => {
+            format!("points[{index}]: found ({x}, {y}), expected numbers between -1e9 and 1e9")
+        }
+        other => format!("points: {other}"),
+    }
+}
