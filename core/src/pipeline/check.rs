@@ -173,7 +173,7 @@ mod tests {
         Document::parse(&whole.to_string(), "a.json").unwrap()
     }
 
-    ///     /// Errors and warnings, with one line for each.
+    /// Errors and warnings, with one line for each.
     fn said(fields: &Value) -> (Vec<String>, Vec<String>) {
         let problems = drawing_problems(&document(fields));
         (problems.errors().map(ToString::to_string).collect(), problems.warnings().map(ToString::to_string).collect())
