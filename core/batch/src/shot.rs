@@ -126,6 +126,8 @@ pub fn run(shot: &Shot, folder: &Path, lock: &Lock, worker: &Worker) -> Result<R
 
 impl Work<'_> {
     fn steps(&mut self) -> Result<(), ShotError> {
+        // First of all, so that what a killed worker renamed is known as the batch's own.
+        self.place()?;
         let mut document = absolute(&self.shot.project);
         let footage = self.footage(&document)?;
         let frames = if self.shot.steps.iter().any(Step::reads_footage) {
@@ -171,7 +173,7 @@ impl Work<'_> {
     }
 
     fn step(&mut self, index: usize, step: &Step, document: &Path, reads: &str) -> Result<(), ShotError> {
-        if self.is_done(index, reads)? {
+        if self.is_done(index, reads) {
             self.tell(step, StepOutcome::Unchanged, None);
             return Ok(());
         }
@@ -191,12 +193,11 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Whether a step was done with the same input. Files that still have their first names get their own.
-    fn is_done(&mut self, index: usize, reads: &str) -> Result<bool, ShotError> {
-        let Some(done) = self.record.steps.get(index).filter(|done| done.reads == reads) else { return Ok(false) };
-        let outputs = done.outputs.clone();
-        self.place()?;
-        Ok(outputs.iter().all(|name| self.record.files.get(name).is_some_and(|hash| self.has(name, hash))))
+    /// Whether a step was done with the same input, and its files are as they were written.
+    fn is_done(&self, index: usize, reads: &str) -> bool {
+        let own = |name: &String| self.record.files.get(name).is_some_and(|hash| self.has(name, hash));
+        let done = self.record.steps.get(index).filter(|done| done.reads == reads);
+        done.is_some_and(|done| done.outputs.iter().all(own))
     }
 
     /// Whether a file of the folder has a hash.
@@ -279,6 +280,9 @@ impl Work<'_> {
             }
             if self.has(&format!("{NEW}{name}"), &hash) {
                 fs::rename(&from, &to).map_err(|source| ShotError::File { path: to, source })?;
+            } else if found.as_ref() != Some(&hash) {
+                // It is gone; what is there now keeps its own hash.
+                continue;
             }
             self.record.files.insert(name, hash);
         }

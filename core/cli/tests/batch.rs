@@ -195,6 +195,19 @@ fn files_of_others_are_never_replaced() {
 }
 
 #[test]
+fn a_worker_killed_between_two_names_leaves_no_strange_files() {
+    let season = Season::new(1);
+    season.good(&[]);
+    // One file has its name already, but the record was not written again. Then a frame changes.
+    let mut record = season.record("sh0");
+    let hash = record["files"].as_object_mut().unwrap().remove("matte_002.png").unwrap();
+    record["pending"]["matte_002.png"] = hash;
+    fs::write(season.path("out/sh0/batch.json"), record.to_string()).unwrap();
+    draw(&season.path("in/sh0/f_002.png"), 11);
+    season.good(&[]);
+}
+
+#[test]
 fn one_bad_shot_does_not_stop_the_others() {
     let season = Season::new(3);
     fs::remove_dir_all(season.path("in/sh1")).unwrap();
