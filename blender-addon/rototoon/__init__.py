@@ -20,7 +20,8 @@ Errors are `RototoonError`. The message names the part, the frame or the field. 
 nothing has changed then.
 
 ====================  ==============================================================================
-`session`             `Session`: track, snap, correct and save a project document
+`session`             `Session`: track, snap, trace, correct and save a project document
+`lines`               traced strokes that `Session` returns
 `results`             results that `Session` returns
 `strokes`             matching, fitting and hidden lines of strokes, without a session
 `tween`               in-betweens of drawings
@@ -33,7 +34,7 @@ nothing has changed then.
 May import: no other package, and nothing beside Python's standard library.
 """
 
-from . import style, tween
+from . import lines, style, tween
 from .about import library_path, parameters, version
 from .native.errors import Cancelled, LibraryError, RototoonError
 from .results import End, Job, Summary, Track, WeakestFrame
@@ -56,6 +57,7 @@ __all__ = [
     "fit_strokes",
     "hidden_lines",
     "library_path",
+    "lines",
     "match_contours",
     "parameters",
     "style",

@@ -13,6 +13,7 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from .lines import Traced
 from .native import handles
 from .native.arrays import as_json, text
 from .native.errors import RototoonError
@@ -136,6 +137,31 @@ class Session:
         """
         self._long("rototoon_session_snap", {"threads": threads, **options}, progress)
 
+    def trace(
+        self,
+        style: str = "auto",
+        sensitivity: float = 1.0,
+        frames: tuple[int, int] | None = None,
+        progress: Progress | None = None,
+        *,
+        threads: int = 0,
+    ) -> Traced:
+        """Traces the lines of the footage as strokes, the same strokes on every frame, and stores ``traced`` in the document.
+
+        Work begins on the first of the document's ``drawings``, whose strokes are carried to the other frames. Frames with a drawing
+        keep its strokes, in their order. Without drawings the first frame is traced.
+
+        `style` is ``auto``, ``clean`` or ``rough``: lines that were sketched with several strokes become one. With `sensitivity` 2, ink
+        may be half as dark as usual. `frames` are the first and the last frame, by default those of the footage; strokes of other
+        frames stay. Returns the strokes of all frames. Raises `Cancelled`; the document is unchanged then.
+        """
+        options: dict[str, Any] = {"style": style, "sensitivity": sensitivity, "threads": threads}
+        if frames is not None:
+            options["frames"] = [int(frame) for frame in frames]
+        with handles.progress_callback(progress) as callback:
+            arguments = (*as_json(options), callback, None)
+            return Traced(*self._handle.give(handles.TracedArrays, "rototoon_session_trace", *arguments))
+
     # -- results -------------------------------------------------------------------------------------------------
 
     def tracks(self, part: str) -> Track:
@@ -155,6 +181,10 @@ class Session:
         """
         paths: list[memoryview] = self._handle.give(handles.CurveArrays, "rototoon_session_curves_of", *text(part), frame)
         return paths
+
+    def traced(self) -> Traced:
+        """The strokes that `trace` has found on all frames. There are none if nothing was traced."""
+        return Traced(*self._handle.give(handles.TracedArrays, "rototoon_session_traced"))
 
     def weakest_frame(self) -> WeakestFrame | None:
         """The frame where the next key helps most. It is no key of any part and not beside one. `None` if there is no such

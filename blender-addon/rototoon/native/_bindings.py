@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0x0c4a64205159f118
+HEADER_HASH = 0x32ae6543699f8eeb
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -118,6 +118,9 @@ INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
     "rototoon_library_find": (
         (1, "folder_length", ctypes.c_size_t),
         (3, "wanted_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_trace": (
+        (2, "options_length", ctypes.c_size_t),
     ),
     "rototoon_match_strokes": (
         (1, "stroke_count", ctypes.c_size_t),
@@ -477,6 +480,40 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_void_p,
         ctypes.c_size_t,
         ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_trace.restype = ctypes.c_int32
+    library.rototoon_session_trace.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_traced.restype = ctypes.c_int32
+    library.rototoon_session_traced.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_traced_read.restype = ctypes.c_int32
+    library.rototoon_traced_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_traced_free.restype = None
+    library.rototoon_traced_free.argtypes = [
         ctypes.c_void_p,
     ]
     library.rototoon_match_strokes.restype = ctypes.c_int32

@@ -209,6 +209,32 @@ class InBetweenArrays(Handle):
         )
 
 
+class TracedArrays(Handle):
+    """Traced strokes."""
+
+    _free = "rototoon_traced_free"
+
+    def read(self, *_sizes: int) -> tuple[memoryview, ...]:
+        """The arrays of `lines.Traced` in their order, as copies."""
+        count = ctypes.c_size_t()
+        out = [ctypes.c_void_p() for _ in range(8)]
+        call("rototoon_traced_read", self.pointer(), ctypes.byref(count), *map(ctypes.byref, out))
+        frames, stroke_offsets, tracks, closed, colours, point_offsets, points, widths = out
+        bounds = view(stroke_offsets, "i", count.value + 1)
+        strokes = bounds[count.value]
+        ends = view(point_offsets, "i", strokes + 1)
+        return (
+            view(frames, "i", count.value),
+            bounds,
+            view(tracks, "i", strokes),
+            view(closed, "i", strokes),
+            view(colours, "d", strokes, 3),
+            ends,
+            view(points, "d", ends[strokes], 2),
+            view(widths, "d", ends[strokes]),
+        )
+
+
 class Session(Handle):
     """A session of the library. It refuses a call during another call, so nothing is freed while in use."""
 

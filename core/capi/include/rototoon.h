@@ -94,6 +94,9 @@ typedef struct RototoonSession RototoonSession;
 // UTF-8 text: an error message or a JSON document.
 typedef struct RototoonText RototoonText;
 
+// The traced strokes of a document, frame by frame.
+typedef struct RototoonTraced RototoonTraced;
+
 // The track of a part: frame numbers, points, confidence.
 typedef struct RototoonTrack RototoonTrack;
 
@@ -546,6 +549,56 @@ RototoonStatus rototoon_library_find(const uint8_t *folder,
                                      size_t wanted_length,
                                      struct RototoonText **found,
                                      struct RototoonText **error);
+
+// Traces the lines of the footage as strokes, the same strokes on every frame, and stores `traced` in the document.
+//
+// Work begins on the first drawing of the document's `drawings`. Its strokes are carried to the other frames. Frames
+// with a drawing keep the strokes of that drawing, in their order. Without drawings the first frame is traced.
+//
+// `options` is a JSON object, in which all fields may be left out: `style`, "auto", "clean" or "rough" (lines are
+// sketched with several strokes, which become one); `sensitivity` to faint ink, 0.1 to 10; `frames`, a list of the
+// first and the last frame; `threads`, 0 for one per core. Strokes of frames outside of `frames` stay in the document.
+//
+// `traced` has the strokes of all frames, as `rototoon_session_traced` gives them.
+RototoonStatus rototoon_session_trace(const struct RototoonSession *session,
+                                      const uint8_t *options,
+                                      size_t options_length,
+                                      RototoonProgress progress,
+                                      void *user,
+                                      struct RototoonTraced **traced,
+                                      struct RototoonText **error);
+
+// Returns the traced strokes of the document. There are none if it was not traced.
+RototoonStatus rototoon_session_traced(const struct RototoonSession *session,
+                                       struct RototoonTraced **traced,
+                                       struct RototoonText **error);
+
+// Reads the arrays of traced strokes. They live as long as the handle.
+//
+// - `frames`: `frame_count` frame numbers in rising order.
+// - `stroke_offsets`: `frame_count` + 1 numbers. Frame `f` has the strokes `stroke_offsets[f]` to
+//   `stroke_offsets[f + 1]` (excluded), from behind to the front.
+// - `tracks`: the number of each stroke. It is the same on all frames, and occurs once on a frame.
+// - `closed`: for each stroke 1 if its last point joins its first, otherwise 0.
+// - `colours`: three numbers for each stroke, sRGB from 0 to 1; NaN if it has no colour.
+// - `point_offsets`: one more than there are strokes. Stroke `i` has the points `point_offsets[i]` to
+//   `point_offsets[i + 1]` (excluded).
+// - `points`: two coordinates for each point, x and y in pixels.
+// - `widths`: the width of the line at each point in pixels; NaN if the stroke has no widths.
+RototoonStatus rototoon_traced_read(const struct RototoonTraced *traced,
+                                    size_t *frame_count,
+                                    const int32_t **frames,
+                                    const int32_t **stroke_offsets,
+                                    const int32_t **tracks,
+                                    const int32_t **closed,
+                                    const double **colours,
+                                    const int32_t **point_offsets,
+                                    const double **points,
+                                    const double **widths,
+                                    struct RototoonText **error);
+
+// Frees traced strokes. Null is allowed.
+void rototoon_traced_free(struct RototoonTraced *traced);
 
 // Matches the strokes of each drawing with the strokes of the next drawing.
 //

@@ -3,10 +3,10 @@
 //! `cargo xtask generate` generates the header `include/rototoon.h` from this crate, and the Python bindings from the
 //! header.
 //!
-//! The crate has two layers. The outer one is the exported functions: [`session_abi`], [`strokes_abi`], [`tween_abi`],
-//! [`style_abi`], [`functions`], [`handles`]. They read their arguments through [`entry`] and report progress through
-//! [`callback`]. The inner one is safe Rust: [`session`], [`edit`], [`options`], [`matching`], [`strokes`], [`sheet`],
-//! [`style`], [`work`].
+//! The crate has two layers. The outer one is the exported functions: [`session_abi`], [`traced_abi`], [`strokes_abi`],
+//! [`tween_abi`], [`style_abi`], [`functions`], [`handles`]. They read their arguments through [`entry`] and report progress through
+//! [`callback`]. The inner one is safe Rust: [`session`], [`traced`], [`edit`], [`options`], [`matching`], [`strokes`],
+//! [`sheet`], [`style`], [`work`].
 //!
 //! # Contract
 //!
@@ -57,6 +57,8 @@ pub mod strokes_abi;
 pub mod style;
 pub mod style_abi;
 pub mod text;
+pub mod traced;
+pub mod traced_abi;
 pub mod tween_abi;
 pub mod work;
 

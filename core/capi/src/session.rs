@@ -3,9 +3,10 @@
 use crate::edit::part_index;
 use crate::options::Options;
 use crate::status::Failure;
+use crate::traced::{Asked, RototoonTraced};
 use crate::work::{self, GoOn};
 use rototoon::image::sequence::Sequence;
-use rototoon::pipeline;
+use rototoon::pipeline::{self, PipelineError};
 use rototoon::project::Document;
 use rototoon::scene::parameters::Stage;
 use rototoon::scene::{FrameNumber, Part, Progress, Scene};
@@ -199,6 +200,28 @@ impl Session {
             part.curves = curves;
         }
         Ok(json!({"frames": frames}).to_string())
+    }
+
+    /// Traces the lines of the footage, and stores the strokes in the document. Returns those of all frames.
+    pub fn trace(&mut self, options: &str, go_on: GoOn<'_>) -> Result<RototoonTraced, Failure> {
+        let asked = Asked::parse(options)?;
+        let mut document = self.document.clone();
+        let traced = work::run(asked.threads, go_on, |progress: &dyn Progress| {
+            pipeline::trace(&mut document, &self.folder, asked.frames(), &asked.options(), progress).map_err(
+                |error| match error {
+                    PipelineError::Cancelled(cancelled) => cancelled.into(),
+                    other => Failure::error(other),
+                },
+            )?;
+            RototoonTraced::of(&document.traced().map_err(Failure::error)?)
+        })?;
+        self.document = document;
+        Ok(traced)
+    }
+
+    /// The traced strokes of the document.
+    pub fn traced(&self) -> Result<RototoonTraced, Failure> {
+        RototoonTraced::of(&self.document.traced().map_err(Failure::error)?)
     }
 
     /// Drops pictures and solved spans. After a panic they may be half-written.

@@ -1,0 +1,127 @@
+//! The exported functions of line tracing.
+
+use crate::callback::{RototoonProgress, with_progress};
+use crate::entry::{clear, entry, free, give, handle, text};
+use crate::session_abi::RototoonSession;
+use crate::status::RototoonStatus;
+use crate::text::RototoonText;
+use crate::traced::RototoonTraced;
+use crate::work::GoOn;
+use std::ffi::c_void;
+use std::ptr::{null, null_mut};
+
+/// Traces the lines of the footage as strokes, the same strokes on every frame, and stores `traced` in the document.
+///
+/// Work begins on the first drawing of the document's `drawings`. Its strokes are carried to the other frames. Frames
+/// with a drawing keep the strokes of that drawing, in their order. Without drawings the first frame is traced.
+///
+/// `options` is a JSON object, in which all fields may be left out: `style`, "auto", "clean" or "rough" (lines are
+/// sketched with several strokes, which become one); `sensitivity` to faint ink, 0.1 to 10; `frames`, a list of the
+/// first and the last frame; `threads`, 0 for one per core. Strokes of frames outside of `frames` stay in the document.
+///
+/// `traced` has the strokes of all frames, as `rototoon_session_traced` gives them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_trace(
+    session: *const RototoonSession,
+    options: *const u8,
+    options_length: usize,
+    progress: RototoonProgress,
+    user: *mut c_void,
+    traced: *mut *mut RototoonTraced,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(traced, null_mut(), "traced")?;
+            let session = handle(session, "session")?;
+            let options = text(options, options_length, "options")?;
+            let trace = |go_on: GoOn<'_>| session.with(|session| session.trace(options, go_on));
+            give(traced, with_progress(progress, user, trace)?);
+            Ok(())
+        })
+    }
+}
+
+/// Returns the traced strokes of the document. There are none if it was not traced.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_traced(
+    session: *const RototoonSession,
+    traced: *mut *mut RototoonTraced,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(traced, null_mut(), "traced")?;
+            let session = handle(session, "session")?;
+            let value = session.with(|session| session.traced())?;
+            give(traced, value);
+            Ok(())
+        })
+    }
+}
+
+/// Reads the arrays of traced strokes. They live as long as the handle.
+///
+/// - `frames`: `frame_count` frame numbers in rising order.
+/// - `stroke_offsets`: `frame_count` + 1 numbers. Frame `f` has the strokes `stroke_offsets[f]` to
+///   `stroke_offsets[f + 1]` (excluded), from behind to the front.
+/// - `tracks`: the number of each stroke. It is the same on all frames, and occurs once on a frame.
+/// - `closed`: for each stroke 1 if its last point joins its first, otherwise 0.
+/// - `colours`: three numbers for each stroke, sRGB from 0 to 1; NaN if it has no colour.
+/// - `point_offsets`: one more than there are strokes. Stroke `i` has the points `point_offsets[i]` to
+///   `point_offsets[i + 1]` (excluded).
+/// - `points`: two coordinates for each point, x and y in pixels.
+/// - `widths`: the width of the line at each point in pixels; NaN if the stroke has no widths.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_traced_read(
+    traced: *const RototoonTraced,
+    frame_count: *mut usize,
+    frames: *mut *const i32,
+    stroke_offsets: *mut *const i32,
+    tracks: *mut *const i32,
+    closed: *mut *const i32,
+    colours: *mut *const f64,
+    point_offsets: *mut *const i32,
+    points: *mut *const f64,
+    widths: *mut *const f64,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract; out parameters are written only after `clear` accepted them.
+    unsafe {
+        entry(error, || {
+            clear(frame_count, 0, "frame_count")?;
+            for (out, name) in [
+                (frames, "frames"),
+                (stroke_offsets, "stroke_offsets"),
+                (tracks, "tracks"),
+                (closed, "closed"),
+                (point_offsets, "point_offsets"),
+            ] {
+                clear(out, null(), name)?;
+            }
+            for (out, name) in [(colours, "colours"), (points, "points"), (widths, "widths")] {
+                clear(out, null(), name)?;
+            }
+            let traced = handle(traced, "traced")?;
+            frame_count.write(traced.frames.len());
+            frames.write(traced.frames.as_ptr());
+            stroke_offsets.write(traced.stroke_offsets.as_ptr());
+            tracks.write(traced.tracks.as_ptr());
+            closed.write(traced.closed.as_ptr());
+            colours.write(traced.colours.as_ptr());
+            point_offsets.write(traced.point_offsets.as_ptr());
+            points.write(traced.points.as_ptr());
+            widths.write(traced.widths.as_ptr());
+            Ok(())
+        })
+    }
+}
+
+/// Frees traced strokes. Null is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_traced_free(traced: *mut RototoonTraced) {
+    // SAFETY: the crate's contract.
+    unsafe { free(traced) }
+}
