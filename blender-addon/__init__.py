@@ -9,6 +9,7 @@ This file only registers. The code is in packages. The `__init__.py` of each pac
 `capture`             contours: footage, keys, tracking, live, snapping
 `strokes`             light curves and hidden lines, for any drawing
 `tween`               drawings between keys
+`lines`               line drawings as strokes, the same strokes on every frame
 `style`               a character's motion given to another drawing
 `bones`               armatures
 `exchange`            documents and masks
@@ -26,12 +27,13 @@ def _classes():
     from .bones.operators import CLASSES as bones
     from .capture.operators import CLASSES as capture
     from .exchange.operators import CLASSES as exchange
+    from .lines.operators import CLASSES as lines
     from .sample.operators import CLASSES as sample
     from .strokes.operators import CLASSES as strokes
     from .style.operators import CLASSES as style
     from .tween.operators import CLASSES as tween
 
-    return properties.CLASSES + capture + strokes + tween + style + bones + exchange + sample + ui.CLASSES
+    return properties.CLASSES + capture + strokes + tween + lines + style + bones + exchange + sample + ui.CLASSES
 
 
 def register():

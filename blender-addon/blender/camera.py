@@ -202,7 +202,9 @@ def reference_view(empty, width: int, height: int) -> View:
 
 
 def layer_to_world(ob, layer) -> np.ndarray:
-    """4×4: a layer's points to the world. The layer's parent counts."""
+    """4×4: a layer's points to the world. The layer's parent counts. `None` is a layer that does not exist yet."""
+    if layer is None:
+        return np.array(ob.matrix_world, np.float64)
     parent = layer.parent
     base = ob.matrix_world
     if parent is not None:

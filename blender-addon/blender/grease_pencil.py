@@ -26,11 +26,11 @@ KEYFRAME = "KEYFRAME"
 PART = "rototoon_part"
 """Number of the part of a stroke; 0 for a stroke without a part."""
 MADE = "rototoon_generated"
-"""Whether tracking or snapping wrote the stroke."""
+"""Whether tracking, snapping or tracing wrote the stroke."""
 CONTROL = "rototoon_control"
 """For each drawn point the index of its control point; fractions are between two control points."""
 TRACKED = "rototoon_tracked"
-"""Where tracking put a point. If the point is elsewhere, the artist moved it."""
+"""Where tracking or tracing put a point. If the point is elsewhere, the artist moved it."""
 PIN = "rototoon_pin"
 """Whether the artist fixed a point of a generated stroke."""
 CENTER = "rototoon_center"
@@ -50,7 +50,13 @@ KEY_POINT = "rototoon_key_point"
 """Number of the skeleton's key point that a line across a limb marks, from 1; 0 for none."""
 
 TRACK = "rototoon_track"
-"""Number that a stroke keeps on all keys and in-betweens of a layer; 0 for none."""
+"""Number that a stroke keeps on all keys, in-betweens and traced drawings of a layer; 0 for none."""
+LINE = "rototoon_line"
+"""For each point the number of the stroke that it was on when the drawing was traced; 0 for a point that was drawn since."""
+LOOK = "rototoon_look"
+"""Checksum of a stroke's material, radius, opacity and colours when the drawing was traced."""
+ALONG = "rototoon_along"
+"""For each point its share of that stroke's length, 0 to 1."""
 TWEENED = "rototoon_tweened"
 """Whether the stroke is an in-between."""
 NEXT = "rototoon_next"
@@ -62,6 +68,9 @@ BEFORE = "rototoon_before"
 TYPES = {
     KEY_POINT: ("INT", "CURVE"),
     TRACK: ("INT", "CURVE"),
+    LINE: ("INT", "POINT"),
+    LOOK: ("INT", "CURVE"),
+    ALONG: ("FLOAT", "POINT"),
     TWEENED: ("BOOLEAN", "CURVE"),
     NEXT: ("INT", "CURVE"),
     BEFORE: ("INT", "CURVE"),
@@ -157,6 +166,11 @@ def remove_layer(ob: bpy.types.Object, layer: bpy.types.bpy_struct) -> None:
 def find_layer(ob: bpy.types.Object, name: str) -> bpy.types.bpy_struct | None:
     """The layer called `name`; `None` if there is none."""
     return ob.data.layers.get(name)
+
+
+def find_layer_of(data: bpy.types.ID, name: str) -> bpy.types.bpy_struct | None:
+    """The layer called `name` of Grease Pencil data; `None` if there is none."""
+    return data.layers.get(name)
 
 
 def active_layer(ob: bpy.types.Object) -> bpy.types.bpy_struct | None:

@@ -22,12 +22,12 @@ class Mapper:
     """Mappings of an object's layers on some frames."""
 
     def __init__(self, ob: bpy.types.Object, frames: Iterable[int], points: dict[int, np.ndarray], names: list[str]):
-        """`names` are the layers. `points` are the artist's points by layer index; they show the plane on which the artist
+        """`names` are the layers; one that does not exist yet is where the object is. `points` are the artist's points by layer index; they show the plane on which the artist
         drew."""
         self._mappings: dict[tuple[int, int | None], cameras.Mapping] = {}
-        self._moves = _moves(ob)
         self._points = points
-        layers = [ob.data.layers[name] for name in names]
+        layers = [gp.find_layer(ob, name) for name in names]
+        self._moves = _moves(ob, layers)
         if not self._moves:
             self._add(ob, layers, None)
             return
@@ -107,11 +107,11 @@ def _shows(source: footage.Source, ob: bpy.types.Object) -> bool:
     return footage.picture(footage.absolute(ob, settings.pattern), number) == os.path.normpath(source.path)
 
 
-def _moves(ob: bpy.types.Object) -> bool:
+def _moves(ob: bpy.types.Object, layers) -> bool:
     """Whether the object, a layer's parent, or the camera or reference image can move."""
     settings = ob.rototoon
     objects = [ob, settings.reference if settings.plane == "REFERENCE" else camera_of(ob)]
-    objects += [layer.parent for layer in gp.layers(ob, settings.contours_layer)]
+    objects += [layer.parent for layer in layers if layer is not None]
     return any(is_animated(each) for each in objects)
 
 

@@ -31,6 +31,7 @@ WAVE = (15, 20, 15, 25, 40, 158, 30, 20, 15, 20, 25, 15)
 
 It waves on one drawing only. From the two keys nobody can know of it: this is the mistake that Track makes and an artist corrects."""
 POINTS = 14
+PAPER = (250, 248, 242)
 
 
 def outlines(drawing: int) -> dict[str, np.ndarray]:
@@ -51,20 +52,27 @@ def outlines(drawing: int) -> dict[str, np.ndarray]:
     }
 
 
-def picture(drawing: int) -> np.ndarray:
-    """A drawing (H, W, 3), values 0 to 255."""
-    found = ground()
+def picture(drawing: int, lines: bool = False) -> np.ndarray:
+    """A drawing (H, W, 3), values 0 to 255: painted, or with `lines` only its ink, on paper."""
+    found = np.full((HEIGHT, WIDTH, 3), PAPER, np.float32) if lines else ground()
     shapes = outlines(drawing)
     for name in PARTS:
-        line = painting.curve(shapes[name])
-        painting.fill(found, painting.grown(line, LINE / 2), INK)
-        painting.fill(found, painting.grown(line, -LINE / 2), COLOURS[name])
+        _inked(found, painting.curve(shapes[name]), PAPER if lines else COLOURS[name])
         if name == "body":
-            middle = shapes[name].mean(0)
-            painting.fill(found, painting.curve(middle + (12, 12) + _oval(34, 50)), (244, 240, 228))
+            belly = painting.curve(shapes[name].mean(0) + (12, 12) + _oval(34, 50))
+            if lines:
+                _inked(found, belly, PAPER)
+            else:
+                painting.fill(found, belly, (244, 240, 228))
         if name == "head":
-            _face(found, shapes[name].mean(0))
+            _face(found, shapes[name].mean(0), PAPER if lines else (240, 158, 60))
     return found
+
+
+def _inked(found: np.ndarray, line: np.ndarray, colour: tuple[int, int, int]) -> None:
+    """Paints a shape with a line of ink around it."""
+    painting.fill(found, painting.grown(line, LINE / 2), INK)
+    painting.fill(found, painting.grown(line, -LINE / 2), colour)
 
 
 def ground() -> np.ndarray:
@@ -80,10 +88,8 @@ def ground() -> np.ndarray:
     return found
 
 
-def _face(found: np.ndarray, middle: np.ndarray) -> None:
-    beak = middle + np.array([[32.0, -6.0], [66.0, 5.0], [32.0, 14.0], [26.0, 4.0]])
-    painting.fill(found, painting.grown(beak, LINE / 2), INK)
-    painting.fill(found, painting.grown(beak, -LINE / 2), (240, 158, 60))
+def _face(found: np.ndarray, middle: np.ndarray, colour: tuple[int, int, int]) -> None:
+    _inked(found, middle + np.array([[32.0, -6.0], [66.0, 5.0], [32.0, 14.0], [26.0, 4.0]]), colour)
     for radius, colour, aside in ((9.0, INK, 0.0), (7.2, (252, 252, 248), 0.0), (3.6, INK, 2.0)):
         painting.fill(found, painting.curve(middle + (14.0 + aside, -8.0) + _oval(radius, radius)), colour)
 

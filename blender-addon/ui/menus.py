@@ -39,6 +39,12 @@ class ROTOTOON_MT_tween(_Menu):
     names = ("match_strokes", "in_between", "update_in_betweens", "clear_in_betweens")
 
 
+class ROTOTOON_MT_lines(_Menu):
+    bl_idname = "ROTOTOON_MT_lines"
+    bl_label = "Lines"
+    names = ("trace_drawing", "carry_strokes", "", "match_lines", "spread_edits", "make_part", "", "clear_lines")
+
+
 class ROTOTOON_MT_style(_Menu):
     bl_idname = "ROTOTOON_MT_style"
     bl_label = "Style"
@@ -68,7 +74,7 @@ class ROTOTOON_MT_main(_Menu):
         _entries(layout, "", "draw_contours", "new_key", "match_contours", "", "track", "weakest_frame", "show_confidence")
         layout.operator_menu_enum("rototoon.release_pins", "which")
         _entries(layout, "clear_generated", "", "snap", "")
-        for name in ("strokes", "tween", "style"):
+        for name in ("strokes", "tween", "lines", "style"):
             layout.menu(f"ROTOTOON_MT_{name}")
         _entries(layout, "", "import_document", "export_document", "contours_to_mask", "", "help")
 
@@ -177,6 +183,7 @@ def unregister() -> None:
 CLASSES = (
     ROTOTOON_MT_strokes,
     ROTOTOON_MT_tween,
+    ROTOTOON_MT_lines,
     ROTOTOON_MT_style,
     ROTOTOON_MT_footage,
     ROTOTOON_MT_main,

@@ -1,4 +1,4 @@
-"""The panels below the steps, in the order of the work: footage, parts, track, snap, strokes, tween, style, document.
+"""The panels below the steps, in the order of the work: footage, parts, track, snap, strokes, tween, lines, style, document.
 
 Only what an artist needs all the time is open at first.
 """
@@ -198,6 +198,34 @@ class ROTOTOON_PT_tween(DrawingPanel, bpy.types.Panel):
         layout.operator("rototoon.clear_in_betweens", icon="TRASH")
 
 
+class ROTOTOON_PT_lines(DrawingPanel, bpy.types.Panel):
+    bl_idname = "ROTOTOON_PT_lines"
+    bl_label = "Lines"
+    bl_options = CLOSED
+    page = "artist/lines.html"
+
+    def draw(self, context):
+        layout, settings = self.layout, settings_of(context)
+        column = layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.prop(settings, "line_style")
+        column.prop(settings, "line_sensitivity")
+        column.prop(settings, "lines_layer", text="Layer")
+        row = layout.row(align=True)
+        row.scale_y = 1.5
+        row.operator("rototoon.trace_drawing", icon="LINE_DATA").frames = "ALL"
+        side = row.row(align=True)
+        side.ui_units_x = 4
+        side.operator("rototoon.trace_drawing", text="Current").frames = "CURRENT"
+        layout.operator("rototoon.carry_strokes", icon="TRACKING_FORWARDS")
+        column = layout.column(align=True)
+        column.operator("rototoon.match_lines", icon="UV_SYNC_SELECT")
+        column.operator("rototoon.spread_edits", icon="NEXT_KEYFRAME")
+        column.operator("rototoon.make_part", icon="MOD_MASK")
+        layout.operator("rototoon.clear_lines", icon="TRASH")
+
+
 class ROTOTOON_PT_style(DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_style"
     bl_label = "Style"
@@ -248,6 +276,7 @@ CLASSES = (
     ROTOTOON_PT_snap,
     ROTOTOON_PT_strokes,
     ROTOTOON_PT_tween,
+    ROTOTOON_PT_lines,
     ROTOTOON_PT_style,
     ROTOTOON_PT_document,
 )

@@ -81,11 +81,11 @@ def addon():
 def empty_file():
     """An empty file before each test; `read_factory_settings` would disable the add-on."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    sessions = module("capture.sessions")
-    make, matcher = sessions.make, sessions.matcher
+    sessions, tracing = module("capture.sessions"), module("lines.tracing")
+    make, matcher, tracer = sessions.make, sessions.matcher, tracing.make
     yield
     sessions.clear()
-    sessions.make, sessions.matcher = make, matcher
+    sessions.make, sessions.matcher, tracing.make = make, matcher, tracer
 
 
 @pytest.fixture
@@ -96,6 +96,7 @@ def fake(addon):
     sessions = addon("capture.sessions")
     sessions.make = stand_in.Session.from_document
     sessions.matcher = stand_in.match_contours
+    addon("lines.tracing").make = stand_in.Tracer.from_document
     return stand_in
 
 

@@ -18,7 +18,7 @@ import test_import_motion
 import test_style
 
 OBJECT = "shot"
-CONTOURS, SNAPPED, LIMBS, INK, FRONT = "Contours", "Snapped", "Limbs", "Ink", "Front"
+CONTOURS, SNAPPED, LIMBS, INK, FRONT, LINES = "Contours", "Snapped", "Limbs", "Ink", "Front", "Lines"
 
 
 def build(addon, folder) -> str:
@@ -194,12 +194,35 @@ def _reference(addon, ob):
     empty.select_set(True)
 
 
-_C, _I = frozenset({CONTOURS}), frozenset({INK, FRONT})
+def _one_traced(addon, ob):
+    bpy.ops.rototoon.trace_drawing(frames="CURRENT")
+
+
+def _traced(addon, ob):
+    bpy.ops.rototoon.trace_drawing()
+
+
+def _traced_and_moved(addon, ob):
+    _traced(addon, ob)
+    gp = addon("blender.grease_pencil")
+    handle = gp.drawings(ob.data.layers[LINES])[1][0]
+    points = gp.positions(handle, int(gp.offsets(handle)[-1]))
+    points[0, 2] += 0.2
+    gp.put(handle, "position", points)
+
+
+def _ink_active(addon, ob):
+    ob.data.layers.active = ob.data.layers[INK]
+
+
+_C, _I, _L = frozenset({CONTOURS}), frozenset({INK, FRONT}), frozenset({LINES})
 _STYLED = {"motion": "walk", "content": "plain", "style": "old"}
 OPERATORS = {
     "apply_motion": Call(_C, _C, options=_STYLED),
+    "carry_strokes": Call(frozenset({INK}), prepare=_ink_active),
     "clear_generated": Call(_C | {SNAPPED}, options={"corrected": True}),
     "clear_in_betweens": Call(_I, prepare=_in_between),
+    "clear_lines": Call(_L, prepare=_traced),
     "contours_to_mask": Call(changes=False),
     "define_limbs": Call(frozenset({LIMBS}), prepare=_line_without_name, options={"point": "r_knee"}),
     "depth_mark": Call(options={"front": "Part 1", "behind": "Part 2"}),
@@ -216,7 +239,9 @@ OPERATORS = {
     "import_document": Call(_C | {SNAPPED}, _C | {SNAPPED}, options={"filepath": "{folder}/given.json", "into": "ACTIVE"}),
     "import_motion": Call(changes=False, options={"filepath": "{folder}/walk.bvh"}),
     "in_between": Call(_I, options={"frames": "ALL"}),
+    "make_part": Call(_C, _C, prepare=_traced, options={"numbers": "2"}),
     "match_contours": Call(_C, _C, prepare=_loose_stroke),
+    "match_lines": Call(_L, prepare=_traced, options={"earlier": 1, "later": 2}),
     "match_strokes": Call(_I | {SNAPPED}),
     "new_key": Call(_C, _C, prepare=_on_generated),
     "open_sample": Call(changes=False),
@@ -229,6 +254,8 @@ OPERATORS = {
     "setup": Call(changes=False, options={"filepath": "{folder}/frames/shot_001.png"}),
     "show_confidence": Call(),
     "snap": Call(frozenset({SNAPPED}), prepare=_moved_and_tracked),
+    "spread_edits": Call(_L, prepare=_traced_and_moved),
+    "trace_drawing": Call(_L, prepare=_one_traced),
     "track": Call(_C, _C, prepare=_not_tracked),
     "update_in_betweens": Call(_I, prepare=_in_between_and_moved),
     "weakest_frame": Call(changes=False),

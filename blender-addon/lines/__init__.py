@@ -1,0 +1,18 @@
+"""Lines: line drawings as strokes, the same strokes on every frame.
+
+A stroke carries its number on all frames (`rototoon_track`). Traced frames have the keyframe type "Generated". All other frames are
+the artist's and are never written; their strokes are followed.
+
+====================  ==============================================================================
+`records`             checksums of traced drawings: they show what the artist has changed since
+`drawings`            the drawings of a layer: the artist's, and traced ones
+`numbers`             numbers of strokes, from the library's to those of the layers
+`plan`                which drawings are followed, which frames are traced, as documents
+`looks`               material, radius and opacity of strokes
+`tracing`             one run: reads, traces in a thread, writes
+`pairing`             the same strokes of two neighbouring drawings, and clicks that change them
+`outline`             strokes that bound a part, as a closed contour
+====================  ==============================================================================
+
+May import: `rototoon`, `blender`, `common`, `capture`, `tween`.
+"""

@@ -1,0 +1,161 @@
+"""The drawings of a layer with lines: the artist's, and traced ones.
+
+A drawing is traced if its keyframe type is "Generated" and nobody has changed it since. Whatever the artist does there (redraw,
+move, delete, another number) makes it the artist's: it is never written again, and its strokes are followed. In-betweens are neither:
+they stay as they are, and are not followed.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender import strokes as st
+from . import records
+
+
+@dataclass
+class Layer:
+    """The drawings of a layer by scene frame."""
+
+    name: str
+    keys: dict[int, st.Content] = field(default_factory=dict)
+    """The artist's drawings that have strokes."""
+    blank: set[int] = field(default_factory=set)
+    """The artist's drawings without strokes."""
+    other: set[int] = field(default_factory=set)
+    """In-betweens."""
+    made: dict[int, st.Content] = field(default_factory=dict)
+    """Traced drawings. Only those that were asked for have their content."""
+    edited: set[int] = field(default_factory=set)
+    """Keys that were traced until the artist changed them."""
+    highest: dict[int, int] = field(default_factory=dict)
+    """The highest number on each frame."""
+
+    @property
+    def kept(self) -> set[int]:
+        """The frames that tracing does not write."""
+        return set(self.keys) | self.blank | self.other
+
+    def next_track(self, first: int, last: int) -> int:
+        """The next free number, where traced drawings on the frames `first` to `last` are drawn anew."""
+        stay = (number for frame, number in self.highest.items() if frame in self.kept or not first <= frame <= last)
+        return max(stay, default=0) + 1
+
+    def sums(self) -> dict[int, int]:
+        """Checksums of the artist's drawings."""
+        return {frame: sum_of(content) for frame, content in self.keys.items()}
+
+
+EMPTY = st.Content(np.zeros(0, np.int32), np.zeros(0, np.int8))
+"""In place of the content of a drawing that was not asked for."""
+
+
+def sum_of(content: st.Content) -> int:
+    """Checksum of the content of a drawing."""
+    return records.checksum(content.point["position"], content.strokes(gp.TRACK), content.sizes)
+
+
+def read(ob, names: Iterable[str], wanted: Iterable[int] | None = ()) -> list[Layer]:
+    """Sorts the drawings of layers. `wanted` are the frames of traced drawings whose content is needed, `None` for all."""
+    kept = records.read(ob.data)
+    wanted = None if wanted is None else set(wanted)
+    with gp.copied(ob.data) as data:
+        return [_layer(name, gp.find_layer_of(data, name), kept.get(name, records.Layer()).sums, wanted) for name in names]
+
+
+def _layer(name: str, layer, sums: dict[int, int], wanted: set[int] | None) -> Layer:
+    found = Layer(name)
+    if layer is None:
+        return found
+    for frame, (handle, kind) in gp.drawings(layer).items():
+        strokes = len(gp.offsets(handle)) - 1
+        tracks = gp.value(handle, gp.TRACK, strokes)
+        found.highest[frame] = int(tracks.max(initial=0))
+        if kind == gp.GENERATED and _is_traced(handle, sums.get(frame)):
+            found.made[frame] = st.read(handle) if wanted is None or frame in wanted else EMPTY
+        elif kind == gp.GENERATED and strokes and gp.value(handle, gp.TWEENED, strokes).all():
+            found.other.add(frame)
+        else:
+            if strokes:
+                found.keys[frame] = st.read(handle)
+            else:
+                found.blank.add(frame)
+            if kind == gp.GENERATED:
+                found.edited.add(frame)
+    return found
+
+
+def _is_traced(handle, known: int | None) -> bool:
+    """Whether a generated drawing is as tracing wrote it. Without a checksum, as on a renamed layer, the marks of the strokes tell."""
+    starts = gp.offsets(handle)
+    strokes, points = len(starts) - 1, gp.positions(handle, int(starts[-1]))
+    if known is None:
+        made = gp.value(handle, gp.MADE, strokes) & ~gp.value(handle, gp.TWEENED, strokes)
+        traced = gp.get(handle, gp.TRACKED, len(points))
+        return bool(strokes and made.all() and traced is not None and np.array_equal(traced, points))
+    return records.checksum(points, gp.value(handle, gp.TRACK, strokes), np.diff(starts)) == known
+
+
+def keep(ob, layer: Layer) -> None:
+    """Makes traced drawings that the artist changed the artist's."""
+    target = gp.find_layer(ob, layer.name)
+    handles = gp.drawings(target) if layer.edited else {}
+    for frame in layer.edited:
+        gp.put(handles[frame][0], gp.MADE, np.zeros(len(gp.offsets(handles[frame][0])) - 1, bool))
+    gp.set_keyframe_type(target, dict.fromkeys(layer.edited, gp.KEYFRAME))
+
+
+def mark(content: st.Content, chosen: np.ndarray | None = None) -> None:
+    """Notes for each point where it is, on which stroke, and where on it: an edit is measured from there. `chosen` are the strokes;
+    all by default."""
+    points, tracks = content.point["position"], content.strokes(gp.TRACK)
+    for name in (gp.TRACKED, gp.LINE, gp.ALONG):
+        if name not in content.point:
+            content.kinds[name], content.point[name] = gp.TYPES[name][0], gp.blank(name, len(points))
+    starts, looks = content.starts, look_sums(content)
+    known = content.strokes(gp.LOOK).copy()
+    content.set_strokes(gp.LOOK, looks if chosen is None else np.where(chosen, looks, known))
+    for i in range(len(content.sizes)) if chosen is None else np.flatnonzero(chosen):
+        span = slice(starts[i], starts[i + 1])
+        content.point[gp.TRACKED][span] = points[span]
+        content.point[gp.LINE][span] = tracks[i]
+        content.point[gp.ALONG][span] = shares(points[span])
+
+
+LOOKS = ("radius", "opacity", "vertex_color", "material_index", "fill_color", "fill_id")
+"""What of a stroke counts as its look."""
+
+
+def look_sums(content: st.Content) -> np.ndarray:
+    """Checksum of each stroke's look: int32."""
+    starts, points = content.starts, len(content.point["position"])
+    of_points = [content.point.get(name) for name in LOOKS if gp.TYPES[name][1] == "POINT"]
+    names = [name for name in LOOKS if gp.TYPES[name][1] == "POINT"]
+    of_points = [gp.blank(name, points) if each is None else each for name, each in zip(names, of_points)]
+    of_strokes = [content.strokes(name) for name in LOOKS if gp.TYPES[name][1] == "CURVE"]
+    found = np.zeros(len(content.sizes), np.int64)
+    for i, (a, b) in enumerate(zip(starts, starts[1:])):
+        total = 0
+        for each in of_points:
+            total = zlib.crc32(np.ascontiguousarray(each[a:b]), total)
+        for each in of_strokes:
+            total = zlib.crc32(np.ascontiguousarray(each[i]), total)
+        found[i] = total
+    return found.astype(np.uint32).view(np.int32)
+
+
+def shares(points: np.ndarray) -> np.ndarray:
+    """The share of a line's length at each point."""
+    steps = np.linalg.norm(np.diff(np.asarray(points, np.float64), axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    return along / along[-1] if along[-1] > 0 else np.linspace(0, 1, len(along))
+
+
+def is_lines(layer) -> bool:
+    """Whether a layer has traced drawings. Reads no array."""
+    return any(kind == gp.GENERATED and gp.has(handle, gp.LINE) for handle, kind in gp.drawings(layer).values())

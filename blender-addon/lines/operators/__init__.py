@@ -1,0 +1,7 @@
+"""The operators of this package, one a file."""
+
+from . import carry_strokes, clear_lines, make_part, match_lines, spread_edits, trace_drawing
+
+_MODULES = (trace_drawing, carry_strokes, match_lines, spread_edits, make_part, clear_lines)
+
+CLASSES = tuple(cls for module in _MODULES for cls in module.CLASSES)

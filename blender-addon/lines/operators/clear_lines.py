@@ -1,0 +1,48 @@
+"""Clear Lines: removes traced drawings."""
+
+import bpy
+
+from ...blender import grease_pencil as gp
+from ...blender import guard
+from ...blender import strokes as st
+from ...common.operators import Guarded, OnDrawing
+from .. import drawings as dr
+from .. import records
+
+
+class ROTOTOON_OT_clear_lines(Guarded, OnDrawing, bpy.types.Operator):
+    bl_idname = "rototoon.clear_lines"
+    bl_label = "Clear Lines"
+    bl_description = (
+        "Remove the drawings that Trace Drawing and Carry Strokes have made. Your own drawings stay, and so do traced drawings that "
+        "you have changed"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def lacking(cls, ob, changes: str) -> str:
+        """As `OnDrawing.lacking`."""
+        why = super().lacking(ob, changes)
+        return why or ("" if any(dr.is_lines(layer) for layer in _layers(ob)) else "Nothing is traced yet")
+
+    def run(self, context) -> str:
+        ob = context.object
+        wanted = [layer for layer in _layers(ob) if dr.is_lines(layer)]
+        guard.need_some(wanted)
+        self.warn(guard.left_out(wanted))
+        kept, removed = records.read(ob.data), 0
+        for found in dr.read(ob, [layer.name for layer in guard.open_layers(wanted)]):
+            dr.keep(ob, found)
+            gp.remove_frames(gp.find_layer(ob, found.name), sorted(found.made))
+            removed += len(found.made)
+            kept.pop(found.name, None)
+        records.write(ob.data, kept)
+        ob.data.update_tag()
+        return f"{removed} traced drawings removed"
+
+
+def _layers(ob) -> list:
+    return [layer for layer in st.drawn_layers(ob, active=False) if layer.name != ob.rototoon.snapped_layer]
+
+
+CLASSES = (ROTOTOON_OT_clear_lines,)

@@ -1,0 +1,112 @@
+"""Make Part: traced strokes that bound a part become its contour."""
+
+import bpy
+import numpy as np
+
+from ...blender import grease_pencil as gp
+from ...blender import guard, placement, stroke_lines
+from ...blender import strokes as st
+from ...blender.errors import Problem
+from ...capture import document, identity
+from ...common.operators import Guarded
+from .. import outline
+from .tracing_base import OnFootage
+
+TOLERANCE = 0.6
+"""Greatest distance of the contour from the strokes, in pixels of a picture of 540 lines or less."""
+SPACING = 24.0
+"""Greatest distance between two control points, likewise."""
+GAP = 6.0
+"""A gap between two strokes that is said, likewise."""
+
+
+class ROTOTOON_OT_make_part(Guarded, OnFootage, bpy.types.Operator):
+    bl_idname = "rototoon.make_part"
+    bl_label = "Make Part"
+    bl_description = (
+        "Join the selected strokes, which bound a part, into one closed contour, as a key for Track. Order and direction do not matter. "
+        "The strokes stay. On a hidden layer of contours too (hidden layers are written), not on a locked one"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    name: bpy.props.StringProperty(name="Name", description="Name of the new part. Empty: the next free one", default="")
+    numbers: bpy.props.StringProperty(
+        name="Numbers", description="Numbers of the strokes, separated by commas, for scripts. Empty: the selected strokes", default=""
+    )
+
+    def run(self, context) -> str:
+        ob, frame = context.object, context.scene.frame_current
+        settings = ob.rototoon
+        target = gp.find_layer(ob, settings.contours_layer)
+        guard.need_open([target], hidden=True)
+        found = _strokes(ob, frame, self._wanted())
+        if not found:
+            raise Problem("No strokes are selected: select the strokes around the part in Edit Mode, then press Make Part")
+        unit = max(settings.height / 540, 1.0)
+        contour, gap = outline.joined(found)
+        contour = outline.thinned(contour, TOLERANCE * unit, SPACING * unit)
+        if len(contour) < 3:
+            raise Problem("The selected strokes enclose nothing")
+        if gap > GAP * unit:
+            self.warn(f"the largest gap between two strokes is {gap:.0f} pixels: look at the contour there")
+        if self.name in {part.name for part in settings.parts}:
+            raise Problem(f'There is a part "{self.name}" already: choose another name')
+        before = {part.number for part in settings.parts}
+        _draw(ob, frame, contour)
+        reading = document.read(ob)
+        identity.write(ob, reading.found, reading.decisions)
+        new = [part for part in settings.parts if part.number not in before]
+        for part in new:
+            part.name = self.name or part.name
+        ob.data.update_tag()
+        if new:
+            return f'"{new[0].name}" is a new part with {len(contour)} control points'
+        return f"The strokes fit a part that has a contour already: this is its key on frame {frame}"
+
+    def _wanted(self) -> set[int] | None:
+        try:
+            return {int(text) for text in self.numbers.split(",")} if self.numbers.strip() else None
+        except ValueError as error:
+            raise Problem(f"numbers: found {self.numbers!r}, expected whole numbers, separated by commas") from error
+
+
+def _strokes(ob, frame: int, wanted: set[int] | None) -> list[tuple[np.ndarray, bool]]:
+    """Pixels of the strokes on all layers but those with contours: the selected ones, or those with the wanted numbers."""
+    found = []
+    for layer in st.drawn_layers(ob, active=False):
+        shown = st.shown_frame(layer, frame)
+        if shown is None:
+            continue
+        handle = gp.drawings(layer)[shown][0]
+        content = st.read(handle)
+        chosen = gp.selected_strokes(handle) if wanted is None else np.isin(content.strokes(gp.TRACK), sorted(wanted))
+        if not chosen.any():
+            continue
+        mapping = placement.Mapper(ob, [frame], {}, [layer.name]).at(0, frame)
+        closed = content.strokes("cyclic")
+        for i, line in enumerate(stroke_lines.lines(content)):
+            if chosen[i] and len(line) > 1 and np.isfinite(line).all():
+                found.append((mapping.to_pixels(line), bool(closed[i])))
+    return found
+
+
+def _draw(ob, frame: int, contour: np.ndarray) -> None:
+    """Adds the contour to the layer of the contours, as if the artist had drawn it."""
+    name = ob.rototoon.contours_layer
+    layer = gp.layer(ob, name)
+    mapping = placement.Mapper(ob, [frame], {}, [name]).at(0, frame)
+    gp.make_frames(layer, [frame], gp.KEYFRAME)
+    rows = gp.Rows(np.array([len(contour)], np.int32))
+    rows.values = {
+        "position": mapping.to_layer(contour).astype(np.float32),
+        "radius": gp.blank("radius", len(contour)),
+        "opacity": gp.blank("opacity", len(contour)),
+        "cyclic": np.array([True]),
+        "material_index": np.zeros(1, np.int32),
+        gp.PART: np.zeros(1, np.int32),
+        gp.MADE: np.zeros(1, bool),
+    }
+    gp.append(gp.drawings(layer)[frame][0], rows)
+
+
+CLASSES = (ROTOTOON_OT_make_part,)

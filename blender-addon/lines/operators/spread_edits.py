@@ -1,0 +1,125 @@
+"""Edit on All Frames: what the artist did to strokes on this frame, done to the same strokes on all frames."""
+
+import bpy
+import numpy as np
+
+from ...blender import grease_pencil as gp
+from ...blender import guard, placement
+from ...blender import strokes as st
+from ...blender.errors import Problem
+from ...common import jobs
+from ...common.operators import Long
+from .. import drawings as dr
+from .. import records, spreading
+from .match_lines import numbered
+from .tracing_base import OnFootage
+
+
+class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
+    bl_idname = "rototoon.spread_edits"
+    bl_label = "Edit on All Frames"
+    bl_description = (
+        "Do on all frames what you did to strokes on this frame since they were traced: moved points, width, opacity, colour, material, "
+        "cuts, joins, and deleted strokes. The edit moves and turns with its stroke"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    shape: bpy.props.BoolProperty(name="Shape", description="Moved points, cuts and joins", default=True)
+    look: bpy.props.BoolProperty(name="Look", description="Width, opacity, colour and material of edited strokes", default=True)
+    delete: bpy.props.BoolProperty(name="Deleted Strokes", description="Delete the strokes that you deleted here", default=True)
+    selected: bpy.props.BoolProperty(
+        name="Selected Strokes Only", description="Only edits of strokes with a selected point; nothing is deleted", default=False
+    )
+
+    @classmethod
+    def lacking(cls, ob, changes: str) -> str:
+        """As `OnDrawing.lacking`."""
+        why = super().lacking(ob, changes)
+        return why or ("" if numbered(ob) else "Nothing is traced yet: press Trace Drawing or Carry Strokes first")
+
+    def begin(self, context):
+        self._ob, self._frame = context.object, context.scene.frame_current
+        wanted = numbered(self._ob)
+        guard.need_some(wanted)
+        self.warn(guard.left_out(wanted))
+        kept, self._work_on = records.read(self._ob.data), []
+        for layer in guard.open_layers(wanted):
+            shown = st.shown_frame(layer, self._frame)
+            if shown is not None:
+                self._work_on.append(self._read(layer, shown, kept.get(layer.name, records.Layer())))
+        self._work_on = [each for each in self._work_on if each[2]]
+        if not self._work_on:
+            raise Problem("No stroke on this frame differs from what was traced: edit strokes here first, then press this")
+        self._done, self._left_out = [], 0
+        return jobs.Stepper(self._steps(), "Editing")
+
+    def _read(self, layer, shown: int, record: records.Layer):
+        with gp.copied(self._ob.data) as data:
+            contents = {
+                frame: st.read(handle)
+                for frame, (handle, _) in gp.drawings(gp.find_layer_of(data, layer.name)).items()
+                if gp.has(handle, gp.LINE) or frame == shown
+            }
+        points = [each.point["position"] for each in contents.values() if len(each.sizes)]
+        points = np.concatenate(points) if points else np.zeros((0, 3))
+        frames = range(min(contents), max(contents) + 1)
+        mapper = placement.Mapper(self._ob, frames, {0: points[np.isfinite(points).all(1)]}, [layer.name])
+        chosen = None
+        if self.selected:
+            chosen = gp.selected_strokes(gp.drawings(layer)[shown][0])
+        edit = spreading.found(contents[shown], record.numbers.get(shown, []), mapper.at(0, shown), chosen)
+        if not self.delete:
+            edit.deleted = set()
+        if not (self.shape or self.look):
+            edit.edited, edit.touched = [], set()
+        return layer.name, shown, edit, contents, mapper
+
+    def _steps(self):
+        total = sum(len(contents) for *_, contents, _ in self._work_on)
+        done = 0
+        for name, shown, edit, contents, mapper in self._work_on:
+            highest = max(int(each.strokes(gp.TRACK).max(initial=0)) for each in contents.values())
+            numbers = spreading.numbers_after(edit, highest + 1)
+            for frame, content in contents.items():
+                if frame != shown:
+                    made, left_out = spreading.spread(edit, numbers, content, mapper.at(0, frame), self.shape, self.look)
+                    self._left_out += left_out
+                    if not made.equals(content):
+                        self._done.append((name, frame, made))
+                done += 1
+                yield done / total
+            # Last, since the other frames are made from the marks that change now.
+            self._done.append((name, shown, _noted(edit, numbers)))
+
+    def finish(self, _context, _work):
+        guard.need_open(gp.find_layer(self._ob, name) for name, *_ in self._work_on)
+        kept = records.read(self._ob.data)
+        for count, (name, frame, content) in enumerate(self._done, 1):
+            st.write(gp.drawings(gp.find_layer(self._ob, name))[frame][0], content)
+            kept.setdefault(name, records.Layer()).numbers[frame] = content.strokes(gp.TRACK).tolist()
+            yield count / len(self._done)
+        records.write(self._ob.data, kept)
+        self._ob.data.update_tag()
+        if self._left_out:
+            self.warn(f"{self._left_out} strokes are curves with handles or knots and were not reshaped")
+        edited = sum(len(edit.edited) for _, _, edit, *_ in self._work_on)
+        deleted = sum(len(edit.deleted) for _, _, edit, *_ in self._work_on)
+        frames = len({frame for name, frame, _ in self._done}) - len({shown for _, shown, *_ in self._work_on})
+        said = [f"{edited} edited"] if edited else []
+        said += [f"{deleted} deleted"] if deleted else []
+        return f"{' and '.join(said)} {'stroke' if edited + deleted == 1 else 'strokes'}, on {frames} other {'frame' if frames == 1 else 'frames'}"
+
+
+def _noted(edit: spreading.Edit, numbers: dict[int, int]) -> st.Content:
+    """The edited drawing with its new numbers, and marks from where the next edit is measured."""
+    content = edit.content
+    tracks = content.strokes(gp.TRACK).copy()
+    chosen = np.zeros(len(content.sizes), bool)
+    for i, number in numbers.items():
+        tracks[i], chosen[i] = number, True
+    content.set_strokes(gp.TRACK, tracks)
+    dr.mark(content, chosen)
+    return content
+
+
+CLASSES = (ROTOTOON_OT_spread_edits,)

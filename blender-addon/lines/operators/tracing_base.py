@@ -1,0 +1,89 @@
+"""Base of the operators that trace: which frames, how the drawings are, and what the report says."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...blender import grease_pencil as gp
+from ...blender import guard, preferences
+from ...common.operators import Long, OnDrawing
+from .. import drawings as dr
+from .. import plan as pl
+from .. import properties, tracing
+
+FRAMES = (
+    ("ALL", "All", "All frames of the footage"),
+    ("RANGE", "Scene Range", "The frames that the scene plays: its preview range if it has one"),
+    ("CURRENT", "Current", "Only the current frame"),
+)
+
+
+class OnFootage(OnDrawing):
+    """An operator that needs an active Grease Pencil object with footage."""
+
+    @classmethod
+    def lacking(cls, ob, changes: str) -> str:
+        """As `OnDrawing.lacking`."""
+        return super().lacking(ob, changes) or ("" if ob.rototoon.pattern else "Choose the footage first, in the panel Footage")
+
+
+class Tracing(Long, OnFootage):
+    """Traces in a thread, and writes the strokes in slices."""
+
+    frames: bpy.props.EnumProperty(name="Frames", description="Which frames are drawn", items=FRAMES)
+    style: bpy.props.EnumProperty(
+        name="Drawing",
+        description="The kind of drawing",
+        items=(("SETTINGS", "As in the Panel", "The kind chosen in the panel"), *properties.STYLES),
+    )
+    sensitivity: bpy.props.FloatProperty(
+        name="Sensitivity",
+        description="Sensitivity to faint ink: with 2, ink may be half as dark as usual. 0 is that of the panel",
+        default=0.0,
+        min=0.0,
+        max=10.0,
+    )
+
+    def span(self, context) -> tuple[int, int]:
+        """First and last scene frame to draw."""
+        scene = context.scene
+        if self.frames == "CURRENT":
+            return scene.frame_current, scene.frame_current
+        if self.frames == "ALL":
+            return pl.film(context.object)
+        if scene.use_preview_range:
+            return scene.frame_preview_start, scene.frame_preview_end
+        return scene.frame_start, scene.frame_end
+
+    def start(self, context, names: list[str], home: str, new: bool):
+        """The worker for some layers. New strokes go to the layer `home`."""
+        self._ob, self._home = context.object, home
+        self._plan = plan_of(self._ob, names, *self.span(context), new)
+        settings = self._ob.rototoon
+        style = settings.line_style if self.style == "SETTINGS" else self.style
+        # The least sensitivity is 0.1; 0 means that of the panel.
+        sensitivity = max(self.sensitivity, 0.1) if self.sensitivity else settings.line_sensitivity
+        return tracing.worker(self._plan, tracing.Options(style.lower(), sensitivity, preferences.threads()))
+
+    def finish(self, _context, work):
+        done = yield from tracing.finishing(self._ob, self._plan, work.result, self._home)
+        return told(done)
+
+
+def plan_of(ob, names: list[str], first: int, last: int, new: bool) -> pl.Plan:
+    """The plan for some layers and scene frames. Reads the layers, and changes nothing."""
+    guard.need_open([gp.find_layer(ob, name) for name in names])
+    wanted = {frame for layer in dr.read(ob, names) for frame in pl.needed(layer, first, last)}
+    return pl.make(ob, dr.read(ob, names, wanted), first, last, new)
+
+
+def told(done: tracing.Done) -> str:
+    """What a run has done."""
+    if not done.frames:
+        return "All of these frames have drawings of yours: nothing was drawn"
+    strokes, frames = len(done.numbers), len(done.frames)
+    text = f"{strokes} {'stroke' if strokes == 1 else 'strokes'} on {frames} {'frame' if frames == 1 else 'frames'}"
+    if done.kept:
+        changed = "1 drawing that you had changed is" if done.kept == 1 else f"{done.kept} drawings that you had changed are"
+        text += f", {changed} a key now" if done.kept == 1 else f", {changed} keys now"
+    return text

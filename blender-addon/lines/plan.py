@@ -1,0 +1,170 @@
+"""What one run follows and traces: groups of layers, each with a document for the library.
+
+Layers whose drawings are on the same frames are followed together, as one drawing. A drawing of the library is a complete one, so a
+layer that has no drawing on some frame of the others makes a group of its own.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..blender import colours, footage, stroke_lines
+from ..blender import grease_pencil as gp
+from ..blender import strokes as st
+from ..blender.errors import Problem
+from ..blender.placement import Mapper
+from . import drawings as dr
+from . import numbers
+
+VERSION = 1
+
+
+@dataclass
+class Seed:
+    """Strokes of a drawing that are followed."""
+
+    keys: list[numbers.Key]
+    sources: list[tuple[int, int]]
+    """For each stroke its layer, as an index in the group, and its index in the drawing."""
+
+
+@dataclass
+class Group:
+    """Layers that are followed together."""
+
+    layers: list[dr.Layer]
+    seeds: dict[int, Seed]
+    """By scene frame."""
+    pictures: tuple[int, int]
+    """Numbers of the first and the last picture to trace: all pictures from and to which strokes are carried."""
+    document: dict[str, Any]
+    folder: str
+    mapper: Mapper
+
+
+@dataclass
+class Plan:
+    """A run: its groups, and what it writes."""
+
+    groups: list[Group]
+    first: int
+    """First scene frame that is written."""
+    last: int
+    new: bool
+    """Whether ink that no stroke explains makes new strokes."""
+    sums: dict[str, dict[int, int]] = field(default_factory=dict)
+    """Checksums of the artist's drawings, to see whether they change during the work."""
+
+
+def film(ob) -> tuple[int, int]:
+    """First and last scene frame of an object's footage."""
+    settings = ob.rototoon
+    return settings.first + settings.frame_offset, settings.last + settings.frame_offset
+
+
+def make(ob, layers: list[dr.Layer], first: int, last: int, new: bool) -> Plan:
+    """A plan for the scene frames `first` to `last`. Layers without a drawing to follow need `new`."""
+    pattern = footage.pattern_of(ob)
+    low, high = film(ob)
+    first, last = max(first, low), min(last, high)
+    if first > last:
+        raise Problem(f"There are no pictures on these frames: the footage is on frames {low} to {high}")
+    by_frames: dict[tuple[int, ...], list[dr.Layer]] = {}
+    for layer in layers:
+        seeds = _seeds_of(layer, first, last, (low, high))
+        if seeds or new:
+            by_frames.setdefault(tuple(seeds), []).append(layer)
+    if not by_frames:
+        raise Problem("There are no strokes to carry: draw them on a frame of the footage first")
+    groups = [_group(ob, own, frames, first, last, pattern) for frames, own in by_frames.items()]
+    return Plan(groups, first, last, new, {layer.name: layer.sums() for layer in layers})
+
+
+def needed(layer: dr.Layer, first: int, last: int) -> set[int]:
+    """The traced drawings whose content a plan for these frames needs: the nearest ones outside."""
+    known = [*layer.keys, *layer.made]
+    before = max((frame for frame in known if frame < first), default=None)
+    after = min((frame for frame in known if frame > last), default=None)
+    return {frame for frame in (before, after) if frame in layer.made}
+
+
+def _seeds_of(layer: dr.Layer, first: int, last: int, shown: tuple[int, int]) -> list[int]:
+    """The frames whose strokes are followed: the artist's drawings within, and the nearest drawing on either side."""
+    inside = [frame for frame in layer.keys if first <= frame <= last]
+    known = [*layer.keys, *(frame for frame, content in layer.made.items() if len(content.sizes))]
+    around = [
+        max((frame for frame in known if shown[0] <= frame < first), default=None),
+        min((frame for frame in known if last < frame <= shown[1]), default=None),
+    ]
+    return sorted({*inside, *(frame for frame in around if frame is not None)})
+
+
+def _group(ob, layers: list[dr.Layer], frames: tuple[int, ...], first: int, last: int, pattern: str) -> Group:
+    names = [layer.name for layer in layers]
+    points = {k: _points(layer, frames) for k, layer in enumerate(layers)}
+    low, high = min([first, *frames]), max([last, *frames])
+    mapper = Mapper(ob, range(low, high + 1), {k: each for k, each in points.items() if len(each)}, names)
+    offset, seeds, drawn = ob.rototoon.frame_offset, {}, []
+    for frame in frames:
+        seed, strokes = _drawing(ob, layers, frame, mapper)
+        if strokes:
+            seeds[frame] = seed
+            drawn.append({"frame": frame - offset, "strokes": strokes})
+    document = {"rototoon": VERSION, "footage": _footage(ob, pattern), "parts": [], "drawings": drawn}
+    return Group(layers, seeds, (low - offset, high - offset), document, os.path.dirname(pattern), mapper)
+
+
+def _points(layer: dr.Layer, frames: Iterable[int]) -> np.ndarray:
+    contents = [_content(layer, frame) for frame in frames]
+    rows = [c.point["position"] for c in contents if len(c.sizes)]
+    rows = [each[np.isfinite(each).all(1)] for each in rows]
+    return np.concatenate(rows) if rows else np.zeros((0, 3))
+
+
+def _content(layer: dr.Layer, frame: int) -> st.Content:
+    return layer.keys.get(frame) or layer.made.get(frame) or dr.EMPTY
+
+
+def content_of(layer: dr.Layer, frame: int) -> st.Content:
+    """The content of a drawing that is followed."""
+    return _content(layer, frame)
+
+
+def _footage(ob, pattern: str) -> dict[str, Any]:
+    settings = ob.rototoon
+    return {
+        "pattern": pattern,
+        "first": settings.first,
+        "last": settings.last,
+        "fps": settings.fps,
+        "width": settings.width,
+        "height": settings.height,
+    }
+
+
+def _drawing(ob, layers: list[dr.Layer], frame: int, mapper: Mapper) -> tuple[Seed, list[dict[str, Any]]]:
+    """The strokes of all layers on a frame, lowest layer first. Strokes that are no lines are left out: the library could not follow
+    them."""
+    seed, strokes = Seed([], []), []
+    palette = colours.palette(ob)
+    for k, layer in enumerate(layers):
+        content = _content(layer, frame)
+        if not len(content.sizes):
+            continue
+        seen = colours.of_strokes(ob, content, palette)
+        tracks, closed = content.strokes(gp.TRACK), content.strokes("cyclic")
+        mapping = mapper.at(k, frame)
+        for i, line in enumerate(stroke_lines.lines(content)):
+            line = line[:-1] if closed[i] and len(line) > 2 and np.array_equal(line[0], line[-1]) else line
+            if len(line) < 2 or not np.isfinite(line).all():
+                continue
+            seed.keys.append((layer.name, int(tracks[i])))
+            seed.sources.append((k, i))
+            pixels = np.round(mapping.to_pixels(line), 4)
+            strokes.append({"points": pixels.tolist(), "closed": bool(closed[i]), "colour": seen[i].clip(0, 1).tolist()})
+    return seed, strokes

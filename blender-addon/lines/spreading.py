@@ -1,0 +1,331 @@
+"""An edit of strokes on one frame, for the same strokes on all frames. Plain NumPy on contents of drawings.
+
+Each point of a traced stroke knows where it was (`rototoon_tracked`), on which stroke (`rototoon_line`), and at which share of its length
+(`rototoon_along`). Blender carries these through its own tools. So a drawing tells by itself what the artist did since: points that
+moved, strokes that were cut, joined, shortened or deleted.
+
+On another frame a point at share s of the stroke is Q(s); on the edited frame it was P(s) and is P(s) + d. It goes to Q(s) + R(s) d. R(s)
+is the similarity (turn and scale) that carries the stroke from the one frame to the other around s best: least squares over the stroke,
+weighted by a Gaussian of the distance in share (as in moving least squares, Schaefer, McPhail & Warren 2006). So an edit moves, turns and
+grows with its own stretch of the stroke. A frame keeps its own points; d is interpolated between the edited ones.
+
+Limits: curves with handles or knots get looks, and are deleted, but not reshaped. A stroke that was drawn anew has no such marks: carry it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender import strokes as st
+from . import drawings as dr
+
+SIGMA = 0.2
+"""Width of the Gaussian in shares of the length."""
+SAMPLES = 33
+"""Samples of a stroke for the similarity."""
+
+
+@dataclass
+class Edit:
+    """What happened to strokes on one frame."""
+
+    content: st.Content
+    mapping: object
+    """Layer points to pixels and back, on that frame."""
+    edited: list[int]
+    """Indices of the strokes that differ from what was traced."""
+    touched: set[int]
+    """Numbers of all strokes that they come from."""
+    deleted: set[int]
+    """Numbers of strokes that are not there any more."""
+
+    def __bool__(self) -> bool:
+        return bool(self.edited or self.deleted)
+
+
+@dataclass
+class Run:
+    """Successive points of an edited stroke that come from one stroke, in its direction or against it."""
+
+    number: int
+    shares: np.ndarray
+    moved: np.ndarray
+    """Complex pixels: how far each point was moved."""
+    was: np.ndarray
+    """Complex pixels: where each point was."""
+
+
+def found(content: st.Content, before: Sequence[int], mapping, chosen: np.ndarray | None = None) -> Edit:
+    """The edit of a drawing. `before` are the numbers of its strokes when it was traced. Of edited strokes only the `chosen` ones
+    count."""
+    lines = content.point.get(gp.LINE)
+    if lines is None:
+        return Edit(content, mapping, [], set(), set())
+    starts, tracks = content.starts, content.strokes(gp.TRACK)
+    looks, known = dr.look_sums(content), content.strokes(gp.LOOK)
+    moved = (content.point[gp.TRACKED] != content.point["position"]).any(1)
+    twice = {number for number in tracks.tolist() if (tracks == number).sum() > 1}
+    edited, touched = [], set()
+    for i, (a, b) in enumerate(zip(starts, starts[1:])):
+        own = set(lines[a:b].tolist()) - {0}
+        if not own or (chosen is not None and not chosen[i]):
+            continue
+        along = content.point[gp.ALONG][a:b]
+        cut = own != {int(tracks[i])} or int(tracks[i]) in twice or min(along[0], along[-1]) > 1e-4 or max(along[0], along[-1]) < 1 - 1e-4
+        if cut or moved[a:b].any() or (lines[a:b] == 0).any() or looks[i] != known[i]:
+            edited.append(i)
+            touched |= own
+    there = set(lines.tolist()) | set(tracks.tolist())
+    return Edit(content, mapping, edited, touched, set(before) - there if chosen is None else set())
+
+
+def numbers_after(edit: Edit, fresh: int) -> dict[int, int]:
+    """The number of each edited stroke: its own, but that of a second piece is new, from `fresh` on."""
+    tracks, taken, result = edit.content.strokes(gp.TRACK), set(), {}
+    for i in edit.edited:
+        number = int(tracks[i])
+        if number == 0 or number in taken:
+            number, fresh = fresh, fresh + 1
+        taken.add(number)
+        result[i] = number
+    return result
+
+
+def spread(edit: Edit, numbers: dict[int, int], content: st.Content, mapping, shape: bool, looks: bool) -> tuple[st.Content, int]:
+    """The content of another frame with the edit, and the number of strokes that could not be reshaped there."""
+    tracks = content.strokes(gp.TRACK)
+    gone = np.isin(tracks, sorted(edit.deleted))
+    made: list[tuple[int, st.Content]] = []
+    left_out = 0
+    if not shape:
+        made = _looked(edit, content) if looks else []
+        gone[[place for place, _ in made]] = True
+    elif edit.edited:
+        pixels = to_complex(mapping, content.point["position"])
+        there = {number: _stroke(content, pixels, number) for number in edit.touched}
+        before = to_complex(edit.mapping, edit.content.point[gp.TRACKED])
+        now = to_complex(edit.mapping, edit.content.point["position"])
+        for i in edit.edited:
+            new = _made(edit, i, numbers[i], content, there, before, now, mapping, looks)
+            if new is None:
+                left_out += 1
+            elif new[1] is not None:
+                made.append(new)
+        # Curves with handles or knots stay.
+        stay = [number for number, each in there.items() if each is None]
+        gone |= np.isin(tracks, sorted(edit.touched)) & ~np.isin(tracks, stay)
+    return _assembled(content, gone, made), left_out
+
+
+def to_complex(mapping, points: np.ndarray) -> np.ndarray:
+    """Pixels of layer points as complex numbers."""
+    if not len(points):
+        return np.zeros(0, complex)
+    xy = mapping.to_pixels(np.asarray(points, np.float64))
+    return xy[:, 0] + 1j * xy[:, 1]
+
+
+@dataclass
+class _There:
+    """A stroke on another frame."""
+
+    index: int
+    shares: np.ndarray
+    pixels: np.ndarray
+    """Complex pixels."""
+    closed: bool
+
+
+def _stroke(content: st.Content, pixels: np.ndarray, number: int) -> _There | None:
+    tracks = content.strokes(gp.TRACK)
+    places = np.flatnonzero((tracks == number) & (content.sizes > 1) & (content.types == st.POLY))
+    if not len(places):
+        return None
+    index = int(places[0])
+    a, b = content.starts[index : index + 2]
+    along = content.point.get(gp.ALONG)
+    share = dr.shares(content.point["position"][a:b]) if along is None else np.asarray(along[a:b], np.float64)
+    if (np.diff(share) < 0).any():
+        share = dr.shares(content.point["position"][a:b])
+    return _There(index, share, pixels[a:b], bool(content.strokes("cyclic")[index]))
+
+
+def runs(edit: Edit, i: int, before: np.ndarray, now: np.ndarray) -> list[Run]:
+    """The runs of an edited stroke. Points that were drawn since belong to the run before them, or to the first one."""
+    a, b = edit.content.starts[i : i + 2]
+    lines = edit.content.point[gp.LINE][a:b].copy()
+    along = edit.content.point[gp.ALONG][a:b].astype(np.float64)
+    old, new = before[a:b].copy(), now[a:b]
+    known = np.flatnonzero(lines)
+    for k in np.flatnonzero(lines == 0):
+        near = known[np.argmin(np.abs(known - k))]
+        lines[k], along[k], old[k] = lines[near], along[near], old[near]
+    found: list[Run] = []
+    start = 0
+    for k in range(1, len(lines) + 1):
+        if k < len(lines) and lines[k] == lines[k - 1] and not _turns(along, start, k):
+            continue
+        span = slice(start, k)
+        found.append(Run(int(lines[start]), along[span], (new - old)[span], old[span]))
+        start = k
+    return found
+
+
+def _turns(along: np.ndarray, start: int, k: int) -> bool:
+    """Whether the share jumps at point `k`, as at the seam of a closed stroke."""
+    step = along[k] - along[k - 1]
+    return abs(step) > 0.5 or (k - start > 1 and step * (along[k - 1] - along[start]) < 0)
+
+
+def similarity(was: np.ndarray, here: np.ndarray, samples: np.ndarray, where: np.ndarray, closed: bool) -> np.ndarray:
+    """The factor (complex) by which displacements at shares `where` turn and grow. `was` and `here` are the stroke at `samples`."""
+    away = np.abs(where[:, None] - samples[None])
+    away = np.minimum(away, 1 - away) if closed else away
+    weights = np.exp(-0.5 * (away / SIGMA) ** 2)
+    weights /= weights.sum(1, keepdims=True)
+    p = was[None] - (weights @ was)[:, None]
+    q = here[None] - (weights @ here)[:, None]
+    size = (weights * np.abs(p) ** 2).sum(1)
+    return np.where(size > 1e-9, (weights * q * p.conj()).sum(1) / np.maximum(size, 1e-9), 1.0)
+
+
+def _made(edit, i, number, content, there, before, now, mapping, looks) -> tuple[int, st.Content | None] | None:
+    """The edited stroke `i` on another frame, with the index that it takes; no content if none of its strokes is there; `None` if it
+    cannot be reshaped."""
+    parts = [run for run in runs(edit, i, before, now) if there.get(run.number) is not None]
+    if not parts:
+        own = set(edit.content.point[gp.LINE][edit.content.starts[i] : edit.content.starts[i + 1]].tolist()) - {0}
+        return None if np.isin(content.strokes(gp.TRACK), sorted(own)).any() else (0, None)
+    base = there[parts[0].number]
+    line, where = _reshaped(edit, parts, there, before)
+    if len(line) < 2:
+        return 0, None
+    points = mapping.to_layer(np.stack([line.real, line.imag], 1)).astype(np.float32)
+    made = _like(content, base, where, points)
+    made.set_strokes("cyclic", edit.content.strokes("cyclic")[i : i + 1])
+    made.set_strokes(gp.TRACK, np.array([number], np.int32))
+    if looks:
+        _look_like(made, edit.content, i)
+    return base.index, made
+
+
+def _looked(edit: Edit, content: st.Content) -> list[tuple[int, st.Content]]:
+    """The strokes of a drawing that get a look only, with their indices."""
+    tracks, made = content.strokes(gp.TRACK), {}
+    for i in edit.edited:
+        own = set(edit.content.point[gp.LINE][edit.content.starts[i] : edit.content.starts[i + 1]].tolist()) - {0}
+        for place in np.flatnonzero(np.isin(tracks, sorted(own)) & (content.sizes > 0)):
+            made[int(place)] = part(content, np.arange(len(tracks)) == place)
+            _look_like(made[int(place)], edit.content, i)
+    return sorted(made.items(), key=lambda each: each[0])
+
+
+def _reshaped(edit: Edit, parts: list[Run], there: dict, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The line (complex pixels) of all runs on another frame, and the share of each point on its stroke there."""
+    samples = np.linspace(0, 1, SAMPLES)
+    lines, wheres = [], []
+    for run in parts:
+        here = there[run.number]
+        order = np.argsort(run.shares, kind="stable")
+        shares, moved = run.shares[order], run.moved[order]
+        inside = (here.shares > shares[0]) & (here.shares < shares[-1])
+        where = np.concatenate([[shares[0]], here.shares[inside], [shares[-1]]]) if len(shares) > 1 else shares[:1]
+        if (run.shares == run.shares[0]).all() and len(run.shares) > 1:
+            # Points that were drawn since, all at one place of the stroke.
+            where, delta = run.shares, run.moved
+        else:
+            delta = _interpolated(where, shares, moved)
+        was = _original(edit, run.number, samples, before)
+        factor = similarity(was, _interpolated(samples, here.shares, here.pixels), samples, where, here.closed)
+        line = _interpolated(where, here.shares, here.pixels) + factor * delta
+        backwards = run.shares[-1] < run.shares[0]
+        lines.append(line[::-1] if backwards else line)
+        wheres.append(where[::-1] if backwards else where)
+    return np.concatenate(lines), np.concatenate(wheres)
+
+
+def _original(edit: Edit, number: int, samples: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """A stroke of the edited frame as it was, at shares."""
+    mine = np.flatnonzero(edit.content.point[gp.LINE] == number)
+    along = edit.content.point[gp.ALONG][mine].astype(np.float64)
+    order = np.argsort(along, kind="stable")
+    return _interpolated(samples, along[order], before[mine][order])
+
+
+def _interpolated(where: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
+    return np.interp(where, known, values.real) + 1j * np.interp(where, known, values.imag)
+
+
+def _like(content: st.Content, base: _There, where: np.ndarray, points: np.ndarray) -> st.Content:
+    """A stroke with the attributes of stroke `base`, at shares of its length."""
+    a, b = content.starts[base.index : base.index + 2]
+    made = st.Content(np.array([len(points)], np.int32), content.types[base.index : base.index + 1].copy())
+    made.kinds = dict(content.kinds)
+    near = np.clip(np.searchsorted(base.shares, where), 0, b - a - 1)
+    for name, values in content.point.items():
+        own = values[a:b]
+        if values.dtype.kind == "f":
+            columns = own.reshape(len(own), -1)
+            blended = np.stack([np.interp(where, base.shares, columns[:, k]) for k in range(columns.shape[1])], 1)
+            made.point[name] = blended.reshape((len(where), *own.shape[1:])).astype(values.dtype)
+        else:
+            made.point[name] = own[near]
+    made.point["position"] = points
+    for name, values in content.curve.items():
+        made.curve[name] = values[base.index : base.index + 1].copy()
+    return made
+
+
+def _look_like(made: st.Content, source: st.Content, i: int) -> None:
+    """Gives a stroke the look of stroke `i` of another drawing, by the share of the length."""
+    a, b = source.starts[i : i + 2]
+    where, known = dr.shares(made.point["position"]), dr.shares(source.point["position"][a:b])
+    for name in dr.LOOKS:
+        if gp.TYPES[name][1] == "CURVE":
+            if name in source.curve:
+                made.set_strokes(name, source.curve[name][i : i + 1].copy())
+        elif name in source.point:
+            own = source.point[name][a:b].reshape(b - a, -1).astype(np.float64)
+            values = np.stack([np.interp(where, known, own[:, k]) for k in range(own.shape[1])], 1)
+            made.kinds.setdefault(name, gp.TYPES[name][0])
+            made.point[name] = values.reshape((len(where), *source.point[name].shape[1:])).astype(source.point[name].dtype)
+
+
+def _assembled(content: st.Content, gone: np.ndarray, made: list[tuple[int, st.Content]]) -> st.Content:
+    """The content without the strokes `gone`, with new strokes at the places that they take."""
+    stay = np.flatnonzero(~gone)
+    places = [(float(i), 0, k) for k, i in enumerate(stay)]
+    places += [(float(place), 1 + k, len(stay) + k) for k, (place, _) in enumerate(made)]
+    whole = part(content, ~gone)
+    for _, each in made:
+        whole = st.joined(whole, each)
+    if not made:
+        return whole
+    result = reordered(whole, np.array([k for *_, k in sorted(places)]))
+    new = np.isin(np.array([k for *_, k in sorted(places)]), np.arange(len(stay), len(whole.sizes)))
+    dr.mark(result, new)
+    return result
+
+
+def part(content: st.Content, wanted: np.ndarray) -> st.Content:
+    """Only the wanted strokes."""
+    of_points = np.repeat(wanted, content.sizes)
+    made = st.Content(content.sizes[wanted], content.types[wanted])
+    made.kinds = dict(content.kinds)
+    made.point = {name: values[of_points] for name, values in content.point.items()}
+    made.curve = {name: values[wanted] for name, values in content.curve.items()}
+    return made
+
+
+def reordered(content: st.Content, order: np.ndarray) -> st.Content:
+    """The strokes in another order."""
+    rows = st.ranges(content.starts[:-1][order], content.sizes[order])
+    made = st.Content(content.sizes[order], content.types[order])
+    made.kinds = dict(content.kinds)
+    made.point = {name: values[rows] for name, values in content.point.items()}
+    made.curve = {name: values[order] for name, values in content.curve.items()}
+    return made

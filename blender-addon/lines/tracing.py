@@ -1,0 +1,272 @@
+"""One run of tracing: it reads layers, traces in a thread, and writes strokes on generated frames.
+
+Trace Drawing, Carry Strokes and the scripts' functions use it. Nothing in the file changes before `finishing`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender import guard
+from ..blender import strokes as st
+from ..blender.errors import Problem
+from ..common import jobs
+from ..rototoon import Session
+from ..rototoon.lines import Traced
+from . import drawings as dr
+from . import looks, numbers, records
+from . import plan as pl
+
+make: Callable[[dict[str, Any], str], Any] = Session.from_document
+"""Makes a session from a document and its folder. Tests replace it."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the artist chose."""
+
+    style: str = "auto"
+    sensitivity: float = 1.0
+    threads: int = 0
+
+
+@dataclass
+class Done:
+    """What a run has written."""
+
+    strokes: int = 0
+    frames: set[int] = field(default_factory=set)
+    numbers: set[numbers.Key] = field(default_factory=set)
+    kept: int = 0
+    """Number of drawings of the artist that were changed traced drawings before."""
+
+
+def worker(plan: pl.Plan, options: Options) -> jobs.Worker:
+    """The work of a plan, for a thread. Its result is a `Traced` for each group."""
+
+    def run(progress) -> list[Traced]:
+        found = []
+        for k, group in enumerate(plan.groups):
+            share, begun = 1 / len(plan.groups), k / len(plan.groups)
+            session = make(group.document, group.folder)
+            try:
+                found.append(
+                    session.trace(
+                        options.style,
+                        options.sensitivity,
+                        group.pictures,
+                        lambda done, step, begun=begun, share=share: progress(begun + share * done, step),
+                        threads=options.threads,
+                    )
+                )
+            finally:
+                session.close()
+        return found
+
+    return jobs.Worker(run)
+
+
+@dataclass
+class Placed:
+    """A traced stroke on one frame."""
+
+    number: int
+    points: np.ndarray
+    closed: bool
+    widths: np.ndarray
+    colour: np.ndarray
+
+
+def finishing(ob, plan: pl.Plan, found: list[Traced], home: str) -> Iterator[float]:
+    """Writes the result of a plan in steps, and yields the finished share. Returns a `Done`.
+
+    New strokes go to the layer `home`, which must be one of the plan's. Raises a `Problem` if the artist's drawings have changed.
+    """
+    guard.need(ob)
+    layers = [layer for group in plan.groups for layer in group.layers]
+    names = [layer.name for layer in layers]
+    _need_unchanged(ob, names, plan)
+    gp.layer(ob, home)
+    yield 0.0
+    done, kept = Done(), records.read(ob.data)
+    counter = numbers.Counter({layer.name: layer.next_track(plan.first, plan.last) for layer in layers})
+    for g, (group, traced) in enumerate(zip(plan.groups, found, strict=True)):
+        own = [layer.name for layer in group.layers]
+        keyed = _keyed(group, traced, ob.rototoon.frame_offset, counter, home if home in own else own[-1])
+        for k, layer in enumerate(group.layers):
+            record = kept.setdefault(layer.name, records.Layer())
+            _mark_keys(ob, layer, group, k, keyed, record, done)
+            placed = _placed(group, layer, k, traced, keyed, plan, ob.rototoon.frame_offset)
+            yield from _write(ob, layer, group.mapper, k, placed, _looks_of(group, k, keyed), record, done)
+    records.write(ob.data, kept)
+    ob.data.update_tag()
+    return done
+
+
+def _need_unchanged(ob, names: list[str], plan: pl.Plan) -> None:
+    missing = [name for name in names if plan.sums[name] and gp.find_layer(ob, name) is None]
+    if missing:
+        raise Problem(f'The layer "{missing[0]}" was removed during the work, so the result was dropped')
+    guard.need_open([gp.find_layer(ob, name) for name in names])
+    if {layer.name: layer.sums() for layer in dr.read(ob, names)} != {name: plan.sums[name] for name in names}:
+        raise Problem("The drawings changed while they were traced, so the result was dropped: try again")
+
+
+def _keyed(group: pl.Group, traced: Traced, offset: int, counter, home: str) -> dict[int, list[numbers.Key]]:
+    starts, tracks = traced.stroke_offsets, traced.tracks.tolist()
+    by_frame = {
+        frame + offset: tracks[starts[k] : starts[k + 1]] for k, frame in enumerate(traced.frames.tolist())
+    }
+    drawn = {frame: seed.keys for frame, seed in group.seeds.items()}
+    return numbers.keyed(by_frame, drawn, counter, home)
+
+
+def _mark_keys(ob, layer: dr.Layer, group: pl.Group, k: int, keyed, record: records.Layer, done: Done) -> None:
+    """Gives the strokes of the artist's drawings their numbers, and makes changed traced drawings the artist's."""
+    target = gp.find_layer(ob, layer.name)
+    handles = gp.drawings(target)
+    for frame, seed in group.seeds.items():
+        if frame not in layer.keys:
+            continue
+        content = layer.keys[frame]
+        numbered = content.strokes(gp.TRACK).copy()
+        for (_, number), (which, index) in zip(keyed[frame], seed.sources, strict=True):
+            if which == k:
+                numbered[index] = number
+        content.set_strokes(gp.TRACK, numbered)
+        dr.mark(content)
+        record.numbers[frame] = numbered.tolist()
+        for name, values in ((gp.TRACK, numbered), (gp.LOOK, content.strokes(gp.LOOK))):
+            gp.put(handles[frame][0], name, values)
+        for name in (gp.TRACKED, gp.LINE, gp.ALONG):
+            gp.put(handles[frame][0], name, content.point[name])
+    dr.keep(ob, layer)
+    done.kept += len(layer.edited)
+
+
+def _looks_of(group: pl.Group, k: int, keyed) -> looks.Looks:
+    """The artist's strokes on a layer, by number. Of traced drawings only the numbers serve."""
+    layer, found = group.layers[k], looks.Looks()
+    for frame, seed in group.seeds.items():
+        if frame not in layer.keys:
+            continue
+        for (_, number), (which, index) in zip(keyed[frame], seed.sources, strict=True):
+            if which == k:
+                found.add(number, frame, layer.keys[frame], index)
+    return found
+
+
+def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan, offset: int) -> dict[int, list[Placed]]:
+    """The strokes of a layer on the frames that are written, by number."""
+    points, widths = np.asarray(traced.points).reshape(-1, 2), np.asarray(traced.widths)
+    colours, ends = np.asarray(traced.colours).reshape(-1, 3), traced.point_offsets
+    known = {key for seed in (keyed[f] for f in group.seeds) for key in seed}
+    result: dict[int, list[Placed]] = {}
+    for place, number in enumerate(traced.frames.tolist()):
+        frame = number + offset
+        if not plan.first <= frame <= plan.last or frame in layer.kept:
+            continue
+        first = traced.stroke_offsets[place]
+        strokes = []
+        for i, key in enumerate(keyed[frame], first):
+            if key[0] != layer.name or not (plan.new or key in known):
+                continue
+            span = slice(ends[i], ends[i + 1])
+            strokes.append(Placed(key[1], points[span], bool(traced.closed[i]), widths[span], colours[i]))
+        result[frame] = sorted(strokes, key=lambda stroke: stroke.number)
+    return result
+
+
+def _write(ob, layer: dr.Layer, mapper, k: int, placed, shown: looks.Looks, record, done: Done) -> Iterator[float]:
+    """Writes the strokes of one layer, with a step for each frame."""
+    target, materials = gp.find_layer(ob, layer.name), _materials(ob, placed, shown)
+    gp.make_frames(target, placed, gp.GENERATED)
+    handles, names = gp.drawings(target), shown.names()
+    for count, (frame, strokes) in enumerate(placed.items(), 1):
+        rows = _rows(frame, strokes, shown, names, materials, mapper.at(k, frame))
+        gp.replace_made(handles[frame][0], rows)
+        if gp.drawings(target)[frame][1] != gp.GENERATED:
+            gp.set_keyframe_type(target, {frame: gp.GENERATED})
+        record.sums[frame] = records.checksum(rows.values["position"], rows.values[gp.TRACK], rows.sizes)
+        record.numbers[frame] = rows.values[gp.TRACK].tolist()
+        done.strokes += len(strokes)
+        done.frames.add(frame)
+        done.numbers.update((layer.name, stroke.number) for stroke in strokes)
+        yield count / len(placed)
+    for frame in [frame for frame in record.sums if frame in layer.kept or frame not in handles]:
+        del record.sums[frame]
+    for frame in [frame for frame in record.numbers if frame not in handles]:
+        del record.numbers[frame]
+
+
+def _materials(ob, placed, shown: looks.Looks) -> dict[int, int]:
+    """The material of each number that no stroke of the artist has: one for each ink."""
+    colours: dict[int, list[np.ndarray]] = {}
+    lengths: dict[int, float] = {}
+    for stroke in (stroke for strokes in placed.values() for stroke in strokes):
+        if stroke.number not in shown.sources:
+            colours.setdefault(stroke.number, []).append(stroke.colour)
+            lengths[stroke.number] = lengths.get(stroke.number, 0.0) + len(stroke.points)
+    if not colours:
+        return {}
+    known = list(colours)
+    means = np.nan_to_num(np.array([np.mean(colours[number], axis=0) for number in known]))
+    which, found = looks.inks(means, np.array([lengths[number] for number in known]))
+    places = [looks.material(ob, colour) for colour in found]
+    return {number: places[ink] for number, ink in zip(known, which)}
+
+
+def _rows(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str], materials, mapping) -> gp.Rows:
+    """The strokes of a frame as attributes."""
+    rows = gp.Rows(np.array([len(stroke.points) for stroke in strokes], np.int32))
+    points = np.concatenate([stroke.points for stroke in strokes]) if strokes else np.zeros((0, 2))
+    total, count = len(points), len(strokes)
+    places = mapping.to_layer(points) if total else np.zeros((0, 3))
+    for name in {"radius", "opacity", *names}:
+        rows.values[name] = gp.blank(name, total if gp.TYPES[name][1] == "POINT" else count)
+    rows.values["position"] = places.astype(np.float32)
+    rows.values["material_index"] = gp.blank("material_index", count)
+    rows.values["cyclic"] = np.array([stroke.closed for stroke in strokes], bool)
+    rows.values[gp.TRACK] = np.array([stroke.number for stroke in strokes], np.int32)
+    rows.values[gp.MADE] = np.ones(count, bool)
+    rows.values[gp.TRACKED] = rows.values["position"]
+    rows.values[gp.LINE] = np.repeat(rows.values[gp.TRACK], rows.sizes)
+    rows.values[gp.ALONG] = gp.blank(gp.ALONG, total)
+    rows.values[gp.LOOK] = gp.blank(gp.LOOK, count)
+    if not count:
+        return rows
+    rows.values["radius"][:] = _radii(points, np.concatenate([stroke.widths for stroke in strokes]), places, mapping)
+    starts = np.concatenate([[0], np.cumsum(rows.sizes)])
+    for i, stroke in enumerate(strokes):
+        where = rows.values[gp.ALONG][starts[i] : starts[i + 1]] = dr.shares(stroke.points)
+        found = shown.around(stroke.number, frame)
+        if found is None:
+            rows.values["material_index"][i] = materials[stroke.number]
+            continue
+        for name in names:
+            if gp.TYPES[name][1] == "POINT":
+                rows.values[name][starts[i] : starts[i + 1]] = looks.of_points(found, name, where)
+            elif name != "cyclic":
+                rows.values[name][i] = looks.of_stroke(found[0], name)
+    rows.values[gp.LOOK] = dr.look_sums(_content(rows))
+    return rows
+
+
+def _content(rows: gp.Rows) -> st.Content:
+    content = st.Content(rows.sizes, np.ones(len(rows.sizes), np.int8))
+    for name, values in rows.values.items():
+        (content.point if name == "position" or gp.TYPES[name][1] == "POINT" else content.curve)[name] = values
+    return content
+
+
+def _radii(points: np.ndarray, widths: np.ndarray, places: np.ndarray, mapping) -> np.ndarray:
+    """Radius of lines of a width in pixels, in units of the layer."""
+    if not np.isfinite(widths).any():
+        return gp.blank("radius", len(points))
+    half = np.nan_to_num(widths, nan=2.0) / 2
+    return np.linalg.norm(mapping.to_layer(points + np.stack([half, 0 * half], 1)) - places, axis=1)

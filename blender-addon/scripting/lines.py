@@ -1,0 +1,127 @@
+"""Lines as functions: Trace Drawing and Carry Strokes with their results as data, and the strokes of a layer in pixels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender import guard, placement, stroke_lines
+from ..blender import strokes as st
+from ..blender.errors import Problem
+from ..common import jobs
+from ..common.operators import OnDrawing
+from ..lines import drawings, tracing
+from ..lines import plan as plans
+from ..lines.operators.tracing_base import OnFootage, plan_of
+from ..rototoon.types import Progress
+from .refusing import need, told
+
+
+@dataclass(frozen=True)
+class Line:
+    """A stroke on one frame."""
+
+    number: int
+    """Its number on the layer, the same on all frames; 0 for a stroke of the artist that was not followed yet."""
+    pixels: np.ndarray
+    """Footage pixels, float64 (N, 2)."""
+    closed: bool
+    traced: bool
+    """Whether tracing wrote the drawing, and nobody has changed it since."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Result of `trace_drawing` and `carry_strokes`."""
+
+    strokes: int
+    """Number of different strokes that were drawn."""
+    frames: tuple[int, ...]
+    """Scene frames that were drawn, rising."""
+    kept: int
+    """Number of traced drawings that the artist had changed; they are keys now."""
+
+
+@told
+def trace_drawing(
+    ob: bpy.types.Object,
+    frames: tuple[int, int] | None = None,
+    *,
+    style: str = "",
+    sensitivity: float | None = None,
+    progress: Progress | None = None,
+) -> Drawn:
+    """Traces the lines of the footage on the object's layer of lines, as the operator Trace Drawing.
+
+    `frames` are the first and last scene frame; by default all of the footage. `style` is ``auto``, ``clean`` or ``rough``;
+    `sensitivity` is 0.1 to 10. By default both are those of the panel. `progress(fraction, step)` is called on this thread; it returns
+    ``False`` to cancel, which raises `RuntimeError` and changes nothing.
+    """
+    need(ob, OnFootage)
+    name = ob.rototoon.lines_layer
+    return _run(ob, [name], name, True, frames, style, sensitivity, progress)
+
+
+@told
+def carry_strokes(
+    ob: bpy.types.Object,
+    layers: Sequence[str],
+    frames: tuple[int, int] | None = None,
+    *,
+    new_lines: bool = False,
+    style: str = "",
+    sensitivity: float | None = None,
+    progress: Progress | None = None,
+) -> Drawn:
+    """Carries the artist's strokes on some layers to the other frames, as the operator Carry Strokes.
+
+    With `new_lines`, lines of the footage that no stroke explains become strokes on the last of the layers. The other arguments are
+    those of `trace_drawing`.
+    """
+    need(ob, OnFootage)
+    if not layers:
+        raise Problem("layers: found none, expected the names of layers")
+    for name in layers:
+        if gp.find_layer(ob, name) is None:
+            raise Problem(f'"{ob.name}" has no layer "{name}"')
+        if name in {layer.name for layer in gp.layers(ob, ob.rototoon.contours_layer)}:
+            raise Problem(f'The layer "{name}" has contours: track them')
+    return _run(ob, list(layers), layers[-1], new_lines, frames, style, sensitivity, progress)
+
+
+def _run(ob, names, home, new, frames, style, sensitivity, progress) -> Drawn:
+    settings = ob.rototoon
+    jobs.clear_the_way()
+    plan = plan_of(ob, names, *(frames or plans.film(ob)), new)
+    style = style or settings.line_style.lower()
+    options = tracing.Options(style, settings.line_sensitivity if sensitivity is None else sensitivity)
+    worker = tracing.worker(plan, options)
+    worker.run_here(progress)
+    done = jobs.drained(tracing.finishing(ob, plan, worker.result, home))
+    return Drawn(len(done.numbers), tuple(sorted(done.frames)), done.kept)
+
+
+@told
+def lines(ob: bpy.types.Object, layer: str = "") -> dict[int, list[Line]]:
+    """The strokes of a layer by scene frame, in drawing order. By default the layer is that of Trace Drawing. Changes nothing."""
+    need(ob, OnDrawing, guard.NOTHING)
+    name = layer or ob.rototoon.lines_layer
+    if gp.find_layer(ob, name) is None:
+        raise Problem(f'"{ob.name}" has no layer "{name}"')
+    (found,) = drawings.read(ob, [name], None)
+    contents = {**found.keys, **found.made}
+    mapper = placement.Mapper(ob, contents, {}, [name])
+    return {frame: _lines(contents[frame], mapper.at(0, frame), frame in found.made) for frame in sorted(contents)}
+
+
+def _lines(content: st.Content, mapping, traced: bool) -> list[Line]:
+    numbers, closed = content.strokes(gp.TRACK), content.strokes("cyclic")
+    return [
+        Line(int(numbers[i]), mapping.to_pixels(line), bool(closed[i]), traced)
+        for i, line in enumerate(stroke_lines.lines(content))
+        if len(line)
+    ]

@@ -1,0 +1,445 @@
+"""Trace Drawing, Carry Strokes and Clear Lines on a small line film, with the real library."""
+
+import bpy
+import line_shots as ls
+import numpy as np
+import pytest
+
+
+@pytest.fixture(scope="module")
+def pictures(tmp_path_factory):
+    """The first picture of the film."""
+    return ls.draw_sequence(tmp_path_factory.mktemp("film"))
+
+
+@pytest.fixture
+def film(addon, library, pictures):
+    """The scene with the film."""
+    return ls.set_up(pictures)
+
+
+@pytest.fixture(scope="module")
+def kept():
+    """Where the file of the traced film is, once a test has made it."""
+    return {}
+
+
+@pytest.fixture
+def traced(addon, film, kept, pictures):
+    """The film, traced."""
+    if not kept:
+        addon("lines.tracing").make = addon("rototoon").Session.from_document
+        bpy.ops.rototoon.trace_drawing()
+        kept["path"] = str(pictures.with_name("traced.blend"))
+        bpy.ops.wm.save_as_mainfile(filepath=kept["path"])
+    bpy.ops.wm.open_mainfile(filepath=kept["path"])
+    return bpy.context.object
+
+
+def kinds(addon, ob, layer):
+    gp = addon("blender.grease_pencil")
+    return {frame: kind for frame, (_, kind) in gp.drawings(gp.find_layer(ob, layer)).items()}
+
+
+def attribute(addon, ob, layer, frame, name):
+    gp = addon("blender.grease_pencil")
+    handle, _ = gp.drawings(gp.find_layer(ob, layer))[frame]
+    starts = gp.offsets(handle)
+    return gp.value(handle, name, int(starts[-1]) if gp.TYPES[name][1] == "POINT" else len(starts) - 1)
+
+
+def away(points, line):
+    """Greatest distance of points from a line given by dense points."""
+    return max(np.linalg.norm(line - point, axis=1).min() for point in points)
+
+
+def said(addon):
+    return addon("common.reports").take()[-1]
+
+
+def test_the_film_becomes_strokes_with_the_same_numbers_on_every_frame(addon, film):
+    assert bpy.ops.rototoon.trace_drawing() == {"FINISHED"}
+    assert said(addon).text == "6 strokes on 6 frames"
+    assert kinds(addon, film, "Lines") == dict.fromkeys(range(1, 7), "GENERATED")
+    first = ls.strokes(addon, film, "Lines", 1)
+    assert sorted(first) == [1, 2, 3, 4, 5, 6]
+    truth = {number: min(range(6), key=lambda k: away(points, ls.lines(0)[k][0])) for number, points in first.items()}
+    assert sorted(truth.values()) == list(range(6))
+    for frame in range(1, 7):
+        now = ls.strokes(addon, film, "Lines", frame)
+        assert list(now) == sorted(first), "the index of a stroke is the same too"
+        for number, points in now.items():
+            assert away(points, ls.lines(frame - 1)[truth[number]][0]) < 3
+
+
+def test_radius_and_material_follow_the_ink(addon, traced):
+    placement, gp = addon("blender.placement"), addon("blender.grease_pencil")
+    mapping = placement.Mapper(traced, [1], {}, ["Lines"]).at(0, 1)
+    pixel = np.linalg.norm(np.diff(mapping.to_layer(np.array([[0.0, 0.0], [1.0, 0.0]])), axis=0))
+    starts = np.cumsum([0] + [len(points) for points in ls.strokes(addon, traced, "Lines", 1).values()])
+    radii = attribute(addon, traced, "Lines", 1, "radius") / pixel
+    found = {number: np.median(radii[a:b]) for number, a, b in zip(ls.strokes(addon, traced, "Lines", 1), starts, starts[1:])}
+    for number, points in ls.strokes(addon, traced, "Lines", 1).items():
+        line = min(ls.lines(0), key=lambda line: away(points, line[0]))
+        assert 2 * found[number] == pytest.approx(line[1], abs=0.8)
+    assert (attribute(addon, traced, "Lines", 1, "opacity") == 1).all()
+    used = attribute(addon, traced, "Lines", 1, "material_index")
+    assert len(set(used.tolist())) == 2
+    red = [number for number, index in zip(found, used) if traced.data.materials[int(index)].grease_pencil.color[0] > 0.2]
+    assert len(red) == 1
+    assert np.array_equal(used, attribute(addon, traced, "Lines", 5, "material_index"))
+    assert gp.find_layer(traced, "Lines").use_lights is False
+
+
+def test_one_frame_and_a_range_join_what_is_there(addon, film):
+    scene = bpy.context.scene
+    scene.frame_set(2)
+    bpy.ops.rototoon.trace_drawing(frames="CURRENT")
+    assert list(kinds(addon, film, "Lines")) == [2]
+    scene.use_preview_range, scene.frame_preview_start, scene.frame_preview_end = True, 4, 5
+    bpy.ops.rototoon.trace_drawing(frames="RANGE")
+    assert list(kinds(addon, film, "Lines")) == [2, 4, 5]
+    assert list(ls.strokes(addon, film, "Lines", 2)) == list(ls.strokes(addon, film, "Lines", 5))
+
+
+def test_the_artists_strokes_are_carried_and_kept(addon, film):
+    body, *_, arm, _ = ls.lines(0)
+    ls.put(addon, film, "Ink", 1, [(body[0][:-1], True), (arm[0], False)])
+    gp = addon("blender.grease_pencil")
+    strokes = addon("blender.strokes")
+    before = strokes.read(gp.drawings(gp.find_layer(film, "Ink"))[1][0])
+    assert bpy.ops.rototoon.carry_strokes() == {"FINISHED"}
+    assert said(addon).text == "2 strokes on 5 frames"
+    after = strokes.read(gp.drawings(gp.find_layer(film, "Ink"))[1][0])
+    assert set(after.point) - set(before.point) <= {gp.TRACKED, gp.LINE, gp.ALONG} and set(after.curve) - set(before.curve) <= {gp.TRACK, gp.LOOK}
+    after.point = {name: after.point[name] for name in before.point}
+    after.curve = {name: after.curve[name] for name in before.curve}
+    assert before.equals(after)
+    assert kinds(addon, film, "Ink") == {1: "KEYFRAME", **dict.fromkeys(range(2, 7), "GENERATED")}
+    for frame in range(2, 7):
+        now = ls.strokes(addon, film, "Ink", frame)
+        assert list(now) == [1, 2]
+        assert away(now[1], ls.lines(frame - 1)[0][0]) < 3 and away(now[2], ls.lines(frame - 1)[4][0]) < 3
+        assert attribute(addon, film, "Ink", frame, "cyclic").tolist() == [True, False]
+        assert np.allclose(attribute(addon, film, "Ink", frame, "opacity"), 0.8)
+        radii = attribute(addon, film, "Ink", frame, "radius")[len(now[1]) :]
+        assert radii[0] == pytest.approx(0.015, abs=1e-3) and radii[-1] == pytest.approx(0.045, abs=1e-3)
+
+
+def test_two_drawings_bind_both_sides_and_new_lines_are_asked_for(addon, film):
+    for frame in (1, 6):
+        ls.put(addon, film, "Ink", frame, [(ls.lines(frame - 1)[4][0], False)], opacity=0.2 if frame == 1 else 0.7)
+    bpy.ops.rototoon.carry_strokes()
+    assert list(ls.strokes(addon, film, "Ink", 6)) == list(ls.strokes(addon, film, "Ink", 1)) == [1]
+    assert np.allclose(attribute(addon, film, "Ink", 3, "opacity"), 0.4, atol=1e-3)
+    bpy.ops.rototoon.carry_strokes(new_lines=True)
+    assert len(ls.strokes(addon, film, "Ink", 3)) == 6
+    assert list(ls.strokes(addon, film, "Ink", 6)) == [1]
+
+
+def test_a_changed_traced_drawing_is_the_artists(addon, traced, fake):
+    gp = addon("blender.grease_pencil")
+    handle = gp.drawings(gp.find_layer(traced, "Lines"))[3][0]
+    total = int(gp.offsets(handle)[-1])
+    points = gp.positions(handle, total)
+    points[:20, 2] += 0.01
+    gp.put(handle, "position", points)
+    before = ls.strokes(addon, traced, "Lines", 3)
+    assert bpy.ops.rototoon.carry_strokes() == {"FINISHED"}
+    assert said(addon).text == "6 strokes on 5 frames, 1 drawing that you had changed is a key now"
+    assert kinds(addon, traced, "Lines")[3] == "KEYFRAME"
+    after = ls.strokes(addon, traced, "Lines", 3)
+    assert list(after) == list(before) == list(ls.strokes(addon, traced, "Lines", 6))
+    assert all(np.array_equal(after[number], before[number]) for number in before)
+
+
+def test_a_deleted_stroke_stays_deleted_on_its_frame(addon, traced, fake):
+    gp = addon("blender.grease_pencil")
+    gp.remove_strokes(gp.drawings(gp.find_layer(traced, "Lines"))[4][0], [2])
+    bpy.ops.rototoon.trace_drawing()
+    assert len(ls.strokes(addon, traced, "Lines", 4)) == 5
+
+
+def test_clear_leaves_the_artists_drawings(addon, film, fake):
+    ls.put(addon, film, "Ink", 1, [(ls.lines(0)[4][0], False)])
+    bpy.ops.rototoon.carry_strokes()
+    bpy.ops.rototoon.trace_drawing()
+    gp = addon("blender.grease_pencil")
+    gp.remove_strokes(gp.drawings(gp.find_layer(film, "Lines"))[4][0], [1])
+    bpy.ops.rototoon.clear_lines()
+    assert said(addon).text == "10 traced drawings removed"
+    assert list(kinds(addon, film, "Ink")) == [1] and list(kinds(addon, film, "Lines")) == [4]
+    assert kinds(addon, film, "Lines") == {4: "KEYFRAME"} and len(ls.strokes(addon, film, "Lines", 4)) == 1
+    assert not bpy.ops.rototoon.clear_lines.poll()
+
+
+def test_a_second_run_changes_nothing(addon, film, fake):
+    import studio
+
+    bpy.ops.rototoon.trace_drawing()
+    before = studio.digests(addon, film)
+    bpy.ops.rototoon.trace_drawing()
+    assert studio.digests(addon, film) == before and len(film.data.materials) == 2
+
+
+def test_undo_takes_all_back(addon, film, fake):
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.rototoon.trace_drawing()
+    bpy.ops.ed.undo_push(message="traced")
+    assert bpy.context.object.data.layers.get("Lines") is not None
+    bpy.ops.ed.undo()
+    assert bpy.context.object.data.layers.get("Lines") is None
+
+
+def test_cancelled_and_refused_work_changes_nothing(addon, film, monkeypatch):
+    import studio
+
+    before = studio.digests(addon, film), len(film.data.materials)
+    jobs = addon("common.jobs")
+    monkeypatch.setattr(jobs.Worker, "start", lambda self: (self.cancel(), self._thread.start()))
+    assert bpy.ops.rototoon.trace_drawing() == {"CANCELLED"}
+    assert said(addon).text == "Trace Drawing: stopped, nothing was changed"
+    monkeypatch.undo()
+    with pytest.raises(RuntimeError, match="no strokes to carry"):
+        bpy.ops.rototoon.carry_strokes(layers="ALL") if film.data.layers.new("Ink").frames.new(1) else None
+    film.data.layers.remove(film.data.layers["Ink"])
+    film.rototoon.pattern = ""
+    assert not bpy.ops.rototoon.trace_drawing.poll()
+    assert (studio.digests(addon, film), len(film.data.materials)) == before
+
+
+def test_blank_drawings_of_the_artist_stay_blank(addon, film, fake):
+    ls.put(addon, film, "Ink", 1, [(ls.lines(0)[4][0], False)])
+    film.data.layers["Ink"].frames.new(3)
+    bpy.ops.rototoon.carry_strokes()
+    assert kinds(addon, film, "Ink")[3] == "KEYFRAME" and not ls.strokes(addon, film, "Ink", 3)
+    assert ls.strokes(addon, film, "Ink", 4)
+
+
+# -- correction, parts, edits on all frames ------------------------------------------------------------------------------
+
+
+def handle_of(addon, ob, layer, frame):
+    gp = addon("blender.grease_pencil")
+    return gp.drawings(gp.find_layer(ob, layer))[frame][0]
+
+
+def number_of(addon, ob, line):
+    """The number of a line of the film."""
+    first = ls.strokes(addon, ob, "Lines", 1)
+    return min(first, key=lambda number: away(first[number], ls.lines(0)[line][0]))
+
+
+def test_a_wrong_identity_is_mended_from_a_frame_on(addon, traced):
+    eyes = [number_of(addon, traced, 1), number_of(addon, traced, 2)]
+    before = {frame: ls.strokes(addon, traced, "Lines", frame) for frame in range(1, 7)}
+    bpy.context.scene.frame_set(3)
+    assert bpy.ops.rototoon.match_lines(earlier=eyes[0], later=eyes[1]) == {"FINISHED"}
+    assert said(addon).text == "6 strokes are the same"
+    for frame in range(1, 7):
+        now = ls.strokes(addon, traced, "Lines", frame)
+        other = eyes if frame < 4 else eyes[::-1]
+        assert np.array_equal(now[eyes[0]], before[frame][other[0]]) and np.array_equal(now[eyes[1]], before[frame][other[1]])
+    bpy.ops.rototoon.carry_strokes()
+    assert kinds(addon, traced, "Lines")[4] == "KEYFRAME" and kinds(addon, traced, "Lines")[5] == "GENERATED"
+    now = ls.strokes(addon, traced, "Lines", 6)
+    assert away(now[eyes[0]], ls.lines(5)[2][0]) < 1.5 and away(now[eyes[1]], ls.lines(5)[1][0]) < 1.5
+
+
+def test_clicks_swap_free_and_undo(addon, traced):
+    pairing = addon("lines.pairing")
+    gp = addon("blender.grease_pencil")
+    found = pairing.LinePairing(traced, [gp.find_layer(traced, "Lines")], 2)
+    found.take()
+    item = addon("tween.pairing").Item
+    assert not found.click(item(0, 0, 1)) and found.click(item(0, 1, 2))
+    found.take()
+    assert [row.later for row in found.pairs][:3] == [0, 2, 1] and found.pairs[1].by_hand
+    assert found.free(item(0, 1, 0))
+    found.take()
+    assert found.summary() == "5 strokes are the same, 1 end, 1 begin"
+    assert found.undo() and found.undo() and not found.undo()
+    found.take()
+    assert found.summary() == "6 strokes are the same" and len(found.marks()) == 12
+
+
+def test_strokes_around_a_part_become_its_contour(addon, traced):
+    body = number_of(addon, traced, 0)
+    assert bpy.ops.rototoon.make_part(numbers=str(body), name="body") == {"FINISHED"}
+    (part,) = traced.rototoon.parts
+    assert part.name == "body" and part.closed and 8 <= part.count <= 60
+    contour = ls.strokes(addon, traced, "Contours", 1)
+    assert away(next(iter(contour.values())), ls.lines(0)[0][0]) < 2
+    with pytest.raises(RuntimeError, match="No strokes are selected"):
+        bpy.ops.rototoon.make_part(numbers="99")
+
+
+def edit(addon, ob, frame, number, change):
+    """Changes the points of a stroke as the artist does: `change(points)` gets layer points."""
+    gp = addon("blender.grease_pencil")
+    handle = handle_of(addon, ob, "Lines", frame)
+    starts = gp.offsets(handle)
+    i = gp.value(handle, gp.TRACK, len(starts) - 1).tolist().index(number)
+    points = gp.positions(handle, int(starts[-1]))
+    points[starts[i] : starts[i + 1]] = change(points[starts[i] : starts[i + 1]])
+    gp.put(handle, "position", points)
+    return i, slice(starts[i], starts[i + 1])
+
+
+def test_a_reshaped_stroke_is_reshaped_on_all_frames_in_its_own_frame(addon, traced):
+    arm = number_of(addon, traced, 4)
+    before = {frame: ls.strokes(addon, traced, "Lines", frame) for frame in range(1, 7)}
+    mapping = addon("blender.placement").Mapper(traced, [1], {}, ["Lines"]).at(0, 1)
+
+    def bulge(points):
+        pixels = mapping.to_pixels(points)
+        way = pixels[-1] - pixels[0]
+        side = np.array([-way[1], way[0]]) / np.linalg.norm(way)
+        return mapping.to_layer(pixels + np.sin(np.linspace(0, np.pi, len(pixels)))[:, None] * 8 * side)
+
+    edit(addon, traced, 1, arm, bulge)
+    assert bpy.ops.rototoon.spread_edits() == {"FINISHED"}
+    assert said(addon).text == "1 edited stroke, on 5 other frames"
+    for frame in range(1, 7):
+        now = ls.strokes(addon, traced, "Lines", frame)
+        assert list(now) == list(before[frame])
+        assert all(np.array_equal(now[number], before[frame][number]) for number in now if number != arm)
+        a, b = before[frame][arm][0], before[frame][arm][-1]
+        side = np.array([a[1] - b[1], b[0] - a[0]]) / np.linalg.norm(b - a)
+        height = (now[arm] - a) @ side
+        assert height.max() == pytest.approx(8, abs=1.0) and abs(height[0]) < 1.0
+    with pytest.raises(RuntimeError, match="No stroke on this frame differs"):
+        bpy.ops.rototoon.spread_edits()
+
+
+def test_looks_and_deletions_go_to_all_frames(addon, traced):
+    gp = addon("blender.grease_pencil")
+    mouth, eye = number_of(addon, traced, 3), number_of(addon, traced, 1)
+    bpy.context.scene.frame_set(3)
+    handle = handle_of(addon, traced, "Lines", 3)
+    starts = gp.offsets(handle)
+    numbers = gp.value(handle, gp.TRACK, len(starts) - 1).tolist()
+    i = numbers.index(mouth)
+    radii, used = gp.value(handle, "radius", int(starts[-1])), gp.value(handle, "material_index", len(numbers))
+    radii[starts[i] : starts[i + 1]] = 0.2
+    used[i] = 0
+    gp.put(handle, "radius", radii)
+    gp.put(handle, "material_index", used)
+    gp.remove_strokes(handle, [numbers.index(eye)])
+    before = ls.strokes(addon, traced, "Lines", 5)
+    bpy.ops.rototoon.spread_edits()
+    assert said(addon).text == "1 edited and 1 deleted strokes, on 5 other frames"
+    for frame in range(1, 7):
+        now = ls.strokes(addon, traced, "Lines", frame)
+        assert eye not in now and len(now) == 5
+        j, at = list(now).index(mouth), np.cumsum([0] + [len(points) for points in now.values()])
+        assert np.allclose(attribute(addon, traced, "Lines", frame, "radius")[at[j] : at[j + 1]], 0.2)
+        assert attribute(addon, traced, "Lines", frame, "material_index")[j] == 0
+    assert np.allclose(ls.strokes(addon, traced, "Lines", 5)[mouth], before[mouth], atol=1e-3)
+
+
+def test_a_cut_stroke_is_cut_on_all_frames(addon, traced):
+    gp, strokes, spreading = addon("blender.grease_pencil"), addon("blender.strokes"), addon("lines.spreading")
+    arm = number_of(addon, traced, 4)
+    handle = handle_of(addon, traced, "Lines", 1)
+    content = strokes.read(handle)
+    i = content.strokes(gp.TRACK).tolist().index(arm)
+    half = content.sizes[i] // 2
+    whole = np.ones(len(content.sizes), bool)
+    whole[i] = False
+    one = spreading.part(content, ~whole)
+    pieces = [strokes.Content(np.array([n]), one.types, {k: v[s] for k, v in one.point.items()}, one.curve, one.kinds)
+              for n, s in ((half, slice(0, half)), (content.sizes[i] - half, slice(half, None)))]
+    strokes.write(handle, strokes.joined(strokes.joined(spreading.part(content, whole), pieces[0]), pieces[1]))
+    before = {frame: ls.strokes(addon, traced, "Lines", frame)[arm] for frame in range(2, 7)}
+    assert bpy.ops.rototoon.spread_edits() == {"FINISHED"}
+    for frame in range(2, 7):
+        now = ls.strokes(addon, traced, "Lines", frame)
+        assert len(now) == 7 and 7 in now
+        length = np.linalg.norm(np.diff(before[frame], axis=0), axis=1).sum()
+        found = [np.linalg.norm(np.diff(now[n], axis=0), axis=1).sum() for n in (arm, 7)]
+        assert found[0] == pytest.approx(length / 2, rel=0.1) and found[1] == pytest.approx(length / 2, rel=0.1)
+        assert away(np.vstack([now[arm], now[7]]), before[frame]) < 1.5
+
+
+# -- scripts ---------------------------------------------------------------------------------------------------------------
+
+
+def test_scripts_trace_carry_and_read(addon, film):
+    scripting = addon("scripting")
+    shares = []
+    done = scripting.trace_drawing(film, (1, 3), progress=lambda share, step: shares.append(share))
+    assert (done.strokes, done.frames, done.kept) == (6, (1, 2, 3), 0) and shares[-1] == 1.0
+    found = scripting.lines(film)
+    assert sorted(found) == [1, 2, 3] and [line.number for line in found[2]] == [1, 2, 3, 4, 5, 6] and found[2][0].traced
+    ls.put(addon, film, "Ink", 1, [(ls.lines(0)[4][0], False)])
+    assert scripting.carry_strokes(film, ["Ink"], (1, 2)).frames == (2,)
+    assert not scripting.lines(film, "Ink")[1][0].traced
+    for call, text in [
+        (lambda: scripting.carry_strokes(film, ["No"]), 'no layer "No"'),
+        (lambda: scripting.carry_strokes(film, ["Contours"]), "has contours"),
+        (lambda: scripting.trace_drawing(film, (90, 95)), "the footage is on frames 1 to 6"),
+        (lambda: scripting.trace_drawing(film, style="neat"), "unknown variant"),
+        (lambda: scripting.trace_drawing(film, progress=lambda share, step: False), "cancelled"),
+    ]:
+        with pytest.raises(RuntimeError, match=text):
+            call()
+
+
+# -- the line version of the sample ----------------------------------------------------------------------------------------
+
+
+def test_the_sample_is_traced_carried_edited_and_rendered(addon, library, tmp_path):
+    assert bpy.ops.rototoon.open_sample(version="LINES") == {"FINISHED"}
+    ob, scripting, penguin = bpy.context.object, addon("scripting"), addon("sample.penguin")
+    assert not ob.rototoon.parts
+    traced = scripting.trace_drawing(ob, (2, 3))
+    assert traced.frames == (2, 3) and 7 <= traced.strokes <= 12
+    belly = [penguin.outlines(drawing)["body"].mean(0) + (12, 12) for drawing in (0, 1)]
+    turn = np.linspace(-np.pi, np.pi, 160)
+    oval = np.stack([34 * np.cos(turn), 50 * np.sin(turn)], 1)
+    found = scripting.lines(ob)
+    numbers = [{line.number for line in found[2 + k] if lies_on(line.pixels, belly[k] + oval)} for k in (0, 1)]
+    assert numbers[0] & numbers[1], "the belly is the same stroke on both drawings"
+    # The wing hides the left side.
+    arc = oval[np.abs(turn) < 1.3]
+    ls.put(addon, ob, "Ink", 2, [(belly[0] + arc, False)])
+    assert scripting.carry_strokes(ob, ["Ink"], (2, 3)).frames == (3,)
+    carried = scripting.lines(ob, "Ink")[3][0]
+    assert away(carried.pixels, belly[1] + oval) < 4
+    # The artist makes the belly rounder on one frame.
+    gp, mapping = addon("blender.grease_pencil"), addon("blender.placement").Mapper(ob, [2], {}, ["Ink"]).at(0, 2)
+    handle = handle_of(addon, ob, "Ink", 2)
+    gp.put(handle, "position", mapping.to_layer(belly[0] + arc * (1.5, 1)).astype(np.float32))
+    bpy.context.scene.frame_set(2)
+    assert bpy.ops.rototoon.spread_edits() == {"FINISHED"}
+    edited = scripting.lines(ob, "Ink")[3][0].pixels
+    assert edited[:, 0].max() - belly[1][0] == pytest.approx(51, abs=4)
+    assert rendered(addon, ob, 3, tmp_path)
+
+
+def lies_on(points, line):
+    """Whether a good half of a line's points are near another line."""
+    return np.mean([np.linalg.norm(line - point, axis=1).min() < 3 for point in points]) > 0.5
+
+
+def rendered(addon, ob, frame, folder):
+    """Renders a frame, and tells whether its strokes are seen where they are, and nothing else is."""
+    scene = bpy.context.scene
+    scene.render.engine, scene.render.film_transparent, scene.display.render_aa = "BLENDER_WORKBENCH", True, "FXAA"
+    scene.render.filepath = str(folder / "line.png")
+    scene.frame_set(frame)
+    bpy.ops.render.render(write_still=True)
+    image = bpy.data.images.load(scene.render.filepath)
+    width, height = image.size
+    seen = np.array(image.pixels[:]).reshape(height, width, 4)[::-1, :, 3] > 0.5
+    scripting = addon("scripting")
+    wanted = np.zeros_like(seen)
+    for layer in ("Lines", "Ink"):
+        for line in scripting.lines(ob, layer)[frame]:
+            x, y = np.floor(line.pixels).astype(int).T
+            assert seen[y.clip(0, height - 1), x.clip(0, width - 1)].mean() > 0.9
+            for dx in range(-6, 7):
+                for dy in range(-6, 7):
+                    wanted[(y + dy).clip(0, height - 1), (x + dx).clip(0, width - 1)] = True
+    return seen.any() and not (seen & ~wanted).any()
