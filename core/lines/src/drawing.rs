@@ -1,9 +1,11 @@
 //! A drawing: a picture, its ink as a graph, and its strokes.
 
 use crate::graph::Graph;
+use crate::outside::Outside;
+use crate::pairing::{Evidence, Pairing};
 use crate::stroke::{Options, Stroke, Style};
 use crate::strokes::Walked;
-use crate::{centre, economy, finish, ink, pairing, sketch, strokes};
+use crate::{centre, economy, finish, ink, sketch, strokes};
 use rayon::prelude::{IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator};
 use rototoon_base::scene::{Colour, Raster};
 use std::sync::Arc;
@@ -17,6 +19,7 @@ pub struct Drawing {
     /// Size of a pixel of 540 lines.
     pub(crate) unit: f64,
     rough: bool,
+    outside: Outside,
 }
 
 impl Drawing {
@@ -37,7 +40,7 @@ impl Drawing {
         }
         graph.branches.par_iter_mut().for_each(|branch| centre::centred(branch, &ink.darkness));
         let unit = picture.height() as f64 / 540.0;
-        Self { picture, graph, width, unit, rough }
+        Self { picture, graph, width, unit, rough, outside: Outside::new(&ink.mask) }
     }
 
     /// The strokes of the drawing.
@@ -48,7 +51,10 @@ impl Drawing {
 
     /// The strokes before they are fitted.
     pub(crate) fn lines(&self) -> Vec<Walked> {
-        let pairing = pairing::Pairing::new(&self.graph, economy::stub(self.width, self.unit));
+        let colours: Vec<Colour> =
+            self.graph.branches.par_iter().map(|branch| finish::colour(&branch.points, &self.picture)).collect();
+        let stub = economy::stub(self.width, self.unit);
+        let pairing = Pairing::new(&Evidence { graph: &self.graph, outside: &self.outside, colours: &colours, stub });
         let walked = strokes::walked(&self.graph, &pairing);
         let style = if self.rough { Style::Rough } else { Style::Clean };
         economy::thrifty(walked, self.width, self.unit, style)

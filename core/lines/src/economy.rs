@@ -12,8 +12,8 @@ use std::collections::BTreeMap;
 /// Length of the shortest stroke that hangs on another one: in widths, and in pixels of 540 lines.
 const STUB_WIDTHS: f64 = 1.0;
 const STUB: f64 = 2.0;
-/// Length of the shortest stroke that stands alone, in widths.
-const ALONE_WIDTHS: f64 = 1.0;
+/// Length of the shortest mark that stands alone, in widths; its round ends count.
+const ALONE_WIDTHS: f64 = 1.6;
 /// Half the width of a sketched line: in widths of its strokes, and in pixels of 540 lines.
 const SKETCHED_WIDTHS: f64 = 0.75;
 const SKETCHED: f64 = 1.0;
@@ -30,11 +30,25 @@ pub fn thrifty(strokes: Vec<Walked>, width: f64, unit: f64, style: Style) -> Vec
     let rough = style == Style::Rough;
     let stub = stub(width, unit);
     let keep = |stroke: &Walked| {
-        let least = if stroke.free == [true; 2] || stroke.closed { ALONE_WIDTHS * width } else { stub };
-        stroke.length() >= least
+        let thick = 2.0 * stroke.radii.iter().copied().fold(0.0, f64::max);
+        if stroke.free == [true; 2] || stroke.closed {
+            stroke.length() + thick >= ALONE_WIDTHS * width
+        } else {
+            stroke.length() >= stub
+        }
     };
-    let kept: Vec<Walked> = strokes.into_iter().filter(keep).collect();
+    let kept: Vec<Walked> = strokes.into_iter().filter(keep).map(dot).collect();
     if rough { without_repeated(kept, SKETCHED_WIDTHS * width + SKETCHED * unit) } else { kept }
+}
+
+/// A mark of one point gets two: a dot is a stroke too.
+fn dot(mut stroke: Walked) -> Walked {
+    if let ([point], [radius]) = (&stroke.points[..], &stroke.radii[..]) {
+        let half = Point::new(0.5, 0.0);
+        stroke =
+            Walked { points: vec![*point - half, *point + half], radii: vec![*radius; 2], closed: false, ..stroke };
+    }
+    stroke
 }
 
 /// Drops strokes that run beside longer ones, within `reach` pixels.

@@ -15,7 +15,7 @@
 //! - `thin`: the skeleton of the ink
 //! - `graph`: branches and junctions
 //! - `centre`: branches on the ink's centre of gravity
-//! - `pairing`: which branch goes on in which
+//! - `pairing`: which branch goes on in which, with `direction`, `cluster`, `outside` and `corner`
 //! - `strokes`: paired branches as strokes
 //! - `sketch`, `economy`: rough drawings, and strokes that nobody would draw
 //! - `drawing`, `stroke`: all of this for one picture
@@ -63,11 +63,15 @@
 
 mod carry;
 mod centre;
+mod cluster;
+mod corner;
+mod direction;
 mod drawing;
 mod economy;
 mod finish;
 mod graph;
 pub mod ink;
+mod outside;
 mod pairing;
 mod sketch;
 mod stroke;

@@ -1,67 +1,81 @@
-//! Which branch goes on in which: through crossings, past T-junctions, and over gaps of the pen.
+//! Which branch goes on in which: through crossings, past T-junctions, around corners, and over gaps of the pen.
 //!
-//! At a junction each two branches may be one line. The cost is the angle by which the line would turn, plus the difference
-//! of widths. A branch may also end there, at a price. All pairings of a junction are compared, and the one of least cost is
-//! taken (at junctions with very many branches the best pair is taken again and again). So at a crossing both lines go
-//! straight on, and at a T the bar does.
+//! Where branches meet, each two may be one line. The cost is the angle by which the line would turn, and the differences of
+//! width and colour. A branch may also end there, at a price. All pairings of a cluster of junctions ([`crate::cluster`]) are
+//! compared, and the one of least cost is taken (where very many branches meet, the best pair is taken again and again). So
+//! at a crossing both lines go straight on, and at a T the bar does.
 //!
-//! Two branches that meet alone are one line whatever their angle: a corner.
+//! Among three branches there is more to know. The pair that goes on bounds one region on its side without the third. That
+//! region is in front of what the third separates, and the paper around the drawing is never in front
+//! ([`crate::outside`]). So the outline of a figure is less one line than the outlines of its parts, where these overlap.
+//!
+//! Two branches that meet alone are one line whatever their angle: a corner. Other corners: [`crate::corner`].
 //!
 //! Afterwards free ends of the ink that point at each other over a short gap are joined.
 
+use crate::cluster::{Cluster, clusters, points};
+use crate::corner;
+use crate::direction::{End, angle, outward, place, radius};
 use crate::graph::{Branch, Graph};
+use crate::outside::Outside;
 use rototoon_base::geometry::{Point, polyline};
+use rototoon_base::scene::Colour;
+use std::collections::BTreeMap;
 
 /// Price of an end at a junction, in radians for each of two branches that might be one line.
-const END: f64 = 0.8;
-/// Weight of the logarithm of the ratio of widths.
+const END: f64 = 0.9;
+/// Price of a pair that bounds the paper around the drawing, in radians.
+const AROUND: f64 = 0.4;
+/// Weight of the logarithm of the ratio of widths, and of the difference of hues.
 const WIDTH: f64 = 0.35;
-/// Branches of a junction up to which all pairings are compared.
+const COLOUR: f64 = 1.5;
+/// Distance of two ends from which the way between them counts, in widths.
+const FAR: f64 = 1.5;
+/// Branches that meet up to which all pairings are compared.
 const MOST: usize = 8;
-/// Length over which a branch's direction is measured, in widths and pixels.
-const CHORD_WIDTHS: f64 = 4.0;
-const CHORD_PIXELS: f64 = 4.0;
-/// Share of the bend along the last stretch that goes on behind the end.
-const BEND: f64 = 0.5;
 /// A gap of the pen is at most this many widths and pixels long.
 const GAP_WIDTHS: f64 = 2.5;
 const GAP_PIXELS: f64 = 2.0;
 /// Largest turn at each end of a gap, in radians.
 const GAP_TURN: f64 = 0.6;
-
 /// Two lines that cross at a sharp angle run together for at most this many widths.
 const TOGETHER: f64 = 5.0;
 /// Largest sum of the turns of two such lines, in radians.
 const CROSSING: f64 = 0.5;
+/// Distance in which the region beside a junction is looked for, in widths.
+const BESIDE: f64 = 3.0;
 
-/// An end of a branch: its index, and 0 for the first point or 1 for the last.
-pub type End = (usize, usize);
+/// What decides which branch goes on in which.
+pub struct Evidence<'a> {
+    /// The branches.
+    pub graph: &'a Graph,
+    /// The paper around the drawing.
+    pub outside: &'a Outside,
+    /// The colours of the branches.
+    pub colours: &'a [Colour],
+    /// Branches shorter than this, in pixels, are no lines of their own.
+    pub stub: f64,
+}
 
 /// The end that follows on each end of each branch.
 pub struct Pairing {
     next: Vec<[Option<End>; 2]>,
-    /// Branches that belong to two strokes that cross, and make none of their own.
+    /// Branches that lie within strokes, or belong to two that cross, and make none of their own.
     shared: Vec<bool>,
+    /// What lies between an end and the one that follows.
+    between: BTreeMap<End, Vec<(Point, f64)>>,
 }
 
 impl Pairing {
-    /// Pairs the branches of a graph. Branches that end free and are shorter than `stub` pixels are paired only where
-    /// nothing else is: they are blots or overshoots, and lines do not turn into them.
-    pub fn new(graph: &Graph, stub: f64) -> Self {
+    /// Pairs the branches of a graph. Branches that end free and are short are paired only where nothing else is: they are
+    /// blots or overshoots, and lines do not turn into them.
+    pub fn new(evidence: &Evidence) -> Self {
+        let graph = evidence.graph;
         let count = graph.branches.len();
-        let mut pairing = Self { next: vec![[None; 2]; count], shared: vec![false; count] };
+        let mut pairing = Self { next: vec![[None; 2]; count], shared: vec![false; count], between: BTreeMap::new() };
         pairing.cross(graph);
-        for junction in &graph.junctions {
-            let open = |end: &&End| !pairing.shared[end.0] && pairing.next(**end).is_none();
-            let ends: Vec<End> = junction.branches.iter().filter(open).copied().collect();
-            // Two ends that a crossing left over are no corner.
-            if ends.len() == 2 && junction.branches.len() > 2 {
-                continue;
-            }
-            let long: Vec<End> = ends.iter().filter(|end| !is_stub(graph, end.0, stub)).copied().collect();
-            for (a, b) in pairs(graph, if long.len() > 1 { &long } else { &ends }) {
-                pairing.join(a, b);
-            }
+        for cluster in clusters(graph, evidence.stub) {
+            pairing.decide(evidence, &cluster);
         }
         pairing.bridge(graph);
         pairing
@@ -72,9 +86,49 @@ impl Pairing {
         self.next[branch][side]
     }
 
-    /// Whether a branch is shared by two strokes that cross.
+    /// Whether a branch is a part of other strokes.
     pub fn is_shared(&self, branch: usize) -> bool {
         self.shared[branch]
+    }
+
+    /// Points between an end and the one that follows, with half the widths.
+    pub fn between(&self, end: End) -> &[(Point, f64)] {
+        self.between.get(&end).map_or(&[], Vec::as_slice)
+    }
+
+    /// Pairs the branches that leave a cluster of junctions.
+    fn decide(&mut self, evidence: &Evidence, cluster: &Cluster) {
+        let graph = evidence.graph;
+        let open = |end: &&End| !self.shared[end.0] && self.next(**end).is_none();
+        let ends: Vec<End> = cluster.ends.iter().filter(open).copied().collect();
+        // Two ends that a crossing left over are no corner.
+        if ends.len() == 2 && cluster.ends.len() > 2 {
+            return;
+        }
+        if let Some((a, b, tail)) = corner::tip(graph, &ends, evidence.stub) {
+            self.join(a, b);
+            self.shared[tail.0] = true;
+            self.put_between(a, b, vec![(corner::top(graph, tail), radius(graph, tail))]);
+            return;
+        }
+        let long: Vec<End> = ends.iter().filter(|end| !is_stub(graph, end.0, evidence.stub)).copied().collect();
+        let mut chosen = pairs(evidence, if long.len() > 1 { &long } else { &ends });
+        chosen.extend(corner::touch(graph, &long, &chosen));
+        for (a, b) in chosen {
+            self.join(a, b);
+            let way = cluster.way(graph, a, b);
+            way.iter().for_each(|link| self.shared[link.0] = true);
+            self.put_between(a, b, points(graph, &way));
+        }
+    }
+
+    fn put_between(&mut self, a: End, b: End, mut points: Vec<(Point, f64)>) {
+        if points.is_empty() {
+            return;
+        }
+        self.between.insert(a, points.clone());
+        points.reverse();
+        self.between.insert(b, points);
     }
 
     /// Joins the lines that cross at a sharp angle. Their ink runs together for a stretch, which has a fork at both ends.
@@ -116,7 +170,7 @@ impl Pairing {
         let free = |branch: &Branch, side: usize| !branch.closed && branch.ends[side].is_none();
         let mut ends: Vec<(End, Point, Point, f64)> = Vec::new();
         for (k, branch) in graph.branches.iter().enumerate() {
-            for side in (0..2).filter(|&side| free(branch, side)) {
+            for side in (0..2).filter(|&side| free(branch, side) && !self.shared[k]) {
                 let end = (k, side);
                 ends.push((end, place(graph, end), outward(graph, end), radius(graph, end)));
             }
@@ -150,49 +204,28 @@ fn is_stub(graph: &Graph, branch: usize, most: f64) -> bool {
     branch.ends.contains(&None) && !branch.closed && polyline::length(&branch.points, false) < most
 }
 
-/// The place of an end.
-pub fn place(graph: &Graph, (branch, side): End) -> Point {
-    let points = &graph.branches[branch].points;
-    if side == 0 { points[0] } else { points[points.len() - 1] }
-}
-
-fn radius(graph: &Graph, (branch, side): End) -> f64 {
-    let radii = &graph.branches[branch].radii;
-    let count = radii.len().min(8);
-    let near = if side == 0 { &radii[..count] } else { &radii[radii.len() - count..] };
-    near.iter().sum::<f64>() / count as f64
-}
-
-/// The direction in which a branch would go on behind its end: that of its last stretch, turned on by its bend.
-pub fn outward(graph: &Graph, end: End) -> Point {
-    let points = &graph.branches[end.0].points;
-    let reach = 2.0 * CHORD_WIDTHS * radius(graph, end) + CHORD_PIXELS;
-    let at = |k: usize| if end.1 == 0 { points[k] } else { points[points.len() - 1 - k] };
-    let first = at(0);
-    let far = |reach: f64| (1..points.len()).find(|&k| first.distance(at(k)) >= reach).unwrap_or(points.len() - 1);
-    let (half, whole) = (at(far(0.5 * reach)), at(far(reach)));
-    let (near, before) = ((first - half).normalize_or_zero(), (half - whole).normalize_or_zero());
-    match before == Point::ZERO {
-        true => near,
-        false => ((1.0 + BEND) * near - BEND * before).normalize_or(near),
-    }
-}
-
-fn angle(a: Point, b: Point) -> f64 {
-    if a == Point::ZERO || b == Point::ZERO { 0.5 } else { a.angle_to(b).abs() }
-}
-
-/// The pairs of a junction.
-fn pairs(graph: &Graph, ends: &[End]) -> Vec<(End, End)> {
+/// The pairs of ends that meet.
+fn pairs(evidence: &Evidence, ends: &[End]) -> Vec<(End, End)> {
     // A corner.
     if let [a, b] = ends[..] {
         return vec![(a, b)];
     }
+    let Evidence { graph, outside, colours, .. } = *evidence;
     let directions: Vec<(Point, f64)> = ends.iter().map(|&end| (outward(graph, end), radius(graph, end))).collect();
     let cost = |i: usize, j: usize| {
         let ((a, r), (b, s)) = (directions[i], directions[j]);
-        // A short link between two junctions says little about its direction.
-        angle(a, -b) + WIDTH * (r / s).ln().abs() - 2.0 * END
+        let width = 2.0 * r.max(s);
+        let way = place(graph, ends[j]) - place(graph, ends[i]);
+        // Near to each other, the way between both says little about a direction.
+        let far = (way.length() / width - FAR).clamp(0.0, 1.0);
+        let turn = angle(a, -b);
+        let turn = turn + far * (angle(a, way) + angle(b, -way) - turn).max(0.0);
+        let around = match <&[End; 3]>::try_from(ends) {
+            Ok(three) if outside.is_beside(graph, three, [i, j], BESIDE * width) => AROUND,
+            _ => 0.0,
+        };
+        let colour = COLOUR * hues(colours[ends[i].0], colours[ends[j].0]);
+        turn + around + WIDTH * (r / s).ln().abs() + colour - 2.0 * END
     };
     let chosen = if ends.len() <= MOST {
         best(&(0..ends.len()).collect::<Vec<_>>(), &cost).1
@@ -200,6 +233,14 @@ fn pairs(graph: &Graph, ends: &[End]) -> Vec<(End, End)> {
         greedy(ends.len(), &cost)
     };
     chosen.into_iter().map(|(i, j)| (ends[i], ends[j])).collect()
+}
+
+/// How far apart the hues of two colours are: 0 for greys, 1 for red and cyan. A pencil line gets lighter and darker, but
+/// not red.
+fn hues(a: Colour, b: Colour) -> f64 {
+    let hue = |colour: Colour| colour.map(|value| value - (colour[0] + colour[1] + colour[2]) / 3.0);
+    let (a, b) = (hue(a), hue(b));
+    f64::from((0..3).map(|c| (a[c] - b[c]).abs()).fold(0.0, f32::max))
 }
 
 /// The pairing of least cost; a cost is negative where a pair is better than two ends.

@@ -4,8 +4,9 @@
 //! strokes. Through a junction a stroke goes straight; at a corner it goes through the point where both sides would meet.
 //! A stroke that ends at a junction goes on in its own direction up to the line that it meets.
 
+use crate::direction::{End, outward, place};
 use crate::graph::{Graph, Junction};
-use crate::pairing::{End, Pairing, outward, place};
+use crate::pairing::Pairing;
 use rototoon_base::geometry::Point;
 
 /// A line before it is fitted.
@@ -72,7 +73,12 @@ fn walk(graph: &Graph, pairing: &Pairing, start: End, done: &mut [bool]) -> Walk
                 return stroke;
             }
             Some(next) => {
-                stroke.pass(graph, end, next);
+                let between = pairing.between(end);
+                stroke.points.extend(between.iter().map(|&(point, _)| point));
+                stroke.radii.extend(between.iter().map(|&(_, radius)| radius));
+                if between.is_empty() {
+                    stroke.pass(graph, end, next);
+                }
                 if next == start || done[next.0] {
                     stroke.closed = next == start;
                     return stroke;

@@ -1,0 +1,100 @@
+//! Which line goes on where several meet: corners, overlapping parts, crossings of several lines.
+
+mod common;
+
+use common::{Line, covered, draw, line, ring, white};
+use rototoon_base::geometry::{Point, polyline};
+use rototoon_lines::{Options, Stroke, Style, trace};
+
+fn traced(lines: &[Line]) -> Vec<Stroke> {
+    trace(draw(240, 200, lines, white), &Options { style: Style::Clean, ..Options::default() })
+}
+
+/// Whether one stroke covers the line.
+fn is_whole(strokes: &[Stroke], line: &Line) -> bool {
+    strokes.iter().any(|s| covered(&line.points, line.closed, &s.points, s.closed, 2.5) > 0.93)
+}
+
+fn lengths(strokes: &[Stroke]) -> Vec<f64> {
+    strokes.iter().map(|s| polyline::length(&s.points, s.closed).round()).collect()
+}
+
+#[test]
+fn a_sharp_corner_whose_sides_run_together_is_one_stroke() {
+    for half_angle in [6.0f64, 10.0, 20.0] {
+        let side =
+            |sign: f64| Point::new(120.0, 180.0) + 150.0 * Point::from_angle((-90.0 + sign * half_angle).to_radians());
+        let (a, b) = (side(-1.0), side(1.0));
+        let corner = line(&[(a.x, a.y), (120.0, 180.0), (b.x, b.y)]);
+        let strokes = traced(std::slice::from_ref(&corner));
+        assert_eq!(strokes.len(), 1, "{half_angle}: {:?}", lengths(&strokes));
+        assert!(is_whole(&strokes, &corner), "{half_angle}");
+    }
+}
+
+#[test]
+fn a_corner_that_touches_a_line_is_one_stroke() {
+    let bar = line(&[(20.0, 150.0), (220.0, 150.0)]);
+    let corner = line(&[(70.0, 40.0), (120.0, 150.0), (180.0, 50.0)]);
+    let strokes = traced(&[bar.clone(), corner.clone()]);
+    assert_eq!(strokes.len(), 2, "{:?}", lengths(&strokes));
+    assert!(is_whole(&strokes, &bar) && is_whole(&strokes, &corner));
+}
+
+/// A round outline, open where `gap` degrees around `middle` are hidden behind something else.
+fn arc(centre: Point, radius: f64, middle: f64, gap: f64) -> Line {
+    let at = |k: i32| {
+        centre + radius * Point::from_angle((middle + 0.5 * gap + f64::from(k) * (360.0 - gap) / 80.0).to_radians())
+    };
+    let points: Vec<(f64, f64)> = (0..=80).map(|k| (at(k).x, at(k).y)).collect();
+    line(&points)
+}
+
+#[test]
+fn the_outline_of_the_part_in_front_goes_on() {
+    // Two discs, the left one over the right one.
+    let front = ring(Point::new(95.0, 100.0), 55.0);
+    let overlap = 2.0 * (0.5f64 * 80.0 / 55.0).acos().to_degrees();
+    let back = arc(Point::new(175.0, 100.0), 55.0, 180.0, overlap);
+    let strokes = traced(&[front.clone(), back.clone()]);
+    assert_eq!(strokes.len(), 2, "{:?}", lengths(&strokes));
+    assert!(is_whole(&strokes, &front) && is_whole(&strokes, &back));
+}
+
+#[test]
+fn three_lines_through_nearly_one_point_go_straight_on() {
+    for shift in [0.0, 2.0, 4.0] {
+        let lines = [
+            line(&[(20.0, 100.0), (220.0, 100.0)]),
+            line(&[(70.0, 20.0), (170.0, 180.0 + shift)]),
+            line(&[(170.0 + shift, 20.0), (70.0 + shift, 180.0)]),
+        ];
+        let strokes = traced(&lines);
+        assert_eq!(strokes.len(), 3, "{shift}: {:?}", lengths(&strokes));
+        assert!(lines.iter().all(|line| is_whole(&strokes, line)), "{shift}");
+    }
+}
+
+#[test]
+fn lines_of_other_colours_are_other_lines() {
+    // The red line leaves the blue one at an angle at which lines of one colour would be one.
+    let blue = [0.2, 0.3, 0.9];
+    let lines = [
+        Line { colour: blue, ..line(&[(20.0, 100.0), (120.0, 100.0), (220.0, 130.0)]) },
+        Line { colour: [0.9, 0.2, 0.2], ..line(&[(120.0, 100.0), (220.0, 88.0)]) },
+    ];
+    let strokes = traced(&lines);
+    assert!(lines.iter().all(|line| is_whole(&strokes, line)), "{:?}", lengths(&strokes));
+    let first = strokes.iter().find(|s| covered(&lines[0].points, false, &s.points, false, 2.5) > 0.93).unwrap();
+    assert!(!is_whole(std::slice::from_ref(first), &lines[1]));
+}
+
+#[test]
+fn a_dot_is_a_stroke() {
+    let dot = Line { width: 9.0, ..line(&[(60.0, 60.0), (60.5, 60.0)]) };
+    let strokes = traced(&[line(&[(20.0, 150.0), (220.0, 150.0)]), dot]);
+    assert_eq!(strokes.len(), 2, "{:?}", lengths(&strokes));
+    let dot = strokes.iter().find(|s| polyline::length(&s.points, false) < 5.0).expect("a dot");
+    assert!(dot.points[0].distance(Point::new(60.25, 60.0)) < 2.0, "{:?}", dot.points);
+    assert!((dot.widths[0] - 9.0).abs() < 2.5, "{:?}", dot.widths);
+}
