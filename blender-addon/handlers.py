@@ -77,6 +77,8 @@ _HOOKS = (
     ("load_post", _list_clips),
     ("depsgraph_update_post", arrivals.changed),
     ("depsgraph_update_post", live.changed),
+    ("undo_pre", live.undoing),
+    ("redo_pre", live.undoing),
     ("undo_post", stand.clear),
     ("redo_post", stand.clear),
     ("undo_post", arrivals.undone),

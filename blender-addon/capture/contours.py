@@ -9,13 +9,20 @@ of others.
 from __future__ import annotations
 
 import functools
+import time
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..blender import grease_pencil as gp
 from ..blender import guard
+from ..blender.errors import Changed
+from ..common import jobs
 from . import correspondence
+
+SLICE = 0.03
+"""Seconds of reading for which one copy of the drawings is made. A copy of 200 drawings takes 0.002 s."""
 
 
 @dataclass(slots=True)
@@ -138,22 +145,66 @@ class Contours:
 
 def read(ob, more: tuple[str, ...] = ()) -> Contours:
     """Reads the contour layers of a Grease Pencil object. `more` are attributes of generated strokes that will be needed too."""
+    return jobs.drained(reading(ob, more))
+
+
+def reading(ob, more: tuple[str, ...] = ()) -> Iterator[float]:
+    """As `read`, in steps of about `SLICE` seconds, between which Blender may draw. Returns the contours.
+
+    Nothing is kept in Blender from one step to the next. Raises `Changed` if a drawing came or went meanwhile.
+    """
     settings = ob.rototoon
     layers = gp.layers(ob, settings.contours_layer)
     parts = [Part(p.number, p.name, p.closed, p.depth, p.count, p.extra) for p in settings.parts]
     closed = frozenset(index for index, layer in enumerate(layers) if guard.closed(layer, hidden=True))
     found = Contours({}, parts, [], [layer.name for layer in layers], closed)
-    with gp.copied(ob.data) as data:
-        for index, layer in enumerate(layers):
-            own = gp.drawings(layer)
-            for frame, (handle, kind) in gp.drawings(data.layers[layer.name]).items():
-                drawing = found.drawings[index, frame] = read_drawing(handle, kind, index, frame, more)
-                drawing.handle = own[frame][0]
+    yield from _reading_drawings(ob, found, more)
+    _take_handles(ob, found)
     by_number = {part.number: part for part in parts}
     for place in sorted(found.drawings, key=lambda place: (place[1], place[0])):
         for stroke in found.drawings[place].strokes:
             _file(found, stroke, by_number.get(stroke.part))
+        yield 0.0
     return found
+
+
+def _reading_drawings(ob, found: Contours, more: tuple[str, ...]) -> Iterator[float]:
+    places = [(index, frame) for index, name in enumerate(found.layer_names) for frame in gp.drawings(_layer(ob, name))]
+    left = iter(places)
+    place = next(left, None)
+    while place is not None:
+        until = time.perf_counter() + SLICE
+        with gp.copied(ob.data) as data:
+            copies = [gp.drawings(data.layers[name]) for name in found.layer_names if data.layers.get(name) is not None]
+            if len(copies) < len(found.layer_names):
+                raise Changed()
+            while place is not None:
+                index, frame = place
+                if frame not in copies[index]:
+                    raise Changed()
+                found.drawings[place] = read_drawing(*copies[index][frame], index, frame, more)
+                place = next(left, None)
+                if time.perf_counter() > until:
+                    break
+        yield 0.0
+
+
+def _layer(ob, name: str):
+    layer = gp.find_layer(ob, name)
+    if layer is None:
+        raise Changed()
+    return layer
+
+
+def _take_handles(ob, found: Contours) -> None:
+    """Gives each drawing the artist's drawing in place of the copy that it was read from."""
+    own = [gp.drawings(_layer(ob, name)) for name in found.layer_names]
+    if sum(map(len, own)) != len(found.drawings):
+        raise Changed()
+    for (index, frame), drawing in found.drawings.items():
+        if frame not in own[index]:
+            raise Changed()
+        drawing.handle = own[index][frame][0]
 
 
 def read_drawing(handle, kind: str, layer: int, frame: int, more: tuple[str, ...] = ()) -> Drawing:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +18,7 @@ from ..blender import footage
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
+from ..common import jobs
 from . import contours, corrections, ends, identity, snapping
 
 VERSION = 1
@@ -36,15 +38,23 @@ class Reading:
 
 def read(ob, results: bool = False) -> Reading:
     """Reads an object. Changes nothing. With `results`, the document has tracks, confidence and snapped curves."""
+    return jobs.drained(reading(ob, results))
+
+
+def reading(ob, results: bool = False) -> Iterator[float]:
+    """As `read`, in steps between which Blender may draw. Returns the reading. Raises `Changed` as `contours.reading` does."""
     settings = ob.rototoon
     pattern = footage.pattern_of(ob)
-    found = contours.read(ob, (gp.CONFIDENCE,) if results else ())
+    found = yield from contours.reading(ob, (gp.CONFIDENCE,) if results else ())
     if not found.layer_names:
         name = settings.contours_layer
         raise Problem(f'"{ob.name}" has no layer "{name}": draw the contours on a layer of that name')
     mapper = mapper_of(ob, found)
+    yield 0.0
     decisions = identity.decide(found, mapper, settings.next_number)
+    yield 0.0
     corrected = corrections.detect(found, mapper)
+    yield 0.0
     document = _extra(settings.extra)
     known = {
         "pattern": pattern,

@@ -6,6 +6,10 @@ and compares its document with the one that was tracked last. If they differ, a 
 spans that the edit did not touch, and does not solve them again. A new edit cancels the run. The timer writes the result in the
 main thread, and only into drawings that it changes.
 
+**Slices.** Reading and writing a large drawing take seconds. They are generators, of which each call of `step` runs `SLICE` seconds.
+In between the artist may edit: then the rest is dropped, and the object is read again when the edit is finished. Undo drops the rest
+before it happens, since the generators know Blender's data. A result of which only a part was written is written again.
+
 **Undo.** A result belongs to the edit that caused it. It gets no undo step of its own: one undo takes back the edit and its
 result, and redo still works. So a step of Blender may contain an edit without its result. After undo and redo, the object is
 read and tracked again (the session knows most spans), and missing results are written. Writing adds no undo step, so this ends.
@@ -22,7 +26,7 @@ import contextlib
 import enum
 import time
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import bpy
@@ -30,7 +34,7 @@ from bpy.app.handlers import persistent
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, windows
-from ..blender.errors import Problem
+from ..blender.errors import Changed, Problem
 from ..blender.preferences import EXTENSION
 from ..common import jobs
 from ..rototoon import Cancelled, RototoonError
@@ -42,6 +46,10 @@ POLL = 0.05
 """Seconds between two calls of `step` during a run. Nobody notices a wait of this length."""
 BLOCKED = 0.2
 """Seconds between two calls of `step` during a pause."""
+SLICE = 0.05
+"""Seconds of reading or writing in one call of `step`."""
+SOON = 0.01
+"""Seconds until the next slice. Blender handles events and draws before it."""
 
 
 class Why(enum.IntEnum):
@@ -62,7 +70,20 @@ class _Due:
 
 
 _due: dict[int, _Due] = {}
+@dataclass
+class _Slices:
+    """Reading or writing that goes on in the next step."""
+
+    uid: int
+    steps: Iterator[float]
+    why: Why | None
+    """Why the object becomes due if the rest is dropped; `None` if it is due in any case."""
+    wrote: bool = False
+    """Whether it has begun to write."""
+
+
 _run: tracking.Run | None = None
+_slices: _Slices | None = None
 _known: dict[int, tuple] = {}
 """By object: the `_state` that was found when the file was opened, or that cannot be tracked."""
 _messages: dict[int, str] = {}
@@ -77,6 +98,8 @@ def note(ob: bpy.types.Object, why: Why = Why.CHANGED) -> None:
     """Notes that an object may have changed."""
     if _quiet:
         return
+    if _slices is not None and _slices.uid == ob.session_uid:
+        drop_slices()
     before = _due.get(ob.session_uid)
     _due[ob.session_uid] = _Due(time.monotonic(), why if before is None else max(why, before.why))
     _wake()
@@ -111,6 +134,25 @@ def changed(_scene=None, depsgraph=None) -> None:
         # Blender lists the object too if only its strokes changed.
         if isinstance(update.id, bpy.types.Object) and _is_live(update.id.original):
             note(update.id.original)
+
+
+@persistent
+def undoing(*_args) -> None:
+    """Called before undo and redo."""
+    drop_slices()
+
+
+def drop_slices() -> None:
+    """Drops the rest of what is read or written. The object stays due."""
+    global _slices
+    if _slices is None:
+        return
+    slices, _slices = _slices, None
+    slices.steps.close()
+    if slices.why is not None:
+        before = _due.get(slices.uid)
+        _due[slices.uid] = _Due(time.monotonic(), slices.why if before is None else max(slices.why, before.why))
+        _wake()
 
 
 @persistent
@@ -151,28 +193,56 @@ def toggled(settings, _context) -> None:
     if settings.live:
         note(ob)
         return
-    _due.pop(ob.session_uid, None)
-    if _run is not None and _run.uid == ob.session_uid:
+    if ob.session_uid in {work.uid for work in (_run, _slices) if work is not None}:
         interrupt()
+    _due.pop(ob.session_uid, None)
 
 
 # -- working ------------------------------------------------------------------------------------------------------
 
 
 def step(now: float | None = None) -> float | None:
-    """Does the work that is due at `now` (seconds of `time.monotonic`). Returns the seconds until the next call, or `None`
-    if all is done."""
-    if _run is None and not _due:
+    """Does the work that is due at `now` (seconds of `time.monotonic`), for about `SLICE` seconds. Returns the seconds until the next
+    call, or `None` if all is done."""
+    if _run is None and _slices is None and not _due:
         return None
     if held_off():
         return BLOCKED
     now = time.monotonic() if now is None else now
-    if _run is not None:
-        _attend(now)
-    if _run is None:
-        _begin_next(now)
+    until = time.perf_counter() + SLICE
+    if _slices is not None or _run is not None:
+        _work(_run.uid if _slices is None else _slices.uid, lambda: _attending(now), None, until)
+    if _slices is None and _run is None:
+        _begin_next(now, until)
     windows.redraw_views()
+    if _slices is not None:
+        return SOON
     return POLL if _run is not None or _due else None
+
+
+def _work(uid: int, begin: Callable[[], Iterator[float]], why: Why | None, until: float) -> None:
+    """Goes on with the slices, or begins those of an object, until the clock says `until`."""
+    global _slices
+    if _slices is None:
+        _slices = _Slices(uid, begin(), why)
+    slices = _slices
+    if slices.wrote:
+        # What others changed since the last slice must be reported before the next one, whose own report does not count.
+        bpy.context.view_layer.update()
+    with _quietly():
+        while _slices is slices:
+            try:
+                next(slices.steps)
+            except StopIteration:
+                _slices = None
+            except BaseException:
+                _slices = None
+                raise
+            if time.perf_counter() > until:
+                break
+        if slices.wrote:
+            # Blender reports changes at its next update. It must come now, while changes do not count as edits.
+            bpy.context.view_layer.update()
 
 
 def status(ob: bpy.types.Object) -> tuple[str, str]:
@@ -180,6 +250,8 @@ def status(ob: bpy.types.Object) -> tuple[str, str]:
     message = guard.refusal(ob) or _messages.get(ob.session_uid)
     if message:
         return message, "ERROR"
+    if _slices is not None and _slices.uid == ob.session_uid and _slices.wrote:
+        return "Writing the strokes", "TIME"
     if _run is not None and _run.uid == ob.session_uid:
         return f"Tracking {_run.worker.fraction:.0%}", "TIME"
     left = guard.left_out(tracking.contour_layers(ob), hidden=True)
@@ -188,6 +260,7 @@ def status(ob: bpy.types.Object) -> tuple[str, str]:
 
 def give_way() -> None:
     """Ends the run at once, since an operator needs the session. The object stays due."""
+    drop_slices()
     if _run is not None:
         _due[_run.uid] = _Due(time.monotonic(), Why.AGAIN)
         interrupt()
@@ -197,6 +270,7 @@ def give_way() -> None:
 def interrupt() -> None:
     """Ends the run at once, without a result."""
     global _run
+    drop_slices()
     if _run is not None:
         _run.worker.cancel()
         _run.worker.join()
@@ -248,17 +322,17 @@ def _settled(uid: int, now: float) -> bool:
     return uid in _due and now - _due[uid].since >= DELAY
 
 
-def _attend(now: float) -> None:
+def _attending(now: float) -> Iterator[float]:
     """Cancels the run if the object has changed, and writes the result if the run has ended."""
     global _run
     run, ob = _run, _object(_run.uid)
     if ob is None:
         run.worker.cancel()
     elif not run.worker.cancelled and _settled(run.uid, now):
-        reading = _read(ob)
+        reading = yield from _reading(ob)
         if reading is not None and _state(ob, reading) == (run.inputs, run.preset, run.closed):
             # The edit was undone and redone. The run writes its result as planned.
-            del _due[run.uid]
+            _due.pop(run.uid, None)
         else:
             run.worker.cancel()
     if not run.worker.advance():
@@ -267,71 +341,73 @@ def _attend(now: float) -> None:
     if ob is None:
         _forget(run.uid)
     elif not run.worker.cancelled:
-        _end(ob, run)
+        yield from _ending(ob, run)
 
 
-def _end(ob: bpy.types.Object, run: tracking.Run) -> None:
+def _ending(ob: bpy.types.Object, run: tracking.Run) -> Iterator[float]:
+    """Writes a result, or notes what went wrong."""
     error = run.worker.error
     if isinstance(error, Cancelled):
         return
+    slices = _slices
+    slices.why, slices.wrote = Why.AGAIN, True
     try:
         if error is not None:
             raise error
-        if not _write(ob, run):
-            note(ob)
+        if (yield from tracking.finishing(ob, run)) is None:
+            _due_again(run.uid, Why.CHANGED)
+        else:
+            _known.pop(run.uid, None)
+            _messages.pop(run.uid, None)
+    except Changed:
+        _due_again(run.uid, Why.AGAIN)
     except (Problem, RototoonError) as problem:
         _known[run.uid] = (run.inputs, run.preset, run.closed)
         _messages[run.uid] = _line(problem)
 
 
-def _write(ob: bpy.types.Object, run: tracking.Run) -> bool:
-    """Writes a result. Returns whether the object still fits it."""
-    with _quietly():
-        fits = tracking.finish(ob, run) is not None
-        # Blender reports changes at its next update. It must come now, while changes do not count as edits.
-        bpy.context.view_layer.update()
-    if fits:
-        _known.pop(run.uid, None)
-        _messages.pop(run.uid, None)
-    return fits
+def _due_again(uid: int, why: Why) -> None:
+    """Notes an object that changed while it was read or written."""
+    _due[uid] = _Due(time.monotonic(), max(why, _due[uid].why) if uid in _due else why)
 
 
-def _begin_next(now: float) -> None:
+def _begin_next(now: float, until: float) -> None:
     """Begins a run for the first due object that needs one."""
     for uid in [uid for uid in _due if _settled(uid, now)]:
         why = _due.pop(uid).why
         ob = _object(uid)
         if ob is None:
             _forget(uid)
-        elif _begin(ob, why):
+            continue
+        _work(uid, lambda ob=ob, why=why: _beginning(ob, why), why, until)
+        if _run is not None or _slices is not None:
             return
 
 
-def _begin(ob: bpy.types.Object, why: Why) -> bool:
+def _beginning(ob: bpy.types.Object, why: Why) -> Iterator[float]:
     """Begins a run if the object needs one."""
     global _run
-    reading = _read(ob)
+    reading = yield from _reading(ob)
     if reading is None:
-        return False
+        return
     uid, now = ob.session_uid, _state(ob, reading)
     if why == Why.OPENED or not tracking.can_track(reading, ob.rototoon.preset):
         _known[uid] = now
         _messages.pop(uid, None)
-        return False
+        return
     if why != Why.AGAIN and now == _tracked(ob):
         _messages.pop(uid, None)
-        return False
+        return
     if why != Why.AGAIN and now == _known.get(uid):
-        return False
+        return
     try:
         run = tracking.begin(ob, reading, ob.rototoon.preset)
     except (Problem, RototoonError) as error:
         _known[uid] = now
         _messages[uid] = _line(error)
-        return False
+        return
     run.worker.start()
     _run = run
-    return True
 
 
 def _tracked(ob: bpy.types.Object) -> tuple | None:
@@ -344,14 +420,15 @@ def _state(ob: bpy.types.Object, reading: document.Reading) -> tuple:
     return reading.document, ob.rototoon.preset, reading.found.closed_names
 
 
-def _read(ob: bpy.types.Object) -> document.Reading | None:
-    """The object's reading. If it cannot be read: `None`, and a message for the panel."""
+def _reading(ob: bpy.types.Object) -> Iterator[float]:
+    """Reads the object. If it cannot be read: `None`, and a message for the panel."""
     try:
-        with _quietly():
-            return document.read(ob)
+        return (yield from document.reading(ob))
+    except Changed:
+        _due_again(ob.session_uid, Why.CHANGED)
     except (Problem, RototoonError) as problem:
         _messages[ob.session_uid] = _line(problem)
-        return None
+    return None
 
 
 def _forget(uid: int) -> None:

@@ -34,6 +34,9 @@ class Stand:
     moved: bool = False
     """Whether generated points on the scene's frame were moved since the last Track."""
     snapped: bool = False
+    copied: bool = False
+    """Whether the contours on two key frames are equal: a key was copied, and is not fitted yet."""
+    _shapes: set[bytes] = field(default_factory=set)
 
     @property
     def strokes(self) -> int:
@@ -87,6 +90,9 @@ def _count(stand: Stand, frame: int, handle, kind: str) -> None:
     stand.tracked += bool(made.any() and not made.all())
     if own.any():
         stand.keys[frame] = stand.keys.get(frame, 0) + int(own.sum())
+        shapes = gp.positions(handle, int(starts[-1]))[np.repeat(own, np.diff(starts))].tobytes()
+        stand.copied = stand.copied or shapes in stand._shapes
+        stand._shapes.add(shapes)
         stand.numbers.update(int(number) for number in numbers[own & (numbers > 0)])
     loose = int((own & (numbers == 0)).sum())
     if loose:

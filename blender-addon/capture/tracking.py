@@ -69,8 +69,7 @@ def finishing(ob, run: Run) -> Iterator[float]:
     If the object's document has changed since the run began, it writes nothing and returns `None`.
     """
     guard.need(ob)
-    reading = document.read(ob)
-    yield 0.0
+    reading = yield from document.reading(ob)
     if reading.document != run.inputs:
         return None
     yield 0.0
@@ -104,7 +103,9 @@ def writing_tracks(ob, reading: document.Reading, session) -> Iterator[float]:
     written = 0
     for name, block in blocks.items():
         layer = gp.find_layer(ob, name)
-        written += yield from writing.write_steps(layer, block, list(gp.drawings(layer)))
+        index = found.layer_names.index(name)
+        read = {frame: drawing.points for (of, frame), drawing in found.drawings.items() if of == index}
+        written += yield from writing.write_steps(layer, block, list(gp.drawings(layer)), read)
     return written
 
 
@@ -132,6 +133,15 @@ def told(run: Run, strokes: int) -> str:
         frames.update(set(drawn.tolist()) - {int(frame) for frame in part["keys"]})
     text = f"{counted(strokes, 'contour')} drawn on {counted(len(frames), 'frame')}"
     return text if run.worker.result.solved or not strokes else "Nothing had changed: " + text
+
+
+def goes_on(ob, run: Run) -> str:
+    """What an artist wonders about who set the last key before the end of the footage; empty if nobody did."""
+    ends_of = [max(map(int, part["keys"])) for part in run.inputs["parts"] if len(part["keys"]) > 1]
+    last, offset = run.inputs["footage"]["last"], ob.rototoon.frame_offset
+    if not ends_of or max(ends_of) >= last:
+        return ""
+    return f"; nothing after your last key on frame {max(ends_of) + offset}: the footage goes on to frame {last + offset}"
 
 
 def where_to_look(ob, run: Run) -> str:

@@ -6,12 +6,14 @@ with one more. Radius, opacity, colours, material and fill come from the key str
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import time
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..blender import grease_pencil as gp
+from ..blender.errors import Changed
 from ..blender.placement import Mapper
 from ..common import jobs
 from . import correspondence
@@ -20,6 +22,10 @@ from .corrections import Corrections
 
 FILL_BASE = 1_000_000
 """Added to a part's number for its `fill_id`, so that it differs from those of strokes that the artist filled."""
+SLICE = 0.03
+"""Seconds for which drawings are compared with their result before those that differ are written."""
+AT_ONCE = 24
+"""Largest number of drawings that are written in one step. One of 300 strokes with 100 points takes 0.001 s."""
 
 
 @dataclass
@@ -113,6 +119,7 @@ def laying_out(
     count, total = len(frames), int(ends[-1])
     for name in (gp.PIN, gp.CONFIDENCE, gp.CONTROL):
         block.point[name] = _blanks(name, count, total)
+        yield 0.0
     # What tracking wrote is where the points are.
     block.point["position"] = block.point[gp.TRACKED] = np.zeros((count, total, 3), np.float32)
     for name in (gp.PART, gp.MADE, gp.CENTER):
@@ -182,29 +189,53 @@ def write(layer, block: Block, before: Iterable[int]) -> int:
     return jobs.drained(write_steps(layer, block, before))
 
 
-def write_steps(layer, block: Block, before: Iterable[int]) -> Iterator[float]:
-    """As `write`, with a step for each frame; yields the finished share."""
+def write_steps(layer, block: Block, before: Iterable[int], read: Mapping[int, np.ndarray] | None = None) -> Iterator[float]:
+    """As `write`, in steps of about `SLICE` seconds; yields the finished share.
+
+    `read` has by frame the points that were read for this result. Raises `Changed` where a drawing has others by now: then it is not
+    written, and the artist's change stays.
+    """
+    data, name = layer.id_data, layer.name
     wanted = {int(frame): row for row, frame in enumerate(block.frames) if block.present[row].any()}
     old = wanted.keys() & set(gp.frame_numbers(layer))
     gp.make_frames(layer, wanted, gp.GENERATED)
-    kept = _kept(layer, block, {frame: wanted[frame] for frame in old})
     yield 0.0
-    drawings = gp.drawings(layer)
-    for done, (frame, row) in enumerate(wanted.items()):
-        if frame not in kept:
+    left = list(wanted.items())
+    while left:
+        due = _due(data, name, block, left, old, read or {})
+        drawings = gp.drawings(_layer(data, name))
+        for frame, row in due:
             gp.replace_made(drawings[frame][0], rows_of(block, row))
-        yield (done + 1) / len(wanted)
-    clear(layer, [frame for frame in before if frame not in wanted])
+        yield 1 - len(left) / len(wanted)
+    clear(_layer(data, name), [frame for frame in before if frame not in wanted])
     return int(block.present.sum())
 
 
-def _kept(layer, block: Block, wanted: dict[int, int]) -> set[int]:
-    """The frames whose generated strokes are those of the block."""
-    if not wanted:
-        return set()
-    with gp.copied(layer.id_data) as data:
-        drawings = gp.drawings(data.layers[layer.name])
-        return {frame for frame, row in wanted.items() if gp.has_made(drawings[frame][0], rows_of(block, row))}
+def _layer(data, name: str):
+    layer = data.layers.get(name)
+    if layer is None:
+        raise Changed()
+    return layer
+
+
+def _due(data, name: str, block: Block, left: list[tuple[int, int]], old: set[int], read: Mapping[int, np.ndarray]) -> list:
+    """Takes some frames with their rows from the front of `left`. Returns those whose generated strokes are not those of the block."""
+    due, until, taken = [], time.perf_counter() + SLICE, 0
+    with gp.copied(data) as copy:
+        drawings = gp.drawings(_layer(copy, name))
+        for frame, row in left:
+            if frame not in drawings:
+                raise Changed()
+            handle = drawings[frame][0]
+            if frame in old and frame in read and not np.array_equal(gp.positions(handle, len(read[frame])), read[frame]):
+                raise Changed()
+            if frame not in old or not gp.has_made(handle, rows_of(block, row)):
+                due.append((frame, row))
+            taken += 1
+            if time.perf_counter() > until or len(due) == AT_ONCE:
+                break
+    del left[:taken]
+    return due
 
 
 def rows_of(block: Block, row: int) -> gp.Rows:

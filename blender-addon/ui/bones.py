@@ -31,7 +31,16 @@ class ROTOTOON_PT_bones(Panel, bpy.types.Panel):
         if chosen is not None:
             drive.content, drive.motion = chosen.character, chosen.motion
         layout.operator("rototoon.guess_bones", icon="BONE_DATA")
+        if not settings.bones:
+            layout.label(text="Guess Bones fills the list of key points", icon="INFO")
+            return
         column = layout.column(align=True)
+        split = column.split(factor=0.36, align=True)
+        split.active = False
+        split.label(text="Key Point")
+        split = split.split(factor=0.7, align=True)
+        split.label(text="Bone")
+        split.label(text="Along")
         for item in settings.bones:
             split = column.split(factor=0.36, align=True)
             split.alert = item.bone not in context.object.data.bones

@@ -42,8 +42,8 @@ def draw_browser(layout, context) -> None:
     if not clip_browser.is_listed(context.object):
         _read_soon(context.object)
     row = layout.row(align=True)
-    row.prop(listed, "character", text="", icon="USER")
-    row.prop(listed, "motion", text="", icon="ACTION")
+    row.prop(listed, "character", text="", icon="USER", placeholder="Character")
+    row.prop(listed, "motion", text="", icon="ACTION", placeholder="Motion")
     row.operator("rototoon.refresh_clips", text="", icon="FILE_REFRESH")
     row.operator("rototoon.import_motion", text="", icon="IMPORT")
     layout.template_list("ROTOTOON_UL_clips", "", listed, "clips", listed, "active", rows=4)
@@ -55,7 +55,7 @@ def draw_browser(layout, context) -> None:
         layout.template_icon(clip_preview.figure(chosen, context.scene), scale=7.0)
         moment = clip_preview.posture_of(chosen, context.scene) + 1
         row = layout.row()
-        row.label(text=f"{moment} of {len(chosen.postures)}, {chosen.fps:g} fps")
+        row.label(text=f"Frame {moment} of {len(chosen.postures)}, {chosen.fps:g} fps")
         if gp.is_drawing(context.object):
             row.prop(listed, "in_view", text="", icon="OVERLAY")
         if chosen.source:

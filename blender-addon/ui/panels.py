@@ -26,6 +26,7 @@ class ROTOTOON_PT_footage(Panel, bpy.types.Panel):
         layout, settings = self.layout, settings_of(context)
         layout.operator("rototoon.setup", icon="ADD")
         column = layout.column(align=True)
+        column.label(text="Other footage for the active object")
         column.operator("rototoon.footage_from_file", text="From File", icon="FILE_FOLDER")
         column.operator("rototoon.footage_from_camera", text="From Camera", icon="CAMERA_DATA")
         column.operator("rototoon.footage_from_reference", text="From Reference Image", icon="IMAGE_REFERENCE")
@@ -111,7 +112,7 @@ class ROTOTOON_PT_track(DrawingPanel, bpy.types.Panel):
 
     def draw(self, context):
         layout, settings = self.layout, settings_of(context)
-        layout.prop(settings, "preset", text="")
+        layout.prop(settings, "preset")
         row = layout.row()
         row.scale_y = 1.5
         row.operator("rototoon.track", icon="TRACKING_FORWARDS")
@@ -177,8 +178,8 @@ class ROTOTOON_PT_tween(DrawingPanel, bpy.types.Panel):
         row = layout.row(align=True)
         row.operator("rototoon.match_strokes", icon="UV_SYNC_SELECT").layers = "ALL"
         side = row.row(align=True)
-        side.ui_units_x = 4
-        side.operator("rototoon.match_strokes", text="Active").layers = "ACTIVE"
+        side.ui_units_x = 5
+        side.operator("rototoon.match_strokes", text="Active Layer").layers = "ACTIVE"
         column = layout.column(align=True)
         row = column.row(align=True)
         row.scale_y = 1.5

@@ -44,6 +44,7 @@ class RototoonPreferences(bpy.types.AddonPreferences):
 
     def draw(self, context) -> None:
         """Called by Blender."""
+        self.layout.label(text="Press N in the 3D view and choose the tab Rototoon. Open Sample there shows how it works", icon="INFO")
         column = self.layout.column()
         column.use_property_split = True
         column.prop(self, "threads")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import bpy
 
 from ..blender import grease_pencil as gp
-from ..capture import stand
+from ..capture import ends, stand
 from .panel import Panel
 
 
@@ -29,26 +29,42 @@ def steps_of(ob) -> list[Step]:
     keys = len(now.keys)
     return [
         Step(now.footage, "Choose footage", "rototoon.setup", "FILE_FOLDER"),
-        Step(keys > 0, "Draw contours", "rototoon.draw_contours", "GREASEPENCIL", "One closed line around each part"),
-        Step(
-            keys > 1 or (keys > 0 and now.tracked > 0),
-            "Set a second key",
-            "rototoon.new_key",
-            "KEY_HLT",
-            "First go to a later frame. After it, fit the lines in Edit Mode",
-        ),
+        Step(keys > 0, "Draw contours", "rototoon.draw_contours", "GREASEPENCIL", "One closed line around each part of the character"),
+        _second_key(ob, now, keys),
         Step(now.tracked > 0, "Track", "rototoon.track", "TRACKING_FORWARDS"),
-        _correction(now),
+        _correction(ob, now),
         Step(now.snapped, "Snap to the ink", "rototoon.snap", "SNAP_ON"),
     ]
 
 
-def _correction(now: stand.Stand) -> Step:
+def _second_key(ob, now: stand.Stand, keys: int) -> Step:
+    text = "Set a second key"
+    if now.copied and not now.tracked:
+        hint = "Now fit the lines to this frame: Tab for Edit Mode, then move (G), turn (R) and scale (S) them. If nothing moved, Track"
+        return Step(False, text, "rototoon.track", "TRACKING_FORWARDS", hint)
+    hint = "First go to a later frame"
+    if now.footage:
+        hint += f", at best the last one you need: the footage ends on {ob.rototoon.last + ob.rototoon.frame_offset}"
+    return Step(keys > 1 or (keys > 0 and now.tracked > 0), text, "rototoon.new_key", "KEY_HLT", hint)
+
+
+def _correction(ob, now: stand.Stand) -> Step:
     if now.moved:
         return Step(False, "Correct", "rototoon.track", "TRACKING_FORWARDS", "You moved points. Track again, and the frames beside follow")
+    lost = _lost(ob) if now.tracked else ""
+    if lost:
+        return Step(False, "Correct", "rototoon.new_key", "KEY_HLT", f"{lost}. Go there, set a key, fit the line in Edit Mode (Tab), then Track")
     done = now.corrected or (now.snapped and now.tracked > 0)
     hint = "In Edit Mode, press 2 and click a line that is off. Move it (G), turn it (R), then Track"
     return Step(done, "Correct", "rototoon.weakest_frame", "FRAME_NEXT", hint)
+
+
+def _lost(ob) -> str:
+    """Which part needs a key, and where; empty if none does."""
+    for part in ob.rototoon.parts:
+        for picture in ends.wanted(part):
+            return f'"{part.name}" needs a key on frame {picture + ob.rototoon.frame_offset}'
+    return ""
 
 
 def next_of(steps: list[Step]) -> Step | None:

@@ -14,7 +14,8 @@ from ..rototoon.style import KEY_POINTS, PARENTS
 HEAD, HEAD_TOP = KEY_POINTS.index("head"), KEY_POINTS.index("head_top")
 LIMBS = tuple((PARENTS[point], point) for point in range(1, len(PARENTS)))
 """Pairs of key points that lines connect. The head is drawn as a ring."""
-LEFT, RIGHT, MIDDLE = (0.36, 0.68, 1.0), (1.0, 0.62, 0.25), (0.92, 0.92, 0.92)
+LEFT, RIGHT, MIDDLE = (0.36, 0.68, 1.0), (1.0, 0.62, 0.25), (0.52, 0.52, 0.52)
+"""They are seen on the panels of the dark and of the light theme."""
 MARGIN = 0.08
 """Margin of a picture, as a share of its side."""
 

@@ -16,13 +16,13 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-import addon_utils
 import bpy
 import numpy as np
+import window
+from window import MODULE, in_view
 
 WORDS = sys.argv[sys.argv.index("--") + 1 :]
 ZIP, OUT, READY = (Path(word).absolute() if word != "-" else None for word in WORDS[:3])
-MODULE = "bl_ext.user_default.rototoon"
 FRAMES, COLUMNS, ROWS, POINTS = 120, 10, 5, 24
 KEYS = (1, 40, 80, 120)
 SIZE = (640, 360)
@@ -115,18 +115,6 @@ class Watch:
         self.what, self._last = "", time.perf_counter()
 
 
-def view():
-    """Area and region of the 3D view."""
-    area = next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == "VIEW_3D")
-    return area, next(region for region in area.regions if region.type == "WINDOW")
-
-
-def in_view():
-    """The context of the 3D view."""
-    area, region = view()
-    return bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area, region=region)
-
-
 def running() -> bool:
     """Whether a modal operator of the extension is at work."""
     return any("ROTOTOON" in op.bl_idname for op in bpy.context.window_manager.windows[0].modal_operators)
@@ -155,8 +143,7 @@ def watch_track(watch: Watch) -> None:
 def session():
     """Everything, in order; yields the seconds until it goes on."""
     if ZIP is not None:
-        addon_utils.enable("bl_pkg")
-        bpy.ops.extensions.package_install_files(filepath=str(ZIP), repo="user_default", enable_on_install=True)
+        window.install(ZIP)
     from importlib import import_module
 
     if "stand-in" in WORDS:
@@ -217,20 +204,5 @@ def write(rows, strokes: int) -> None:
     OUT.write_text(text, encoding="utf-8")
 
 
-_steps = session()
-
-
-def step() -> float | None:
-    """Called by the timer: goes on, and reports the end or what went wrong to the waiting program."""
-    try:
-        return next(_steps)
-    except StopIteration:
-        READY.write_text("ready", encoding="utf-8")
-    except Exception as error:
-        READY.write_text(f"failed: {error}", encoding="utf-8")
-        raise
-    return None
-
-
 if __name__ == "__main__":
-    bpy.app.timers.register(step, first_interval=1.0)
+    window.run(session(), READY)

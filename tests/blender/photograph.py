@@ -8,29 +8,25 @@ A panel is photographed alone: the other panels of the tab are unregistered mean
 
 import math
 import random
-import subprocess
 import sys
-import time
 from pathlib import Path
 
-import addon_utils
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
 import bpy
 import numpy as np
+import tab
+import window
+from window import in_view, of_region, screen, view
 
 ZIP, SAMPLE, OUT, READY = (Path(word).absolute() for word in sys.argv[sys.argv.index("--") + 1 :][:4])
-MODULE = "bl_ext.user_default.rototoon"
-TAB = "Rototoon"
 TABS_WIDTH = 22
 """Pixels of the tabs beside the panels, at a scale of 1."""
 SCALE = 1.3
 """Of the window's texts and buttons."""
 EDGE = 8
 """Pixels of a region's lower border."""
-PATIENCE = 120
-"""Seconds until the tab must be there."""
 CLIPS = OUT / "clips"
-ALONE: list[type] = []
-"""The open copy of a panel that is in the tab alone."""
 BONES = {
     "hips": ("", (0, 0, 1.0), (0, 0, 1.15)),
     "spine": ("hips", (0, 0, 1.15), (0, 0, 1.3)),
@@ -52,10 +48,7 @@ for _side, _way in (("L", 1), ("R", -1)):
 
 def prepare() -> None:
     """Installs the extension and makes the window plain."""
-    addon_utils.enable("bl_pkg")
-    bpy.ops.extensions.package_install_files(filepath=str(ZIP), repo="user_default", enable_on_install=True)
-    if MODULE not in bpy.context.preferences.addons:
-        raise RuntimeError(f"{ZIP} was not installed and enabled")
+    window.install(ZIP)
     preferences = bpy.context.preferences
     preferences.view.ui_scale = SCALE
     # Otherwise the view shines through below the panels.
@@ -190,117 +183,31 @@ def armature() -> None:
 # -- pictures ----------------------------------------------------------------------------------------------------
 
 
-def view() -> tuple[bpy.types.Area, bpy.types.Region, bpy.types.Region]:
-    """The 3D view, its drawing region and its sidebar."""
-    area = next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == "VIEW_3D")
-    regions = {region.type: region for region in area.regions}
-    return area, regions["WINDOW"], regions["UI"]
-
-
-def in_view():
-    """The context of the 3D view."""
-    area, region, _ = view()
-    return bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area, region=region)
-
-
-def screenshot() -> np.ndarray:
-    """The screen's pixels (height, width, 4), the top row first. Blender's own screenshots are black without a graphics card."""
-    path = OUT / "screen.tmp.png"
-    subprocess.run(["import", "-window", "root", str(path)], check=True)
-    image = bpy.data.images.load(str(path))
-    width, height = image.size
-    values = np.empty(width * height * 4, np.float32)
-    image.pixels.foreach_get(values)
-    bpy.data.images.remove(image)
-    path.unlink()
-    return values.reshape(height, width, 4)[::-1]
-
-
 def save(name: str, pixels: np.ndarray) -> None:
     """Writes `OUT/name.png`."""
-    height, width = pixels.shape[:2]
-    image = bpy.data.images.new(name, width, height)
-    image.pixels.foreach_set(np.ascontiguousarray(pixels[::-1], np.float32).ravel())
-    image.filepath_raw, image.file_format = str(OUT / f"{name}.png"), "PNG"
-    image.save()
-    bpy.data.images.remove(image)
-
-
-def of_region(pixels: np.ndarray, region) -> np.ndarray:
-    """The part of the window that a region takes."""
-    bottom = pixels.shape[0] - region.y
-    return pixels[bottom - region.height : bottom, region.x : region.x + region.width]
+    window.save(OUT / f"{name}.png", pixels)
 
 
 def of_panel(pixels: np.ndarray, sidebar) -> np.ndarray:
     """The sidebar without its tabs and without the empty space below its panels."""
     # The last rows are the region's border.
     found = of_region(pixels, sidebar)[:-EDGE, : -round(TABS_WIDTH * SCALE)]
-    ground = found[-1, found.shape[1] // 2]
-    rows = np.flatnonzero((np.abs(found - ground) > 0.02).any(2).mean(1) > 0.2)
+    ground = found[-1, found.shape[1] // 2].astype(np.int16)
+    rows = np.flatnonzero((np.abs(found - ground) > 5).any(2).mean(1) > 0.2)
     return found[: rows[-1] + 6] if len(rows) else found
-
-
-def tab_panels() -> list:
-    """The classes of the tab's panels."""
-    known = [cls for cls in bpy.types.Panel.__subclasses__() if cls.__module__.startswith(MODULE)]
-    deep = [cls for base in known for cls in base.__subclasses__()]
-    return [cls for cls in {*known, *deep} if getattr(cls, "bl_category", "") == TAB and hasattr(cls, "bl_idname")]
-
-
-def registered(cls) -> bool:
-    """Whether Blender shows a panel's class."""
-    return getattr(bpy.types, cls.bl_idname, None) is not None
-
-
-def only(panels: list, name: str | None) -> None:
-    """Leaves the panel `name` alone in the tab, open, or all panels in their order."""
-    for cls in list(ALONE):
-        bpy.utils.unregister_class(cls)
-        ALONE.remove(cls)
-    for cls in panels:
-        if registered(cls):
-            bpy.utils.unregister_class(cls)
-    for cls in panels:
-        if name is None:
-            bpy.utils.register_class(cls)
-        elif cls.bl_idname == name:
-            # Blender remembers by its name that a panel is closed.
-            ALONE.append(type(f"{cls.__name__}_open", (cls,), {"bl_idname": f"{name}_open", "bl_options": set()}))
-            bpy.utils.register_class(ALONE[-1])
 
 
 # -- the session: yields the seconds until it goes on -------------------------------------------------------------
 
 
-def sidebar_shown():
-    """Opens the sidebar at the tab, which exists only once the region has been drawn."""
-    started = time.monotonic()
-    while True:
-        area, _, sidebar = view()
-        area.spaces.active.show_region_ui = True
-        area.tag_redraw()
-        yield 1.0
-        try:
-            if sidebar.active_panel_category != TAB:
-                sidebar.active_panel_category = TAB
-                area.tag_redraw()
-                yield 1.0
-            return
-        except (AttributeError, TypeError):
-            if time.monotonic() - started > PATIENCE:
-                raise
-
-
 def panels_photographed(panels: list, names: list[str]):
     """A picture of each panel alone."""
     for name in names:
-        only(panels, f"ROTOTOON_PT_{name}")
-        yield from sidebar_shown()
+        tab.only(panels, next(panel for panel in panels if tab.title(panel) == name))
+        yield from tab.shown()
         yield 2.0
-        _, _, sidebar = view()
-        save(f"panel_{name}", of_panel(screenshot(), sidebar))
-    only(panels, None)
+        save(f"panel_{name}", of_panel(screen(), view()[2]))
+    tab.only(panels, None)
 
 
 def view_photographed(name: str, box=(0.0, 1.0, 0.0, 1.0)):
@@ -308,7 +215,7 @@ def view_photographed(name: str, box=(0.0, 1.0, 0.0, 1.0)):
     area, region, _ = view()
     area.tag_redraw()
     yield 2.0
-    pixels = of_region(screenshot(), region)
+    pixels = of_region(screen(), region)
     top, bottom = (round(share * pixels.shape[0]) for share in box[:2])
     left, right = (round(share * pixels.shape[1]) for share in box[2:])
     save(name, pixels[top:bottom, left:right])
@@ -345,10 +252,10 @@ def capture(panels: list):
     yield from panels_photographed(panels, ["start"])
     tracked()
     looked_through_camera()
-    yield from sidebar_shown()
+    yield from tab.shown()
     looked_through_camera()
     yield 2.0
-    save("window", screenshot())
+    save("window", screen())
     yield from panels_photographed(panels, ["footage", "parts", "track", "snap", "strokes", "document", "style"])
     bpy.context.object.rototoon.show_confidence = True
     bpy.context.object.data.layers["Snapped"].hide = True
@@ -366,7 +273,7 @@ def between(panels: list):
     yield from view_photographed("in_betweens", (0.25, 0.75, 0.08, 0.92))
     cleared()
     drawn()
-    yield from sidebar_shown()
+    yield from tab.shown()
     looked_from_front()
     with in_view():
         bpy.ops.rototoon.match_strokes("INVOKE_DEFAULT")
@@ -379,9 +286,7 @@ def session():
     yield 1.0
     prepare()
     cleared()
-    panels = sorted(tab_panels(), key=lambda cls: cls.bl_idname)
-    order = {name: place for place, name in enumerate("start footage parts track snap strokes tween style document bones".split())}
-    panels.sort(key=lambda cls: order.get(cls.bl_idname.removeprefix("ROTOTOON_PT_"), len(order)))
+    panels = tab.panels()
     yield 1.0
     yield from capture(panels)
     cleared()
@@ -390,19 +295,4 @@ def session():
     yield from between(panels)
 
 
-_steps = session()
-
-
-def step() -> float | None:
-    """Called by the timer: goes on, and reports the end or what went wrong to the waiting program."""
-    try:
-        return next(_steps)
-    except StopIteration:
-        READY.write_text("ready", encoding="utf-8")
-    except Exception as error:
-        READY.write_text(f"failed: {error}", encoding="utf-8")
-        raise
-    return None
-
-
-bpy.app.timers.register(step, first_interval=1.0)
+window.run(session(), READY)

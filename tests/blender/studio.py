@@ -125,11 +125,11 @@ class Call:
 
 def call(name: str, folder) -> set[str]:
     """Calls an operator as the table says."""
-    options = {key: _placed(value, folder) for key, value in OPERATORS[name].options.items()}
+    options = {key: placed(value, folder) for key, value in OPERATORS[name].options.items()}
     return getattr(bpy.ops.rototoon, name)(**options)
 
 
-def _placed(value, folder):
+def placed(value, folder):
     return value.replace("{folder}", str(folder)) if isinstance(value, str) else value
 
 

@@ -48,13 +48,15 @@ pub enum Build {
     /// What the Rust tests are built from: little optimised, and only for systems like this one. Nothing is compiled for it
     /// once the tests are built.
     Tested,
+    /// As `Tested`, with the documentation in the extension.
+    TestedWithHelp,
 }
 
 impl Bundle {
     /// Where a build leaves it.
     pub fn of(build: Build) -> Self {
         let built = match build {
-            Build::Tested => target().join("debug"),
+            Build::Tested | Build::TestedWithHelp => target().join("debug"),
             Build::Here => target().join("release"),
             Build::Installed | Build::WithMeasure => target().join(TRIPLE).join("release"),
         };
@@ -84,7 +86,7 @@ pub fn bundle(packager: &Packager, build: Build) -> Result<Bundle> {
     let bundle = Bundle::of(build);
     let plugin = bundle.library.with_file_name(PLUGIN);
     match build {
-        Build::Tested => compile_tested()?,
+        Build::Tested | Build::TestedWithHelp => compile_tested()?,
         Build::Here => compile_here()?,
         Build::Installed | Build::WithMeasure => {
             compile_installed(build)?;
@@ -97,7 +99,7 @@ pub fn bundle(packager: &Packager, build: Build) -> Result<Bundle> {
         ofx::lay_out(&plugin)?;
     }
     let staged = stage(&bundle.library)?;
-    if matches!(build, Build::Installed | Build::WithMeasure) {
+    if !matches!(build, Build::Tested | Build::Here) {
         docs::put_into(&staged.join("help"))?;
     }
     pack(packager, &staged, &bundle.zip)?;

@@ -14,6 +14,7 @@ mod ofx;
 mod photograph;
 mod steps;
 mod test;
+mod window;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -90,6 +91,13 @@ enum Command {
     },
     /// Photograph every panel and Match Strokes in a real Blender window (Debian sid in a chroot; needs root and debootstrap).
     Photograph,
+    /// Press every button of the tab in a real Blender window, with pictures and tables in target/press (as `photograph`, needs root
+    /// and debootstrap). Fails where a button does nothing, errs, or has no press.
+    Press {
+        /// Theme and scale: dark-1x, light-1x, dark-2x, light-2x. All by default.
+        #[arg(value_name = "VARIANT", value_parser = ["dark-1x", "light-1x", "dark-2x", "light-2x"])]
+        variants: Vec<String>,
+    },
 }
 
 fn main() -> anyhow::Result<()> {
@@ -109,6 +117,7 @@ fn main() -> anyhow::Result<()> {
         Command::Docs { check } => docs::docs(check),
         Command::Fuzz { target, minutes } => fuzz::fuzz(target.as_deref(), minutes),
         Command::Photograph => photograph::photograph(),
+        Command::Press { variants } => photograph::press(&variants),
     }
 }
 

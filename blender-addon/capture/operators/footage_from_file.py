@@ -47,6 +47,10 @@ class FilePicker:
 
     def draw(self, _context) -> None:
         """Called by Blender for the redo panel and the file browser's sidebar."""
+        if bpy.context.area is not None and bpy.context.area.type == "FILE_BROWSER":
+            column = self.layout.column(align=True)
+            column.label(text="Choose a movie, or any picture", icon="INFO")
+            column.label(text="of a sequence: the others are found", icon="BLANK1")
         self.layout.prop(self, "at_scene_start")
         row = self.layout.row()
         row.active = not self.at_scene_start

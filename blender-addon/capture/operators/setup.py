@@ -11,6 +11,10 @@ from .footage_base import FootageOperator, described
 from .footage_from_file import FilePicker
 
 
+NO_NAMES = {"f", "frame", "frames", "image", "images", "img", "pic", "picture", "pictures", "png", "render", "seq", "sequence"}
+"""Names of files and folders that do not tell what the footage is."""
+
+
 class ROTOTOON_OT_setup(FilePicker, FootageOperator, bpy.types.Operator):
     bl_idname = "rototoon.setup"
     bl_label = "Set Up Footage"
@@ -78,9 +82,13 @@ def look_at_footage(context, ob) -> None:
 
 
 def _name(shot: stage.Shot) -> str:
-    """The name of the movie, or of the sequence without its number."""
-    stem = os.path.splitext(os.path.basename(shot.movie or shot.pattern))[0]
-    return stem.split("%")[0].rstrip("_-. ") or os.path.basename(os.path.dirname(shot.pattern)) or "Contours"
+    """The name of the movie, or of the sequence without its number; if that says nothing, the name of the folder around it."""
+    path = shot.movie or shot.pattern
+    stem = os.path.splitext(os.path.basename(path))[0].split("%")[0].rstrip("_-. ")
+    folder = os.path.dirname(os.path.abspath(path))
+    names = [stem, os.path.basename(folder), os.path.basename(os.path.dirname(folder))]
+    telling = [name for name in names if name and name.lower() not in NO_NAMES]
+    return telling[0] if telling else stem or "Contours"
 
 
 CLASSES = (ROTOTOON_OT_setup,)

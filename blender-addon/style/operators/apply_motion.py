@@ -25,6 +25,13 @@ class ROTOTOON_OT_apply_motion(Manner, _Content, Reshaping, bpy.types.Operator):
 
     style: shared("style", description="The character whose style the motion gets")
 
+    def draw(self, _context) -> None:
+        """Called by Blender for the dialog and the redo panel: what is asked for first comes first."""
+        layout = self.layout
+        layout.use_property_split = True
+        for name in ("content", "motion", "style", "preset", "strength", "sub_keys"):
+            layout.prop(self, name)
+
     def begin(self, context):
         remake = self.remake(folder_of(context.object, self.folder), self.motion, self.content)
         return self.work(context, lambda progress, threads: (remake(progress, threads), {}), before=0.5)

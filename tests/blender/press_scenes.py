@@ -1,0 +1,53 @@
+"""The files on which `press.py` presses buttons: the studio's, made ready for one operator after the other."""
+
+from pathlib import Path
+
+import bpy
+import studio
+import window
+from window import in_view, view
+
+_kept: dict[str, str] = {}
+INSTEAD = {"apply_motion": {"style": "plain"}}
+"""Properties other than those of the table: the button takes the content from the list, in which the first clip is chosen."""
+
+
+def build(addon, folder: Path) -> None:
+    """Writes the studio's file. A stand-in tracks for it, which blends the keys: its figure is not in its footage."""
+    import stand_in
+
+    folder.mkdir(parents=True, exist_ok=True)
+    sessions = addon("capture.sessions")
+    real = sessions.make, sessions.matcher
+    sessions.make, sessions.matcher = stand_in.Session.from_document, stand_in.match_contours
+    _kept["folder"] = str(folder)
+    _kept["studio"] = studio.build(addon, folder)
+    sessions.clear()
+    sessions.make, sessions.matcher = real
+
+
+def options(name: str) -> dict:
+    """The properties with which the table calls an operator."""
+    found = studio.OPERATORS[name].options
+    return {key: studio.placed(value, _kept["folder"]) for key, value in found.items()} | INSTEAD.get(name, {})
+
+
+def ready(addon, name: str) -> None:
+    """Opens the studio and does what the table says before an operator; its button then works with the table's properties."""
+    with bpy.context.temp_override(window=window.main_window()):
+        bpy.ops.wm.open_mainfile(filepath=_kept["studio"], load_ui=False)
+    with in_view():
+        call = studio.OPERATORS[name]
+        ob = studio.activate(bpy.data.objects[studio.OBJECT])
+        studio.activate(bpy.data.objects[call.on])
+        call.prepare(addon, ob)
+    last = bpy.context.window_manager.operator_properties_last(f"rototoon.{name}")
+    for key, value in options(name).items():
+        if key != "filepath" and last is not None:
+            setattr(last, key, value)
+
+
+def aside() -> tuple[int, int]:
+    """A place where the mouse changes nothing: the middle of the view."""
+    region = view()[1]
+    return region.x + region.width // 2, region.y + region.height // 2
