@@ -13,6 +13,7 @@ This file only registers. The code is in packages. The `__init__.py` of each pac
 `style`               a character's motion given to another drawing
 `bones`               armatures
 `exchange`            documents and masks
+`farm`                many shots sent to a render farm, and their results
 `sample`              a small cartoon to try everything on
 `scripting`           functions for scripts, beside the operators
 `ui`                  panels, lists, overlays, preferences
@@ -27,13 +28,14 @@ def _classes():
     from .bones.operators import CLASSES as bones
     from .capture.operators import CLASSES as capture
     from .exchange.operators import CLASSES as exchange
+    from .farm.operators import CLASSES as farm
     from .lines.operators import CLASSES as lines
     from .sample.operators import CLASSES as sample
     from .strokes.operators import CLASSES as strokes
     from .style.operators import CLASSES as style
     from .tween.operators import CLASSES as tween
 
-    return properties.CLASSES + capture + strokes + tween + lines + style + bones + exchange + sample + ui.CLASSES
+    return properties.CLASSES + capture + strokes + tween + lines + style + bones + exchange + farm + sample + ui.CLASSES
 
 
 def register():

@@ -112,21 +112,30 @@ def unknown_of_part(entry: Mapping[str, Any]) -> str:
     return unknown(entry, _PART)
 
 
-def save(path: str, document: dict[str, Any]) -> None:
-    """Writes a document. The file is complete, or it does not appear.
+MOST_UP = 3
+"""Greatest number of folders up in a relative path."""
 
-    If the footage is at most three folders up from the file's folder, its path is relative.
-    """
-    folder = os.path.dirname(os.path.abspath(path))
+
+def text(folder: str, document: Mapping[str, Any]) -> str:
+    """The text of a document that will be in a folder. If the footage is at most three folders up from there, its path is relative."""
     shot = dict(document["footage"])
-    near = os.path.relpath(shot["pattern"], folder)
-    if near.count("..") <= 3:
+    near = os.path.relpath(shot["pattern"], os.path.abspath(folder))
+    if near.count("..") <= MOST_UP:
         shot["pattern"] = near.replace(os.sep, "/")
+    return json.dumps({**document, "footage": shot}, allow_nan=False, separators=(",", ":")) + "\n"
+
+
+def save(path: str, document: dict[str, Any]) -> None:
+    """Writes a document. The file is complete, or it does not appear."""
+    put(path, text(os.path.dirname(os.path.abspath(path)), document))
+
+
+def put(path: str, content: str) -> None:
+    """Writes a file of text. It is complete, or it does not appear."""
     unfinished = f"{path}.{os.getpid()}.unfinished"
     try:
-        with open(unfinished, "w", encoding="utf-8") as file:
-            json.dump({**document, "footage": shot}, file, allow_nan=False, separators=(",", ":"))
-            file.write("\n")
+        with open(unfinished, "w", encoding="utf-8", newline="\n") as file:
+            file.write(content)
         os.replace(unfinished, path)
     except OSError as error:
         raise Problem(f"Cannot write {path}: {error.strerror}") from error

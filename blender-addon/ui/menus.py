@@ -76,7 +76,8 @@ class ROTOTOON_MT_main(_Menu):
         _entries(layout, "clear_generated", "", "snap", "")
         for name in ("strokes", "tween", "lines", "style"):
             layout.menu(f"ROTOTOON_MT_{name}")
-        _entries(layout, "", "import_document", "export_document", "contours_to_mask", "", "help")
+        _entries(layout, "", "import_document", "export_document", "contours_to_mask", "")
+        _entries(layout, "send_to_farm", "collect_results", "", "help")
 
 
 class ROTOTOON_MT_armature(_Menu):

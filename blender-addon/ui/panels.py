@@ -268,6 +268,9 @@ class ROTOTOON_PT_document(Panel, bpy.types.Panel):
         row.operator("rototoon.import_document", text="Import", icon="IMPORT")
         row.operator("rototoon.export_document", text="Export", icon="EXPORT")
         self.layout.operator("rototoon.contours_to_mask", icon="MOD_MASK")
+        column = self.layout.column(align=True)
+        column.operator("rototoon.send_to_farm", text="Send to Farm…", icon="NETWORK_DRIVE")
+        column.operator("rototoon.collect_results", text="Collect Results…", icon="IMPORT")
 
 
 CLASSES = (

@@ -12,7 +12,7 @@ HEAD = """<!-- Generated from the registered operators. Change those, run the te
 
 Each operator is `bpy.ops.rototoon.NAME`. [Background Blender](../scripts/blender.md) shows how to call them from a script.
 """
-WINDOW = {"rna_type", "filter_glob", "check_existing"}
+WINDOW = {"filter_folder", "rna_type", "filter_glob", "check_existing"}
 """Properties that only the file browser uses."""
 KINDS = {"COLLECTION": "list", "POINTER": "data-block"}
 RANGE = 1e6

@@ -7,6 +7,7 @@ operators, so that a new operator needs an entry.
 from __future__ import annotations
 
 import hashlib
+import json
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -45,9 +46,25 @@ def build(addon, folder) -> str:
     bpy.context.view_layer.objects.active = ob
     bpy.ops.rototoon.export_document(filepath=str(folder / "given.json"))
     ob.name = OBJECT
+    bpy.ops.rototoon.send_to_farm(directory=str(folder / "farm"))
+    come_back(addon, ob, folder / "farm")
     path = str(folder / "studio.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
     return path
+
+
+def come_back(addon, ob, folder, shift: float = 1.0, name: str = "", **fields) -> None:
+    """What `rototoon batch` would write for an object that was sent: its own tracks, a little to the right."""
+    document = addon("capture.document").read(ob, results=True).document
+    for part in document["parts"]:
+        tracks = part.get("tracks", {})
+        for frame in tracks.keys() - part["keys"].keys():
+            tracks[frame] = [[x + shift, y] for x, y in tracks[frame]]
+    results = folder / "results" / (name or addon("farm.batch").shot_names([{"blend": "", "object": ob.name}])[0])
+    results.mkdir(parents=True, exist_ok=True)
+    (results / "tracked.json").write_text(json.dumps(document))
+    record = {"rototoon_record": 1, "steps": [{"step": "track", "outputs": ["tracked.json"]}], "failure": "", **fields}
+    (results / "batch.json").write_text(json.dumps(record))
 
 
 def _ink(addon, ob, name: str, lift: float) -> None:
@@ -223,6 +240,7 @@ OPERATORS = {
     "clear_generated": Call(_C | {SNAPPED}, options={"corrected": True}),
     "clear_in_betweens": Call(_I, prepare=_in_between),
     "clear_lines": Call(_L, prepare=_traced),
+    "collect_results": Call(_C, _C, options={"directory": "{folder}/farm"}),
     "contours_to_mask": Call(changes=False),
     "define_limbs": Call(frozenset({LIMBS}), prepare=_line_without_name, options={"point": "r_knee"}),
     "depth_mark": Call(options={"front": "Part 1", "behind": "Part 2"}),
@@ -251,6 +269,7 @@ OPERATORS = {
     "reshape_picture": Call(options={"character": "plain"}),
     "save_clip": Call(changes=False),
     "save_clip_from_armature": Call(on="Rig", changes=False, prepare=_bones_known, options={"first": 1, "last": 4}),
+    "send_to_farm": Call(changes=False, options={"directory": "{folder}/farm2"}),
     "setup": Call(changes=False, options={"filepath": "{folder}/frames/shot_001.png"}),
     "show_confidence": Call(),
     "snap": Call(frozenset({SNAPPED}), prepare=_moved_and_tracked),

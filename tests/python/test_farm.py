@@ -1,4 +1,5 @@
-"""Batches on render farms: OpenJD's own program runs the job template, and Node compiles the job of Flamenco."""
+"""Batches on render farms: OpenJD's own program runs the job template, Node compiles the job of Flamenco, and PyOutline makes the
+job of OpenCue and runs its frames."""
 
 import json
 import os
@@ -136,3 +137,31 @@ def test_flamenco_compiles_the_job(tmp_path, frames, undisturbed):
         done = run(command["parameters"]["exe"], *command["parameters"]["args"])
         assert done.returncode == 0, done.stderr
     assert results(out) == undisturbed
+
+
+OPENCUE = """
+import sys
+import outline.backend.cue, outline.cuerun, send
+made = send.job(send.arguments(sys.argv[1:]))
+launcher = outline.cuerun.OutlineLauncher(made)
+launcher.setup()
+print(outline.backend.cue.serialize(launcher))
+for name in ("shots", "page"):
+    layer = made.get_layer(name)
+    first, *rest = layer.get_frame_range().split("-")
+    for frame in range(1, int((rest or [first])[-1]) + 1) if name == "shots" else [int(first)]:
+        layer.execute(frame)
+"""
+
+
+def test_opencue_runs_the_outline(tmp_path, frames, undisturbed):
+    """PyOutline writes the job as Cuebot gets it, and runs each frame as a host of the farm would. There is no Cuebot."""
+    manifest, script, out = season(tmp_path, frames), tmp_path / "send.py", tmp_path / "out"
+    assert run(program(), "job", manifest, "--for", "opencue", "--chunk", 7, "-o", script).returncode == 0
+    words = [sys.executable, "-c", OPENCUE, str(manifest), str(out), "--program", str(program())]
+    own = {**os.environ, "HOME": str(tmp_path)}
+    done = subprocess.run(words, cwd=tmp_path, env=own, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "<range>1-3</range>" in done.stdout and "<depend type=\"LAYER_ON_LAYER\"" in done.stdout
+    assert results(out) == undisturbed
+    assert json.loads((out / "summary.json").read_text())["not_run"] == 0

@@ -59,6 +59,9 @@ enum Command {
         #[arg(long)]
         check: bool,
     },
+    /// Measure shots a minute and memory of `rototoon batch`, and what a season costs.
+    #[command(disable_help_flag = true)]
+    BenchBatch(measure::Rest),
     /// Measure curve fitting beside its peers on six outlines.
     #[command(disable_help_flag = true)]
     BenchFit(measure::Rest),
@@ -108,6 +111,7 @@ fn main() -> anyhow::Result<()> {
         Command::Audit => audit::audit(),
         Command::Bundle => bundle::bundle(&bundle::Packager::from_wheel()?, bundle::Build::Installed).map(|_| ()),
         Command::Generate { check } => generate::generate(check),
+        Command::BenchBatch(rest) => measure::run("bench-batch", &rest),
         Command::BenchFit(rest) => measure::run("bench-fit", &rest),
         Command::BenchStyle(rest) => measure::run("bench-style", &rest),
         Command::BenchTracking(rest) => measure::run("bench-tracking", &rest),

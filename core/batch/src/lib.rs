@@ -1,7 +1,7 @@
 //! Many shots, unattended.
 //!
 //! A *manifest* names shots (project documents) and steps (subcommands of the command line). [`run`] works through them,
-//! several shots at a time, within a memory budget. It starts the command line program for each step, so a step that
+//! several shots at a time, within a memory budget. It starts the command line program for each shot, so a step that
 //! fails, or that the system ends for want of memory, ends nothing else.
 //!
 //! - [`manifest`]: the manifest and everything that may be wrong with it
@@ -9,7 +9,8 @@
 //! - [`digest`]: hashes of what a step reads
 //! - [`record`]: what was done for a shot, so that it is not done again
 //! - [`lock`]: one worker a shot
-//! - [`child`]: starts the command line program
+//! - [`child`]: starts the command line program for the steps of a shot
+//! - [`answer`]: what the two say to each other
 //! - [`shot`]: all steps of a shot
 //! - [`budget`]: how many shots fit into the memory
 //! - [`findings`]: confidence, lost parts and the keys that would help most
@@ -28,6 +29,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod answer;
 pub mod budget;
 pub mod child;
 pub mod digest;

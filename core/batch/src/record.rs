@@ -51,8 +51,14 @@ pub struct Done {
     pub outputs: Vec<String>,
     /// Seconds that it took.
     pub seconds: f64,
+    /// Seconds of processors that it took; 0 where the system does not say it.
+    #[serde(default)]
+    pub processor_seconds: f64,
     /// The most memory that it held, in bytes; 0 where the system does not say it.
     pub peak_bytes: u64,
+    /// Bytes of decoded frames among them, kept for later steps.
+    #[serde(default)]
+    pub kept_bytes: u64,
     /// Its warnings and notes.
     pub messages: Vec<String>,
 }
@@ -90,6 +96,16 @@ impl Record {
     /// The most memory that any step held.
     pub fn peak_bytes(&self) -> u64 {
         self.steps.iter().map(|done| done.peak_bytes).max().unwrap_or(0)
+    }
+
+    /// The most memory that any step held for itself, without the frames that were kept.
+    pub fn own_bytes(&self) -> u64 {
+        self.steps.iter().map(|done| done.peak_bytes.saturating_sub(done.kept_bytes)).max().unwrap_or(0)
+    }
+
+    /// Seconds of processors of all steps.
+    pub fn processor_seconds(&self) -> f64 {
+        self.steps.iter().map(|done| done.processor_seconds).sum()
     }
 
     /// Seconds of all steps.

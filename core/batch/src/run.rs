@@ -1,6 +1,6 @@
 //! Works through the shots, several at a time.
 
-use crate::budget::{Budget, estimate};
+use crate::budget::{Budget, estimate, kept};
 use crate::lock::Lock;
 use crate::manifest::{Manifest, Shot};
 use crate::record::Record;
@@ -110,18 +110,29 @@ fn in_folder(shot: &Shot, folder: &Path, options: &Options, report: &Report) -> 
     let waiting = || drop(report.line(&json!({"event": "wait", "shot": shot.name})));
     let Some(lock) = Lock::wait(folder, options.stop, &waiting)? else { return Err(ShotError::Stopped) };
     let told = |shot: &Shot, end: &StepEnd| drop(report.line(&step_line(shot, end)));
-    let _share = options.memory.take(need(shot, folder));
-    let worker = Worker { program: &options.program, threads: options.threads, stop: options.stop, told: &told };
+    let need = need(shot, folder);
+    let part = options.memory.bytes() / options.jobs.max(1) as u64;
+    let keep = need.frames.min(part.saturating_sub(need.steps));
+    let _share = options.memory.take(need.steps.saturating_add(keep));
+    let worker = Worker { program: &options.program, threads: options.threads, keep, stop: options.stop, told: &told };
     shot::run(shot, folder, &lock, &worker)
 }
 
-/// Bytes that a shot needs: what it took last time, or an estimate.
-fn need(shot: &Shot, folder: &Path) -> u64 {
-    let before = Record::read(folder).map_or(0, |(record, _)| record.peak_bytes());
-    if before > 0 {
-        return before;
-    }
-    Document::load(&shot.project).map_or(0, |document| estimate(&document.scene.footage))
+/// Bytes that a shot needs.
+struct Need {
+    /// For its steps: what they took last time, or an estimate.
+    steps: u64,
+    /// To keep all of its frames decoded.
+    frames: u64,
+}
+
+fn need(shot: &Shot, folder: &Path) -> Need {
+    let before = Record::read(folder).map_or(0, |(record, _)| record.own_bytes());
+    // A document that cannot be read is the shot's failure, and told there.
+    let Ok(document) = Document::load(&shot.project) else { return Need { steps: before, frames: 0 } };
+    let footage = &document.scene.footage;
+    let frames = kept(footage, shot.project.parent().unwrap_or(Path::new("")));
+    Need { steps: if before > 0 { before } else { estimate(footage) }, frames }
 }
 
 fn make_folder(folder: &Path) -> Result<(), WriteError> {
@@ -131,7 +142,8 @@ fn make_folder(folder: &Path) -> Result<(), WriteError> {
 fn step_line(shot: &Shot, end: &StepEnd) -> Value {
     json!({
         "event": "step", "shot": shot.name, "step": end.step, "outcome": end.outcome.id(), "seconds": rounded(end.seconds),
-        "peak_bytes": end.peak_bytes, "messages": end.messages
+        "processor_seconds": rounded(end.processor_seconds), "peak_bytes": end.peak_bytes, "kept_bytes": end.kept_bytes,
+        "messages": end.messages
     })
 }
 
@@ -140,7 +152,8 @@ fn line(shot: &Shot, outcome: &Outcome, record: &Record) -> Value {
     let lost: Vec<_> = findings.parts.iter().filter(|part| !part.lost.is_empty()).map(|part| &part.name).collect();
     json!({
         "event": "shot", "shot": shot.name, "outcome": outcome.id(), "failure": record.failure,
-        "seconds": rounded(record.seconds()), "peak_bytes": record.peak_bytes(),
+        "seconds": rounded(record.seconds()), "processor_seconds": rounded(record.processor_seconds()),
+        "peak_bytes": record.peak_bytes(),
         "confidence": rounded(findings.confidence), "lost": lost, "wanted": findings.wanted
     })
 }

@@ -1,6 +1,6 @@
 //! All steps of a shot, in its folder.
 
-use crate::child::{self, Ended};
+use crate::child::{Ended, Program};
 use crate::findings::Findings;
 use crate::lock::Lock;
 use crate::manifest::Shot;
@@ -23,6 +23,8 @@ pub struct Worker<'a> {
     pub program: &'a Path,
     /// Threads of a step; 0 for one a core.
     pub threads: usize,
+    /// Bytes of decoded frames that are kept from one step to the next.
+    pub keep: u64,
     /// Whether the batch was asked to end.
     pub stop: &'a (dyn Fn() -> bool + Sync),
     /// Is told of each step.
@@ -38,8 +40,12 @@ pub struct StepEnd {
     pub outcome: StepOutcome,
     /// Seconds that it took.
     pub seconds: f64,
+    /// Seconds of processors that it took.
+    pub processor_seconds: f64,
     /// The most memory that it held, in bytes.
     pub peak_bytes: u64,
+    /// Bytes of decoded frames among them, kept for later steps.
+    pub kept_bytes: u64,
     /// Warnings, notes and errors.
     pub messages: Vec<String>,
 }
@@ -98,6 +104,8 @@ struct Work<'a> {
     folder: PathBuf,
     lock: &'a Lock,
     record: Record,
+    /// Takes the steps; started for the first one that is not done.
+    program: Option<Program>,
 }
 
 /// Runs the steps of a shot that are not done, in `folder`. The record then says how it went. What is wrong with the shot
@@ -108,8 +116,9 @@ struct Work<'a> {
 /// The record cannot be read or written; the batch was stopped.
 pub fn run(shot: &Shot, folder: &Path, lock: &Lock, worker: &Worker) -> Result<Record, ShotError> {
     let (record, aside) = Record::read(folder)?;
-    let mut work = Work { shot, worker, folder: absolute(folder), lock, record };
+    let mut work = Work { shot, worker, folder: absolute(folder), lock, record, program: None };
     let result = work.steps();
+    work.program = None;
     work.record.failure = match result {
         Ok(()) => String::new(),
         Err(ShotError::Stopped) => return Err(ShotError::Stopped),
@@ -147,6 +156,8 @@ impl Work<'_> {
             }
         }
         self.record.steps.truncate(self.shot.steps.len());
+        // Its memory is free from here on.
+        self.program = None;
         self.find(&document, &frames)
     }
 
@@ -225,15 +236,23 @@ impl Work<'_> {
         Ok(names)
     }
 
-    fn start(&self, step: &Step, document: &Path) -> Result<Ended, ShotError> {
+    fn start(&mut self, step: &Step, document: &Path) -> Result<Ended, ShotError> {
         let prefix = format!("{}{NEW}", folder_text(&self.folder));
         let mut words = step.words(&document.to_string_lossy(), &prefix);
         if step.reads_footage() {
             words.extend(["--threads".to_owned(), self.worker.threads.to_string()]);
         }
         let failed = |source| ShotError::File { path: self.worker.program.to_owned(), source };
-        let lock = self.lock.shared().map_err(failed)?;
-        child::run(self.worker.program, &words, &self.folder, lock, &self.worker.stop).map_err(failed)
+        let mut program = match self.program.take() {
+            Some(program) => program,
+            None => {
+                let lock = self.lock.shared().map_err(failed)?;
+                Program::start(self.worker.program, &self.folder, lock, self.worker.keep).map_err(failed)?
+            }
+        };
+        let ended = program.step(&words, &self.worker.stop).map_err(failed)?;
+        self.program = Some(program);
+        Ok(ended)
     }
 
     /// Enters a step into the record, and gives its files their names.
@@ -252,7 +271,9 @@ impl Work<'_> {
             reads: reads.into(),
             outputs: outputs.clone(),
             seconds: ended.seconds,
+            processor_seconds: ended.processor_seconds,
             peak_bytes: ended.peak_bytes,
+            kept_bytes: ended.kept_bytes,
             messages: ended.messages.clone(),
         };
         // Later steps stay: if they read what has changed, their hashes say so.
@@ -307,7 +328,9 @@ impl Work<'_> {
             step: step.name(),
             outcome,
             seconds: ended.map_or(0.0, |ended| ended.seconds),
+            processor_seconds: ended.map_or(0.0, |ended| ended.processor_seconds),
             peak_bytes: ended.map_or(0, |ended| ended.peak_bytes),
+            kept_bytes: ended.map_or(0, |ended| ended.kept_bytes),
             messages: ended.map(|ended| ended.messages.clone()).unwrap_or_default(),
         };
         (self.worker.told)(self.shot, &end);

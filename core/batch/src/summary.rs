@@ -99,7 +99,8 @@ impl<'a> Summary<'a> {
             let (record, findings) = (&entry.record, &entry.record.findings);
             json!({
                 "shot": entry.shot.name, "outcome": entry.outcome.id(), "failure": record.failure,
-                "seconds": (record.seconds() * 1000.0).round() / 1000.0, "peak_bytes": record.peak_bytes(),
+                "seconds": (record.seconds() * 1000.0).round() / 1000.0,
+                "processor_seconds": (record.processor_seconds() * 1000.0).round() / 1000.0, "peak_bytes": record.peak_bytes(),
                 "confidence": findings.confidence, "parts": findings.parts
             })
         };

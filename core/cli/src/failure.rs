@@ -3,7 +3,6 @@
 use rototoon::pipeline::PipelineError;
 use rototoon::project::{LoadError, OverwritesInput, SaveError, WriteError};
 use std::io::Write;
-use std::process::ExitCode;
 
 /// The work failed.
 pub const FAILED: u8 = 1;
@@ -46,15 +45,15 @@ pub enum Failure {
 
 impl Failure {
     /// Prints the errors, one per line, and returns the exit status.
-    pub fn report(self) -> ExitCode {
+    pub fn report(self) -> u8 {
         match &self {
             Self::Reported => {}
-            Self::WantsKeys => return ExitCode::from(WANTS_KEYS),
+            Self::WantsKeys => return WANTS_KEYS,
             Self::Load(error) => error.lines().iter().for_each(|text| line("error", text)),
             other => other.to_string().lines().for_each(|text| line("error", text)),
         }
         let request = matches!(self, Self::Use(_) | Self::Overwrites(_) | Self::Pipeline(PipelineError::Request(_)));
-        ExitCode::from(if request { WRONG_USE } else { FAILED })
+        if request { WRONG_USE } else { FAILED }
     }
 }
 

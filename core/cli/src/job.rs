@@ -7,7 +7,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::project::output::moved_pattern;
 use rototoon::project::{Inputs, write_whole};
-use rototoon_batch::jobs::{flamenco, openjd};
+use rototoon_batch::jobs::{flamenco, opencue, openjd};
 use std::path::{Path, PathBuf};
 
 /// The subcommand.
@@ -21,14 +21,17 @@ pub fn command() -> Command {
                 .required(true)
                 .value_parser(value_parser!(PathBuf)),
         )
-        .arg(arguments::output("FILE", "The job template (OpenJD), or the job type (Flamenco)"))
+        .arg(arguments::output(
+            "FILE",
+            "The job template (OpenJD), the job type (Flamenco), or the script that sends the job (OpenCue)",
+        ))
         .arg(
             Arg::new("for")
                 .long("for")
                 .value_name("ENGINE")
                 .help("The farm's engine")
                 .default_value("openjd")
-                .value_parser(PossibleValuesParser::new(["openjd", "flamenco"])),
+                .value_parser(PossibleValuesParser::new(["openjd", "flamenco", "opencue"])),
         )
         .arg(
             Arg::new("results")
@@ -54,17 +57,17 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let manifest = batch::load(path)?;
     let inputs = manifest.shots.iter().fold(Inputs::default().file(path), |inputs, shot| inputs.file(&shot.project));
     inputs.check(to)?;
+    let name = path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let (count, chunk) = (manifest.shots.len(), given.get_one::<u16>("chunk").map_or(1, |chunk| usize::from(*chunk)));
     let text = match arguments::choice(given, "for") {
         "flamenco" => {
-            line("note", &format!("the manifest has {} shots: give this number with the job", manifest.shots.len()));
+            line("note", &format!("the manifest has {count} shots: give this number with the job"));
             flamenco::job_type()
         }
+        "opencue" => opencue::outline(&name, count, chunk),
         _ => {
             let results = arguments::path(given, "results");
-            let name = path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-            let chunk = given.get_one::<u16>("chunk").map_or(1, |chunk| usize::from(*chunk));
             let (place, results) = (from_template(path, to), from_template(results, to));
-            let count = manifest.shots.len();
             format!("{:#}\n", openjd::template(&name, count, chunk, place.as_deref(), results.as_deref()))
         }
     };

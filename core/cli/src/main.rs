@@ -4,9 +4,9 @@
 //! - [`project`]: reads and writes documents
 //! - [`progress`]: threads, the progress bar, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
-//! - [`track`], [`snap`], [`trace`], [`render`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`]: the
+//! - [`track`], [`snap`], [`trace`], [`render`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`], [`steps`]: the
 //!   subcommands
-//! - [`usage`]: the memory that the program took
+//! - [`usage`]: the memory that the program takes
 //!
 //! The exit status is 0 for success, 1 for failure, 2 for wrong arguments, and 3 for a batch whose shots want keys.
 
@@ -24,6 +24,7 @@ mod progress;
 mod project;
 mod render;
 mod snap;
+mod steps;
 mod style;
 mod trace;
 mod track;
@@ -38,7 +39,7 @@ use std::process::ExitCode;
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 /// Each subcommand with the function that runs it.
-fn subcommands() -> [(Command, Run); 12] {
+fn subcommands() -> [(Command, Run); 13] {
     [
         (track::command(), track::run),
         (snap::command(), snap::run),
@@ -52,25 +53,34 @@ fn subcommands() -> [(Command, Run); 12] {
         (style::command(), style::run),
         (batch::command(), batch::run),
         (job::command(), job::run),
+        (steps::command(), steps::run),
     ]
 }
 
-fn main() -> ExitCode {
-    let commands = subcommands();
-    let top = Command::new("rototoon")
+/// The program with its subcommands.
+fn program() -> Command {
+    Command::new("rototoon")
         .about("Tracks drawn contours from key frames to every frame")
         .version(env!("CARGO_PKG_VERSION"))
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands(commands.iter().map(|(command, _)| command.clone()));
-    let matches = top.get_matches();
-    let Some((name, arguments)) = matches.subcommand() else { return ExitCode::from(failure::WRONG_USE) };
-    let run = commands.iter().find(|(command, _)| command.get_name() == name).map(|(_, run)| run);
-    let work = || run.map_or(Ok(()), |run| run(arguments));
-    let result = progress::catch_signals().and_then(|()| work());
-    usage::tell();
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
+        .subcommands(subcommands().into_iter().map(|(command, _)| command))
+}
+
+/// Runs the subcommand that was given, and returns the exit status.
+fn execute(matches: &ArgMatches) -> u8 {
+    let Some((name, arguments)) = matches.subcommand() else { return failure::WRONG_USE };
+    let known = subcommands().into_iter().find(|(command, _)| command.get_name() == name);
+    match known.map_or(Ok(()), |(_, run)| run(arguments)) {
+        Ok(()) => 0,
         Err(failure) => failure.report(),
     }
+}
+
+fn main() -> ExitCode {
+    let matches = program().get_matches();
+    ExitCode::from(match progress::catch_signals() {
+        Ok(()) => execute(&matches),
+        Err(failure) => failure.report(),
+    })
 }

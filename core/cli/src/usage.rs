@@ -1,18 +1,19 @@
-//! Tells a batch how much memory this program took.
+//! The memory that the program takes, where the system reports it.
 
-use crate::failure::line;
-use rototoon_batch::child::{USAGE, USAGE_LINE};
+/// File that tells it.
+const STATUS: &str = "/proc/self/status";
+/// File that makes the system forget the peak, if this is written to it.
+const FORGET: (&str, &str) = ("/proc/self/clear_refs", "5");
 
-/// Prints the most memory that the process has held, if the environment asks for it and the system reports it.
-pub fn tell() {
-    if std::env::var_os(USAGE).is_none() {
-        return;
-    }
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    if let Some(bytes) = peak_bytes(&status) {
-        let (kind, text) = USAGE_LINE.split_once(": ").unwrap_or_default();
-        line(kind, &format!("{text}{bytes}"));
-    }
+/// Lets the peak begin anew.
+pub fn forget_peak() {
+    // Without it the peak is that of all steps so far.
+    let _ = std::fs::write(FORGET.0, FORGET.1);
+}
+
+/// The most memory in bytes that the process has held; 0 where the system does not report it.
+pub fn peak() -> u64 {
+    std::fs::read_to_string(STATUS).ok().and_then(|status| peak_bytes(&status)).unwrap_or(0)
 }
 
 /// The most memory in bytes, by the text of `/proc/self/status`.

@@ -15,10 +15,10 @@
 //! with a palette and OpenEXR without R, G and B channels, with its own reason. The pixels of a picture may use at most
 //! 2 GiB while it is decoded. Damage inside of a JPEG scan is not found: the format has no checksums.
 
-use super::colour::{decode as to_light, encode};
 use super::error::DecodeError;
 use super::open::{check_size, open};
-use image::{DynamicImage, ImageDecoder, ImageFormat};
+use super::stored::Stored;
+use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat};
 use rototoon_base::scene::{Colour, Raster};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -44,7 +44,8 @@ pub fn probe(path: &Path) -> Result<(usize, usize), DecodeError> {
 ///
 /// A file that does not exist or cannot be read as a picture; a picture of another size, which is not decoded.
 pub fn decode(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<Colour>, DecodeError> {
-    decoded(path, expected, colours)
+    let (stored, size) = stored(path, expected, size_of::<Colour>())?;
+    raster(size, stored.colours())
 }
 
 /// The picture in a file with its transparency: red, green and blue light multiplied by alpha, not clamped to 1,
@@ -54,16 +55,34 @@ pub fn decode(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<Co
 ///
 /// As for [`decode`].
 pub fn decode_layer(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<[f32; 4]>, DecodeError> {
-    decoded(path, expected, layer)
+    let (stored, size) = stored(path, expected, size_of::<[f32; 4]>())?;
+    raster(size, stored.layer())
 }
 
-/// A file's pixels. `pixels` converts the decoder's picture; its second argument says whether that is multiplied by
-/// alpha.
-fn decoded<T: Copy>(
+/// Bytes of the picture in a file as [`super::store`] keeps it. Of floats this is a guess: nearly all have 16 bits. It
+/// reads the header of the file only.
+///
+/// # Errors
+///
+/// As for [`probe`].
+pub fn kept_size(path: &Path) -> Result<u64, DecodeError> {
+    guarded(|| {
+        let decoder = open(path, false)?.into_decoder()?;
+        let float = matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F);
+        Ok(decoder.total_bytes() / if float { 2 } else { 1 })
+    })
+}
+
+/// A file's pixels as they are in it, with width and height. `pixel` is the number of bytes of a pixel that is made of them.
+///
+/// # Errors
+///
+/// As for [`decode`].
+pub(super) fn stored(
     path: &Path,
     expected: Option<(usize, usize)>,
-    pixels: impl FnOnce(DynamicImage, bool) -> Vec<T>,
-) -> Result<Raster<T>, DecodeError> {
+    pixel: usize,
+) -> Result<(Stored, (usize, usize)), DecodeError> {
     guarded(|| {
         let reader = open(path, true)?;
         let multiplied = reader.format() == Some(ImageFormat::OpenExr);
@@ -73,11 +92,15 @@ fn decoded<T: Copy>(
         if expected.is_some_and(|size| size != (width, height)) {
             return Err(DecodeError::WrongSize { width, height });
         }
-        check_size(&decoder, size_of::<T>())?;
-        let pixels = pixels(DynamicImage::from_decoder(decoder)?, multiplied);
-        Raster::from_vec(width, height, pixels)
-            .ok_or_else(|| DecodeError::Unreadable(format!("fewer pixels than {width}x{height}")))
+        check_size(&decoder, pixel)?;
+        Ok((Stored::new(DynamicImage::from_decoder(decoder)?, multiplied), (width, height)))
     })
+}
+
+/// A raster of pixels that a decoder returned.
+pub(super) fn raster<T: Copy>((width, height): (usize, usize), pixels: Vec<T>) -> Result<Raster<T>, DecodeError> {
+    Raster::from_vec(width, height, pixels)
+        .ok_or_else(|| DecodeError::Unreadable(format!("fewer pixels than {width}x{height}")))
 }
 
 /// Turns a panic of the decoder, on a broken file, into an error.
@@ -86,75 +109,10 @@ fn guarded<T>(work: impl FnOnce() -> Result<T, DecodeError>) -> Result<T, Decode
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(failed)
 }
 
-/// The pixels as colours, blended with the backdrop.
-fn colours(picture: DynamicImage, multiplied: bool) -> Vec<Colour> {
-    match picture {
-        DynamicImage::ImageLuma8(p) => whole::<1, _>(p.as_raw(), byte),
-        DynamicImage::ImageLumaA8(p) => whole::<2, _>(p.as_raw(), byte),
-        DynamicImage::ImageRgb8(p) => whole::<3, _>(p.as_raw(), byte),
-        DynamicImage::ImageRgba8(p) => whole::<4, _>(p.as_raw(), byte),
-        DynamicImage::ImageLuma16(p) => whole::<1, _>(p.as_raw(), word),
-        DynamicImage::ImageLumaA16(p) => whole::<2, _>(p.as_raw(), word),
-        DynamicImage::ImageRgb16(p) => whole::<3, _>(p.as_raw(), word),
-        DynamicImage::ImageRgba16(p) => whole::<4, _>(p.as_raw(), word),
-        DynamicImage::ImageRgb32F(p) => p.pixels().map(|p| p.0.map(encoded)).collect(),
-        other => other.to_rgba32f().pixels().map(|p| light_over(p.0, multiplied)).collect(),
-    }
-}
-
-/// The pixels as light multiplied by alpha, and alpha.
-fn layer(picture: DynamicImage, multiplied: bool) -> Vec<[f32; 4]> {
-    let light = matches!(picture, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
-    let number = |v: f32| if v.is_nan() { 0.0 } else { v.clamp(f32::MIN, f32::MAX) };
-    let pixel = |pixel: [f32; 4]| {
-        let [r, g, b, alpha] = pixel.map(number);
-        let alpha = alpha.clamp(0.0, 1.0);
-        let own = if multiplied { 1.0 } else { alpha };
-        let [r, g, b] = [r, g, b].map(|v| own * if light { v } else { to_light(v) });
-        [r, g, b, alpha]
-    };
-    picture.into_rgba32f().pixels().map(|p| pixel(p.0)).collect()
-}
-
-fn byte(v: u8) -> f32 {
-    v as f32 / 255.0
-}
-
-fn word(v: u16) -> f32 {
-    v as f32 / 65535.0
-}
-
-/// Encoded values in groups of `N`: grey, grey and alpha, colour, or colour and alpha.
-fn whole<const N: usize, V: Copy>(values: &[V], unit: impl Fn(V) -> f32) -> Vec<Colour> {
-    let over = |v: f32, alpha: f32| BACKDROP + alpha * (v - BACKDROP);
-    let (pixels, _) = values.as_chunks::<N>();
-    let colour = |pixel: &[V; N]| {
-        let v = pixel.map(&unit);
-        match N {
-            1 => [v[0]; 3],
-            2 => [over(v[0], v[1]); 3],
-            3 => [v[0], v[1], v[2]],
-            _ => [0, 1, 2].map(|c| over(v[c], v[3])),
-        }
-    };
-    pixels.iter().map(colour).collect()
-}
-
-/// Light with alpha, blended with the backdrop and encoded.
-fn light_over([r, g, b, alpha]: [f32; 4], multiplied: bool) -> Colour {
-    let alpha = if alpha.is_nan() { 0.0 } else { alpha.clamp(0.0, 1.0) };
-    let own = if multiplied { 1.0 } else { alpha };
-    [r, g, b].map(|v| encoded(own * v + (1.0 - alpha) * to_light(BACKDROP)))
-}
-
-/// Light, encoded and clamped to 0 to 1.
-fn encoded(light: f32) -> f32 {
-    if light.is_nan() { 0.0 } else { encode(light).clamp(0.0, 1.0) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::colour::{decode as to_light, encode};
     use image::{ExtendedColorType, ImageBuffer, Luma, LumaA, Rgb, Rgba};
     use std::path::PathBuf;
     use tempfile::TempDir;

@@ -16,6 +16,7 @@
 //! - [`resize`]: area reduction and bilinear enlargement
 //! - [`sample`]: bilinear reading with derivatives
 //! - [`sequence`]: the pictures of a footage, decoded in parallel, with a cache
+//! - [`store`]: frames that a program keeps for several steps
 //!
 //! # Example
 //!
@@ -55,6 +56,8 @@ pub mod pyramid;
 pub mod resize;
 pub mod sample;
 pub mod sequence;
+pub mod store;
+mod stored;
 mod tiles;
 
 pub use decode::{decode, probe};

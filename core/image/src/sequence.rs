@@ -4,9 +4,13 @@
 //! recently used pictures are therefore kept, up to a number of bytes. The result does not depend on what was kept.
 //! Decoding happens outside the lock, so several threads decode at the same time. Two threads that need the same
 //! picture at the same moment may both decode it. That costs time, but it cannot deadlock within a pool of threads.
+//!
+//! A program that takes several steps on one footage can keep it in the form of its files too: see [`super::store`].
 
-use super::decode::{decode, decode_layer};
+use super::decode::{raster, stored};
 use super::error::DecodeError;
+use super::store;
+use super::stored::Stored;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::scene::{Colour, Footage, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Raster};
 use std::collections::BTreeMap;
@@ -92,14 +96,14 @@ impl Sequence {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A frame with its transparency, as [`decode_layer`] returns it. It is not cached.
+    /// A frame with its transparency, as [`super::decode::decode_layer`] returns it. It is not cached.
     ///
     /// # Errors
     ///
     /// A frame outside the footage; a file that does not exist, cannot be read or has another size.
     pub fn layer(&self, frame: FrameNumber) -> Result<Raster<[f32; 4]>, FrameError> {
         self.inside(frame)?;
-        self.read(frame, decode_layer)
+        self.read(frame, Stored::layer)
     }
 
     fn inside(&self, frame: FrameNumber) -> Result<(), FrameError> {
@@ -107,20 +111,30 @@ impl Sequence {
         if (first..=last).contains(&frame) { Ok(()) } else { Err(FrameError::Outside { frame, first, last }) }
     }
 
-    fn read<T>(
-        &self,
-        frame: FrameNumber,
-        decode: impl FnOnce(&Path, Option<(usize, usize)>) -> Result<T, DecodeError>,
-    ) -> Result<T, FrameError> {
-        let (width, height) = (self.footage.width, self.footage.height);
+    fn read<T: Copy>(&self, frame: FrameNumber, pixels: fn(&Stored) -> Vec<T>) -> Result<Raster<T>, FrameError> {
+        let size = (self.footage.width, self.footage.height);
         let path = self.path(frame);
-        decode(&path, Some((width, height))).map_err(|error| match error {
+        let decoded = || {
+            if let Some(kept) = store::of_process().and_then(|store| store.get(&path, size)) {
+                return raster(size, pixels(&kept));
+            }
+            let (read, size) = stored(&path, Some(size), size_of::<T>())?;
+            let Some(store) = store::of_process() else { return raster(size, pixels(&read)) };
+            let read = store.put(&path, size, read);
+            raster(size, pixels(&read))
+        };
+        decoded().map_err(|error| self.named(frame, path.clone(), error))
+    }
+
+    fn named(&self, frame: FrameNumber, path: PathBuf, error: DecodeError) -> FrameError {
+        let (width, height) = (self.footage.width, self.footage.height);
+        match error {
             DecodeError::Missing => FrameError::Missing { frame, path },
             DecodeError::Unreadable(reason) => FrameError::Unreadable { frame, path, reason },
             DecodeError::WrongSize { width: found_width, height: found_height } => {
                 FrameError::WrongSize { frame, path, found_width, found_height, width, height }
             }
-        })
+        }
     }
 }
 
@@ -130,7 +144,7 @@ impl FrameSource for Sequence {
         if let Some(picture) = self.locked().get(frame) {
             return Ok(picture);
         }
-        let picture = Arc::new(self.read(frame, decode)?);
+        let picture = Arc::new(self.read(frame, Stored::colours)?);
         self.locked().put(frame, &picture);
         Ok(picture)
     }

@@ -1,6 +1,7 @@
 //! Development commands that need the core. `cargo xtask` starts them; they are a program of their own so that the other
 //! commands are built in seconds.
 
+mod bench_batch;
 mod bench_fit;
 mod bench_style;
 mod bench_tracking;
@@ -21,6 +22,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Measure shots a minute and memory of `rototoon batch`, and what a season costs, with tables in target/bench-batch.
+    BenchBatch(bench_batch::Arguments),
     /// Measure curve fitting beside its peers on six outlines.
     BenchFit(bench_fit::Arguments),
     /// Measure factorisation beside scikit-learn, reshaping beside libigl, and the style paper's experiments, with plots in target/style.
@@ -47,6 +50,7 @@ enum Command {
 
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
+        Command::BenchBatch(arguments) => bench_batch::bench_batch(&arguments),
         Command::BenchFit(arguments) => bench_fit::bench_fit(&arguments),
         Command::BenchStyle(arguments) => bench_style::bench_style(&arguments),
         Command::BenchTracking(arguments) => bench_tracking::bench_tracking(&arguments),

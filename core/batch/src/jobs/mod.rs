@@ -7,8 +7,10 @@
 //! | --- | --- |
 //! | OpenJD (AWS Deadline Cloud and others) | [`openjd`]: a job template of a manifest |
 //! | Flamenco | [`flamenco`]: a job type, which a manager installs once |
+//! | OpenCue | [`opencue`]: a script that sends a manifest |
 
 pub mod flamenco;
+pub mod opencue;
 pub mod openjd;
 
 /// What a call of the program works on. Each text may be a place that the engine fills.

@@ -6,6 +6,7 @@
 //! and every fold can be reached by the keyboard.
 
 mod chart;
+mod keys;
 pub mod sheet;
 
 use crate::findings::WantedKey;
@@ -22,9 +23,6 @@ use std::path::Path;
 pub const PAGE: &str = "index.html";
 /// What tells a page of a batch from others.
 const MARK: &str = "<meta name=\"generator\" content=\"rototoon batch\">";
-/// Number of keys in the list.
-const MOST_KEYS: usize = 200;
-
 /// Number of shots with pictures. The shots to work on come first.
 const MOST_SHEETS: usize = 300;
 
@@ -49,7 +47,7 @@ pub fn html(summary: &Summary, folder: &Path) -> String {
          <meta name=\"color-scheme\" content=\"light dark\">\n{MARK}\n<style>\n{STYLE}</style></head>\n<body>\n"
     );
     totals(&mut out, summary);
-    keys(&mut out, summary);
+    keys::list(&mut out, summary, folder);
     let mut sheets = MOST_SHEETS;
     for (id, title, open) in [
         ("failed", "Failed", true),
@@ -78,36 +76,6 @@ fn totals(out: &mut String, summary: &Summary) {
     }
     let seconds: f64 = summary.entries.iter().map(|entry| entry.record.seconds()).sum();
     let _ = writeln!(out, "</ul></nav><p class=\"quiet\">{} of work</p></header>", time(seconds));
-}
-
-fn keys(out: &mut String, summary: &Summary) {
-    let wanted = summary.wanted();
-    if wanted.is_empty() {
-        return;
-    }
-    out.push_str(
-        "<section><h2 id=\"keys\">Keys that help most</h2>\n<p>Draw these keys, and start the batch again. The worth is the number of \
-         contours that become right.</p>\n<div class=\"wide\"><table><thead><tr><th scope=\"col\">Shot</th><th scope=\"col\">Part</th>\
-         <th scope=\"col\">Frame</th><th scope=\"col\">Worth</th><th scope=\"col\">Why</th><th scope=\"col\">Open</th></tr></thead>\n<tbody>\n",
-    );
-    for (entry, key) in wanted.iter().take(MOST_KEYS) {
-        let name = escaped(&entry.shot.name);
-        let why = if key.lost { "lost" } else { "doubtful" };
-        let _ = writeln!(
-            out,
-            "<tr><td><a href=\"#shot-{name}\">{name}</a></td><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{:.1}</td>\
-             <td>{why}</td><td><code>{}</code></td></tr>",
-            escaped(&key.part),
-            key.frame,
-            key.worth,
-            escaped(&opening(entry, Some(key)))
-        );
-    }
-    out.push_str("</tbody></table></div>\n");
-    if let Some(more @ 1..) = wanted.len().checked_sub(MOST_KEYS) {
-        let _ = writeln!(out, "<p>And {} of less worth: see summary.json.</p>", counted(more, "key"));
-    }
-    out.push_str("</section>\n");
 }
 
 /// The command that opens a shot, on the frame of a key.
@@ -318,7 +286,8 @@ mod tests {
         for text in [
             "<h1>3 shots</h1>",
             "<a href=\"#failed\"><b>1</b> failed</a>",
-            "<td class=\"number\">4</td><td class=\"number\">2.5</td><td>doubtful</td>",
+            "<td class=\"number\">4</td><td class=\"number\">2.5</td><td class=\"number\">100 %</td><td>doubtful</td>",
+            "1 key in all; the first brings half of what can be gained",
             "blender &quot;shots/b.blend&quot; --python-expr &quot;import bpy; bpy.context.scene.frame_set(4)&quot;",
             "&lt;arm&gt;: lost on frame 12, doubtful on frames 3 to 5, 9",
             "track 2 min · 5 MB at most",

@@ -1,0 +1,246 @@
+"""Takes the results of a batch into the objects that were sent.
+
+What the artist changed meanwhile stays. A span of a part, from a key to the next, is taken only if both keys are as they were sent, no
+key came between, and its corrections are the same. Of a part with a single key, the whole track is such a span. On all other frames
+the contours stay as they are; Track makes them anew.
+
+Locked layers are not written, as with Track.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender import guard
+from ..blender.errors import Problem
+from ..capture import contours, document, ends, identity, sessions, snapping, tracking, writing
+from ..capture.document import Reading
+from ..exchange import files
+from ..rototoon.documents import by_frame
+from . import batch
+
+RECORD = "batch.json"
+SAME = 0.01
+"""Pixels. Points that differ by less are the same: an object's points have single precision."""
+_DOCUMENTS = {"track", "snap", "trace", "tween"}
+"""The steps that write a document."""
+
+
+@dataclass
+class Result:
+    """The result of a shot."""
+
+    shot: str
+    object: str
+    document: dict[str, Any] | None
+    failure: str = ""
+
+
+@dataclass
+class Taken:
+    """What was taken into an object."""
+
+    contours: int = 0
+    kept: dict[str, list[int]] = field(default_factory=dict)
+    """By part the frames of results that were not taken, since the artist changed something."""
+    left: str = ""
+    """Layers that were left as they were."""
+
+
+def results_of(folder: str, path: str) -> list[Result]:
+    """The results of the shots of a Blender file. `folder` is the one that Send to Farm wrote to, or its results."""
+    place = Path(folder)
+    if not (place / batch.SENT).exists() and (place.parent / batch.SENT).exists():
+        place = place.parent
+    if not (place / batch.SENT).exists():
+        raise Problem(f"No {batch.SENT} in {folder}: choose the folder that Send to Farm wrote to")
+    found = []
+    for entry in batch.read_sent(place / batch.SENT)["shots"]:
+        blend = entry.get("blend", "")
+        # The farm may see the file under another path.
+        if not path or not blend or os.path.basename(blend) == os.path.basename(path):
+            found.append(_result(place / batch.RESULTS / str(entry.get("shot")), entry))
+    return found
+
+
+def _result(folder: Path, entry: Mapping[str, Any]) -> Result:
+    shot, name = str(entry.get("shot")), str(entry.get("object"))
+    try:
+        record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+        written = [step["outputs"][0] for step in record["steps"] if step["step"] in _DOCUMENTS]
+        failure = record.get("failure", "")
+    except OSError:
+        return Result(shot, name, None, "no result yet")
+    except (ValueError, KeyError, IndexError, TypeError):
+        return Result(shot, name, None, f"{folder / RECORD} is damaged: start the batch again")
+    if failure or not written:
+        return Result(shot, name, None, failure or "nothing was tracked")
+    return Result(shot, name, files.load(str(folder / written[-1])))
+
+
+def collecting(ob: bpy.types.Object, result: Mapping[str, Any]) -> Iterator[float]:
+    """Takes a document's results into an object, in steps. Returns what was `Taken`."""
+    guard.need(ob)
+    guard.need_some(tracking.contour_layers(ob), hidden=True)
+    reading = document.read(ob)
+    yield 0.0
+    _need_same_footage(ob, reading.document["footage"], result["footage"])
+    taken = Taken()
+    sent = {entry["name"]: entry for entry in result.get("parts", [])}
+    now = {entry["name"]: entry for entry in reading.document["parts"]}
+    frames: dict[int, set[int]] = {}
+    tracks: dict[int, writing.Track] = {}
+    for part in reading.found.parts:
+        if not part.keys:
+            continue
+        # A locked layer is left as it is, and named at the end.
+        entry = {} if part.layer in reading.found.closed else sent.get(part.name, {})
+        spans = same_spans(entry, now[part.name])
+        offset = ob.rototoon.frame_offset
+        results = {int(frame) + offset for frame in entry.get("tracks", {})} - part.keys.keys()
+        frames[part.number] = {frame for frame in results if any(a <= frame - offset <= b for a, b in spans)}
+        kept = sorted(results - frames[part.number])
+        if kept:
+            taken.kept[part.name] = kept
+        track = _merged(part, entry, frames[part.number], reading, offset)
+        if track is not None:
+            tracks[part.number] = track
+        yield 0.0
+    identity.write(ob, reading.found, reading.decisions)
+    taken.contours = sum(map(len, frames.values()))
+    yield from _write(ob, reading, tracks, frames)
+    _note_ends(ob, sent, now)
+    left = tracking.contour_layers(ob)
+    snapped = _write_curves(ob, reading, sent, frames)
+    taken.left = "; ".join(filter(None, (guard.left_out(left, hidden=True), snapped)))
+    sessions.drop(ob)
+    ob.data.update_tag()
+    return taken
+
+
+def _need_same_footage(ob, now: Mapping[str, Any], sent: Mapping[str, Any]) -> None:
+    for name in ("width", "height"):
+        if now[name] != sent[name]:
+            raise Problem(f'"{ob.name}" has other footage than what was sent ({name} {now[name]}, not {sent[name]}): send it again')
+
+
+def same_spans(sent: Mapping[str, Any], now: Mapping[str, Any]) -> list[tuple[float, float]]:
+    """First and last picture of each span that is in `now` as it was sent. Both are parts of documents."""
+    if sent.get("closed", False) != now.get("closed", False):
+        return []
+    old, new = by_frame(sent.get("keys")), by_frame(now.get("keys"))
+    before, after = sorted(old), sorted(new)
+    if len(before) == 1:
+        if after != before or not _alike(old[before[0]], new[before[0]]):
+            return []
+        return [(-np.inf, np.inf)] if _same_corrections(sent, now, -np.inf, np.inf) else []
+    follows = dict(zip(after, after[1:], strict=False))
+    return [
+        (a, b)
+        for a, b in zip(before, before[1:], strict=False)
+        if follows.get(a) == b
+        and _alike(old[a], new[a])
+        and _alike(old[b], new[b])
+        and _same_corrections(sent, now, a, b)
+    ]
+
+
+def _same_corrections(sent: Mapping[str, Any], now: Mapping[str, Any], first: float, last: float) -> bool:
+    for name in ("pins", "centers"):
+        one, other = ({f: v for f, v in by_frame(each.get(name)).items() if first < f < last} for each in (sent, now))
+        if one.keys() != other.keys():
+            return False
+        for frame, value in one.items():
+            if name == "centers":
+                if not _alike([value], [other[frame]]):
+                    return False
+            elif value.keys() != other[frame].keys() or not _alike(
+                [value[index] for index in sorted(value)], [other[frame][index] for index in sorted(value)]
+            ):
+                return False
+    return True
+
+
+def _alike(one: Any, other: Any) -> bool:
+    a, b = np.asarray(one, np.float64), np.asarray(other, np.float64)
+    return a.shape == b.shape and bool((np.abs(a - b) <= SAME).all())
+
+
+def _merged(part: contours.Part, entry: Mapping[str, Any], taken: set[int], reading: Reading, offset: int) -> writing.Track | None:
+    """A part's contours after the results were taken: keys, results on the frames `taken`, and generated contours elsewhere."""
+    points, sure = by_frame(entry.get("tracks")), by_frame(entry.get("confidence"))
+    frames = sorted(taken | part.made.keys() | part.keys.keys())
+    rows, confidence = [], []
+    for frame in frames:
+        stroke = part.keys.get(frame) or part.made.get(frame)
+        if frame in taken:
+            rows.append(np.asarray(points[frame - offset], np.float64))
+            confidence.append(np.asarray(sure.get(frame - offset, np.ones(part.count)), np.float64))
+            continue
+        rows.append(reading.mapper.at(stroke.layer, frame).to_pixels(stroke.control_points(part.closed)))
+        confidence.append(_confidence(reading.found, stroke, part))
+    if any(len(row) != part.count for row in rows) or not frames:
+        return None
+    return writing.Track(np.array(frames), np.stack(rows), np.stack(confidence))
+
+
+def _confidence(found: contours.Contours, stroke: contours.Stroke, part: contours.Part) -> np.ndarray:
+    drawing = found.drawings[stroke.layer, stroke.frame]
+    if not stroke.made or not drawing.has(gp.CONFIDENCE):
+        return np.ones(part.count)
+    with_it = contours.read_drawing(drawing.handle, drawing.kind, stroke.layer, stroke.frame, (gp.CONFIDENCE,))
+    return with_it.value(gp.CONFIDENCE)[stroke.span].astype(np.float64)
+
+
+def _write(ob, reading: Reading, tracks: Mapping[int, writing.Track], taken: Mapping[int, set[int]]) -> Iterator[float]:
+    found = reading.found
+    for index, name in enumerate(found.layer_names):
+        if index in found.closed:
+            continue
+        block = yield from writing.laying_out(index, found.parts, dict(tracks), found, reading.mapper, reading.corrections)
+        _hold(block, [part for part in found.parts if part.number in tracks and part.layer == index], taken)
+        layer = gp.find_layer(ob, name)
+        yield from writing.write_steps(layer, block, list(gp.drawings(layer)))
+
+
+def _hold(block: writing.Block, parts: list[contours.Part], taken: Mapping[int, set[int]]) -> None:
+    """Puts contours that were not taken exactly where they are. The way through pixels would move them by a rounding error."""
+    row_of = {int(frame): row for row, frame in enumerate(block.frames)}
+    for part, columns in zip(sorted(parts, key=lambda part: part.depth), block.columns, strict=True):
+        for frame, stroke in part.made.items():
+            if frame not in taken[part.number]:
+                block.point["position"][row_of[frame], columns] = stroke.points
+
+
+def _note_ends(ob, sent: Mapping[str, Any], now: Mapping[str, Any]) -> None:
+    for item in ob.rototoon.parts:
+        entry = sent.get(item.name)
+        if entry is not None and item.name in now and len(entry.get("keys", {})) == 1 and same_spans(entry, now[item.name]):
+            ends.put(item, [(int(frame), ends.LOST) for frame in entry.get("wants_key", [])])
+
+
+def _write_curves(ob, reading: Reading, sent: Mapping[str, Any], taken: Mapping[int, set[int]]) -> str:
+    """Writes snapped lines of contours that were taken. Returns why none were."""
+    offset = ob.rototoon.frame_offset
+    curves = {}
+    for part in reading.found.parts:
+        allowed = taken.get(part.number, set()) | (part.keys.keys() if taken.get(part.number) else set())
+        for frame, segments in by_frame(sent.get(part.name, {}).get("curves")).items():
+            if frame + offset in allowed and segments:
+                curves[part.number, frame + offset] = [np.asarray(path, np.float64) for path in segments]
+    if not curves:
+        return ""
+    layer = gp.find_layer(ob, ob.rototoon.snapped_layer)
+    if layer is not None and guard.closed(layer):
+        return guard.left_out([layer])
+    snapping.write(ob, snapping.read(ob) | curves, reading.found, reading.mapper)
+    return ""

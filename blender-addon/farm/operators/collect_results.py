@@ -1,0 +1,71 @@
+"""Collect Results: takes finished tracks of a batch in."""
+
+import bpy
+
+from ...blender.errors import Problem
+from ...capture.tracking import counted, listed
+from ...common import jobs
+from ...common.operators import Long
+from .. import collecting
+from .send_to_farm import folder_of
+
+NAMED = 3
+"""Largest number of parts that a message names."""
+
+
+class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
+    bl_idname = "rototoon.collect_results"
+    bl_label = "Collect Results"
+    bl_description = (
+        "Take the tracks and snapped lines of a batch into the objects that were sent. What you changed since then stays: there the results "
+        "are left out, and Track makes them anew. Contours on hidden layers are taken too, locked layers are not changed"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    directory: bpy.props.StringProperty(name="Folder", description="The folder that Send to Farm wrote to", subtype="DIR_PATH")
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+
+    def invoke(self, context, _event):
+        """Called by Blender: asks for the folder."""
+        self._picked = True
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def begin(self, context):
+        folder = folder_of(self.directory, "Choose the folder that Send to Farm wrote to")
+        self._scene, path = context.scene, bpy.data.filepath
+        return jobs.Worker(lambda _progress: collecting.results_of(folder, path))
+
+    def finish(self, _context, work):
+        results = work.result
+        if not results:
+            raise Problem("This file has no shot in the batch: open one of the files that were sent")
+        shots = contours = 0
+        failed: list[str] = []
+        for result in results:
+            ob = self._scene.objects.get(result.object)
+            why = result.failure if result.document is None else "" if ob is not None else "no such object in the scene"
+            try:
+                taken = None if why else (yield from collecting.collecting(ob, result.document))
+            except Problem as problem:
+                why = str(problem)
+            if why:
+                failed.append(f'"{result.object}": {why}')
+                continue
+            shots, contours = shots + 1, contours + taken.contours
+            self._say_kept(result.object, taken)
+        if not shots:
+            raise Problem("Nothing was taken: " + "; ".join(failed))
+        self.warn("; ".join(failed))
+        return f"{counted(contours, 'contour')} taken into {counted(shots, 'object')}"
+
+    def _say_kept(self, name: str, taken: collecting.Taken) -> None:
+        said = [f'"{part}" on {listed(frames)}' for part, frames in taken.kept.items()]
+        if len(said) > NAMED:
+            said[NAMED:] = [f"{counted(len(said) - NAMED, 'more part')}"]
+        if said:
+            self.warn(f'"{name}" was changed since it was sent, and stays as it is: {", ".join(said)}; press Track')
+        self.warn(taken.left)
+
+
+CLASSES = (ROTOTOON_OT_collect_results,)

@@ -1,0 +1,103 @@
+"""Send to Farm: writes the contours of many shots as a batch."""
+
+import os
+
+import bpy
+
+from ...blender import guard
+from ...blender.errors import Problem
+from ...common import jobs
+from ...common.operators import Long
+from .. import batch, files, sending
+
+NAMED = 3
+"""Largest number of objects that a message names."""
+
+
+class ROTOTOON_OT_send_to_farm(Long, bpy.types.Operator):
+    bl_idname = "rototoon.send_to_farm"
+    bl_label = "Send to Farm"
+    bl_description = (
+        "Write the contours of many shots as documents, with a manifest for the command rototoon batch and job files for render farms. "
+        "Collect Results takes the finished tracks in"
+    )
+    bl_options = {"REGISTER"}
+    changes = guard.NOTHING
+
+    directory: bpy.props.StringProperty(
+        name="Folder", description="The folder that gets the batch. The farm's machines must see it", subtype="DIR_PATH"
+    )
+    which: bpy.props.EnumProperty(
+        name="Shots",
+        description="What is sent",
+        items=(
+            ("SCENE", "Scene", "Every Grease Pencil object of the scene that has footage and contours"),
+            ("SELECTED", "Selected Objects", "The selected Grease Pencil objects that have footage and contours"),
+            ("FOLDER", "Files of a Folder", "The scene of every Blender file of a folder, as the files were saved"),
+        ),
+    )
+    source: bpy.props.StringProperty(
+        name="Files",
+        description="The folder of the Blender files, for Files of a Folder. If empty, the folder of this file",
+        subtype="DIR_PATH",
+    )
+    use_snap: bpy.props.BoolProperty(name="Snap to Ink", description="Also lay the tracked contours along the drawn lines", default=False)
+    use_mattes: bpy.props.BoolProperty(
+        name="Mattes", description="Also write a matte of the closed parts for every frame, as PNG files", default=False
+    )
+    engine: bpy.props.EnumProperty(
+        name="Jobs",
+        description="The job files that are written beside the manifest",
+        items=(
+            ("ALL", "All", "Job files for all farms below"),
+            ("OPENJD", "OpenJD", "template.json, for AWS Deadline Cloud and other farms that run OpenJD"),
+            ("FLAMENCO", "Flamenco", "rototoon-batch.js, a job type for Flamenco"),
+            ("OPENCUE", "OpenCue", "send_to_opencue.py, a script that sends the job to OpenCue"),
+            ("NONE", "None", "Only the manifest, for the command rototoon batch"),
+        ),
+    )
+    chunk: bpy.props.IntProperty(name="Shots a Task", description="Shots that a worker gets at a time, with OpenJD and OpenCue", default=4, min=1, max=1000)
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+
+    def invoke(self, context, _event):
+        """Called by Blender: asks for the folder."""
+        self._picked = True
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def begin(self, context):
+        self._folder = folder_of(self.directory, "Choose a folder for the batch")
+        if self.which == "FOLDER":
+            paths = files.blend_files(folder_of(self.source or "//", "Save this file, or choose the folder of the Blender files"))
+            return jobs.Worker(lambda progress: files.shots_of(paths, progress))
+        objects = context.scene.objects if self.which == "SCENE" else context.selected_objects
+        found = sending.shots_of(objects, bpy.data.filepath)
+        return jobs.Worker(lambda _progress: found)
+
+    def finish(self, _context, work) -> str:
+        shots, left = work.result
+        if not shots:
+            raise Problem("; ".join(["Nothing to send", *_first(left)]))
+        choices = batch.Choices(self.use_snap, self.use_mattes, self.engine, self.chunk)
+        batch.write(self._folder, shots, choices)
+        if left:
+            self.warn("left out: " + "; ".join(_first(left)))
+        if any(not shot["blend"] for shot in shots):
+            self.warn("this file was never saved: save it, so that the results find it again")
+        count = "1 shot" if len(shots) == 1 else f"{len(shots)} shots"
+        return f"{count} in {os.path.join(self._folder, batch.MANIFEST)}"
+
+
+def _first(texts: list[str]) -> list[str]:
+    more = len(texts) - NAMED
+    return texts if more <= 0 else [*texts[:NAMED], f"and {more} more"]
+
+
+def folder_of(path: str, otherwise: str) -> str:
+    """An absolute folder; a `Problem` with the text `otherwise` if there is none."""
+    if not path or (path.startswith("//") and not bpy.data.filepath):
+        raise Problem(otherwise)
+    return os.path.abspath(bpy.path.abspath(path))
+
+
+CLASSES = (ROTOTOON_OT_send_to_farm,)

@@ -1,0 +1,144 @@
+//! Tests of `rototoon batch` where things go wrong: long manifests, strange paths, folders that vanish, full disks, clocks.
+
+mod season;
+
+use season::{Season, outcomes, steps};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, SystemTime};
+
+/// The summary of what was done.
+fn summary(season: &Season) -> Value {
+    serde_json::from_slice(&fs::read(season.path("out/summary.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn a_manifest_of_ten_thousand_shots() {
+    let season = Season::new(1);
+    let shot = |k: usize| json!({"name": format!("sh{k}"), "project": format!("in/sh{}/project.json", k.min(1))});
+    let shots: Vec<_> = (0..10_000).map(shot).collect();
+    fs::write(season.path("m.json"), json!({"rototoon_batch": 1, "steps": steps(), "shots": shots}).to_string())
+        .unwrap();
+    let output = season.run(&["--shots", "1-2"]);
+    // The second shot's project is missing.
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(season.run(&["--summary"]).status.code(), Some(1));
+    let found = summary(&season);
+    assert_eq!((&found["good"], &found["failed"], &found["not_run"]), (&json!(1), &json!(1), &json!(9_998)));
+    assert!(fs::metadata(season.path("out/index.html")).unwrap().len() < 10_000_000);
+}
+
+#[test]
+fn strange_paths_are_paths_of_files_that_are_missing() {
+    let season = Season::new(1);
+    let paths =
+        ["\\\\server\\share\\a.json", "//server/share/a.json", "smb://server/a.json", "Z:\\a.json", "~/a.json", ""];
+    let mut shots = vec![json!({"name": "sh0", "project": "./in/../in/sh0/project.json"})];
+    shots.extend(paths.iter().take(5).enumerate().map(|(k, path)| json!({"name": format!("p{k}"), "project": path})));
+    let write = |shots: &[Value]| {
+        let manifest = json!({"rototoon_batch": 1, "steps": [{"do": "track"}], "shots": shots});
+        fs::write(season.path("m.json"), manifest.to_string()).unwrap();
+    };
+    write(&shots);
+    let output = season.run(&["--jobs", "1"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert_eq!(outcomes(&season.events("shot")), ["good", "failed", "failed", "failed", "failed", "failed"]);
+    assert_eq!(said.matches("a.json: cannot read the document: ").count(), 5, "{said}");
+    shots.push(json!({"name": "empty", "project": paths[5]}));
+    write(&shots);
+    assert_eq!(season.run(&[]).status.code(), Some(2));
+}
+
+#[test]
+fn a_folder_of_results_that_is_gone_or_no_folder_concerns_its_shot_alone() {
+    let season = Season::new(3);
+    season.good(&["--shots", "1-2"]);
+    fs::remove_dir_all(season.path("out/sh0")).unwrap();
+    fs::remove_dir_all(season.path("out/sh1")).unwrap();
+    fs::write(season.path("out/sh1"), "a file").unwrap();
+    season.clear_report();
+    let output = season.run(&["--jobs", "1"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(outcomes(&season.events("shot")), ["good", "failed", "good"]);
+    assert_eq!(fs::read_to_string(season.path("out/sh1")).unwrap(), "a file");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_nothing_half_written() {
+    use std::process::Command;
+    let (season, undisturbed) = (Season::new(2), Season::new(2));
+    undisturbed.good(&[]);
+    // Files may have at most 1024 bytes: what is longer cannot be written, as on a full disk.
+    let limit = "trap '' XFSZ; ulimit -f 1; exec \"$0\" batch m.json -o out --jobs 1 --report /dev/null";
+    let mut command = Command::new("bash");
+    command.current_dir(season.folder.path()).args(["-c", limit, env!("CARGO_BIN_EXE_rototoon")]);
+    let output = command.output().unwrap();
+    let output = full.unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("File too large"), "{said}");
+    let half = |path: &Path| {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        // A lock and a finished record may stay.
+        ![".lock", "batch.json", ".sheet"].contains(&name.as_str())
+            && undisturbed
+                .results()
+                .iter()
+                .all(|(place, bytes)| !place.ends_with(&format!("/{name}")) || fs::read(path).unwrap() != *bytes)
+    };
+    for shot in ["sh0", "sh1"] {
+        let left = fs::read_dir(season.path(&format!("out/{shot}"))).unwrap().map(|entry| entry.unwrap().path());
+        let left: Vec<_> = left.filter(|path| half(path)).collect();
+        assert!(left.is_empty(), "{left:?}");
+    }
+    season.good(&[]);
+    assert_eq!(season.results(), undisturbed.results());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_report_that_cannot_be_written_ends_the_batch() {
+    let season = Season::new(1);
+    let output = season.run(&["--report", "/dev/full"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(1) && said.contains("/dev/full"), "{said}");
+}
+
+#[test]
+fn clocks_play_no_part() {
+    let season = Season::new(1);
+    season.good(&[]);
+    let mut times =
+        [SystemTime::UNIX_EPOCH, SystemTime::now() + Duration::from_secs(90 * 365 * 86_400)].into_iter().cycle();
+    for folder in ["in/sh0", "out/sh0"] {
+        for entry in fs::read_dir(season.path(folder)).unwrap().map(|entry| entry.unwrap().path()) {
+            if entry.is_file() {
+                let file = fs::OpenOptions::new().append(true).open(entry).unwrap();
+                file.set_modified(times.next().unwrap()).unwrap();
+            }
+        }
+    }
+    season.clear_report();
+    season.good(&[]);
+    assert_eq!(outcomes(&season.events("step")), ["unchanged"; 5]);
+}
+
+#[test]
+fn a_report_that_a_spreadsheet_saved_is_written_on() {
+    let season = Season::new(1);
+    season.good(&[]);
+    let path = season.path("out/report.jsonl");
+    let text = fs::read_to_string(&path).unwrap();
+    // As a table: quotes are doubled, lines end with CR LF, a mark stands before them, and the last line has no end.
+    let table: Vec<_> = text.lines().map(|line| format!("\"{}\"", line.replace('"', "\"\""))).collect();
+    fs::write(&path, format!("\u{feff}{}", table.join("\r\n"))).unwrap();
+    season.good(&[]);
+    let saved = fs::read_to_string(&path).unwrap();
+    assert!(saved.starts_with('\u{feff}'));
+    let new = saved.lines().skip(table.len());
+    assert!(new.clone().count() > 5 && new.clone().all(|line| serde_json::from_str::<Value>(line).is_ok()));
+    assert!(!fs::read_to_string(season.path("out/index.html")).unwrap().is_empty());
+}
