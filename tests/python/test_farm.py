@@ -32,10 +32,10 @@ def frames(tmp_path_factory) -> Path:
     return folder
 
 
-def season(folder: Path, frames: Path) -> Path:
+def season(folder: Path, frames: Path, count: int = SHOTS) -> Path:
     """A manifest of shots. Each tracks other keys of the same frames."""
     shots = []
-    for k in range(SHOTS):
+    for k in range(count):
         keys = {str(f): square(f, k % 2) for f in {0, LAST, 1 + k % (LAST - 1)}}
         footage = {"pattern": str(frames / "f_%03d.png"), "first": 0, "last": LAST, "fps": 24, "width": WIDTH, "height": HEIGHT}
         part = {"name": "square", "closed": True, "keys": keys}
@@ -156,12 +156,13 @@ for name in ("shots", "page"):
 
 def test_opencue_runs_the_outline(tmp_path, frames, undisturbed):
     """PyOutline writes the job as Cuebot gets it, and runs each frame as a host of the farm would. There is no Cuebot."""
-    manifest, script, out = season(tmp_path, frames), tmp_path / "send.py", tmp_path / "out"
-    assert run(program(), "job", manifest, "--for", "opencue", "--chunk", 7, "-o", script).returncode == 0
+    manifest, script, out = season(tmp_path, frames, 3), tmp_path / "send.py", tmp_path / "out"
+    assert run(program(), "job", manifest, "--for", "opencue", "--chunk", 2, "-o", script).returncode == 0
     words = [sys.executable, "-c", OPENCUE, str(manifest), str(out), "--program", str(program())]
     own = {**os.environ, "HOME": str(tmp_path)}
     done = subprocess.run(words, cwd=tmp_path, env=own, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "<range>1-3</range>" in done.stdout and "<depend type=\"LAYER_ON_LAYER\"" in done.stdout
-    assert results(out) == undisturbed
+    assert "<range>1-2</range>" in done.stdout and "<depend type=\"LAYER_ON_LAYER\"" in done.stdout
+    first = {place: data for place, data in undisturbed.items() if place[:4] in ("sh00", "sh01", "sh02")}
+    assert results(out) == first
     assert json.loads((out / "summary.json").read_text())["not_run"] == 0
