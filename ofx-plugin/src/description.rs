@@ -7,8 +7,8 @@ use openfx::sys::generic::core::{
     kOfxPropPluginDescription, kOfxPropShortLabel,
 };
 use openfx::sys::image_effect_v1::image_effect::{
-    kOfxImageClipPropOptional, kOfxImageComponentAlpha, kOfxImageComponentRGB, kOfxImageComponentRGBA,
-    kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral, kOfxImageEffectOutputClipName,
+    kOfxImageClipPropIsMask, kOfxImageClipPropOptional, kOfxImageComponentAlpha, kOfxImageComponentRGB,
+    kOfxImageComponentRGBA, kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral, kOfxImageEffectOutputClipName,
     kOfxImageEffectPluginPropGrouping, kOfxImageEffectPluginPropHostFrameThreading,
     kOfxImageEffectPluginRenderThreadSafety, kOfxImageEffectPropClipPreferencesSlaveParam, kOfxImageEffectPropContext,
     kOfxImageEffectPropSupportedComponents, kOfxImageEffectPropSupportedContexts,
@@ -23,6 +23,9 @@ pub const SOURCE: &CStr = kOfxImageEffectSimpleSourceClipName;
 /// Name of the output clip.
 pub const OUTPUT: &CStr = kOfxImageEffectOutputClipName;
 
+/// Name of the optional input clip that limits a matte.
+pub const MASK: &CStr = c"Mask";
+
 const COMPONENTS: [&CStr; 3] = [kOfxImageComponentRGBA, kOfxImageComponentRGB, kOfxImageComponentAlpha];
 const DEPTHS: [&CStr; 4] = [kOfxBitDepthFloat, kOfxBitDepthHalf, kOfxBitDepthShort, kOfxBitDepthByte];
 
@@ -35,6 +38,8 @@ pub struct About {
     pub description: &'static str,
     /// Whether a piece of the picture can be rendered by itself.
     pub tiles: bool,
+    /// Whether the general context has an input that limits a matte.
+    pub mask: bool,
 }
 
 /// Describes an effect: labels, contexts, pixel depths and abilities.
@@ -69,6 +74,11 @@ pub fn clips(action: &Action, about: &About) -> Result<(), Failure> {
     source.set_int(kOfxImageEffectPropTemporalClipAccess, 0, 1)?;
     if context.as_bytes() != kOfxImageEffectContextFilter.to_bytes() {
         source.set_int(kOfxImageClipPropOptional, 0, 1)?;
+        if about.mask {
+            let mask = clip(&action.effect, MASK, about)?;
+            mask.set_int(kOfxImageClipPropOptional, 0, 1)?;
+            mask.set_int(kOfxImageClipPropIsMask, 0, 1)?;
+        }
     }
     clip(&action.effect, OUTPUT, about).map(|_| ())
 }

@@ -22,6 +22,11 @@ impl Encoding {
         Self { linear: linear && matches!(format.depth, Depth::Half | Depth::Float) }
     }
 
+    /// Whether the image is linear light.
+    pub fn is_linear(&self) -> bool {
+        self.linear
+    }
+
     /// Converts a value of the image to a display value (sRGB).
     pub fn shown(&self, value: f32) -> f32 {
         if self.linear { colour::encode(value) } else { value }

@@ -1,20 +1,43 @@
 //! Describes the core's lists of effect parameters ([`rototoon::scene::effects`]) to a host.
 
-use crate::ofx::{Failure, Parameters, Properties};
+use crate::ofx::{Failure, Parameters, Properties, host};
 use openfx::sys::generic::core::{kOfxPropLabel, kOfxPropLongLabel, kOfxPropShortLabel};
 use openfx::sys::image_effect_v1::param::{
     kOfxParamPropAnimates, kOfxParamPropChoiceOption, kOfxParamPropDefault, kOfxParamPropDigits,
     kOfxParamPropDisplayMax, kOfxParamPropDisplayMin, kOfxParamPropHint, kOfxParamPropIncrement, kOfxParamPropMax,
     kOfxParamPropMin, kOfxParamPropParent, kOfxParamPropSecret, kOfxParamPropStringFilePathExists,
     kOfxParamPropStringMode, kOfxParamStringIsFilePath, kOfxParamStringIsSingleLine, kOfxParamTypeBoolean,
-    kOfxParamTypeChoice, kOfxParamTypeDouble, kOfxParamTypeGroup, kOfxParamTypeInteger, kOfxParamTypePushButton,
-    kOfxParamTypeRGBA, kOfxParamTypeString,
+    kOfxParamTypeChoice, kOfxParamTypeDouble, kOfxParamTypeDouble2D, kOfxParamTypeGroup, kOfxParamTypeInteger,
+    kOfxParamTypePushButton, kOfxParamTypeRGBA, kOfxParamTypeString,
 };
 use rototoon::scene::effects::{EffectKind, EffectParameter};
 use rototoon::scene::parameters::{self, Kind};
 use std::ffi::{CStr, CString};
 
 const ENDS: [&CStr; 4] = [kOfxParamPropMin, kOfxParamPropMax, kOfxParamPropDisplayMin, kOfxParamPropDisplayMax];
+
+/// Greatest coordinate of a pair of numbers.
+const PLANE: f64 = 1e6;
+
+/// Beginnings of the names of hosts that use the display range for sliders only. Others may refuse values outside of it, so
+/// they get the complete range as display range.
+const SLIDER_HOSTS: [&str; 8] = [
+    "uk.co.thefoundry.nuke",
+    "fr.inria.Natron",
+    "com.eyeonline.Fusion",
+    "com.blackmagicdesign.Fusion",
+    "DaVinciResolve",
+    "com.apple.shake",
+    "com.assimilate",
+    "com.borisfx.silhouette",
+];
+
+/// The ends of a range and of its slider.
+fn ends<T: Copy>(range: [T; 2], slider: [T; 2]) -> [T; 4] {
+    let name = host::name().unwrap_or_default();
+    let [low, high] = if SLIDER_HOSTS.iter().any(|known| name.starts_with(known)) { slider } else { range };
+    [range[0], range[1], low, high]
+}
 
 /// Describes every parameter of a list.
 pub fn define(list: &[EffectParameter], parameters: &Parameters) -> Result<(), Failure> {
@@ -45,6 +68,7 @@ fn type_of(kind: &EffectKind) -> &'static CStr {
         EffectKind::Number(..) => kOfxParamTypeDouble,
         EffectKind::Choice(_) | EffectKind::Shared(_) => kOfxParamTypeChoice,
         EffectKind::Colour(_) => kOfxParamTypeRGBA,
+        EffectKind::Pair(_) => kOfxParamTypeDouble2D,
         EffectKind::Group(_) => kOfxParamTypeGroup,
     }
 }
@@ -57,12 +81,12 @@ fn values(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
         EffectKind::Flag(default) => properties.set_int(kOfxParamPropDefault, 0, default.into()),
         EffectKind::Integer(default, range, slider) => {
             properties.set_int(kOfxParamPropDefault, 0, default)?;
-            let ends = ENDS.into_iter().zip(range.into_iter().chain(slider));
+            let ends = ENDS.into_iter().zip(ends(range, slider));
             ends.into_iter().try_for_each(|(name, value)| properties.set_int(name, 0, value))
         }
         EffectKind::Number(default, range, slider) => {
             properties.set_double(kOfxParamPropDefault, 0, default)?;
-            for (name, value) in ENDS.into_iter().zip(range.into_iter().chain(slider)) {
+            for (name, value) in ENDS.into_iter().zip(ends(range, slider)) {
                 properties.set_double(name, 0, value)?;
             }
             properties.set_double(kOfxParamPropIncrement, 0, 0.1)?;
@@ -72,6 +96,14 @@ fn values(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
         EffectKind::Shared(id) => {
             let (choices, default) = shared(id);
             choice(choices.iter().map(|(_, label)| *label), default, properties)
+        }
+        EffectKind::Pair(default) => {
+            properties.set_doubles(kOfxParamPropDefault, &default)?;
+            // Some hosts need a range of every number.
+            for (name, value) in ENDS.into_iter().zip([-PLANE, PLANE, -PLANE, PLANE]) {
+                properties.set_doubles(name, &[value; 2])?;
+            }
+            properties.set_int(kOfxParamPropDigits, 0, 2)
         }
         EffectKind::Colour(default) => properties.set_doubles(kOfxParamPropDefault, &default),
     }

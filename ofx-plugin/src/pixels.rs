@@ -63,6 +63,15 @@ impl Format {
         self.layout.values() * self.depth.bytes()
     }
 
+    /// The format of values that are neither multiplied nor divided by alpha. The alpha of an opaque image stays 1.
+    pub fn raw(&self) -> Self {
+        let premultiplication = match self.premultiplication {
+            Premultiplication::Opaque => Premultiplication::Opaque,
+            _ => Premultiplication::Multiplied,
+        };
+        Self { premultiplication, ..*self }
+    }
+
     /// Reads as many pixels as both slices have.
     pub fn read(&self, bytes: &[u8], pixels: &mut [Pixel]) {
         match self.depth {

@@ -35,6 +35,7 @@ fn values(kind: &EffectKind) -> (String, String) {
             other => panic!("{id}: {other:?}, expected a choice"),
         },
         EffectKind::Colour([r, g, b, a]) => ("colour".into(), format!("{r}, {g}, {b}, {a}")),
+        EffectKind::Pair([x, y]) => ("two numbers".into(), format!("{x}, {y}")),
         EffectKind::Group(_) => (String::new(), String::new()),
     }
 }

@@ -51,6 +51,43 @@ fn mattes(bench: &mut Criterion) {
     group.finish();
 }
 
+/// Sixty small overlapping parts of a crowd in a picture of 4096 x 2160 pixels, blurred by motion, feathered, far grown.
+fn crowd(bench: &mut Criterion) {
+    let (width, height) = (4096usize, 2160usize);
+    let window = Window { left: 0, top: 0, right: width as i64, bottom: height as i64 };
+    let at = |time: f64| {
+        let part = |index: usize| {
+            let (column, row) = ((index % 10) as f64, (index / 10) as f64);
+            let middle = Point::new(width as f64 * (0.05 + 0.1 * column), height as f64 * (0.1 + 0.16 * row));
+            let turn = Point::from_angle(0.5 * index as f64 + 0.05 * time);
+            let corner = |k: usize| {
+                let angle = std::f64::consts::TAU * k as f64 / 24.0;
+                let bulge = 1.0 + 0.2 * (3.0 * angle).sin();
+                middle
+                    + turn.rotate(Point::new(230.0 * angle.cos(), 150.0 * angle.sin()) * bulge)
+                    + 4.0 * time * Point::X
+            };
+            (0..24).map(corner).collect()
+        };
+        (0..60).map(part).collect::<Vec<Vec<Point>>>()
+    };
+    let mut group = bench.benchmark_group("matte 4096x2160 of 60 parts");
+    group.sample_size(10);
+    for (name, samples, grow, feather) in [
+        ("still", 1, 0.0, 0.0),
+        ("motion blur of 16 samples", 16, 0.0, 0.0),
+        ("motion blur of 16 samples, feathered by 10", 16, 0.0, 10.0),
+        ("grown by 200", 1, 200.0, 0.0),
+        ("grown by 8", 1, 8.0, 0.0),
+    ] {
+        let instants: Vec<_> = (0..samples).map(|k| at(f64::from(k) / f64::from(samples))).collect();
+        group.bench_function(name, |bench| {
+            bench.iter(|| black_box(Mask::new(instants.clone(), grow, feather).draw(window, &mut || true)));
+        });
+    }
+    group.finish();
+}
+
 fn growth(bench: &mut Criterion) {
     let mut group = bench.benchmark_group("matte growth");
     for step in [1usize, 2, 4] {
@@ -71,5 +108,5 @@ fn growth(bench: &mut Criterion) {
     group.finish();
 }
 
-criterion_group! { name = benches; config = Criterion::default().sample_size(20); targets = mattes, growth }
+criterion_group! { name = benches; config = Criterion::default().sample_size(20); targets = mattes, crowd, growth }
 criterion_main!(benches);

@@ -9,10 +9,14 @@
 //! of columns.
 
 use super::coverage::{Edge, Shape, Side, Sink, Window, border, edges};
-use super::line::{Stretch, squared_distances};
+use super::line::Stretch;
+use super::near::squared_distances;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;
 use std::ops::Range;
+
+/// More than the rounding of a distance to a 32-bit float.
+const ROUNDING: f64 = 1e-3;
 
 /// Coverage of the union of polygons in a window, grown by `amount` pixels (shrunk if negative). `None` if `go_on`,
 /// called for each row, returns false.
@@ -40,10 +44,16 @@ pub fn grown(
     let mut border = steep(&shape, near);
     let level = steep(&Shape::new(&[across]), near.transposed());
     border.extend(level.into_iter().map(|piece| Stretch { ends: piece.ends.map(|p| p.yx()), ..piece }));
-    let distances = squared_distances(&border, reach, window, go_on)?;
+    let moved = |signed: f32| (0.5 + amount as f32 + signed).clamp(0.0, 1.0);
+    let same = |least: f64, greatest: f64| {
+        [1.0, -1.0].into_iter().all(|sign| {
+            let ends = [least, greatest].map(|distance| 0.5 + amount + sign * distance);
+            ends.iter().all(|end| *end > 1.0 + ROUNDING) || ends.iter().all(|end| *end < -ROUNDING)
+        })
+    };
+    let distances = squared_distances(&border, window, &same, go_on)?;
     for (value, distance) in result.data_mut().iter_mut().zip(distances.data()) {
-        let signed = if *value >= 0.5 { distance.sqrt() } else { -distance.sqrt() };
-        let moved = (0.5 + amount as f32 + signed).clamp(0.0, 1.0);
+        let moved = moved(if *value >= 0.5 { distance.sqrt() } else { -distance.sqrt() });
         *value = if amount > 0.0 { value.max(moved) } else { value.min(moved) };
     }
     Some(result)

@@ -5,6 +5,7 @@
 //! - [`overlay`](mod@overlay): contours, control points, keys and confidence over the footage
 //! - [`coverage`]: exact area coverage of unions of polygons
 //! - [`mask`]: parts at a time, blurred by motion, grown and feathered
+//! - [`composite`]: several masks as one
 //! - [`matte`](mod@matte): coverage of the closed parts, and what of the footage they cover
 //! - [`visible`]: how much of each pixel every part shows, nearer parts over farther ones
 //! - [`ids`]: the same as a colour for each part; mattes with a layer for each
@@ -14,6 +15,7 @@
 //! - [`grow`]: the outline moved outward or inward
 //! - [`feather`]: soft borders
 //! - [`line`](mod@line): lines of a width
+//! - `near`: distances where they decide something
 //! - [`encode`]: pictures as bytes of a file
 //!
 //! # Example
@@ -40,6 +42,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod composite;
 pub mod coverage;
 pub mod cryptomatte;
 pub mod encode;
@@ -51,6 +54,7 @@ pub mod line;
 pub mod mask;
 pub mod matte;
 pub mod motion;
+mod near;
 pub mod overlay;
 pub mod visible;
 

@@ -25,7 +25,8 @@ impl Stretch {
         self.ends[0].lerp(self.ends[1], share)
     }
 
-    fn distance_squared(&self, p: Point) -> f64 {
+    /// The squared distance of a point to the piece.
+    pub fn distance_squared(&self, p: Point) -> f64 {
         let along = self.ends[1] - self.ends[0];
         let size = along.length_squared();
         let share = if size > 0.0 { (p - self.ends[0]).dot(along) / size } else { 0.0 };

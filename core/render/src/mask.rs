@@ -17,6 +17,8 @@ pub const MOST_REACH: f64 = 2048.0;
 pub struct Mask {
     instants: Vec<Vec<Vec<Point>>>,
     shape: Shape,
+    /// The bounds of all outlines.
+    tight: Option<Bounds>,
     grow: f64,
     feather: f64,
 }
@@ -30,47 +32,96 @@ pub struct Bounds {
     pub most: Point,
 }
 
+impl Bounds {
+    /// The least rectangle that contains two.
+    pub fn united(self, other: Self) -> Self {
+        Self { least: self.least.min(other.least), most: self.most.max(other.most) }
+    }
+
+    /// The intersection of two rectangles; `None` if it has no area.
+    pub fn shared(self, other: Self) -> Option<Self> {
+        let both = Self { least: self.least.max(other.least), most: self.most.min(other.most) };
+        both.least.cmplt(both.most).all().then_some(both)
+    }
+
+    /// Whether no pixel of a window touches the rectangle.
+    pub fn misses(self, window: Window) -> bool {
+        self.least.x >= window.right as f64
+            || self.least.y >= window.bottom as f64
+            || self.most.x <= window.left as f64
+            || self.most.y <= window.top as f64
+    }
+
+    /// The pixels of a window that are in the rectangle; `None` if there are none.
+    pub(super) fn pixels(&self, window: Window) -> Option<Window> {
+        let both = Window {
+            left: window.left.max(self.least.x.floor() as i64),
+            top: window.top.max(self.least.y.floor() as i64),
+            right: window.right.min(self.most.x.ceil() as i64),
+            bottom: window.bottom.min(self.most.y.ceil() as i64),
+        };
+        (both.left < both.right && both.top < both.bottom).then_some(both)
+    }
+}
+
+/// How far growing or feathering by some pixels reaches: half a pixel further out.
+fn margin_of(by: f64) -> f64 {
+    if by == 0.0 { 0.0 } else { by + 0.5 }
+}
+
 impl Mask {
     /// A mask of the closed polygons of each instant, grown by `grow` pixels (shrunk if negative), then feathered by a
     /// radius of `feather` pixels. Both count as [`MOST_REACH`] where they are larger, and as 0 if they are no number.
     pub fn new(instants: Vec<Vec<Vec<Point>>>, grow: f64, feather: f64) -> Self {
         let shape = Shape::new(&instants);
+        let points = instants.iter().flatten().flatten().filter(|p| p.is_finite());
+        let tight = points.map(|&p| Bounds { least: p, most: p }).reduce(Bounds::united);
         let number = |value: f64| if value.is_nan() { 0.0 } else { value };
         let (grow, feather) = (number(grow).clamp(-MOST_REACH, MOST_REACH), number(feather).clamp(0.0, MOST_REACH));
-        Self { instants, shape, grow, feather }
+        Self { instants, shape, tight, grow, feather }
     }
 
     /// A rectangle that contains the mask; `None` if the mask is empty.
     pub fn bounds(&self) -> Option<Bounds> {
-        let points = self.instants.iter().flatten().flatten().filter(|p| p.is_finite());
-        let tight = points.fold(None, |bounds: Option<Bounds>, &p| {
-            Some(bounds.map_or(Bounds { least: p, most: p }, |b| Bounds { least: b.least.min(p), most: b.most.max(p) }))
-        })?;
-        // Growing and feathering each end half a pixel further out.
-        let more = |by: f64| if by == 0.0 { 0.0 } else { by + 0.5 };
-        let margin = Point::splat(more(self.grow) + more(self.feather));
+        self.grown_bounds(margin_of(self.feather))
+    }
+
+    fn hard_bounds(&self) -> Option<Bounds> {
+        self.grown_bounds(0.0)
+    }
+
+    /// The bounds of the moved outlines, larger by `more` on each side.
+    fn grown_bounds(&self, more: f64) -> Option<Bounds> {
+        let tight = self.tight?;
+        let margin = Point::splat(margin_of(self.grow) + more);
         let bounds = Bounds { least: tight.least - margin, most: tight.most + margin };
         bounds.least.cmple(bounds.most).all().then_some(bounds)
     }
 
+    /// By how many pixels values reach beyond the hard mask, because of its feather.
+    pub fn reach(&self) -> usize {
+        feather::reach(self.feather)
+    }
+
     /// Whether the mask is empty in a window.
     pub fn misses(&self, window: Window) -> bool {
-        self.bounds().is_none_or(|b| {
-            b.least.x >= window.right as f64
-                || b.least.y >= window.bottom as f64
-                || b.most.x <= window.left as f64
-                || b.most.y <= window.top as f64
-        })
+        self.bounds().is_none_or(|bounds| bounds.misses(window))
     }
 
     /// Coverage, 0 to 1, of the pixels of a window. `None` if `go_on`, called for each row, returns false.
     pub fn draw(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
-        if self.misses(window) {
-            return Some(Raster::new(window.width(), window.height(), 0.0));
-        }
-        let wide = window.grown(feather::reach(self.feather) as i64);
-        let hard = if self.grow == 0.0 { self.covered(wide, go_on)? } else { self.grown(wide, go_on)? };
-        if self.feather > 0.0 { feather::feathered(&hard, self.feather, go_on) } else { Some(hard) }
+        within(self.bounds(), window, &mut |own| {
+            let wide = own.grown(feather::reach(self.feather) as i64);
+            let hard = self.hard(wide, go_on)?;
+            if self.feather > 0.0 { feather::feathered(&hard, self.feather, go_on) } else { Some(hard) }
+        })
+    }
+
+    /// The mask without its feather.
+    fn hard(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
+        within(self.hard_bounds(), window, &mut |own| {
+            if self.grow == 0.0 { self.covered(own, go_on) } else { self.grown(own, go_on) }
+        })
     }
 
     fn covered(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
@@ -93,6 +144,27 @@ impl Mask {
         }
         Some(sum)
     }
+}
+
+/// A picture of a window that is drawn only within bounds, and is 0 elsewhere.
+fn within(
+    bounds: Option<Bounds>,
+    window: Window,
+    draw: &mut dyn FnMut(Window) -> Option<Raster<f32>>,
+) -> Option<Raster<f32>> {
+    let Some(own) = bounds.and_then(|bounds| bounds.pixels(window)) else {
+        return Some(Raster::new(window.width(), window.height(), 0.0));
+    };
+    let drawn = draw(own)?;
+    if own == window {
+        return Some(drawn);
+    }
+    let mut result = Raster::new(window.width(), window.height(), 0.0);
+    let columns = (own.left - window.left) as usize..(own.right - window.left) as usize;
+    for y in 0..own.height() {
+        result.row_mut(y + (own.top - window.top) as usize)[columns.clone()].copy_from_slice(drawn.row(y));
+    }
+    Some(result)
 }
 
 #[cfg(test)]

@@ -20,8 +20,14 @@ const SAME_FRAME: f64 = 1e-6;
 /// The instants of an open shutter: the middles of `samples` equal intervals of `length` frames around `time`. The
 /// number of samples is limited to 1 and [`MOST_INSTANTS`].
 pub fn shutter(time: f64, length: f64, samples: usize) -> Vec<f64> {
+    shutter_from(time - 0.5 * length.max(0.0), length, samples)
+}
+
+/// The instants of a shutter that opens at a time: the middles of `samples` equal intervals of `length` frames. Without a
+/// length it is only that time.
+pub fn shutter_from(opens: f64, length: f64, samples: usize) -> Vec<f64> {
     let n = if length > 0.0 { samples.clamp(1, MOST_INSTANTS) } else { 1 };
-    (0..n).map(|k| time + length.max(0.0) * ((k as f64 + 0.5) / n as f64 - 0.5)).collect()
+    (0..n).map(|k| opens + length.max(0.0) * ((k as f64 + 0.5) / n as f64)).collect()
 }
 
 /// The contour of a part at a time in frames. With `curves` it follows the snapped paths where they exist, otherwise

@@ -65,22 +65,56 @@ impl Visible {
 }
 
 /// A part's outline and its bounds in whole pixels.
+#[derive(Clone, Debug)]
 struct Outline {
     part: usize,
     points: Vec<Point>,
     bounds: Window,
 }
 
+/// Closed outlines that lie over each other, the nearest first.
+#[derive(Clone, Debug)]
+pub struct Stack(Vec<Outline>);
+
+impl Stack {
+    /// A stack of outlines with the indices of their parts, the nearest first. Outlines without points, and with a
+    /// coordinate that is not finite, are left out.
+    pub fn new(outlines: impl IntoIterator<Item = (usize, Vec<Point>)>) -> Self {
+        let outline = |(part, points): (usize, Vec<Point>)| {
+            let bounds = bounds(&points)?;
+            Some(Outline { part, points, bounds })
+        };
+        Self(outlines.into_iter().filter_map(outline).collect())
+    }
+
+    /// A rectangle of whole pixels that contains all outlines; `None` if there are none.
+    pub fn bounds(&self) -> Option<Window> {
+        self.0.iter().map(|outline| outline.bounds).reduce(|a, b| Window {
+            left: a.left.min(b.left),
+            top: a.top.min(b.top),
+            right: a.right.max(b.right),
+            bottom: a.bottom.max(b.bottom),
+        })
+    }
+
+    /// The shares of each pixel of a window, row by row; the nearest part first. `None` if `go_on`, called for each row
+    /// of each part, returns false.
+    pub fn shares(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Vec<Share>>> {
+        shares(&self.0, window, go_on)
+    }
+}
+
 /// The visible areas of closed parts on a frame. `parts` selects parts by index; `None` takes all. Snapped paths are
 /// used where they exist.
 pub fn visible(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Visible {
-    let outlines = outlines(scene, frame, parts);
+    let order = nearest_first(scene, parts);
+    let stack = Stack::new(order.into_iter().filter_map(|part| Some((part, scene.parts[part].outline(frame)?))));
     let (width, height) = (scene.footage.width, scene.footage.height);
     let mut result = Visible { width, height, starts: vec![0], shares: Vec::new() };
     result.starts.reserve(width * height);
     for top in (0..height as i64).step_by(BAND as usize) {
         let band = Window { left: 0, top, right: width as i64, bottom: (top + BAND).min(height as i64) };
-        for pixel in shares(&outlines, band) {
+        for pixel in stack.shares(band, &mut || true).into_iter().flatten() {
             result.shares.extend(pixel);
             result.starts.push(result.shares.len());
         }
@@ -88,17 +122,12 @@ pub fn visible(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Vi
     result
 }
 
-/// The outlines of closed parts, nearest first.
-fn outlines(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Vec<Outline> {
+/// The indices of closed parts, nearest first. `parts` selects parts by index; `None` takes all.
+pub fn nearest_first(scene: &Scene, parts: Option<&[usize]>) -> Vec<usize> {
     let mut order: Vec<usize> = (0..scene.parts.len()).collect();
     order.retain(|index| scene.parts[*index].closed && parts.is_none_or(|parts| parts.contains(index)));
     order.sort_by(|&a, &b| scene.parts[b].depth.total_cmp(&scene.parts[a].depth).then(b.cmp(&a)));
-    let outline = |part: usize| {
-        let points = scene.parts[part].outline(frame)?;
-        let bounds = bounds(&points)?;
-        Some(Outline { part, points, bounds })
-    };
-    order.into_iter().filter_map(outline).collect()
+    order
 }
 
 fn bounds(points: &[Point]) -> Option<Window> {
@@ -120,7 +149,7 @@ fn common(a: Window, b: Window) -> Option<Window> {
 }
 
 /// The shares of each pixel of a band.
-fn shares(outlines: &[Outline], band: Window) -> Vec<Vec<Share>> {
+fn shares(outlines: &[Outline], band: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Vec<Share>>> {
     let mut pixels = Pixels {
         band,
         shown: vec![Vec::new(); band.width() * band.height()],
@@ -129,14 +158,17 @@ fn shares(outlines: &[Outline], band: Window) -> Vec<Vec<Share>> {
     for (index, outline) in outlines.iter().enumerate() {
         let Some(window) = common(outline.bounds, band) else { continue };
         let mut union = Union { outlines, of: Vec::new(), shape: Shape::new(&[]) };
-        Shape::new(&[vec![outline.points.clone()]]).rows(window, &mut |y, row| {
+        let whole = Shape::new(&[vec![outline.points.clone()]]).rows(window, &mut |y, row| {
             let mixed = pixels.add(index, window.left, y, row);
             pixels.mix(index, y, &mixed, &mut union);
-            true
+            go_on()
         });
+        if !whole {
+            return None;
+        }
     }
     let of_scene = |share: Share| Share { part: outlines[share.part].part, ..share };
-    pixels.shown.into_iter().map(|pixel| pixel.into_iter().map(of_scene).collect()).collect()
+    Some(pixels.shown.into_iter().map(|pixel| pixel.into_iter().map(of_scene).collect()).collect())
 }
 
 /// The pixels of a band. Parts are added from the nearest to the farthest.

@@ -11,6 +11,7 @@ const ABOUT: About = About {
     label: "Rototoon Lines",
     description: "Shows the images that a tracker of edges uses: filtered colours, edges, distances to the edges.",
     tiles: false,
+    mask: false,
 };
 
 /// Describes the effect.

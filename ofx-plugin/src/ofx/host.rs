@@ -8,7 +8,9 @@ use super::property::Properties;
 use openfx::sys::generic::core::{OfxHost, kOfxPropName};
 use openfx::sys::generic::property::{OfxPropertySuiteV1, kOfxPropertySuite};
 use openfx::sys::image_effect_v1::draw_suite::{OfxDrawSuiteV1, kOfxDrawSuite};
-use openfx::sys::image_effect_v1::image_effect::{OfxImageEffectSuiteV1, kOfxImageEffectSuite};
+use openfx::sys::image_effect_v1::image_effect::{
+    OfxImageEffectSuiteV1, kOfxImageEffectPropSupportsTiles, kOfxImageEffectSuite,
+};
 use openfx::sys::image_effect_v1::interact::{OfxInteractSuiteV1, kOfxInteractSuite};
 use openfx::sys::image_effect_v1::message::{OfxMessageSuiteV1, OfxMessageSuiteV2, kOfxMessageSuite};
 use openfx::sys::image_effect_v1::multi_thread::{OfxMultiThreadSuiteV1, kOfxMultiThreadSuite};
@@ -94,6 +96,12 @@ pub fn properties() -> Result<Properties<'static>, Failure> {
     let host = unsafe { HOST.load(Ordering::Acquire).as_ref() }.ok_or(Failure::Missing("host"))?;
     // SAFETY: the host's handle lives as long as the host.
     Ok(unsafe { Properties::new(host.host, suites()?.property) })
+}
+
+/// Whether the host gives and asks for parts of pictures. A host that does not say so does.
+pub fn tiles() -> bool {
+    let tiles = properties().and_then(|host| host.int(kOfxImageEffectPropSupportsTiles, 0));
+    !tiles.is_ok_and(|tiles| tiles == 0)
 }
 
 /// The host's name, such as `uk.co.thefoundry.nuke`.

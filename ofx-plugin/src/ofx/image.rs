@@ -14,7 +14,7 @@ use openfx::sys::generic::core::{
 use openfx::sys::image_effect_v1::image_effect::{
     kOfxImageComponentAlpha, kOfxImageComponentRGB, kOfxImageComponentRGBA, kOfxImageEffectPropComponents,
     kOfxImageEffectPropPixelDepth, kOfxImageEffectPropPreMultiplication, kOfxImageOpaque, kOfxImagePropBounds,
-    kOfxImagePropData, kOfxImagePropRowBytes, kOfxImageUnPreMultiplied,
+    kOfxImagePropData, kOfxImagePropRegionOfDefinition, kOfxImagePropRowBytes, kOfxImageUnPreMultiplied,
 };
 use std::marker::PhantomData;
 
@@ -61,6 +61,8 @@ pub struct Image<'a> {
     row_bytes: isize,
     /// The rectangle of its pixels.
     pub bounds: Bounds,
+    /// The rectangle of the complete picture in pixels, as the host says; `None` if it does not say.
+    pub whole: Option<Bounds>,
     /// The format of its pixels.
     pub format: Format,
     clip: PhantomData<&'a ()>,
@@ -92,6 +94,7 @@ impl<'a> Image<'a> {
             data: std::ptr::null_mut(),
             row_bytes: 0,
             bounds: Bounds::default(),
+            whole: None,
             format: Format::default(),
             clip: PhantomData,
         };
@@ -99,6 +102,9 @@ impl<'a> Image<'a> {
         let properties = unsafe { Properties::new(handle, clip.suites.property) };
         let [x1, y1, x2, y2] = properties.ints(kOfxImagePropBounds)?;
         image.bounds = Bounds { x1, y1, x2, y2 };
+        let whole = properties.ints(kOfxImagePropRegionOfDefinition).ok();
+        let whole = whole.map(|[x1, y1, x2, y2]| Bounds { x1, y1, x2, y2 });
+        image.whole = whole.filter(|whole| !whole.is_empty());
         image.data = properties.pointer(kOfxImagePropData, 0)?.cast();
         image.row_bytes = properties.int(kOfxImagePropRowBytes, 0)? as isize;
         image.format = format(&properties)?;

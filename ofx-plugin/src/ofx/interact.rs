@@ -7,19 +7,21 @@ use super::effect::Effect;
 use super::failure::Failure;
 use super::host;
 use super::log::log;
-use super::property::{Properties, call};
+use super::property::{Properties, call, terminated};
 use openfx::sys::generic::core::{
     OfxPointD, OfxPropertySetHandle, OfxStatus, kOfxActionCreateInstance, kOfxActionDescribe,
     kOfxActionDestroyInstance, kOfxPropEffectInstance, kOfxPropTime, kOfxStatFailed, kOfxStatOK, kOfxStatReplyDefault,
 };
 use openfx::sys::image_effect_v1::draw_suite::{
     OfxDrawContextHandle, OfxDrawSuiteV1, kOfxDrawPrimitiveLineLoop, kOfxDrawPrimitiveLineStrip,
-    kOfxInteractPropDrawContext,
+    kOfxDrawTextAlignmentBottom, kOfxDrawTextAlignmentLeft, kOfxInteractPropDrawContext,
 };
 use openfx::sys::image_effect_v1::interact::{
-    kOfxInteractActionDraw, kOfxInteractActionPenDown, kOfxInteractActionPenMotion, kOfxInteractActionPenUp,
-    kOfxInteractPropPenPosition, kOfxInteractPropPixelScale,
+    kOfxInteractActionDraw, kOfxInteractActionKeyDown, kOfxInteractActionKeyUp, kOfxInteractActionLoseFocus,
+    kOfxInteractActionPenDown, kOfxInteractActionPenMotion, kOfxInteractActionPenUp, kOfxInteractPropPenPosition,
+    kOfxInteractPropPixelScale,
 };
+use openfx::sys::image_effect_v1::key_syms::kOfxPropKeySym;
 use openfx::sys::image_effect_v1::pixels::OfxRGBAColourF;
 use std::ffi::{CStr, c_char, c_double, c_float, c_int, c_uint, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -35,6 +37,12 @@ pub enum Event {
     Move,
     /// The pen goes up.
     Up,
+    /// A key of the keyboard goes down.
+    KeyDown,
+    /// A key of the keyboard goes up.
+    KeyUp,
+    /// The viewer's keys and pen go elsewhere.
+    Left,
 }
 
 /// An event of the viewer with its arguments.
@@ -45,8 +53,10 @@ pub struct View<'a> {
     pub effect: Effect<'a>,
     /// Time of the viewer, in frames.
     pub time: f64,
-    /// Size of a screen pixel in canonical coordinates.
-    pub pixel: f64,
+    /// Width and height of a screen pixel in canonical coordinates.
+    pub pixel: [f64; 2],
+    /// The symbol of the key that goes down or up ([`openfx::sys::image_effect_v1::key_syms`]).
+    pub key: u32,
     /// Position of the pen in canonical coordinates.
     pub pen: [f64; 2],
     canvas: Option<Canvas>,
@@ -77,6 +87,9 @@ pub unsafe fn entry(
         (kOfxInteractActionPenDown, Event::Down),
         (kOfxInteractActionPenMotion, Event::Move),
         (kOfxInteractActionPenUp, Event::Up),
+        (kOfxInteractActionKeyDown, Event::KeyDown),
+        (kOfxInteractActionKeyUp, Event::KeyUp),
+        (kOfxInteractActionLoseFocus, Event::Left),
     ];
     let Some((_, event)) = events.into_iter().find(|(known, _)| *known == name) else { return kOfxStatReplyDefault };
     let act = || {
@@ -122,13 +135,17 @@ impl View<'_> {
             _ => None,
         };
         let scale: [f64; 2] = input.doubles(kOfxInteractPropPixelScale).unwrap_or([1.0; 2]);
-        let pen = if event == Event::Draw { [0.0; 2] } else { input.doubles(kOfxInteractPropPenPosition)? };
+        let with_pen = matches!(event, Event::Down | Event::Move | Event::Up);
+        let pen = if with_pen { input.doubles(kOfxInteractPropPenPosition)? } else { [0.0; 2] };
+        let with_key = matches!(event, Event::KeyDown | Event::KeyUp);
+        let key = if with_key { input.int(kOfxPropKeySym, 0)? } else { 0 };
         Ok(Self {
             event,
             // SAFETY: the handle of the effect, which lives at least as long as its overlay.
             effect: unsafe { Effect::new(effect, suites) },
             time: input.double(kOfxPropTime, 0)?,
-            pixel: if scale[0].is_finite() && scale[0] > 0.0 { scale[0] } else { 1.0 },
+            pixel: scale.map(|scale| if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }),
+            key: key.cast_unsigned(),
             pen,
             canvas,
             interact,
@@ -150,6 +167,17 @@ impl View<'_> {
             Some(Canvas::Suite(suite, context)) => draw_by_suite(suite, *context, points, closed, colour, width),
             Some(Canvas::OpenGl(gl)) => gl.line(points, closed, colour, width),
             None => {}
+        }
+    }
+
+    /// Writes a text whose lower left corner is at a place in canonical coordinates. OpenGL has no text: nothing is written.
+    pub fn text(&self, text: &str, at: [f64; 2], [r, g, b, a]: [f32; 4]) {
+        if let Some(Canvas::Suite(suite, context)) = &self.canvas {
+            let (text, at) = (terminated(text), OfxPointD { x: at[0], y: at[1] });
+            let colour = OfxRGBAColourF { r, g, b, a };
+            let alignment = kOfxDrawTextAlignmentLeft | kOfxDrawTextAlignmentBottom;
+            let _ = call!(suite, setColour, *context, &colour);
+            let _ = call!(suite, drawText, *context, text.as_ptr(), &at, alignment as c_int);
         }
     }
 }

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::host::Suites;
 use super::property::{Properties, call, copied, terminated};
 use openfx::sys::image_effect_v1::param::{OfxParamHandle, OfxParamSetHandle};
-use std::ffi::{CStr, c_char, c_int};
+use std::ffi::{CStr, c_char, c_int, c_uint};
 use std::marker::PhantomData;
 
 /// The parameters of an effect.
@@ -70,18 +70,74 @@ impl<'a> Parameters<'a> {
         Ok(unsafe { copied(value) })
     }
 
-    /// Sets texts, given by parameter id, as one undo step named `label`.
-    pub fn set(&self, label: &str, texts: &[(&CStr, &str)]) -> Result<(), Failure> {
+    /// Runs changes of parameters as one undo step named `label`. A host without edit blocks makes one step per parameter.
+    pub fn edit(&self, label: &str, change: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
         let label = terminated(label);
-        // A host without edit blocks makes one undo step per text.
         let begun = call!(self.suites.parameter, paramEditBegin, self.set, label.as_ptr()).is_ok();
-        let result = texts.iter().try_for_each(|(id, value)| {
-            let value = terminated(value);
-            call!(self.suites.parameter, paramSetValue, self.handle(id)?, value.as_ptr())
-        });
+        let result = change();
         if begun {
             let _ = call!(self.suites.parameter, paramEditEnd, self.set);
         }
         result
+    }
+
+    /// Sets a text. One that is the same already is left, so that no undo step is made.
+    pub fn set_text(&self, id: &CStr, value: &str) -> Result<(), Failure> {
+        if self.text(id).is_ok_and(|known| known == value) {
+            return Ok(());
+        }
+        let value = terminated(value);
+        call!(self.suites.parameter, paramSetValue, self.handle(id)?, value.as_ptr())
+    }
+
+    /// Sets texts, given by parameter id, as one undo step named `label`.
+    pub fn set(&self, label: &str, texts: &[(&CStr, &str)]) -> Result<(), Failure> {
+        self.edit(label, || texts.iter().try_for_each(|(id, value)| self.set_text(id, value)))
+    }
+
+    /// Sets a whole number, flag or choice for all times.
+    pub fn set_int(&self, id: &CStr, value: i32) -> Result<(), Failure> {
+        call!(self.suites.parameter, paramSetValue, self.handle(id)?, value)
+    }
+
+    /// Sets a number for all times.
+    pub fn set_double(&self, id: &CStr, value: f64) -> Result<(), Failure> {
+        call!(self.suites.parameter, paramSetValue, self.handle(id)?, value)
+    }
+
+    /// Sets a key of a flag.
+    pub fn set_int_at(&self, id: &CStr, time: f64, value: i32) -> Result<(), Failure> {
+        call!(self.suites.parameter, paramSetValueAtTime, self.handle(id)?, time, value)
+    }
+
+    /// Sets a key of a number.
+    pub fn set_double_at(&self, id: &CStr, time: f64, value: f64) -> Result<(), Failure> {
+        call!(self.suites.parameter, paramSetValueAtTime, self.handle(id)?, time, value)
+    }
+
+    /// Sets a key of two numbers.
+    pub fn set_pair_at(&self, id: &CStr, time: f64, [x, y]: [f64; 2]) -> Result<(), Failure> {
+        call!(self.suites.parameter, paramSetValueAtTime, self.handle(id)?, time, x, y)
+    }
+
+    /// The times of a parameter's keys. A host without keys has none.
+    pub fn keys(&self, id: &CStr) -> Result<Vec<f64>, Failure> {
+        let handle = self.handle(id)?;
+        let mut count: c_uint = 0;
+        let place: *mut c_uint = &mut count;
+        if call!(self.suites.parameter, paramGetNumKeys, handle, place).is_err() {
+            return Ok(Vec::new());
+        }
+        let key = |index| {
+            let mut time = 0.0f64;
+            let place: *mut f64 = &mut time;
+            call!(self.suites.parameter, paramGetKeyTime, handle, index, place).map(|()| time)
+        };
+        (0..count).map(key).collect()
+    }
+
+    /// Deletes all keys of a parameter.
+    pub fn delete_keys(&self, id: &CStr) -> Result<(), Failure> {
+        call!(self.suites.parameter, paramDeleteAllKeys, self.handle(id)?)
     }
 }

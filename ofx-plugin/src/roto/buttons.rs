@@ -1,9 +1,9 @@
-//! The buttons Load, Save and Track.
+//! The buttons, and parameters whose change has consequences.
 //!
 //! Only changes by the user are handled. Each value that the plugin sets itself is reported as a change too.
 
 use super::instance::ORIGIN;
-use super::{instance, stored, track};
+use super::{edits, instance, page, stored, taking_out, track};
 use crate::description::SOURCE;
 use crate::ofx::entry::Action;
 use crate::ofx::{Effect, Failure};
@@ -36,6 +36,17 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
         "project" if path(effect)?.is_file() => load(effect),
         "save" => save(effect),
         "track" => track::track(effect, time),
+        "newPart" | "newKey" | "deleteKey" | "insertPoints" | "deletePoints" | "smoothPoints" | "deletePart" => {
+            edits::press(effect, &name, time)
+        }
+        "part" => edits::select(effect, effect.parameters()?.text(c"part")?.trim()),
+        "tool" => {
+            instance(effect)?.editor().drop_work();
+            Ok(())
+        }
+        "writeMotion" => taking_out::write_motion(effect, time),
+        "export" => taking_out::export(effect),
+        page if page::IDS.iter().any(|id| id.to_bytes() == page.as_bytes()) => edits::page_changed(effect),
         _ => Err(Failure::Default),
     };
     match done {
@@ -73,7 +84,7 @@ fn load(effect: &Effect) -> Result<(), Failure> {
     {
         *pattern = Path::new(&folder.replace('%', "%%")).join(&*pattern).to_string_lossy().into_owned();
     }
-    effect.parameters()?.set("Load project", &[(c"document", &stored::encode(&document.to_json()))])
+    edits::store_loaded(effect, &document)
 }
 
 /// Writes the composition's shapes to the project's file. Footage below the file's folder gets a relative path.
@@ -84,7 +95,7 @@ fn save(effect: &Effect) -> Result<(), Failure> {
         return Err(Failure::Told("found no shapes to save: load a project first".into()));
     }
     let told = |error: &dyn std::fmt::Display| Failure::Told(error.to_string());
-    let json = stored::decode(&text).map_err(Failure::Told)?;
+    let json = stored::decode(&text).map_err(|error| Failure::Told(format!("{ORIGIN}: {error}")))?;
     let mut document = Document::parse(&json, ORIGIN).map_err(|error| told(&error))?;
     let folder = folder(&path);
     let pattern = &mut document.scene.footage.pattern;

@@ -15,6 +15,7 @@ const ABOUT: About = About {
     label: "Rototoon Roto",
     description: "Draws contours of drawn characters, tracked by Rototoon, as cutouts, mattes, lines or ids.",
     tiles: true,
+    mask: true,
 };
 
 /// Describes the effect.

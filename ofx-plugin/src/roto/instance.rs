@@ -1,7 +1,8 @@
 //! The data of an instance: its document, which is read once, and the messages that the user has seen.
 
-use super::overlay::Drag;
-use super::stored;
+use super::edit::Editor;
+use super::state::State;
+use super::{shared, stored};
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::project::Document;
 use std::collections::BTreeSet;
@@ -14,12 +15,16 @@ pub const ORIGIN: &str = "the composition's document";
 /// Most different messages until the user changes something.
 const MOST_NOTES: usize = 20;
 
+/// A stored state: its text, and what it says or why it could not be read.
+type ReadState = (String, Result<Arc<State>, String>);
+
 /// The data that an instance keeps between actions.
 #[derive(Debug, Default)]
 pub struct Instance {
     read: Mutex<Option<Read>>,
     told: Mutex<BTreeSet<String>>,
-    drag: Mutex<Option<Drag>>,
+    state: Mutex<Option<ReadState>>,
+    editor: Mutex<Editor>,
 }
 
 /// A document, or why it could not be read.
@@ -30,8 +35,8 @@ struct Read {
 }
 
 /// The origin of a document. Equal origins give equal documents.
-#[derive(Clone, Debug, PartialEq)]
-enum Origin {
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Origin {
     /// The text stored in the composition.
     Text(String),
     /// A file with its modification time and size.
@@ -54,12 +59,12 @@ impl Instance {
         };
         let mut read = lock(&self.read);
         if read.as_ref().is_none_or(|read| read.origin != origin) {
-            let result = match &origin {
+            let result = shared::document(&origin, || match &origin {
                 Origin::Text(text) => stored::decode(text)
+                    .map_err(|error| format!("{ORIGIN}: {error}"))
                     .and_then(|json| Document::parse(&json, ORIGIN).map_err(|error| error.to_string())),
                 Origin::File(path, _) => Document::load(Path::new(path)).map_err(|error| error.to_string()),
-            };
-            let result = result.map(Arc::new);
+            });
             *read = Some(Read { origin, result });
         }
         match read.as_ref().map(|read| read.result.clone()) {
@@ -85,14 +90,21 @@ impl Instance {
         }
     }
 
-    /// The control point that is being dragged.
-    pub fn drag(&self) -> Option<Drag> {
-        *lock(&self.drag)
+    /// The settings of the parts, and what their tracks were made from.
+    pub fn state(&self, parameters: &Parameters) -> Result<Arc<State>, Failure> {
+        let text = parameters.text(c"state")?;
+        let mut read = lock(&self.state);
+        let known = read.take().filter(|(known, _)| *known == text);
+        let (_, state) = read.insert(known.unwrap_or_else(|| {
+            let state = State::parse(&text).map(Arc::new);
+            (text, state)
+        }));
+        state.clone().map_err(Failure::Told)
     }
 
-    /// Sets the control point that is being dragged.
-    pub fn set_drag(&self, drag: Option<Drag>) {
-        *lock(&self.drag) = drag;
+    /// The selection and the pen's unfinished work.
+    pub fn editor(&self) -> MutexGuard<'_, Editor> {
+        lock(&self.editor)
     }
 
     /// Removes the messages, because the user has changed something and they may no longer be true.

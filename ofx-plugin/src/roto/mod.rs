@@ -9,22 +9,43 @@
 //! - [`picture`]: draws the parts
 //! - [`regions`]: the regions that are drawn, and the regions of the source that they need
 //! - [`render`]: renders the pixels of a window
-//! - [`overlay`]: draws contours over the viewer, with control points that can be dragged; [`overlay_entry`]: how the host calls it
-//! - [`buttons`]: load, save, track
+//! - [`outlines`]: draws outlines as lines
+//! - [`mixing`]: what a picture does with the source
+//! - [`measured`]: the scale at which a host really gives its pixels
+//! - [`shared`]: documents that instances share
+//! - [`overlay`]: events of the pen and the keyboard in the viewer; [`overlay_entry`]: how the host calls it; [`canvas`]: draws
+//!   over the viewer
+//! - [`edit`]: what the pen does to a selection and a document, without a host
+//! - [`edits`]: stores edits and selections in the host's parameters; [`fresh`]: the document of a new composition
+//! - [`state`]: the settings of parts, and what tracks were made from; [`page`]: the settings of one part as parameters
+//! - [`buttons`]: the buttons
+//! - [`motion`]: the motion of a part; [`taking_out`]: takes motions and shapes out
 //! - [`track`]: runs the core's tracker on the source's frames
 
 pub mod buttons;
+pub mod canvas;
 pub mod describe;
+pub mod edit;
+pub mod edits;
+pub mod fresh;
 pub mod instance;
+pub mod measured;
+pub mod mixing;
+pub mod motion;
+pub mod outlines;
 pub mod overlay;
 pub mod overlay_entry;
+pub mod page;
 pub mod parts;
 pub mod picture;
 pub mod placement;
 pub mod regions;
 pub mod render;
 pub mod settings;
+pub mod shared;
+pub mod state;
 pub mod stored;
+pub mod taking_out;
 pub mod track;
 
 use crate::ofx::entry::{Action, Perform};

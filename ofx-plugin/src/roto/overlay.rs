@@ -1,157 +1,167 @@
-//! Draws contours over the viewer, and lets the user drag their control points.
+//! The overlay over the viewer: hands the events of the pen and the keyboard to the editor, stores its edits, and draws.
 //!
-//! A drag on a key frame moves the key's point. A drag on a frame between keys makes a pin, which the next **Track** keeps.
-//! The point moves at once on that frame. The document is written when the pen goes up.
+//! An edit is stored in the hidden document when the pen goes up, as one step of the host's own undo. While the pen drags,
+//! only the overlay changes. Everything the editor works on is read anew for each event, because the host may have undone a
+//! step or set a parameter in between.
 
+use super::edit::{Edit, Editor, Key, Lens, Outcome, Tool, Work};
 use super::parts::selected;
 use super::placement::Placement;
 use super::settings::Settings;
-use super::{instance, stored};
+use super::state::State;
+use super::{canvas, edits, fresh, instance};
 use crate::ofx::Failure;
 use crate::ofx::interact::{Event, View};
+use openfx::sys::image_effect_v1::key_syms;
 use rototoon::geometry::Point;
-use rototoon::project::{Document, validate};
-use rototoon::render::motion::outline_at;
-use rototoon::scene::{FrameNumber, palette};
+use rototoon::project::Document;
+use rototoon::scene::FrameNumber;
 use std::sync::Arc;
 
-/// Largest distance from the pen at which a point is picked, in screen pixels.
-const NEAR: f64 = 8.0;
-/// Half the side of a control point's square, in screen pixels.
-const HANDLE: f64 = 3.0;
-
-/// A control point that is being dragged.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drag {
-    part: usize,
-    point: usize,
-    frame: FrameNumber,
-    /// Position of the pen in pixels of the footage.
-    at: Point,
-}
-
-/// The shapes that the viewer shows.
-struct Shown {
-    document: Arc<Document>,
-    parts: Vec<usize>,
-    settings: Settings,
-    placement: Placement,
+/// What the viewer shows.
+pub struct Shown {
+    /// The document; one without parts if the composition has none.
+    pub document: Arc<Document>,
+    /// The shown parts, the farthest first.
+    pub parts: Vec<usize>,
+    /// Those of them that the pen may change.
+    unlocked: Vec<usize>,
+    /// The parameters' values.
+    pub settings: Settings,
+    /// The settings of parts, and what their tracks were made from.
+    pub state: Arc<State>,
+    /// The placement of the footage.
+    pub placement: Placement,
+    /// Distances on the screen.
+    pub lens: Lens,
+    tool: Tool,
+    closed: bool,
+    /// Name of the selected part.
+    pub name: String,
 }
 
 impl Shown {
     fn of(view: &View) -> Result<Self, Failure> {
         let (instance, parameters) = (instance(&view.effect)?, view.effect.parameters()?);
-        // Rendering reports the errors of a document.
-        let document = instance.document(&parameters).ok().flatten().ok_or(Failure::Default)?;
-        let settings = Settings::read(&parameters, view.time)?;
+        // Rendering reports the errors of a document and of settings.
+        let quiet = |_| Failure::Default;
+        let document = match instance.document(&parameters).map_err(quiet)? {
+            Some(document) => document,
+            None => Arc::new(fresh::document(&view.effect).map_err(quiet)?),
+        };
+        let state = instance.state(&parameters).map_err(quiet)?;
+        let settings = Settings::read(&parameters, view.time, &state)?;
         let mut parts = selected(&document.scene.parts, &settings.parts).0;
-        parts.sort_by(|&a, &b| document.scene.parts[a].depth.total_cmp(&document.scene.parts[b].depth));
+        parts.sort_by(|&a, &b| document.scene.parts[a].depth.total_cmp(&document.scene.parts[b].depth).then(a.cmp(&b)));
+        let locked = |part: &usize| edits::is_locked(&parameters, &state, &document.scene.parts[*part].name);
+        let unlocked = parts.iter().copied().filter(|part| !locked(part)).collect();
         let placement = Placement::of(&view.effect, &document.scene.footage, view.time, [1.0; 2])?;
-        Ok(Self { document, parts, settings, placement })
+        let size = |p: Point| Point::from(placement.shown(p)) / Point::from(view.pixel);
+        let lens =
+            Lens::new(Point::new((size(Point::X) - size(Point::ZERO)).x, (size(Point::Y) - size(Point::ZERO)).y));
+        let tool = tool(parameters.int(c"tool", view.time)?);
+        let (closed, name) = (parameters.int(c"drawClosed", view.time)? != 0, parameters.text(c"part")?);
+        Ok(Self { document, parts, unlocked, settings, state, placement, lens, tool, closed, name: name.trim().into() })
     }
 
     /// The document's frame at the viewer's time; `None` between frames.
-    fn frame(&self) -> Option<FrameNumber> {
+    pub fn frame(&self) -> Option<FrameNumber> {
         let time = self.settings.document_time;
         (time.fract() == 0.0 && time.abs() < 1e9).then_some(time as FrameNumber)
     }
 
-    /// The control point nearest to the pen. Of several at the same distance, that of the frontmost part.
-    fn nearest(&self, view: &View) -> Option<Drag> {
-        let (frame, pen) = (self.frame()?, Point::from(view.pen));
-        let points = self.parts.iter().rev().flat_map(|&part| {
-            let points = self.document.scene.parts[part].points_at(frame).into_iter().flatten();
-            points.enumerate().map(move |(point, &at)| Drag { part, point, frame, at })
-        });
-        let distance = |drag: &Drag| Point::from(self.placement.shown(drag.at)).distance(pen);
-        let near = points.filter(|drag| distance(drag) <= NEAR * view.pixel);
-        near.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    /// What an event works on.
+    pub fn work(&self, frame: FrameNumber) -> Work<'_> {
+        Work {
+            document: &self.document,
+            frame,
+            parts: &self.unlocked,
+            lens: self.lens,
+            tool: self.tool,
+            closed: self.closed,
+            name: &self.name,
+        }
+    }
+}
+
+/// The tool of an index.
+pub fn tool(index: i32) -> Tool {
+    match index {
+        1 => Tool::Contour,
+        2 => Tool::Freehand,
+        3 => Tool::Off,
+        _ => Tool::Select,
     }
 }
 
 /// Handles an event of the viewer.
 pub fn perform(view: &View) -> Result<(), Failure> {
-    let dragged = instance(&view.effect)?.drag();
-    match (view.event, dragged) {
-        (Event::Draw, _) => draw(view, dragged),
-        (Event::Down, _) => {
-            let drag = Shown::of(view)?.nearest(view).ok_or(Failure::Default)?;
-            instance(&view.effect)?.set_drag(Some(drag));
-            view.redraw();
-            Ok(())
-        }
-        (Event::Move | Event::Up, None) => Err(Failure::Default),
-        (Event::Move, Some(drag)) => {
-            let at = Shown::of(view)?.placement.footage(view.pen);
-            instance(&view.effect)?.set_drag(Some(Drag { at, ..drag }));
-            view.redraw();
-            Ok(())
-        }
-        (Event::Up, Some(drag)) => {
-            instance(&view.effect)?.set_drag(None);
-            let shown = Shown::of(view)?;
-            let drag = Drag { at: shown.placement.footage(view.pen), ..drag };
-            let done = keep(view, &shown, drag);
-            view.redraw();
-            done
-        }
-    }
-}
-
-fn draw(view: &View, dragged: Option<Drag>) -> Result<(), Failure> {
-    let shown = Shown::of(view)?;
-    let frame = shown.frame();
-    for &index in &shown.parts {
-        let part = &shown.document.scene.parts[index];
-        let [r, g, b] = palette::distinct(index);
-        let drag = dragged.filter(|drag| drag.part == index && Some(drag.frame) == frame);
-        let outline = |points: &[Point]| points.iter().map(|&p| shown.placement.shown(p)).collect::<Vec<_>>();
-        // A drag moves control points, so snapped curves are not shown while it lasts.
-        let curves = shown.settings.curves && drag.is_none();
-        let Some(mut points) = outline_at(part, shown.settings.document_time, curves) else { continue };
-        if let Some(drag) = drag
-            && let Some(point) = points.get_mut(drag.point)
-        {
-            *point = drag.at;
-        }
-        view.line(&outline(&points), part.closed, [r, g, b, 1.0], 1.5);
-        let Some(points) = frame.and_then(|frame| part.points_at(frame)) else { continue };
-        let key = frame.is_some_and(|frame| part.keys.contains_key(&frame));
-        for (number, &point) in points.iter().enumerate() {
-            let at = drag.filter(|drag| drag.point == number).map_or(point, |drag| drag.at);
-            let [x, y] = shown.placement.shown(at);
-            let size = HANDLE * view.pixel;
-            let corners = [[x - size, y - size], [x + size, y - size], [x + size, y + size], [x - size, y + size]];
-            view.line(&corners, true, if key { [1.0; 4] } else { [r, g, b, 1.0] }, 1.0);
-        }
-    }
-    Ok(())
-}
-
-/// Stores a dragged point in the document.
-fn keep(view: &View, shown: &Shown, drag: Drag) -> Result<(), Failure> {
-    let mut document = Document::clone(&shown.document);
-    let part = document.scene.parts.get_mut(drag.part).ok_or(Failure::Default)?;
-    let before = part.points_at(drag.frame).and_then(|points| points.get(drag.point)).copied();
-    if before.is_none_or(|before| before.distance(drag.at) < 1e-6) {
-        return Ok(());
-    }
-    if let Some(point) = part.keys.get_mut(&drag.frame).and_then(|key| key.get_mut(drag.point)) {
-        *point = drag.at;
-    } else if validate::acts(part, drag.frame) {
-        part.pins.entry(drag.frame).or_default().insert(drag.point, drag.at);
-    } else {
+    let instance = instance(&view.effect)?;
+    if view.event == Event::Left {
+        instance.editor().release_keys();
         return Err(Failure::Default);
     }
-    if let Some(point) = part.tracks.get_mut(&drag.frame).and_then(|track| track.get_mut(drag.point)) {
-        *point = drag.at;
+    let shown = Shown::of(view)?;
+    if view.event == Event::Draw {
+        // A copy, so that the host may call back while it draws.
+        let editor = instance.editor().clone();
+        canvas::draw(view, &shown, &editor);
+        return Ok(());
     }
-    // The snapped curve belongs to the old contour.
-    part.curves.remove(&drag.frame);
-    let problems = document.problems();
-    if problems.error_count() > 0 {
-        view.effect.complain(&problems.to_string());
-        return Err(Failure::Told(problems.to_string()));
+    let frame = shown.frame().ok_or(Failure::Default)?;
+    // The editor is free again before the host is called.
+    let outcome = {
+        let mut editor = instance.editor();
+        happen(view, &shown, frame, &mut editor)
+    };
+    let result = keep(view, &shown, outcome);
+    if result != Err(Failure::Default) {
+        view.redraw();
     }
-    view.effect.parameters()?.set("Move point", &[(c"document", &stored::encode(&document.to_json()))])
+    result
+}
+
+/// What an event makes of the editor.
+fn happen(view: &View, shown: &Shown, frame: FrameNumber, editor: &mut Editor) -> Outcome {
+    let (work, pen) = (shown.work(frame), shown.placement.footage(view.pen));
+    match view.event {
+        Event::Down => editor.down(&work, pen),
+        Event::Move => editor.move_to(&work, pen),
+        Event::Up => editor.up(&work, pen),
+        Event::KeyDown | Event::KeyUp => match key(view.key, view.event == Event::KeyDown) {
+            Some(key) => editor.key(&work, key),
+            None => Outcome::Ignored,
+        },
+        Event::Draw | Event::Left => Outcome::Ignored,
+    }
+}
+
+fn key(symbol: u32, down: bool) -> Option<Key> {
+    match symbol {
+        key_syms::kOfxKey_Shift_L | key_syms::kOfxKey_Shift_R => Some(Key::Shift(down)),
+        key_syms::kOfxKey_Control_L | key_syms::kOfxKey_Control_R => Some(Key::Control(down)),
+        _ if !down => None,
+        key_syms::kOfxKey_Delete => Some(Key::Delete),
+        key_syms::kOfxKey_BackSpace => Some(Key::Back),
+        key_syms::kOfxKey_Escape => Some(Key::Escape),
+        key_syms::kOfxKey_Return | key_syms::kOfxKey_KP_Enter => Some(Key::Enter),
+        _ => None,
+    }
+}
+
+/// Stores what an event led to.
+fn keep(view: &View, shown: &Shown, outcome: Outcome) -> Result<(), Failure> {
+    match outcome {
+        Outcome::Ignored => Err(Failure::Default),
+        Outcome::Shown => Ok(()),
+        Outcome::Selected(name) => match name {
+            Some(name) if name != shown.name => edits::select(&view.effect, &name),
+            _ => Ok(()),
+        },
+        Outcome::Edited(Edit { label, document }) => edits::store(&view.effect, label, document),
+        Outcome::Refused(refused) => {
+            view.effect.complain(&refused.0);
+            Ok(())
+        }
+    }
 }

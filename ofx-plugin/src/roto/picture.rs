@@ -1,80 +1,70 @@
-//! Draws the outlines at a time into pixels.
+//! The picture of the parts at a time, in pixels with y turned down.
 //!
-//! Parts are drawn from the farthest to the nearest, and parts of equal depth in the document's order. So ids and lines of
-//! nearer parts cover those of farther ones. Lines have a dark border, as in the core's overlay. It shows which of two
-//! crossing lines is in front.
+//! Mattes and cutouts are made of layers, from the farthest part to the nearest, and parts of equal depth in the document's
+//! order. Neighbouring parts without settings of their own are one layer: their union is exact. In ids the parts share each
+//! pixel by area, as in the command line's ids. If they are grown or feathered, nearer ones are laid over farther ones.
 
+use super::outlines::Lines;
 use super::placement::Placement;
 use super::settings::{Output, Settings};
+use super::state::PartLook;
 use crate::pixels::Pixel;
 use rototoon::geometry::Point;
+use rototoon::render::composite::{Layer, Layers};
 use rototoon::render::coverage::Window;
-use rototoon::render::line;
 use rototoon::render::mask::{Bounds, Mask};
-use rototoon::render::motion::{outline_at, shutter};
+use rototoon::render::motion::{outline_at, shutter_from};
+use rototoon::render::visible::Stack;
 use rototoon::scene::{Part, Raster, Scene, palette};
 
-/// Width of a line's border on each side, as a share of the line's width.
-const BORDER: f64 = 0.5;
-/// Opacity of the border.
-const BORDER_OPACITY: f32 = 0.5;
-
-/// Something to draw, in pixels with y turned down.
+/// Something to draw.
 #[derive(Clone, Debug)]
 pub enum Picture {
-    /// The previous pixels inside the mask, or outside of it if the flag is set.
-    Cutout(Mask, bool),
-    /// White inside the mask, or outside of it if the flag is set.
-    Matte(Mask, bool),
+    /// The previous pixels inside the layers, or outside of them if the flag is set.
+    Cutout(Layers, bool),
+    /// The coverage of the layers, or of what is outside of them if the flag is set.
+    Matte(Layers, bool),
+    /// The coverage of layers for red, green, blue and alpha.
+    Mattes(Box<[Layers; 4]>, bool),
+    /// The outlines at each instant, for ids.
+    Ids(Vec<Stack>),
     /// Masks with their colours, the farthest first.
-    Ids(Vec<(Mask, [f32; 3])>),
+    SoftIds(Vec<(Mask, [f32; 3])>),
     /// Outlines over the previous pixels, the farthest first.
     Lines(Lines),
 }
 
-/// Outlines to draw as lines.
-#[derive(Clone, Debug)]
-pub struct Lines {
-    /// For each outline its points, and whether the last point joins the first.
-    outlines: Vec<(Vec<Point>, bool)>,
-    width: f64,
-    colour: [f32; 4],
-}
-
 impl Picture {
-    /// The picture of the parts with these indices.
-    pub fn new(scene: &Scene, parts: &[usize], settings: &Settings, placement: &Placement) -> Self {
-        let mut order = parts.to_vec();
-        order.sort_by(|&a, &b| scene.parts[a].depth.total_cmp(&scene.parts[b].depth));
-        let (grow, feather) = (placement.length(settings.grow), placement.length(settings.feather));
-        let mask = |parts: &[usize]| {
-            let closed: Vec<&Part> =
-                parts.iter().map(|&index| &scene.parts[index]).filter(|part| part.closed).collect();
-            Mask::new(instants(&closed, settings, placement), grow, feather)
-        };
+    /// The picture of the parts with these indices. `selected` gives the indices of a list of names.
+    pub fn new(
+        scene: &Scene,
+        parts: &[usize],
+        selected: &dyn Fn(&str) -> Vec<usize>,
+        settings: &Settings,
+        placement: &Placement,
+    ) -> Self {
+        let drawing = Drawing { scene, settings, placement };
+        let order = drawing.order(parts);
         match settings.output {
-            Output::Cutout => Self::Cutout(mask(&order), settings.invert),
-            Output::Matte => Self::Matte(mask(&order), settings.invert),
-            Output::Ids => Self::Ids(order.iter().map(|&index| (mask(&[index]), palette::distinct(index))).collect()),
-            Output::Overlay => {
-                let outline = |&index: &usize| {
-                    let part = &scene.parts[index];
-                    let points = outline_at(part, settings.document_time, settings.curves)?;
-                    Some((points.into_iter().map(|p| placement.place(p)).collect(), part.closed))
+            Output::Cutout => Self::Cutout(drawing.layers(&order), settings.invert),
+            Output::Matte => Self::Matte(drawing.layers(&order), settings.invert),
+            Output::Mattes => {
+                let of = |names: &String| {
+                    let chosen = if names.trim().is_empty() { Vec::new() } else { drawing.order(&selected(names)) };
+                    let chosen: Vec<usize> = chosen.into_iter().filter(|part| order.contains(part)).collect();
+                    drawing.layers(&chosen)
                 };
-                Self::Lines(Lines {
-                    outlines: order.iter().filter_map(outline).collect(),
-                    width: placement.length(settings.line_width),
-                    colour: settings.line_colour,
-                })
+                Self::Mattes(Box::new(settings.channel_parts.each_ref().map(of)), settings.invert)
             }
+            Output::Ids => drawing.ids(&order),
+            Output::Overlay => Self::Lines(drawing.lines(&order)),
         }
     }
 
     /// Whether the picture changes no pixel of a window.
     pub fn changes_nothing(&self, window: Window) -> bool {
         match self {
-            Self::Cutout(mask, true) => mask.misses(window),
+            Self::Cutout(layers, true) => layers.misses(window),
             Self::Lines(lines) => lines.misses(window),
             _ => false,
         }
@@ -82,31 +72,78 @@ impl Picture {
 
     /// The bounds of the drawn pixels. If the flag is true, pixels outside of them are drawn too.
     pub fn bounds(&self) -> (Option<Bounds>, bool) {
+        let with = |(bounds, everywhere), invert| (bounds, everywhere || invert);
         match self {
-            Self::Cutout(mask, invert) | Self::Matte(mask, invert) => (mask.bounds(), *invert),
-            Self::Ids(layers) => (layers.iter().filter_map(|(mask, _)| mask.bounds()).reduce(united), false),
+            Self::Cutout(layers, invert) | Self::Matte(layers, invert) => with(layers.bounds(), *invert),
+            Self::Mattes(mattes, invert) => {
+                let all = mattes.iter().map(Layers::bounds);
+                let joined =
+                    all.reduce(|(a, all), (b, too)| ([a, b].into_iter().flatten().reduce(Bounds::united), all || too));
+                with(joined.unwrap_or_default(), *invert)
+            }
+            Self::Ids(stacks) => {
+                let united = stacks.iter().filter_map(Stack::bounds).map(|window| Bounds {
+                    least: Point::new(window.left as f64, window.top as f64),
+                    most: Point::new(window.right as f64, window.bottom as f64),
+                });
+                (united.reduce(Bounds::united), false)
+            }
+            Self::SoftIds(layers) => {
+                (layers.iter().filter_map(|(mask, _)| mask.bounds()).reduce(Bounds::united), false)
+            }
             Self::Lines(_) => (None, true),
         }
     }
 
+    /// The greatest number of pixels by which something reaches beyond its outline because it is soft. Windows that are not
+    /// much larger repeat work.
+    pub fn reach(&self) -> usize {
+        let most = |layers: &Layers| layers.0.iter().map(|layer| layer.mask.reach()).max().unwrap_or(0);
+        match self {
+            Self::Cutout(layers, _) | Self::Matte(layers, _) => most(layers),
+            Self::Mattes(mattes, _) => mattes.iter().map(most).max().unwrap_or(0),
+            Self::SoftIds(layers) => layers.iter().map(|(mask, _)| mask.reach()).max().unwrap_or(0),
+            Self::Ids(_) | Self::Lines(_) => 0,
+        }
+    }
+
     /// Draws over the pixels of a window. Calls `go_on` at each row, and returns `None` if it returns false.
+    ///
+    /// A cutout multiplies the pixels. A matte is in all four channels, ids are display colours times their alpha.
     pub fn paint(&self, window: Window, pixels: &mut Raster<Pixel>, go_on: &mut dyn FnMut() -> bool) -> Option<()> {
         match self {
-            Self::Cutout(mask, invert) => {
-                let mask = mask.draw(window, go_on)?;
+            Self::Cutout(layers, invert) => {
+                let mask = layers.draw(window, go_on)?;
                 each(pixels, &mask, |pixel, m| {
-                    let m = if *invert { 1.0 - m } else { m };
+                    let m = inverted(m, *invert);
                     *pixel = pixel.map(|value| value * m);
                 });
             }
-            Self::Matte(mask, invert) => {
-                let mask = mask.draw(window, go_on)?;
-                each(pixels, &mask, |pixel, m| *pixel = [if *invert { 1.0 - m } else { m }; 4]);
+            Self::Matte(layers, invert) => {
+                let mask = layers.draw(window, go_on)?;
+                each(pixels, &mask, |pixel, m| *pixel = [inverted(m, *invert); 4]);
             }
-            Self::Ids(layers) => {
-                for (mask, [r, g, b]) in layers.iter().filter(|(mask, _)| !mask.misses(window)) {
+            Self::Mattes(mattes, invert) => {
+                for (channel, layers) in mattes.iter().enumerate() {
+                    let mask = layers.draw(window, go_on)?;
+                    each(pixels, &mask, |pixel, m| pixel[channel] = inverted(m, *invert));
+                }
+            }
+            Self::Ids(stacks) => {
+                let share = 1.0 / stacks.len().max(1) as f32;
+                for stack in stacks {
+                    let shares = stack.shares(window, go_on)?;
+                    for (pixel, shown) in pixels.data_mut().iter_mut().zip(shares) {
+                        shown
+                            .iter()
+                            .for_each(|shown| add(pixel, palette::distinct(shown.part), share * shown.coverage));
+                    }
+                }
+            }
+            Self::SoftIds(layers) => {
+                for (mask, colour) in layers.iter().filter(|(mask, _)| !mask.misses(window)) {
                     let mask = mask.draw(window, go_on)?;
-                    each(pixels, &mask, |pixel, m| over(pixel, [*r, *g, *b], m));
+                    each(pixels, &mask, |pixel, m| over(pixel, *colour, m));
                 }
             }
             Self::Lines(lines) => lines.paint(window, pixels, go_on)?,
@@ -115,77 +152,117 @@ impl Picture {
     }
 }
 
-impl Lines {
-    fn reach(&self) -> f64 {
-        0.5 * self.width.max(1.0) * (1.0 + 2.0 * BORDER) + 0.5
+/// What pictures are made of.
+struct Drawing<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    placement: &'a Placement,
+}
+
+impl Drawing<'_> {
+    fn look(&self, part: usize) -> PartLook {
+        self.settings.look(&self.scene.parts[part].name)
     }
 
-    fn visible(&self) -> bool {
-        self.width > 0.0 && self.colour[3] > 0.0
+    /// Those of the parts that are drawn, the farthest first.
+    fn order(&self, parts: &[usize]) -> Vec<usize> {
+        let mut order: Vec<usize> = parts.iter().copied().filter(|&part| self.look(part).on).collect();
+        order.sort_by(|&a, &b| self.scene.parts[a].depth.total_cmp(&self.scene.parts[b].depth).then(a.cmp(&b)));
+        if self.settings.shown { order } else { Vec::new() }
     }
 
-    fn near(&self, points: &[Point], window: Window) -> bool {
-        let (least, most) = points.iter().fold((Point::MAX, Point::MIN), |(a, b), &p| (a.min(p), b.max(p)));
-        let reach = self.reach();
-        least.x - reach < window.right as f64
-            && least.y - reach < window.bottom as f64
-            && most.x + reach > window.left as f64
-            && most.y + reach > window.top as f64
-    }
-
-    fn misses(&self, window: Window) -> bool {
-        !self.visible() || !self.outlines.iter().any(|(points, _)| self.near(points, window))
-    }
-
-    fn paint(&self, window: Window, pixels: &mut Raster<Pixel>, go_on: &mut dyn FnMut() -> bool) -> Option<()> {
-        if !self.visible() {
-            return Some(());
+    /// The layers of parts in order.
+    fn layers(&self, order: &[usize]) -> Layers {
+        let mut layers = Vec::new();
+        let closed: Vec<usize> = order.iter().copied().filter(|&part| self.scene.parts[part].closed).collect();
+        for parts in closed.chunk_by(|&a, &b| self.look(a).is_plain() && self.look(b).is_plain()) {
+            let look = self.look(parts[0]);
+            let mask = self.mask(parts, look.grow, look.feather);
+            layers.push(Layer { mask, opacity: look.opacity as f32, invert: look.invert, blend: look.blend });
         }
-        let [r, g, b, a] = self.colour;
-        for outline in self.outlines.iter().filter(|(points, _)| self.near(points, window)) {
-            let one = std::slice::from_ref(outline);
-            let border = line::lines(one, self.width * (1.0 + 2.0 * BORDER), window, go_on)?;
-            each(pixels, &border, |pixel, m| over(pixel, [0.0; 3], BORDER_OPACITY * a * m));
-            let line = line::lines(one, self.width, window, go_on)?;
-            each(pixels, &line, |pixel, m| over(pixel, [r, g, b], a * m));
+        Layers(layers)
+    }
+
+    fn mask(&self, parts: &[usize], grow: f64, feather: f64) -> Mask {
+        let length = |pixels| self.placement.length(pixels);
+        let parts: Vec<&Part> = parts.iter().map(|&part| &self.scene.parts[part]).collect();
+        Mask::new(self.instants(&parts), length(self.settings.grow + grow), length(self.settings.feather + feather))
+    }
+
+    fn ids(&self, order: &[usize]) -> Picture {
+        let closed: Vec<usize> = order.iter().copied().filter(|&part| self.scene.parts[part].closed).collect();
+        let look = |part| self.look(part);
+        let soft = |part: usize| look(part).grow != 0.0 || look(part).feather != 0.0;
+        if self.settings.grow != 0.0 || self.settings.feather != 0.0 || closed.iter().any(|&part| soft(part)) {
+            let mask =
+                |&part: &usize| (self.mask(&[part], look(part).grow, look(part).feather), palette::distinct(part));
+            return Picture::SoftIds(closed.iter().map(mask).collect());
         }
-        Some(())
+        let time = self.settings.document_time;
+        let parts: Vec<(usize, &Part)> = closed.iter().rev().map(|&part| (part, &self.scene.parts[part])).collect();
+        let at = |t: f64| Stack::new(parts.iter().filter_map(|&(k, part)| Some((k, self.outline(part, time, t)?))));
+        Picture::Ids(self.times().into_iter().map(at).collect())
+    }
+
+    fn lines(&self, order: &[usize]) -> Lines {
+        let outline = |&part: &usize| {
+            let part = &self.scene.parts[part];
+            Some((self.outline(part, self.settings.document_time, self.settings.document_time)?, part.closed))
+        };
+        Lines::new(
+            order.iter().filter_map(outline).collect(),
+            self.placement.length(self.settings.line_width),
+            self.settings.line_colour,
+        )
+    }
+
+    /// The times while the shutter is open.
+    fn times(&self) -> Vec<f64> {
+        let settings = self.settings;
+        let opens = settings.document_time + settings.phase * settings.shutter;
+        shutter_from(opens, settings.shutter, settings.samples)
+    }
+
+    /// The outline of a part at a time. A part with an outline at the frame's time has one at all times: outside of its track
+    /// it keeps that outline.
+    fn outline(&self, part: &Part, frame: f64, time: f64) -> Option<Vec<Point>> {
+        let at = |time| outline_at(part, time, self.settings.curves);
+        let exists = time == frame || outline_at(part, frame, false).is_some();
+        let points = if exists { at(time).or_else(|| at(frame)) } else { None }?;
+        Some(points.into_iter().map(|p| self.placement.place(p)).collect())
+    }
+
+    /// The outlines of parts at the times while the shutter is open.
+    fn instants(&self, parts: &[&Part]) -> Vec<Vec<Vec<Point>>> {
+        let time = self.settings.document_time;
+        let shown: Vec<&&Part> = parts.iter().filter(|part| outline_at(part, time, false).is_some()).collect();
+        if shown.is_empty() {
+            return Vec::new();
+        }
+        let at = |t| shown.iter().filter_map(|part| self.outline(part, time, t)).collect();
+        self.times().into_iter().map(at).collect()
     }
 }
 
-/// The outlines of closed parts at the times while the shutter is open. A part with an outline at the frame's time has one
-/// at all of these times: outside of its track it keeps that outline.
-fn instants(parts: &[&Part], settings: &Settings, placement: &Placement) -> Vec<Vec<Vec<Point>>> {
-    let time = settings.document_time;
-    let still: Vec<(&Part, Vec<Point>)> =
-        parts.iter().filter_map(|part| Some((*part, outline_at(part, time, settings.curves)?))).collect();
-    if still.is_empty() {
-        return Vec::new();
-    }
-    let placed = |points: Vec<Point>| points.into_iter().map(|p| placement.place(p)).collect();
-    shutter(time, settings.shutter, settings.samples)
-        .into_iter()
-        .map(|t| {
-            let at = |(part, held): &(&Part, Vec<Point>)| {
-                placed(outline_at(part, t, settings.curves).unwrap_or_else(|| held.clone()))
-            };
-            still.iter().map(at).collect()
-        })
-        .collect()
+fn inverted(value: f32, invert: bool) -> f32 {
+    if invert { 1.0 - value } else { value }
 }
 
-fn united(a: Bounds, b: Bounds) -> Bounds {
-    Bounds { least: a.least.min(b.least), most: a.most.max(b.most) }
-}
-
-fn each(pixels: &mut Raster<Pixel>, mask: &Raster<f32>, mut change: impl FnMut(&mut Pixel, f32)) {
+/// Calls `change` with each pixel and its value of a mask.
+pub(super) fn each(pixels: &mut Raster<Pixel>, mask: &Raster<f32>, mut change: impl FnMut(&mut Pixel, f32)) {
     for (pixel, &m) in pixels.data_mut().iter_mut().zip(mask.data()) {
         change(pixel, m);
     }
 }
 
+fn add(pixel: &mut Pixel, [r, g, b]: [f32; 3], alpha: f32) {
+    for (sum, value) in pixel.iter_mut().zip([r, g, b, 1.0]) {
+        *sum += alpha * value;
+    }
+}
+
 /// Composites a colour over a premultiplied pixel.
-fn over(pixel: &mut Pixel, colour: [f32; 3], alpha: f32) {
+pub(super) fn over(pixel: &mut Pixel, colour: [f32; 3], alpha: f32) {
     if alpha > 0.0 {
         let [r, g, b] = colour;
         let rest = 1.0 - alpha;

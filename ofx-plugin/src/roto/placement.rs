@@ -7,8 +7,10 @@
 
 use crate::description::{OUTPUT, SOURCE};
 use crate::ofx::effect::Region;
-use crate::ofx::{Bounds, Effect, Failure};
-use openfx::sys::image_effect_v1::image_effect::{kOfxImageEffectPropProjectOffset, kOfxImageEffectPropProjectSize};
+use crate::ofx::{Bounds, Effect, Failure, host};
+use openfx::sys::image_effect_v1::image_effect::{
+    kOfxImageEffectPropProjectOffset, kOfxImageEffectPropProjectSize, kOfxImageEffectPropSupportsMultiResolution,
+};
 use rototoon::geometry::Point;
 use rototoon::render::coverage::Window;
 use rototoon::render::mask;
@@ -33,7 +35,11 @@ impl Placement {
         let source = effect.clip(SOURCE)?;
         let aspect = effect.clip(OUTPUT)?.pixel_aspect();
         let region = if source.connected() { source.region(time) } else { None };
-        let known: Vec<Region> = region.into_iter().chain(format(effect)).collect();
+        let mut known: Vec<Region> = region.into_iter().chain(format(effect)).collect();
+        if one_size() && region.is_some() {
+            // The source fills the picture, whatever the project's format says.
+            known.truncate(1);
+        }
         let own = Region { x1: 0.0, y1: 0.0, x2: footage.width as f64 * aspect, y2: footage.height as f64 };
         let fits = |region: &&Region| {
             ((region.x2 - region.x1) / aspect - footage.width as f64).abs() < 0.5
@@ -87,7 +93,14 @@ pub fn window(bounds: &Bounds) -> Window {
     Window { left, top: -y2, right, bottom: -y1 }
 }
 
-fn format(effect: &Effect) -> Option<Region> {
+/// Whether the host has pictures of one size only.
+fn one_size() -> bool {
+    let multi = host::properties().and_then(|host| host.int(kOfxImageEffectPropSupportsMultiResolution, 0));
+    multi.is_ok_and(|multi| multi == 0)
+}
+
+/// The rectangle of the project's format.
+pub fn format(effect: &Effect) -> Option<Region> {
     let properties = effect.properties().ok()?;
     let [width, height] = properties.doubles(kOfxImageEffectPropProjectSize).ok()?;
     let [x, y] = properties.doubles(kOfxImageEffectPropProjectOffset).unwrap_or_default();

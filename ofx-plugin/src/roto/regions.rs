@@ -3,9 +3,11 @@
 use super::instance;
 use super::parts::selected;
 use super::picture::Picture;
-use super::placement::{Placement, window};
+use super::placement::{self, Placement, window};
+use super::settings::{Channels, Extent};
 use super::settings::{Output, Settings};
-use crate::description::SOURCE;
+use super::state::State;
+use crate::description::{MASK, SOURCE};
 use crate::ofx::effect::Region;
 use crate::ofx::entry::Action;
 use crate::ofx::{Bounds, Effect, Failure, host};
@@ -13,7 +15,7 @@ use openfx::sys::generic::core::{kOfxPropName, kOfxPropTime};
 use openfx::sys::image_effect_v1::image_effect::{
     kOfxImageEffectFrameVarying, kOfxImageEffectPropPreMultiplication, kOfxImageEffectPropRegionOfDefinition,
     kOfxImageEffectPropRegionOfInterest, kOfxImageEffectPropRenderScale, kOfxImageEffectPropRenderWindow,
-    kOfxImageEffectPropSupportsMultiResolution, kOfxImageOpaque, kOfxImagePreMultiplied,
+    kOfxImageEffectPropSupportsMultiResolution, kOfxImageOpaque, kOfxImagePreMultiplied, kOfxImageUnPreMultiplied,
 };
 
 /// The picture to draw at the time of an action.
@@ -29,7 +31,10 @@ pub struct Drawn {
 /// The picture to draw; `None` if no document is set. Warns the user about possible mistakes.
 pub fn drawn(effect: &Effect, time: f64, render_scale: [f64; 2]) -> Result<Option<Drawn>, Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
-    let settings = Settings::read(&parameters, time)?;
+    let state = instance.state(&parameters).inspect_err(|failure| {
+        instance.note(effect, &failure.to_string(), true);
+    })?;
+    let settings = Settings::read(&parameters, time, &state)?;
     let document = instance.document(&parameters).inspect_err(|failure| {
         instance.note(effect, &failure.to_string(), true);
     })?;
@@ -49,7 +54,8 @@ pub fn drawn(effect: &Effect, time: f64, render_scale: [f64; 2]) -> Result<Optio
     if !document.scene.parts.iter().any(|part| !part.tracks.is_empty()) {
         instance.note(effect, "the project is not tracked, so its parts are drawn on their key frames only", false);
     }
-    let picture = Picture::new(&document.scene, &parts, &settings, &placement);
+    let named = |names: &str| selected(&document.scene.parts, names).0;
+    let picture = Picture::new(&document.scene, &parts, &named, &settings, &placement);
     Ok(Some(Drawn { picture, placement, settings }))
 }
 
@@ -73,6 +79,17 @@ pub fn definition(action: &Action) -> Result<(), Failure> {
         return Err(Failure::Default);
     }
     let drawn = drawn(&action.effect, time, scale).ok().flatten().ok_or(Failure::Default)?;
+    let whole = match drawn.settings.extent {
+        Extent::Shapes => None,
+        Extent::Source => source_region(&action.effect, time)?,
+        Extent::Format => placement::format(&action.effect),
+    };
+    if let Some(whole) = whole {
+        return action.output.set_doubles(kOfxImageEffectPropRegionOfDefinition, &whole.to_array());
+    }
+    if drawn.settings.output == Output::Matte && drawn.settings.shows_source() {
+        return Err(Failure::Default);
+    }
     let (bounds, elsewhere) = drawn.picture.bounds();
     if elsewhere {
         return Err(Failure::Default);
@@ -93,8 +110,17 @@ pub fn interest(action: &Action) -> Result<(), Failure> {
     let wanted = Region { x1, y1, x2, y2 };
     let nothing = Region { x2: x1, y2: y1, ..wanted };
     let Some(drawn) = drawn(&action.effect, time, scale).ok().flatten() else { return Err(Failure::Default) };
-    let needed = match (drawn.settings.output.shows_source(), drawn.picture.bounds()) {
+    if drawn.settings.use_mask && action.effect.clip(MASK).is_ok() {
+        action.output.set_doubles(c"OfxImageClipPropRoI_Mask", &wanted.to_array())?;
+    }
+    if !host::tiles() && drawn.settings.shows_source() {
+        // The host gives whole images. Its idea of a region may be wrong, as that of the scale may be.
+        let whole = source_region(&action.effect, time)?.unwrap_or(wanted);
+        return action.output.set_doubles(c"OfxImageClipPropRoI_Source", &whole.to_array());
+    }
+    let needed = match (drawn.settings.shows_source(), drawn.picture.bounds()) {
         (false, _) => nothing,
+        (true, _) if drawn.settings.output == Output::Matte => wanted,
         (true, (_, true)) => wanted,
         (true, (bounds, false)) => {
             bounds.and_then(|bounds| drawn.placement.canonical(&bounds).shared(&wanted)).unwrap_or(nothing)
@@ -106,7 +132,15 @@ pub fn interest(action: &Action) -> Result<(), Failure> {
 /// Sets the frames of the source that a frame needs: only itself, because motion blur uses only the outlines.
 pub fn frames_needed(action: &Action) -> Result<(), Failure> {
     let time = action.input.double(kOfxPropTime, 0)?;
+    if action.effect.clip(MASK).is_ok() {
+        action.output.set_doubles(c"OfxImageClipPropFrameRange_Mask", &[time, time])?;
+    }
     action.output.set_doubles(c"OfxImageClipPropFrameRange_Source", &[time, time])
+}
+
+/// Whether the output is the source where nothing is drawn.
+pub fn passes_source(effect: &Effect, time: f64) -> Result<bool, Failure> {
+    Ok(matches!(Output::of(&effect.parameters()?, time)?, Output::Cutout | Output::Overlay))
 }
 
 /// Reports that the output is the source, if it is.
@@ -114,13 +148,13 @@ pub fn identity(action: &Action) -> Result<(), Failure> {
     let (time, scale) = time_and_scale(action)?;
     let effect = &action.effect;
     let [x1, y1, x2, y2] = action.input.ints(kOfxImageEffectPropRenderWindow)?;
-    let output = Output::of(&effect.parameters()?, time)?;
-    if !output.shows_source() || !effect.clip(SOURCE)?.connected() {
+    if !passes_source(effect, time)? || !effect.clip(SOURCE)?.connected() {
         return Err(Failure::Default);
     }
     // Rendering reports errors.
     let same = match drawn(effect, time, scale) {
         Ok(None) => true,
+        Ok(Some(Drawn { settings, .. })) if settings.use_mask && settings.output == Output::Cutout => false,
         Ok(Some(drawn)) => drawn.picture.changes_nothing(window(&Bounds { x1, y1, x2, y2 })),
         Err(_) => false,
     };
@@ -135,11 +169,15 @@ pub fn identity(action: &Action) -> Result<(), Failure> {
 /// source. Frames are declared to vary, because they differ although no parameter is animated.
 pub fn clip_preferences(action: &Action) -> Result<(), Failure> {
     let effect = &action.effect;
-    let output = Output::of(&effect.parameters()?, 0.0)?;
+    let settings = Settings::read(&effect.parameters()?, 0.0, &State::default())?;
+    let output = settings.output;
     let source = effect.clip(SOURCE)?;
     let premultiplication = source.properties.text(kOfxImageEffectPropPreMultiplication, 0).unwrap_or_default();
     let opaque = !source.connected() || premultiplication.as_bytes() == kOfxImageOpaque.to_bytes();
-    if !output.shows_source() || output == Output::Cutout && opaque {
+    if output == Output::Matte && settings.channels == Channels::One(3) {
+        let result = if settings.premultiply { kOfxImagePreMultiplied } else { kOfxImageUnPreMultiplied };
+        action.output.set_name(kOfxImageEffectPropPreMultiplication, 0, result)?;
+    } else if !settings.shows_source() || output == Output::Cutout && opaque {
         action.output.set_name(kOfxImageEffectPropPreMultiplication, 0, kOfxImagePreMultiplied)?;
     }
     action.output.set_int(kOfxImageEffectFrameVarying, 0, 1)

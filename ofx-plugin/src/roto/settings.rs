@@ -1,7 +1,9 @@
 //! The parameters' values at a time.
 
+use super::state::{PartLook, State, blend};
 use crate::ofx::{Failure, Parameters};
 use rototoon::render::coverage::MOST_INSTANTS;
+use std::collections::BTreeMap;
 
 /// The kind of picture that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,6 +16,39 @@ pub enum Output {
     Overlay,
     /// The parts, each in a colour of its own.
     Ids,
+    /// A matte of its own in each channel.
+    Mattes,
+}
+
+/// The channels that a matte is written to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channels {
+    /// All four.
+    All,
+    /// One of red, green, blue and alpha, by index. The others are those of the source.
+    One(usize),
+}
+
+/// What a matte does with the source's alpha.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SourceAlpha {
+    /// Nothing.
+    Ignore,
+    /// It is multiplied by it.
+    Multiply,
+    /// It joins it.
+    Add,
+}
+
+/// The rectangle that the effect defines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// That of the shapes.
+    Shapes,
+    /// That of the source.
+    Source,
+    /// That of the project's format.
+    Format,
 }
 
 impl Output {
@@ -23,13 +58,9 @@ impl Output {
             1 => Self::Matte,
             2 => Self::Overlay,
             3 => Self::Ids,
+            4 => Self::Mattes,
             _ => Self::Cutout,
         })
-    }
-
-    /// Whether the source is in the picture.
-    pub fn shows_source(self) -> bool {
-        matches!(self, Self::Cutout | Self::Overlay)
     }
 }
 
@@ -38,10 +69,26 @@ impl Output {
 pub struct Settings {
     /// The kind of picture that is drawn.
     pub output: Output,
+    /// The channels of a matte.
+    pub channels: Channels,
+    /// What a matte does with the source's alpha.
+    pub source_alpha: SourceAlpha,
+    /// Whether a matte in alpha multiplies the source's colours.
+    pub premultiply: bool,
+    /// Whether the input Mask is used.
+    pub use_mask: bool,
+    /// The rectangle that the effect defines.
+    pub extent: Extent,
     /// The time in the document, in frames.
     pub document_time: f64,
+    /// Whether parts are drawn at this time.
+    pub shown: bool,
     /// Names of parts, as a list with commas.
     pub parts: String,
+    /// Names of parts for red, green, blue and alpha.
+    pub channel_parts: [String; 4],
+    /// Settings of parts by name. Other parts have the defaults.
+    pub looks: BTreeMap<String, PartLook>,
     /// Whether snapped paths are used.
     pub curves: bool,
     /// Whether cutout and matte are inverted.
@@ -52,6 +99,8 @@ pub struct Settings {
     pub feather: f64,
     /// How long the shutter is open, in frames.
     pub shutter: f64,
+    /// When it opens, in shares of its opening before or after the frame.
+    pub phase: f64,
     /// Number of times within the shutter's opening.
     pub samples: usize,
     /// Width of lines in pixels at full size.
@@ -62,22 +111,84 @@ pub struct Settings {
 
 impl Settings {
     /// Reads the values. A number that is not finite counts as 0.
-    pub fn read(parameters: &Parameters, time: f64) -> Result<Self, Failure> {
+    pub fn read(parameters: &Parameters, time: f64, state: &State) -> Result<Self, Failure> {
         let number = |id| parameters.double(id, time).map(|v| if v.is_finite() { v } else { 0.0 });
+        let flag = |id| Ok::<bool, Failure>(parameters.int(id, time)? != 0);
         let [r, g, b, a] = parameters.colour(c"lineColor", time)?;
         let alpha = (a * number(c"opacity")?).clamp(0.0, 1.0);
+        let limits = [parameters.int(c"shownFirst", time)?, parameters.int(c"shownLast", time)?].map(f64::from);
+        let text = |id| parameters.text(id);
         Ok(Self {
             output: Output::of(parameters, time)?,
+            channels: channels(parameters.int(c"matteChannel", time)?),
+            source_alpha: match parameters.int(c"sourceAlpha", time)? {
+                1 => SourceAlpha::Multiply,
+                2 => SourceAlpha::Add,
+                _ => SourceAlpha::Ignore,
+            },
+            premultiply: flag(c"premultiply")?,
+            use_mask: flag(c"useMask")?,
+            extent: match parameters.int(c"region", time)? {
+                1 => Extent::Source,
+                2 => Extent::Format,
+                _ => Extent::Shapes,
+            },
             document_time: time - f64::from(parameters.int(c"frameOffset", time)?),
-            parts: parameters.text(c"parts")?,
-            curves: parameters.int(c"useCurves", time)? != 0,
-            invert: parameters.int(c"invert", time)? != 0,
+            shown: !flag(c"limitFrames")? || (limits[0]..=limits[1]).contains(&time),
+            parts: text(c"parts")?,
+            channel_parts: [text(c"redParts")?, text(c"greenParts")?, text(c"blueParts")?, text(c"alphaParts")?],
+            looks: looks(parameters, time, state)?,
+            curves: flag(c"useCurves")?,
+            invert: flag(c"invert")?,
             grow: number(c"grow")?,
             feather: number(c"feather")?.max(0.0),
             shutter: number(c"motionBlur")?.max(0.0),
+            phase: number(c"shutterPhase")? / 360.0,
             samples: parameters.int(c"motionBlurSamples", time)?.clamp(1, MOST_INSTANTS as i32) as usize,
             line_width: number(c"lineWidth")?.max(0.0),
             line_colour: [r, g, b, alpha].map(|v| v as f32),
         })
     }
+
+    /// The settings of a part.
+    pub fn look(&self, name: &str) -> PartLook {
+        self.looks.get(name).copied().unwrap_or_default()
+    }
+
+    /// Whether the source is in the picture.
+    pub fn shows_source(&self) -> bool {
+        match self.output {
+            Output::Cutout | Output::Overlay => true,
+            Output::Matte => self.channels != Channels::All || self.source_alpha != SourceAlpha::Ignore,
+            Output::Ids | Output::Mattes => false,
+        }
+    }
+}
+
+fn channels(index: i32) -> Channels {
+    match index {
+        1 => Channels::One(3),
+        2..=4 => Channels::One(index as usize - 2),
+        _ => Channels::All,
+    }
+}
+
+/// The settings of all parts that have some. The page's own parameters have those of its part, with the host's own
+/// interpolation.
+fn looks(parameters: &Parameters, time: f64, state: &State) -> Result<BTreeMap<String, PartLook>, Failure> {
+    let mut looks: BTreeMap<String, PartLook> =
+        state.parts.iter().map(|(name, settings)| (name.clone(), settings.at(time))).collect();
+    if !state.page.is_empty() {
+        let number = |id| parameters.double(id, time).map(|v| if v.is_finite() { v } else { 0.0 });
+        let look = PartLook {
+            on: parameters.int(c"partOn", time)? != 0,
+            invert: parameters.int(c"partInvert", time)? != 0,
+            opacity: number(c"partOpacity")?.clamp(0.0, 1.0),
+            grow: number(c"partGrow")?,
+            feather: number(c"partFeather")?.max(0.0),
+            blend: blend(parameters.int(c"partMode", time)?.max(0) as usize),
+        };
+        looks.insert(state.page.clone(), look);
+    }
+    Ok(looks)
 }

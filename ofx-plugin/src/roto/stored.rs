@@ -28,9 +28,7 @@ pub fn decode(text: &str) -> Result<Cow<'_, str>, String> {
     let text = text.trim();
     let Some(code) = text.strip_prefix(PREFIX) else {
         if text.starts_with("rototoon") {
-            return Err(format!(
-                "the composition's document was stored by a newer Rototoon: expected a text that begins with {PREFIX}"
-            ));
+            return Err(format!("it was stored by a newer Rototoon: expected a text that begins with {PREFIX}"));
         }
         return Ok(Cow::Borrowed(text));
     };
@@ -40,7 +38,7 @@ pub fn decode(text: &str) -> Result<Cow<'_, str>, String> {
     let (mut bits, mut count) = (0u32, 0);
     for (at, letter) in code.bytes().enumerate() {
         let value = values[usize::from(letter)];
-        let value = value.ok_or_else(|| format!("the composition's document is damaged at character {at}"))?;
+        let value = value.ok_or_else(|| format!("it is damaged at character {at}"))?;
         bits = bits << 6 | value;
         count += 6;
         if count >= 8 {
@@ -48,9 +46,7 @@ pub fn decode(text: &str) -> Result<Cow<'_, str>, String> {
             bytes.push((bits >> count) as u8);
         }
     }
-    String::from_utf8(bytes)
-        .map(Cow::Owned)
-        .map_err(|_| "the composition's document is damaged: it is not UTF-8".into())
+    String::from_utf8(bytes).map(Cow::Owned).map_err(|_| "it is damaged: it is not UTF-8".into())
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! and checks whether the user has cancelled. Hosts do not allow these calls on other threads.
 
 use super::placement::Placement;
-use super::{instance, stored};
+use super::{edits, instance};
 use crate::description::SOURCE;
 use crate::encoding::Encoding;
 use crate::ofx::progress::Bar;
@@ -54,7 +54,8 @@ pub fn track(effect: &Effect, time: f64) -> Result<(), Failure> {
     if problems.error_count() > 0 {
         return Err(Failure::Told(problems.to_string()));
     }
-    parameters.set("Track", &[(c"document", &stored::encode(&document.to_json()))])
+    let tracked: Vec<usize> = (0..scene.parts.len()).filter(|&part| !scene.parts[part].keys.is_empty()).collect();
+    edits::store_tracked(effect, &document, &tracked)
 }
 
 /// The document's frames to track: those of the source, limited to the frames that the user has chosen.

@@ -20,6 +20,8 @@ impl Default for ffi::Settings {
             cancel_after: -1,
             no_images: false,
             multi_resolution: true,
+            tiles: true,
+            real_scale: 1.0,
             cpus: 1,
         }
     }
@@ -84,6 +86,10 @@ pub mod ffi {
         no_images: bool,
         /// Whether clips may differ in size.
         multi_resolution: bool,
+        /// Whether images may be parts of a picture.
+        tiles: bool,
+        /// The scale of images as a factor of the render scale that the host says.
+        real_scale: f64,
         /// Number of processors that the multi-thread suite reports.
         cpus: u32,
     }
@@ -110,6 +116,18 @@ pub mod ffi {
         top_down: bool,
         /// Pixels by which images exceed the requested region, on each side.
         margin: i32,
+    }
+
+    /// The pen and the keyboard of an event.
+    #[derive(Clone, Copy, Debug)]
+    struct Pen {
+        /// Position in canonical coordinates.
+        x: f64,
+        y: f64,
+        /// Size of a screen pixel in canonical coordinates.
+        pixel: f64,
+        /// Symbol of the key that goes down or up.
+        key: i32,
     }
 
     /// A rendered picture.
@@ -175,15 +193,11 @@ pub mod ffi {
         fn text(self: &Effect, name: &str) -> String;
         fn changed(self: Pin<&mut Effect>, name: &str, reason: &str, time: f64) -> String;
         fn action(self: Pin<&mut Effect>, name: &str) -> String;
-        fn overlay(
-            self: Pin<&mut Effect>,
-            action: &str,
-            draw_suite: bool,
-            time: f64,
-            x: f64,
-            y: f64,
-            pixel: f64,
-        ) -> String;
+        fn overlay(self: Pin<&mut Effect>, action: &str, draw_suite: bool, time: f64, pen: &Pen) -> String;
+        fn history(self: &Effect) -> Vec<String>;
+        fn undo(self: Pin<&mut Effect>);
+        fn drawn_colours(self: &Effect) -> Vec<f32>;
+        fn texts(self: &Effect) -> Vec<String>;
         fn drawn(self: &Effect) -> Vec<f64>;
     }
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <mutex>
@@ -19,6 +20,7 @@
 #include "ofxPixels.h"
 #include "ofxDrawSuite.h"
 #include "ofxInteract.h"
+#include "ofxKeySyms.h"
 #include "ofxhBinary.h"
 #include "ofxhPropertySuite.h"
 #include "ofxhClip.h"
@@ -39,11 +41,26 @@ std::vector<double> &drawn_lines() {
   static std::vector<double> lines;
   return lines;
 }
+std::vector<float> &line_colours() {
+  static std::vector<float> colours;
+  return colours;
+}
+std::vector<std::string> &drawn_texts() {
+  static std::vector<std::string> texts;
+  return texts;
+}
+float current_colour[4] = {1, 1, 1, 1};
+float current_width = 1;
+void begin_line() {
+  line_colours().insert(line_colours().end(), current_colour, current_colour + 4);
+  line_colours().push_back(current_width);
+}
 size_t gl_line = 0;
 } // namespace
 
 extern "C" {
 void glBegin(unsigned mode) {
+  begin_line();
   gl_line = drawn_lines().size();
   drawn_lines().push_back(mode == 2);
   drawn_lines().push_back(0);
@@ -54,8 +71,10 @@ void glVertex2d(double x, double y) {
   drawn_lines().push_back(x);
   drawn_lines().push_back(y);
 }
-void glColor4f(float, float, float, float) {}
-void glLineWidth(float) {}
+void glColor4f(float r, float g, float b, float a) {
+  current_colour[0] = r, current_colour[1] = g, current_colour[2] = b, current_colour[3] = a;
+}
+void glLineWidth(float width) { current_width = width; }
 void glPushAttrib(unsigned) {}
 void glPopAttrib() {}
 }
@@ -81,6 +100,7 @@ struct Controls {
   std::vector<std::string> missing_suites;
   std::atomic<int> aborts_left{-1}, cancels_left{-1}, live_images{0};
   std::atomic<bool> no_images{false};
+  std::atomic<double> real_scale{1};
   std::atomic<unsigned> cpus{1};
   std::atomic<double> progress{0};
 };
@@ -126,6 +146,37 @@ void say(const char *type, const char *format, va_list args) {
   controls().messages.push_back(std::string(type) + ": " + text.data());
 }
 
+// ---------------------------------------------------------------- undo
+
+// One change of a parameter, and how to take it back.
+struct Step {
+  std::string label;
+  std::vector<std::function<void()>> back;
+};
+
+// The host's own history: one step for each edit block, or for each value that is set outside of one.
+struct History {
+  std::vector<Step> steps;
+  int depth = 0;
+  std::string label;
+  bool open = false;
+
+  void begin(const std::string &name) {
+    if (depth++ == 0) label = name, open = false;
+  }
+  void end() { if (depth > 0) --depth; }
+  void add(std::function<void()> back) {
+    if (depth == 0 || !open) steps.push_back({depth == 0 ? "set" : label, {}});
+    open = depth > 0;
+    steps.back().back.push_back(back);
+  }
+};
+
+History &history() {
+  static History instance;
+  return instance;
+}
+
 // ---------------------------------------------------------------- values and keys of parameters
 
 struct Track {
@@ -159,8 +210,32 @@ public:
     n = static_cast<unsigned>(track.keys.size());
     return kOfxStatOK;
   }
+  OfxStatus getKeyTime(int nth, OfxTime &time) const override {
+    if (nth < 0 || size_t(nth) >= track.keys.size()) return kOfxStatErrBadIndex;
+    time = std::next(track.keys.begin(), nth)->first;
+    return kOfxStatOK;
+  }
   OfxStatus deleteAllKeys() override {
+    remember();
+    // As in real hosts, the parameter keeps the value that it had.
+    if (!track.keys.empty()) track.value = track.keys.begin()->second;
     track.keys.clear();
+    return kOfxStatOK;
+  }
+
+protected:
+  void remember() {
+    Track before = track;
+    history().add([this, before] { track = before; });
+  }
+  OfxStatus put(std::vector<double> value) {
+    remember();
+    track.value = value;
+    return kOfxStatOK;
+  }
+  OfxStatus put(OfxTime t, std::vector<double> value) {
+    remember();
+    track.keys[t] = value;
     return kOfxStatOK;
   }
 };
@@ -173,8 +248,8 @@ public:
   }
   OfxStatus get(Value &v) override { return get(0, v); }
   OfxStatus get(OfxTime t, Value &v) override { v = Value(std::lround(this->track.at(t)[0])); return kOfxStatOK; }
-  OfxStatus set(Value v) override { this->track.value = {double(v)}; return kOfxStatOK; }
-  OfxStatus set(OfxTime t, Value v) override { this->track.keys[t] = {double(v)}; return kOfxStatOK; }
+  OfxStatus set(Value v) override { return this->put({double(v)}); }
+  OfxStatus set(OfxTime t, Value v) override { return this->put(t, {double(v)}); }
 };
 
 using IntegerParam = WholeParam<ofx::Param::IntegerInstance, int>;
@@ -188,10 +263,25 @@ public:
   }
   OfxStatus get(double &v) override { return get(0, v); }
   OfxStatus get(OfxTime t, double &v) override { v = track.at(t)[0]; return kOfxStatOK; }
-  OfxStatus set(double v) override { track.value = {v}; return kOfxStatOK; }
-  OfxStatus set(OfxTime t, double v) override { track.keys[t] = {v}; return kOfxStatOK; }
+  OfxStatus set(double v) override { return put({v}); }
+  OfxStatus set(OfxTime t, double v) override { return put(t, {v}); }
   OfxStatus derive(OfxTime, double &) override { return kOfxStatErrMissingHostFeature; }
   OfxStatus integrate(OfxTime, OfxTime, double &) override { return kOfxStatErrMissingHostFeature; }
+};
+
+class PairParam : public Keyed<ofx::Param::Double2DInstance> {
+public:
+  PairParam(ofx::Param::Descriptor &d, ofx::Param::SetInstance *s) : Keyed(d, s) {
+    for (int i = 0; i < 2; ++i) track.value.push_back(d.getProperties().getDoubleProperty(kOfxParamPropDefault, i));
+  }
+  OfxStatus get(double &x, double &y) override { return get(0, x, y); }
+  OfxStatus get(OfxTime t, double &x, double &y) override {
+    std::vector<double> v = track.at(t);
+    x = v[0], y = v[1];
+    return kOfxStatOK;
+  }
+  OfxStatus set(double x, double y) override { return put({x, y}); }
+  OfxStatus set(OfxTime t, double x, double y) override { return put(t, {x, y}); }
 };
 
 class ColourParam : public Keyed<ofx::Param::RGBAInstance> {
@@ -220,8 +310,13 @@ public:
   }
   OfxStatus get(std::string &v) override { v = value; return kOfxStatOK; }
   OfxStatus get(OfxTime, std::string &v) override { v = value; return kOfxStatOK; }
-  OfxStatus set(const char *v) override { value = v; return kOfxStatOK; }
-  OfxStatus set(OfxTime, const char *v) override { value = v; return kOfxStatOK; }
+  OfxStatus set(const char *v) override {
+    std::string before = value;
+    history().add([this, before] { value = before; });
+    value = v;
+    return kOfxStatOK;
+  }
+  OfxStatus set(OfxTime, const char *v) override { return set(v); }
   // The library's own versions keep the text in a member, which concurrent readers would overwrite.
   OfxStatus getV(va_list arg) override { *va_arg(arg, const char **) = value.c_str(); return kOfxStatOK; }
   OfxStatus getV(OfxTime, va_list arg) override { *va_arg(arg, const char **) = value.c_str(); return kOfxStatOK; }
@@ -418,6 +513,7 @@ public:
     if (type == kOfxParamTypeDouble) return new DoubleParam(d, this);
     if (type == kOfxParamTypeBoolean) return new BooleanParam(d, this);
     if (type == kOfxParamTypeChoice) return new ChoiceParam(d, this);
+    if (type == kOfxParamTypeDouble2D) return new PairParam(d, this);
     if (type == kOfxParamTypeRGBA) return new ColourParam(d, this);
     if (type == kOfxParamTypeString) return new TextParam(d, this);
     if (type == kOfxParamTypePushButton) return new ofx::Param::PushbuttonInstance(d, this);
@@ -425,8 +521,8 @@ public:
     if (type == kOfxParamTypePage) return new ofx::Param::PageInstance(d, this);
     return nullptr;
   }
-  OfxStatus editBegin(const std::string &) override { return kOfxStatOK; }
-  OfxStatus editEnd() override { return kOfxStatOK; }
+  OfxStatus editBegin(const std::string &label) override { return history().begin(label), kOfxStatOK; }
+  OfxStatus editEnd() override { return history().end(), kOfxStatOK; }
   void progressStart(const std::string &, const std::string &) override {}
   void progressEnd() override {}
   bool progressUpdate(double t) override {
@@ -456,7 +552,8 @@ const std::string &TestClip::getPremult() const {
 
 fx::Image *TestClip::getImage(OfxTime time, const OfxRectD *region) {
   if (controls().no_images || !settings.connected) return nullptr;
-  double scale = effect_->scale;
+  // A host may give pixels at another scale than it says.
+  double scale = effect_->scale * controls().real_scale;
   if (isOutput()) return target ? new FetchedImage(*this, scale, target, pixels(scale)) : nullptr;
   OfxRectI whole = pixels(scale), bounds = whole;
   const OfxRectD *asked = region ? region : has_interest ? &interest : nullptr;
@@ -495,11 +592,15 @@ std::shared_ptr<Buffer> TestClip::draw(OfxTime time, const OfxRectI &bounds, dou
   return buffer;
 }
 
-OfxStatus draw_set_colour(OfxDrawContextHandle, const OfxRGBAColourF *) { return kOfxStatOK; }
+OfxStatus draw_set_colour(OfxDrawContextHandle, const OfxRGBAColourF *c) {
+  glColor4f(c->r, c->g, c->b, c->a);
+  return kOfxStatOK;
+}
 OfxStatus draw_get_colour(OfxDrawContextHandle, OfxStandardColour, OfxRGBAColourF *) { return kOfxStatFailed; }
-OfxStatus draw_set_width(OfxDrawContextHandle, float) { return kOfxStatOK; }
+OfxStatus draw_set_width(OfxDrawContextHandle, float width) { return glLineWidth(width), kOfxStatOK; }
 OfxStatus draw_set_stipple(OfxDrawContextHandle, OfxDrawLineStipplePattern) { return kOfxStatOK; }
 OfxStatus draw_primitive(OfxDrawContextHandle, OfxDrawPrimitive primitive, const OfxPointD *points, int count) {
+  begin_line();
   drawn_lines().push_back(primitive == kOfxDrawPrimitiveLineLoop);
   drawn_lines().push_back(count);
   for (int i = 0; i < count; ++i) {
@@ -508,7 +609,10 @@ OfxStatus draw_primitive(OfxDrawContextHandle, OfxDrawPrimitive primitive, const
   }
   return kOfxStatOK;
 }
-OfxStatus draw_text(OfxDrawContextHandle, const char *, const OfxPointD *, int) { return kOfxStatOK; }
+OfxStatus draw_text(OfxDrawContextHandle, const char *text, const OfxPointD *, int) {
+  drawn_texts().push_back(text);
+  return kOfxStatOK;
+}
 OfxDrawSuiteV1 draw_suite_v1 = {draw_get_colour, draw_set_colour, draw_set_width,
                                 draw_set_stipple, draw_primitive, draw_text};
 
@@ -543,6 +647,7 @@ public:
     _properties.setStringProperty(kOfxPropName, std::string(settings.name));
     _properties.setStringProperty(kOfxPropLabel, std::string(settings.name));
     _properties.setIntProperty(kOfxImageEffectPropSupportsMultiResolution, settings.multi_resolution);
+    _properties.setIntProperty(kOfxImageEffectPropSupportsTiles, settings.tiles);
   }
   const void *fetchSuite(const char *name, int version) override {
     for (const std::string &missing : controls().missing_suites)
@@ -666,6 +771,7 @@ void configure(const Settings &settings) {
   controls().aborts_left = settings.abort_after;
   controls().cancels_left = settings.cancel_after;
   controls().no_images = settings.no_images;
+  controls().real_scale = settings.real_scale;
   controls().cpus = settings.cpus;
   controls().progress = 0;
 }
@@ -704,6 +810,7 @@ void Effect::set_frame(rust::Str name, double time, int width, int height, rust:
 }
 
 rust::String Effect::create() {
+  rototoon_host::history() = History();
   OfxStatus status = impl->effect->createInstanceAction();
   if (status != kOfxStatOK && status != kOfxStatReplyDefault) return status_name(status);
   return impl->effect->getClipPreferences() ? status_name(status) : "GetClipPreferences failed";
@@ -879,21 +986,49 @@ rust::String Effect::action(rust::Str name) {
   return status_name(impl->effect->mainEntry(text_of(name).c_str(), impl->effect->getHandle(), nullptr, nullptr));
 }
 
+rust::Vec<float> Effect::drawn_colours() const {
+  rust::Vec<float> colours;
+  for (float v : line_colours()) colours.push_back(v);
+  return colours;
+}
+
+rust::Vec<rust::String> Effect::texts() const {
+  rust::Vec<rust::String> texts;
+  for (const std::string &text : drawn_texts()) texts.push_back(rust::String::lossy(text));
+  return texts;
+}
+
 rust::Vec<double> Effect::drawn() const {
   rust::Vec<double> lines;
   for (double v : drawn_lines()) lines.push_back(v);
   return lines;
 }
 
-rust::String Effect::overlay(rust::Str name, bool draw_suite, double time, double x, double y, double pixel) {
+rust::Vec<rust::String> Effect::history() const {
+  rust::Vec<rust::String> labels;
+  for (const Step &step : rototoon_host::history().steps) labels.push_back(rust::String::lossy(step.label));
+  return labels;
+}
+
+void Effect::undo() {
+  std::vector<Step> &steps = rototoon_host::history().steps;
+  if (steps.empty()) return;
+  Step last = steps.back();
+  for (auto back = last.back.rbegin(); back != last.back.rend(); ++back) (*back)();
+  steps.pop_back();
+}
+
+rust::String Effect::overlay(rust::Str name, bool draw_suite, double time, const Pen &pen) {
   drawn_lines().clear();
+  drawn_texts().clear();
+  line_colours().clear();
   const char *property =
       draw_suite ? kOfxImageEffectPluginPropOverlayInteractV2 : kOfxImageEffectPluginPropOverlayInteractV1;
   ofx::Property::Set &base = impl->effect->getPlugin()->getDescriptor().getProps();
   OfxPluginEntryPoint *entry = reinterpret_cast<OfxPluginEntryPoint *>(base.getPointerProperty(property));
   if (!entry) return "none";
   TestOverlay interact(*impl->effect);
-  interact.pixel = pixel;
+  interact.pixel = pen.pixel;
   interact.createInstanceAction();
   static const ofx::Property::PropSpec specs[] = {
       {kOfxPropEffectInstance, ofx::Property::ePointer, 1, true, nullptr},
@@ -902,14 +1037,16 @@ rust::String Effect::overlay(rust::Str name, bool draw_suite, double time, doubl
       {kOfxImageEffectPropRenderScale, ofx::Property::eDouble, 2, true, "1"},
       {kOfxInteractPropPixelScale, ofx::Property::eDouble, 2, true, "1"},
       {kOfxInteractPropPenPosition, ofx::Property::eDouble, 2, true, "0"},
+      {kOfxPropKeySym, ofx::Property::eInt, 1, true, "0"},
       ofx::Property::propSpecEnd};
   ofx::Property::Set arguments(specs);
-  double scale[2] = {pixel, pixel}, pen[2] = {x, y};
+  double scale[2] = {pen.pixel, pen.pixel}, place[2] = {pen.x, pen.y};
   arguments.setPointerProperty(kOfxPropEffectInstance, impl->effect->getHandle());
   arguments.setPointerProperty(kOfxInteractPropDrawContext, &arguments);
   arguments.setDoubleProperty(kOfxPropTime, time);
   arguments.setDoublePropertyN(kOfxInteractPropPixelScale, scale, 2);
-  arguments.setDoublePropertyN(kOfxInteractPropPenPosition, pen, 2);
+  arguments.setDoublePropertyN(kOfxInteractPropPenPosition, place, 2);
+  arguments.setIntProperty(kOfxPropKeySym, pen.key);
   return status_name(entry(text_of(name).c_str(), interact.getHandle(), arguments.getHandle(), nullptr));
 }
 

@@ -11,6 +11,7 @@ struct Region;
 struct Settings;
 struct ClipSettings;
 struct Picture;
+struct Pen;
 
 class EffectImpl;
 
@@ -39,7 +40,11 @@ public:
   rust::String text(rust::Str name) const;
   rust::String changed(rust::Str name, rust::Str reason, double time);
   rust::String action(rust::Str name);
-  rust::String overlay(rust::Str action, bool draw_suite, double time, double x, double y, double pixel);
+  rust::String overlay(rust::Str action, bool draw_suite, double time, const Pen &pen);
+  rust::Vec<rust::String> history() const;
+  void undo();
+  rust::Vec<float> drawn_colours() const;
+  rust::Vec<rust::String> texts() const;
   rust::Vec<double> drawn() const;
 
 private:

@@ -10,6 +10,7 @@ mod bridge;
 
 pub use bridge::ffi::{Bounds, ClipSettings, Picture, Region, Settings};
 
+use bridge::ffi::Pen;
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -217,6 +218,11 @@ impl Effect<'_> {
         self.changed(name)
     }
 
+    /// Presses a button while the viewer shows a time. Returns the status.
+    pub fn press_at(&mut self, name: &str, time: f64) -> String {
+        self.pin().changed(name, "OfxChangeUserEdited", time)
+    }
+
     fn changed(&mut self, name: &str) -> String {
         self.pin().changed(name, "OfxChangeUserEdited", 0.0)
     }
@@ -234,7 +240,34 @@ impl Effect<'_> {
     /// Sends an event to the overlay and returns the status. It goes to the entry point for the DrawSuite or to that for
     /// OpenGL. `pen` is the pen's position and `pixel` the size of a screen pixel, both in canonical coordinates.
     pub fn overlay(&mut self, action: &str, draw_suite: bool, time: f64, pen: [f64; 2], pixel: f64) -> String {
-        self.pin().overlay(action, draw_suite, time, pen[0], pen[1], pixel)
+        self.pin().overlay(action, draw_suite, time, &Pen { x: pen[0], y: pen[1], pixel, key: 0 })
+    }
+
+    /// Sends a key of the keyboard to the overlay, and returns the status. `action` is a key going down or up.
+    pub fn overlay_key(&mut self, action: &str, time: f64, key: i32) -> String {
+        self.pin().overlay(action, true, time, &Pen { x: 0.0, y: 0.0, pixel: 1.0, key })
+    }
+
+    /// The labels of the steps that the host can undo, the latest last.
+    pub fn history(&self) -> Vec<String> {
+        self.inner.history()
+    }
+
+    /// Undoes the latest step of the host's history, as a user does: values and keys are as before, and the plugin is not
+    /// told which.
+    pub fn undo(&mut self) {
+        self.pin().undo();
+    }
+
+    /// Red, green, blue, opacity and width of each line drawn by the last event.
+    pub fn drawn_colours(&self) -> Vec<[f32; 5]> {
+        let flat = self.inner.drawn_colours();
+        flat.chunks_exact(5).map(|line| [line[0], line[1], line[2], line[3], line[4]]).collect()
+    }
+
+    /// The texts drawn by the last event.
+    pub fn texts(&self) -> Vec<String> {
+        self.inner.texts()
     }
 
     /// The lines drawn by the last event: whether each is closed, and its points.

@@ -30,6 +30,9 @@ pub const OVERLAY: f64 = 2.0;
 /// Index of the output Ids.
 pub const IDS: f64 = 3.0;
 
+/// Index of the output Mattes.
+pub const MATTES: f64 = 4.0;
+
 /// A folder that contains only a bundle, because hosts scan everything in it. The bundle has the library of the bundle that
 /// the variable `ROTOTOON_OFX_BUNDLE` names, or else the library built with the tests.
 pub fn bundles() -> &'static Path {

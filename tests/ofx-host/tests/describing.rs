@@ -1,10 +1,10 @@
 //! Tests of contexts, parameters and loading again.
 
 use crate::common::{FILTER, GENERAL, OK, ROTO, WHOLE, bundles, clean, effect, host, rendered};
-use rototoon_ofx_host::{ClipSettings, Host};
+use rototoon_ofx_host::{ClipSettings, Host, Settings};
 
-/// The ids of the parameters. They never change, because old compositions contain them.
-const IDS: [&str; 24] = [
+/// The parameters of the first version.
+const OLD: [&str; 24] = [
     "shapes",
     "project",
     "load",
@@ -38,7 +38,12 @@ fn the_effect_is_described_in_each_of_its_contexts() {
     assert_eq!(host.contexts(ROTO), [FILTER, GENERAL]);
     for context in [FILTER, GENERAL] {
         let mut effect = host.effect(ROTO, context);
-        assert_eq!(effect.parameters(), IDS);
+        let ids: Vec<&str> = rototoon::scene::effects::ROTO.iter().map(|parameter| parameter.id).collect();
+        assert_eq!(effect.parameters(), ids);
+        // Compositions name these. They stay for ever.
+        for old in OLD {
+            assert!(ids.contains(&old), "{old}");
+        }
         assert_eq!(effect.create(), OK);
         assert_eq!(effect.destroy(), OK);
     }
@@ -60,6 +65,21 @@ fn numbers_have_ranges_and_choices_their_order() {
     assert_eq!(options("preset")[..2], ["Rototoon", "Zhou & Xiao 2011"]);
     assert_eq!(effect.parameter_property("document", "OfxParamPropSecret", 0), "1");
     assert_eq!(effect.parameter_property("project", "OfxParamPropStringMode", 0), "OfxParamStringIsFilePath");
+}
+
+#[test]
+fn slider_ranges_are_no_limits_in_hosts_that_read_them_so() {
+    let mut host = host();
+    for (name, grow, feather) in [("MLT", 1000.0, 500.0), ("uk.co.thefoundry.nuke", 20.0, 50.0)] {
+        host.configure(&Settings { name: name.into(), ..Settings::default() });
+        host.reload(bundles());
+        let effect = host.effect(ROTO, FILTER);
+        let most = |id: &str| effect.parameter_property(id, "OfxParamPropDisplayMax", 0).parse::<f64>().unwrap();
+        assert_eq!((most("grow"), most("feather")), (grow, feather), "{name}");
+        for id in ["frameOffset", "firstFrame", "lastFrame", "shownFirst", "shownLast"] {
+            assert_eq!(most(id), 1e6, "{name} {id}");
+        }
+    }
 }
 
 #[test]

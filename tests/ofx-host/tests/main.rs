@@ -6,14 +6,22 @@
 //! - `shapes`: the matte is the same as that of the command line, and near the truth
 //! - `actions`: regions, identity, abort, keys, wrong documents
 //! - `buttons`: load, save, track
-//! - `overlay`: contours over the viewer, control points that can be dragged
+//! - `overlay`: the pen in the viewer: drawing, selecting, correcting, undo
+//! - `faults`: faults that were seen in real hosts
+//! - `node`: settings of parts, channels, masks, regions, motion and export
+//! - `matrix`: what hosts do, with each output
+//! - `session`: the sample cartoon drawn, tracked and corrected in the host
 //! - `lines`: the effect that shows the images that a tracker of edges uses
 
 mod actions;
 mod buttons;
 mod common;
 mod describing;
+mod faults;
 mod lines;
+mod matrix;
+mod node;
 mod overlay;
 mod pixels;
+mod session;
 mod shapes;

@@ -26,6 +26,8 @@ pub enum EffectKind {
     Shared(&'static str),
     /// A colour with opacity.
     Colour([f64; 4]),
+    /// Two numbers, x and y.
+    Pair([f64; 2]),
     /// A group, open or not.
     Group(bool),
 }
@@ -65,22 +67,33 @@ const fn line_parameter(
 }
 
 const SHAPES: Option<&str> = Some("shapes");
+const DRAW: Option<&str> = Some("draw");
+const PART: Option<&str> = Some("selectedPart");
 const PICTURE: Option<&str> = Some("picture");
 const OVERLAY: Option<&str> = Some("lines");
 const TRACKING: Option<&str> = Some("tracking");
+const MOTION: Option<&str> = Some("motion");
 const FRAMES: [i32; 2] = [-1_000_000, 1_000_000];
+const PLANE: [f64; 2] = [-1_000_000.0, 1_000_000.0];
 
 /// Rototoon Roto: every parameter in order.
-pub const ROTO: [EffectParameter; 24] = [
+pub const ROTO: [EffectParameter; 69] = [
     parameter("shapes", "Shapes", EffectKind::Group(true), None, "Where the shapes come from."),
     parameter("project", "Project", EffectKind::File, SHAPES, "A Rototoon project document. Choosing a file loads it."),
     parameter("load", "Load", EffectKind::Button, SHAPES, "Loads the project's shapes into the composition."),
     parameter("save", "Save", EffectKind::Button, SHAPES, "Writes the composition's shapes to the project's file."),
     parameter("document", "Document", EffectKind::Hidden, SHAPES, "The shapes as the text of a project document."),
     parameter(
+        "state",
+        "State",
+        EffectKind::Hidden,
+        SHAPES,
+        "The settings of the parts, and what their tracks were made from.",
+    ),
+    parameter(
         "frameOffset",
         "Frame offset",
-        EffectKind::Integer(0, FRAMES, [-100, 100]),
+        EffectKind::Integer(0, FRAMES, FRAMES),
         SHAPES,
         "The composition's frame that shows frame 0 of the project.",
     ),
@@ -98,14 +111,172 @@ pub const ROTO: [EffectParameter; 24] = [
         SHAPES,
         "Whether outlines follow the snapped lines where they exist. Otherwise they follow the control points.",
     ),
+    parameter(
+        "draw",
+        "Draw and edit",
+        EffectKind::Group(true),
+        None,
+        "Keys and corrections with the pen in the viewer.",
+    ),
+    parameter(
+        "tool",
+        "Tool",
+        EffectKind::Choice(&["Select", "Draw contour", "Draw freehand", "Off"]),
+        DRAW,
+        "What the pen does in the viewer: it selects and moves points, sets the points of a contour one by one, draws a contour in one stroke, or nothing.",
+    ),
+    parameter(
+        "drawClosed",
+        "Closed",
+        EffectKind::Flag(true),
+        DRAW,
+        "Whether a new contour is closed. An open contour draws lines only.",
+    ),
+    parameter(
+        "part",
+        "Part",
+        EffectKind::Text,
+        DRAW,
+        "Name of the selected part. A contour that is drawn becomes its key on this frame. Empty makes a new part.",
+    ),
+    parameter(
+        "newPart",
+        "New part",
+        EffectKind::Button,
+        DRAW,
+        "Selects no part, so that the next contour that is drawn becomes a new part.",
+    ),
+    parameter(
+        "newKey",
+        "New key here",
+        EffectKind::Button,
+        DRAW,
+        "Makes the shape of the selected part on this frame its key; without a selected part, the shapes of all parts.",
+    ),
+    parameter(
+        "deleteKey",
+        "Delete key here",
+        EffectKind::Button,
+        DRAW,
+        "Deletes the selected part's key on this frame.",
+    ),
+    parameter(
+        "insertPoints",
+        "Insert points",
+        EffectKind::Button,
+        DRAW,
+        "Inserts a point in the middle between neighbouring selected points, on every key and frame.",
+    ),
+    parameter(
+        "deletePoints",
+        "Delete points",
+        EffectKind::Button,
+        DRAW,
+        "Deletes the selected points on every key and frame.",
+    ),
+    parameter(
+        "smoothPoints",
+        "Smooth points",
+        EffectKind::Button,
+        DRAW,
+        "Moves the selected points on this frame towards the middle of their neighbours.",
+    ),
+    parameter(
+        "deletePart",
+        "Delete part",
+        EffectKind::Button,
+        DRAW,
+        "Deletes the selected part with all of its keys, corrections and tracks.",
+    ),
+    parameter(
+        "selectedPart",
+        "Selected part",
+        EffectKind::Group(false),
+        None,
+        "Settings of the part that is named in Part. Each part has its own, with its own keys.",
+    ),
+    parameter("partOn", "On", EffectKind::Flag(true), PART, "Whether the part is drawn."),
+    parameter(
+        "partMode",
+        "Mode",
+        EffectKind::Choice(&["Add", "Subtract", "Intersect"]),
+        PART,
+        "How the part changes the matte of the parts behind it.",
+    ),
+    parameter(
+        "partInvert",
+        "Invert",
+        EffectKind::Flag(false),
+        PART,
+        "Whether the part is what lies outside of its outline.",
+    ),
+    parameter(
+        "partOpacity",
+        "Opacity",
+        EffectKind::Number(1.0, [0.0, 1.0], [0.0, 1.0]),
+        PART,
+        "Opacity of the part in cutout and matte.",
+    ),
+    parameter(
+        "partGrow",
+        "Grow",
+        EffectKind::Number(0.0, [-1000.0, 1000.0], [-20.0, 20.0]),
+        PART,
+        "Distance in pixels by which the part's outline moves outward, beside that of all parts.",
+    ),
+    parameter(
+        "partFeather",
+        "Feather",
+        EffectKind::Number(0.0, [0.0, 500.0], [0.0, 50.0]),
+        PART,
+        "Width in pixels over which the part's border fades, beside that of all parts.",
+    ),
+    parameter(
+        "partLock",
+        "Lock",
+        EffectKind::Flag(false),
+        PART,
+        "Whether the part can be neither selected nor changed with the pen.",
+    ),
     parameter("picture", "Picture", EffectKind::Group(true), None, "The picture made from the shapes."),
     parameter(
         "output",
         "Output",
-        EffectKind::Choice(&["Cutout", "Matte", "Overlay", "Ids"]),
+        EffectKind::Choice(&["Cutout", "Matte", "Overlay", "Ids", "Mattes"]),
         PICTURE,
-        "The source cut out by the parts, the matte of the parts, their outlines over the source, or a colour for each part.",
+        "The source cut out by the parts, the matte of the parts, their outlines over the source, a colour for each part, or a matte of its own in each channel.",
     ),
+    parameter(
+        "matteChannel",
+        "Matte channel",
+        EffectKind::Choice(&["All", "Alpha", "Red", "Green", "Blue"]),
+        PICTURE,
+        "The channel of the matte. The other channels are those of the source.",
+    ),
+    parameter(
+        "sourceAlpha",
+        "Source alpha",
+        EffectKind::Choice(&["Ignore", "Multiply", "Add"]),
+        PICTURE,
+        "What the matte does with the alpha of the source.",
+    ),
+    parameter(
+        "premultiply",
+        "Premultiply",
+        EffectKind::Flag(false),
+        PICTURE,
+        "Whether a matte in alpha multiplies the colours of the source.",
+    ),
+    parameter(
+        "redParts",
+        "Red parts",
+        EffectKind::Text,
+        PICTURE,
+        "Mattes: the parts in red, as in Parts. Empty draws none.",
+    ),
+    parameter("greenParts", "Green parts", EffectKind::Text, PICTURE, "Mattes: the parts in green."),
+    parameter("blueParts", "Blue parts", EffectKind::Text, PICTURE, "Mattes: the parts in blue."),
+    parameter("alphaParts", "Alpha parts", EffectKind::Text, PICTURE, "Mattes: the parts in alpha."),
     parameter(
         "invert",
         "Invert",
@@ -132,7 +303,14 @@ pub const ROTO: [EffectParameter; 24] = [
         "Motion blur",
         EffectKind::Number(0.0, [0.0, 10.0], [0.0, 1.0]),
         PICTURE,
-        "Time during which the shutter is open, in frames, centred on the frame.",
+        "Time during which the shutter is open, in frames.",
+    ),
+    parameter(
+        "shutterPhase",
+        "Shutter phase",
+        EffectKind::Number(-180.0, [-360.0, 360.0], [-180.0, 180.0]),
+        PICTURE,
+        "When the shutter opens, in degrees of its opening before or after the frame: -180 is centred on the frame, 0 begins at it, -360 ends at it.",
     ),
     parameter(
         "motionBlurSamples",
@@ -141,6 +319,29 @@ pub const ROTO: [EffectParameter; 24] = [
         PICTURE,
         "Number of times within the shutter interval at which the outline is drawn.",
     ),
+    parameter(
+        "useMask",
+        "Use mask",
+        EffectKind::Flag(false),
+        PICTURE,
+        "Whether the alpha of the input Mask limits the matte and the cutout.",
+    ),
+    parameter(
+        "region",
+        "Region",
+        EffectKind::Choice(&["Shapes", "Source", "Format"]),
+        PICTURE,
+        "The rectangle that the node defines: that of the shapes, of the source, or of the project's format.",
+    ),
+    parameter(
+        "limitFrames",
+        "Limit frames",
+        EffectKind::Flag(false),
+        PICTURE,
+        "Whether the parts are drawn on some frames only.",
+    ),
+    parameter("shownFirst", "First shown", EffectKind::Integer(1, FRAMES, FRAMES), PICTURE, "First of these frames."),
+    parameter("shownLast", "Last shown", EffectKind::Integer(100, FRAMES, FRAMES), PICTURE, "Last of these frames."),
     parameter("lines", "Lines", EffectKind::Group(false), None, "How the overlay draws outlines."),
     parameter(
         "lineWidth",
@@ -156,11 +357,11 @@ pub const ROTO: [EffectParameter; 24] = [
     parameter(
         "firstFrame",
         "First frame",
-        EffectKind::Integer(0, FRAMES, [0, 1000]),
+        EffectKind::Integer(0, FRAMES, FRAMES),
         TRACKING,
         "First frame to track. The complete source is tracked if it is not before the last frame.",
     ),
-    parameter("lastFrame", "Last frame", EffectKind::Integer(0, FRAMES, [0, 1000]), TRACKING, "Last frame to track."),
+    parameter("lastFrame", "Last frame", EffectKind::Integer(0, FRAMES, FRAMES), TRACKING, "Last frame to track."),
     parameter(
         "track",
         "Track",
@@ -168,6 +369,54 @@ pub const ROTO: [EffectParameter; 24] = [
         TRACKING,
         "Tracks the keys through the source's frames and stores the result in the composition.",
     ),
+    parameter("motion", "Motion and export", EffectKind::Group(false), None, "Takes motions and shapes out."),
+    parameter(
+        "writeMotion",
+        "Write motion",
+        EffectKind::Button,
+        MOTION,
+        "Sets keys for the motion of the selected part on all of its frames, to which parameters of other nodes can be linked.",
+    ),
+    parameter("center", "Centre", EffectKind::Pair([0.0; 2]), MOTION, "Middle of the part's control points."),
+    parameter(
+        "translate",
+        "Translate",
+        EffectKind::Pair([0.0; 2]),
+        MOTION,
+        "How far the part has moved since its first frame.",
+    ),
+    parameter(
+        "rotate",
+        "Rotate",
+        EffectKind::Number(0.0, PLANE, [-180.0, 180.0]),
+        MOTION,
+        "How far it has turned, in degrees anticlockwise about its centre.",
+    ),
+    parameter(
+        "scale",
+        "Scale",
+        EffectKind::Number(1.0, [0.0, 1000.0], [0.0, 4.0]),
+        MOTION,
+        "How much it has grown, as a factor.",
+    ),
+    parameter(
+        "corner1",
+        "Corner 1",
+        EffectKind::Pair([0.0; 2]),
+        MOTION,
+        "Where the lower left corner of its first rectangle has moved.",
+    ),
+    parameter("corner2", "Corner 2", EffectKind::Pair([0.0; 2]), MOTION, "Where the lower right corner has moved."),
+    parameter("corner3", "Corner 3", EffectKind::Pair([0.0; 2]), MOTION, "Where the upper right corner has moved."),
+    parameter("corner4", "Corner 4", EffectKind::Pair([0.0; 2]), MOTION, "Where the upper left corner has moved."),
+    parameter(
+        "exportFile",
+        "Export file",
+        EffectKind::File,
+        MOTION,
+        "File of the shapes for other programs: .nk for Nuke, .fxs for Silhouette, .svg for browsers.",
+    ),
+    parameter("export", "Export", EffectKind::Button, MOTION, "Writes the shapes to the export file."),
 ];
 
 /// Rototoon Lines: every parameter in order.

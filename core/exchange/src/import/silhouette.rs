@@ -5,8 +5,9 @@
 //! export: the origin is the middle of the picture, the unit its height, y points down, and frames count from the
 //! session's first. The footage gives the size of the picture in pixels.
 //!
-//! - Public descriptions disagree on which handle of a point leads forward. The reader takes the order with the shorter
-//!   control polygon over all keys of a shape.
+//! - Public descriptions disagree on which handle of a point leads forward, and on whether handles are places or offsets
+//!   from their point. Exporters write both forms. The reader takes the reading with the shortest control polygon over all
+//!   keys of a shape: handles are near their points in one reading only. Of equal readings it takes places.
 //! - B-splines are uniform and cubic. The ends of an open one are repeated three times, so the curve reaches them.
 //! - Transformed layers are an error, since their shapes would be in the wrong place. Animated opacity is ignored.
 //!   Hidden shapes are left out with a warning.
@@ -98,8 +99,8 @@ fn shape(node: Node, name: String, first: f64, footage: &Footage, points: &mut P
     let Some(closed) = keys.first().map(|key| key.closed) else {
         return Err(ImportError::at(property, "found no key, expected <Key> or <Value> with a <Path>"));
     };
-    let swapped = length(&keys, true) < length(&keys, false);
-    let paths: Vec<Path> = keys.iter().map(|key| built(key, swapped)).collect();
+    let reading = Reading::of(&keys, footage);
+    let paths: Vec<Path> = keys.iter().map(|key| built(key, &reading)).collect();
     let contours = contours(&paths, |count| points.take(count, property)).map_err(|error| match error {
         NoContours::Unequal => {
             let found = counted(&keys);
@@ -165,10 +166,41 @@ fn knot(node: Node, footage: &Footage) -> Result<Knot, ImportError> {
     }
 }
 
-/// The path of a key. The forward handle of a knot is its third point if `swapped`, otherwise its second.
-fn built(key: &Key, swapped: bool) -> Path {
-    let (on, back) = if swapped { (2, 1) } else { (1, 2) };
-    let knots = if key.spline { beziers(key) } else { key.knots.iter().map(|k| [k[0], k[on], k[back]]).collect() };
+/// How the handles of a shape are written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Reading {
+    /// Whether the third point of a knot leads forward, and not the second.
+    swapped: bool,
+    /// Where an offset of nothing was read to, if handles are offsets from their points.
+    origin: Option<Point>,
+}
+
+impl Reading {
+    /// The reading with the shortest control polygons of all keys; the first of equal ones.
+    fn of(keys: &[Key], footage: &Footage) -> Self {
+        let middle = Point::new(footage.width as f64, footage.height as f64) * 0.5;
+        let forms =
+            [None, Some(middle)].into_iter().flat_map(|origin| [false, true].map(|swapped| Self { swapped, origin }));
+        let mut best = (f64::INFINITY, Self { swapped: false, origin: None });
+        for form in forms {
+            let length = length(keys, &form);
+            if length < best.0 {
+                best = (length, form);
+            }
+        }
+        best.1
+    }
+
+    /// A knot as point, forward handle, backward handle.
+    fn knot(&self, [at, a, b]: Knot) -> Knot {
+        let place = |handle: Point| self.origin.map_or(handle, |origin| at + handle - origin);
+        if self.swapped { [at, place(b), place(a)] } else { [at, place(a), place(b)] }
+    }
+}
+
+/// The path of a key.
+fn built(key: &Key, reading: &Reading) -> Path {
+    let knots = if key.spline { beziers(key) } else { key.knots.iter().map(|knot| reading.knot(*knot)).collect() };
     let mut path = Path::new(knots[0][0]);
     for pair in knots.windows(2) {
         path.cubic(pair[0][1], pair[1][2], pair[1][0]);
@@ -202,9 +234,9 @@ fn beziers(key: &Key) -> Vec<Knot> {
 }
 
 /// Length of the control polygons of all keys.
-fn length(keys: &[Key], swapped: bool) -> f64 {
+fn length(keys: &[Key], reading: &Reading) -> f64 {
     let polygon = |key: &Key| {
-        let path = built(key, swapped);
+        let path = built(key, reading);
         let mut from = path.start;
         let each = path.segments.iter().flatten().map(|&p| std::mem::replace(&mut from, p).distance(p));
         each.sum::<f64>()
@@ -248,6 +280,41 @@ mod tests {
             for p in &shape.keys[&13] {
                 assert!((p.distance(Point::new(100.0, 50.0)) - 20.0).abs() < 0.02, "{p}");
             }
+        }
+    }
+
+    #[test]
+    fn handles_are_places_or_offsets() {
+        // Discs of radius 20 pixels, in the middle of the picture and beside it.
+        let round = 0.2 * 0.552_284_75;
+        for (x0, y0) in [(0.0, 0.0), (0.6, -0.2), (-0.9, 0.4)] {
+            for (offsets, turned) in [(false, 1.0), (false, -1.0), (true, 1.0), (true, -1.0)] {
+                let knot = |(x, y): (f64, f64)| {
+                    let (dx, dy) = (-y / 0.2 * round * turned, x / 0.2 * round * turned);
+                    let (x, y) = (x + x0, y + y0);
+                    let (u, v) = if offsets { (0.0, 0.0) } else { (x, y) };
+                    format!("({x},{y}),({},{}),({},{})", u + dx, v + dy, u - dx, v - dy)
+                };
+                let knots = [(0.2, 0.0), (0.0, 0.2), (-0.2, 0.0), (0.0, -0.2)].map(knot);
+                let points: Vec<&str> = knots.iter().map(String::as_str).collect();
+                let found = silhouette(&file("", &key(3, "Bezier", &points)), &FOOTAGE()).unwrap();
+                let middle = Point::new(100.0 + 100.0 * x0, 50.0 + 100.0 * y0);
+                for p in &found.shapes[0].keys[&13] {
+                    assert!((p.distance(middle) - 20.0).abs() < 0.02, "{offsets} {turned} {p}");
+                }
+            }
+        }
+        // Corners: handles at their points, or offsets of nothing.
+        for handle in ["(0.3,0.1)", "(0,0)"] {
+            let points = ["(0.3,0.1)", "(0.4,0.1)", "(0.3,0.3)"].map(|at| {
+                let own = if handle == "(0,0)" { handle } else { at };
+                format!("{at},{own},{own}")
+            });
+            let points: Vec<&str> = points.iter().map(String::as_str).collect();
+            let found = silhouette(&file("", &key(0, "Bezier", &points)), &FOOTAGE()).unwrap();
+            let shape = &found.shapes[0].keys[&10];
+            let length: f64 = rototoon_base::geometry::polyline::length(shape, true);
+            assert!((length - (10.0 + 20.0 + 500f64.sqrt())).abs() < 1e-6, "{handle} {shape:?}");
         }
     }
 

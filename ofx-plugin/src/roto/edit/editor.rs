@@ -1,0 +1,504 @@
+//! The selection and the pen's unfinished work, and what each event makes of them.
+//!
+//! With the tool *Select* the pen picks, in this order: a handle of the box around the selection, a control point, a
+//! contour, and else it opens a box. A contour that is picked selects its part. A click inside a closed part selects it; a
+//! click beside all of them selects nothing. With Shift, points are added to the selection; with Control, a click on a
+//! contour inserts a point.
+//!
+//! With *Draw contour* each click sets a point. A click on the first point closes the contour, one on the last point ends an
+//! open one. Return ends it too, Backspace takes the last point back, Escape drops the contour. With *Draw freehand* the
+//! contour is drawn in one stroke.
+
+use super::handles::{Handle, Handles, Transform};
+use super::{Lens, Place, Refused, Selection, change, contour, hit, points};
+use rototoon::geometry::Point;
+use rototoon::project::Document;
+use rototoon::scene::FrameNumber;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Movement of the pen in screen pixels up to which a press is a click.
+const CLICK: f64 = 2.0;
+
+/// What the pen does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tool {
+    /// It selects and moves points.
+    #[default]
+    Select,
+    /// It sets the points of a contour.
+    Contour,
+    /// It draws a contour in one stroke.
+    Freehand,
+    /// It does nothing.
+    Off,
+}
+
+/// A key of the keyboard that means something here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// Deletes the selected points.
+    Delete,
+    /// Takes the last point back, or deletes.
+    Back,
+    /// Drops the unfinished work, or the selection.
+    Escape,
+    /// Ends a contour.
+    Enter,
+    /// Adds to the selection while it is down.
+    Shift(bool),
+    /// Inserts points while it is down.
+    Control(bool),
+}
+
+/// What an event works on.
+#[derive(Clone, Copy, Debug)]
+pub struct Work<'a> {
+    /// The document.
+    pub document: &'a Document,
+    /// The document's frame.
+    pub frame: FrameNumber,
+    /// The parts that can be picked, the farthest first.
+    pub parts: &'a [usize],
+    /// Distances on the screen.
+    pub lens: Lens,
+    /// What the pen does.
+    pub tool: Tool,
+    /// Whether drawn contours are closed.
+    pub closed: bool,
+    /// Name of the part that is drawn; empty for a new one.
+    pub name: &'a str,
+}
+
+/// What an event led to.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// Nothing: the event is left to the host.
+    Ignored,
+    /// The overlay looks different.
+    Shown,
+    /// Points are selected; of one part only if it is named.
+    Selected(Option<String>),
+    /// An edit, as one undo step.
+    Edited(Edit),
+    /// An edit that cannot be made.
+    Refused(Refused),
+}
+
+/// A finished edit.
+#[derive(Clone, Debug)]
+pub struct Edit {
+    /// Name of the undo step.
+    pub label: &'static str,
+    /// The document after it.
+    pub document: Document,
+}
+
+/// What the pen holds.
+#[derive(Clone, Debug)]
+enum Grip {
+    /// The selected points.
+    Points,
+    /// A corner of a box that selects.
+    Box,
+    /// A handle of the box around the selection.
+    Handle(Handle, Handles),
+    /// A freehand stroke.
+    Stroke,
+}
+
+/// A drag of the pen.
+#[derive(Clone, Debug)]
+struct Drag {
+    grip: Grip,
+    frame: FrameNumber,
+    from: Point,
+    to: Point,
+}
+
+/// A contour that is being drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sketch {
+    /// The document's frame.
+    pub frame: FrameNumber,
+    /// Its points so far.
+    pub points: Vec<Point>,
+    /// Where the pen is.
+    pub pen: Point,
+}
+
+/// The selection and the pen's unfinished work.
+#[derive(Clone, Debug, Default)]
+pub struct Editor {
+    /// The selected points.
+    pub selection: Selection,
+    drag: Option<Drag>,
+    sketch: Option<Sketch>,
+    /// Whether the last press of the pen was handled here, so that its release is too.
+    pressed: bool,
+    shift: bool,
+    control: bool,
+}
+
+impl Editor {
+    /// The contour that is being drawn on a frame.
+    pub fn sketch(&self, frame: FrameNumber) -> Option<&Sketch> {
+        self.sketch.as_ref().filter(|sketch| sketch.frame == frame)
+    }
+
+    /// The corners of the box that selects.
+    pub fn box_corners(&self) -> Option<[Point; 2]> {
+        self.drag.as_ref().filter(|drag| matches!(drag.grip, Grip::Box)).map(|drag| [drag.from, drag.to])
+    }
+
+    /// The box around the selection on a frame. It is not shown while the pen drags.
+    pub fn handles(&self, work: &Work) -> Option<Handles> {
+        if self.drag.is_some() || work.tool != Tool::Select {
+            return None;
+        }
+        self.around(work)
+    }
+
+    fn around(&self, work: &Work) -> Option<Handles> {
+        let scene = &work.document.scene;
+        let places = self.selection.on_frame(scene, work.frame);
+        let at = |place: Place| scene.parts[place.part].points_at(work.frame).map(|points| points[place.point]);
+        Handles::around(places.filter_map(at), &work.lens)
+    }
+
+    /// The shape of a part on a frame, with the drag that is going on.
+    pub fn shown(&self, work: &Work, part: usize, shape: &[Point]) -> Vec<Point> {
+        let mut shape = shape.to_vec();
+        if let Some(transform) = self.transform(work) {
+            for point in self.selection.of_part(part) {
+                if let Some(at) = shape.get_mut(point) {
+                    *at = transform.apply(*at);
+                }
+            }
+        }
+        shape
+    }
+
+    /// Whether a drag is changing a part.
+    pub fn drags(&self, work: &Work, part: usize) -> bool {
+        self.transform(work).is_some() && !self.selection.of_part(part).is_empty()
+    }
+
+    /// What the drag does to the selected points.
+    fn transform(&self, work: &Work) -> Option<Transform> {
+        let drag = self.drag.as_ref().filter(|drag| drag.frame == work.frame)?;
+        match &drag.grip {
+            Grip::Points if self.moved(work) => Some(Transform::shift(drag.to - drag.from)),
+            Grip::Handle(handle, handles) => Some(handles.drag(*handle, drag.from, drag.to, self.shift, &work.lens)),
+            _ => None,
+        }
+    }
+
+    fn moved(&self, work: &Work) -> bool {
+        self.drag.as_ref().is_some_and(|drag| work.lens.distance(drag.from, drag.to) > CLICK)
+    }
+
+    /// Drops the unfinished work.
+    pub fn drop_work(&mut self) {
+        (self.drag, self.sketch) = (None, None);
+    }
+
+    /// Forgets which keys of the keyboard are down, because the viewer no longer hears of them.
+    pub fn release_keys(&mut self) {
+        (self.shift, self.control) = (false, false);
+    }
+
+    /// The pen goes down.
+    pub fn down(&mut self, work: &Work, pen: Point) -> Outcome {
+        self.selection.keep_existing(&work.document.scene);
+        self.drag = None;
+        self.pressed = work.tool != Tool::Off;
+        match work.tool {
+            Tool::Off => Outcome::Ignored,
+            Tool::Contour => self.set_point(work, pen),
+            Tool::Freehand => {
+                self.sketch = Some(Sketch { frame: work.frame, points: vec![pen], pen });
+                self.hold(work, Grip::Stroke, pen)
+            }
+            Tool::Select => self.pick(work, pen),
+        }
+    }
+
+    fn hold(&mut self, work: &Work, grip: Grip, pen: Point) -> Outcome {
+        self.drag = Some(Drag { grip, frame: work.frame, from: pen, to: pen });
+        Outcome::Shown
+    }
+
+    fn pick(&mut self, work: &Work, pen: Point) -> Outcome {
+        let (scene, frame) = (&work.document.scene, work.frame);
+        let pickable = self.selection.iter().all(|place| work.parts.contains(&place.part));
+        if let Some(handles) = self.around(work).filter(|_| pickable)
+            && let Some(handle) = handles.hit(&work.lens, pen)
+        {
+            return self.hold(work, Grip::Handle(handle, handles), pen);
+        }
+        if let Some(place) = hit::point(scene, frame, work.parts, &work.lens, pen) {
+            if self.shift {
+                self.selection.toggle(place);
+                return self.selected(work);
+            }
+            if !self.selection.contains(place) {
+                self.selection = Selection::of([place]);
+            }
+            return self.hold(work, Grip::Points, pen);
+        }
+        let Some(found) = hit::contour(scene, frame, work.parts, &work.lens, pen) else {
+            return self.hold(work, Grip::Box, pen);
+        };
+        if self.control {
+            return self.insert_at(work, found);
+        }
+        let whole = Selection::part(found.part, scene);
+        if self.shift {
+            self.selection.add(&whole);
+        } else if whole.iter().any(|place| !self.selection.contains(place)) {
+            self.selection = whole;
+        }
+        self.hold(work, Grip::Points, pen)
+    }
+
+    fn insert_at(&mut self, work: &Work, place: hit::OnContour) -> Outcome {
+        let mut document = work.document.clone();
+        match points::insert(&mut document, place.part, &[(place.segment, place.share)].into()) {
+            Ok(new) => {
+                self.selection = Selection::of(new.into_iter().map(|point| Place { part: place.part, point }));
+                Outcome::Edited(Edit { label: "Insert point", document })
+            }
+            Err(refused) => Outcome::Refused(refused),
+        }
+    }
+
+    fn selected(&self, work: &Work) -> Outcome {
+        let parts = self.selection.parts();
+        let only = if parts.len() == 1 { parts.first() } else { None };
+        Outcome::Selected(only.map(|&part| work.document.scene.parts[part].name.clone()))
+    }
+
+    fn set_point(&mut self, work: &Work, pen: Point) -> Outcome {
+        let sketch = self.sketch.take().filter(|sketch| sketch.frame == work.frame);
+        let mut sketch = sketch.unwrap_or(Sketch { frame: work.frame, points: Vec::new(), pen });
+        let near = |at: Option<&Point>| at.is_some_and(|at| work.lens.distance(*at, pen) <= hit::NEAR_POINT);
+        let ends = if work.closed {
+            sketch.points.len() > 2 && near(sketch.points.first())
+        } else {
+            sketch.points.len() > 1 && near(sketch.points.last())
+        };
+        if ends {
+            return self.finish(work, sketch.points);
+        }
+        // A double click sets one point.
+        if !near(sketch.points.last()) || sketch.points.is_empty() {
+            sketch.points.push(pen);
+        }
+        sketch.pen = pen;
+        self.sketch = Some(sketch);
+        Outcome::Shown
+    }
+
+    fn finish(&mut self, work: &Work, points: Vec<Point>) -> Outcome {
+        let mut document = work.document.clone();
+        match contour::draw(&mut document, work.frame, work.name, points, work.closed, work.tool != Tool::Freehand) {
+            Ok(part) => {
+                self.selection = Selection::part(part, &document.scene);
+                Outcome::Edited(Edit { label: "Draw contour", document })
+            }
+            Err(refused) => Outcome::Refused(refused),
+        }
+    }
+
+    /// The pen moves.
+    pub fn move_to(&mut self, work: &Work, pen: Point) -> Outcome {
+        if let Some(drag) = &mut self.drag {
+            drag.to = pen;
+            if let (Grip::Stroke, Some(sketch)) = (&drag.grip, &mut self.sketch) {
+                sketch.points.push(pen);
+                sketch.pen = pen;
+            }
+            return Outcome::Shown;
+        }
+        match self.sketch.as_mut().filter(|sketch| sketch.frame == work.frame && work.tool == Tool::Contour) {
+            Some(sketch) => {
+                sketch.pen = pen;
+                Outcome::Shown
+            }
+            None => Outcome::Ignored,
+        }
+    }
+
+    /// The pen goes up.
+    pub fn up(&mut self, work: &Work, pen: Point) -> Outcome {
+        let pressed = std::mem::take(&mut self.pressed);
+        let Some(drag) = &mut self.drag else {
+            return if pressed { Outcome::Shown } else { Outcome::Ignored };
+        };
+        drag.to = pen;
+        let (frame, corners) = (drag.frame, [drag.from, drag.to]);
+        let (moved, transform) = (self.moved(work), self.transform(work));
+        let Some(Drag { grip, .. }) = self.drag.take() else { return Outcome::Ignored };
+        if frame != work.frame {
+            // The viewer shows another frame: the drag was meant for what is no longer seen.
+            self.sketch = None;
+            return Outcome::Shown;
+        }
+        match grip {
+            Grip::Stroke => {
+                let stroke = self.sketch.take().map(|sketch| sketch.points).unwrap_or_default();
+                self.finish(work, contour::simplified(&stroke, work.closed, &work.lens))
+            }
+            Grip::Box if moved => self.select_box(work, corners),
+            Grip::Box => self.select_inside(work, pen),
+            Grip::Points if !moved => self.selected(work),
+            Grip::Points | Grip::Handle(..) => {
+                let label = if matches!(grip, Grip::Points) { "Move points" } else { "Transform points" };
+                transform.map_or(Outcome::Shown, |transform| self.apply(work, &transform, label))
+            }
+        }
+    }
+
+    fn select_box(&mut self, work: &Work, corners: [Point; 2]) -> Outcome {
+        let found = Selection::of(hit::in_box(&work.document.scene, work.frame, work.parts, corners));
+        if self.shift {
+            self.selection.add(&found);
+        } else {
+            self.selection = found;
+        }
+        self.selected(work)
+    }
+
+    fn select_inside(&mut self, work: &Work, pen: Point) -> Outcome {
+        let found = hit::inside(&work.document.scene, work.frame, work.parts, pen);
+        let found = found.map(|part| Selection::part(part, &work.document.scene)).unwrap_or_default();
+        if self.shift {
+            self.selection.add(&found);
+        } else {
+            self.selection = found;
+        }
+        self.selected(work)
+    }
+
+    fn apply(&self, work: &Work, transform: &Transform, label: &'static str) -> Outcome {
+        let scene = &work.document.scene;
+        let mut moved = BTreeMap::new();
+        for place in self.selection.on_frame(scene, work.frame).filter(|place| work.parts.contains(&place.part)) {
+            let at = scene.parts[place.part].points_at(work.frame).map(|points| points[place.point]);
+            moved.extend(at.map(|at| (place, transform.apply(at))));
+        }
+        let complete = |part: &usize| self.selection.of_part(*part).len() == scene.parts[*part].point_count();
+        let whole: BTreeSet<usize> = self.selection.parts().into_iter().filter(complete).collect();
+        let whole = if transform.is_shift() { whole } else { BTreeSet::new() };
+        let mut document = work.document.clone();
+        match change::move_points(&mut document, work.frame, &moved, &whole) {
+            Ok(true) => Outcome::Edited(Edit { label, document }),
+            Ok(false) => Outcome::Shown,
+            Err(refused) => Outcome::Refused(refused),
+        }
+    }
+
+    /// A key of the keyboard goes down or up.
+    pub fn key(&mut self, work: &Work, key: Key) -> Outcome {
+        match key {
+            Key::Shift(down) => self.shift = down,
+            Key::Control(down) => self.control = down,
+            Key::Escape if self.sketch.is_some() || self.drag.is_some() => {
+                self.drop_work();
+                return Outcome::Shown;
+            }
+            Key::Escape if !self.selection.is_empty() => {
+                self.selection = Selection::default();
+                return self.selected(work);
+            }
+            Key::Enter => {
+                if let Some(sketch) = self.sketch.take_if(|sketch| sketch.frame == work.frame) {
+                    return self.finish(work, sketch.points);
+                }
+            }
+            Key::Back if self.sketch.is_some() => {
+                let empty = self.sketch.as_mut().is_some_and(|sketch| {
+                    sketch.points.pop();
+                    sketch.points.is_empty()
+                });
+                if empty {
+                    self.sketch = None;
+                }
+                return Outcome::Shown;
+            }
+            Key::Delete | Key::Back if !self.selection.is_empty() && work.tool != Tool::Off => {
+                return self.delete_selected(work);
+            }
+            Key::Delete | Key::Back | Key::Escape => {}
+        }
+        // The host may have its own use for a key that changes nothing here.
+        Outcome::Ignored
+    }
+
+    /// Deletes the selected points. A part of which all points are selected is deleted.
+    pub fn delete_selected(&mut self, work: &Work) -> Outcome {
+        self.selection.keep_existing(&work.document.scene);
+        let mut document = work.document.clone();
+        // From the last part to the first, so that indices stay valid.
+        for part in self.selection.parts().into_iter().rev() {
+            if !work.parts.contains(&part) {
+                continue;
+            }
+            let chosen = self.selection.of_part(part);
+            let all = chosen.len() == document.scene.parts[part].point_count();
+            let done = if all {
+                change::delete_part(&mut document, part)
+            } else {
+                points::delete(&mut document, part, &chosen)
+            };
+            if let Err(refused) = done {
+                return Outcome::Refused(refused);
+            }
+        }
+        self.selection = Selection::default();
+        Outcome::Edited(Edit { label: "Delete points", document })
+    }
+
+    /// Inserts a point in the middle between neighbouring selected points.
+    pub fn insert_between(&mut self, work: &Work) -> Outcome {
+        self.selection.keep_existing(&work.document.scene);
+        let mut document = work.document.clone();
+        let mut new = Vec::new();
+        for part in self.selection.parts() {
+            let chosen = self.selection.of_part(part);
+            let (count, segments) =
+                (document.scene.parts[part].point_count(), document.scene.parts[part].segment_count());
+            let both = |k: &usize| chosen.contains(k) && chosen.contains(&((k + 1) % count));
+            let places: BTreeMap<usize, f64> = (0..segments).filter(both).map(|segment| (segment, 0.5)).collect();
+            match points::insert(&mut document, part, &places) {
+                Ok(inserted) => new.extend(inserted.into_iter().map(|point| Place { part, point })),
+                Err(refused) => return Outcome::Refused(refused),
+            }
+        }
+        if new.is_empty() {
+            return Outcome::Refused(Refused::new("select two neighbouring points first"));
+        }
+        self.selection = Selection::of(new);
+        Outcome::Edited(Edit { label: "Insert points", document })
+    }
+
+    /// Smooths the selected points on the frame.
+    pub fn smooth_selected(&mut self, work: &Work) -> Outcome {
+        self.selection.keep_existing(&work.document.scene);
+        let scene = &work.document.scene;
+        let mut moved = BTreeMap::new();
+        for part in self.selection.parts() {
+            let smoothed = change::smoothed(&scene.parts[part], work.frame, &self.selection.of_part(part));
+            moved.extend(smoothed.into_iter().map(|(point, to)| (Place { part, point }, to)));
+        }
+        let mut document = work.document.clone();
+        match change::move_points(&mut document, work.frame, &moved, &BTreeSet::new()) {
+            Ok(true) => Outcome::Edited(Edit { label: "Smooth points", document }),
+            Ok(false) => Outcome::Refused(Refused::new("select points of a shape on this frame first")),
+            Err(refused) => Outcome::Refused(refused),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,213 @@
+//! Stores edits and selections in the host's parameters, each as one step of the host's undo.
+
+use super::edit::{Edit, Outcome, Refused, Selection, Work, change};
+use super::parts::selected;
+use super::settings::Settings;
+use super::state::State;
+use super::{fresh, instance, page, stored};
+use crate::ofx::{Effect, Failure, Parameters};
+use rototoon::geometry::Point;
+use rototoon::project::Document;
+use rototoon::scene::FrameNumber;
+use std::sync::Arc;
+
+/// Whether the pen must not change a part.
+pub fn is_locked(parameters: &Parameters, state: &State, name: &str) -> bool {
+    if state.page == name {
+        return parameters.int(c"partLock", 0.0).is_ok_and(|lock| lock != 0);
+    }
+    state.parts.get(name).is_some_and(|settings| settings.lock)
+}
+
+/// Stores an edited document.
+pub fn store(effect: &Effect, label: &str, document: Document) -> Result<(), Failure> {
+    let problems = document.problems();
+    if problems.error_count() > 0 {
+        return Err(Failure::Told(problems.to_string()));
+    }
+    let (instance, parameters) = (instance(effect)?, effect.parameters()?);
+    let mut state = State::clone(&*instance.state(&parameters)?);
+    if let Some(before) = instance.document(&parameters)? {
+        state.note_known(&before.scene.parts);
+    }
+    let page = state.page.clone();
+    state.keep_only(&document.scene.parts);
+    write(&parameters, label, Some(&document), state, &page)
+}
+
+/// Stores a tracked document.
+pub fn store_tracked(effect: &Effect, document: &Document, tracked: &[usize]) -> Result<(), Failure> {
+    let (instance, parameters) = (instance(effect)?, effect.parameters()?);
+    let mut state = State::clone(&*instance.state(&parameters)?);
+    state.note_tracked(tracked.iter().map(|&part| &document.scene.parts[part]));
+    let page = state.page.clone();
+    write(&parameters, "Track", Some(document), state, &page)
+}
+
+/// Stores a document that replaces the composition's, with its parts' settings where the names are the same.
+pub fn store_loaded(effect: &Effect, document: &Document) -> Result<(), Failure> {
+    let (instance, parameters) = (instance(effect)?, effect.parameters()?);
+    let mut state = State::clone(&*instance.state(&parameters)?);
+    let page = state.page.clone();
+    state.tracked.clear();
+    state.keep_only(&document.scene.parts);
+    write(&parameters, "Load project", Some(document), state, &page)
+}
+
+fn write(
+    parameters: &Parameters,
+    label: &str,
+    document: Option<&Document>,
+    state: State,
+    page: &str,
+) -> Result<(), Failure> {
+    parameters.edit(label, || {
+        if let Some(document) = document {
+            parameters.set_text(c"document", &stored::encode(&document.to_json()))?;
+        }
+        if state.page != page {
+            // The part of the page is gone.
+            page::show(parameters, &state.parts.get(&state.page).cloned().unwrap_or_default())?;
+            parameters.set_text(c"part", &state.page)?;
+        }
+        parameters.set_text(c"state", &if state == State::default() { String::new() } else { state.to_text() })
+    })
+}
+
+/// Selects a part by name: the page shows its settings, and what is drawn becomes its key. An empty name selects none.
+pub fn select(effect: &Effect, name: &str) -> Result<(), Failure> {
+    let (instance, parameters) = (instance(effect)?, effect.parameters()?);
+    let known = match instance.document(&parameters)? {
+        Some(document) => document.scene.parts.iter().any(|part| part.name == name),
+        None => false,
+    };
+    let mut state = State::clone(&*instance.state(&parameters)?);
+    parameters.edit("Select part", || {
+        page::turn(&parameters, &mut state, if known { name } else { "" })?;
+        parameters.set_text(c"part", name)?;
+        parameters.set_text(c"state", &if state == State::default() { String::new() } else { state.to_text() })
+    })
+}
+
+/// A parameter of the page has been changed by the user.
+pub fn page_changed(effect: &Effect) -> Result<(), Failure> {
+    let (instance, parameters) = (instance(effect)?, effect.parameters()?);
+    let mut state = State::clone(&*instance.state(&parameters)?);
+    if state.page.is_empty() {
+        return Err(Failure::Told("select a part first: its name is in Part".into()));
+    }
+    page::stored(&parameters, &mut state)?;
+    parameters.set("Settings of part", &[(c"state", &state.to_text())])
+}
+
+/// What the edit buttons work on.
+struct Bench {
+    document: Arc<Document>,
+    frame: FrameNumber,
+    /// The parts that may be changed, the farthest first.
+    parts: Vec<usize>,
+    /// Index of the part that is named in Part.
+    chosen: Option<usize>,
+}
+
+impl Bench {
+    fn of(effect: &Effect, time: f64) -> Result<Self, Failure> {
+        let (instance, parameters) = (instance(effect)?, effect.parameters()?);
+        let document = match instance.document(&parameters)? {
+            Some(document) => document,
+            None => Arc::new(fresh::document(effect)?),
+        };
+        let state = instance.state(&parameters)?;
+        let settings = Settings::read(&parameters, time, &state)?;
+        let frame = settings.document_time.round() as FrameNumber;
+        let mut parts = selected(&document.scene.parts, &settings.parts).0;
+        parts.retain(|&part| !is_locked(&parameters, &state, &document.scene.parts[part].name));
+        parts.sort_by(|&a, &b| document.scene.parts[a].depth.total_cmp(&document.scene.parts[b].depth).then(a.cmp(&b)));
+        let name = parameters.text(c"part")?;
+        let name = name.trim();
+        let chosen = document.scene.parts.iter().position(|part| part.name == name);
+        if !name.is_empty() && chosen.is_none() {
+            return Err(Failure::Told(format!("Part: found {name:?}, but no part has this name")));
+        }
+        if let Some(part) = chosen.filter(|part| !parts.contains(part)) {
+            let name = &document.scene.parts[part].name;
+            return Err(Failure::Told(format!("{name:?} is locked or not among Parts")));
+        }
+        Ok(Self { document, frame, parts, chosen })
+    }
+
+    fn work(&self) -> Work<'_> {
+        Work {
+            document: &self.document,
+            frame: self.frame,
+            parts: &self.parts,
+            lens: super::edit::Lens::new(Point::ONE),
+            tool: super::edit::Tool::Select,
+            closed: true,
+            name: "",
+        }
+    }
+
+    /// The part that is named in Part, or else all parts.
+    fn chosen_or_all(&self) -> Vec<usize> {
+        self.chosen.map_or_else(|| self.parts.clone(), |part| vec![part])
+    }
+
+    fn chosen(&self) -> Result<usize, Refused> {
+        self.chosen.ok_or_else(|| Refused("select a part first: its name is in Part".into()))
+    }
+}
+
+/// Presses an edit button.
+pub fn press(effect: &Effect, name: &str, time: f64) -> Result<(), Failure> {
+    if name == "newPart" {
+        instance(effect)?.editor().selection = Selection::default();
+        return select(effect, "");
+    }
+    let bench = Bench::of(effect, time)?;
+    let work = bench.work();
+    let outcome = {
+        let mut editor = instance(effect)?.editor();
+        match name {
+            "insertPoints" => editor.insert_between(&work),
+            "deletePoints" if editor.selection.is_empty() => refused("select points first"),
+            "deletePoints" => editor.delete_selected(&work),
+            "smoothPoints" => editor.smooth_selected(&work),
+            _ => on_parts(&bench, name),
+        }
+    };
+    match outcome {
+        Outcome::Edited(Edit { label, document }) => store(effect, label, document),
+        Outcome::Refused(refused) => Err(Failure::Told(refused.0)),
+        _ => Ok(()),
+    }
+}
+
+fn refused(text: &str) -> Outcome {
+    Outcome::Refused(Refused(text.into()))
+}
+
+/// The buttons that change whole parts.
+fn on_parts(bench: &Bench, name: &str) -> Outcome {
+    let mut document = Document::clone(&bench.document);
+    let (label, nothing, done) = match name {
+        "newKey" => (
+            "New key",
+            "every part has a key here already, or none anywhere",
+            change::new_key(&mut document, bench.frame, &bench.chosen_or_all()),
+        ),
+        "deleteKey" => (
+            "Delete key",
+            "the part has no key on this frame",
+            bench.chosen().and_then(|part| change::delete_key(&mut document, bench.frame, &[part])),
+        ),
+        _ => {
+            ("Delete part", "", bench.chosen().and_then(|part| change::delete_part(&mut document, part)).map(|()| true))
+        }
+    };
+    match done {
+        Ok(true) => Outcome::Edited(Edit { label, document }),
+        Ok(false) => refused(nothing),
+        Err(refused) => Outcome::Refused(refused),
+    }
+}

@@ -1,0 +1,94 @@
+//! What a picture does with the source: channels, alpha and the input Mask.
+//!
+//! A matte is coverage, not colour: it is written to its channels as it is, whether the host divides colours by alpha or
+//! not. So are the source's channels beside it.
+
+use super::settings::{Channels, Output, Settings, SourceAlpha};
+use super::state::State;
+use crate::encoding::Encoding;
+use crate::ofx::{Failure, Parameters};
+use crate::pixels::{Format, Pixel};
+use rototoon::scene::Raster;
+
+/// How a picture and the source become the output.
+#[derive(Clone, Copy, Debug)]
+pub struct Mixing {
+    output: Output,
+    channels: Channels,
+    alpha: SourceAlpha,
+    premultiply: bool,
+}
+
+impl Mixing {
+    /// As the settings say.
+    pub fn of(settings: &Settings) -> Self {
+        let Settings { output, channels, source_alpha: alpha, premultiply, .. } = *settings;
+        Self { output, channels, alpha, premultiply }
+    }
+
+    /// As the parameters say.
+    pub fn read(parameters: &Parameters, time: f64) -> Result<Self, Failure> {
+        Ok(Self::of(&Settings::read(parameters, time, &State::default())?))
+    }
+
+    /// Whether the source's pixels are needed after the picture is drawn.
+    pub fn needs_source(&self) -> bool {
+        self.output == Output::Matte && (self.channels != Channels::All || self.alpha != SourceAlpha::Ignore)
+    }
+
+    /// Whether values are written as they are, neither multiplied nor divided by alpha.
+    pub fn is_raw(&self) -> bool {
+        matches!(self.output, Output::Matte | Output::Mattes)
+    }
+
+    /// Makes the output of the drawn pixels. `below` are the source's pixels if they are needed, `limit` the values of the
+    /// input Mask.
+    pub fn finish(
+        &self,
+        pixels: &mut Raster<Pixel>,
+        below: Option<&Raster<Pixel>>,
+        limit: Option<&Raster<f32>>,
+        format: &Format,
+    ) {
+        if let Some(limit) = limit.filter(|_| self.is_raw() || self.output == Output::Cutout) {
+            for (pixel, limit) in pixels.data_mut().iter_mut().zip(limit.data()) {
+                pixel.iter_mut().for_each(|value| *value *= limit);
+            }
+        }
+        if let Some(below) = below {
+            for (pixel, below) in pixels.data_mut().iter_mut().zip(below.data()) {
+                *pixel = self.matte(pixel[3], *below);
+            }
+        }
+        let encoding = Encoding::of(format);
+        if self.output == Output::Ids && encoding.is_linear() {
+            pixels.data_mut().iter_mut().for_each(|pixel| *pixel = light(*pixel, &encoding));
+        }
+    }
+
+    /// A matte's value over a pixel of the source.
+    fn matte(&self, value: f32, below: Pixel) -> Pixel {
+        let value = match self.alpha {
+            SourceAlpha::Ignore => value,
+            SourceAlpha::Multiply => value * below[3],
+            SourceAlpha::Add => value + below[3] - value * below[3],
+        };
+        let Channels::One(channel) = self.channels else { return [value; 4] };
+        let mut pixel = below;
+        pixel[channel] = value;
+        if channel == 3 && self.premultiply {
+            pixel[..3].iter_mut().for_each(|colour| *colour *= value);
+        }
+        pixel
+    }
+}
+
+/// Display colours times alpha as linear light times alpha.
+fn light(pixel: Pixel, encoding: &Encoding) -> Pixel {
+    let [r, g, b, alpha] = pixel;
+    if alpha <= 0.0 {
+        return pixel;
+    }
+    let [r, g, b] = [r, g, b].map(|value| encoding.held(value / alpha) * alpha);
+    [r, g, b, alpha]
+}

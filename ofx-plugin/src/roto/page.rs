@@ -1,0 +1,99 @@
+//! The page of the selected part: its settings as parameters of the host, with the host's own keys.
+//!
+//! When another part is selected, the values and keys of the page are stored for the old part, and those of the new part are
+//! set. Both happen within the edit that selects, so that undo takes both back.
+
+use super::state::{Curve, MOST_FRAMES, PartSettings, State};
+use crate::ofx::{Failure, Parameters};
+use std::ffi::CStr;
+
+/// The parameters of the page.
+pub const IDS: [&CStr; 7] =
+    [c"partOn", c"partInvert", c"partOpacity", c"partGrow", c"partFeather", c"partMode", c"partLock"];
+
+/// The settings that the page shows.
+pub fn read(parameters: &Parameters) -> Result<PartSettings, Failure> {
+    let flag = |id| curve(parameters, id, &|time| parameters.int(id, time).map(f64::from));
+    let number = |id| curve(parameters, id, &|time| parameters.double(id, time));
+    Ok(PartSettings {
+        on: flag(c"partOn")?,
+        invert: flag(c"partInvert")?,
+        opacity: number(c"partOpacity")?,
+        grow: number(c"partGrow")?,
+        feather: number(c"partFeather")?,
+        mode: parameters.int(c"partMode", 0.0)?.max(0) as usize,
+        lock: parameters.int(c"partLock", 0.0)? != 0,
+    })
+}
+
+fn curve(parameters: &Parameters, id: &CStr, at: &dyn Fn(f64) -> Result<f64, Failure>) -> Result<Curve, Failure> {
+    let times = parameters.keys(id)?;
+    let mut curve = Curve::still(at(times.first().copied().unwrap_or(0.0))?);
+    let (Some(&first), Some(&last)) = (times.first(), times.last()) else { return Ok(curve) };
+    for time in times {
+        curve.keys.push([time, at(time)?]);
+    }
+    curve.first = first.floor() as i32;
+    let end = (last.ceil() as i32).min(curve.first.saturating_add(MOST_FRAMES));
+    for frame in curve.first..=end {
+        curve.frames.push(at(f64::from(frame))?);
+    }
+    Ok(curve)
+}
+
+/// Shows settings.
+pub fn show(parameters: &Parameters, settings: &PartSettings) -> Result<(), Failure> {
+    for (id, curve) in [(c"partOn", &settings.on), (c"partInvert", &settings.invert)] {
+        set(parameters, id, curve, &|value| parameters.set_int(id, (value > 0.5).into()), &|time, value| {
+            parameters.set_int_at(id, time, (value > 0.5).into())
+        })?;
+    }
+    for (id, curve) in
+        [(c"partOpacity", &settings.opacity), (c"partGrow", &settings.grow), (c"partFeather", &settings.feather)]
+    {
+        set(parameters, id, curve, &|value| parameters.set_double(id, value), &|time, value| {
+            parameters.set_double_at(id, time, value)
+        })?;
+    }
+    parameters.set_int(c"partMode", i32::try_from(settings.mode).unwrap_or(0))?;
+    parameters.set_int(c"partLock", settings.lock.into())
+}
+
+fn set(
+    parameters: &Parameters,
+    id: &CStr,
+    curve: &Curve,
+    still: &dyn Fn(f64) -> Result<(), Failure>,
+    at: &dyn Fn(f64, f64) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    if !parameters.keys(id)?.is_empty() {
+        parameters.delete_keys(id)?;
+    }
+    if curve.keys.is_empty() {
+        return still(curve.value);
+    }
+    curve.keys.iter().try_for_each(|&[time, value]| at(time, value))
+}
+
+/// Stores the page's settings for the part that it shows.
+pub fn stored(parameters: &Parameters, state: &mut State) -> Result<(), Failure> {
+    if !state.page.is_empty() {
+        let settings = read(parameters)?;
+        if settings == PartSettings::default() {
+            state.parts.remove(&state.page);
+        } else {
+            state.parts.insert(state.page.clone(), settings);
+        }
+    }
+    Ok(())
+}
+
+/// Shows another part on the page; an empty name shows none.
+pub fn turn(parameters: &Parameters, state: &mut State, name: &str) -> Result<(), Failure> {
+    if state.page == name {
+        return Ok(());
+    }
+    stored(parameters, state)?;
+    name.clone_into(&mut state.page);
+    show(parameters, &state.parts.get(name).cloned().unwrap_or_default())
+}

@@ -1,0 +1,93 @@
+//! Takes motions and shapes out: keys of parameters to which other nodes can be linked, and files for other programs.
+
+use super::motion::Motion;
+use super::placement::Placement;
+use super::settings::Settings;
+use super::state::State;
+use super::{instance, motion};
+use crate::ofx::{Effect, Failure};
+use rototoon::export::SvgOptions;
+use rototoon::geometry::Point;
+use rototoon::pipeline;
+use rototoon::project::{Document, write_whole};
+use rototoon::scene::FrameNumber;
+use std::ffi::CStr;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The parameters with two numbers, and their values in a motion.
+type Pairs = [(&'static CStr, fn(&Motion) -> Point); 6];
+
+const PAIRS: Pairs = [
+    (c"center", |motion| motion.centre),
+    (c"translate", |motion| motion.translate),
+    (c"corner1", |motion| motion.corners[0]),
+    (c"corner2", |motion| motion.corners[1]),
+    (c"corner3", |motion| motion.corners[2]),
+    (c"corner4", |motion| motion.corners[3]),
+];
+/// Distance of the points of snapped paths in files, in pixels.
+const SPACING: f64 = 2.0;
+
+fn document(effect: &Effect) -> Result<Arc<Document>, Failure> {
+    let document = instance(effect)?.document(&effect.parameters()?)?;
+    document.ok_or_else(|| Failure::Told("found no shapes: draw some, or load a project first".into()))
+}
+
+/// Sets keys for the motion of the selected part on all of its frames.
+pub fn write_motion(effect: &Effect, time: f64) -> Result<(), Failure> {
+    let (document, parameters) = (document(effect)?, effect.parameters()?);
+    let name = parameters.text(c"part")?;
+    let part = document.scene.parts.iter().find(|part| part.name == name.trim());
+    let part = part.ok_or_else(|| Failure::Told("select a part first: its name is in Part".into()))?;
+    let shapes = if part.tracks.is_empty() { &part.keys } else { &part.tracks };
+    if shapes.is_empty() {
+        return Err(Failure::Told(format!("{name:?} has no shape: draw or track it first")));
+    }
+    let offset = Settings::read(&parameters, time, &State::default())?;
+    let offset = time - offset.document_time;
+    let placement = Placement::of(effect, &document.scene.footage, time, [1.0; 2])?;
+    let frames: Vec<FrameNumber> = shapes.keys().copied().collect();
+    let placed = |points: &Vec<Point>| points.iter().map(|&p| Point::from(placement.shown(p))).collect();
+    let found = motion::motions(&shapes.values().map(placed).collect::<Vec<Vec<Point>>>());
+    parameters.edit("Write motion", || {
+        for (id, _) in PAIRS {
+            parameters.delete_keys(id)?;
+        }
+        parameters.delete_keys(c"rotate")?;
+        parameters.delete_keys(c"scale")?;
+        for (frame, motion) in frames.iter().zip(&found).filter_map(|(frame, motion)| Some((frame, motion.as_ref()?))) {
+            let at = f64::from(*frame) + offset;
+            for (id, value) in PAIRS {
+                parameters.set_pair_at(id, at, value(motion).into())?;
+            }
+            parameters.set_double_at(c"rotate", at, motion.rotate)?;
+            parameters.set_double_at(c"scale", at, motion.scale)?;
+        }
+        Ok(())
+    })
+}
+
+/// Writes the shapes to the export file. Its extension names the format.
+pub fn export(effect: &Effect) -> Result<(), Failure> {
+    let document = document(effect)?;
+    let path = effect.parameters()?.text(c"exportFile")?;
+    let path = Path::new(path.trim());
+    if path.as_os_str().is_empty() {
+        return Err(Failure::Told("choose an export file first".into()));
+    }
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let text = match extension.as_str() {
+        "nk" => pipeline::export_nuke(&document, SPACING),
+        "fxs" => pipeline::export_silhouette(&document, SPACING),
+        "svg" => pipeline::export_svg(&document, &SvgOptions { spacing: SPACING, ..SvgOptions::default() })
+            .map_err(|error| Failure::Told(error.to_string()))?,
+        _ => {
+            let shown = path.display();
+            return Err(Failure::Told(format!(
+                "export file: found {shown}, expected a name that ends in .nk, .fxs or .svg"
+            )));
+        }
+    };
+    write_whole(path, text.as_bytes()).map_err(|error| Failure::Told(error.to_string()))
+}
