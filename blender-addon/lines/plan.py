@@ -6,6 +6,7 @@ layer that has no drawing on some frame of the others makes a group of its own.
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -57,6 +58,12 @@ class Plan:
     last: int
     new: bool
     """Whether ink that no stroke explains makes new strokes."""
+    offset: int
+    """The scene shows picture n on frame n + offset."""
+    hold: bool = True
+    """Whether a frame with the same picture as the one before holds its drawing."""
+    held: set[int] = field(default_factory=set)
+    """The scene frames of such pictures, once they are known."""
     sums: dict[str, dict[int, int]] = field(default_factory=dict)
     """Checksums of the artist's drawings, to see whether they change during the work."""
 
@@ -82,7 +89,35 @@ def make(ob, layers: list[dr.Layer], first: int, last: int, new: bool) -> Plan:
     if not by_frames:
         raise Problem("There are no strokes to carry: draw them on a frame of the footage first")
     groups = [_group(ob, own, frames, first, last, pattern) for frames, own in by_frames.items()]
-    return Plan(groups, first, last, new, {layer.name: layer.sums() for layer in layers})
+    return Plan(groups, first, last, new, ob.rototoon.frame_offset, sums={layer.name: layer.sums() for layer in layers})
+
+
+def of_picture(layer: dr.Layer, frame: int, path: str, size: tuple[int, int], mapper) -> Plan:
+    """A plan for a single picture file, whose name is a pattern with one number, 1. It is drawn on one frame."""
+    shown = {"pattern": path, "first": 1, "last": 1, "fps": 24.0, "width": size[0], "height": size[1]}
+    document = {"rototoon": VERSION, "footage": shown, "parts": [], "drawings": []}
+    group = Group([layer], {}, (1, 1), document, os.path.dirname(path), mapper)
+    return Plan([group], frame, frame, True, frame - 1, sums={layer.name: layer.sums()})
+
+
+def find_held(plan: Plan) -> None:
+    """Finds the pictures that are the same file as the one before, as in films on twos. Uses no Blender."""
+    if not plan.hold or not plan.groups:
+        return
+    pattern = plan.groups[0].document["footage"]["pattern"]
+    before: tuple[int, bytes] | None = None
+    for frame in range(plan.first, plan.last + 1):
+        path = pattern % (frame - plan.offset)
+        try:
+            size = os.path.getsize(path)
+            with open(path, "rb") as file:
+                now = size, hashlib.file_digest(file, "blake2b").digest()
+        except OSError:
+            # The library says which picture is missing.
+            return
+        if now == before:
+            plan.held.add(frame)
+        before = now
 
 
 def needed(layer: dr.Layer, first: int, last: int) -> set[int]:

@@ -46,11 +46,18 @@ class Done:
     """Number of drawings of the artist that were changed traced drawings before."""
 
 
-def worker(plan: pl.Plan, options: Options) -> jobs.Worker:
-    """The work of a plan, for a thread. Its result is a `Traced` for each group."""
+def worker(plan: pl.Plan, options: Options, afterwards: Callable[[], None] = lambda: None) -> jobs.Worker:
+    """The work of a plan, for a thread. Its result is a `Traced` for each group. `afterwards` is called at the end, failed or not."""
 
     def run(progress) -> list[Traced]:
+        try:
+            return traced(progress)
+        finally:
+            afterwards()
+
+    def traced(progress) -> list[Traced]:
         found = []
+        pl.find_held(plan)
         for k, group in enumerate(plan.groups):
             share, begun = 1 / len(plan.groups), k / len(plan.groups)
             session = make(group.document, group.folder)
@@ -97,11 +104,11 @@ def finishing(ob, plan: pl.Plan, found: list[Traced], home: str) -> Iterator[flo
     counter = numbers.Counter({layer.name: layer.next_track(plan.first, plan.last) for layer in layers})
     for g, (group, traced) in enumerate(zip(plan.groups, found, strict=True)):
         own = [layer.name for layer in group.layers]
-        keyed = _keyed(group, traced, ob.rototoon.frame_offset, counter, home if home in own else own[-1])
+        keyed = _keyed(group, traced, plan.offset, counter, home if home in own else own[-1])
         for k, layer in enumerate(group.layers):
             record = kept.setdefault(layer.name, records.Layer())
             _mark_keys(ob, layer, group, k, keyed, record, done)
-            placed = _placed(group, layer, k, traced, keyed, plan, ob.rototoon.frame_offset)
+            placed = _placed(group, layer, k, traced, keyed, plan)
             yield from _write(ob, layer, group.mapper, k, placed, _looks_of(group, k, keyed), record, done)
     records.write(ob.data, kept)
     ob.data.update_tag()
@@ -161,14 +168,14 @@ def _looks_of(group: pl.Group, k: int, keyed) -> looks.Looks:
     return found
 
 
-def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan, offset: int) -> dict[int, list[Placed]]:
-    """The strokes of a layer on the frames that are written, by number."""
+def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan) -> dict[int, list[Placed] | None]:
+    """The strokes of a layer on the frames that are written, by number; `None` for a frame that holds the drawing before."""
     points, widths = np.asarray(traced.points).reshape(-1, 2), np.asarray(traced.widths)
     colours, ends = np.asarray(traced.colours).reshape(-1, 3), traced.point_offsets
     known = {key for seed in (keyed[f] for f in group.seeds) for key in seed}
     result: dict[int, list[Placed]] = {}
     for place, number in enumerate(traced.frames.tolist()):
-        frame = number + offset
+        frame = number + plan.offset
         if not plan.first <= frame <= plan.last or frame in layer.kept:
             continue
         first = traced.stroke_offsets[place]
@@ -179,14 +186,22 @@ def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan
             span = slice(ends[i], ends[i + 1])
             strokes.append(Placed(key[1], points[span], bool(traced.closed[i]), widths[span], colours[i]))
         result[frame] = sorted(strokes, key=lambda stroke: stroke.number)
+    if group.mapper.still:
+        # A held picture shows the drawing before it, also one of the artist.
+        for frame in sorted(plan.held & result.keys()):
+            if frame - 1 in result or frame - 1 in layer.keys or frame - 1 in plan.held:
+                result[frame] = None
     return result
 
 
 def _write(ob, layer: dr.Layer, mapper, k: int, placed, shown: looks.Looks, record, done: Done) -> Iterator[float]:
     """Writes the strokes of one layer, with a step for each frame."""
-    target, materials = gp.find_layer(ob, layer.name), _materials(ob, placed, shown)
+    target = gp.find_layer(ob, layer.name)
+    held = {frame for frame, strokes in placed.items() if strokes is None}
+    placed = {frame: strokes for frame, strokes in placed.items() if strokes is not None}
+    gp.remove_frames(target, sorted(held & layer.made.keys()))
     gp.make_frames(target, placed, gp.GENERATED)
-    handles, names = gp.drawings(target), shown.names()
+    handles, names, materials = gp.drawings(target), shown.names(), _materials(ob, placed, shown)
     for count, (frame, strokes) in enumerate(placed.items(), 1):
         rows = _rows(frame, strokes, shown, names, materials, mapper.at(k, frame))
         gp.replace_made(handles[frame][0], rows)

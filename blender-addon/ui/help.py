@@ -18,7 +18,7 @@ PAGES = (
     ("bpy.ops.rototoon.track*", "artist/panels.html#track"),
     ("bpy.ops.rototoon.*pins*", "artist/corrections.html"),
     ("bpy.ops.rototoon.weakest_frame*", "artist/corrections.html"),
-    ("bpy.ops.rototoon.trace_drawing*", "artist/lines.html"),
+    ("bpy.ops.rototoon.trace_*", "artist/lines.html"),
     ("bpy.ops.rototoon.carry_strokes*", "artist/lines.html"),
     ("bpy.ops.rototoon.match_lines*", "artist/lines.html"),
     ("bpy.ops.rototoon.clear_lines*", "artist/lines.html"),

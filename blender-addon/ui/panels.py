@@ -219,7 +219,9 @@ class ROTOTOON_PT_lines(DrawingPanel, bpy.types.Panel):
         side = row.row(align=True)
         side.ui_units_x = 4
         side.operator("rototoon.trace_drawing", text="Current").frames = "CURRENT"
-        layout.operator("rototoon.carry_strokes", icon="TRACKING_FORWARDS")
+        column = layout.column(align=True)
+        column.operator("rototoon.trace_image", icon="IMAGE_REFERENCE")
+        column.operator("rototoon.carry_strokes", icon="TRACKING_FORWARDS")
         column = layout.column(align=True)
         column.operator("rototoon.match_lines", icon="UV_SYNC_SELECT")
         column.operator("rototoon.spread_edits", icon="NEXT_KEYFRAME")

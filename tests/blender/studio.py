@@ -228,6 +228,12 @@ def _traced_and_moved(addon, ob):
     gp.put(handle, "position", points)
 
 
+def _one_traced_and_reference(addon, ob):
+    _one_traced(addon, ob)
+    _reference(addon, ob)
+    bpy.context.scene.frame_set(3)
+
+
 def _ink_active(addon, ob):
     ob.data.layers.active = ob.data.layers[INK]
 
@@ -275,6 +281,7 @@ OPERATORS = {
     "snap": Call(frozenset({SNAPPED}), prepare=_moved_and_tracked),
     "spread_edits": Call(_L, prepare=_traced_and_moved),
     "trace_drawing": Call(_L, prepare=_one_traced),
+    "trace_image": Call(_L, prepare=_one_traced_and_reference),
     "track": Call(_C, _C, prepare=_not_tracked),
     "update_in_betweens": Call(_I, prepare=_in_between_and_moved),
     "weakest_frame": Call(changes=False),

@@ -4,6 +4,7 @@ import bpy
 import line_shots as ls
 import numpy as np
 import pytest
+from mathutils import Matrix
 
 
 @pytest.fixture(scope="module")
@@ -180,6 +181,21 @@ def test_a_second_run_changes_nothing(addon, film, fake):
     before = studio.digests(addon, film)
     bpy.ops.rototoon.trace_drawing()
     assert studio.digests(addon, film) == before and len(film.data.materials) == 2
+
+
+def test_held_pictures_become_held_drawings(addon, film, fake, pictures, tmp_path):
+    import shutil
+
+    for number, source in enumerate((1, 1, 2, 3, 3, 3), 1):
+        shutil.copy(pictures.with_name(f"line_{source:03}.png"), tmp_path / f"line_{number:03}.png")
+    film.rototoon.pattern = str(tmp_path / "line_%03d.png")
+    bpy.ops.rototoon.trace_drawing(hold=False)
+    assert list(kinds(addon, film, "Lines")) == [1, 2, 3, 4, 5, 6]
+    bpy.ops.rototoon.trace_drawing()
+    assert list(kinds(addon, film, "Lines")) == [1, 3, 4] and said(addon).text == "2 strokes on 3 frames"
+    ls.put(addon, film, "Ink", 4, [(ls.lines(0)[4][0], False)])
+    bpy.ops.rototoon.carry_strokes()
+    assert list(kinds(addon, film, "Ink")) == [1, 3, 4]
 
 
 def test_undo_takes_all_back(addon, film, fake):
@@ -360,6 +376,45 @@ def test_a_cut_stroke_is_cut_on_all_frames(addon, traced):
         found = [np.linalg.norm(np.diff(now[n], axis=0), axis=1).sum() for n in (arm, 7)]
         assert found[0] == pytest.approx(length / 2, rel=0.1) and found[1] == pytest.approx(length / 2, rel=0.1)
         assert away(np.vstack([now[arm], now[7]]), before[frame]) < 1.5
+
+
+def reference(path):
+    """An empty that shows a picture, selected with the object, turned and moved."""
+    ob, image = bpy.context.object, bpy.data.images.load(str(path))
+    empty = bpy.data.objects.new("scan", None)
+    empty.empty_display_type, empty.data, empty.empty_display_size = "IMAGE", image, 4.0
+    empty.matrix_world = Matrix.Translation((3, 2, 1)) @ Matrix.Rotation(1.0, 4, "Z") @ Matrix.Rotation(np.pi / 2, 4, "X")
+    bpy.context.scene.collection.objects.link(empty)
+    bpy.context.view_layer.update()
+    empty.select_set(True)
+    return ob, empty
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_a_reference_image_is_traced_where_it_is(addon, film, pictures, packed):
+    ob, empty = reference(pictures)
+    ob.rototoon.pattern = ""
+    if packed:
+        empty.data.pack()
+    bpy.context.scene.frame_set(5)
+    assert bpy.ops.rototoon.trace_image() == {"FINISHED"}
+    assert said(addon).text == "6 strokes on 1 frame"
+    cameras, gp = addon("blender.camera"), addon("blender.grease_pencil")
+    layer = gp.find_layer(ob, "Lines")
+    handle = gp.drawings(layer)[5][0]
+    points = gp.positions(handle, int(gp.offsets(handle)[-1]))
+    matrix = cameras.layer_to_world(ob, layer)
+    world = points @ matrix[:3, :3].T + matrix[:3, 3]
+    local = np.linalg.inv(np.array(empty.matrix_world)) @ np.c_[world, np.ones(len(world))].T
+    assert np.allclose(local[2], 1e-3, atol=1e-4), "the strokes lie on the image"
+    pixels = cameras.Mapping(cameras.reference_view(empty, *ls.SIZE), matrix).to_pixels(points)
+    every = np.concatenate([line for line, _, _ in ls.lines(0)])
+    assert away(pixels, every) < 3
+    gp.set_keyframe_type(layer, {5: gp.KEYFRAME})
+    with pytest.raises(RuntimeError, match="a drawing of yours on frame 5"):
+        bpy.ops.rototoon.trace_image()
+    empty.select_set(False)
+    assert not bpy.ops.rototoon.trace_image.poll()
 
 
 # -- scripts ---------------------------------------------------------------------------------------------------------------

@@ -8,8 +8,8 @@ from ...common.operators import OnDrawing
 from .footage_base import FootageOperator, assign_to_active
 
 
-def _reference(context):
-    """The selected image empty, otherwise the one in the settings."""
+def reference_image(context):
+    """The selected empty that shows an image, otherwise the one in the settings."""
     for ob in context.selected_objects:
         if ob.type == "EMPTY" and ob.empty_display_type == "IMAGE":
             return ob
@@ -27,13 +27,13 @@ class ROTOTOON_OT_footage_from_reference(FootageOperator, OnDrawing, bpy.types.O
     def poll(cls, context):
         if not super().poll(context):
             return False
-        if _reference(context) is None:
+        if reference_image(context) is None:
             cls.poll_message_set("Select the reference image together with the Grease Pencil object")
             return False
         return True
 
     def source(self, context) -> footage.Source:
-        self._empty = _reference(context)
+        self._empty = reference_image(context)
         if self._empty is None:
             raise Problem("No reference image is selected")
         return footage.source_of_image(self._empty.data, self._empty.image_user)

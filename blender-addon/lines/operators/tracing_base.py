@@ -44,6 +44,12 @@ class Tracing(Long, OnFootage):
         max=10.0,
     )
 
+    hold: bpy.props.BoolProperty(
+        name="Hold",
+        description="A frame with the same picture as the one before, as in films on twos, holds its drawing",
+        default=True,
+    )
+
     def span(self, context) -> tuple[int, int]:
         """First and last scene frame to draw."""
         scene = context.scene
@@ -59,6 +65,7 @@ class Tracing(Long, OnFootage):
         """The worker for some layers. New strokes go to the layer `home`."""
         self._ob, self._home = context.object, home
         self._plan = plan_of(self._ob, names, *self.span(context), new)
+        self._plan.hold = self.hold
         settings = self._ob.rototoon
         style = settings.line_style if self.style == "SETTINGS" else self.style
         # The least sensitivity is 0.1; 0 means that of the panel.
