@@ -101,10 +101,12 @@ def _plain(points: np.ndarray) -> np.ndarray:
 
 def thinned(points: np.ndarray, tolerance: float, spacing: float) -> np.ndarray:
     """Control points of a closed contour: it stays within `tolerance` of the given points, and neighbours are at most `spacing` apart
-    along it (Douglas & Peucker 1973, from two far points)."""
+    along it (Douglas & Peucker 1973, from two outer points)."""
     count = len(points)
     if count < 4:
         return points
+    # An outermost point is a good one to begin at.
+    points = np.roll(points, -int(np.argmax(np.linalg.norm(points - points.mean(0), axis=1))), axis=0)
     other = int(np.argmax(np.linalg.norm(points - points[0], axis=1)))
     ring = np.vstack([points, points[:1]])
     kept = np.zeros(count + 1, bool)

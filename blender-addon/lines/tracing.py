@@ -44,6 +44,12 @@ class Done:
     numbers: set[numbers.Key] = field(default_factory=set)
     kept: int = 0
     """Number of drawings of the artist that were changed traced drawings before."""
+    breaks: set[int] = field(default_factory=set)
+    """Frames on which many strokes end or begin: identity may be lost there."""
+
+
+BREAK = 0.3
+"""Share of the length of lines that belongs to strokes that end or begin, from which a frame is said."""
 
 
 def worker(plan: pl.Plan, options: Options, afterwards: Callable[[], None] = lambda: None) -> jobs.Worker:
@@ -213,10 +219,30 @@ def _write(ob, layer: dr.Layer, mapper, k: int, placed, shown: looks.Looks, reco
         done.frames.add(frame)
         done.numbers.update((layer.name, stroke.number) for stroke in strokes)
         yield count / len(placed)
+    done.breaks |= _breaks(placed)
     for frame in [frame for frame in record.sums if frame in layer.kept or frame not in handles]:
         del record.sums[frame]
     for frame in [frame for frame in record.numbers if frame not in handles]:
         del record.numbers[frame]
+
+
+def _breaks(placed: dict[int, list[Placed]]) -> set[int]:
+    """The frames on which many strokes end or begin, against the drawing before."""
+    found, before = set(), None
+    for frame, strokes in placed.items():
+        now = {stroke.number: _length(stroke.points) for stroke in strokes}
+        if before is not None and frame - before[0] <= 2:
+            other = before[1]
+            gone = sum(each for number, each in other.items() if number not in now)
+            new = sum(each for number, each in now.items() if number not in other)
+            if gone + new > BREAK * (sum(other.values()) + sum(now.values())) > 0:
+                found.add(frame)
+        before = frame, now
+    return found
+
+
+def _length(points: np.ndarray) -> float:
+    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
 def _materials(ob, placed, shown: looks.Looks) -> dict[int, int]:

@@ -44,6 +44,8 @@ class Drawn:
     """Scene frames that were drawn, rising."""
     kept: int
     """Number of traced drawings that the artist had changed; they are keys now."""
+    breaks: tuple[int, ...]
+    """Scene frames on which many strokes end or begin: identity may be lost there."""
 
 
 @told
@@ -102,7 +104,7 @@ def _run(ob, names, home, new, frames, style, sensitivity, progress) -> Drawn:
     worker = tracing.worker(plan, options)
     worker.run_here(progress)
     done = jobs.drained(tracing.finishing(ob, plan, worker.result, home))
-    return Drawn(len(done.numbers), tuple(sorted(done.frames)), done.kept)
+    return Drawn(len(done.numbers), tuple(sorted(done.frames)), done.kept, tuple(sorted(done.breaks)))
 
 
 @told

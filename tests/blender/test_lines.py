@@ -198,6 +198,22 @@ def test_held_pictures_become_held_drawings(addon, film, fake, pictures, tmp_pat
     assert list(kinds(addon, film, "Ink")) == [1, 3, 4]
 
 
+def test_frames_on_which_strokes_are_lost_are_said(addon, film, fake, monkeypatch):
+    tracer = fake.Tracer
+
+    def lost(self, *args, **options):
+        found = tracer_trace(self, *args, **options)
+        # From the fourth drawing on the numbers are others.
+        found.tracks[found.stroke_offsets[3] :] += 10
+        return found
+
+    tracer_trace = tracer.trace
+    monkeypatch.setattr(tracer, "trace", lost)
+    bpy.ops.rototoon.trace_drawing()
+    assert said(addon).warnings == ("many strokes end or begin on 4: look there, and give a drawing of yours",)
+    assert addon("scripting").trace_drawing(film).breaks == (4,)
+
+
 def test_undo_takes_all_back(addon, film, fake):
     bpy.ops.ed.undo_push(message="before")
     bpy.ops.rototoon.trace_drawing()
@@ -288,6 +304,32 @@ def test_strokes_around_a_part_become_its_contour(addon, traced):
     assert away(next(iter(contour.values())), ls.lines(0)[0][0]) < 2
     with pytest.raises(RuntimeError, match="No strokes are selected"):
         bpy.ops.rototoon.make_part(numbers="99")
+    with pytest.raises(RuntimeError, match='There is a part "body" already'):
+        bpy.ops.rototoon.make_part(numbers=str(body), name="body")
+    # On the next frame the artist selects the stroke. It is the same part.
+    bpy.context.scene.frame_set(2)
+    gp, handle = addon("blender.grease_pencil"), handle_of(addon, traced, "Lines", 2)
+    numbers = gp.value(handle, gp.TRACK, len(gp.offsets(handle)) - 1)
+    handle.attributes.new(".selection", "BOOLEAN", "CURVE").data.foreach_set("value", numbers == body)
+    bpy.ops.rototoon.make_part()
+    assert said(addon).text == "The strokes fit a part that has a contour already: this is its key on frame 2"
+    assert len(traced.rototoon.parts) == 1 and list(kinds(addon, traced, "Contours")) == [1, 2]
+
+
+def test_strokes_in_any_order_that_cross_are_cut_and_joined(addon):
+    outline = addon("lines.outline")
+    corners = np.array([(0, 0), (100, 0), (100, 60), (0, 60)], float)
+    sides = []
+    for k, (a, b) in enumerate(zip(corners, np.roll(corners, -1, 0))):
+        way = (b - a) / np.linalg.norm(b - a)
+        # The lines run 4 px beyond the corners.
+        line = a - 4 * way + np.linspace(0, 1, 30)[:, None] * (b - a + 8 * way)
+        sides.append((line[::-1] if k % 2 else line, False))
+    contour, gap = outline.joined([sides[k] for k in (2, 0, 3, 1)])
+    assert gap == 0 and contour.min() > -1e-6 and contour[:, 0].max() < 100 + 1e-6 and contour[:, 1].max() < 60 + 1e-6
+    thin = outline.thinned(contour, 0.5, 1000)
+    assert len(thin) == 4 and sorted(map(tuple, thin.round().tolist())) == sorted(map(tuple, corners.tolist()))
+    assert outline.joined([(corners[:2], False), (corners[2:], False)])[1] == pytest.approx(60)
 
 
 def edit(addon, ob, frame, number, change):

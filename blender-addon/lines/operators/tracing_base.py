@@ -6,6 +6,7 @@ import bpy
 
 from ...blender import grease_pencil as gp
 from ...blender import guard, preferences
+from ...capture.tracking import listed
 from ...common.operators import Long, OnDrawing
 from .. import drawings as dr
 from .. import plan as pl
@@ -74,6 +75,7 @@ class Tracing(Long, OnFootage):
 
     def finish(self, _context, work):
         done = yield from tracing.finishing(self._ob, self._plan, work.result, self._home)
+        self.warn(where_to_look(done))
         return told(done)
 
 
@@ -82,6 +84,11 @@ def plan_of(ob, names: list[str], first: int, last: int, new: bool) -> pl.Plan:
     guard.need_open([gp.find_layer(ob, name) for name in names])
     wanted = {frame for layer in dr.read(ob, names) for frame in pl.needed(layer, first, last)}
     return pl.make(ob, dr.read(ob, names, wanted), first, last, new)
+
+
+def where_to_look(done: tracing.Done) -> str:
+    """The frames on which many strokes end or begin; empty if there are none."""
+    return f"many strokes end or begin on {listed(sorted(done.breaks))}: look there, and give a drawing of yours" if done.breaks else ""
 
 
 def told(done: tracing.Done) -> str:
