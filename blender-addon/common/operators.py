@@ -96,18 +96,6 @@ class OnArmature:
         return True
 
 
-class InObjectMode:
-    """An operator that needs Object Mode, since it makes objects."""
-
-    @classmethod
-    def poll(cls, context) -> bool:
-        """Called by Blender."""
-        if context.mode != "OBJECT":
-            cls.poll_message_set("Go to Object Mode first")
-            return False
-        return True
-
-
 class Stopped(Exception):
     """The artist has stopped the work."""
 
@@ -237,7 +225,9 @@ class Long(Reporting):
         return {"RUNNING_MODAL"}
 
     def cancel(self, context):
-        """Called by Blender when it loads a file or quits during the work."""
+        """Called by Blender when it loads a file or quits during the work, and when a dialog or a file browser is closed before it."""
+        if self._work is None:
+            return
         self._work.cancel()
         self._work.join()
         if self._writing is not None:

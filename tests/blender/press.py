@@ -33,6 +33,8 @@ from window import MODULE, main_window, view
 
 WORDS = sys.argv[sys.argv.index("--") + 1 :]
 ZIP, OUT, READY = (Path(word).absolute() for word in WORDS[:3])
+ONLY = set(",".join(WORDS[4:]).split(",")) - {""}
+"""For work on one button: names of the functions below and of operators. All by default."""
 LOG = Path("blender.log").absolute()
 VARIANTS = {"dark-1x": ("Dark", 1.0), "light-1x": ("Light", 1.0), "dark-2x": ("Dark", 2.0), "light-2x": ("Light", 2.0)}
 LONGEST = 180
@@ -41,7 +43,7 @@ ELSEWHERE: dict[str, str] = {}
 """Operators without a button in the tab, and where they are."""
 LEAVE = {"match_lines": "RET", "match_strokes": "RET"}
 """Keys that end operators which go on until the artist ends them."""
-QUIET: set[str] = set()
+QUIET = {"show_confidence"}
 """Operators whose result is seen at once, so that they say nothing."""
 DIALOGS = {"save_clip", "save_clip_from_armature", "depth_mark", "reshape_drawing", "reshape_picture", "apply_motion", "drive_bones"}
 """Operators that ask first, in a dialog with an OK."""
@@ -102,6 +104,18 @@ def look() -> np.ndarray:
     return window.screen()
 
 
+def settled():
+    """The window once two pictures of it are equal: after a file was opened, the view is drawn several times."""
+    before = look()
+    for _ in range(8):
+        yield 0.2
+        now = look()
+        if not differing(before, now):
+            break
+        before = now
+    return now
+
+
 def differing(before: np.ndarray, after: np.ndarray) -> int:
     """Number of pixels that differ clearly."""
     return int((np.abs(before.astype(np.int16) - after) > 24).any(2).sum())
@@ -120,9 +134,8 @@ def buttons_of(panel, name: str) -> bool:
 
 def every_operator(session: Session, every: list):
     """Presses all buttons of every operator."""
-    for name in studio.OPERATORS:
-        if name == "help":
-            continue
+    named = [name for name in studio.OPERATORS if name in ONLY]
+    for name in named or [name for name in studio.OPERATORS if name != "help"]:
         press_scenes.ready(addon, name)
         yield 0.3
         panels = [panel for panel in every if buttons_of(panel, name)]
@@ -163,7 +176,8 @@ def press_operator(session: Session, panel, notes, index: int, name: str):
         session.note(panel, button, "", "it can't be seen or is grey where the operator should work")
         return
     yield from window.moved(*press_scenes.aside())
-    before, start = look(), LOG.stat().st_size
+    before = yield from settled()
+    start = LOG.stat().st_size
     addon("common.reports").take()
     yield from window.clicked((box[0] + box[1]) / 2, (box[2] + box[3]) / 2)
     yield 0.3
@@ -184,9 +198,9 @@ def press_operator(session: Session, panel, notes, index: int, name: str):
 
 
 def answered(name: str, button: Button, before: np.ndarray):
-    """Answers what a button asks: which entry of its menu, which file, whether to go on."""
+    """Answers what a button asks: which entry of its menu (the last), which file, whether to go on."""
     if button.kind == "operator_menu_enum":
-        yield from window.typed("DOWN_ARROW", "RET")
+        yield from window.typed("UP_ARROW", "RET")
         yield 0.3
     if name in DIALOGS:
         yield from confirmed(before)
@@ -339,13 +353,12 @@ def session():
     yield 0.5
     tab.watch_lists()
     every, faults = tab.panels(), []
-    only = set(",".join(WORDS[4:]).split(",")) - {""}
     for variant in WORDS[3].split(",") if len(WORDS) > 3 else VARIANTS:
         wear(*VARIANTS[variant])
         found = Session(OUT / variant)
         found.folder.mkdir(parents=True, exist_ok=True)
         for work in (every_panel, every_property, every_operator, every_help):
-            if not only or work.__name__ in only:
+            if not ONLY or work.__name__ in ONLY:
                 yield from work(found, every)
         write(found)
         faults += [f"{variant}: {p.panel}: {p.button}: {p.fault}" for p in found.presses if p.fault]

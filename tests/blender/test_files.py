@@ -156,3 +156,12 @@ def test_saved_copy_leaves_the_open_file_right(addon, fake, tmp_path):
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "deep/copies/copy.blend"))
     assert bpy.context.object.rototoon.pattern == "//../../frames/shot_%03d.png"
     bpy.ops.rototoon.track()
+
+
+def test_import_works_in_every_mode(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.export_document(filepath=str(tmp_path / "shot.json"))
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert bpy.ops.rototoon.import_document(filepath=str(tmp_path / "shot.json")) == {"FINISHED"}
+    assert bpy.context.object != ob and bpy.context.mode == "OBJECT"
+    assert len(bpy.context.object.rototoon.parts) == len(ob.rototoon.parts) == 2

@@ -268,3 +268,56 @@ def test_dropped_footage_is_taken_at_once(addon, tmp_path):
     assert ".png" in handler.bl_file_extensions.split(";") and handler.bl_import_operator == "rototoon.setup"
     for name in ("setup", "import_document"):
         assert getattr(bpy.ops.rototoon, name).get_rna_type().properties["filepath"].is_skip_save
+
+
+def test_a_copied_key_waits_until_it_is_fitted(addon, fake, tmp_path):
+    ob = shots.set_up(tmp_path)
+    start, stand = addon("ui.start"), addon("capture.stand")
+    shots.draw(addon, ob, 1, [shots.square(0)])
+    bpy.context.scene.frame_set(9)
+    assert "ends on 9" in start.next_of(start.steps_of(ob)).hint
+    bpy.ops.rototoon.new_key()
+    stand.forget(ob)
+    step = start.next_of(start.steps_of(ob))
+    assert step.text == "Set a second key" and "Edit Mode" in step.hint
+    shots.move(addon, ob, 9, 1, (64.0, 16.0))
+    stand.forget(ob)
+    assert start.next_of(start.steps_of(ob)).text == "Track"
+
+
+def test_track_says_that_the_footage_goes_on(addon, fake, tmp_path):
+    ob = shots.set_up(tmp_path)
+    for frame in (1, 5):
+        shots.draw(addon, ob, frame, [shots.square(frame - 1)])
+    bpy.ops.rototoon.track()
+    said = addon("common.reports").take()[-1].text
+    assert said == "3 contours drawn on 3 frames; nothing after your last key on frame 5: the footage goes on to frame 9"
+
+
+def test_steps_name_the_part_that_needs_a_key(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.track()
+    addon("capture.ends").put(ob.rototoon.parts[1], [(4, "lost")])
+    start = addon("ui.start")
+    step = start.next_of(start.steps_of(ob))
+    assert step.text == "Correct" and step.hint.startswith('"Part 2" needs a key on frame 4')
+
+
+@pytest.mark.parametrize(
+    ("path", "name"),
+    [
+        ("/films/penguin/frames/frame_%03d.png", "penguin"),
+        ("/films/penguin/image%d.png", "penguin"),
+        ("/films/frames/walk_%04d.png", "walk"),
+        ("/frames/%d.png", "Contours"),
+    ],
+)
+def test_objects_are_called_as_the_footage(addon, path, name):
+    shot = SimpleNamespace(movie="", pattern=path)
+    assert addon("capture.operators.setup")._name(shot) == name
+
+
+def test_a_dialog_that_is_closed_ends_quietly(addon):
+    """Blender calls `cancel` when a dialog or the file browser of an operator is closed, before there is any work."""
+    long = addon("common.operators").Long
+    assert long.cancel(SimpleNamespace(_work=None), bpy.context) is None

@@ -4,14 +4,14 @@ import os
 
 import bpy
 
-from ...blender import footage, stage
+from ...blender import footage, stage, view
 from ...blender.errors import Problem
 from ...capture import sessions
-from ...common.operators import Guarded, InObjectMode
+from ...common.operators import Guarded
 from .. import files, importing
 
 
-class ROTOTOON_OT_import_document(Guarded, InObjectMode, bpy.types.Operator):
+class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
     bl_idname = "rototoon.import_document"
     bl_label = "Import Document"
     bl_description = "Make strokes from a Rototoon project document: keys, corrections, tracks and snapped lines"
@@ -52,6 +52,7 @@ class ROTOTOON_OT_import_document(Guarded, InObjectMode, bpy.types.Operator):
             stage.assign(ob, shot)
         else:
             name = os.path.splitext(os.path.basename(path))[0]
+            view.leave_mode(context)
             ob = stage.build(context, shot, "CAMERA", name, match_scene=True)
         context.view_layer.update()
         importing.apply(ob, project)
