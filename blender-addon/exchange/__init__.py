@@ -2,5 +2,5 @@
 
 `files` reads, checks and writes documents. `importing` makes strokes from a document. `outlines` makes outlines for masks.
 
-May import: `rototoon`, `blender`, `common`, `capture`.
+May import: `rototoon`, `blender`, `common`, `capture`, `lines`.
 """

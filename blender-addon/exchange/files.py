@@ -14,7 +14,7 @@ from ..capture.document import VERSION
 
 _FOOTAGE = {"pattern", "first", "last", "fps", "width", "height"}
 _PART = {"name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves", "wants_key"}
-_TOP = {"rototoon", "footage", "parts"}
+_TOP = {"rototoon", "footage", "parts", "traced"}
 
 
 def load(path: str) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..blender import strokes as st
 from ..blender.errors import Problem
+from ..blender.placement import Mapper
 from ..common import jobs
 from ..rototoon import Session
 from ..rototoon.lines import Traced
@@ -118,6 +119,22 @@ def finishing(ob, plan: pl.Plan, found: list[Traced], home: str) -> Iterator[flo
             yield from _write(ob, layer, group.mapper, k, placed, _looks_of(group, k, keyed), record, done)
     records.write(ob.data, kept)
     ob.data.update_tag()
+    return done
+
+
+def draw(ob, name: str, strokes: dict[int, list[Placed]]) -> Done:
+    """Draws given strokes by scene frame, in the place of all traced drawings of a layer. The artist's drawings stay."""
+    guard.need_open([gp.find_layer(ob, name)])
+    (layer,) = dr.read(ob, [name])
+    target = gp.layer(ob, name)
+    dr.keep(ob, layer)
+    gp.remove_frames(target, sorted(layer.made))
+    layer.made = {}
+    placed = {frame: strokes[frame] for frame in sorted(strokes) if frame not in layer.kept}
+    done, kept = Done(), records.read(ob.data)
+    record = kept.setdefault(name, records.Layer())
+    jobs.drained(_write(ob, layer, Mapper(ob, placed, {}, [name]), 0, placed, looks.Looks(), record, done))
+    records.write(ob.data, kept)
     return done
 
 

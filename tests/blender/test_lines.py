@@ -30,7 +30,8 @@ def traced(addon, film, kept, pictures):
     """The film, traced."""
     if not kept:
         addon("lines.tracing").make = addon("rototoon").Session.from_document
-        bpy.ops.rototoon.trace_drawing()
+        assert bpy.ops.rototoon.trace_drawing() == {"FINISHED"}
+        assert said(addon).text == "6 strokes on 6 frames"
         kept["path"] = str(pictures.with_name("traced.blend"))
         bpy.ops.wm.save_as_mainfile(filepath=kept["path"])
     bpy.ops.wm.open_mainfile(filepath=kept["path"])
@@ -58,16 +59,14 @@ def said(addon):
     return addon("common.reports").take()[-1]
 
 
-def test_the_film_becomes_strokes_with_the_same_numbers_on_every_frame(addon, film):
-    assert bpy.ops.rototoon.trace_drawing() == {"FINISHED"}
-    assert said(addon).text == "6 strokes on 6 frames"
-    assert kinds(addon, film, "Lines") == dict.fromkeys(range(1, 7), "GENERATED")
-    first = ls.strokes(addon, film, "Lines", 1)
+def test_the_film_becomes_strokes_with_the_same_numbers_on_every_frame(addon, traced):
+    assert kinds(addon, traced, "Lines") == dict.fromkeys(range(1, 7), "GENERATED")
+    first = ls.strokes(addon, traced, "Lines", 1)
     assert sorted(first) == [1, 2, 3, 4, 5, 6]
     truth = {number: min(range(6), key=lambda k: away(points, ls.lines(0)[k][0])) for number, points in first.items()}
     assert sorted(truth.values()) == list(range(6))
     for frame in range(1, 7):
-        now = ls.strokes(addon, film, "Lines", frame)
+        now = ls.strokes(addon, traced, "Lines", frame)
         assert list(now) == sorted(first), "the index of a stroke is the same too"
         for number, points in now.items():
             assert away(points, ls.lines(frame - 1)[truth[number]][0]) < 3
@@ -457,6 +456,35 @@ def test_a_reference_image_is_traced_where_it_is(addon, film, pictures, packed):
         bpy.ops.rototoon.trace_image()
     empty.select_set(False)
     assert not bpy.ops.rototoon.trace_image.poll()
+
+
+def test_traced_strokes_go_into_a_document_and_come_back(addon, traced, tmp_path):
+    import json
+
+    bpy.ops.rototoon.make_part(numbers=str(number_of(addon, traced, 0)))
+    path = tmp_path / "lines.json"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    document = json.loads(path.read_text())
+    assert [each["frame"] for each in document["traced"]] == [1, 2, 3, 4, 5, 6]
+    assert [stroke["track"] for stroke in document["traced"][3]["strokes"]] == [0, 1, 2, 3, 4, 5]
+    before = {frame: ls.strokes(addon, traced, "Lines", frame) for frame in range(1, 7)}
+    radii = attribute(addon, traced, "Lines", 2, "radius")
+    bpy.ops.rototoon.import_document(filepath=str(path))
+    assert said(addon).text == "1 parts and 6 traced strokes from lines.json"
+    ob = bpy.context.object
+    assert ob != traced and kinds(addon, ob, "Lines") == dict.fromkeys(range(1, 7), "GENERATED")
+    for frame in range(1, 7):
+        now = ls.strokes(addon, ob, "Lines", frame)
+        assert list(now) == list(before[frame]) and all(np.allclose(now[n], before[frame][n], atol=1e-3) for n in now)
+    assert np.allclose(attribute(addon, ob, "Lines", 2, "radius"), radii, atol=1e-4)
+    gp = addon("blender.grease_pencil")
+    gp.find_layer(ob, "Lines").lock = True
+    with pytest.raises(RuntimeError, match='the layer "Lines" is locked'):
+        bpy.ops.rototoon.import_document(filepath=str(path), into="ACTIVE")
+    document["traced"][2]["strokes"][1]["widths"] = [1]
+    path.write_text(json.dumps(document))
+    with pytest.raises(RuntimeError, match=r"traced\[2\].strokes\[1\].widths: expected one number for each point"):
+        bpy.ops.rototoon.import_document(filepath=str(path))
 
 
 # -- scripts ---------------------------------------------------------------------------------------------------------------

@@ -8,13 +8,13 @@ from ...blender import guard
 from ...blender.errors import Problem
 from ...capture import document
 from ...common.operators import Guarded, OnContours
-from .. import files
+from .. import files, traced
 
 
 class ROTOTOON_OT_export_document(Guarded, OnContours, bpy.types.Operator):
     bl_idname = "rototoon.export_document"
     bl_label = "Export Document"
-    bl_description = "Write keys, corrections, tracks and snapped lines as a Rototoon project document"
+    bl_description = "Write keys, corrections, tracks, snapped and traced lines as a Rototoon project document"
     bl_options = {"REGISTER"}
     changes = guard.NOTHING
 
@@ -33,6 +33,9 @@ class ROTOTOON_OT_export_document(Guarded, OnContours, bpy.types.Operator):
             raise Problem("No file chosen")
         path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ".json")
         reading = document.read(context.object, results=True)
+        lines = traced.of(context.object)
+        if lines:
+            reading.document["traced"] = lines
         files.save(path, reading.document)
         return f"{len(reading.document['parts'])} parts in {os.path.basename(path)}"
 

@@ -8,13 +8,13 @@ from ...blender import footage, stage, view
 from ...blender.errors import Problem
 from ...capture import sessions
 from ...common.operators import Guarded
-from .. import files, importing
+from .. import files, importing, traced
 
 
 class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
     bl_idname = "rototoon.import_document"
     bl_label = "Import Document"
-    bl_description = "Make strokes from a Rototoon project document: keys, corrections, tracks and snapped lines"
+    bl_description = "Make strokes from a Rototoon project document: keys, corrections, tracks, snapped and traced lines"
     bl_options = {"REGISTER", "UNDO"}
 
     filepath: bpy.props.StringProperty(name="File", description="The project document", subtype="FILE_PATH", options={"SKIP_SAVE"})
@@ -43,12 +43,14 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
     def run(self, context) -> str:
         path = bpy.path.abspath(self.filepath)
         project = files.load(path)
+        traced.checked(project)
         shot = self._shot(context, project["footage"], os.path.dirname(os.path.abspath(path)))
         if self.into == "ACTIVE":
             ob = context.object
             if ob is None or ob.type != "GREASEPENCIL":
                 raise Problem("Make a Grease Pencil object active, or import into a new one")
             importing.need_open(ob)
+            traced.need_open(ob, project)
             stage.assign(ob, shot)
         else:
             name = os.path.splitext(os.path.basename(path))[0]
@@ -56,9 +58,11 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
             ob = stage.build(context, shot, "CAMERA", name, match_scene=True)
         context.view_layer.update()
         importing.apply(ob, project)
+        lines = traced.draw(ob, project)
         sessions.drop(ob)
         ob.data.update_tag()
-        return f"{len(ob.rototoon.parts)} parts from {os.path.basename(path)}"
+        also = f" and {lines} traced strokes" if lines else ""
+        return f"{len(ob.rototoon.parts)} parts{also} from {os.path.basename(path)}"
 
     def _shot(self, context, shot: dict, folder: str) -> stage.Shot:
         pattern = os.path.normpath(os.path.join(folder, shot["pattern"]))
