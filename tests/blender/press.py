@@ -141,9 +141,6 @@ def every_operator(session: Session, every: list):
         panels = [panel for panel in every if buttons_of(panel, name)]
         for panel in panels:
             yield from buttons_in(session, every, panel, name)
-        if not panels and name not in ELSEWHERE:
-            press = Press("", name, "", "no panel has a button of this operator")
-            session.presses.append(press)
 
 
 def buttons_in(session: Session, every: list, panel, name: str):
@@ -158,6 +155,20 @@ def buttons_in(session: Session, every: list, panel, name: str):
         index, button = found[0]
         done.add(button.key)
         yield from press_operator(session, panel, BODY, index, name)
+
+
+def every_step(session: Session, every: list):
+    """Presses the buttons of the panel Steps, which has another one at each step of the work."""
+    panel = next(panel for panel in every if tab.title(panel) == "start")
+    for name in press_scenes.STEPS:
+        press_scenes.step(addon, name)
+        yield from alone(every, panel)
+        found = [i for i, button in enumerate(BODY.buttons) if button.name == f"rototoon.{name}"]
+        if found:
+            yield from press_operator(session, panel, BODY, found[0], name)
+        else:
+            there = ", ".join(map(str, BODY.buttons))
+            session.presses.append(Press("start", name, "", f"the panel has no such button at its step, but {there}"))
 
 
 def alone(every: list, panel):
@@ -235,10 +246,12 @@ def file_browser():
 
 
 def choose(browser, name: str) -> None:
-    """Sets the file browser to the file that the table names."""
-    path = Path(press_scenes.options(name)["filepath"])
+    """Sets the file browser to the file or the folder that the table names."""
+    found = press_scenes.options(name)
+    folder, file = (Path(found["filepath"]).parent, Path(found["filepath"]).name) if "filepath" in found else (found["directory"], "")
+    Path(folder).mkdir(parents=True, exist_ok=True)
     params = next(area for area in browser.screen.areas if area.type == "FILE_BROWSER").spaces.active.params
-    params.directory, params.filename = str(path.parent).encode(), path.name
+    params.directory, params.filename = str(folder).encode(), file
 
 
 def ended(name: str):
@@ -357,13 +370,22 @@ def session():
         wear(*VARIANTS[variant])
         found = Session(OUT / variant)
         found.folder.mkdir(parents=True, exist_ok=True)
-        for work in (every_panel, every_property, every_operator, every_help):
+        for work in (every_panel, every_property, every_operator, every_step, every_help):
             if not ONLY or work.__name__ in ONLY:
                 yield from work(found, every)
+        if not ONLY:
+            missing(found)
         write(found)
         faults += [f"{variant}: {p.panel}: {p.button}: {p.fault}" for p in found.presses if p.fault]
     tab.only(every, None)
     return "\n".join(["ready", *faults])
+
+
+def missing(session: Session) -> None:
+    """Notes the operators that were not pressed."""
+    pressed = {key[1][1].removeprefix("rototoon.") for key in session.keys}
+    for name in sorted(set(studio.OPERATORS) - pressed - set(ELSEWHERE)):
+        session.presses.append(Press("", name, "", "no panel has a button of this operator"))
 
 
 def write(session: Session) -> None:

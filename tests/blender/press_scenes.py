@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import bpy
+import shots
 import studio
 import window
 from window import in_view, view
@@ -43,8 +44,56 @@ def ready(addon, name: str) -> None:
         call.prepare(addon, ob)
     last = bpy.context.window_manager.operator_properties_last(f"rototoon.{name}")
     for key, value in options(name).items():
-        if key != "filepath" and last is not None:
+        if key not in ("filepath", "directory") and last is not None:
             setattr(last, key, value)
+
+
+def step(addon, name: str) -> None:
+    """Opens the studio and works there, on an object of its own, until the panel Steps asks for an operator."""
+    ready(addon, "setup")
+    with in_view():
+        studio.activate(bpy.data.objects["Rig"])
+        if name in ("setup", "open_sample"):
+            return
+        bpy.ops.rototoon.setup(filepath=options("setup")["filepath"], start_drawing=False)
+        ob = bpy.context.object
+        for work in STEPS[name]:
+            work(addon, ob)
+        ob.data.update_tag()
+        addon("capture.stand").read(ob)
+
+
+def _first_key(addon, ob):
+    shots.draw(addon, ob, 1, [shots.diamond(0), shots.square(0)])
+    bpy.context.scene.frame_set(9)
+
+
+def _second_key(addon, ob):
+    shots.draw(addon, ob, 9, [shots.diamond(8), shots.square(8)])
+    bpy.ops.rototoon.match_contours()
+
+
+def _tracked(addon, ob):
+    bpy.ops.rototoon.track()
+    bpy.context.scene.frame_set(4)
+
+
+def _corrected(addon, ob):
+    shots.move(addon, ob, 4, 2, (3.0, -2.0), which=[1])
+    bpy.ops.rototoon.track()
+
+
+_WORK = (_first_key, _second_key, _tracked, _corrected)
+STEPS = {
+    "setup": (),
+    "open_sample": (),
+    "draw_contours": (),
+    "new_key": _WORK[:1],
+    "track": _WORK[:2],
+    "weakest_frame": _WORK[:3],
+    "snap": _WORK,
+}
+"""By operator what is done before the panel Steps asks for it."""
 
 
 def aside() -> tuple[int, int]:
