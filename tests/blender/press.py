@@ -229,14 +229,16 @@ def confirmed(before: np.ndarray):
     """Clicks OK, in the lower right corner of a dialog: that is the large rectangle in which the window differs."""
     now = look()
     differs = (np.abs(before.astype(np.int16) - now) > 8).any(2)
-    sides = []
-    for axis in (0, 1):
-        sums = differs.sum(axis)
-        sides.append(np.flatnonzero(sums > 0.5 * sums.max()))
-    scale, (across, down) = bpy.context.preferences.view.ui_scale, sides
+    across = _most(differs.sum(0))
+    down = _most(differs[:, across[0] : across[-1] + 1].sum(1))
     left, right, bottom = across[0], across[-1], now.shape[0] - down[-1]
-    yield from window.clicked(right - 0.25 * (right - left), bottom + 17 * scale)
+    yield from window.clicked(right - 0.25 * (right - left), bottom + 17 * bpy.context.preferences.view.ui_scale)
     yield 0.3
+
+
+def _most(sums: np.ndarray) -> np.ndarray:
+    """The indices of the rows or columns that a large rectangle fills."""
+    return np.flatnonzero(sums > 0.7 * sums.max())
 
 
 def file_browser():
@@ -251,7 +253,9 @@ def choose(browser, name: str) -> None:
     folder, file = (Path(found["filepath"]).parent, Path(found["filepath"]).name) if "filepath" in found else (found["directory"], "")
     Path(folder).mkdir(parents=True, exist_ok=True)
     params = next(area for area in browser.screen.areas if area.type == "FILE_BROWSER").spaces.active.params
-    params.directory, params.filename = str(folder).encode(), file
+    params.directory = str(folder).encode()
+    if file:
+        params.filename = file
 
 
 def ended(name: str):

@@ -4,27 +4,33 @@ from pathlib import Path
 
 import bpy
 import shots
+import stand_in
 import studio
 import window
 from window import in_view, view
 
 _kept: dict[str, str] = {}
+_real: list = []
+"""What makes sessions and matches contours in the installed extension."""
 INSTEAD = {"apply_motion": {"style": "plain"}}
 """Properties other than those of the table: the button takes the content from the list, in which the first clip is chosen."""
 
 
 def build(addon, folder: Path) -> None:
-    """Writes the studio's file. A stand-in tracks for it, which blends the keys: its figure is not in its footage."""
-    import stand_in
-
+    """Writes the studio's file."""
     folder.mkdir(parents=True, exist_ok=True)
     sessions = addon("capture.sessions")
-    real = sessions.make, sessions.matcher
-    sessions.make, sessions.matcher = stand_in.Session.from_document, stand_in.match_contours
+    _real.extend((sessions.make, sessions.matcher))
+    _track_with(addon, stand_in.Session.from_document, stand_in.match_contours)
     _kept["folder"] = str(folder)
     _kept["studio"] = studio.build(addon, folder)
+
+
+def _track_with(addon, make, matcher) -> None:
+    """The studio's figure is not in its footage, so a stand-in tracks and traces there. The steps are done with the library."""
+    sessions = addon("capture.sessions")
     sessions.clear()
-    sessions.make, sessions.matcher = real
+    sessions.make, sessions.matcher = make, matcher
 
 
 def options(name: str) -> dict:
@@ -35,6 +41,7 @@ def options(name: str) -> dict:
 
 def ready(addon, name: str) -> None:
     """Opens the studio and does what the table says before an operator; its button then works with the table's properties."""
+    _track_with(addon, stand_in.Session.from_document, stand_in.match_contours)
     with bpy.context.temp_override(window=window.main_window()):
         bpy.ops.wm.open_mainfile(filepath=_kept["studio"], load_ui=False)
     with in_view():
@@ -42,15 +49,26 @@ def ready(addon, name: str) -> None:
         ob = studio.activate(bpy.data.objects[studio.OBJECT])
         studio.activate(bpy.data.objects[call.on])
         call.prepare(addon, ob)
+        if name == "make_part":
+            _select(addon, ob, int(call.options["numbers"]))
     last = bpy.context.window_manager.operator_properties_last(f"rototoon.{name}")
     for key, value in options(name).items():
         if key not in ("filepath", "directory") and last is not None:
             setattr(last, key, value)
 
 
+def _select(addon, ob, number: int) -> None:
+    """Selects a traced stroke, as an artist does for a button that takes no numbers."""
+    gp = addon("blender.grease_pencil")
+    handle = gp.drawings(ob.data.layers[studio.LINES])[1][0]
+    numbers = gp.value(handle, gp.TRACK, len(gp.offsets(handle)) - 1)
+    handle.attributes.new(".selection", "BOOLEAN", "CURVE").data.foreach_set("value", numbers == number)
+
+
 def step(addon, name: str) -> None:
     """Opens the studio and works there, on an object of its own, until the panel Steps asks for an operator."""
     ready(addon, "setup")
+    _track_with(addon, *_real)
     with in_view():
         studio.activate(bpy.data.objects["Rig"])
         if name in ("setup", "open_sample"):
