@@ -11,7 +11,9 @@ from window import in_view, view
 
 _kept: dict[str, str] = {}
 _real: list = []
-"""What makes sessions and matches contours in the installed extension."""
+"""What makes sessions, matches contours and traces lines in the installed extension."""
+STAND_INS = (stand_in.Session.from_document, stand_in.match_contours, stand_in.Tracer.from_document)
+"""What does so on the studio's file."""
 INSTEAD = {"apply_motion": {"style": "plain"}}
 """Properties other than those of the table: the button takes the content from the list, in which the first clip is chosen."""
 
@@ -20,17 +22,18 @@ def build(addon, folder: Path) -> None:
     """Writes the studio's file."""
     folder.mkdir(parents=True, exist_ok=True)
     sessions = addon("capture.sessions")
-    _real.extend((sessions.make, sessions.matcher))
-    _track_with(addon, stand_in.Session.from_document, stand_in.match_contours)
+    _real.extend((sessions.make, sessions.matcher, addon("lines.tracing").make))
+    _track_with(addon, *STAND_INS)
     _kept["folder"] = str(folder)
     _kept["studio"] = studio.build(addon, folder)
 
 
-def _track_with(addon, make, matcher) -> None:
+def _track_with(addon, make, matcher, tracer) -> None:
     """The studio's figure is not in its footage, so a stand-in tracks and traces there. The steps are done with the library."""
     sessions = addon("capture.sessions")
     sessions.clear()
     sessions.make, sessions.matcher = make, matcher
+    addon("lines.tracing").make = tracer
 
 
 def options(name: str) -> dict:
@@ -41,7 +44,7 @@ def options(name: str) -> dict:
 
 def ready(addon, name: str) -> None:
     """Opens the studio and does what the table says before an operator; its button then works with the table's properties."""
-    _track_with(addon, stand_in.Session.from_document, stand_in.match_contours)
+    _track_with(addon, *STAND_INS)
     with bpy.context.temp_override(window=window.main_window()):
         bpy.ops.wm.open_mainfile(filepath=_kept["studio"], load_ui=False)
     with in_view():
