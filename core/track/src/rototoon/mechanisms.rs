@@ -8,6 +8,8 @@
 /// A mechanism that the default tracker has in addition to carrying each key's lattice from drawing to drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mechanism {
+    /// Line drawings and shaded drawings are compared by looks of their own instead of by colours.
+    Looks,
     /// Dense flow between drawings gives starts.
     Flow,
     /// The complete picture is searched where the chains from the two keys disagree.
@@ -33,7 +35,8 @@ pub enum Mechanism {
 
 impl Mechanism {
     /// Every mechanism with its id on the command line of the benchmark.
-    pub const ALL: [(Self, &str); 10] = [
+    pub const ALL: [(Self, &str); 11] = [
+        (Self::Looks, "looks"),
         (Self::Flow, "flow"),
         (Self::Search, "search"),
         (Self::Sweep, "sweep"),

@@ -48,6 +48,8 @@ use crate::contract::job::{Job, SpanTrack};
 use crate::contract::tasks::{SharedProgress, Steps, Task, assemble, job, nearer_contours, next_wave, tasks};
 use crate::contract::tracking::{SceneSolver, Tracking};
 use crate::shared::drawings::Drawing;
+use crate::shared::look::kind::Decided;
+use crate::shared::look::{Kind, Looks};
 use crate::shared::store::Store;
 use finish::{Finish, Finished, finish};
 use joint::Contender;
@@ -75,7 +77,11 @@ const FEATURES: f64 = 0.5;
 /// The solver of the default preset.
 #[derive(Default)]
 pub struct Rototoon {
+    /// What was computed from the pictures themselves.
     store: Store,
+    /// What was computed from their looks, if these are others.
+    looked: Store,
+    kind: Decided,
     plain: BTreeMap<(String, Span), Arc<Pooled>>,
     corrected: BTreeMap<(String, Span), Arc<Pooled>>,
     mended: BTreeMap<(String, Span), Mended>,
@@ -112,10 +118,14 @@ impl SceneSolver for Rototoon {
         let single = outward::plan::subjects(scene).len();
         let between = tasks.len() as f64 / (tasks.len() + single).max(1) as f64;
         let first = Portion { listener: progress, range: [0.0, between] };
-        let mut tracking = self.track_between(scene, &tasks, frames, &first)?;
+        let looks = self.look(scene, frames, &first)?;
+        let mut tracking = self.track_between(scene, &tasks, &looks, &first)?;
         if single > 0 {
             let rest = Portion { listener: progress, range: [between, 1.0] };
-            self.outward.run(&self.store, scene, frames, &rest, &mut tracking)?;
+            let mut outward = std::mem::take(&mut self.outward);
+            let result = outward.run(self.kit(&looks, &rest), scene, &mut tracking);
+            self.outward = outward;
+            result?;
         }
         Ok(tracking)
     }
@@ -136,12 +146,38 @@ impl Rototoon {
         Self { mechanisms, ..Self::default() }
     }
 
+    /// The looks of the pictures. If they are of another kind than in the last run, its results are forgotten.
+    fn look<'a>(
+        &mut self,
+        scene: &Scene,
+        frames: &'a dyn FrameSource,
+        progress: &dyn Progress,
+    ) -> Result<Looks<'a>, TrackError> {
+        let before = self.kind.kind();
+        let kind = if self.mechanisms.has(Mechanism::Looks) {
+            self.kind.decide(scene, &self.store, frames, progress)?
+        } else {
+            Kind::Painted
+        };
+        if kind != before {
+            let (store, kind) = (std::mem::take(&mut self.store), std::mem::take(&mut self.kind));
+            *self = Self { store, kind, ..Self::new(self.mechanisms) };
+        }
+        Ok(Looks { frames, kind })
+    }
+
+    /// Access to the pictures and their looks.
+    fn kit<'a>(&'a self, looks: &'a Looks<'a>, progress: &'a dyn Progress) -> Kit<'a> {
+        let store = if looks.kind == Kind::Painted { &self.store } else { &self.looked };
+        Kit { store, frames: looks, plain: (&self.store, looks.frames), progress, mechanisms: self.mechanisms }
+    }
+
     /// Tracks the parts between their keys.
     fn track_between(
         &mut self,
         scene: &Scene,
         tasks: &[Task],
-        frames: &dyn FrameSource,
+        frames: &Looks,
         progress: &dyn Progress,
     ) -> Result<Tracking, TrackError> {
         let unread = if tasks.iter().all(|task| self.knows(scene, task)) { 0.0 } else { READING };
@@ -174,23 +210,18 @@ impl Rototoon {
 
     /// Computes the features and flows that many tasks need, before the tasks are given to threads, which would wait
     /// for each other.
-    fn read(
-        &self,
-        scene: &Scene,
-        tasks: &[Task],
-        frames: &dyn FrameSource,
-        progress: &dyn Progress,
-    ) -> Result<(), TrackError> {
+    fn read(&self, scene: &Scene, tasks: &[Task], frames: &Looks, progress: &dyn Progress) -> Result<(), TrackError> {
+        let kit = self.kit(frames, progress);
         let new = tasks.iter().filter(|task| !self.knows(scene, task));
         let spans: BTreeSet<Span> = new.map(|task| task.span).collect();
         let numbers: BTreeSet<FrameNumber> = spans.iter().flat_map(Span::frames).collect();
         let first = Portion { listener: progress, range: [0.0, FEATURES] };
-        self.store.read(frames, &Vec::from_iter(numbers), &first)?;
+        kit.store.read(kit.frames, &Vec::from_iter(numbers), &first)?;
         let mut pairs = BTreeSet::new();
         for span in spans {
             let held = |&frame: &FrameNumber| {
                 progress.report("Reading frames", FEATURES)?;
-                self.store.held(frames, frame)
+                kit.held(frame)
             };
             let until: Vec<FrameNumber> = (span.first..span.last).collect();
             let held: Vec<bool> = until.par_iter().map(held).collect::<Result<_, TrackError>>()?;
@@ -207,7 +238,7 @@ impl Rototoon {
         Vec::from_iter(pairs)
             .par_iter()
             .with_max_len(1)
-            .try_for_each(|&(from, to)| steps.step(|| self.store.flow(frames, from, to).map(|_| ())))
+            .try_for_each(|&(from, to)| steps.step(|| kit.store.flow(kit.frames, from, to).map(|_| ())))
     }
 
     /// Whether a task was solved in an earlier run.
@@ -229,7 +260,7 @@ impl Rototoon {
         &mut self,
         scene: &Scene,
         tasks: &[Task],
-        frames: &dyn FrameSource,
+        frames: &Looks,
         shared: &SharedProgress,
     ) -> Result<(Vec<Arc<Pooled>>, Vec<bool>), TrackError> {
         let mut done: Vec<Option<(Arc<Pooled>, bool)>> = vec![None; tasks.len()];
@@ -247,7 +278,8 @@ impl Rototoon {
                 .with_max_len(1)
                 .zip(&jobs)
                 .map(|(&t, job)| {
-                    let kit = Kit { store: &self.store, frames, progress: &shared.of(t), mechanisms: self.mechanisms };
+                    let progress = shared.of(t);
+                    let kit = self.kit(frames, &progress);
                     let result = self.pool(kit, job)?;
                     kit.progress.report("Tracking", 0.8)?;
                     Ok(result)
@@ -313,7 +345,7 @@ impl Rototoon {
         pooled: &[Arc<Pooled>],
         paths: &[Vec<usize>],
         leads: &[Vec<Lead>],
-        frames: &dyn FrameSource,
+        frames: &Looks,
         shared: &SharedProgress,
     ) -> Result<Vec<Arc<Pooled>>, TrackError> {
         let members: Vec<usize> = (0..stretch.len()).collect();
@@ -329,8 +361,8 @@ impl Rototoon {
                 if let Some(known) = self.mended.get(&key).filter(same) {
                     return Ok(known.clone());
                 }
-                let kit =
-                    Kit { store: &self.store, frames, progress: &shared.of(stretch[m]), mechanisms: self.mechanisms };
+                let progress = shared.of(stretch[m]);
+                let kit = self.kit(frames, &progress);
                 let result = Arc::new(mended_pools(kit, source, &paths[m], &leads[m])?);
                 Ok(Mended { source: source.clone(), path: paths[m].clone(), leads: leads[m].clone(), result })
             })
@@ -351,7 +383,7 @@ impl Rototoon {
         stretch: &[usize],
         mended: &[Arc<Pooled>],
         plans: Vec<Finish>,
-        frames: &dyn FrameSource,
+        frames: &Looks,
         shared: &SharedProgress,
     ) -> Result<Vec<(SpanTrack, bool)>, TrackError> {
         let results: Vec<Result<(SpanTrack, Option<Finished>), TrackError>> = stretch
@@ -364,7 +396,8 @@ impl Rototoon {
                 if let Some(known) = before.filter(|known| Arc::ptr_eq(&known.source, source) && known.plan == plan) {
                     return Ok((known.track.clone(), None));
                 }
-                let kit = Kit { store: &self.store, frames, progress: &shared.of(t), mechanisms: self.mechanisms };
+                let progress = shared.of(t);
+                let kit = self.kit(frames, &progress);
                 let new = finish(kit, source, plan, before)?;
                 Ok((new.track.clone(), Some(new)))
             })

@@ -24,11 +24,29 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Access to the pictures, and the listener for the progress.
 #[derive(Clone, Copy)]
 pub(super) struct Kit<'a> {
-    pub store: &'a Store,
+    /// The looks of the pictures.
     pub frames: &'a dyn FrameSource,
+    /// What was computed from the looks.
+    pub store: &'a Store,
+    /// The pictures themselves, and what was computed from them.
+    pub plain: (&'a Store, &'a dyn FrameSource),
     pub progress: &'a dyn Progress,
     /// The mechanisms in use.
     pub mechanisms: Mechanisms,
+}
+
+impl Kit<'_> {
+    /// Whether the frame after this one shows the same drawing.
+    pub fn held(&self, frame: FrameNumber) -> Result<bool, TrackError> {
+        let (store, frames) = self.plain;
+        store.held(frames, frame)
+    }
+
+    /// The colours of a frame, whatever the kind of its drawing.
+    pub fn colours(&self, frame: FrameNumber) -> Result<Arc<Features>, TrackError> {
+        let (store, frames) = self.plain;
+        store.features(frames, frame)
+    }
 }
 
 /// Everything that is needed to solve a job. Indices of drawings refer to `drawings`.
@@ -160,10 +178,8 @@ fn read(kit: Kit, job: &Job) -> Result<(Vec<Drawing>, Vec<Arc<Features>>), Track
             kit.store.features(kit.frames, frame)
         })
         .collect::<Result<_, _>>()?;
-    let held: Vec<bool> = numbers[..numbers.len() - 1]
-        .par_iter()
-        .map(|&frame| kit.store.held(kit.frames, frame))
-        .collect::<Result<_, _>>()?;
+    let held: Vec<bool> =
+        numbers[..numbers.len() - 1].par_iter().map(|&frame| kit.held(frame)).collect::<Result<_, _>>()?;
     let drawings = group(job, |i| held[i]);
     let features = drawings.iter().map(|d| features[d.first].clone()).collect();
     Ok((drawings, features))

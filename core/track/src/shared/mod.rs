@@ -2,6 +2,7 @@
 //!
 //! Computed from pictures:
 //! - [`features`]: a pyramid of colours with their gradients
+//! - [`look`]: what is compared, by the kind of drawing
 //! - [`sought`]: a picture made ready to be searched
 //! - [`store`]: features, flows and the like, kept for the next job
 //! - [`drawings`]: frames that show one drawing are worked on once
@@ -16,6 +17,7 @@ pub mod cuts;
 pub mod drawings;
 pub mod edge_maps;
 pub mod features;
+pub mod look;
 pub mod part_by_part;
 pub mod sought;
 pub mod store;

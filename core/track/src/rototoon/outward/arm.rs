@@ -131,7 +131,7 @@ impl Arm {
             let must = growing.corrected_from(seen.near);
             if let Some(before) = growing.drawings.last()
                 && !must
-                && is_cut(&before.features, &seen.features)
+                && is_cut(&*ground.kit.colours(before.near)?, &*ground.kit.colours(seen.near)?)
             {
                 beyond = Some((seen.near, Ending::Cut));
                 break;
@@ -180,10 +180,10 @@ impl Growing<'_> {
         let mut far = near;
         loop {
             self.pending = self.read(far + self.step)?;
-            let Some((frame, next)) = &self.pending else { break };
+            let Some((frame, _)) = &self.pending else { break };
             let own = job.corrections.get(frame);
             let contradicts = own.is_some() && (is_key || correction.is_some_and(|known| Some(known) != own));
-            if contradicts || !same_drawing(&features, next) {
+            if contradicts || !same_drawing(&*self.ground.kit.colours(far)?, &*self.ground.kit.colours(*frame)?) {
                 break;
             }
             correction = correction.or(own);

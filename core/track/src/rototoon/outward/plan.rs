@@ -11,10 +11,9 @@ use crate::contract::job::{Correction, SpanSummary, Termination};
 use crate::contract::tracking::{JobReport, PartTrack, Tracking};
 use crate::rototoon::mechanisms::Mechanisms;
 use crate::rototoon::stage::Kit;
-use crate::shared::store::Store;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Cancelled, FrameNumber, FrameSource, Part, Progress, Scene, Span};
+use rototoon_base::scene::{Cancelled, FrameNumber, Part, Progress, Scene, Span};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
@@ -31,19 +30,17 @@ pub fn subjects(scene: &Scene) -> Vec<usize> {
 }
 
 impl Memory {
-    /// Follows all parts with one key, and adds them to what was tracked between keys.
-    pub(crate) fn run(
+    /// Follows all parts with one key, and adds them to what was tracked between keys. The listener of `kit` is told.
+    pub(in crate::rototoon) fn run(
         &mut self,
-        store: &Store,
+        kit: Kit,
         scene: &Scene,
-        frames: &dyn FrameSource,
-        progress: &dyn Progress,
         tracking: &mut Tracking,
     ) -> Result<(), TrackError> {
         let subjects = subjects(scene);
         let names: BTreeSet<&str> = subjects.iter().map(|&p| scene.parts[p].name.as_str()).collect();
         self.known.retain(|name, _| names.contains(name.as_str()));
-        let counter = Counter { listener: progress, done: Mutex::new(0), all: subjects.len() };
+        let counter = Counter { listener: kit.progress, done: Mutex::new(0), all: subjects.len() };
         for wave in waves(scene, &subjects) {
             let jobs: Vec<(usize, OutwardJob)> = wave.iter().map(|&p| (p, job(scene, tracking, p))).collect();
             let results: Vec<Result<(OutwardTrack, bool), TrackError>> = jobs
@@ -51,10 +48,10 @@ impl Memory {
                 .map(|(_, job)| {
                     let result = match self.known.get(&job.name) {
                         Some((known, result)) if known == job => (result.clone(), false),
-                        _ => (
-                            track(Kit { store, frames, progress: &counter, mechanisms: Mechanisms::default() }, job)?,
-                            true,
-                        ),
+                        _ => {
+                            let kit = Kit { progress: &counter, mechanisms: Mechanisms::default(), ..kit };
+                            (track(kit, job)?, true)
+                        }
                     };
                     counter.finished()?;
                     Ok(result)
