@@ -24,6 +24,8 @@ pub enum Mechanism {
     Joints,
     /// Parts are softer where the keys show that they bend.
     Stiffness,
+    /// Where drawings jump, motion costs less.
+    Jumps,
     /// Samples outside the part cost little where the background has changed, and pull the part across its contour
     /// only.
     FigureAndGround,
@@ -35,7 +37,7 @@ pub enum Mechanism {
 
 impl Mechanism {
     /// Every mechanism with its id on the command line of the benchmark.
-    pub const ALL: [(Self, &str); 11] = [
+    pub const ALL: [(Self, &str); 12] = [
         (Self::Looks, "looks"),
         (Self::Flow, "flow"),
         (Self::Search, "search"),
@@ -44,6 +46,7 @@ impl Mechanism {
         (Self::Hiding, "hiding"),
         (Self::Joints, "joints"),
         (Self::Stiffness, "stiffness"),
+        (Self::Jumps, "jumps"),
         (Self::FigureAndGround, "figure-and-ground"),
         (Self::Blending, "blending"),
         (Self::Refinement, "refinement"),

@@ -329,7 +329,8 @@ impl Rototoon {
             contenders.iter_mut().for_each(|contender| contender.hides = false);
         }
         let start = free.iter().map(|&m| start[m].clone()).collect();
-        let found = joint::choose(&contenders, ties, start, &mut self.shadows);
+        let jump = if self.mechanisms.has(Mechanism::Jumps) { joint::jumps::measured(&contenders) } else { 0.0 };
+        let found = joint::choose(&contenders, ties, jump, start, &mut self.shadows);
         let led = leads(&contenders, ties, &found);
         let (mut paths, mut all_leads) = (vec![Vec::new(); members.len()], vec![Vec::new(); members.len()]);
         for ((&m, path), lead) in free.iter().zip(found).zip(led) {

@@ -33,6 +33,11 @@ impl Smoothness {
         Self { unit: (40.0 * size).sqrt() }
     }
 
+    /// The same where drawings jump by `jump` working pixels: lengths count in units of at least that length.
+    pub fn among_jumps(size: f64, jump: f64) -> Self {
+        Self { unit: Self::new(size).unit.max(jump) }
+    }
+
     /// Cost of the motion from one drawing to the next.
     pub fn speed(&self, a: &[Point], b: &[Point]) -> f64 {
         SPEED * (mean_length(a.len(), |k| b[k] - a[k]) / self.unit).min(CAP)

@@ -14,6 +14,8 @@ pub struct Scene<'a> {
     pub shadows: &'a Shadows,
     /// The joints between parts.
     pub ties: &'a [Tie],
+    /// How far drawings jump ([`super::jumps`]), in working pixels.
+    pub jump: f64,
 }
 
 impl Scene<'_> {
@@ -75,7 +77,7 @@ impl Scene<'_> {
 
     /// The cost of motion of a contender.
     pub fn smoothness(&self, c: usize) -> Smoothness {
-        Smoothness::new(self.contenders[c].models[0].texture.mesh.size)
+        Smoothness::among_jumps(self.contenders[c].models[0].texture.mesh.size, self.jump)
     }
 
     /// The part of the joint energy that depends on the choices of the contenders in `who`.

@@ -17,6 +17,7 @@
 
 mod contender;
 pub mod cost;
+pub mod jumps;
 mod moves;
 pub mod pairs;
 pub mod shadow;
@@ -36,19 +37,20 @@ const ROUNDS: usize = 4;
 /// Number of moves computed in parallel.
 const AT_ONCE: usize = 8;
 
-/// The hypothesis that each contender follows on each of its drawings; `ties` are their hinges ([`tie::find`]), `paths` is
-/// where to start from.
+/// The hypothesis that each contender follows on each of its drawings; `ties` are their hinges ([`tie::find`]), `jump`
+/// is how far drawings jump ([`jumps`]), and `paths` is where to start from.
 pub fn choose(
     contenders: &[Contender],
     ties: &[Tie],
+    jump: f64,
     mut paths: Vec<Vec<usize>>,
     memory: &mut Memory,
 ) -> Vec<Vec<usize>> {
     let shadows = Shadows::cast(contenders, memory);
-    if shadows.none() && ties.is_empty() {
+    if shadows.none() && ties.is_empty() && jump == 0.0 {
         return paths;
     }
-    let scene = cost::Scene { contenders, shadows: &shadows, ties };
+    let scene = cost::Scene { contenders, shadows: &shadows, ties, jump };
     let pairs = shadows.pairs();
     let same = |a: usize, b: usize| {
         contenders[a].drawings == contenders[b].drawings && contenders[a].span == contenders[b].span

@@ -1,7 +1,7 @@
 //! The joint choice on made-up hypotheses.
 
 use super::shadow::Memory;
-use super::{Contender, choose, tie};
+use super::{Contender, choose, jumps, tie};
 use crate::rototoon::lattice::align::Aligner;
 use crate::rototoon::lattice::mesh::Mesh;
 use crate::rototoon::lattice::texture::{Cover, Texture};
@@ -64,7 +64,7 @@ fn two_parts_do_not_take_the_same_place() {
         let contender =
             |pools, models, depth| Contender { span, depth, hides: true, drawings: &drawings, pools, models };
         let both = [contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)];
-        choose(&both, &tie::find(&both), vec![vec![0, 0, 0]; 2], memory)
+        choose(&both, &tie::find(&both), 0.0, vec![vec![0, 0, 0]; 2], memory)
     };
     // Parts of the same depth do not hide each other.
     assert_eq!(chosen(0.0, &mut memory), [[0, 0, 0], [0, 0, 0]]);
@@ -105,4 +105,23 @@ fn the_hinge_of_a_swinging_limb_is_its_pivot() {
     assert_eq!(ties.len(), 1);
     let place = ties[0].place(0, 0, &limb_models[0].texture.mesh.rest).unwrap();
     assert!(place.distance(pivot) < 8.0, "{place}");
+}
+
+#[test]
+fn the_jump_of_a_stretch_is_measured_on_the_best_hypotheses() {
+    let models = [model(&bar(), (0.0, Point::ZERO)), model(&bar(), (0.0, Point::ZERO))];
+    let drawings: Vec<Drawing> = (0..5).map(|i| Drawing { first: i, last: i }).collect();
+    let jump = |places: [f64; 5]| {
+        let pool = |x: f64| {
+            let wrong = hypothesis(&models[0], 0.0, Point::new(x + 77.0, 9.0), 0.02);
+            vec![wrong, hypothesis(&models[0], 0.0, Point::new(x, 0.0), 0.001)]
+        };
+        let pools: Arc<Pools> = Arc::new(places.map(pool).to_vec());
+        let span = Span { first: 0, last: 4 };
+        let alone = Contender { span, depth: 0.0, hides: true, drawings: &drawings, pools: &pools, models: &models };
+        jumps::measured(&[alone])
+    };
+    assert!(jump([0.0, 10.0, 20.0, 30.0, 40.0]) < 1e-9, "even motion has none");
+    let uneven = jump([0.0, 60.0, 0.0, 60.0, 0.0]);
+    assert!(uneven > 120.0, "{uneven}");
 }

@@ -39,7 +39,8 @@ const DIFFERS: f32 = 0.12;
 const SOLID_REACH: usize = 2;
 /// Slopes of the brightness, per working pixel, between which a pixel is shaded.
 const GENTLE: (f32, f32) = (0.0015, 0.02);
-/// Pixels nearer than this to a contour are not counted as shaded, in working pixels.
+/// Pixels nearer than this to a contour are not counted as shaded, in working pixels. In small pictures it is two of their
+/// pixels: edges are enlarged with them.
 const AWAY: f64 = 6.0;
 /// Largest number of drawings that are measured.
 const MEASURED: usize = 5;
@@ -80,7 +81,7 @@ impl Decided {
                 progress.report("Reading frames", 0.0)?;
                 let working: Vec<(Vec<Point>, bool)> =
                     contours.iter().map(|(c, closed)| (c.iter().map(|&p| p / scale).collect(), *closed)).collect();
-                let shares = shares(&*store.features(frames, *frame)?, &working);
+                let shares = shares(&*store.features(frames, *frame)?, &working, scale);
                 sums = [sums[0] + shares[0], sums[1] + shares[1]];
             }
             let [solid, shaded] = sums.map(|sum| sum / by.len().max(1) as f64);
@@ -110,11 +111,12 @@ fn keyed(scene: &Scene) -> Vec<Keyed> {
     chosen.map(contours).collect()
 }
 
-/// The shares of solid and of shaded pixels of a picture. Contours are in working pixels.
-fn shares(features: &Features, contours: &[(Vec<Point>, bool)]) -> [f64; 2] {
+/// The shares of solid and of shaded pixels of a picture. Contours are in working pixels, each of which is `scale`
+/// pixels of the picture wide.
+fn shares(features: &Features, contours: &[(Vec<Point>, bool)], scale: f64) -> [f64; 2] {
     let all: Vec<Point> = contours.iter().flat_map(|(contour, _)| contour.iter().copied()).collect();
     match polygon::bounds(&all) {
-        Some(bounds) => [solid(features.level(2), bounds), shaded(features.level(1), contours)],
+        Some(bounds) => [solid(features.level(2), bounds), shaded(features.level(1), contours, AWAY.max(2.0 / scale))],
         None => [1.0, 0.0],
     }
 }
@@ -143,15 +145,15 @@ fn solid(level: &Level, (low, high): (Point, Point)) -> f64 {
     count as f64 / (columns * rows) as f64
 }
 
-/// The share of shaded pixels of those inside the closed contours and away from all contours.
-fn shaded(level: &Level, contours: &[(Vec<Point>, bool)]) -> f64 {
+/// The share of shaded pixels of those inside the closed contours and further than `away` working pixels from all contours.
+fn shaded(level: &Level, contours: &[(Vec<Point>, bool)], away: f64) -> f64 {
     let (width, height) = level.dimensions();
     let mut inside = Raster::new(width, height, false);
     for (contour, _) in contours.iter().filter(|(contour, closed)| *closed && contour.len() > 2) {
         let scaled: Vec<Point> = contour.iter().map(|&p| p / level.pixel()).collect();
         polygon::for_each_span(&scaled, width, height, |y, x0, x1| inside.row_mut(y)[x0..x1].fill(true));
     }
-    let reach = (AWAY / level.pixel()).ceil() as isize;
+    let reach = (away / level.pixel()).ceil() as isize;
     for (a, b) in contours.iter().flat_map(|(contour, closed)| polyline::segments(contour, *closed)) {
         let steps = (a.distance(b) / level.pixel()).ceil().max(1.0);
         for k in 0..=steps as usize {
@@ -192,7 +194,7 @@ mod tests {
     fn shares_of(colour: impl Fn(Point) -> Colour) -> [f64; 2] {
         let picture = Raster::from_fn(540, 540, |x, y| colour(Point::new(x as f64 + 0.5, y as f64 + 0.5)));
         let square = SQUARE.map(|(x, y)| Point::new(x, y)).to_vec();
-        shares(&Features::new(&picture), &[(square, true)])
+        shares(&Features::new(&picture), &[(square, true)], 1.0)
     }
 
     fn inside(p: Point) -> bool {
@@ -206,8 +208,8 @@ mod tests {
         assert!(solid < MOST_SOLID, "{solid}");
         let [solid, shaded] = shares_of(|p| if inside(p) { [0.8, 0.4, 0.2] } else { [0.95; 3] });
         assert!(solid > 0.2 && shaded < 0.4, "{solid} {shaded}");
-        let light = |p: Point| 0.4 + 0.6 * (p.x / 540.0) as f32;
-        let [solid, shaded] = shares_of(|p| if inside(p) { [0.8, 0.4, 0.2].map(|c| c * light(p)) } else { [0.95; 3] });
+        let light = |p: Point| 0.2 + 0.8 * ((p.x - 100.0) / 300.0) as f32;
+        let [solid, shaded] = shares_of(|p| if inside(p) { [1.0, 0.9, 0.8].map(|c| c * light(p)) } else { [0.95; 3] });
         assert!(solid > 0.2 && shaded > LEAST_SHADED, "{solid} {shaded}");
     }
 }
