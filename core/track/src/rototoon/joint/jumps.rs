@@ -6,7 +6,7 @@
 //!
 //! **How.** On each drawing a part's hypothesis of least energy is taken, whatever the motion. Three drawings in a row give
 //! a second difference |Δ²|, which is 0 for even motion. Most parts are found rightly in this way, so the median of all says
-//! how uneven the motion is. A stretch's jump is [`TIMES`] this median, and the motion cost counts lengths in units of at
+//! how uneven the motion is. A stretch's jump is three times this median, and the motion cost counts lengths in units of at
 //! least that length. Where motion is even, the jump is shorter than the unit that a part has by its size.
 //!
 //! **Limits.** One restless part among still ones is not noticed.
