@@ -23,7 +23,7 @@ const STRONG: f64 = 0.9;
 const GRAIN: f32 = 1.0;
 /// Blur of the hue, in working pixels: a line's edge has none of its own.
 const HUE_BLUR: f64 = 1.5;
-/// Working pixels from which on the hue is known: [`HUE_BLUR`] spreads ink, this factor makes it full on the line.
+/// Factor of the blurred ink: the blur spreads the ink of a line, and its hue should still be full there.
 const HUE_SPREAD: f32 = 1.5;
 
 /// The look of a picture.
