@@ -3,7 +3,7 @@
 This file only registers. The code is in packages. The `__init__.py` of each package says what belongs there and what it may import:
 
 ====================  ==============================================================================
-`rototoon`            the Python package; it needs no Blender
+`rototoon`            the Python package; it needs no Blender. It is installed as a wheel, so it is imported by its own name
 `blender`             Blender's data
 `common`              what operators of all packages share
 `capture`             contours: footage, keys, tracking, live, snapping
@@ -21,6 +21,25 @@ This file only registers. The code is in packages. The `__init__.py` of each pac
 
 `properties` puts the properties of the packages together. `handlers` runs when files are opened, saved and changed.
 """
+
+import sys
+
+
+def _forget_older_package():
+    """Forgets the package `rototoon` of an earlier version, so that an update takes effect while Blender runs.
+
+    Blender imports this file once, and again after an update. It forgets the extension's own modules then, but not those of a wheel.
+    """
+    earlier = sys.modules.get("rototoon")
+    if getattr(earlier, "of_extension", False):
+        for name in [name for name in sys.modules if name.partition(".")[0] == "rototoon"]:
+            del sys.modules[name]
+    import rototoon
+
+    rototoon.of_extension = True
+
+
+_forget_older_package()
 
 
 def _classes():
@@ -55,6 +74,7 @@ def register():
 def unregister():
     """Called by Blender."""
     import bpy
+    from rototoon.native import library
 
     from . import handlers, properties, ui
 
@@ -64,3 +84,5 @@ def unregister():
     properties.detach()
     for cls in reversed(_classes()):
         bpy.utils.unregister_class(cls)
+    # So an update can replace the library's file on Windows too. While a job or a script uses the library, it stays.
+    library.release()

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 from mathutils import Matrix
+from rototoon.documents import by_frame
 
-from ..rototoon.documents import by_frame
 from . import actions, picture_source
 from .picture_source import Source
 

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from mathutils import Euler, Matrix, Quaternion, Vector
+from rototoon.style import KEY_POINTS
 
 from ..blender import armatures
 from ..blender.errors import Problem
-from ..rototoon.style import KEY_POINTS
 from . import key_points
 from . import names as bone_names
 

@@ -10,12 +10,12 @@ from typing import Any
 
 import bpy
 import numpy as np
+from rototoon.style import KEY_POINTS
 
 from ..blender import armatures
 from ..blender import camera as cameras
 from ..blender.errors import Problem
 from ..blender.frames import kept
-from ..rototoon.style import KEY_POINTS
 from . import names as bone_names
 
 

@@ -19,11 +19,11 @@ import traceback
 
 import bpy
 from bpy.app.handlers import persistent
+from rototoon import RototoonError
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, windows
 from ..blender.errors import Problem
-from ..rototoon import RototoonError
 from . import contours, document, identity, live, stand
 
 DELAY = 0.2

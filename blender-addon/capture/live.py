@@ -31,13 +31,13 @@ from dataclasses import dataclass
 
 import bpy
 from bpy.app.handlers import persistent
+from rototoon import Cancelled, RototoonError
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, windows
 from ..blender.errors import Changed, Problem
 from ..blender.preferences import EXTENSION
 from ..common import jobs
-from ..rototoon import Cancelled, RototoonError
 from . import document, sessions, tracking
 
 DELAY = 0.2

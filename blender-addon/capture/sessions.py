@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ..rototoon import Session, match_contours
+from rototoon import Session, match_contours
 
 
 @dataclass

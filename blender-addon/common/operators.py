@@ -7,11 +7,11 @@ from collections.abc import Callable, Generator
 from types import GeneratorType
 
 import bpy
+from rototoon import Cancelled, RototoonError
 
 from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..blender.errors import Problem
-from ..rototoon import Cancelled, RototoonError
 from . import jobs, reports
 
 NAVIGATION = {

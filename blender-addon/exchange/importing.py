@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from rototoon.documents import by_frame
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, placement
 from ..capture import contours, corrections, correspondence, document, ends, snapping, writing
-from ..rototoon.documents import by_frame
 from . import files
 
 

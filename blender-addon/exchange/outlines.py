@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+from rototoon.documents import by_frame
 
 from ..blender.masks import Outline
-from ..rototoon.documents import by_frame
 
 SPACING = 4.0
 """Distance between the points of snapped lines, in pixels of the picture."""

@@ -18,6 +18,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+from rototoon.documents import by_frame
 
 from ..blender import grease_pencil as gp
 from ..blender import guard
@@ -25,7 +26,6 @@ from ..blender.errors import Problem
 from ..capture import contours, document, ends, identity, sessions, snapping, tracking, writing
 from ..capture.document import Reading
 from ..exchange import files
-from ..rototoon.documents import by_frame
 from . import batch
 
 RECORD = "batch.json"

@@ -7,13 +7,13 @@ from collections.abc import Iterable
 from typing import Any
 
 import bpy
+from rototoon import RototoonError
 
 from ..blender import footage, guard
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..capture import document, tracking
 from ..common.operators import OnContours
-from ..rototoon import RototoonError
 
 
 def shots_of(objects: Iterable[bpy.types.Object], path: str) -> tuple[list[dict[str, Any]], list[str]]:

@@ -10,12 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from rototoon import tween
 
 from ..blender import camera as cameras
 from ..blender import grease_pencil as gp
 from ..blender import guard, stroke_lines
 from ..blender import strokes as st
-from ..rototoon import tween
 from ..tween import keys as ks
 from ..tween import pairing
 from . import records

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from rototoon import Session
+from rototoon.lines import Traced
 
 from ..blender import grease_pencil as gp
 from ..blender import guard
@@ -17,8 +19,6 @@ from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
 from ..common import jobs
-from ..rototoon import Session
-from ..rototoon.lines import Traced
 from . import drawings as dr
 from . import looks, numbers, records
 from . import plan as pl

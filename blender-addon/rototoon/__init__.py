@@ -1,7 +1,6 @@
 """Rototoon in Python, without Blender.
 
-The package needs Python 3.11 or newer and its native library, nothing else. Put the folder that contains `rototoon` on
-``sys.path``, and::
+The package needs Python 3.11 or newer and its native library, nothing else. Both are in one wheel. After ``pip install``::
 
     from rototoon import Session
 

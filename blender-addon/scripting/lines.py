@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from rototoon.types import Progress
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, placement, stroke_lines
@@ -17,7 +18,6 @@ from ..common.operators import OnDrawing
 from ..lines import drawings, tracing
 from ..lines import plan as plans
 from ..lines.operators.tracing_base import OnFootage, plan_of
-from ..rototoon.types import Progress
 from .refusing import need, told
 
 

@@ -7,12 +7,12 @@ from collections.abc import Callable
 from typing import Any, ParamSpec, TypeVar
 
 import bpy
+from rototoon import Cancelled, RototoonError
 
 from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..blender.errors import Problem
 from ..common.operators import OnDrawing
-from ..rototoon import Cancelled, RototoonError
 
 P = ParamSpec("P")
 R = TypeVar("R")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import bpy
+from rototoon.types import Progress
 
 from ..blender import guard
 from ..blender.errors import Problem
@@ -12,7 +13,6 @@ from ..capture import document, properties, tracking
 from ..capture import ends as track_ends
 from ..common import jobs
 from ..common.operators import OnContours
-from ..rototoon.types import Progress
 from .reading import End
 from .refusing import need, told
 

@@ -10,11 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from rototoon import Strokes, fit_strokes
 
 from ..blender import camera as cameras
 from ..blender import strokes as st
 from ..blender.errors import Problem
-from ..rototoon import Strokes, fit_strokes
 
 _BLENDED = {"FLOAT", "FLOAT_VECTOR", "FLOAT2", "FLOAT_COLOR", "BYTE_COLOR"}
 ORDER = 3

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from rototoon import Pieces, Strokes, hidden_lines
 
 from ..blender import grease_pencil as gp
 from ..blender import hierarchy, placement
 from ..blender import strokes as st
 from ..blender.projection import Projection
-from ..rototoon import Pieces, Strokes, hidden_lines
 
 SUFFIX = " Hidden"
 """Suffix of the name of a layer with hidden lines."""

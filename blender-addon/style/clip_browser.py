@@ -7,10 +7,10 @@ read when a library is chosen, when a clip is added, when a file is opened, and 
 from __future__ import annotations
 
 import bpy
+from rototoon import RototoonError
 
 from ..blender import windows
 from ..blender.errors import Problem
-from ..rototoon import RototoonError
 from . import clip_library
 
 _shelf: clip_library.Shelf | None = None

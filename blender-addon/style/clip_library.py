@@ -8,10 +8,10 @@ from typing import Any
 
 import bpy
 import numpy as np
+from rototoon.style import read_library
 
 from ..blender.errors import Problem
 from ..blender.preferences import preferences
-from ..rototoon.style import read_library
 
 ENDING = ".clip.json"
 """Ending of the names of clip files."""

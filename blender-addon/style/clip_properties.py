@@ -4,9 +4,9 @@ from collections.abc import Callable
 from typing import Any
 
 import bpy
+from rototoon.style import translate_clip
+from rototoon.types import Progress
 
-from ..rototoon.style import translate_clip
-from ..rototoon.types import Progress
 from . import clip_browser
 from .clip_library import clips_of
 

@@ -14,12 +14,12 @@ import json
 from typing import Any
 
 import numpy as np
+from rototoon.style import KEY_POINTS, PARENTS
 
 from ..blender import grease_pencil as gp
 from ..blender import placement
 from ..blender.errors import Problem
 from ..capture import document
-from ..rototoon.style import KEY_POINTS, PARENTS
 
 LAYER = "Limbs"
 """Name of the layer with the lines."""

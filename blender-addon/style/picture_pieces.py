@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from mathutils import Vector
 from mathutils.geometry import delaunay_2d_cdt
+from rototoon.documents import by_frame
 
 from ..blender.errors import Problem
 from ..blender.picture_mesh import Piece
-from ..rototoon.documents import by_frame
 
 CELLS = 12
 """Number of cells of the grid along a part's longer side."""

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from rototoon import documents
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, placement
 from ..blender.errors import Problem
 from ..capture import document, identity, writing
-from ..rototoon import documents
 from . import limbs
 
 

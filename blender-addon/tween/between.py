@@ -10,10 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from rototoon import tween
 
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
-from ..rototoon import tween
 from . import keys as ks
 from . import records
 from .sheets import Laid, Sheet

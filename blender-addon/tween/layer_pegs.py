@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from rototoon import tween
 
 from ..blender import grease_pencil as gp
 from ..blender import hierarchy
-from ..rototoon import tween
 from .sheets import Laid, Sheet
 
 SAMPLES = 24

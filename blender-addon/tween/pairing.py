@@ -8,12 +8,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from rototoon import tween
 
 from ..blender import camera as cameras
 from ..blender import grease_pencil as gp
 from ..blender import guard, stroke_lines
 from ..blender import strokes as st
-from ..rototoon import tween
 from . import keys as ks
 from . import pairs, records, sheets, tweening
 from .charts import Choices

@@ -14,12 +14,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from rototoon import Strokes, tween
 
 from ..blender import camera as cameras
 from ..blender import colours
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
-from ..rototoon import Strokes, tween
 from . import keys as ks
 from . import pairs
 from .charts import Choices

@@ -10,11 +10,11 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
+from rototoon import tween
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, hierarchy
 from ..blender.errors import Problem
-from ..rototoon import tween
 from . import between, captured, layer_pegs, records, sheets, surroundings
 from . import keys as ks
 from . import numbers as tween_numbers

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from rototoon.style import KEY_POINTS, PARENTS
 
-from ..rototoon.style import KEY_POINTS, PARENTS
 
 HEAD, HEAD_TOP = KEY_POINTS.index("head"), KEY_POINTS.index("head_top")
 LIMBS = tuple((PARENTS[point], point) for point in range(1, len(PARENTS)))

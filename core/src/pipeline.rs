@@ -324,7 +324,8 @@ pub fn import(document: &mut Document, text: &str, format: ShapeFormat) -> Resul
 /// the same files. The new pattern is relative if a relative path exists, otherwise absolute.
 pub fn relocate(document: &mut Document, from: &Path, to: &Path) {
     let pattern = &mut document.scene.footage.pattern;
-    if Path::new(pattern).is_relative() {
+    // On Windows a path without a drive may still begin at a root.
+    if Path::new(pattern).is_relative() && !Path::new(pattern).has_root() {
         *pattern = output::moved_pattern(pattern, from, to);
     }
 }

@@ -44,6 +44,9 @@ def install() -> None:
     import addon_utils
 
     named = os.environ.get("ROTOTOON_ZIP")
+    if not named:
+        # The folder holds no wheel of the Python package.
+        sys.path.insert(0, str(ADDON))
     path = Path(named) if named else build_zip(Path(_RESOURCES))
     addon_utils.enable("bl_pkg")
     bpy.ops.extensions.package_install_files(filepath=str(path), repo="user_default", enable_on_install=True)
@@ -67,7 +70,9 @@ def pytest_sessionfinish(session, exitstatus):
 
 
 def module(name: str):
-    """A module of the installed add-on."""
+    """A module of the installed add-on, or of the Python package that comes with it."""
+    if name.partition(".")[0] == "rototoon":
+        return importlib.import_module(name)
     return importlib.import_module(f"{MODULE}.{name}")
 
 

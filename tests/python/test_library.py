@@ -41,6 +41,10 @@ def test_missing_and_foreign_libraries_are_named(tmp_path):
     text.write_text("not a library")
     with pytest.raises(LibraryError, match="cannot load .*text.so"):
         library._open(text)
+    here, other = library._file_name(), "rototoon_capi.dll" if sys.platform != "win32" else "librototoon_capi.so"
+    (tmp_path / other).write_text("")
+    with pytest.raises(LibraryError, match="this package is for .*: install the one for"):
+        library._open(tmp_path / here)
     foreign = pytest.importorskip("_ctypes").__file__
     with pytest.raises(LibraryError, match="is not a Rototoon library"):
         library._open(Path(foreign))
@@ -54,3 +58,41 @@ def test_library_of_another_build_is_refused(monkeypatch, constant, message):
     monkeypatch.setattr(_bindings, constant, getattr(_bindings, constant) + 1)
     with pytest.raises(LibraryError, match=message):
         library._open(library.load().path)
+
+
+def test_errors_of_the_loader_say_what_to_do():
+    old = "/lib/x86_64-linux-gnu/libc.so.6: version `GLIBC_2.34' not found (required by librototoon_capi.so)"
+    assert "expected glibc 2.28 or newer" in library._advice(old)
+    assert "for another system" in library._advice("librototoon_capi.so: invalid ELF header")
+    assert "for another system" in library._advice("[WinError 193] %1 is not a valid Win32 application")
+    assert library._advice("out of memory") == ""
+
+
+def test_the_library_is_let_go_and_loaded_again():
+    # In a process of its own: other tests keep sessions and functions of the library.
+    code = """
+import sys
+from rototoon import Session, RototoonError, version
+from rototoon.native import library
+assert library.release()                     # nothing is loaded yet
+first = version()
+document = {"rototoon": 1, "footage": {"pattern": "f_%d.png", "first": 0, "last": 1, "fps": 12, "width": 8, "height": 8}, "parts": []}
+session = Session.from_document(document, ".")
+assert not library.release()                 # a session is open
+assert session.parts() == []
+session.close()
+loaded = library.load()
+assert library.release() and library._loaded is None
+assert version() == first and library.load() is not loaded
+for _ in range(20):
+    try:
+        Session.open("gone.json")
+    except RototoonError as error:
+        assert "gone.json" in str(error)
+    with Session.from_document(document, ".") as session:
+        session.track()
+    assert library.release()
+"""
+    environment = os.environ | {"PYTHONPATH": str(ADDON), "PYTHONDONTWRITEBYTECODE": "1"}
+    run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr

@@ -7,14 +7,14 @@
 //! Both tools are compiled at the first use, which takes some minutes. So this is a command of its own and no step of
 //! `test`.
 
+use crate::licences::SHIPPED;
 use anyhow::{Context, Result, ensure};
 use std::path::PathBuf;
 use xtask_shell::shell::{capture, cargo, command, root, run, target};
 
-/// A tool, its version, and the packages whose bill of materials is written.
+/// A tool and its version.
 const DENY: (&str, &str) = ("cargo-deny", "0.20.2");
 const CYCLONEDX: (&str, &str) = ("cargo-cyclonedx", "0.5.9");
-const SHIPPED: [&str; 3] = ["rototoon-capi", "rototoon-cli", "rototoon-ofx"];
 
 /// Checks the rules and writes the bills of materials.
 pub fn audit() -> Result<()> {
@@ -26,7 +26,7 @@ pub fn audit() -> Result<()> {
         Ok(()) => ensure!(check()?.success(), "a dependency has a known weakness"),
         Err(reason) => println!("known weaknesses: not checked, since the database cannot be loaded: {reason}"),
     }
-    bills()
+    bills().map(|_| ())
 }
 
 /// Loads the database of known weaknesses.
@@ -34,11 +34,12 @@ fn database(deny: &PathBuf) -> Result<()> {
     capture(command(deny).current_dir(root()).args(["fetch", "db"])).map(|_| ())
 }
 
-/// Writes the bills of materials of what artists install.
-fn bills() -> Result<()> {
+/// Writes the bills of materials of what artists install, and returns their paths.
+pub fn bills() -> Result<Vec<PathBuf>> {
     let program = tool(CYCLONEDX)?;
     let folder = target().join("sbom");
     std::fs::create_dir_all(&folder)?;
+    let mut made = Vec::new();
     run(command(program).current_dir(root()).args(["cyclonedx", "--format", "json", "--quiet"]))?;
     for entry in manifests()? {
         let (name, written) = entry;
@@ -49,11 +50,12 @@ fn bills() -> Result<()> {
             let to = folder.join(format!("{name}.cdx.json"));
             std::fs::copy(&written, &to)?;
             println!("{}", to.display());
+            made.push(to);
         }
         // The tool writes beside each package's manifest.
         std::fs::remove_file(&written)?;
     }
-    Ok(())
+    Ok(made)
 }
 
 /// Each package of the workspace with the file that the tool writes for it.

@@ -1,11 +1,15 @@
 //! `bundle`: makes the extension's zip, which Blender installs, and the OpenFX bundle ([`crate::ofx`]).
 //!
+//! The extension carries the Python package with the native library as a wheel ([`crate::wheel`]), as Blender asks of extensions:
+//! its packager then makes one zip for each system, and takes out the wheels of the others.
+//!
 //! The native library must load on every Linux on which Blender runs. So it is built against an old glibc, with zig as the
 //! linker (cargo-zigbuild and ziglang from PyPI, in an environment under `target/`). A check reads the symbol versions that
 //! the library needs. Blender's own packager builds and validates the zip.
 
-use crate::{docs, elf, ofx};
-use anyhow::{Context, Result, bail, ensure};
+use crate::platform::{LINUX, Platform, THIS_MACHINE};
+use crate::{docs, elf, ofx, wheel};
+use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use xtask_shell::python;
@@ -16,9 +20,7 @@ use xtask_shell::shell::{capture, cargo, command, copy_folder, empty_folder, roo
 pub const GLIBC: (u32, u32) = (2, 28);
 /// The packages that are tested together, as arguments of cargo: all but the OpenFX host, which compiles C++.
 pub const TESTED: [&str; 3] = ["--workspace", "--exclude", "rototoon-ofx-host"];
-const TRIPLE: &str = "x86_64-unknown-linux-gnu";
-const LIBRARY: &str = "librototoon_capi.so";
-const PLUGIN: &str = "librototoon_ofx.so";
+const TRIPLE: &str = LINUX.triple;
 
 /// The files that `bundle` makes.
 #[derive(Clone, Debug)]
@@ -27,6 +29,10 @@ pub struct Bundle {
     pub zip: PathBuf,
     /// The native library.
     pub library: PathBuf,
+    /// The Python package with the library, as a wheel.
+    pub wheel: PathBuf,
+    /// The OpenFX plugin as cargo builds it.
+    pub plugin: PathBuf,
     /// The command line.
     pub cli: PathBuf,
     /// The OpenFX bundle.
@@ -60,11 +66,12 @@ impl Bundle {
             Build::Here => target().join("release"),
             Build::Installed | Build::WithMeasure => target().join(TRIPLE).join("release"),
         };
-        let zip = target().join(format!("rototoon-{}-linux_x64.zip", env!("CARGO_PKG_VERSION")));
         Self {
-            zip,
-            library: built.join(LIBRARY),
-            cli: built.join("rototoon"),
+            zip: target().join(zip_name(&LINUX)),
+            wheel: wheel::place(tag(build)),
+            library: built.join(LINUX.library),
+            plugin: built.join(LINUX.plugin),
+            cli: built.join(LINUX.cli),
             ofx: ofx::place(),
             measure: built.join("xtask-measure"),
         }
@@ -84,27 +91,50 @@ pub enum Packager {
 pub fn bundle(packager: &Packager, build: Build) -> Result<Bundle> {
     ensure!(cfg!(all(target_os = "linux", target_arch = "x86_64")), "the bundle is built on Linux x86-64 only");
     let bundle = Bundle::of(build);
-    let plugin = bundle.library.with_file_name(PLUGIN);
-    match build {
-        Build::Tested | Build::TestedWithHelp => compile_tested()?,
-        Build::Here => compile_here()?,
-        Build::Installed | Build::WithMeasure => {
-            compile_installed(build)?;
-            for file in [&bundle.library, &bundle.cli, &plugin] {
-                elf::assert_glibc(file, GLIBC)?;
-            }
-        }
-    }
+    compile(build)?;
     if build != Build::Here {
-        ofx::lay_out(&plugin)?;
+        ofx::lay_out(&bundle.plugin)?;
     }
-    let staged = stage(&bundle.library)?;
-    if !matches!(build, Build::Tested | Build::Here) {
-        docs::put_into(&staged.join("help"))?;
-    }
-    pack(packager, &staged, &bundle.zip)?;
+    let wheel = wheel::build(&LINUX, tag(build), &bundle.library)?;
+    pack_extension(packager, &[(LINUX, wheel)], !matches!(build, Build::Tested | Build::Here), &target())?;
     println!("bundle: {}", bundle.zip.display());
     Ok(bundle)
+}
+
+/// The platform tag of a build's wheel: only what artists install runs on other machines too.
+fn tag(build: Build) -> &'static str {
+    match build {
+        Build::Installed | Build::WithMeasure => LINUX.wheel,
+        Build::Here | Build::Tested | Build::TestedWithHelp => THIS_MACHINE,
+    }
+}
+
+/// Compiles the files of a build.
+pub fn compile(build: Build) -> Result<()> {
+    match build {
+        Build::Tested | Build::TestedWithHelp => compile_tested(),
+        Build::Here => compile_here(),
+        Build::Installed | Build::WithMeasure => {
+            compile_installed(build)?;
+            let Bundle { library, cli, plugin, .. } = Bundle::of(build);
+            [library, cli, plugin].iter().try_for_each(|file| elf::assert_glibc(file, GLIBC))
+        }
+    }
+}
+
+/// Packs the extension with these wheels: one zip for each system, in the folder `out`.
+pub fn pack_extension(packager: &Packager, wheels: &[(Platform, PathBuf)], help: bool, out: &Path) -> Result<()> {
+    let staged = stage(wheels)?;
+    if help {
+        docs::put_into(&staged.join("help"))?;
+    }
+    set_dates(&staged, wheel::date()?)?;
+    pack(packager, &staged, wheels, out)
+}
+
+/// The name that Blender's packager gives the zip of a system.
+pub fn zip_name(platform: &Platform) -> String {
+    format!("rototoon-{}-{}.zip", env!("CARGO_PKG_VERSION"), platform.blender.replace('-', "_"))
 }
 
 /// The interpreter of an environment with zig and cargo-zigbuild, which build against an old glibc.
@@ -128,62 +158,113 @@ fn compile_here() -> Result<()> {
 fn compile_installed(build: Build) -> Result<()> {
     let tools = tools()?;
     let bin = tools.parent().context("an interpreter is in a folder")?;
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let path = std::env::join_paths(std::iter::once(bin.to_path_buf()).chain(std::env::split_paths(&path)))?;
     if !capture(command("rustup").args(["target", "list", "--installed"])).is_ok_and(|list| list.contains(TRIPLE)) {
         // Without rustup the standard library of this machine's toolchain is used.
         let _ = capture(command("rustup").args(["target", "add", TRIPLE]));
     }
     let versioned = format!("{TRIPLE}.{}.{}", GLIBC.0, GLIBC.1);
-    run(command(bin.join("cargo-zigbuild"))
+    let mut zigbuild = command(bin.join("cargo-zigbuild"));
+    zigbuild
         .args(["zigbuild", "--quiet", "--release", "--target", &versioned])
         .args(["-p", "rototoon-capi", "-p", "rototoon-cli", "-p", "rototoon-ofx"])
-        .args(if build == Build::WithMeasure { &["-p", "xtask-measure"][..] } else { &[] })
+        .args(if build == Build::WithMeasure { &["-p", "xtask-measure"][..] } else { &[] });
+    run(release_settings(&mut zigbuild, &tools)?)
+}
+
+/// Settings of a build that artists install: zig on the search path, no line tables, no path of this machine.
+pub fn release_settings<'c>(build: &'c mut Command, tools: &Path) -> Result<&'c mut Command> {
+    let bin = tools.parent().context("an interpreter is in a folder")?;
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths(std::iter::once(bin.to_path_buf()).chain(std::env::split_paths(&path)))?;
+    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo"))).unwrap_or_default();
+    // Messages of panics name source files. The names must not depend on where the sources are.
+    let flags = [(&home, "/cargo"), (&root(), "/rototoon")]
+        .map(|(from, to)| format!("--remap-path-prefix={}={to}", from.display()));
+    Ok(build
         .env("PATH", path)
+        .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"))
         // Line tables would only make the zip larger.
         .env("CARGO_PROFILE_RELEASE_DEBUG", "none")
         .env("CARGO_PROFILE_RELEASE_STRIP", "symbols"))
 }
 
-/// Makes the folder that is packed: the add-on's files, the library, the licences.
-fn stage(library: &Path) -> Result<PathBuf> {
+/// Makes the folder that is packed: the add-on's files and the wheels.
+fn stage(wheels: &[(Platform, PathBuf)]) -> Result<PathBuf> {
     let staged = target().join("bundle/rototoon");
     empty_folder(&staged)?;
+    // The package `rototoon` is in the wheels.
     let keep = |name: &str| {
-        !name.starts_with('.')
-            && !["__pycache__", "tests"].contains(&name)
-            && !name.ends_with(".pyc")
-            && !name.ends_with(".so")
+        !name.starts_with('.') && !["__pycache__", "tests", "rototoon"].contains(&name) && !name.ends_with(".pyc")
     };
     copy_folder(&root().join("blender-addon"), &staged, &keep)?;
-    let native = staged.join("rototoon/native");
-    std::fs::copy(library, native.join(LIBRARY)).with_context(|| format!("cannot copy {library:?}"))?;
-    // The add-on's own licence is in its folder; the library's goes beside the library.
-    std::fs::copy(root().join("LICENSE"), native.join("LICENSE"))?;
-    let manifest = std::fs::read_to_string(staged.join("blender_manifest.toml")).context("blender_manifest.toml")?;
-    // Blender's validator accepts platform names that do not exist.
-    let platforms = manifest.lines().find(|line| line.starts_with("platforms")).unwrap_or_default();
-    ensure!(
-        platforms.contains("[\"linux-x64\"]"),
-        "blender_manifest.toml: {platforms:?}, expected platforms = [\"linux-x64\"]"
-    );
+    let folder = staged.join("wheels");
+    std::fs::create_dir_all(&folder)?;
+    let mut names = Vec::new();
+    for (_, wheel) in wheels {
+        let name = wheel.file_name().with_context(|| format!("{wheel:?} has no name"))?.to_string_lossy().into_owned();
+        std::fs::copy(wheel, folder.join(&name)).with_context(|| format!("cannot copy {wheel:?}"))?;
+        names.push(format!("./wheels/{name}"));
+    }
+    let platforms: Vec<&str> = wheels.iter().map(|(platform, _)| platform.blender).collect();
+    let place = staged.join("blender_manifest.toml");
+    let text = std::fs::read_to_string(&place).context("blender_manifest.toml")?;
+    std::fs::write(&place, manifest(&text, &platforms, &names)?)?;
     Ok(staged)
 }
 
-fn pack(packager: &Packager, staged: &Path, place: &Path) -> Result<()> {
+/// The manifest with the systems and the wheels of a zip.
+fn manifest(text: &str, platforms: &[&str], wheels: &[String]) -> Result<String> {
+    let known = text.lines().find(|line| line.starts_with("platforms = ")).unwrap_or_default();
+    // Blender's validator accepts platform names that do not exist.
+    for platform in platforms {
+        ensure!(
+            known.contains(&format!("{platform:?}")),
+            "blender_manifest.toml: found {known:?}, expected {platform:?} in it"
+        );
+    }
+    ensure!(
+        !text.contains("\nwheels"),
+        "blender_manifest.toml: found wheels, expected none: they are entered when it is packed"
+    );
+    Ok(text.replace(known, &format!("platforms = {platforms:?}\nwheels = {wheels:?}")))
+}
+
+/// Gives every file of a folder the same date, which the zip will hold.
+fn set_dates(folder: &Path, seconds: u64) -> Result<()> {
+    let date = std::time::UNIX_EPOCH + std::time::Duration::from_secs(seconds);
+    for entry in std::fs::read_dir(folder).with_context(|| format!("cannot list {folder:?}"))? {
+        let path = entry?.path();
+        if path.is_dir() {
+            set_dates(&path, seconds)?;
+        } else {
+            let file = std::fs::OpenOptions::new().write(true).open(&path);
+            file.and_then(|file| file.set_modified(date)).with_context(|| format!("cannot date {path:?}"))?;
+        }
+    }
+    Ok(())
+}
+
+fn pack(packager: &Packager, staged: &Path, wheels: &[(Platform, PathBuf)], place: &Path) -> Result<()> {
     let out = target().join("bundle/out");
     empty_folder(&out)?;
-    run(packager
-        .command()?
-        .args(["build", "--split-platforms", "--source-dir"])
-        .arg(staged)
-        .arg("--output-dir")
-        .arg(&out))?;
-    let built: Vec<PathBuf> = std::fs::read_dir(&out)?.map(|e| Ok(e?.path())).collect::<Result<_>>()?;
-    let [zip] = built.as_slice() else { bail!("the packager made {built:?}, expected one zip") };
-    ensure!(zip.file_name() == place.file_name(), "the packager made {zip:?}, expected the file name of {place:?}");
-    run(packager.command()?.arg("validate").arg(zip))?;
-    std::fs::rename(zip, place).with_context(|| format!("cannot move {zip:?} to {place:?}"))
+    // The zip holds local times.
+    let words = ["build", "--split-platforms", "--source-dir"];
+    run(packager.command()?.env("TZ", "UTC").args(words).arg(staged).arg("--output-dir").arg(&out))?;
+    let mut built: Vec<String> = std::fs::read_dir(&out)?
+        .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
+        .collect::<Result<_>>()?;
+    let mut expected: Vec<String> = wheels.iter().map(|(platform, _)| zip_name(platform)).collect();
+    built.sort();
+    expected.sort();
+    ensure!(built == expected, "the packager made {built:?}, expected {expected:?}");
+    for name in built {
+        let zip = out.join(&name);
+        let said = capture(packager.command()?.arg("validate").arg(&zip))?;
+        ensure!(!said.to_lowercase().contains("warning"), "{name}: the validator says: {said}");
+        std::fs::rename(&zip, place.join(&name)).with_context(|| format!("cannot move {zip:?} to {place:?}"))?;
+    }
+    Ok(())
 }
 
 impl Packager {
@@ -216,4 +297,19 @@ fn blender_ext(interpreter: &Path) -> Result<PathBuf> {
     let script = "scripts/addons_core/bl_pkg/cli/blender_ext.py";
     let mut found = entries.flatten().map(|entry| entry.path().join(script)).filter(|path| path.exists());
     found.next().with_context(|| format!("no {script} in {bpy:?}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_manifest_names_wheels_and_systems() {
+        let text = "name = \"a\"\nplatforms = [\"linux-x64\", \"windows-x64\"]\n\n[permissions]\n";
+        let made = manifest(text, &["linux-x64"], &["./wheels/a.whl".to_owned()]).unwrap();
+        let expected = "name = \"a\"\nplatforms = [\"linux-x64\"]\nwheels = [\"./wheels/a.whl\"]\n\n[permissions]\n";
+        assert_eq!(made, expected);
+        assert!(manifest(text, &["linux-arm64"], &[]).is_err());
+        assert!(manifest(&made, &["linux-x64"], &[]).is_err());
+    }
 }

@@ -3,18 +3,26 @@
 #![forbid(unsafe_code)]
 
 mod audit;
+mod binary;
 mod bundle;
+mod debian;
 mod demo;
 mod docs;
 mod elf;
 mod fuzz;
 mod generate;
+mod licences;
+mod macos;
 mod measure;
 mod ofx;
 mod photograph;
+mod platform;
+mod release;
 mod steps;
 mod test;
+mod wheel;
 mod window;
+mod windows;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -101,6 +109,30 @@ enum Command {
         #[arg(value_name = "VARIANT", value_parser = ["dark-1x", "light-1x", "dark-2x", "light-2x"])]
         variants: Vec<String>,
     },
+    /// Make the whole set of a release below target/release-set, and check each file of it.
+    Release {
+        /// Publish nothing. The set is published by the workflow of a tag only, so this must be given.
+        #[arg(long, required = true)]
+        dry_run: bool,
+        /// Build the Linux files twice, and compare the bytes.
+        #[arg(long)]
+        twice: bool,
+    },
+    /// Build for Windows, read the files, and run the Rust tests under Wine (Debian sid in a chroot; needs root and debootstrap).
+    Windows {
+        /// Test this package only; may be given several times. All by default.
+        #[arg(long, short, value_name = "NAME")]
+        package: Vec<String>,
+        /// A folder with a `project.json`, whose tracks must be the same bytes as on Linux; may be given several times.
+        #[arg(long, value_name = "FOLDER")]
+        set: Vec<PathBuf>,
+        /// The program of Linux to compare with.
+        #[arg(long, value_name = "PROGRAM", default_value = "target/x86_64-unknown-linux-gnu/release/rototoon")]
+        linux: PathBuf,
+        /// Build and compare what the tests use, not what artists install. Takes a fraction of the time.
+        #[arg(long)]
+        quick: bool,
+    },
 }
 
 fn main() -> anyhow::Result<()> {
@@ -122,6 +154,11 @@ fn main() -> anyhow::Result<()> {
         Command::Fuzz { target, minutes } => fuzz::fuzz(target.as_deref(), minutes),
         Command::Photograph => photograph::photograph(),
         Command::Press { variants } => photograph::press(&variants),
+        Command::Release { dry_run: _, twice } => release::release(twice),
+        Command::Windows { package, set, linux, quick } => {
+            let profile = if quick { windows::Profile::Tested } else { windows::Profile::Release };
+            windows::windows(&package, &set, &linux, profile)
+        }
     }
 }
 

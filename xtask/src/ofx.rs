@@ -1,6 +1,7 @@
 //! Makes the OpenFX bundle `target/Rototoon.ofx.bundle`, with the folders of OpenFX 1.4 ("Packaging OFX Plug-ins").
 
-use crate::elf;
+use crate::platform::{LINUX, Platform};
+use crate::{elf, licences};
 use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
 use xtask_shell::shell::{empty_folder, root, target};
@@ -14,29 +15,48 @@ pub fn place() -> PathBuf {
     target().join("Rototoon.ofx.bundle")
 }
 
-/// Makes the bundle of a library.
+/// Makes the bundle of the Linux plugin of a build.
 pub fn lay_out(library: &Path) -> Result<()> {
-    let file = std::fs::read(library).with_context(|| format!("cannot read {library:?}"))?;
-    let needed = elf::needed_libraries(&file).with_context(|| format!("{library:?}"))?;
-    let foreign: Vec<_> = needed.iter().filter(|name| !SYSTEM.contains(&name.as_str())).collect();
-    ensure!(foreign.is_empty(), "{library:?} links {foreign:?}, expected only libraries of {SYSTEM:?}");
     let place = place();
-    empty_folder(&place)?;
+    lay_out_at(&place, &[(LINUX, library.to_owned())])?;
+    println!("OpenFX: {}", place.display());
+    println!("  copy it to /usr/OFX/Plugins or to a folder of OFX_PLUGIN_PATH, where hosts look for plugins");
+    Ok(())
+}
+
+/// Makes a bundle with the plugins of several systems: hosts take the one in their own system's folder.
+pub fn lay_out_at(place: &Path, plugins: &[(Platform, PathBuf)]) -> Result<()> {
+    empty_folder(place)?;
     let contents = place.join("Contents");
-    let (binaries, resources) = (contents.join("Linux-x86-64"), contents.join("Resources"));
-    std::fs::create_dir_all(&binaries)?;
+    let resources = contents.join("Resources");
     std::fs::create_dir_all(&resources)?;
     std::fs::write(contents.join("Info.plist"), property_list())?;
-    let binary = binaries.join("Rototoon.ofx");
-    std::fs::copy(library, &binary).with_context(|| format!("cannot copy {library:?}"))?;
+    for (platform, plugin) in plugins {
+        if *platform == LINUX {
+            check(plugin)?;
+        }
+        let binaries = contents.join(platform.ofx);
+        std::fs::create_dir_all(&binaries)?;
+        let binary = binaries.join("Rototoon.ofx");
+        std::fs::copy(plugin, &binary).with_context(|| format!("cannot copy {plugin:?}"))?;
+        let notices = licences::folder(platform)?.join("THIRD-PARTY.txt");
+        std::fs::copy(notices, resources.join(format!("THIRD-PARTY-{}.txt", platform.ofx)))?;
+    }
     let icons = root().join("ofx-plugin/resources");
     for entry in std::fs::read_dir(&icons).with_context(|| format!("cannot read {icons:?}"))? {
         let icon = entry?;
         std::fs::copy(icon.path(), resources.join(icon.file_name()))?;
     }
     std::fs::copy(root().join("LICENSE"), resources.join("LICENSE"))?;
-    println!("OpenFX: {}", place.display());
-    println!("  copy it to /usr/OFX/Plugins or to a folder of OFX_PLUGIN_PATH, where hosts look for plugins");
+    Ok(())
+}
+
+/// Fails where a plugin of Linux needs more than the system.
+fn check(library: &Path) -> Result<()> {
+    let file = std::fs::read(library).with_context(|| format!("cannot read {library:?}"))?;
+    let needed = elf::needed_libraries(&file).with_context(|| format!("{library:?}"))?;
+    let foreign: Vec<_> = needed.iter().filter(|name| !SYSTEM.contains(&name.as_str())).collect();
+    ensure!(foreign.is_empty(), "{library:?} links {foreign:?}, expected only libraries of {SYSTEM:?}");
     Ok(())
 }
 

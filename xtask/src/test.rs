@@ -4,6 +4,7 @@ use crate::bundle::{self, Build, Bundle, Packager, TESTED, bundle};
 use crate::docs::docs;
 use crate::generate::generate;
 use crate::steps::{Step, in_own_process, run_all};
+use crate::wheel;
 use anyhow::{Context, Result, bail};
 use std::path::PathBuf;
 use xtask_shell::python::{self, WHEELS, Wheel};
@@ -80,6 +81,7 @@ fn steps(valgrind: bool, build: Build) -> Vec<Step> {
 /// The Python environments of all steps, made early: downloads leave the processors to the compiler.
 fn environments() -> Result<()> {
     bundle::tools()?;
+    wheel::environment()?;
     python_environment()?;
     for wheel in WHEELS {
         python::blender_venv(wheel)?;
@@ -157,6 +159,7 @@ fn python_tests(build: Build) -> Result<Option<String>> {
     run(command(python_environment()?)
         .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/python"])
         .env("ROTOTOON_LIBRARY", &built.library)
+        .env("ROTOTOON_WHEEL", &built.wheel)
         .env("ROTOTOON_CLI", &built.cli))?;
     Ok(None)
 }

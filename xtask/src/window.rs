@@ -1,17 +1,16 @@
 //! A real Blender window on a virtual screen, in which scripts of `tests/blender` run.
 //!
-//! The `bpy` wheels have no windows, but Debian sid packages a current Blender. debootstrap installs it into a folder of its
-//! own. There it runs on a virtual screen (Xvfb), of which pictures can be taken. Sid changes over time, and debootstrap and
-//! chroot need root. If there is no window to be had, the command says so and succeeds.
+//! The `bpy` wheels have no windows, but Debian sid packages a current Blender ([`crate::debian`]). There it runs on a virtual
+//! screen (Xvfb), of which pictures can be taken. If there is no window to be had, the command says so and succeeds.
 
 use crate::bundle::{Build, Packager, bundle};
-use anyhow::{Context, Result, bail};
+use crate::debian::Debian;
+use anyhow::{Result, bail};
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use xtask_shell::shell::{capture, command, copy_folder, root, run, target, works};
+use xtask_shell::shell::{capture, copy_folder, root, target};
 
 /// What a window needs from Debian.
-const PACKAGES: [&str; 10] = [
+const PACKAGES: [&str; 9] = [
     "blender",
     "xvfb",
     "imagemagick",
@@ -21,7 +20,6 @@ const PACKAGES: [&str; 10] = [
     "python3-cattr",
     "python3-requests",
     "python3-pytest",
-    "ca-certificates",
 ];
 
 /// Starts Blender under Xvfb with `$SCRIPT` and its `$WORDS`, and waits until the script says that it has ended.
@@ -80,92 +78,33 @@ pub struct Stage {
 /// Runs a script in a Blender window with the built extension. `prepare` puts further files into the folder that it works in. Returns
 /// what the script left; `None`, after a word about the reason, where this machine has no such window.
 pub fn in_window(name: &str, script: &Script, prepare: impl Fn(&Path) -> Result<()>) -> Result<Option<Stage>> {
-    if let Some(reason) = cannot() {
+    if let Some(reason) = crate::debian::cannot() {
         println!("{name}: not done: {reason}");
         return Ok(None);
     }
     let bundle = bundle(&Packager::from_wheel()?, script.build)?;
-    let system = target().join("photograph/debian");
-    if let Err(reason) = install(&system) {
-        println!("{name}: not done: {reason:#}");
-        return Ok(None);
-    }
-    let folder = system.join("photograph");
+    let system = match Debian::install(&target().join("photograph/debian"), &PACKAGES) {
+        Ok(system) => system,
+        Err(reason) => {
+            println!("{name}: not done: {reason:#}");
+            return Ok(None);
+        }
+    };
+    let folder = system.folder.join("photograph");
     std::fs::create_dir_all(&folder)?;
     std::fs::copy(&bundle.zip, folder.join("rototoon.zip"))?;
     copy_folder(&root().join("tests/blender"), &folder, &|name| name.ends_with(".py"))?;
     prepare(&folder)?;
     let said = {
-        let _proc = Mount::proc(&system)?;
-        let mut session = chroot(&system);
+        let _proc = system.proc()?;
+        let mut session = system.command("sh");
         session.env("SCRIPT", script.file).env("WORDS", &script.words).env("OPTIONS", script.options);
         session.env("WIDTH", script.screen.0.to_string()).env("HEIGHT", script.screen.1.to_string());
-        capture(session.env("PATIENCE", script.patience.to_string()).args(["sh", "-c", SESSION]))?
+        capture(session.env("PATIENCE", script.patience.to_string()).args(["-c", SESSION]))?
     };
     let mut lines = said.trim().lines().map(str::to_owned);
     if lines.next().as_deref() != Some("ready") {
         bail!("{name}: {said}");
     }
     Ok(Some(Stage { folder, said: lines.collect() }))
-}
-
-/// The reason why this machine cannot take pictures, if there is one.
-fn cannot() -> Option<String> {
-    if !capture(command("id").arg("-u")).is_ok_and(|id| id == "0") {
-        return Some("it needs root for chroot".into());
-    }
-    if !works("debootstrap", &["--version"]) {
-        return Some("debootstrap is missing; install it: apt-get install debootstrap".into());
-    }
-    None
-}
-
-/// Installs Debian sid with Blender into a folder, once.
-fn install(system: &Path) -> Result<()> {
-    let stamp = system.join("photograph-installed");
-    if stamp.exists() {
-        return Ok(());
-    }
-    if system.exists() {
-        std::fs::remove_dir_all(system)?;
-    }
-    std::fs::create_dir_all(system)?;
-    let mut bootstrap = command("debootstrap");
-    bootstrap.args(["--variant=minbase", "sid"]).arg(system);
-    // The variable replaces debootstrap's default mirror.
-    bootstrap.args(std::env::var_os("DEBIAN_MIRROR"));
-    run(&mut bootstrap)?;
-    let _proc = Mount::proc(system)?;
-    let apt = |words: &[&str]| run(chroot(system).env("DEBIAN_FRONTEND", "noninteractive").arg("apt-get").args(words));
-    // The mirror may be an old snapshot, whose index has expired.
-    apt(&["-qq", "-o", "Acquire::Check-Valid-Until=false", "update"])?;
-    let mut words = vec!["-qq", "install", "--yes", "--no-install-recommends"];
-    words.extend(PACKAGES);
-    apt(&words)?;
-    std::fs::write(&stamp, "").context("cannot write into the new system")
-}
-
-fn chroot(system: &Path) -> Command {
-    let mut start = command("chroot");
-    start.arg(system).env("PATH", "/usr/sbin:/usr/bin:/sbin:/bin").env("LC_ALL", "C.UTF-8");
-    start
-}
-
-/// Mounts `/proc` inside the folder until it is dropped.
-struct Mount(PathBuf);
-
-impl Mount {
-    fn proc(system: &Path) -> Result<Self> {
-        let place = system.join("proc");
-        run(command("mount").args(["--bind", "/proc"]).arg(&place))?;
-        Ok(Self(place))
-    }
-}
-
-impl Drop for Mount {
-    fn drop(&mut self) {
-        if let Err(error) = run(command("umount").arg("--lazy").arg(&self.0)) {
-            eprintln!("{error:#}");
-        }
-    }
 }

@@ -1,10 +1,10 @@
 """Guess Bones: finds key points by the names of bones."""
 
 import bpy
+from rototoon.style import KEY_POINTS
 
 from ...blender import guard
 from ...common.operators import Guarded, OnArmature
-from ...rototoon.style import KEY_POINTS
 from .. import key_points
 
 

@@ -1,11 +1,11 @@
 """Save Clip from Armature: adds the motion of bones to the library."""
 
 import bpy
+from rototoon.style import add_to_library
 
 from ...blender import armatures, guard
 from ...common import jobs
 from ...common.operators import Long, OnArmature
-from ...rototoon.style import add_to_library
 from ...style import clip_browser
 from ...style.clip_library import folder_of
 from ...style.clip_properties import Performance, shared

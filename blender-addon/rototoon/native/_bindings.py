@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0x32ae6543699f8eeb
+HEADER_HASH = 0xd0481b977e7331eb
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -147,6 +147,10 @@ def declare(library: ctypes.CDLL) -> None:
     library.rototoon_version.restype = ctypes.c_int32
     library.rototoon_version.argtypes = [
         ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_release.restype = ctypes.c_int32
+    library.rototoon_release.argtypes = [
         ctypes.c_void_p,
     ]
     library.rototoon_parameters.restype = ctypes.c_int32

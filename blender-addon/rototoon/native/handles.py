@@ -17,12 +17,16 @@ def call(name: str, *arguments: Any) -> None:
     """Calls a function whose last parameter is the error text. Raises the error that the function reports."""
     check_integers(name, arguments)
     error = ctypes.c_void_p()
-    status = getattr(library.load().functions, name)(*arguments, ctypes.byref(error))
     message = ""
-    if error:
-        text = Text(error)
-        message = text.read()
-        text.close()
+    functions = library.hold(error).functions
+    try:
+        status = getattr(functions, name)(*arguments, ctypes.byref(error))
+        if error:
+            text = Text(error)
+            message = text.read()
+            text.close()
+    finally:
+        library.unhold(error)
     if status == _bindings.ROTOTOON_STATUS_CANCELLED:
         raise Cancelled(message)
     if status != _bindings.ROTOTOON_STATUS_OK:
@@ -35,6 +39,7 @@ class Handle:
     _free: ClassVar[str]
 
     def __init__(self, pointer: ctypes.c_void_p) -> None:
+        self._library = library.hold(self)
         self._pointer: ctypes.c_void_p | None = pointer
 
     @classmethod
@@ -63,7 +68,10 @@ class Handle:
         """Frees the handle. A second call does nothing."""
         pointer, self._pointer = self._pointer, None
         if pointer is not None:
-            getattr(library.load().functions, self._free)(pointer)
+            try:
+                getattr(self._library.functions, self._free)(pointer)
+            finally:
+                library.unhold(self)
 
     def __del__(self) -> None:
         # `_pointer` is missing if `__init__` was never reached. Nothing may be raised here.

@@ -1,9 +1,17 @@
-"""Finds and loads the native library, and checks that it fits this Python package."""
+"""Finds and loads the native library, checks that it fits this Python package, and lets it go again.
+
+A loaded library holds its file: on Windows the file can't be replaced. So the extension lets the library go when it is
+unregistered, and an update works while Blender runs. A library that is in use stays: code that is taken out of memory while it
+runs would crash the program.
+"""
 
 from __future__ import annotations
 
+import _ctypes
 import ctypes
+import gc
 import os
+import platform
 import sys
 import threading
 from dataclasses import dataclass
@@ -15,8 +23,13 @@ from .errors import LibraryError
 ENVIRONMENT = "ROTOTOON_LIBRARY"
 """Environment variable: path of a library to use instead of the one beside this file."""
 
+_SYSTEMS = {"rototoon_capi.dll": "Windows", "librototoon_capi.dylib": "macOS", "librototoon_capi.so": "Linux"}
+"""File names of the library by the system that it is for."""
+
 _lock = threading.Lock()
 _loaded: Library | None = None
+_users: set[int] = set()
+"""Ids of the open handles and the running calls. Sets change in one step, also where a finaliser interrupts the caller."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +55,40 @@ def load() -> Library:
         return _loaded
 
 
+def hold(user: object) -> Library:
+    """The library, which is not let go until `unhold` is called for the same user. Raises `LibraryError`."""
+    _users.add(id(user))
+    try:
+        return load()
+    except BaseException:
+        unhold(user)
+        raise
+
+
+def unhold(user: object) -> None:
+    """The user needs the library no more."""
+    _users.discard(id(user))
+
+
+def release() -> bool:
+    """Lets the library go, so that its file may be replaced or removed. The next use loads it again.
+
+    False, and nothing has changed, while a session is open or a call runs.
+    """
+    global _loaded
+    gc.collect()  # sessions that nobody refers to any more
+    with _lock:
+        if _loaded is None:
+            return True
+        if _users or _loaded.functions.rototoon_release(None) != _bindings.ROTOTOON_STATUS_OK:
+            return False
+        handle = _loaded.functions._handle
+        _loaded = None
+        # The names depend on the system, and type checkers know only one of them.
+        getattr(_ctypes, "FreeLibrary" if sys.platform == "win32" else "dlclose")(handle)
+        return True
+
+
 def _file_name() -> str:
     if sys.platform == "win32":
         return "rototoon_capi.dll"
@@ -50,17 +97,37 @@ def _file_name() -> str:
 
 def _open(path: Path) -> Library:
     if not path.is_file():
-        raise LibraryError(f"no native library at {path}; build it, or set the environment variable {ENVIRONMENT} to its path")
+        raise LibraryError(f"no native library at {path}; {_missing(path.parent)}")
     try:
         functions = ctypes.CDLL(str(path))
     except OSError as error:
-        raise LibraryError(f"cannot load {path}: {error}") from error
+        raise LibraryError(f"cannot load {path}: {error}{_advice(str(error))}") from error
     _check(path, functions)
     try:
         _bindings.declare(functions)
     except AttributeError as error:
         raise LibraryError(f"{path} is not complete: {error}") from error
     return Library(path, functions)
+
+
+def _missing(folder: Path) -> str:
+    """What to do where this system's library is not there."""
+    others = [system for name, system in _SYSTEMS.items() if (folder / name).is_file()]
+    if others:
+        return f"this package is for {others[0]}: install the one for {_SYSTEMS[_file_name()]}"
+    return f"build it, or set the environment variable {ENVIRONMENT} to its path"
+
+
+def _advice(error: str) -> str:
+    """What to do about an error of the system's loader."""
+    if "GLIBC_" in error:
+        found = "".join(os.confstr("CS_GNU_LIBC_VERSION") or "") if hasattr(os, "confstr") else ""
+        return f"; found {found or 'an older C library'}, expected glibc 2.28 or newer: a newer Linux is needed"
+    foreign = ("invalid ELF header", "wrong ELF class", "not a valid Win32 application", "WinError 193", "incompatible architecture")
+    if any(words in error for words in foreign):
+        machine = f"{platform.system()} {platform.machine()}"
+        return f"; the file is damaged or for another system: install the package for {machine} again"
+    return ""
 
 
 def _check(path: Path, functions: ctypes.CDLL) -> None:

@@ -3,11 +3,11 @@
 import os
 
 import bpy
+from rototoon import RototoonError
+from rototoon.style import add_to_library, import_motion
 
 from ...blender.errors import Problem
 from ...common.operators import Guarded
-from ...rototoon import RototoonError
-from ...rototoon.style import add_to_library, import_motion
 from .. import clip_browser
 from ..clip_library import folder_of
 from ..clip_properties import shared

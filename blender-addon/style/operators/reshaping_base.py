@@ -1,12 +1,12 @@
 """Base of the operators that make a drawing follow a clip."""
 
 import bpy
+from rototoon.style import reshape
 
 from ...blender import guard, preferences
 from ...capture import tracking
 from ...common import jobs
 from ...common.operators import Long, OnContours
-from ...rototoon.style import reshape
 from .. import reshaping
 from ..clip_properties import shared
 

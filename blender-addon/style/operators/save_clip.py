@@ -1,11 +1,11 @@
 """Save Clip: adds the motion of contours to the library."""
 
 import bpy
+from rototoon.style import add_to_library, capture_clip
 
 from ...blender import guard
 from ...capture import document
 from ...common.operators import Guarded, OnContours
-from ...rototoon.style import add_to_library, capture_clip
 from .. import clip_browser, limbs
 from ..clip_library import folder_of
 from ..clip_properties import Performance, shared

@@ -119,6 +119,10 @@ uint64_t rototoon_header_hash(void);
 // The version of Rototoon, such as "0.1.0".
 RototoonStatus rototoon_version(struct RototoonText **version, struct RototoonText **error);
 
+// Ends the threads that the library keeps, and waits for their ends. Call it before the library is taken out of memory.
+// The status is `Busy` while another call works. The library may be used again afterwards.
+RototoonStatus rototoon_release(struct RototoonText **error);
+
 // Describes every parameter, as a JSON list of objects: `id`, `label`, `help`, `stage` ("run", "track", "snap",
 // "render" or "export"), `type` ("choice", "integer", "number" or "flag"), `default`, and the fields of that type:
 // `choices` of a choice, `min` and `max` of numbers, `unit` of a number.

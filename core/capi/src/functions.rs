@@ -2,7 +2,7 @@
 
 use crate::entry::{clear, entry, give, text};
 use crate::matching::answer;
-use crate::pool::install;
+use crate::pool::{install, release};
 use crate::status::RototoonStatus;
 use crate::text::RototoonText;
 use rototoon::scene::parameters;
@@ -53,6 +53,14 @@ pub unsafe extern "C" fn rototoon_version(
             Ok(())
         })
     }
+}
+
+/// Ends the threads that the library keeps, and waits for their ends. Call it before the library is taken out of memory.
+/// The status is `Busy` while another call works. The library may be used again afterwards.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_release(error: *mut *mut RototoonText) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe { entry(error, release) }
 }
 
 /// Describes every parameter, as a JSON list of objects: `id`, `label`, `help`, `stage` ("run", "track", "snap",

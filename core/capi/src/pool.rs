@@ -5,24 +5,42 @@
 //! threads, so work there waits for ever. Python's `multiprocessing` forks by default on Linux up to 3.13. The pool
 //! here knows the process that made it. In any other process each call makes a pool of its own, which takes about a
 //! tenth of a millisecond.
+//!
+//! The threads end with [`release`], which the caller needs before it lets the library go: a thread whose code was taken
+//! out of memory would crash at its next step. rayon ends the threads of a pool some time after the pool is dropped. So
+//! the threads are started here, and the end of a pool waits for each of them.
 
 use crate::status::Failure;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::process;
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, PoisonError, TryLockError};
+use std::thread::JoinHandle;
 
 /// Most threads. More are a mistake of the caller, and each one costs a stack.
 const MAX_THREADS: usize = 1024;
 
-/// The pool of the process that first needed one, and the id of that process.
-static KEPT: OnceLock<(u32, ThreadPool)> = OnceLock::new();
+/// The pool that a process keeps. It is locked only for an instant.
+static KEPT: Mutex<Option<Kept>> = Mutex::new(None);
+
+struct Kept {
+    /// The id of the process that made the pool.
+    owner: u32,
+    pool: Arc<Threads>,
+}
+
+/// A pool that waits for the ends of its threads when it is dropped.
+pub struct Threads {
+    /// `None` only while it is dropped.
+    pool: Option<ThreadPool>,
+    handles: Vec<JoinHandle<()>>,
+}
 
 /// A pool for work.
 pub enum Pool {
     /// The pool that this process keeps.
-    Kept(&'static ThreadPool),
+    Kept(Arc<Threads>),
     /// A pool for one call.
-    Own(ThreadPool),
+    Own(Threads),
 }
 
 impl Pool {
@@ -34,22 +52,21 @@ impl Pool {
     pub fn of(threads: usize) -> Result<Self, Failure> {
         match threads {
             0 => Self::kept(),
-            1..=MAX_THREADS => new(threads).map(Self::Own),
+            1..=MAX_THREADS => Threads::new(threads).map(Self::Own),
             _ => Err(Failure::Error(format!("threads: found {threads}, expected at most {MAX_THREADS}"))),
         }
     }
 
     fn kept() -> Result<Self, Failure> {
-        if KEPT.get().is_none() {
-            // The pool is made before the cell is entered. A fork while another thread is in the cell would leave it
-            // locked in the child; so that thread is there only for an instant. If two threads come here at once, the
-            // pool of the second one goes again.
-            let _ = KEPT.set((process::id(), new(0)?));
+        if let Some(pool) = known()? {
+            return Ok(pool);
         }
-        match KEPT.get() {
-            Some((owner, pool)) if *owner == process::id() => Ok(Self::Kept(pool)),
-            _ => new(0).map(Self::Own),
-        }
+        // The pool is made while nothing is locked. A fork while another thread holds the lock leaves it locked in the
+        // child; so that thread holds it only for an instant. If two threads come here at once, the pool of the second
+        // one goes again.
+        let made = Kept { owner: process::id(), pool: Arc::new(Threads::new(0)?) };
+        let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(Self::Kept(kept.get_or_insert(made).pool.clone()))
     }
 
     /// Runs `work` on the pool. All parallel work inside it uses the pool's threads.
@@ -57,6 +74,37 @@ impl Pool {
         match self {
             Self::Kept(pool) => pool.install(work),
             Self::Own(pool) => pool.install(work),
+        }
+    }
+}
+
+impl Threads {
+    /// Starts `threads` threads, 0 for one per core.
+    fn new(threads: usize) -> Result<Self, Failure> {
+        let mut handles = Vec::new();
+        let builder = ThreadPoolBuilder::new().num_threads(threads).spawn_handler(|thread| {
+            handles.push(std::thread::Builder::new().spawn(|| thread.run())?);
+            Ok(())
+        });
+        let pool = builder.build().map_err(Failure::error)?;
+        Ok(Self { pool: Some(pool), handles })
+    }
+
+    fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match &self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
+}
+
+impl Drop for Threads {
+    fn drop(&mut self) {
+        // This tells the threads to end.
+        self.pool = None;
+        for handle in self.handles.drain(..) {
+            // A thread that panicked has ended too.
+            let _ = handle.join();
         }
     }
 }
@@ -70,8 +118,42 @@ pub fn install<T: Send>(work: impl FnOnce() -> Result<T, Failure> + Send) -> Res
     Pool::of(0)?.install(work)
 }
 
-fn new(threads: usize) -> Result<ThreadPool, Failure> {
-    ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::error)
+/// The kept pool, or one for a single call where the kept one cannot be used; `None` where there is none yet.
+fn known() -> Result<Option<Pool>, Failure> {
+    let kept = match KEPT.try_lock() {
+        Ok(kept) => kept,
+        Err(TryLockError::Poisoned(error)) => error.into_inner(),
+        // Another thread has it for an instant, or, in a forked child, for ever.
+        Err(TryLockError::WouldBlock) => return Threads::new(0).map(|pool| Some(Pool::Own(pool))),
+    };
+    match &*kept {
+        Some(kept) if kept.owner == process::id() => Ok(Some(Pool::Kept(kept.pool.clone()))),
+        Some(_) => Threads::new(0).map(|pool| Some(Pool::Own(pool))),
+        None => Ok(None),
+    }
+}
+
+/// Ends the threads of the kept pool and waits for their ends. Later work makes a new pool.
+///
+/// # Errors
+///
+/// [`Failure::Busy`] while work runs on the pool.
+pub fn release() -> Result<(), Failure> {
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    let Some(Kept { owner, pool }) = kept.take() else { return Ok(()) };
+    if owner != process::id() {
+        // A forked child has the memory of the pool and none of its threads: nobody can be waited for.
+        std::mem::forget(pool);
+        return Ok(());
+    }
+    match Arc::try_unwrap(pool) {
+        Ok(pool) => drop(pool),
+        Err(pool) => {
+            *kept = Some(Kept { owner, pool });
+            return Err(Failure::Busy);
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -82,11 +164,23 @@ mod tests {
     fn work_runs_on_the_pool_that_the_process_keeps() {
         let names = || {
             let pool = Pool::of(0).unwrap();
-            assert!(matches!(pool, Pool::Kept(_)));
             pool.install(|| rayon::current_thread_index().is_some())
         };
         assert!(names() && names());
         assert_eq!(Pool::of(3).unwrap().install(rayon::current_num_threads), 3);
+    }
+
+    #[test]
+    fn a_pool_in_use_is_not_released() {
+        // Other tests use the kept pool too, so only what holds beside them is asserted.
+        let pool = Pool::of(0).unwrap();
+        if matches!(pool, Pool::Kept(_)) {
+            assert_eq!(release(), Err(Failure::Busy));
+        }
+        assert_eq!(pool.install(|| 7), 7);
+        drop(pool);
+        let _ = release();
+        assert_eq!(install(|| Ok(8)), Ok(8));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The files that a command reads, so that it does not write over one of them.
 //!
 //! Two paths may name one file: by `..`, by symbolic or hard links, by letters of another case. Paths are compared after
-//! the system has resolved them; on Unix files are compared by device and inode too. A path where no file is names none.
+//! the system has resolved them, and files by device and inode, on Windows by volume and file index. A path where no file is names none.
 
 use rototoon_base::scene::{Footage, FramePattern};
 use std::fs;
@@ -54,33 +54,40 @@ impl Inputs {
 #[derive(Clone, Debug)]
 struct Identity {
     path: PathBuf,
-    /// Device and inode.
-    #[cfg(unix)]
-    place: (u64, u64),
+    /// Device and inode; on Windows volume and file index, `None` where the file system has none.
+    place: Option<(u64, u64)>,
 }
 
 impl Identity {
     /// The identity of the file at a path; `None` where there is no file.
     fn of(path: &Path) -> Option<Self> {
         let real = fs::canonicalize(path).ok()?;
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::MetadataExt;
-            let data = fs::metadata(&real).ok()?;
-            // Pipes and devices may be read and written.
-            data.is_file().then(|| Self { path: real, place: (data.dev(), data.ino()) })
-        }
-        #[cfg(not(unix))]
-        real.is_file().then_some(Self { path: real })
+        // Pipes and devices may be read and written.
+        real.is_file().then(|| Self { place: place(&real), path: real })
     }
 
     fn same(&self, other: &Self) -> bool {
-        #[cfg(unix)]
-        if self.place == other.place {
-            return true;
-        }
-        self.path == other.path
+        self.path == other.path || (self.place.is_some() && self.place == other.place)
     }
+}
+
+#[cfg(unix)]
+fn place(path: &Path) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    let data = fs::metadata(path).ok()?;
+    Some((data.dev(), data.ino()))
+}
+
+#[cfg(windows)]
+fn place(path: &Path) -> Option<(u64, u64)> {
+    let handle = winapi_util::Handle::from_path(path).ok()?;
+    let data = winapi_util::file::information(&handle).ok()?;
+    Some((data.volume_serial_number(), data.file_index())).filter(|(_, index)| *index != 0)
+}
+
+#[cfg(not(any(unix, windows)))]
+fn place(_: &Path) -> Option<(u64, u64)> {
+    None
 }
 
 #[cfg(test)]

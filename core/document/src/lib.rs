@@ -15,6 +15,7 @@
 //! - [`curves`]: files of curves to fit
 //! - [`clips`], `plain_clips`: files of skeleton clips, and the quick way to read and write them
 //! - [`output`]: files that appear whole or not at all
+//! - [`path`]: paths as documents hold them
 //! - [`unfinished`]: temporary files, and their removal when the process ends early
 //!
 //! Fields that this version does not know are kept where they stood. A document of a newer major version is refused.
@@ -54,6 +55,7 @@ pub mod library;
 pub mod limbs;
 pub mod load;
 pub mod output;
+pub mod path;
 mod plain_clips;
 pub mod problem;
 pub mod save;

@@ -9,6 +9,7 @@
 //! writes leaves its temporary file. The first write of a later process into the folder
 //! removes such files if they are more than an hour old.
 
+use crate::path::slashed;
 use crate::unfinished::Unfinished;
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
@@ -52,7 +53,7 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Some(data) if !data.is_file() => return OpenOptions::new().write(true).open(path)?.write_all(bytes),
         _ => {}
     }
-    let target = if existing.is_some() { fs::canonicalize(path)? } else { end_of_links(path)? };
+    let target = if existing.is_some() { fs::canonicalize(path)? } else { resolved(&end_of_links(path)?)? };
     if existing.as_ref().is_some_and(|data| data.permissions().readonly()) {
         return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
     }
@@ -115,6 +116,15 @@ fn end_of_links(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("found a loop of symbolic links, expected a file"))
 }
 
+/// A path whose folder the system has resolved. On Windows only such a path may be longer than 260 characters: the crate
+/// that renames temporary files hands paths to the system as they are.
+fn resolved(path: &Path) -> io::Result<PathBuf> {
+    match path.file_name() {
+        Some(name) if cfg!(windows) => Ok(fs::canonicalize(parent(path))?.join(name)),
+        _ => Ok(path.to_owned()),
+    }
+}
+
 /// Removes the temporary files of processes that were killed, once for each folder: a folder may have thousands of
 /// frames, and each is written.
 fn remove_left_over(folder: &Path) {
@@ -140,18 +150,20 @@ fn parent(path: &Path) -> &Path {
 }
 
 /// Converts a frame pattern relative to folder `from` into one relative to folder `to`; absolute if there is no
-/// relative path.
+/// relative path. The result has forward slashes.
 pub fn moved_pattern(pattern: &str, from: &Path, to: &Path) -> String {
     let real = |folder: &Path| {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         fs::canonicalize(folder).or_else(|_| std::path::absolute(folder)).unwrap_or_else(|_| folder.to_owned())
     };
+    let pattern = slashed(Path::new(pattern));
     let (from, to) = (real(from), real(to));
     if from == to {
-        return pattern.to_owned();
+        return pattern;
     }
     let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
     let way: PathBuf = match shared {
+        // Two drives of Windows.
         0 => from,
         _ => {
             let up = to.components().skip(shared).map(|_| std::path::Component::ParentDir);
@@ -159,8 +171,8 @@ pub fn moved_pattern(pattern: &str, from: &Path, to: &Path) -> String {
         }
     };
     // A percent sign in a folder's name must not become a place for the frame number.
-    let way = way.to_string_lossy().replace('%', "%%");
-    Path::new(&way).join(pattern).to_string_lossy().into_owned()
+    let way = slashed(&way).replace('%', "%%");
+    format!("{}/{pattern}", way.trim_end_matches('/'))
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 //! that equals a key or a pin is not rounded, so tracks contain the keys exactly in the file too.
 
 use super::output::{WriteError, write_whole};
+use super::path::slashed;
 use super::problem::Problems;
 use super::schema::{FOOTAGE, Field, PART, TOP, completed};
 use super::{Document, validate};
@@ -70,7 +71,7 @@ impl Document {
             begin(out, i, if i > 0 { " " } else { "" }, field.name());
             match field.as_ref() {
                 Field::Unknown { json, .. } => *out += json,
-                Field::Known("pattern") => text(out, pattern),
+                Field::Known("pattern") => text(out, &slashed(Path::new(pattern))),
                 Field::Known("first") => number(out, f64::from(*first)),
                 Field::Known("last") => number(out, f64::from(*last)),
                 Field::Known("fps") => number(out, *fps),

@@ -21,6 +21,10 @@ static OPEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 const ATTEMPTS: usize = 20;
 const PAUSE: Duration = Duration::from_millis(10);
 
+/// Number of times that a file is renamed where another program holds the target, and the pause between: half a second.
+const RENAMES: usize = 10;
+const RENAME_PAUSE: Duration = Duration::from_millis(50);
+
 /// A temporary file that is on the list.
 pub(crate) struct Unfinished {
     file: File,
@@ -47,7 +51,7 @@ impl Unfinished {
         let mut open = list();
         let Some(path) = self.path.take() else { return Ok(()) };
         open.remove(path.as_ref() as &Path);
-        path.persist(target).map_err(|error| error.error)
+        renamed(path, target)
     }
 }
 
@@ -57,6 +61,28 @@ impl Drop for Unfinished {
             let mut open = list();
             open.remove(path.as_ref() as &Path);
         }
+    }
+}
+
+/// Renames a temporary file. On Windows the target may be held open for a moment, by an indexer or a virus scanner: the
+/// system then says that access is denied. So it is asked some more times, and at last the error tells the likely reason.
+fn renamed(mut path: TempPath, target: &Path) -> io::Result<()> {
+    let mut attempt = 1;
+    loop {
+        let error = match path.persist(target) {
+            Ok(()) => return Ok(()),
+            Err(error) => error,
+        };
+        if !cfg!(windows) || error.error.kind() != io::ErrorKind::PermissionDenied {
+            return Err(error.error);
+        }
+        if attempt == RENAMES {
+            let told = "another program has the file open, expected it to be free; close it there";
+            return Err(io::Error::new(io::ErrorKind::PermissionDenied, format!("{told} ({})", error.error)));
+        }
+        attempt += 1;
+        path = error.path;
+        sleep(RENAME_PAUSE);
     }
 }
 

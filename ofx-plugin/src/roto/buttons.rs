@@ -13,6 +13,7 @@ use openfx::sys::generic::core::{
 use openfx::sys::image_effect_v1::image_effect::kOfxTypeClip;
 use openfx::sys::image_effect_v1::param::kOfxTypeParameter;
 use rototoon::project::Document;
+use rototoon::project::path::slashed;
 use std::path::{Path, PathBuf};
 
 /// Handles a change of a parameter or a clip.
@@ -82,7 +83,7 @@ fn load(effect: &Effect) -> Result<(), Failure> {
     if Path::new(pattern.as_str()).is_relative()
         && let Some(folder) = folder.to_str()
     {
-        *pattern = Path::new(&folder.replace('%', "%%")).join(&*pattern).to_string_lossy().into_owned();
+        *pattern = slashed(&Path::new(&folder.replace('%', "%%")).join(&*pattern));
     }
     edits::store_loaded(effect, &document)
 }
@@ -102,7 +103,7 @@ fn save(effect: &Effect) -> Result<(), Failure> {
     if let Some(folder) = folder.to_str()
         && let Ok(relative) = Path::new(pattern.as_str()).strip_prefix(folder.replace('%', "%%"))
     {
-        *pattern = relative.to_string_lossy().into_owned();
+        *pattern = slashed(relative);
     }
     document.save(&path).map_err(|error| told(&error))
 }

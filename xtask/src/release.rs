@@ -1,0 +1,231 @@
+//! `release --dry-run`: makes everything that a release publishes, below `target/release-set`, and checks each file.
+//!
+//! For each system that can be built here: the extension's zip, the wheel of the Python package, the command line. For all of
+//! them together: the OpenFX bundle, bills of materials, the section of the changelog, checksums. The workflow of a tag runs the
+//! same command and publishes what it made. The set says of each file how far it was tried.
+//!
+//! Files carry the time of the commit and no path of the machine, so two builds of one commit are the same bytes.
+
+use crate::bundle::{self, Build, Bundle, Packager};
+use crate::platform::{LINUX, MACOS, Platform, WINDOWS};
+use crate::{audit, licences, macos, ofx, wheel, windows};
+use anyhow::{Context, Result, bail, ensure};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use xtask_shell::shell::{capture, command, copy_folder, empty_folder, root, run, target};
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// Names of files that are no parts of the set's checksums.
+const SUMS: &str = "SHA256SUMS";
+
+/// A system with its built files.
+struct Built {
+    platform: Platform,
+    library: PathBuf,
+    cli: PathBuf,
+    plugin: PathBuf,
+}
+
+/// Makes the set and checks it. With `twice` the Linux files are compiled anew and must be the same.
+pub fn release(twice: bool) -> Result<()> {
+    check_versions()?;
+    let notes = section(&read("CHANGELOG.md")?, VERSION)?;
+    let mut built = vec![linux()?];
+    let mut missing = Vec::new();
+    let others = [(WINDOWS, windows::build as fn() -> Result<windows::Built>), (MACOS, macos::build)];
+    for (platform, build) in others {
+        match build() {
+            Ok(windows::Built { library, cli, plugin }) => built.push(Built { platform, library, cli, plugin }),
+            Err(reason) => missing.push((platform, reason)),
+        }
+    }
+    let set = target().join("release-set");
+    make(&set, &built, &notes)?;
+    if twice {
+        compare()?;
+    }
+    for (platform, reason) in &missing {
+        println!("not in the set: {}: {reason:#}", platform.blender);
+    }
+    report(&set, &built)
+}
+
+fn linux() -> Result<Built> {
+    bundle::compile(Build::Installed)?;
+    let Bundle { library, cli, plugin, .. } = Bundle::of(Build::Installed);
+    Ok(Built { platform: LINUX, library, cli, plugin })
+}
+
+/// Writes the set.
+fn make(set: &Path, built: &[Built], notes: &str) -> Result<()> {
+    empty_folder(set)?;
+    let mut wheels = Vec::new();
+    for Built { platform, library, cli, .. } in built {
+        let made = wheel::build(platform, platform.wheel, library)?;
+        std::fs::copy(&made, set.join(made.file_name().context("a wheel has a name")?))?;
+        wheels.push((*platform, made));
+        let name = format!("rototoon-{VERSION}-cli-{}", platform.blender);
+        let folder = target().join("release-parts").join(&name);
+        empty_folder(&folder)?;
+        copy_folder(&licences::folder(platform)?, &folder, &|_| true)?;
+        std::fs::copy(cli, folder.join(platform.cli)).with_context(|| format!("cannot copy {cli:?}"))?;
+        archive(&folder, &set.join(format!("{name}.zip")))?;
+    }
+    bundle::pack_extension(&Packager::from_wheel()?, &wheels, true, set)?;
+    let place = target().join("release-parts/Rototoon.ofx.bundle");
+    let plugins: Vec<(Platform, PathBuf)> = built.iter().map(|b| (b.platform, b.plugin.clone())).collect();
+    ofx::lay_out_at(&place, &plugins)?;
+    archive(&place, &set.join(format!("rototoon-{VERSION}-openfx.zip")))?;
+    for bill in audit::bills()? {
+        std::fs::copy(&bill, set.join(bill.file_name().context("a bill has a name")?))?;
+    }
+    std::fs::write(set.join("RELEASE-NOTES.md"), notes)?;
+    std::fs::write(set.join(SUMS), sums(set)?).context("cannot write the checksums")
+}
+
+/// Packs a folder with the time of the commit.
+fn archive(folder: &Path, zip: &Path) -> Result<()> {
+    let date = wheel::date()?.to_string();
+    run(command(wheel::environment()?).arg(root().join("xtask/archive.py")).args([folder, zip]).arg(date))
+}
+
+/// A line for each file of the set with its SHA-256, as `sha256sum --check` reads them.
+fn sums(set: &Path) -> Result<String> {
+    let names = names(set)?;
+    let mut sum = command("sha256sum");
+    sum.current_dir(set).args(names.iter().filter(|name| *name != SUMS));
+    Ok(capture(&mut sum)? + "\n")
+}
+
+fn names(set: &Path) -> Result<Vec<String>> {
+    let entries = std::fs::read_dir(set).with_context(|| format!("cannot list {set:?}"))?;
+    let mut names: Vec<String> =
+        entries.map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned())).collect::<Result<_>>()?;
+    names.sort();
+    Ok(names)
+}
+
+/// Checks each file and prints the table.
+fn report(set: &Path, built: &[Built]) -> Result<()> {
+    run(command("sha256sum").current_dir(set).args(["--check", "--quiet", SUMS]))?;
+    let found = names(set)?;
+    for Built { platform, .. } in built {
+        let wheel = format!("rototoon-{VERSION}-py3-none-{}.whl", platform.wheel);
+        for name in [wheel, bundle::zip_name(platform), format!("rototoon-{VERSION}-cli-{}.zip", platform.blender)] {
+            ensure!(found.contains(&name), "the set lacks {name}");
+        }
+    }
+    let sums = std::fs::read_to_string(set.join(SUMS))?;
+    let mut table = String::from("| file | bytes | SHA-256 | tried |\n| --- | ---: | --- | --- |\n");
+    for name in found.iter().filter(|name| *name != SUMS) {
+        let path = set.join(name);
+        if name.ends_with(".zip") || name.ends_with(".whl") {
+            run(command(wheel::environment()?).args(["-c", TEST_ZIP]).arg(&path))?;
+        }
+        let size = std::fs::metadata(&path)?.len();
+        ensure!(size > 0, "{name} is empty");
+        let sum = sums.lines().find(|line| line.ends_with(&format!("  {name}"))).context("a file has no checksum")?;
+        let tried = built.iter().find(|b| {
+            [b.platform.blender, b.platform.wheel, &b.platform.blender.replace('-', "_")]
+                .iter()
+                .any(|id| name.contains(*id))
+        });
+        writeln!(table, "| {name} | {size} | {} | {} |", &sum[..16], tried.map_or("", |b| b.platform.checked))?;
+    }
+    println!("{table}");
+    println!("release set: {}", set.display());
+    Ok(())
+}
+
+/// Reads every file of a zip, and finds what a release must not contain.
+const TEST_ZIP: &str = "import sys, zipfile
+with zipfile.ZipFile(sys.argv[1]) as file:
+    damaged = file.testzip()
+    assert damaged is None, f'{sys.argv[1]}: {damaged} is damaged'
+    names = file.namelist()
+    assert len(names) == len(set(names)), f'{sys.argv[1]}: a name is there twice'
+    strange = [name for name in names if name.endswith('.pyc') or name.startswith('/') or '..' in name.split('/')]
+    assert not strange, f'{sys.argv[1]}: {strange}'
+    assert any('licen' in name.lower() for name in names), f'{sys.argv[1]}: no licence'";
+
+/// Compiles the Linux files anew in another folder, and compares all bytes.
+fn compare() -> Result<()> {
+    let first = linux()?;
+    let before = hashes(&first)?;
+    let folder = target().join("release-again");
+    empty_folder(&folder)?;
+    run(command(std::env::current_exe()?).args(["bundle"]).env("CARGO_TARGET_DIR", &folder))?;
+    let built = folder.join(LINUX.triple).join("release");
+    let at = |name: &str| built.join(name);
+    let again = Built { platform: LINUX, library: at(LINUX.library), cli: at(LINUX.cli), plugin: at(LINUX.plugin) };
+    let after = hashes(&again)?;
+    std::fs::remove_dir_all(&folder)?;
+    for (name, hash) in &before {
+        ensure!(after.get(name) == Some(hash), "{name}: two builds of one commit differ");
+        println!("{name}: two builds of one commit are the same ({})", &hash[..16]);
+    }
+    Ok(())
+}
+
+fn hashes(built: &Built) -> Result<BTreeMap<String, String>> {
+    let hash = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok((name, capture(command("sha256sum").arg(path))?))
+    };
+    let hashed: Vec<(String, String)> =
+        [&built.library, &built.cli, &built.plugin].into_iter().map(hash).collect::<Result<_>>()?;
+    Ok(hashed.into_iter().map(|(name, line)| (name, line.split(' ').next().unwrap_or_default().to_owned())).collect())
+}
+
+/// Fails unless the places that name the version agree.
+fn check_versions() -> Result<()> {
+    let manifest = read("blender-addon/blender_manifest.toml")?;
+    let line = format!("version = {VERSION:?}");
+    ensure!(
+        manifest.lines().any(|found| found == line),
+        "blender_manifest.toml: found another version, expected {line}, as in Cargo.toml"
+    );
+    Ok(())
+}
+
+fn read(name: &str) -> Result<String> {
+    let path = root().join(name);
+    std::fs::read_to_string(&path).with_context(|| format!("cannot read {path:?}"))
+}
+
+/// The section of a version in the changelog; *Unreleased* where the version has none yet.
+fn section(changelog: &str, version: &str) -> Result<String> {
+    for heading in [format!("## {version}"), "## Unreleased".to_owned()] {
+        let begins = |line: &str| line == heading || line.starts_with(&format!("{heading} "));
+        let mut lines = changelog.lines().skip_while(|line| !begins(line));
+        if lines.next().is_some() {
+            let text: Vec<&str> = lines.take_while(|line| !line.starts_with("## ")).collect();
+            let text = text.join("\n").trim().to_owned();
+            ensure!(!text.is_empty(), "CHANGELOG.md: the section {heading:?} is empty");
+            return Ok(text + "\n");
+        }
+    }
+    bail!("CHANGELOG.md: found neither {version} nor Unreleased, expected a section of one of them")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_section_of_a_version_is_found() {
+        let text =
+            "# Changes\n\n## Unreleased\n\n- new\n\n## 0.2.0 (2026-01-01)\n\n### Core\n- old\n\n## 0.1.0\n- first\n";
+        assert_eq!(section(text, "0.2.0").unwrap(), "### Core\n- old\n");
+        assert_eq!(section(text, "0.1.0").unwrap(), "- first\n");
+        assert_eq!(section(text, "0.3.0").unwrap(), "- new\n");
+        assert!(section("# Changes\n", "0.3.0").is_err());
+        assert!(section("## 0.2.00\n- a\n", "0.2.0").is_err());
+    }
+
+    #[test]
+    fn the_manifest_has_the_version() {
+        check_versions().unwrap();
+    }
+}
