@@ -39,7 +39,7 @@ impl Drawing {
             graph = Graph::new(&ink);
         }
         graph.branches.par_iter_mut().for_each(|branch| centre::centred(branch, &ink.darkness));
-        let unit = picture.height() as f64 / 540.0;
+        let unit = picture.height().max(1) as f64 / 540.0;
         Self { picture, graph, width, unit, rough, outside: Outside::new(&ink.mask) }
     }
 

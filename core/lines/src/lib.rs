@@ -2,7 +2,7 @@
 //!
 //! [`trace`] turns a picture of a line drawing into strokes with width and colour, as long and as few as a person would
 //! draw. [`carry()`] finds the same strokes on the next drawing: a stroke keeps its number, ink that no stroke explains gets
-//! a new one, and a stroke without ink ends. [`identify`] gives the numbers to strokes that an artist drew there.
+//! a new one, and a stroke without ink ends. [`identify`] gives the numbers to strokes that an artist drew there, and [`bind`] joins what comes from both keys.
 //!
 //! This crate finds lines in pictures. It does not follow contours of painted parts (`rototoon-track`) and makes no
 //! in-betweens (`rototoon-tween`).
@@ -29,8 +29,8 @@
 //!
 //! # Limits
 //!
-//! Solid blacks become strokes along their middle. Which line is in front is not known. Drawings that have nothing to do
-//! with each other are not recognised as such.
+//! Solid blacks become strokes along their middle. Lines of one pixel look up to two pixels broader. Which line is in front
+//! is not known. Limbs that pass each other exchange or lose their numbers.
 //!
 //! # Example
 //!
@@ -78,7 +78,7 @@ mod stroke;
 mod strokes;
 mod thin;
 
-pub use carry::{carry, identify};
+pub use carry::{bind, carry, identify};
 pub use drawing::Drawing;
 pub use stroke::{Options, Stroke, Style, Tracked};
 

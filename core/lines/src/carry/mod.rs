@@ -1,10 +1,14 @@
 //! The same strokes on the next drawing.
 //!
-//! 1. [`register`] finds roughly where every point of every stroke is.
+//! 1. [`register`] finds roughly where every point of every stroke is, or that the drawings have nothing to do with each
+//!    other. Then all strokes end, and those of the next drawing are new.
 //! 2. [`follow`] lays each stroke onto the ink there. A stroke that is mostly off the ink has ended.
 //! 3. [`rest`]: ink that no stroke explains lengthens strokes or begins new ones, with numbers of their own.
+//!
+//! Between two drawn keys strokes come from both: [`bind()`].
 
 mod belief;
+mod bind;
 mod context;
 mod follow;
 mod identify;
@@ -12,6 +16,7 @@ mod register;
 mod rest;
 mod samples;
 
+pub use bind::bind;
 pub use identify::identify;
 
 use crate::drawing::Drawing;
@@ -32,11 +37,18 @@ const EXPLAINS: f64 = 0.75;
 /// Length of the shortest new stroke, at 540 lines, added to the width.
 const NEW: f64 = 3.0;
 
-/// The strokes of the drawing `from` on the drawing `to`. New strokes get numbers from `next` on, which is raised.
+/// The strokes of the drawing `from` on the drawing `to`. New strokes get numbers from `next` on, which is raised. If the
+/// drawings have nothing to do with each other, all strokes are new.
 pub fn carry(from: &Drawing, strokes: &[Tracked], to: &Drawing, next: &mut usize) -> Vec<Tracked> {
+    if to.graph.branches.is_empty() {
+        return Vec::new();
+    }
     let unit = to.unit;
-    let strokes: Vec<Tracked> = strokes.iter().filter(|s| s.stroke.points.len() > 1).cloned().collect();
+    let mut strokes: Vec<Tracked> = strokes.iter().filter(|s| s.stroke.points.len() > 1).cloned().collect();
     let registered = register::register(from, &strokes, to);
+    if !registered.related {
+        strokes.clear();
+    }
     let ink = follow::Ink::new(samples::of_ink(to, 0.5 * follow::STEP * unit), unit);
     let laid: Vec<Option<(Vec<Point>, bool)>> = strokes
         .par_iter()

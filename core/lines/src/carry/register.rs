@@ -6,6 +6,11 @@
 //! and turn little against each other, as far as their candidates allow (the as-rigid-as-possible energy on edges; Sorkine
 //! & Alexa 2007). A pair costs at most a fixed amount, so parts may also move apart.
 //!
+//! Any two drawings can be registered somehow. If they have nothing to do with each other, the points' surroundings stay
+//! unlike each other, and neighbours are torn apart. Only where both is so the drawings are *unrelated*. Over eight real
+//! sequences the median difference of contexts was at most 0.14, and the mean cost of a pair at most 0.65; between drawings of
+//! different sequences they were at least 0.25 and 0.88.
+//!
 //! The choice is smoothed, which drops outliers. A second round looks near the smoothed place only, with
 //! smaller contexts and with the directions that the first round found.
 
@@ -38,12 +43,26 @@ const MOST_ALONG: f32 = 12.0;
 /// Rounds of messages.
 const ROUNDS: usize = 5;
 
+/// Median difference of contexts, and mean cost of a pair, from which drawings are unrelated.
+const UNLIKE: f32 = 0.2;
+const TORN: f32 = 0.75;
+/// Points from which drawings can be told to be unrelated.
+const FEWEST: usize = 40;
+
 /// The points of strokes and their places on the next drawing.
 pub struct Registered {
     /// For each stroke, the points' arc lengths from its start.
     pub lengths: Vec<Vec<f64>>,
     /// For each stroke, the points' shifts.
     pub shifts: Vec<Vec<Point>>,
+    /// Whether the drawings show the same thing.
+    pub related: bool,
+}
+
+/// What one round found.
+struct Round {
+    shifts: Vec<Point>,
+    related: bool,
 }
 
 /// Values that both rounds share.
@@ -61,13 +80,14 @@ struct Scene {
 pub fn register(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> Registered {
     let scene = Scene::new(strokes, from.unit);
     let (here, there) = (of_ink(from, scene.step), of_ink(to, scene.step));
-    let mut shifts = vec![Point::ZERO; scene.points.len()];
+    let mut found = Round { shifts: vec![Point::ZERO; scene.points.len()], related: true };
     if !there.is_empty() {
         for round in 0..2 {
-            shifts = scene.round(round, &here, &there, &shifts);
+            found = scene.round(round, &here, &there, &found.shifts);
         }
     }
-    scene.registered(strokes, &shifts)
+    let related = found.related || scene.points.len() < FEWEST;
+    scene.registered(strokes, &found.shifts, related)
 }
 
 impl Scene {
@@ -120,7 +140,7 @@ impl Scene {
         self.ties.dedup_by_key(|tie| (tie.a, tie.b));
     }
 
-    fn round(&self, round: usize, here: &[Sample], there: &[Sample], before: &[Point]) -> Vec<Point> {
+    fn round(&self, round: usize, here: &[Sample], there: &[Sample], before: &[Point]) -> Round {
         let radius = self.size * if round == 0 { 0.3 } else { 0.15 };
         let contexts = |at: Vec<Point>, ink: &[Sample]| -> Vec<Context> {
             at.into_par_iter().map(|p| context(p, ink, radius)).collect()
@@ -155,9 +175,11 @@ impl Scene {
             ((longer * longer + turned * turned) as f32).min(if weight == ALONG { MOST_ALONG } else { MOST })
         };
         let chosen = choose(&costs, &self.ties, &pair, ROUNDS);
+        let unlike = median(chosen.iter().enumerate().map(|(i, &c)| difference(&own[i], &theirs[candidates[i][c].1])));
+        let torn = mean(self.ties.iter().enumerate().map(|(t, tie)| pair(t, chosen[tie.a], chosen[tie.b])));
         let shifts: Vec<Point> =
             chosen.iter().enumerate().map(|(i, &c)| there[candidates[i][c].1].place - self.points[i].place).collect();
-        self.smoothed(&shifts)
+        Round { shifts: self.smoothed(&shifts), related: unlike < UNLIKE || torn < TORN }
     }
 
     /// The best places of a point, at least a step apart.
@@ -218,9 +240,9 @@ impl Scene {
         smooth
     }
 
-    fn registered(&self, strokes: &[Tracked], shifts: &[Point]) -> Registered {
-        let mut found =
-            Registered { lengths: vec![Vec::new(); strokes.len()], shifts: vec![Vec::new(); strokes.len()] };
+    fn registered(&self, strokes: &[Tracked], shifts: &[Point], related: bool) -> Registered {
+        let none = || vec![Vec::new(); strokes.len()];
+        let mut found = Registered { lengths: none(), shifts: vec![Vec::new(); strokes.len()], related };
         for (i, &k) in self.stroke.iter().enumerate() {
             let at = match found.lengths[k].last() {
                 Some(&before) => before + self.points[i].place.distance(self.points[i - 1].place),
@@ -231,4 +253,15 @@ impl Scene {
         }
         found
     }
+}
+
+fn median(values: impl Iterator<Item = f32>) -> f32 {
+    let mut values: Vec<f32> = values.collect();
+    values.sort_unstable_by(f32::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+fn mean(values: impl Iterator<Item = f32>) -> f32 {
+    let (sum, count) = values.fold((0.0, 0usize), |(sum, count), value| (sum + value, count + 1));
+    sum / count.max(1) as f32
 }

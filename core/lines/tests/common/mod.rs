@@ -1,5 +1,7 @@
 //! Drawings made of known lines.
 
+#![allow(dead_code)] // Each test uses a part of it.
+
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::{Colour, Raster};
 use std::sync::Arc;
@@ -33,29 +35,35 @@ pub fn draw(
 ) -> Arc<Raster<Colour>> {
     let mut picture = Raster::from_fn(width, height, paper);
     for line in lines {
-        for (a, b) in polyline::segments(&line.points, line.closed) {
-            let reach = 0.5 * line.width + 1.0;
-            let (low, high) = (a.min(b) - reach, a.max(b) + reach);
-            let range = |low: f64, high: f64, most: usize| {
-                (low.max(0.0) as usize)..(high.max(-1.0) + 1.0).min(most as f64) as usize
-            };
-            for y in range(low.y, high.y, height) {
-                for x in range(low.x, high.x, width) {
-                    let p = Point::new(x as f64 + 0.5, y as f64 + 0.5);
-                    let distance = p.distance(polyline::nearest_on_segment(p, a, b));
-                    let cover = (0.5 * line.width - distance + 0.5).clamp(0.0, 1.0) as f32;
-                    let under = picture.get(x, y);
-                    // What is darker stays, so that the joints of segments leave no trace.
-                    let mixed = [0, 1, 2].map(|c| under[c] + cover * (line.colour[c] - under[c]));
-                    let drawn = |c: usize| (mixed[c] - line.colour[c]).abs() < (under[c] - line.colour[c]).abs();
-                    if (0..3).any(drawn) {
-                        picture.set(x, y, mixed);
-                    }
+        draw_onto(&mut picture, line);
+    }
+    Arc::new(picture)
+}
+
+/// Draws a line over a picture.
+pub fn draw_onto(picture: &mut Raster<Colour>, line: &Line) {
+    let (width, height) = (picture.width(), picture.height());
+    for (a, b) in polyline::segments(&line.points, line.closed) {
+        let reach = 0.5 * line.width + 1.0;
+        let (low, high) = (a.min(b) - reach, a.max(b) + reach);
+        let range = |low: f64, high: f64, most: usize| {
+            (low.max(0.0) as usize)..(high.max(-1.0) + 1.0).min(most as f64) as usize
+        };
+        for y in range(low.y, high.y, height) {
+            for x in range(low.x, high.x, width) {
+                let p = Point::new(x as f64 + 0.5, y as f64 + 0.5);
+                let distance = p.distance(polyline::nearest_on_segment(p, a, b));
+                let cover = (0.5 * line.width - distance + 0.5).clamp(0.0, 1.0) as f32;
+                let under = picture.get(x, y);
+                // What is darker stays, so that the joints of segments leave no trace.
+                let mixed = [0, 1, 2].map(|c| under[c] + cover * (line.colour[c] - under[c]));
+                let drawn = |c: usize| (mixed[c] - line.colour[c]).abs() < (under[c] - line.colour[c]).abs();
+                if (0..3).any(drawn) {
+                    picture.set(x, y, mixed);
                 }
             }
         }
     }
-    Arc::new(picture)
 }
 
 /// White paper.
