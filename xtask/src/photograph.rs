@@ -35,7 +35,12 @@ pub fn press(variants: &[String]) -> Result<()> {
         words: format!("rototoon.zip pictures ready {}", variants.join(",")),
         options: "--enable-event-simulate",
         build: Build::TestedWithHelp,
-        screen: (900, 1000),
+        // At twice the size the longest panel is this high.
+        screen: if variants.is_empty() || variants.iter().any(|name| name.ends_with("2x")) {
+            (1100, 2300)
+        } else {
+            (900, 1000)
+        },
         patience: 4 * 3600,
     };
     let Some(stage) = in_window("press", &script, |_| Ok(()))? else { return Ok(()) };
