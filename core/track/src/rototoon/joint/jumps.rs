@@ -11,7 +11,7 @@
 //!
 //! **Limits.** One restless part among still ones is not noticed.
 
-use super::Contender;
+use super::contender::Contender;
 use crate::rototoon::pool::Hypothesis;
 use rototoon_base::geometry::Point;
 
