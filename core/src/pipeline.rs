@@ -302,6 +302,11 @@ pub enum ShapeFormat {
     },
     /// Silhouette shapes.
     Silhouette,
+    /// A script of Nuke. Shapes without animation get their key on the frame `still`.
+    Nuke {
+        /// A frame of the footage.
+        still: FrameNumber,
+    },
 }
 
 /// Puts the shapes in the text of a file into the document as keys of parts. Returns a warning for each element that
@@ -315,6 +320,7 @@ pub fn import(document: &mut Document, text: &str, format: ShapeFormat) -> Resul
     let found = match format {
         ShapeFormat::Svg { still } => import::svg::svg(text, footage, still)?,
         ShapeFormat::Silhouette => import::silhouette::silhouette(text, footage)?,
+        ShapeFormat::Nuke { still } => import::nuke::nuke(text, footage, still)?,
     };
     import::into_scene(&mut document.scene, found.shapes);
     Ok(found.warnings)

@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use rototoon_base::scene::Footage;
-use rototoon_exchange::import::{ImportError, Shapes, bvh, silhouette::silhouette, svg::svg};
+use rototoon_exchange::import::{ImportError, Shapes, bvh, nuke::nuke, silhouette::silhouette, svg::svg};
 
 fn footage(last: i32) -> Footage {
     Footage { pattern: "%d".into(), first: 0, last, fps: 25.0, width: 200, height: 100 }
@@ -83,17 +83,19 @@ fn coordinates_of_silhouette_are_bounded() {
     assert!(shape("(inf,0)").contains("expected (x,y)"));
 }
 
-const SEEDS: [&str; 4] = [
+const SEEDS: [&str; 5] = [
     "<svg viewBox=\"0 0 200 100\"><g transform=\"rotate(30) scale(2)\"><path id=\"a\" d=\"M1 2a5 6 0 0 1 9 9q1 2 3 4t5 6c1 2 3 4 5 6s1 2 3 4z\"/></g><rect width=\"9\" height=\"5\" rx=\"2\"/><circle r=\"4\"><title>t</title></circle></svg>",
     "<svg viewBox=\"0 0 200 100\"><path d=\"M0 0h9\"><animate attributeName=\"d\" dur=\"0.4s\" calcMode=\"discrete\" keyTimes=\"0;0.5\" values=\"M0 0h9;M0 0h5\"/><animate attributeName=\"visibility\" dur=\"0.4s\" values=\"visible;hidden\"/></path></svg>",
     "<Silhouette sessionStartFrame=\"0\"><Object type=\"Shape\" label=\"a\"><Property id=\"path\"><Key frame=\"0\"><Path type=\"Bspline\" closed=\"True\"><Point>(0,0)</Point><Point>(0.1,0)</Point><Point>(0.1,0.2)</Point></Path></Key></Property></Object></Silhouette>",
     "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zrotation\nJOINT Spine\n{\nOFFSET 0 1 0\nCHANNELS 1 Zrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.04\n0 0 0 10\n0 1 0 20\n",
+    "Roto {\n curves {{{v x3f99999a}\n {n\n {layer Root {t x44b40000 x44070000}\n {curvegroup \"a b\" 512 bezier\n {{cc {f 8192}\n {p {0 0} {{{0 x41200000} {4 9}} 0} {0 0} {0 0} {50 {{4 0} {6 20}}} {0 0} {0 0} {50 90} {0 0}}}} idem}\n {t 5 7 0 0 0 0 0 0 0 1 1 1}}}}}}\n}\n",
 ];
 
 /// Every reader gets the text. What it answers does not matter here; that it answers does.
 fn meet_all(text: &str) {
     let _ = svg(text, &footage(9), 0);
     let _ = silhouette(text, &footage(9));
+    let _ = nuke(text, &footage(9), 0);
     let _ = bvh::seen(text, &bvh::Options::default());
 }
 

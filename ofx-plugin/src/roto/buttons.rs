@@ -3,7 +3,7 @@
 //! Only changes by the user are handled. Each value that the plugin sets itself is reported as a change too.
 
 use super::instance::ORIGIN;
-use super::{edits, instance, page, stored, taking_out, track};
+use super::{edits, fresh, instance, page, stored, taking_out, track};
 use crate::description::SOURCE;
 use crate::ofx::entry::Action;
 use crate::ofx::{Effect, Failure};
@@ -12,9 +12,14 @@ use openfx::sys::generic::core::{
 };
 use openfx::sys::image_effect_v1::image_effect::kOfxTypeClip;
 use openfx::sys::image_effect_v1::param::kOfxTypeParameter;
+use rototoon::file;
+use rototoon::pipeline::{self, ShapeFormat};
 use rototoon::project::Document;
 use rototoon::project::path::slashed;
 use std::path::{Path, PathBuf};
+
+/// Most warnings of an import that are shown.
+const MOST_WARNINGS: usize = 5;
 
 /// Handles a change of a parameter or a clip.
 pub fn changed(action: &Action) -> Result<(), Failure> {
@@ -75,8 +80,13 @@ fn chosen(effect: &Effect) -> Result<PathBuf, Failure> {
 
 /// Loads the project's shapes into the composition. The footage then gets an absolute path, because the composition has no
 /// folder of its own.
+///
+/// A file of shapes of another program is read too. Its shapes become parts of the composition's document.
 fn load(effect: &Effect) -> Result<(), Failure> {
     let path = chosen(effect)?;
+    if let Some(extension) = foreign(&path) {
+        return import(effect, &path, &extension);
+    }
     let mut document = Document::load(&path).map_err(|error| Failure::Told(error.to_string()))?;
     let folder = folder(&path);
     let pattern = &mut document.scene.footage.pattern;
@@ -88,9 +98,42 @@ fn load(effect: &Effect) -> Result<(), Failure> {
     edits::store_loaded(effect, &document)
 }
 
+/// The extension of a file of shapes of another program.
+fn foreign(path: &Path) -> Option<String> {
+    let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+    ["nk", "fxs", "svg"].contains(&extension.as_str()).then_some(extension)
+}
+
+fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> {
+    let told = |error: &dyn std::fmt::Display| Failure::Told(format!("{}: {error}", path.display()));
+    let mut document = match instance(effect)?.document_of_text(&effect.parameters()?)? {
+        Some(document) => Document::clone(&document),
+        None => fresh::document(effect)?,
+    };
+    let still = document.scene.footage.first;
+    let format = match extension {
+        "nk" => ShapeFormat::Nuke { still },
+        "svg" => ShapeFormat::Svg { still },
+        _ => ShapeFormat::Silhouette,
+    };
+    let text = file::text(path).map_err(|error| told(&error))?;
+    let warnings = pipeline::import(&mut document, &text, format).map_err(|error| told(&error))?;
+    edits::store(effect, "Import shapes", document)?;
+    for warning in warnings.iter().take(MOST_WARNINGS) {
+        instance(effect)?.note(effect, warning, false);
+    }
+    Ok(())
+}
+
 /// Writes the composition's shapes to the project's file. Footage below the file's folder gets a relative path.
 fn save(effect: &Effect) -> Result<(), Failure> {
     let path = chosen(effect)?;
+    if foreign(&path).is_some() {
+        let shown = path.display();
+        return Err(Failure::Told(format!(
+            "project: found {shown}, expected a project document; Export writes other files"
+        )));
+    }
     let text = effect.parameters()?.text(c"document")?;
     if text.trim().is_empty() {
         return Err(Failure::Told("found no shapes to save: load a project first".into()));

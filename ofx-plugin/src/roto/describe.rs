@@ -7,7 +7,7 @@ use crate::ofx::{Failure, host};
 use crate::parameters;
 use openfx::sys::image_effect_v1::image_effect::{
     kOfxImageEffectPluginPropOverlayInteractV1, kOfxImageEffectPluginPropOverlayInteractV2,
-    kOfxImageEffectPropSupportsOverlays,
+    kOfxImageEffectPropClipPreferencesSlaveParam, kOfxImageEffectPropSupportsOverlays,
 };
 use rototoon::scene::effects::ROTO;
 
@@ -22,6 +22,10 @@ const ABOUT: About = About {
 pub fn describe(action: &Action) -> Result<(), Failure> {
     description::effect(&action.effect, &ABOUT)?;
     let properties = action.effect.properties()?;
+    // The format of the output depends on these parameters, beside the one that all effects have.
+    for (index, id) in [c"matteChannel", c"sourceAlpha", c"premultiply"].into_iter().enumerate() {
+        properties.set_name(kOfxImageEffectPropClipPreferencesSlaveParam, index as i32 + 1, id)?;
+    }
     // A host without overlays may lack the property for their entry point.
     if host::properties()?.int(kOfxImageEffectPropSupportsOverlays, 0).is_ok_and(|supported| supported != 0) {
         let _ = properties.set_pointer(kOfxImageEffectPluginPropOverlayInteractV1, 0, overlay_entry::of_host(false));

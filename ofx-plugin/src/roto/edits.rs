@@ -27,7 +27,7 @@ pub fn store(effect: &Effect, label: &str, document: Document) -> Result<(), Fai
     }
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let mut state = State::clone(&*instance.state(&parameters)?);
-    if let Some(before) = instance.document(&parameters)? {
+    if let Some(before) = instance.document_of_text(&parameters)? {
         state.note_known(&before.scene.parts);
     }
     let page = state.page.clone();

@@ -74,6 +74,11 @@ impl Instance {
         }
     }
 
+    /// The document stored in the composition; `None` if there is none.
+    pub fn document_of_text(&self, parameters: &Parameters) -> Result<Option<Arc<Document>>, Failure> {
+        if parameters.text(c"document")?.trim().is_empty() { Ok(None) } else { self.document(parameters) }
+    }
+
     /// Drops the document, which can be read again.
     pub fn forget(&self) {
         *lock(&self.read) = None;

@@ -233,6 +233,29 @@ fn motion_becomes_keys_and_shapes_become_files() {
         let text = std::fs::read_to_string(file).unwrap();
         assert!(text.contains(said) && text.contains("star"), "{name}");
     }
+    // They are read by another node, each in the footage's pixels.
+    for name in ["a größe.nk", "a.fxs", "b.SVG"] {
+        let mut other = node(&host, FILTER);
+        other.set_text("document", "");
+        other.set("frameOffset", &[100.0]);
+        let _ = (host.log(), host.messages());
+        other.set_text("project", folder.path().join(name).to_str().unwrap());
+        if name.ends_with("nk") {
+            // The source of this node has the composition's frames 0 to 10, so the project's are -100 to -90.
+            assert!(host.messages()[0].contains("expected a frame of the footage"));
+        }
+        other.set("frameOffset", &[0.0]);
+        assert_eq!(other.press("load"), OK, "{name} {:?}", host.messages());
+        let read = kept(&other).scene;
+        assert_eq!(read.parts.len(), 3, "{name}");
+        let found = read.parts.iter().find(|part| part.name == "star").unwrap();
+        let (now, was) = (found.keys.values().next_back().unwrap(), &star.tracks[&4]);
+        let reach = |points: &[Point]| points.iter().fold((Point::MAX, Point::MIN), |(a, b), &p| (a.min(p), b.max(p)));
+        assert!((reach(now).0 - reach(was).0).length() < 0.1 && (reach(now).1 - reach(was).1).length() < 0.1, "{name}");
+        // The file of the other program is not replaced by a document.
+        assert_eq!(other.press("save"), "kOfxStatFailed");
+    }
+    let _ = (host.log(), host.messages());
     effect.set_text("exportFile", folder.path().join("a.txt").to_str().unwrap());
     assert_eq!(effect.press("export"), "kOfxStatFailed");
     assert!(host.messages().last().unwrap().contains(".nk, .fxs or .svg"));

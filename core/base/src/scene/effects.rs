@@ -79,7 +79,13 @@ const PLANE: [f64; 2] = [-1_000_000.0, 1_000_000.0];
 /// Rototoon Roto: every parameter in order.
 pub const ROTO: [EffectParameter; 69] = [
     parameter("shapes", "Shapes", EffectKind::Group(true), None, "Where the shapes come from."),
-    parameter("project", "Project", EffectKind::File, SHAPES, "A Rototoon project document. Choosing a file loads it."),
+    parameter(
+        "project",
+        "Project",
+        EffectKind::File,
+        SHAPES,
+        "A Rototoon project document, or shapes of Nuke (.nk), Silhouette (.fxs) or SVG. Choosing a file loads it.",
+    ),
     parameter("load", "Load", EffectKind::Button, SHAPES, "Loads the project's shapes into the composition."),
     parameter("save", "Save", EffectKind::Button, SHAPES, "Writes the composition's shapes to the project's file."),
     parameter("document", "Document", EffectKind::Hidden, SHAPES, "The shapes as the text of a project document."),

@@ -4,6 +4,7 @@
 //! - [`svg`]: paths and basic shapes, still or animated
 //! - `svg_animation`: the keys of animated paths
 //! - [`silhouette`]: Silhouette shapes
+//! - [`nuke`](mod@nuke): shapes of Nuke's Roto and RotoPaint nodes
 //! - [`path`](mod@path): Bézier paths as contours with one number of points
 //! - [`problem`]: errors of a file, with their places
 //! - `limits`: what a file may ask for
@@ -12,6 +13,7 @@
 pub mod bvh;
 mod limits;
 mod names;
+pub mod nuke;
 pub mod path;
 pub mod problem;
 pub mod silhouette;
