@@ -7,7 +7,9 @@
 mod check;
 mod error;
 pub mod memory;
+mod report;
 mod reshape;
+mod sheet;
 pub mod spans;
 mod style;
 mod trace;
@@ -15,7 +17,9 @@ mod tween;
 
 pub use check::{check, drawing_problems};
 pub use error::PipelineError;
+pub use report::{Counts, PartReport, Report, Weakest};
 pub use reshape::{Given, ReshapeJob, Reshaped, reshape};
+pub use sheet::sheet;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
 pub use trace::trace;
 pub use tween::{captured, pegs_of, spacing_of, tween};
@@ -84,6 +88,23 @@ pub fn track(
     let tracking = Tracker::new(*options).track(&in_effect(&document.scene), &frames, progress)?;
     store(&mut document.scene, &tracking);
     Ok(tracking)
+}
+
+/// The drawings of the footage of a document in `folder`: the first and the last frame of each. Frames that differ by noise
+/// alone show the same drawing.
+///
+/// # Errors
+///
+/// An invalid pattern, an unreadable frame, or [`PipelineError::Cancelled`].
+pub fn held(
+    document: &Document,
+    folder: &Path,
+    progress: &dyn Progress,
+) -> Result<Vec<[FrameNumber; 2]>, PipelineError> {
+    let footage = &document.scene.footage;
+    let frames = Sequence::keeping(footage, folder, 0)?;
+    memory::to_follow(footage)?;
+    Ok(crate::track::drawings(&frames, footage.first..=footage.last, progress)?)
 }
 
 /// The scene with only those corrections that have an effect. The document keeps the others, but no stage needs them.

@@ -285,8 +285,9 @@ fn part() -> impl Strategy<Value = Part> {
                 let curves = tracks.iter().map(|(&f, points)| (f, vec![points.clone(); 2])).collect();
                 let wants_key = keys.keys().take(2).map(|&frame| frame - 1).collect();
                 let depths = keys.keys().take(1).map(|&frame| (frame, 0.5 - depth)).collect();
+                let absent = keys.keys().take(2).map(|&frame| [frame - 3, frame - 1]).collect();
                 let name = String::new();
-                Part { name, closed, depth, keys, pins, centers, tracks, confidence, curves, wants_key, depths }
+                Part { name, closed, depth, keys, pins, centers, tracks, confidence, curves, wants_key, depths, absent }
             },
         )
     })

@@ -2,9 +2,10 @@
 
 use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
-use clap::{ArgMatches, Command};
+use clap::{Arg, ArgAction, ArgMatches, Command};
 use rototoon::pipeline;
 use rototoon::project::{Document, Severity};
+use rototoon::scene::FrameNumber;
 use rototoon::scene::parameters::Stage;
 use std::path::{Component, Path};
 
@@ -13,6 +14,12 @@ pub fn command() -> Command {
     Command::new("check")
         .about("Lists every problem of a document and its frames; the exit status is 0 if there are no errors")
         .arg(arguments::project())
+        .arg(
+            Arg::new("drawings")
+                .long("drawings")
+                .help("Also lists the drawings: frames that are held, with noise or without it, are one drawing")
+                .action(ArgAction::SetTrue),
+        )
         .args(arguments::of_stage(Stage::Run))
 }
 
@@ -34,7 +41,35 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
             line(kind, &format!("{}: and {count} more {kind}s", path.display()));
         }
     }
-    if problems.error_count() > 0 { Err(Failure::Reported) } else { Ok(()) }
+    if problems.error_count() > 0 {
+        return Err(Failure::Reported);
+    }
+    if given.get_flag("drawings") {
+        let drawings =
+            progress::run(arguments::threads(given), |bar| Ok(pipeline::held(&document, project::folder(path), bar)?))?;
+        line("note", &format!("{}: {}", path.display(), listed(&drawings)));
+    }
+    line("note", &format!("{}: usable{}", path.display(), with(problems.warning_count())));
+    Ok(())
+}
+
+/// The drawings in words: "5 frames show 3 drawings: 0-1, 2, 3-4".
+fn listed(drawings: &[[FrameNumber; 2]]) -> String {
+    let frames: i64 = drawings.iter().map(|[first, last]| i64::from(*last) - i64::from(*first) + 1).sum();
+    let range = |&[first, last]: &[FrameNumber; 2]| {
+        if first == last { first.to_string() } else { format!("{first}-{last}") }
+    };
+    let ranges: Vec<String> = drawings.iter().map(range).collect();
+    format!("{frames} frames show {} drawings: {}", drawings.len(), ranges.join(", "))
+}
+
+/// How many warnings there are, if any.
+fn with(warnings: usize) -> String {
+    match warnings {
+        0 => String::new(),
+        1 => ", with 1 warning".to_owned(),
+        more => format!(", with {more} warnings"),
+    }
 }
 
 /// Says that the frames are not below the document's folder. Every command then reads files from elsewhere.

@@ -4,7 +4,7 @@
 //! - [`project`]: reads and writes documents
 //! - [`progress`]: threads, the progress bar, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
-//! - [`track`], [`snap`], [`trace`], [`render`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`], [`steps`]: the
+//! - [`track`], [`snap`], [`trace`], [`render`], [`sheet`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`], [`steps`]: the
 //!   subcommands
 //! - [`usage`]: the memory that the program takes
 //!
@@ -23,6 +23,7 @@ mod job;
 mod progress;
 mod project;
 mod render;
+mod sheet;
 mod snap;
 mod steps;
 mod style;
@@ -39,12 +40,13 @@ use std::process::ExitCode;
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 /// Each subcommand with the function that runs it.
-fn subcommands() -> [(Command, Run); 13] {
+fn subcommands() -> [(Command, Run); 14] {
     [
         (track::command(), track::run),
         (snap::command(), snap::run),
         (trace::command(), trace::run),
         (render::command(), render::run),
+        (sheet::command(), sheet::run),
         (export::command(), export::run),
         (import::command(), import::run),
         (check::command(), check::run),

@@ -8,7 +8,7 @@ use std::path::Path;
 /// Reads a document and prints its warnings.
 pub fn load(path: &Path) -> Result<Document, Failure> {
     let document = Document::load(path)?;
-    for warning in document.problems().warnings() {
+    for warning in document.problems().warnings().chain(document.misspelt().warnings()) {
         line("warning", &format!("{}: {warning}", path.display()));
     }
     Ok(document)

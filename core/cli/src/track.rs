@@ -2,12 +2,14 @@
 
 use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
-use clap::{ArgMatches, Command};
-use rototoon::pipeline;
+use clap::{Arg, ArgMatches, Command, value_parser};
+use rototoon::pipeline::{self, Report};
 use rototoon::project::output::check_writable;
+use rototoon::project::write_whole;
 use rototoon::scene::Scene;
 use rototoon::scene::parameters::Stage;
 use rototoon::track::{Ending, Preset, TrackEnd, TrackOptions, Tracking};
+use std::path::PathBuf;
 
 /// The subcommand.
 pub fn command() -> Command {
@@ -18,6 +20,13 @@ pub fn command() -> Command {
         )
         .arg(arguments::project())
         .arg(arguments::output("OUT", "The document to write, with tracks and confidence"))
+        .arg(
+            Arg::new("report")
+                .long("report")
+                .value_name("FILE")
+                .help("Also writes what became of each part as JSON: frames sure, doubtful and lost")
+                .value_parser(value_parser!(PathBuf)),
+        )
         .args(arguments::of_stage(Stage::Track))
         .args(arguments::of_stage(Stage::Run))
 }
@@ -28,15 +37,28 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let id = arguments::choice(given, "preset");
     let preset = Preset::from_id(id).ok_or_else(|| Failure::Use(format!("no preset {id:?}")))?;
     let mut document = project::load(from)?;
-    project::inputs(&document, from).check(to)?;
-    check_writable(to)?;
+    let written = given.get_one::<PathBuf>("report");
+    for path in [Some(to), written.map(PathBuf::as_path)].into_iter().flatten() {
+        project::inputs(&document, from).check(path)?;
+        check_writable(path)?;
+    }
+    if written.is_some_and(|path| path == to || path == from) {
+        return Err(Failure::Use("found the same file for the report and a document, expected another one".into()));
+    }
     let options = TrackOptions { preset, ..TrackOptions::default() };
     let document = progress::run(arguments::threads(given), |bar| {
         let tracking = pipeline::track(&mut document, project::folder(from), &options, bar)?;
         say_ends(&document.scene, &tracking);
         Ok(document)
     })?;
-    project::save(document, from, to)
+    let report = Report::of(&document.scene);
+    project::save(document, from, to)?;
+    if let Some(path) = written {
+        let json = serde_json::to_vec_pretty(&report).map_err(|error| Failure::Other(error.to_string()))?;
+        write_whole(path, &json)?;
+    }
+    report.lines().iter().for_each(|text| line("note", text));
+    Ok(())
 }
 
 /// Prints where the tracks of parts with a single key end, and where these parts need a key.

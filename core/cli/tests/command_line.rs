@@ -107,7 +107,13 @@ fn read(path: &Path) -> Value {
 fn tracking_fills_the_document_and_keeps_the_rest() {
     let cartoon = Cartoon::new();
     let (project, out) = (cartoon.keyed(), cartoon.path("out.json"));
-    assert_eq!(good(&["track", text(&project), "-o", text(&out)]), "");
+    let report = cartoon.path("report.json");
+    let said = good(&["track", text(&project), "-o", text(&out), "--report", text(&report)]);
+    assert!(said.starts_with("note: part \"square\": "), "{said}");
+    let of = |what: &str| read(&report)["parts"][0][what].as_array().unwrap().len();
+    assert_eq!(of("sure") + of("doubtful") + of("lost"), 5, "the keys are not counted");
+    assert_eq!(read(&report)["contours"]["sure"], of("sure"));
+    fs::remove_file(&report).unwrap();
     let (before, after) = (read(&project), read(&out));
     assert_eq!(after["note"], "kept");
     assert_eq!(after["footage"]["pattern"], before["footage"]["pattern"]);
@@ -153,14 +159,16 @@ fn a_document_written_elsewhere_finds_its_frames() {
     assert_eq!(read(&out)["footage"]["pattern"], "../../frames/f_%03d.png");
     let note = good(&["check", text(&out)]);
     assert!(note.starts_with("note: ") && note.contains("outside the document's folder"), "{note}");
-    assert_eq!(note.lines().count(), 1, "{note}");
+    let drawings = good(&["check", text(&out), "--drawings"]);
+    assert!(drawings.contains("out.json: 7 frames show 7 drawings: 0, 1, 2, 3, 4, 5, 6\n"), "{drawings}");
+    assert!(note.lines().count() == 2 && note.ends_with("out.json: usable\n"), "{note}");
     // Back from a folder whose own name contains a pattern for a number.
     fs::rename(cartoon.path("frames"), other.join("frames")).unwrap();
     fs::copy(&project, other.join("p.json")).unwrap();
     let back = cartoon.path("back.json");
     good(&["export", text(&other.join("p.json")), "-o", text(&back)]);
     assert_eq!(read(&back)["footage"]["pattern"], "other/100%%d/frames/f_%03d.png");
-    assert_eq!(good(&["check", text(&back)]), "");
+    assert_eq!(good(&["check", text(&back)]), format!("note: {}: usable\n", back.display()));
     // With a path relative to the working directory.
     let here = command(&["check", "back.json"]).current_dir(cartoon.folder.path()).output().unwrap();
     assert_eq!(here.status.code(), Some(0), "{}", said(&here));

@@ -8,6 +8,7 @@
 //! - `shape`: reading JSON that may hold anything
 //! - [`library`]: a folder of skeleton clips with an index
 //! - [`load`], [`save`]: documents from and to files
+//! - `direction`: keys that were drawn in the other direction; `unknown`: fields with almost the name of a known one
 //! - [`validate`]: what a document must hold beyond being well-formed
 //! - [`drawings`]: drawings on key frames, pairs, pegs and in-betweens
 //! - [`traced`]: strokes that tracing found on every frame
@@ -48,6 +49,7 @@
 
 pub mod clips;
 pub mod curves;
+mod direction;
 pub mod drawings;
 mod fields;
 pub mod inputs;
@@ -63,6 +65,7 @@ pub mod schema;
 mod shape;
 pub mod traced;
 pub mod unfinished;
+mod unknown;
 pub mod validate;
 
 pub use fields::FieldError;

@@ -6,7 +6,7 @@
 use super::Document;
 use super::problem::Problems;
 use super::schema::{Field, Layout, VERSION};
-use super::shape::{Context, Entries, Flag, Frame, List, Number, Pair, Seed, Shape, Step, Text, Whole};
+use super::shape::{Context, Entries, Flag, Frame, FrameRange, List, Number, Pair, Seed, Shape, Step, Text, Whole};
 use super::validate;
 use rototoon_base::file;
 use rototoon_base::scene::{Footage, FrameNumber, Part, Scene};
@@ -321,7 +321,7 @@ impl<'de> Shape<'de> for PartShape {
         let (mut name, mut closed, mut depth) = (None, None, None);
         let (mut keys, mut pins, mut centers) = (None, None, None);
         let (mut tracks, mut confidence, mut curves) = (None, None, None);
-        let (mut wants_key, mut depths) = (None, None);
+        let (mut wants_key, mut depths, mut absent) = (None, None, None);
         let mut fields = Vec::new();
         let points = Entries::<FrameNumber, _>::new(List(Pair));
         while let Some(key) = entries.next_key::<String>()? {
@@ -345,6 +345,7 @@ impl<'de> Shape<'de> for PartShape {
                 "curves" => field(context, source, "curves", Entries::new(List(List(Pair))), &mut curves)?,
                 "wants_key" => field(context, source, "wants_key", List(Frame), &mut wants_key)?,
                 "depths" => field(context, source, "depths", Entries::<FrameNumber, _>::new(Number), &mut depths)?,
+                "absent" => field(context, source, "absent", List(FrameRange), &mut absent)?,
                 _ => unknown(source, key)?,
             });
         }
@@ -361,6 +362,7 @@ impl<'de> Shape<'de> for PartShape {
             curves: curves.unwrap_or_default(),
             wants_key: wants_key.unwrap_or_default(),
             depths: depths.unwrap_or_default(),
+            absent: absent.unwrap_or_default(),
         };
         Ok(Some((part, fields)))
     }

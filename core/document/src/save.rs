@@ -109,6 +109,7 @@ fn is_default(part: &Part, name: &str) -> bool {
         "curves" => part.curves.is_empty(),
         "wants_key" => part.wants_key.is_empty(),
         "depths" => part.depths.is_empty(),
+        "absent" => part.absent.is_empty(),
         _ => false,
     }
 }
@@ -138,6 +139,9 @@ fn part_field(out: &mut String, part: &Part, field: &Field) {
         Field::Known("wants_key") => {
             list(out, &part.wants_key, "", "", |out, frame| number(out, f64::from(*frame)));
         }
+        Field::Known("absent") => list(out, &part.absent, "", "", |out, range| {
+            list(out, range, "", "", |out, frame| number(out, f64::from(*frame)));
+        }),
         Field::Known("depths") => frames(out, &part.depths, |out, _, depth| number(out, *depth)),
         Field::Known(_) => frames(out, &part.curves, |out, _, paths| {
             list(out, paths, "", "", |out, path| list(out, path, "", "", |out, p| pair(out, rounded_point(*p))))

@@ -36,8 +36,23 @@ pub(super) const FOOTAGE: [&str; 6] = ["pattern", "first", "last", "fps", "width
 /// lost: the last one before its track and the first one after it, at most two, ascending. A key there helps most.
 ///
 /// `depths` is written by reshaping and left out if empty. It contains, by frame, depths that differ from `depth`.
-pub(super) const PART: [&str; 11] =
-    ["name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves", "wants_key", "depths"];
+///
+/// `absent` is the artist's and left out if empty. It contains the first and the last frame of each time in which the part
+/// is not there.
+pub(super) const PART: [&str; 12] = [
+    "name",
+    "closed",
+    "depth",
+    "keys",
+    "pins",
+    "centers",
+    "tracks",
+    "confidence",
+    "curves",
+    "wants_key",
+    "depths",
+    "absent",
+];
 
 /// A field of an object, as read from the document.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -328,6 +328,30 @@ impl<'de> Shape<'de> for Pair {
     }
 }
 
+/// The first and the last frame of a range, `[first, last]`.
+#[derive(Clone, Copy)]
+pub(super) struct FrameRange;
+
+impl<'de> Shape<'de> for FrameRange {
+    type Value = [FrameNumber; 2];
+    const EXPECTED: &'static str = "the first and the last frame of a range, [first, last]";
+
+    fn list<A: SeqAccess<'de>>(self, context: &mut Context, items: A) -> Result<Option<Self::Value>, A::Error> {
+        let Some(frames) = List(Frame).list(context, items)? else { return Ok(None) };
+        match frames[..] {
+            [first, last] if first <= last => Ok(Some([first, last])),
+            [first, last] => {
+                context.wrong(format_args!("frames {first} to {last}"), "a first frame that is not after the last");
+                Ok(None)
+            }
+            _ => {
+                context.wrong(format_args!("a list of {}", frames.len()), Self::EXPECTED);
+                Ok(None)
+            }
+        }
+    }
+}
+
 /// A list. An element that does not fit becomes the default, so the length is preserved.
 #[derive(Clone, Copy)]
 pub(super) struct List<S>(pub S);

@@ -3,6 +3,7 @@
 //! Errors make a document unusable. Warnings name data without effect (corrections outside of the keys) and probable
 //! mistakes (contours without area). Such data stay in the document, since the artist made them.
 
+use super::direction::reversed;
 use super::problem::Problems;
 use super::schema::{MAX_COORDINATE, MAX_FPS, MAX_FRAME_NUMBER, MAX_FRAMES, MAX_SIZE, MIN_FPS};
 use super::shape::part_place;
@@ -126,6 +127,7 @@ impl PartCheck<'_> {
         self.keys();
         self.pins();
         self.centers();
+        self.absence();
         self.results();
     }
 
@@ -194,6 +196,10 @@ impl PartCheck<'_> {
             self.frame_inside(&place, *frame);
             self.contour(&place, key);
         }
+        for [before, frame] in reversed(part) {
+            let told = format!("the contour fits that of frame {before} much better in the other direction");
+            self.warning(format!("keys.\"{frame}\""), format!("{told}: was it drawn from the other end?"));
+        }
     }
 
     fn frame_inside(&mut self, place: &str, frame: FrameNumber) {
@@ -236,6 +242,22 @@ impl PartCheck<'_> {
         let part = self.part;
         for frame in part.centers.keys() {
             self.correction(&format!("centers.\"{frame}\""), *frame);
+        }
+    }
+
+    fn absence(&mut self) {
+        let part = self.part;
+        for (index, &[first, last]) in part.absent.iter().enumerate() {
+            if last < first {
+                let expected = "expected a first frame that is not after the last";
+                self.error(format!("absent[{index}]"), format!("found frames {first} to {last}, {expected}"));
+            } else if let Some((frame, _)) = part.keys.range(first..=last).next() {
+                let why = "the part has a key there, so it is there on that frame";
+                self.warning(
+                    format!("absent[{index}]"),
+                    format!("found frames {first} to {last}; frame {frame}: {why}"),
+                );
+            }
         }
     }
 

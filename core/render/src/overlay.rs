@@ -1,21 +1,26 @@
 //! Contours, control points, keys and confidence, drawn over a frame.
 //!
-//! Each part has a colour of its own. The opacity of a segment shows the confidence of its less certain end. A control
-//! point goes from red (uncertain) over yellow to green (certain). The artist's keys are white squares, pins are white
-//! rings.
+//! Each part has a colour of its own. A lost contour is red and twice as wide, because a pale one is missed on white
+//! paper, and a lost one must not be. The opacity of any other segment shows the confidence of its less certain end. A
+//! control point goes from red (uncertain) over yellow to green (certain). The artist's keys are white squares, pins are
+//! white rings.
 //!
 //! Lines are drawn antialiased on a transparent layer, which is composited over the frame in floats. Pixels without
 //! lines keep their exact colour.
 
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::palette;
-use rototoon_base::scene::{Colour, FrameNumber, Part, Raster, Scene};
+use rototoon_base::scene::{Colour, FrameNumber, Part, Raster, Scene, Verdict};
 use tiny_skia::{Color, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
 
 /// Picture height for which widths are given. Widths grow with the picture.
 const REFERENCE_LINES: f64 = 540.0;
 /// Opacity of a segment with confidence 0.
 const FAINTEST: f32 = 0.3;
+/// Colour of a lost contour.
+const LOST: Colour = [1.0, 0.0, 0.1];
+/// Width of a lost contour, times that of others.
+const LOST_WIDTH: f32 = 2.0;
 /// Width of the dark border on each side of a line, as a share of the line's width.
 const BORDER: f32 = 0.5;
 
@@ -53,13 +58,21 @@ pub fn overlay(
     for index in order {
         let part = &scene.parts[index];
         let Some(points) = part.points_at(frame) else { continue };
-        let pen = Pen { part, frame, points, colour: palette::distinct(index), width, options };
+        let lost = options.confidence && is_lost(part, frame);
+        let (colour, width) = if lost { (LOST, LOST_WIDTH * width) } else { (palette::distinct(index), width) };
+        let pen = Pen { part, frame, points, colour, lost, width, options };
         pen.segments(&mut layer);
         if options.points {
             pen.points(&mut layer);
         }
     }
     composite(picture, &layer)
+}
+
+/// Whether a tracked contour is lost on a frame.
+fn is_lost(part: &Part, frame: FrameNumber) -> bool {
+    let confidence = part.confidence.get(&frame).filter(|values| !values.is_empty() && !part.keys.contains_key(&frame));
+    confidence.is_some_and(|values| Verdict::of(values.iter().sum::<f64>() / values.len() as f64) == Verdict::Lost)
 }
 
 fn composite(picture: &Raster<Colour>, layer: &Pixmap) -> Raster<Colour> {
@@ -80,6 +93,7 @@ struct Pen<'a> {
     frame: FrameNumber,
     points: &'a [Point],
     colour: Colour,
+    lost: bool,
     width: f32,
     options: &'a OverlayOptions,
 }
@@ -99,7 +113,7 @@ impl Pen<'_> {
                 let ends = [self.points[i], self.points[(i + 1) % n]];
                 let line = curves.and_then(|paths| paths.get(i)).map_or(&ends[..], Vec::as_slice);
                 let sure = self.confidence(i).min(self.confidence((i + 1) % n));
-                Some((polyline(line)?, FAINTEST + (1.0 - FAINTEST) * sure))
+                Some((polyline(line)?, if self.lost { 1.0 } else { FAINTEST + (1.0 - FAINTEST) * sure }))
             })
             .collect();
         // Borders are drawn first, so none covers a neighbouring line.
@@ -182,11 +196,11 @@ mod tests {
             name: "a".into(),
             closed: true,
             keys: BTreeMap::from([(0, square.clone())]),
-            tracks: BTreeMap::from([(0, square.clone()), (1, square)]),
-            confidence: BTreeMap::from([(0, vec![1.0; 4]), (1, vec![0.0; 4])]),
+            tracks: [0, 1, 3].map(|frame| (frame, square.clone())).into(),
+            confidence: BTreeMap::from([(0, vec![1.0; 4]), (1, vec![0.55; 4]), (3, vec![0.0; 4])]),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 2, fps: 12.0, width: 40, height: 40 };
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.0, width: 40, height: 40 };
         Scene { footage, parts: vec![part] }
     }
 
@@ -210,7 +224,17 @@ mod tests {
             (r - 0.3).abs() + (g - 0.3).abs() + (b - 0.3).abs()
         };
         let bold = OverlayOptions { line_width: 6.0, ..OverlayOptions::default() };
-        assert!(difference(&bold) < 0.6 * difference(&OverlayOptions { confidence: false, ..bold }));
+        assert!(difference(&bold) < 0.8 * difference(&OverlayOptions { confidence: false, ..bold }));
+    }
+
+    #[test]
+    fn lost_contours_cannot_be_missed() {
+        let options = OverlayOptions { points: false, ..OverlayOptions::default() };
+        let on_paper = |frame| overlay(&scene(), frame, &Raster::new(40, 40, [1.0; 3]), None, &options);
+        let [r, g, b] = on_paper(3).get(20, 8);
+        assert!(r > 0.9 && g < 0.2 && b < 0.3, "{r} {g} {b}");
+        let dark = |frame| on_paper(frame).data().iter().filter(|colour| colour[1] < 0.8).count();
+        assert!(dark(3) > dark(0), "it is wider than a sure one");
     }
 
     #[test]

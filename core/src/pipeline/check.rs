@@ -18,6 +18,7 @@ use std::path::Path;
 /// An invalid pattern, or [`PipelineError::Cancelled`].
 pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Result<Problems, PipelineError> {
     let mut problems = document.problems();
+    problems.append(document.misspelt());
     if let Err(error) = document.limbs() {
         problems.error(error.place, format!("found {}, expected {}", error.found, error.expected));
     }
@@ -25,17 +26,42 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
     shape(&document.scene.footage, &mut problems);
     let sequence = Sequence::keeping(&document.scene.footage, folder, 0)?;
     let numbers: Vec<FrameNumber> = (document.scene.footage.first..=document.scene.footage.last).collect();
-    let mut done = 0;
+    let (mut done, mut unreadable) = (0, Vec::new());
     progress.report("Reading frames", 0.0)?;
     for batch in numbers.chunks(rayon::current_num_threads().max(1)) {
         let errors: Vec<Option<FrameError>> = batch.par_iter().map(|&frame| sequence.picture(frame).err()).collect();
-        for error in errors.into_iter().flatten() {
-            problems.error("footage", error.to_string());
-        }
+        unreadable.extend(batch.iter().zip(errors).filter_map(|(&frame, error)| Some((frame, error?))));
         done += batch.len();
         progress.report("Reading frames", done as f64 / numbers.len() as f64)?;
     }
+    frames_problems(unreadable, &mut problems);
     Ok(problems)
+}
+
+/// One error for each run of neighbouring frames with the same kind of error: that of the first frame, and how many
+/// follow.
+fn frames_problems(unreadable: Vec<(FrameNumber, FrameError)>, problems: &mut Problems) {
+    let same = |a: &(FrameNumber, FrameError), b: &(FrameNumber, FrameError)| b.0 == a.0 + 1 && one_cause(&a.1, &b.1);
+    for run in unreadable.chunk_by(same) {
+        let (Some((_, error)), Some((last, _))) = (run.first(), run.last()) else { continue };
+        match run.len() - 1 {
+            0 => problems.error("footage", error.to_string()),
+            1 => problems.error("footage", format!("{error} (the same on frame {last})")),
+            more => problems.error("footage", format!("{error} (the same on the next {more} frames, up to {last})")),
+        }
+    }
+}
+
+fn one_cause(a: &FrameError, b: &FrameError) -> bool {
+    match (a, b) {
+        (FrameError::Missing { .. }, FrameError::Missing { .. }) => true,
+        (FrameError::Unreadable { reason, .. }, FrameError::Unreadable { reason: other, .. }) => reason == other,
+        (
+            FrameError::WrongSize { found_width: width, found_height: height, .. },
+            FrameError::WrongSize { found_width, found_height, .. },
+        ) => (width, height) == (found_width, found_height),
+        _ => false,
+    }
 }
 
 /// Warns of pictures that can be drawn on but are too wide for the default preset of tracking.

@@ -83,7 +83,7 @@ impl Tracker {
     /// Tracks every part of `scene` between its first and its last key. It runs on the caller's rayon pool.
     ///
     /// The default preset follows parts with one key outward, as far as they can be trusted. With the other presets
-    /// such a part has a track on its key frame only. After an error the tracker still has its earlier results.
+    /// such a part has a track on its key frame only. Where a part is absent it has no track. After an error the tracker still has its earlier results.
     ///
     /// # Errors
     ///
@@ -103,6 +103,9 @@ impl Tracker {
         }
         let mut tracking = self.solver.track(scene, frames, progress)?;
         for (part, track) in scene.parts.iter().zip(&mut tracking.parts) {
+            track.tracks.retain(|&frame, _| !part.is_absent(frame));
+            track.confidence.retain(|&frame, _| !part.is_absent(frame));
+            track.ends.retain(|end| !part.is_absent(end.frame));
             for (&frame, key) in &part.keys {
                 track.tracks.insert(frame, key.clone());
                 track.confidence.insert(frame, vec![1.0; key.len()]);

@@ -5,6 +5,7 @@
 //! - [`effects`]: the parameters of the effects for compositing hosts
 //! - [`footage`]: the range of frames and the source of their pictures
 //! - [`limbs`]: the points of contours that determine key points
+//! - [`outcome`]: what became of a part on each frame: sure, doubtful or lost
 //! - [`palette`]: colours that distinguish parts
 //! - [`parameters`]: the parameters for users, described once
 //! - [`part`]: a tracked contour with its keys, corrections and results
@@ -19,6 +20,7 @@ pub mod correspondence;
 pub mod effects;
 pub mod footage;
 pub mod limbs;
+pub mod outcome;
 pub mod palette;
 pub mod parameters;
 pub mod part;
@@ -30,6 +32,7 @@ pub mod skeleton;
 
 pub use clip::Clip;
 pub use footage::{Footage, FrameError, FrameNumber, FrameSource};
+pub use outcome::{Outcome, Verdict};
 pub use part::{Part, Span};
 pub use pattern::{FramePattern, PatternError};
 pub use progress::{Cancelled, Progress, Silent};

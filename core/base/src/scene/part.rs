@@ -1,6 +1,6 @@
 //! A part: one contour of a character, followed through the frames.
 //!
-//! A part contains the artist's input (keys, pins, corrected centres, depths) and the results of tracking and snapping.
+//! A part contains the artist's input (keys, pins, corrected centres, depths, absence) and the results of tracking and snapping.
 //! Points are in pixels of the footage, x right and y down.
 
 use super::FrameNumber;
@@ -33,6 +33,8 @@ pub struct Part {
     pub wants_key: Vec<FrameNumber>,
     /// Depths of single frames that differ from `depth`.
     pub depths: BTreeMap<FrameNumber, f64>,
+    /// First and last frame of each time in which the part is not there. It has no track there, except on a key.
+    pub absent: Vec<[FrameNumber; 2]>,
 }
 
 /// The frames between two neighbouring keys of a part, keys included.
@@ -96,6 +98,12 @@ impl Part {
         let paths = self.curves.get(&frame)?;
         (!paths.is_empty() && paths.len() == self.segment_count() && paths.iter().all(|path| !path.is_empty()))
             .then_some(paths)
+    }
+
+    /// Whether the part is not there on a frame. On a key it always is.
+    pub fn is_absent(&self, frame: FrameNumber) -> bool {
+        let within = |&[first, last]: &[FrameNumber; 2]| (first..=last).contains(&frame);
+        !self.keys.contains_key(&frame) && self.absent.iter().any(within)
     }
 
     /// Depth on a frame.

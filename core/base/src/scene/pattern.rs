@@ -26,6 +26,15 @@ pub enum PatternError {
         /// The text.
         pattern: String,
     },
+    /// It is the path of a movie or an animated picture.
+    #[error(
+        "pattern {movie:?} is a movie: expected numbered pictures. Make them with: mkdir frames; ffmpeg -i {movie:?} \
+         frames/%04d.png  (the first picture has the number 1). Then the pattern is \"frames/%04d.png\""
+    )]
+    Movie {
+        /// The path.
+        movie: String,
+    },
     /// There is more than one place for the number.
     #[error("pattern {pattern:?} has {found} frame numbers: expected one %d or %0Nd")]
     SeveralNumbers {
@@ -42,6 +51,16 @@ pub enum PatternError {
         /// From the percent sign on, a few characters.
         found: String,
     },
+}
+
+/// Endings of movies and animated pictures.
+const MOVIES: [&str; 14] =
+    ["mp4", "m4v", "mov", "avi", "mkv", "webm", "mpg", "mpeg", "wmv", "flv", "ogv", "mxf", "gif", "apng"];
+
+/// Whether a path names a movie, by its ending.
+fn is_movie(path: &str) -> bool {
+    let ending = Path::new(path).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    MOVIES.iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
 impl FramePattern {
@@ -71,6 +90,7 @@ impl FramePattern {
         let mut texts = texts.into_iter();
         match (found, texts.next(), texts.next()) {
             (1, Some(before), Some(after)) => Ok(Self { before, fill, after }),
+            (0, ..) if is_movie(pattern) => Err(PatternError::Movie { movie: pattern.into() }),
             (0, ..) => Err(PatternError::NoNumber { pattern: pattern.into() }),
             _ => Err(PatternError::SeveralNumbers { pattern: pattern.into(), found }),
         }
@@ -173,6 +193,10 @@ mod tests {
     fn what_is_no_pattern() {
         use PatternError::{NoNumber, SeveralNumbers, Unknown};
         assert!(matches!(FramePattern::parse("a.png"), Err(NoNumber { .. })));
+        for movie in ["shot.MP4", "a/b.gif"] {
+            let told = FramePattern::parse(movie).unwrap_err().to_string();
+            assert!(told.contains("is a movie") && told.contains("ffmpeg -i"), "{told}");
+        }
         assert!(matches!(FramePattern::parse(""), Err(NoNumber { .. })));
         assert!(matches!(FramePattern::parse("%%d"), Err(NoNumber { .. })));
         assert!(matches!(FramePattern::parse("%d_%02d"), Err(SeveralNumbers { found: 2, .. })));

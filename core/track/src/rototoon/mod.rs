@@ -219,12 +219,8 @@ impl Rototoon {
         kit.store.read(kit.frames, &Vec::from_iter(numbers), &first)?;
         let mut pairs = BTreeSet::new();
         for span in spans {
-            let held = |&frame: &FrameNumber| {
-                progress.report("Reading frames", FEATURES)?;
-                kit.held(frame)
-            };
-            let until: Vec<FrameNumber> = (span.first..span.last).collect();
-            let held: Vec<bool> = until.par_iter().map(held).collect::<Result<_, TrackError>>()?;
+            let report = || Ok(progress.report("Reading frames", FEATURES)?);
+            let held = kit.held(&Vec::from_iter(span.frames()), &report)?;
             let mut before = span.first;
             for (frame, held) in (span.first + 1..=span.last).zip(held) {
                 if !held {

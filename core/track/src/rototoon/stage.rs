@@ -36,10 +36,14 @@ pub(super) struct Kit<'a> {
 }
 
 impl Kit<'_> {
-    /// Whether the frame after this one shows the same drawing.
-    pub fn held(&self, frame: FrameNumber) -> Result<bool, TrackError> {
+    /// For each of several frames but the last: whether the next one shows the same drawing ([`Store::held`]).
+    pub fn held(
+        &self,
+        numbers: &[FrameNumber],
+        report: &(impl Fn() -> Result<(), TrackError> + Sync),
+    ) -> Result<Vec<bool>, TrackError> {
         let (store, frames) = self.plain;
-        store.held(frames, frame)
+        store.held(frames, numbers, report)
     }
 
     /// The colours of a frame, whatever the kind of its drawing.
@@ -178,8 +182,8 @@ fn read(kit: Kit, job: &Job) -> Result<(Vec<Drawing>, Vec<Arc<Features>>), Track
             kit.store.features(kit.frames, frame)
         })
         .collect::<Result<_, _>>()?;
-    let held: Vec<bool> =
-        numbers[..numbers.len() - 1].par_iter().map(|&frame| kit.held(frame)).collect::<Result<_, _>>()?;
+    let report = || Ok(kit.progress.report("Reading frames", 0.0)?);
+    let held = kit.held(&numbers, &report)?;
     let drawings = group(job, |i| held[i]);
     let features = drawings.iter().map(|d| features[d.first].clone()).collect();
     Ok((drawings, features))

@@ -1,7 +1,6 @@
 //! The distinct drawings of a span. Animation often holds a drawing for two or three frames; the tracker solves it
-//! once.
+//! once. Which frames show the same drawing is the question of [`held`](super::held).
 
-use super::features::Features;
 use crate::contract::job::Job;
 
 /// Neighbouring frames of a span that show one drawing, as frame indices in the span. A drawing has at least one frame.
@@ -37,15 +36,6 @@ pub fn group(job: &Job, same: impl Fn(usize) -> bool) -> Vec<Drawing> {
         }
     }
     drawings
-}
-
-/// Largest change of a smoothed colour (0 to 1) between two frames of a hold. Compression noise stays below it. Ink
-/// that moves by a tenth of a working pixel exceeds it.
-const HELD: f32 = 0.012;
-
-/// Whether two pictures show the same drawing: no colour of the finest level differs by more than noise.
-pub fn same_drawing(a: &Features, b: &Features) -> bool {
-    a.level(2).largest_colour_change(b.level(2)) <= HELD
 }
 
 #[cfg(test)]

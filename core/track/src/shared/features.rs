@@ -34,9 +34,10 @@ pub struct Sample {
 }
 
 /// Colour and both slopes of a pixel, each followed by a zero.
-type Pixel = [i16; 12];
+pub(super) type Pixel = [i16; 12];
 
-const UNIT: f32 = 32767.0;
+/// The number that is stored for the value 1.
+pub(super) const UNIT: f32 = 32767.0;
 
 /// Picture pixels per working pixel, for a picture of `height` lines.
 pub fn working_scale(height: usize) -> f64 {
@@ -174,6 +175,11 @@ impl Level {
     /// Width and height in pixels of this level.
     pub fn dimensions(&self) -> (usize, usize) {
         (self.raster.width() - 1, self.raster.height() - 1)
+    }
+
+    /// A row of pixels; the last pixel is stored twice.
+    pub(super) fn row(&self, y: usize) -> &[Pixel] {
+        self.raster.row(y)
     }
 
     /// The largest difference of a colour value from another picture's level; infinite if their sizes differ.

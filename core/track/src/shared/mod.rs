@@ -6,6 +6,7 @@
 //! - [`sought`]: a picture made ready to be searched
 //! - [`store`]: features, flows and the like, kept for the next job
 //! - [`drawings`]: frames that show one drawing are worked on once
+//! - [`held`]: whether two pictures show the same drawing, or only noise tells them apart
 //! - [`cuts`]: where the footage goes over to another shot
 //! - [`edge_maps`]: edges of frames and distances to them, kept
 //!
@@ -17,6 +18,7 @@ pub mod cuts;
 pub mod drawings;
 pub mod edge_maps;
 pub mod features;
+pub mod held;
 pub mod look;
 pub mod part_by_part;
 pub mod sought;

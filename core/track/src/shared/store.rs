@@ -4,12 +4,12 @@
 //! holding the lock. Features are computed by many threads together, so two callers may compute the same ones.
 //! [`Store::read`] computes those of a complete scene before they are requested.
 
-use super::drawings::same_drawing;
 use super::features::Features;
+use super::held::same_drawing;
 use super::sought::Sought;
 use crate::contract::error::TrackError;
 use crate::contract::tasks::Steps;
-use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::scene::{FrameNumber, FrameSource, Progress};
 use rototoon_image::flow::{Flow, Pyramid, dense_flow};
 use std::collections::{BTreeMap, BTreeSet};
@@ -42,7 +42,7 @@ enum Key {
     Pyramid(FrameNumber),
     Flow(FrameNumber, FrameNumber),
     Sought(FrameNumber, usize),
-    Held(FrameNumber),
+    Same(FrameNumber, FrameNumber),
 }
 
 #[derive(Clone)]
@@ -51,7 +51,7 @@ enum Value {
     Pyramid(Arc<Pyramid>),
     Flow(Arc<Flow>),
     Sought(Arc<Sought>),
-    Held(bool),
+    Same(bool),
 }
 
 struct Entry {
@@ -165,15 +165,39 @@ impl Store {
         }
     }
 
-    /// Whether the frame after this one shows the same drawing.
-    pub fn held(&self, frames: &dyn FrameSource, frame: FrameNumber) -> Result<bool, TrackError> {
-        let key = Key::Held(frame);
-        if let Some(Value::Held(known)) = self.get(key) {
+    /// For each of several frames but the last: whether the next one shows the same drawing. A frame is compared with
+    /// the one before it and with the first one of its drawing, so that slow movement does not add up.
+    pub fn held(
+        &self,
+        frames: &dyn FrameSource,
+        numbers: &[FrameNumber],
+        progress: &(impl Fn() -> Result<(), TrackError> + Sync),
+    ) -> Result<Vec<bool>, TrackError> {
+        let same = |pair: &[FrameNumber]| {
+            progress()?;
+            self.same(frames, pair[0], pair[1])
+        };
+        let mut held: Vec<bool> =
+            numbers.windows(2).collect::<Vec<_>>().into_par_iter().map(same).collect::<Result<_, _>>()?;
+        let mut first = 0;
+        for (i, held) in held.iter_mut().enumerate() {
+            *held = *held && (first == i || same(&[numbers[first], numbers[i + 1]])?);
+            if !*held {
+                first = i + 1;
+            }
+        }
+        Ok(held)
+    }
+
+    /// Whether two frames show the same drawing.
+    fn same(&self, frames: &dyn FrameSource, a: FrameNumber, b: FrameNumber) -> Result<bool, TrackError> {
+        let key = Key::Same(a, b);
+        if let Some(Value::Same(known)) = self.get(key) {
             return Ok(known);
         }
-        let held = same_drawing(&*self.features(frames, frame)?, &*self.features(frames, frame + 1)?);
-        self.put(key, size_of::<Entry>(), Value::Held(held));
-        Ok(held)
+        let same = same_drawing(&*self.features(frames, a)?, &*self.features(frames, b)?);
+        self.put(key, size_of::<Entry>(), Value::Same(same));
+        Ok(same)
     }
 
     /// Forgets everything.

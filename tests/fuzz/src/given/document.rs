@@ -95,8 +95,8 @@ fn corrections(u: &mut Unstructured, count: usize) -> Result<[String; 2]> {
     Ok([format!("\"pins\": {pins}"), format!("\"centers\": {centers}")])
 }
 
-/// Confidence, snapped paths, wanted keys and depths.
-fn results(u: &mut Unstructured, count: usize) -> Result<[String; 4]> {
+/// Confidence, snapped paths, wanted keys, depths and absence.
+fn results(u: &mut Unstructured, count: usize) -> Result<[String; 5]> {
     let confidence = by_frame(u, 0, FRAMES, |u| {
         let values = (0..count).map(|_| Ok(json_number(f64::from(u.arbitrary::<u8>()?) / 255.0)));
         Ok(format!("[{}]", values.collect::<Result<Vec<_>>>()?.join(", ")))
@@ -112,5 +112,6 @@ fn results(u: &mut Unstructured, count: usize) -> Result<[String; 4]> {
         format!("\"curves\": {curves}"),
         format!("\"wants_key\": {wanted}"),
         format!("\"depths\": {depths}"),
+        format!("\"absent\": [[{}, {}]]", frame(u)?, frame(u)?),
     ])
 }

@@ -19,6 +19,7 @@ pub fn document(data: &[u8]) {
         assert_eq!((&before.name, before.closed, before.depth), (&after.name, after.closed, after.depth));
         assert_eq!((&before.keys, &before.pins, &before.centers), (&after.keys, &after.pins, &after.centers));
         assert_eq!((&before.depths, &before.wants_key), (&after.depths, &after.wants_key));
+        assert_eq!(before.absent, after.absent);
         assert!(before.tracks.keys().eq(after.tracks.keys()) && before.curves.keys().eq(after.curves.keys()));
     }
     assert_eq!(again.to_json(), written, "written once more, the text is another one");

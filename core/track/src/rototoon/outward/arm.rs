@@ -24,8 +24,8 @@ use crate::rototoon::search::Templates;
 use crate::rototoon::select::{Candidate, Smoothness, best_path};
 use crate::rototoon::stage::Kit;
 use crate::shared::cuts::is_cut;
-use crate::shared::drawings::same_drawing;
 use crate::shared::features::Features;
+use crate::shared::held::same_drawing;
 use crate::shared::sought::Sought;
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::FrameNumber;
@@ -183,7 +183,7 @@ impl Growing<'_> {
             let Some((frame, _)) = &self.pending else { break };
             let own = job.corrections.get(frame);
             let contradicts = own.is_some() && (is_key || correction.is_some_and(|known| Some(known) != own));
-            if contradicts || !same_drawing(&*self.ground.kit.colours(far)?, &*self.ground.kit.colours(*frame)?) {
+            if contradicts || !self.is_held(near, far, *frame)? {
                 break;
             }
             correction = correction.or(own);
@@ -205,6 +205,13 @@ impl Growing<'_> {
             dear: Vec::new(),
             anchors,
         }))
+    }
+
+    /// Whether a frame shows the drawing of the frames from `near` to `far`.
+    fn is_held(&self, near: FrameNumber, far: FrameNumber, frame: FrameNumber) -> Result<bool, TrackError> {
+        let kit = self.ground.kit;
+        let same = |a: FrameNumber| Ok::<_, TrackError>(same_drawing(&*kit.colours(a)?, &*kit.colours(frame)?));
+        Ok(same(far)? && (far == near || same(near)?))
     }
 
     fn hypothesis(&self, seen: &Seen, pose: Pose) -> Hypothesis {

@@ -1,0 +1,97 @@
+//! What became of a part on each frame: sure, doubtful or lost.
+//!
+//! The confidence of a point is the probability that it is in its place, so the mean over the points of a contour is the
+//! share of its points that are expected to be. A contour is *sure* if that share is at least [`SURE`], *lost* if it is
+//! below [`LOST`], and *doubtful* between them. Keys are the artist's, and beyond doubt. A part with one key is lost on
+//! the frames beyond its track where it needs a key.
+//!
+//! Everything that speaks of lost parts uses these bounds: the command line, the reports and the Blender add-on.
+
+use super::{FrameNumber, Part};
+use std::collections::BTreeMap;
+
+/// Least share of points in place of a contour that needs no look.
+pub const SURE: f64 = 0.8;
+/// Share of points in place below which a contour is lost.
+pub const LOST: f64 = 0.5;
+
+/// What became of a contour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// It needs no look.
+    Sure,
+    /// A look at it is worth while.
+    Doubtful,
+    /// It is probably wrong.
+    Lost,
+}
+
+/// What became of a part, by frame. Each list rises.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Outcome {
+    /// Frames of tracked contours that are sure. Keys are not counted.
+    pub sure: Vec<FrameNumber>,
+    /// Frames of doubtful contours.
+    pub doubtful: Vec<FrameNumber>,
+    /// Frames of lost contours, and those beyond a track where the part needs a key.
+    pub lost: Vec<FrameNumber>,
+}
+
+impl Verdict {
+    /// Of a contour with this share of points in place.
+    pub fn of(confidence: f64) -> Self {
+        // Written so that NaN is lost.
+        if confidence >= SURE {
+            Self::Sure
+        } else if confidence >= LOST {
+            Self::Doubtful
+        } else {
+            Self::Lost
+        }
+    }
+}
+
+impl Outcome {
+    /// Of a part as it was tracked.
+    pub fn of(part: &Part) -> Self {
+        let mut outcome = Self::default();
+        for (frame, confidence) in confidence(part) {
+            outcome.of_verdict(Verdict::of(confidence)).push(frame);
+        }
+        outcome.lost.extend(part.wants_key.iter().filter(|frame| !part.confidence.contains_key(frame)));
+        outcome.lost.sort_unstable();
+        outcome
+    }
+
+    fn of_verdict(&mut self, verdict: Verdict) -> &mut Vec<FrameNumber> {
+        match verdict {
+            Verdict::Sure => &mut self.sure,
+            Verdict::Doubtful => &mut self.doubtful,
+            Verdict::Lost => &mut self.lost,
+        }
+    }
+}
+
+/// The mean confidence of a part's tracked contours by frame, without keys.
+pub fn confidence(part: &Part) -> BTreeMap<FrameNumber, f64> {
+    let tracked = part.confidence.iter().filter(|(frame, points)| !points.is_empty() && !part.keys.contains_key(frame));
+    tracked.map(|(&frame, points)| (frame, points.iter().sum::<f64>() / points.len() as f64)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+
+    #[test]
+    fn frames_are_sure_doubtful_or_lost() {
+        let mut part = Part::default();
+        part.keys.insert(0, vec![Point::ZERO; 2]);
+        let shares = [[0.0, 0.0], [1.0, 0.9], [0.9, 0.5], [0.9, 0.0], [f64::NAN, 1.0]];
+        part.confidence = (0..).zip(shares.map(|pair| pair.to_vec())).collect();
+        part.wants_key = vec![-1, 5];
+        let expected = Outcome { sure: vec![1], doubtful: vec![2], lost: vec![-1, 3, 4, 5] };
+        assert_eq!(Outcome::of(&part), expected, "the key on frame 0 is beyond doubt");
+        assert_eq!(Outcome::of(&Part::default()), Outcome::default());
+    }
+}

@@ -1,0 +1,37 @@
+//! `rototoon sheet`: draws a contact sheet of the result.
+
+use crate::failure::Failure;
+use crate::{arguments, progress, project};
+use clap::{ArgMatches, Command};
+use rototoon::pipeline;
+use rototoon::project::output::check_writable;
+use rototoon::project::write_whole;
+use rototoon::render::{Format, encode};
+use rototoon::scene::parameters::Stage;
+
+/// The subcommand.
+pub fn command() -> Command {
+    Command::new("sheet")
+        .about(
+            "Draws a contact sheet: the frames with their contours, those with lost parts in red borders, those with \
+             doubtful parts in amber ones. Of more than 48 frames it shows the worst ones and some between",
+        )
+        .arg(arguments::project())
+        .arg(arguments::output("SHEET", "The picture to write, such as sheet.png"))
+        .args(arguments::of_stage(Stage::Run))
+}
+
+/// Runs the subcommand.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
+    if Format::of(to) != Some(Format::Png) {
+        return Err(Failure::Use(format!("{}: expected a name that ends in .png", to.display())));
+    }
+    let document = project::load(from)?;
+    project::inputs(&document, from).check(to)?;
+    check_writable(to)?;
+    let sheet =
+        progress::run(arguments::threads(given), |bar| Ok(pipeline::sheet(&document, project::folder(from), bar)?))?;
+    let bytes = encode::colours(&sheet, Format::Png).map_err(|error| Failure::Other(error.to_string()))?;
+    Ok(write_whole(to, &bytes)?)
+}

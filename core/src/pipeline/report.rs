@@ -1,0 +1,163 @@
+//! What became of every part of a tracked document: frames sure, doubtful and lost.
+
+use crate::scene::outcome::confidence;
+use crate::scene::{FrameNumber, Outcome, Scene};
+use crate::track::weakest_frame;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The report on a tracked document.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// Numbers of contours over all parts.
+    pub contours: Counts,
+    /// The frame where the next key helps most. `None` if nothing was tracked between the keys.
+    pub weakest_frame: Option<Weakest>,
+    /// Each part, in the order of the document.
+    pub parts: Vec<PartReport>,
+}
+
+/// Numbers of tracked contours.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// Those that need no look.
+    pub sure: usize,
+    /// Those that deserve a look.
+    pub doubtful: usize,
+    /// Those that are probably wrong, and frames on which a part was lost.
+    pub lost: usize,
+}
+
+/// The weakest frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Weakest {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// Number of parts that are expected to be wrong there.
+    pub score: f64,
+}
+
+/// The report on a part.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PartReport {
+    /// Its name.
+    pub name: String,
+    /// Frames on which it needs no look. Keys are not listed.
+    pub sure: Vec<FrameNumber>,
+    /// Frames that deserve a look.
+    pub doubtful: Vec<FrameNumber>,
+    /// Frames on which it is probably wrong, or was lost.
+    pub lost: Vec<FrameNumber>,
+    /// Frames just beyond the track of a part with one key, on which it needs another.
+    pub wants_key: Vec<FrameNumber>,
+    /// Mean confidence of its points, by frame.
+    pub confidence: BTreeMap<FrameNumber, f64>,
+}
+
+impl Report {
+    /// The report on a scene with tracks.
+    pub fn of(scene: &Scene) -> Self {
+        let part = |part: &crate::scene::Part| {
+            let Outcome { sure, doubtful, lost } = Outcome::of(part);
+            let (name, wants_key) = (part.name.clone(), part.wants_key.clone());
+            let rounded = |value: f64| (value * 1e4).round() / 1e4;
+            let confidence = confidence(part).into_iter().map(|(frame, value)| (frame, rounded(value))).collect();
+            PartReport { name, sure, doubtful, lost, wants_key, confidence }
+        };
+        let parts: Vec<PartReport> = scene.parts.iter().map(part).collect();
+        let count = |of: fn(&PartReport) -> usize| parts.iter().map(of).sum();
+        let contours = Counts {
+            sure: count(|p| p.sure.len()),
+            doubtful: count(|p| p.doubtful.len()),
+            lost: count(|p| p.lost.len()),
+        };
+        let weakest = weakest_frame(&scene.parts).map(|w| Weakest { frame: w.frame, score: w.score });
+        Self { contours, weakest_frame: weakest, parts }
+    }
+
+    /// Lines for a person: one for each part that was tracked, and one for all.
+    pub fn lines(&self) -> Vec<String> {
+        let tracked = |part: &&PartReport| !(part.confidence.is_empty() && part.lost.is_empty());
+        let mut lines: Vec<String> = self.parts.iter().filter(tracked).map(PartReport::line).collect();
+        if lines.len() > 1 {
+            let Counts { sure, doubtful, lost } = self.contours;
+            lines.push(format!("all {} parts: {}", lines.len(), counted([sure, doubtful, lost])));
+        }
+        if let Some(weakest) = self.weakest_frame.filter(|_| self.contours.doubtful + self.contours.lost > 0) {
+            lines.push(format!("the next key helps most on frame {}", weakest.frame));
+        }
+        lines
+    }
+}
+
+impl PartReport {
+    fn line(&self) -> String {
+        let numbers = counted([self.sure.len(), self.doubtful.len(), self.lost.len()]);
+        let named = [("doubtful", &self.doubtful), ("lost", &self.lost)];
+        let places = named.iter().filter(|(_, frames)| !frames.is_empty());
+        let places: Vec<String> = places.map(|(what, frames)| format!("{what}: {}", runs(frames))).collect();
+        let places = if places.is_empty() { String::new() } else { format!(" ({})", places.join("; ")) };
+        format!("part {:?}: {numbers}{places}", self.name)
+    }
+}
+
+/// For example "12 frames sure, 2 doubtful, 1 lost". Of doubtful and lost frames only those that are.
+fn counted([sure, doubtful, lost]: [usize; 3]) -> String {
+    let mut text = format!("{sure} {} sure", if sure == 1 { "frame" } else { "frames" });
+    for (count, what) in [(doubtful, "doubtful"), (lost, "lost")] {
+        if count > 0 {
+            text += &format!(", {count} {what}");
+        }
+    }
+    text
+}
+
+/// Frames that rise, with runs as ranges: "3, 7-9".
+fn runs(frames: &[FrameNumber]) -> String {
+    let runs = frames.chunk_by(|a, b| *b == a + 1).map(|run| match run {
+        [first, .., last] => format!("{first}-{last}"),
+        [one] => one.to_string(),
+        [] => String::new(),
+    });
+    runs.collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+    use crate::scene::{Footage, Part};
+
+    fn scene() -> Scene {
+        let part = |name: &str, confidence: &[f64]| Part {
+            name: name.into(),
+            keys: [(0, vec![Point::ZERO]), (9, vec![Point::ZERO])].into(),
+            confidence: (1..).zip(confidence.iter().map(|&c| vec![c])).collect(),
+            ..Part::default()
+        };
+        let parts =
+            vec![part("arm", &[0.9, 0.9, 0.6, 0.1, 0.2, 0.9, 0.3, 0.9]), part("head", &[1.0]), part("hat", &[])];
+        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 64, height: 48 };
+        Scene { footage, parts }
+    }
+
+    #[test]
+    fn every_tracked_part_has_a_line() {
+        let expected = [
+            "part \"arm\": 4 frames sure, 1 doubtful, 3 lost (doubtful: 3; lost: 4-5, 7)",
+            "part \"head\": 1 frame sure",
+            "all 2 parts: 5 frames sure, 1 doubtful, 3 lost",
+            "the next key helps most on frame 4",
+        ];
+        assert_eq!(Report::of(&scene()).lines(), expected);
+    }
+
+    #[test]
+    fn the_report_holds_all_frames() {
+        let report = serde_json::to_value(Report::of(&scene())).unwrap();
+        assert_eq!(report["contours"], serde_json::json!({"sure": 5, "doubtful": 1, "lost": 3}));
+        assert_eq!(report["parts"][0]["lost"], serde_json::json!([4, 5, 7]));
+        assert_eq!(report["parts"][0]["confidence"]["3"], 0.6);
+        assert_eq!(report["weakest_frame"]["frame"], 4);
+    }
+}

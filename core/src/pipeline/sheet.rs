@@ -1,0 +1,197 @@
+//! A contact sheet: small pictures of the frames with their contours, in the order of time. Frames on which a part is
+//! lost have a red border, those on which one is doubtful an amber one.
+
+use super::{PipelineError, frames, memory};
+use crate::image::resize::resize;
+use crate::project::Document;
+use crate::render::{OverlayOptions, overlay};
+use crate::scene::{Colour, FrameNumber, FrameSource, Outcome, Progress, Raster, Verdict};
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Greatest number of pictures. Longer footage shows its worst frames and some between.
+const PICTURES: usize = 48;
+/// Pictures in a row.
+const COLUMNS: usize = 6;
+/// Greatest width and height of a picture in pixels.
+const SIZE: usize = 320;
+/// Width of a picture's border in pixels.
+const BORDER: usize = 5;
+/// Space between pictures in pixels.
+const GAP: usize = 4;
+/// Height of the strip with the frame's number.
+const STRIP: usize = 21;
+/// Width of the contours in pixels of the small picture.
+const LINE: f64 = 1.6;
+/// Side of a dot of a digit in pixels.
+const DOT: usize = 3;
+/// Colour behind the pictures, and of the border of a frame that needs no look.
+const PLAIN: Colour = [0.16, 0.16, 0.17];
+/// Colour of a frame's number.
+const INK: Colour = [0.95; 3];
+
+/// Draws the contact sheet of a document in `folder`. It runs on the caller's rayon pool.
+///
+/// # Errors
+///
+/// An invalid pattern, an unreadable frame, or [`PipelineError::Cancelled`].
+pub fn sheet(document: &Document, folder: &Path, progress: &dyn Progress) -> Result<Raster<Colour>, PipelineError> {
+    let sequence = frames(document, folder)?;
+    memory::to_follow(&document.scene.footage)?;
+    let verdicts = verdicts(document);
+    let chosen = chosen(document, &verdicts);
+    let done = AtomicUsize::new(0);
+    let cells = chosen.par_iter().with_max_len(1).map(|&frame| {
+        let cell = cell(document, frame, &*sequence.picture(frame)?, verdicts.get(&frame).copied());
+        let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
+        progress.report("Drawing", finished as f64 / chosen.len() as f64)?;
+        Ok(cell)
+    });
+    let cells = cells.collect::<Result<Vec<_>, PipelineError>>()?;
+    Ok(arranged(&cells))
+}
+
+/// The worst verdict on any part, by frame.
+fn verdicts(document: &Document) -> BTreeMap<FrameNumber, Verdict> {
+    let mut worst = BTreeMap::new();
+    for part in &document.scene.parts {
+        let Outcome { sure, doubtful, lost } = Outcome::of(part);
+        for (frames, verdict) in [(sure, Verdict::Sure), (doubtful, Verdict::Doubtful), (lost, Verdict::Lost)] {
+            for frame in frames {
+                let known = worst.entry(frame).or_insert(verdict);
+                *known = verdict.max(*known);
+            }
+        }
+    }
+    worst
+}
+
+/// The frames of the sheet: all if they are few, otherwise the worst ones and some between.
+fn chosen(document: &Document, verdicts: &BTreeMap<FrameNumber, Verdict>) -> Vec<FrameNumber> {
+    let footage = &document.scene.footage;
+    let (first, last) = (i64::from(footage.first), i64::from(footage.last));
+    if last - first < PICTURES as i64 {
+        return (footage.first..=footage.last).collect();
+    }
+    let within = |frame: &FrameNumber| (footage.first..=footage.last).contains(frame);
+    let bad = verdicts.iter().filter(|(frame, verdict)| **verdict != Verdict::Sure && within(frame));
+    let mut bad: Vec<(FrameNumber, Verdict)> = bad.map(|(&frame, &verdict)| (frame, verdict)).collect();
+    bad.sort_by_key(|&(frame, verdict)| (std::cmp::Reverse(verdict), frame));
+    let mut chosen: BTreeSet<FrameNumber> = bad.into_iter().map(|(frame, _)| frame).take(PICTURES / 2).collect();
+    let steps = (PICTURES - chosen.len()) as i64 - 1;
+    chosen.extend((0..=steps).map(|step| (first + (last - first) * step / steps) as FrameNumber));
+    chosen.into_iter().collect()
+}
+
+fn cell(document: &Document, frame: FrameNumber, below: &Raster<Colour>, verdict: Option<Verdict>) -> Raster<Colour> {
+    let scale = (SIZE as f64 / below.width().max(below.height()) as f64).min(1.0);
+    let options = OverlayOptions { line_width: LINE / scale, points: false, confidence: true };
+    let small = |length: usize| ((length as f64 * scale).round() as usize).max(1);
+    let drawn =
+        resize(&overlay(&document.scene, frame, below, None, &options), small(below.width()), small(below.height()));
+    let border = match verdict {
+        Some(Verdict::Lost) => [0.9, 0.1, 0.1],
+        Some(Verdict::Doubtful) => [0.95, 0.65, 0.1],
+        _ => PLAIN,
+    };
+    let mut cell = Raster::new(drawn.width() + 2 * BORDER, drawn.height() + 2 * BORDER + STRIP, border);
+    put(&mut cell, &drawn, (BORDER, BORDER + STRIP));
+    put(&mut cell, &Raster::new(drawn.width(), STRIP, PLAIN), (BORDER, BORDER));
+    write(&mut cell, &frame.to_string(), (BORDER + DOT, BORDER + DOT));
+    cell
+}
+
+fn arranged(cells: &[Raster<Colour>]) -> Raster<Colour> {
+    let most = |length: fn(&Raster<Colour>) -> usize| cells.iter().map(length).max().unwrap_or(1) + GAP;
+    let (width, height) = (most(Raster::width), most(Raster::height));
+    let (columns, rows) = (COLUMNS.min(cells.len()).max(1), cells.len().div_ceil(COLUMNS).max(1));
+    let mut sheet = Raster::new(columns * width + GAP, rows * height + GAP, PLAIN);
+    for (i, cell) in cells.iter().enumerate() {
+        put(&mut sheet, cell, (GAP + i % COLUMNS * width, GAP + i / COLUMNS * height));
+    }
+    sheet
+}
+
+/// Copies a picture into a larger one, as far as it fits.
+fn put(whole: &mut Raster<Colour>, picture: &Raster<Colour>, (left, top): (usize, usize)) {
+    let width = picture.width().min(whole.width().saturating_sub(left));
+    for y in 0..picture.height().min(whole.height().saturating_sub(top)) {
+        whole.row_mut(top + y)[left..left + width].copy_from_slice(&picture.row(y)[..width]);
+    }
+}
+
+/// The digits and the minus sign in dots, five rows of three.
+fn dots(sign: char) -> [u8; 5] {
+    match sign {
+        '0' => [0b111, 0b101, 0b101, 0b101, 0b111],
+        '1' => [0b010, 0b110, 0b010, 0b010, 0b111],
+        '2' => [0b111, 0b001, 0b111, 0b100, 0b111],
+        '3' => [0b111, 0b001, 0b111, 0b001, 0b111],
+        '4' => [0b101, 0b101, 0b111, 0b001, 0b001],
+        '5' => [0b111, 0b100, 0b111, 0b001, 0b111],
+        '6' => [0b111, 0b100, 0b111, 0b101, 0b111],
+        '7' => [0b111, 0b001, 0b010, 0b010, 0b010],
+        '8' => [0b111, 0b101, 0b111, 0b101, 0b111],
+        '9' => [0b111, 0b101, 0b111, 0b001, 0b111],
+        _ => [0, 0, 0b111, 0, 0],
+    }
+}
+
+/// Writes a number, from its top left corner.
+fn write(picture: &mut Raster<Colour>, number: &str, (left, top): (usize, usize)) {
+    let dot = Raster::new(DOT, DOT, INK);
+    for (i, sign) in number.chars().enumerate() {
+        for (row, bits) in dots(sign).into_iter().enumerate() {
+            for column in (0..3).filter(|column| bits & (0b100 >> column) != 0) {
+                put(picture, &dot, (left + (4 * i + column) * DOT, top + row * DOT));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+    use crate::scene::{Footage, Part, Scene};
+
+    fn document(last: FrameNumber, confidence: &[(FrameNumber, f64)]) -> Document {
+        let footage = Footage { pattern: "%d.png".into(), first: 0, last, fps: 24.0, width: 64, height: 48 };
+        let square = [(10.0, 10.0), (30.0, 10.0), (30.0, 30.0), (10.0, 30.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+        let part = Part {
+            closed: true,
+            keys: [(0, square.clone())].into(),
+            tracks: confidence.iter().map(|&(frame, _)| (frame, square.clone())).collect(),
+            confidence: confidence.iter().map(|&(frame, value)| (frame, vec![value; 4])).collect(),
+            ..Part::default()
+        };
+        Document::new(Scene { footage, parts: vec![part] })
+    }
+
+    #[test]
+    fn long_footage_shows_its_worst_frames_and_its_course() {
+        let few = document(9, &[]);
+        assert_eq!(chosen(&few, &verdicts(&few)), (0..10).collect::<Vec<_>>());
+        let many = document(1000, &[(501, 0.6), (777, 0.1), (778, 0.95)]);
+        let frames = chosen(&many, &verdicts(&many));
+        assert!(frames.len() <= PICTURES && frames.len() > PICTURES - 4, "{}", frames.len());
+        assert!([0, 501, 777, 1000].iter().all(|frame| frames.contains(frame)), "{frames:?}");
+    }
+
+    #[test]
+    fn lost_frames_have_a_red_border_and_numbers_are_written() {
+        let document = document(3, &[(1, 0.1), (2, 0.6), (3, 0.9)]);
+        let verdicts = verdicts(&document);
+        let picture = Raster::new(64, 48, [1.0; 3]);
+        let border = |frame| cell(&document, frame, &picture, verdicts.get(&frame).copied()).get(1, 1);
+        let [key, lost, doubtful, sure] = [0, 1, 2, 3].map(border);
+        assert!(key == PLAIN && sure == PLAIN && lost[0] > 0.8 && lost[1] < 0.3 && doubtful[1] > 0.5);
+        let cell = cell(&document, 1, &picture, None);
+        let inked = (0..STRIP).flat_map(|y| cell.row(BORDER + y)).filter(|colour| **colour == INK).count();
+        assert_eq!(inked, 8 * DOT * DOT, "the figure 1 has eight dots");
+        let sheet = arranged(&vec![cell.clone(); 7]);
+        assert_eq!((sheet.width(), sheet.height()), (6 * (cell.width() + GAP) + GAP, 2 * (cell.height() + GAP) + GAP));
+    }
+}
