@@ -3,6 +3,7 @@
 use crate::given::{self, name, number};
 use arbitrary::{Result, Unstructured};
 use rototoon::project::Document;
+use rototoon::render::composite::Blend;
 use rototoon::scene::Raster;
 use rototoon_ofx::ofx::Bounds;
 use rototoon_ofx::ofx::effect::Region;
@@ -10,8 +11,10 @@ use rototoon_ofx::pixels::{CLEAR, Depth, Format, Layout, Premultiplication};
 use rototoon_ofx::roto::parts::selected;
 use rototoon_ofx::roto::picture::Picture;
 use rototoon_ofx::roto::placement::{Placement, window};
-use rototoon_ofx::roto::settings::{Output, Settings};
+use rototoon_ofx::roto::settings::{Channels, Extent, Output, Settings, SourceAlpha};
+use rototoon_ofx::roto::state::PartLook;
 use rototoon_ofx::roto::stored;
+use std::collections::BTreeMap;
 
 /// The largest side of a window in pixels.
 const MOST_SIDE: i32 = 32;
@@ -34,8 +37,11 @@ fn drawn(document: &Document, u: &mut Unstructured) -> Result<()> {
     if bounds.is_empty() || bounds.width() > MOST_SIDE as usize {
         return Ok(());
     }
+    let looks = looks(document, u)?;
+    let settings = Settings { looks, ..settings };
     let (parts, _) = selected(&document.scene.parts, &settings.parts);
-    let picture = Picture::new(&document.scene, &parts, &settings, &placement);
+    let named = |names: &str| selected(&document.scene.parts, names).0;
+    let picture = Picture::new(&document.scene, &parts, &named, &settings, &placement);
     let window = window(&bounds);
     let _ = picture.changes_nothing(window);
     if let (Some(found), _) = picture.bounds() {
@@ -58,10 +64,13 @@ fn drawn(document: &Document, u: &mut Unstructured) -> Result<()> {
     Ok(())
 }
 
+/// A number as the plugin reads it of a host: finite, as in `Settings::read`.
+fn finite(u: &mut Unstructured) -> Result<f64> {
+    number(u).map(|v| if v.is_finite() { v } else { 0.0 })
+}
+
 fn settings(u: &mut Unstructured) -> Result<Settings> {
-    // What the plugin reads of a host is made finite, as in `Settings::read`.
-    let finite = |u: &mut Unstructured| number(u).map(|v| if v.is_finite() { v } else { 0.0 });
-    let output = *u.choose(&[Output::Cutout, Output::Matte, Output::Overlay, Output::Ids])?;
+    let output = *u.choose(&[Output::Cutout, Output::Matte, Output::Overlay, Output::Ids, Output::Mattes])?;
     let parts = if u.ratio(1u8, 4)? { name(u)? } else { String::new() };
     let colour = [0.5, 1.0, 0.0, f32::from(u.arbitrary::<u8>()?) / 255.0];
     let mut shape = [0.0; 4];
@@ -71,17 +80,48 @@ fn settings(u: &mut Unstructured) -> Result<Settings> {
     let [grow, feather, shutter, width] = shape;
     Ok(Settings {
         output,
+        channels: *u.choose(&[Channels::All, Channels::One(0), Channels::One(3)])?,
+        source_alpha: *u.choose(&[SourceAlpha::Ignore, SourceAlpha::Multiply, SourceAlpha::Add])?,
+        premultiply: u.arbitrary()?,
+        use_mask: u.arbitrary()?,
+        extent: *u.choose(&[Extent::Shapes, Extent::Source, Extent::Format])?,
         document_time: finite(u)?,
+        shown: true,
         parts,
+        channel_parts: [name(u)?, name(u)?, String::new(), String::new()],
+        looks: BTreeMap::new(),
         curves: u.arbitrary()?,
         invert: u.arbitrary()?,
         grow: if u.arbitrary()? { -grow } else { grow },
         feather: feather.max(0.0),
         shutter: shutter.max(0.0),
+        phase: f64::from(u.int_in_range(-4..=4i8)?) / 4.0,
         samples: u.int_in_range(1..=4)?,
         line_width: width.max(0.0),
         line_colour: colour,
     })
+}
+
+/// Settings of some of the document's parts, as a host's keys give them.
+fn looks(document: &Document, u: &mut Unstructured) -> Result<BTreeMap<String, PartLook>> {
+    let mut looks = BTreeMap::new();
+    for part in &document.scene.parts {
+        if u.ratio(1u8, 2)? {
+            continue;
+        }
+        let (opacity, grow, feather) = (finite(u)?, finite(u)?, finite(u)?);
+        let (mode, _) = *u.choose(&Blend::ALL)?;
+        let look = PartLook {
+            on: u.ratio(3u8, 4)?,
+            invert: u.arbitrary()?,
+            opacity: opacity.clamp(0.0, 1.0),
+            grow,
+            feather: feather.max(0.0),
+            blend: mode,
+        };
+        looks.insert(part.name.clone(), look);
+    }
+    Ok(looks)
 }
 
 fn placement(document: &Document, u: &mut Unstructured) -> Result<Placement> {
