@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +19,7 @@ from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
 from ..common import jobs
-from . import contours, corrections, ends, identity, snapping
+from . import absence, contours, corrections, ends, identity, snapping
 
 VERSION = 1
 
@@ -117,15 +117,21 @@ def _add_results(ob, document: dict[str, Any], found: contours.Contours, mapper:
     offset = ob.rototoon.frame_offset
     curves = snapping.read(ob)
     for entry, part in zip(document["parts"], [part for part in found.parts if part.keys], strict=True):
+        item = next((item for item in ob.rototoon.parts if item.number == part.number), None)
+
+        def hidden(frame: int, item=item, part=part) -> bool:
+            return item is not None and frame not in part.keys and absence.is_hidden(item, frame - offset)
+
         first, last = min(part.keys), max(part.keys)
         if first == last:
-            first, last = _around(part, first)
+            first, last = _around(part, first, hidden)
             wanted = _wanted(ob, part)
             if wanted:
                 entry["wants_key"] = wanted
-        if last > first and all(f in part.made or f in part.keys for f in range(first, last + 1)):
+        there = [frame for frame in range(first, last + 1) if not hidden(frame)]
+        if last > first and all(f in part.made or f in part.keys for f in there):
             tracks, confidence = {}, {}
-            for frame in range(first, last + 1):
+            for frame in there:
                 label = str(frame - offset)
                 if frame in part.keys:
                     tracks[label], confidence[label] = entry["keys"][label], [1.0] * part.count
@@ -144,12 +150,13 @@ def _add_results(ob, document: dict[str, Any], found: contours.Contours, mapper:
             entry["curves"] = paths
 
 
-def _around(part: contours.Part, key: int) -> tuple[int, int]:
-    """First and last frame around a part's only key, up to the first frame without its contour."""
+def _around(part: contours.Part, key: int, hidden: Callable[[int], bool]) -> tuple[int, int]:
+    """First and last frame around a part's only key, up to the first frame without its contour on which it is not hidden."""
     first, last = key, key
-    while first - 1 in part.made:
+    low, high = min([key, *part.made]), max([key, *part.made])
+    while first > low and (first - 1 in part.made or hidden(first - 1)):
         first -= 1
-    while last + 1 in part.made:
+    while last < high and (last + 1 in part.made or hidden(last + 1)):
         last += 1
     return first, last
 

@@ -1,33 +1,71 @@
-"""Where tracked contours are doubtful: the frame where the next key helps most."""
+"""Where tracked contours are sure, doubtful or lost, and the frame where the next key helps most.
+
+The formula is the core's. The command line and the reports use the same one.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
+from rototoon import Outcome, outcomes
 
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
-from . import contours
+from . import contours, ends
 
 
-def weakest(found: contours.Contours) -> tuple[int, float]:
-    """The scene frame with the most doubt, and its doubt.
+@dataclass
+class Judged:
+    """What became of an object's parts, in scene frames."""
 
-    The doubt of a frame is the mean of 1 - confidence over a part's points, summed over parts. It is smoothed over three frames
-    for the choice. Frames beside a key are chosen only if there are no others. The returned doubt is the mean over parts.
-    """
-    doubts: dict[int, float] = {}
+    parts: dict[int, Outcome]
+    """By the number of the part."""
+    weakest: int | None
+    """The frame where the next key helps most. `None` if nothing was tracked."""
+    doubt: float
+    """Number of parts that are expected to be wrong there."""
+
+    def of(self, number: int) -> Outcome:
+        """What became of a part."""
+        return self.parts.get(number, Outcome([], [], []))
+
+
+def judged(ob, found: contours.Contours) -> Judged:
+    """What became of the parts of an object. `found` must have been read with `gp.CONFIDENCE`."""
+    offset, items = ob.rototoon.frame_offset, {item.number: item for item in ob.rototoon.parts}
+    asked = []
     for part in found.parts:
-        for frame, stroke in part.made.items():
-            sure = found.drawings[stroke.layer, frame].value(gp.CONFIDENCE)[stroke.span]
-            doubts[frame] = doubts.get(frame, 0.0) + float(np.mean(1 - sure))
-    if not doubts:
+        means = {frame: mean(found.drawings[stroke.layer, frame], stroke.span) for frame, stroke in part.made.items()}
+        wanted = [picture + offset for picture in ends.wanted(items[part.number])] if part.number in items else []
+        asked.append({"keys": list(part.keys), "confidence": means, "wants_key": wanted})
+    answer = outcomes(asked)
+    parts = {part.number: outcome for part, outcome in zip(found.parts, answer.parts, strict=True)}
+    if answer.weakest is None:
+        return Judged(parts, None, 0.0)
+    return Judged(parts, answer.weakest.frame, answer.weakest.score)
+
+
+def lost(means: Sequence[float]) -> list[bool]:
+    """Of contours with these mean confidences: which are lost."""
+    if not means:
+        return []
+    answer = outcomes([{"keys": [], "confidence": dict(enumerate(means))}]).parts[0]
+    return [index in set(answer.lost) for index in range(len(means))]
+
+
+def mean(drawing: contours.Drawing, span: slice) -> float:
+    """The mean confidence of a stroke's points. What is no number counts as lost."""
+    values = drawing.value(gp.CONFIDENCE)[span]
+    return float(np.nan_to_num(np.clip(values, 0, 1), nan=0.0).mean()) if len(values) else 0.0
+
+
+def weakest(ob, found: contours.Contours) -> tuple[int, float]:
+    """The scene frame where the next key helps most, and its doubt as a share of the parts there, 0 to 1."""
+    answer = judged(ob, found)
+    if answer.weakest is None:
         raise Problem("No generated frame: press Track first")
-    smooth = {
-        frame: (doubts.get(frame - 1, 0.0) + 2 * doubt + doubts.get(frame + 1, 0.0)) / 4
-        for frame, doubt in doubts.items()
-    }
-    keys = {frame for part in found.parts for frame in part.keys}
-    beside = {frame + step for frame in keys for step in (-1, 0, 1)}
-    smooth = {frame: doubt for frame, doubt in smooth.items() if frame not in beside} or smooth
-    frame = max(sorted(smooth), key=lambda number: smooth[number])
-    return frame, doubts[frame] / max(sum(frame in part.made for part in found.parts), 1)
+    frame = answer.weakest
+    there = sum(frame in part.made or frame in answer.of(part.number).lost for part in found.parts)
+    return frame, min(answer.doubt / max(there, 1), 1.0)

@@ -113,6 +113,9 @@ class CaptureSettings:
     show_confidence: bpy.props.BoolProperty(
         name="Show Confidence", description="Colour the tracked points by confidence: green is high, red is low", default=False
     )
+    show_lost: bpy.props.BoolProperty(
+        name="Mark Lost Contours", description="Draw contours that are probably wrong in black and red, on any background", default=True
+    )
     show_pins: bpy.props.BoolProperty(
         name="Show Pins", description="Mark the points and centres that you fixed", default=True
     )

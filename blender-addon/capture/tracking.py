@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from rototoon import outcomes
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, preferences
@@ -119,8 +120,6 @@ def note_ends(ob, reading: document.Reading, found) -> None:
         ends.put(item, by_number.get(item.number, []))
 
 
-DOUBTFUL = 0.5
-"""Below this mean confidence a contour is more likely off than right: confidence is the probability of a good point."""
 NAMED = 3
 """Largest number of parts that a message names."""
 
@@ -152,11 +151,15 @@ def where_to_look(ob, run: Run) -> str:
         if end.reason == ends.LOST:
             lost.setdefault(end.part, []).append(end.frame + offset)
     said = [f'"{name}" needs a key on {listed(frames)}' for name, frames in lost.items()]
+    asked = []
     for part in run.inputs["parts"]:
-        drawn = np.asarray(session.tracks(part["name"]).frames).astype(int)
-        if len(drawn) and part["name"] not in lost:
-            off = drawn[np.asarray(session.confidence(part["name"])).mean(1) < DOUBTFUL] + offset
-            said += [f'"{part["name"]}" is most likely off on {listed(off.tolist())}'] if len(off) else []
+        drawn = np.asarray(session.tracks(part["name"]).frames).astype(int).tolist()
+        means = np.asarray(session.confidence(part["name"])).mean(1).tolist() if drawn else []
+        asked.append({"keys": list(part["keys"]), "confidence": dict(zip(drawn, means, strict=True))})
+    for part, outcome in zip(run.inputs["parts"], outcomes(asked).parts, strict=True):
+        if outcome.lost and part["name"] not in lost:
+            off = listed([frame + offset for frame in outcome.lost])
+            said.append(f'"{part["name"]}" is most likely off on {off}')
     if len(said) > NAMED:
         said[NAMED:] = [f"{counted(len(said) - NAMED, 'more part')} to look at"]
     return "; ".join(said)

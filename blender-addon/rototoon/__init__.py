@@ -22,6 +22,7 @@ nothing has changed then.
 `session`             `Session`: track, snap, trace, correct and save a project document
 `lines`               traced strokes that `Session` returns
 `results`             results that `Session` returns
+`outcomes`            which tracked contours are sure, doubtful and lost
 `strokes`             matching, fitting and hidden lines of strokes, without a session
 `tween`               in-betweens of drawings
 `style`               skeleton clips, and drawings that follow them
@@ -36,7 +37,8 @@ May import: no other package, and nothing beside Python's standard library.
 from . import lines, style, tween
 from .about import library_path, parameters, version
 from .native.errors import Cancelled, LibraryError, RototoonError
-from .results import End, Job, Summary, Track, WeakestFrame
+from .outcomes import outcomes
+from .results import End, Job, Outcome, Outcomes, Summary, Track, WeakestFrame
 from .session import Session
 from .strokes import Guides, Pieces, Strokes, fit_strokes, hidden_lines, match_contours
 
@@ -46,6 +48,8 @@ __all__ = [
     "Guides",
     "Job",
     "LibraryError",
+    "Outcome",
+    "Outcomes",
     "Pieces",
     "RototoonError",
     "Session",
@@ -58,6 +62,7 @@ __all__ = [
     "library_path",
     "lines",
     "match_contours",
+    "outcomes",
     "parameters",
     "style",
     "tween",

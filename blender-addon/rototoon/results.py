@@ -77,3 +77,25 @@ class WeakestFrame:
     frame: int
     score: float
     """Doubt on that frame: the sum over parts of the mean of ``1 - confidence``, smoothed over time."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a part: frames by how sure its contour is there. Keys are in none of them."""
+
+    sure: list[int]
+    """It needs no look."""
+    doubtful: list[int]
+    """A look at it is worth while."""
+    lost: list[int]
+    """It is probably wrong, or the part was lost and has no contour there."""
+
+
+@dataclass(frozen=True)
+class Outcomes:
+    """What became of several parts."""
+
+    parts: list[Outcome]
+    """In the order of the request."""
+    weakest: WeakestFrame | None
+    """`None` if nothing was tracked."""

@@ -113,6 +113,17 @@ class Session:
         """Releases a corrected centre. Does nothing if there is none."""
         self._handle.call("rototoon_session_clear_center", *text(part), frame)
 
+    def set_absent(self, part: str, first: int, last: int | None = None) -> None:
+        """Marks the part as not there from frame `first` to `last`, by default on one frame.
+
+        It has no track there. Its keys stay, and it is always there on them.
+        """
+        self._handle.call("rototoon_session_set_absent", *text(part), first, first if last is None else last, 1)
+
+    def clear_absent(self, part: str, first: int, last: int | None = None) -> None:
+        """Marks the part as there again from frame `first` to `last`. Does nothing where it is there already."""
+        self._handle.call("rototoon_session_set_absent", *text(part), first, first if last is None else last, 0)
+
     # -- work ----------------------------------------------------------------------------------------------------
 
     def track(self, preset: str = "rototoon", progress: Progress | None = None, *, threads: int = 0) -> Summary:

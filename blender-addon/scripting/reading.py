@@ -154,4 +154,4 @@ def weakest_frame(ob: bpy.types.Object) -> tuple[int, float]:
     """The frame where the next key helps most, and its doubt (0 to 1). As the operator Go to Weakest Frame, which also goes
     there."""
     need(ob, OnContours, guard.NOTHING)
-    return weakest(contours.read(ob, (gp.CONFIDENCE,)))
+    return weakest(ob, contours.read(ob, (gp.CONFIDENCE,)))

@@ -1,4 +1,6 @@
-"""The overlay of the 3D view: pins, corrected centres, and confidence as colour.
+"""The overlay of the 3D view: lost contours, pins, corrected centres, and confidence as colour.
+
+A lost contour is a black line with a red one in it: one of the two stands out on white paper, on dark paint and on red.
 
 `gather` also works in background. Only drawing needs the graphics card, and `register` starts it only in a window.
 """
@@ -12,11 +14,15 @@ import numpy as np
 
 from ..blender import camera
 from ..blender import grease_pencil as gp
+from ..capture import doubt
 
 SURE = np.array([0.15, 0.85, 0.35, 1.0], np.float32)
 UNSURE = np.array([0.95, 0.75, 0.1, 1.0], np.float32)
 DOUBTFUL = np.array([0.95, 0.15, 0.1, 1.0], np.float32)
 PIN_COLOUR = np.array([0.2, 0.55, 1.0, 1.0], np.float32)
+LOST_EDGE, LOST_COLOUR = (0.0, 0.0, 0.0, 1.0), (1.0, 0.1, 0.1, 1.0)
+LOST_WIDTH = 6.0
+"""Pixels."""
 CENTER_COLOUR = np.array([0.85, 0.35, 1.0, 1.0], np.float32)
 
 
@@ -64,6 +70,32 @@ def gather(ob, frame: int) -> list[Marks]:
     return [mark for mark in marks if len(mark.points)]
 
 
+def lost_lines(ob, frame: int) -> list[np.ndarray]:
+    """The lines (N, 3) in the world of the contours that are lost on a frame. A closed one ends where it begins."""
+    settings = ob.rototoon
+    strokes, means = [], []
+    for layer in gp.layers(ob, settings.contours_layer):
+        found = gp.drawings(layer).get(frame)
+        if layer.hide or found is None:
+            continue
+        handle, kind = found
+        starts = gp.offsets(handle)
+        made = gp.value(handle, gp.MADE, len(starts) - 1)
+        if not made.any() or (kind != gp.GENERATED and made.all()):
+            continue
+        total, matrix = int(starts[-1]), camera.layer_to_world(ob, layer)
+        points, sure = gp.positions(handle, total), gp.value(handle, gp.CONFIDENCE, total)
+        cyclic = gp.value(handle, "cyclic", len(starts) - 1)
+        for index in np.flatnonzero(made):
+            span = slice(starts[index], starts[index + 1])
+            if span.stop - span.start < 2:
+                continue
+            line = _world(points[span], matrix)
+            strokes.append(np.concatenate([line, line[:1]]) if cyclic[index] else line)
+            means.append(float(np.nan_to_num(np.clip(sure[span], 0, 1), nan=0.0).mean()))
+    return [line for line, verdict in zip(strokes, doubt.lost(means), strict=True) if verdict]
+
+
 def _world(points: np.ndarray, matrix: np.ndarray) -> np.ndarray:
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
@@ -80,10 +112,13 @@ def _draw() -> None:
     if not gp.is_drawing(ob) or context.space_data is None or not context.space_data.overlay.show_overlays:
         return
     settings = ob.rototoon
-    if not settings.parts or not (settings.show_confidence or settings.show_pins):
+    if not settings.parts or not (settings.show_confidence or settings.show_pins or settings.show_lost):
         return
     import gpu
     from gpu_extras.batch import batch_for_shader
+
+    if settings.show_lost:
+        _draw_lost(gpu, lost_lines(ob, context.scene.frame_current))
 
     shader = _shader(gpu)
     gpu.state.depth_test_set("NONE")
@@ -94,6 +129,26 @@ def _draw() -> None:
         batch_for_shader(shader, "POINTS", {"pos": points, "color": mark.colours}).draw(shader)
     gpu.state.blend_set("NONE")
     gpu.state.point_size_set(1.0)
+
+
+def _draw_lost(gpu, lines: list[np.ndarray]) -> None:
+    """Draws lost contours: black, and red in it."""
+    from gpu_extras.batch import batch_for_shader
+
+    if not lines:
+        return
+    region, scale = bpy.context.region, bpy.context.preferences.system.ui_scale
+    ends = np.ascontiguousarray(np.vstack([np.repeat(line, 2, axis=0)[1:-1] for line in lines]), np.float32)
+    shader = gpu.shader.from_builtin("POLYLINE_SMOOTH_COLOR")
+    gpu.state.depth_test_set("NONE")
+    gpu.state.blend_set("ALPHA")
+    shader.bind()
+    shader.uniform_float("viewportSize", (region.width, region.height))
+    for width, colour in ((LOST_WIDTH, LOST_EDGE), (LOST_WIDTH / 2, LOST_COLOUR)):
+        shader.uniform_float("lineWidth", width * scale)
+        colours = np.tile(np.asarray(colour, np.float32), (len(ends), 1))
+        batch_for_shader(shader, "LINES", {"pos": ends, "color": colours}).draw(shader)
+    gpu.state.blend_set("NONE")
 
 
 def _shader(gpu):

@@ -5,7 +5,7 @@ Only what an artist needs all the time is open at first.
 
 import bpy
 
-from ..capture import ends, live, stand
+from ..capture import absence, ends, live, stand
 from ..style import clip_browser, limbs
 from ..tween import spacing_curve
 from .clips import draw_browser
@@ -105,6 +105,13 @@ def _draw_ends(layout, settings) -> None:
             column.label(text=text, icon=icon)
 
 
+def _is_hidden_here(context, settings) -> bool:
+    """Whether the part that is chosen in the list is marked as hidden on the current frame."""
+    if settings.active_part >= len(settings.parts):
+        return False
+    return absence.is_hidden(settings.parts[settings.active_part], context.scene.frame_current - settings.frame_offset)
+
+
 class ROTOTOON_PT_track(DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_track"
     bl_label = "Track"
@@ -127,6 +134,9 @@ class ROTOTOON_PT_track(DrawingPanel, bpy.types.Panel):
         column.operator("rototoon.weakest_frame", icon="FRAME_NEXT")
         icon = "HIDE_OFF" if settings.show_confidence else "HIDE_ON"
         column.operator("rototoon.show_confidence", icon=icon, depress=settings.show_confidence)
+        hidden = _is_hidden_here(context, settings)
+        column.operator("rototoon.hide_part", icon="GHOST_DISABLED" if hidden else "GHOST_ENABLED", depress=hidden)
+        layout.prop(settings, "show_lost")
         layout.prop(settings, "show_pins")
         row = layout.row(align=True)
         # Blender draws a menu of an operator as if it could always be chosen.

@@ -14,6 +14,7 @@ pub mod spans;
 mod style;
 mod trace;
 mod tween;
+mod unseen;
 
 pub use check::{check, drawing_problems};
 pub use error::PipelineError;
@@ -23,6 +24,7 @@ pub use sheet::sheet;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
 pub use trace::trace;
 pub use tween::{captured, pegs_of, spacing_of, tween};
+pub use unseen::unseen;
 
 use crate::export::{self, SvgOptions, svg_with_strokes};
 use crate::fit;

@@ -7,7 +7,7 @@ import threading
 
 import pytest
 from conftest import LAST, square
-from rototoon import Cancelled, RototoonError, Session, WeakestFrame, match_contours, parameters, version
+from rototoon import Cancelled, RototoonError, Session, WeakestFrame, match_contours, outcomes, parameters, version
 
 FRAMES = list(range(LAST + 1))
 
@@ -225,6 +225,30 @@ def test_weakest_frame_is_in_the_doubtful_stretch(session, document):
     assert isinstance(weakest, WeakestFrame)
     assert weakest.frame == 9
     assert weakest.score == pytest.approx(0.9 * 14 / 16)
+
+
+def test_a_hidden_part_has_no_track_there(session):
+    session.track()
+    session.set_absent("red", 3, 5)
+    assert not {3, 4, 5} & set(session.tracks("red").frames)
+    session.clear_absent("red", 4)
+    assert session.document()["parts"][0]["absent"] == [[3, 3], [5, 5]]
+    session.track()
+    frames = list(session.tracks("red").frames)
+    assert 4 in frames and not {3, 5} & set(frames)
+    with pytest.raises(RototoonError, match="found frames 5 to 4"):
+        session.set_absent("red", 5, 4)
+    with pytest.raises(RototoonError, match="outside the footage"):
+        session.set_absent("red", 3, 10_000)
+
+
+def test_outcomes_are_those_of_the_core():
+    sure = {frame: 0.1 if frame in (8, 9, 10) else 0.99 for frame in range(20)}
+    found = outcomes([{"keys": [0, 19], "confidence": sure}, {"keys": [3], "confidence": {}, "wants_key": [12]}])
+    assert found.parts[0].lost == [8, 9, 10] and found.parts[1].lost == [12]
+    assert found.parts[0].sure == [frame for frame in range(1, 19) if frame not in (8, 9, 10)]
+    assert found.weakest.frame == 12
+    assert outcomes([]).weakest is None
 
 
 def test_files_and_folders(session, document, folder, tmp_path):

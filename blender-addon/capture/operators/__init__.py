@@ -6,6 +6,7 @@ from . import (
     footage_from_camera,
     footage_from_file,
     footage_from_reference,
+    hide_part,
     match_contours,
     new_key,
     release_pins,
@@ -29,6 +30,7 @@ _MODULES = (
     snap,
     show_confidence,
     weakest_frame,
+    hide_part,
     clear_generated,
 )
 

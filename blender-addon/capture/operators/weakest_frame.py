@@ -18,7 +18,7 @@ class ROTOTOON_OT_weakest_frame(Guarded, OnTracked, bpy.types.Operator):
     changes = guard.NOTHING
 
     def run(self, context) -> str:
-        frame, doubt = weakest(contours.read(context.object, (gp.CONFIDENCE,)))
+        frame, doubt = weakest(context.object, contours.read(context.object, (gp.CONFIDENCE,)))
         context.scene.frame_set(frame)
         return f"Frame {frame} is the least certain one ({doubt:.0%} doubt): look for contours that are off"
 

@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xd0481b977e7331eb
+HEADER_HASH = 0x233030a6bc75208d
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -22,6 +22,9 @@ RototoonProgress = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_do
 
 INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
     "rototoon_match_contours": (
+        (1, "request_length", ctypes.c_size_t),
+    ),
+    "rototoon_outcomes": (
         (1, "request_length", ctypes.c_size_t),
     ),
     "rototoon_session_new": (
@@ -72,6 +75,12 @@ INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
     "rototoon_session_clear_center": (
         (2, "part_length", ctypes.c_size_t),
         (3, "frame", ctypes.c_int32),
+    ),
+    "rototoon_session_set_absent": (
+        (2, "part_length", ctypes.c_size_t),
+        (3, "first", ctypes.c_int32),
+        (4, "last", ctypes.c_int32),
+        (5, "absent", ctypes.c_int32),
     ),
     "rototoon_session_track": (
         (2, "options_length", ctypes.c_size_t),
@@ -160,6 +169,13 @@ def declare(library: ctypes.CDLL) -> None:
     ]
     library.rototoon_match_contours.restype = ctypes.c_int32
     library.rototoon_match_contours.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_outcomes.restype = ctypes.c_int32
+    library.rototoon_outcomes.argtypes = [
         ctypes.c_void_p,
         ctypes.c_size_t,
         ctypes.c_void_p,
@@ -322,6 +338,16 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_set_absent.restype = ctypes.c_int32
+    library.rototoon_session_set_absent.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_int32,
+        ctypes.c_int32,
         ctypes.c_int32,
         ctypes.c_void_p,
     ]

@@ -1,7 +1,7 @@
 //! What a tracked document says: confidence over time, doubtful and lost parts, and the keys that would help most.
 //!
-//! The doubt about a part on a frame is the mean of 1 − confidence over its points. Frames on which it is above one half
-//! and that follow each other are a *stretch*. A key in a stretch corrects most of it, so one key is proposed for each:
+//! The doubt about a part on a frame is the mean of 1 − confidence over its points. Which contours are doubtful or lost, the
+//! core says ([`Outcome`]). Lost frames that follow each other are a *stretch*. A key in a stretch corrects most of it, so one key is proposed for each:
 //! on the frame with the greatest doubt, of equals on the one nearest to the middle. What the key is worth is the sum of
 //! the stretch's doubt: the number of contours that are expected to become right. A stretch worth less than one contour
 //! is no reason to disturb a person.
@@ -12,12 +12,11 @@
 //! Limits: the worth trusts the confidence. Two keys in one long stretch may be better than one; after the first, the
 //! next run proposes the second.
 
-use rototoon::scene::{Footage, FrameNumber, Part, Scene};
+use rototoon::scene::outcome::confidence;
+use rototoon::scene::{Footage, FrameNumber, Outcome, Part, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Doubt above which a contour is doubtful.
-const DOUBTFUL: f64 = 0.5;
 /// Least worth of a key, in contours.
 const WORTH: f64 = 1.0;
 
@@ -45,7 +44,7 @@ pub struct PartFindings {
     pub frames: usize,
     /// Frames on which it is doubtful.
     pub doubtful: Vec<FrameNumber>,
-    /// Frames on which it was lost.
+    /// Frames on which it is probably wrong, or was lost and has no contour.
     pub lost: Vec<FrameNumber>,
 }
 
@@ -58,7 +57,7 @@ pub struct WantedKey {
     pub frame: FrameNumber,
     /// Number of contours that are expected to become right.
     pub worth: f64,
-    /// Whether the part was lost there, and not only doubtful.
+    /// Whether the part has no contour there, and not only one that is probably wrong.
     pub lost: bool,
 }
 
@@ -68,15 +67,15 @@ impl Findings {
         let mut found = Self::default();
         let (mut sum, mut count) = (0.0, 0);
         for part in &scene.parts {
-            let doubts = doubts(part);
+            let (doubts, outcome) = (doubts(part), Outcome::of(part));
             for (&frame, doubt) in &doubts {
                 let least = found.least.entry(frame).or_insert(1.0);
                 *least = least.min(1.0 - doubt);
                 sum += 1.0 - doubt;
                 count += 1;
             }
-            found.parts.push(of_part(part, &doubts));
-            found.wanted.extend(stretches(part, &doubts));
+            found.wanted.extend(stretches(part, &doubts, &outcome));
+            found.parts.push(of_part(part, &doubts, outcome));
             found.wanted.extend(lost(part, &scene.footage));
         }
         found.confidence = if count > 0 { sum / f64::from(count) } else { 1.0 };
@@ -86,27 +85,26 @@ impl Findings {
     }
 }
 
-fn of_part(part: &Part, doubts: &BTreeMap<FrameNumber, f64>) -> PartFindings {
+fn of_part(part: &Part, doubts: &BTreeMap<FrameNumber, f64>, outcome: Outcome) -> PartFindings {
     let sum: f64 = doubts.values().map(|doubt| 1.0 - doubt).sum();
     PartFindings {
         name: part.name.clone(),
         confidence: if doubts.is_empty() { 1.0 } else { sum / doubts.len() as f64 },
         frames: part.tracks.len().max(part.keys.len()),
-        doubtful: doubts.iter().filter(|(_, doubt)| **doubt > DOUBTFUL).map(|(&frame, _)| frame).collect(),
-        lost: part.wants_key.clone(),
+        doubtful: outcome.doubtful,
+        lost: outcome.lost,
     }
 }
 
 /// The doubt about a part by frame. The artist's own keys are beyond doubt.
 fn doubts(part: &Part) -> BTreeMap<FrameNumber, f64> {
-    let doubt = |points: &[f64]| points.iter().map(|c| (1.0 - c).clamp(0.0, 1.0)).sum::<f64>() / points.len() as f64;
-    let tracked = part.confidence.iter().filter(|(frame, points)| !points.is_empty() && !part.keys.contains_key(frame));
-    tracked.map(|(&frame, points)| (frame, doubt(points))).filter(|(_, doubt)| doubt.is_finite()).collect()
+    // A confidence that is no number is a lost contour, as everywhere.
+    confidence(part).into_iter().map(|(frame, sure)| (frame, if sure.is_nan() { 1.0 } else { 1.0 - sure })).collect()
 }
 
-fn stretches(part: &Part, doubts: &BTreeMap<FrameNumber, f64>) -> Vec<WantedKey> {
+fn stretches(part: &Part, doubts: &BTreeMap<FrameNumber, f64>, outcome: &Outcome) -> Vec<WantedKey> {
     let mut found: Vec<Vec<(FrameNumber, f64)>> = Vec::new();
-    for (&frame, &doubt) in doubts.iter().filter(|(_, doubt)| **doubt > DOUBTFUL) {
+    for (frame, doubt) in outcome.lost.iter().filter_map(|&frame| Some((frame, *doubts.get(&frame)?))) {
         match found.last_mut() {
             Some(stretch) if stretch.last().is_some_and(|(last, _)| frame.checked_sub(1) == Some(*last)) => {
                 stretch.push((frame, doubt))
@@ -166,7 +164,7 @@ mod tests {
         let found = Findings::of(&scene(vec![arm, part("leg", &[1.0, 0.25, 1.0])]));
         let wanted: Vec<_> = found.wanted.iter().map(|key| (key.part.as_str(), key.frame, key.worth)).collect();
         assert_eq!(wanted, [("arm", 6, 3.0), ("arm", 2, 1.5)], "0.75 of a contour is not worth a key");
-        assert_eq!(found.parts[0].doubtful, [2, 3, 5, 6, 7, 8]);
+        assert_eq!((&found.parts[0].doubtful[..], &found.parts[0].lost[..]), (&[1][..], &[2, 3, 5, 6, 7, 8][..]));
         assert_eq!(found.least[&1], 0.25);
         assert!(!found.least.contains_key(&0), "keys are beyond doubt");
     }

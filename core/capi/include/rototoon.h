@@ -142,6 +142,20 @@ RototoonStatus rototoon_match_contours(const uint8_t *request,
                                        struct RototoonText **matches,
                                        struct RototoonText **error);
 
+// Says what became of parts that the caller holds: which frames are sure, doubtful and lost, and where the next key
+// helps most. The command line and the reports use the same formula.
+//
+// `request` is JSON: `{"parts": [{"keys": [frame], "confidence": {"frame": mean}, "wants_key": [frame]}]}`. The means
+// are those of the confidence of the part's points on that frame. `wants_key` are the frames just beyond a track on
+// which the part was lost. It may be left out.
+//
+// `outcomes` is JSON: `{"weakest": {"frame", "score"}, "parts": [{"sure": [frame], "doubtful": [frame], "lost":
+// [frame]}]}`, in the order of the request. `weakest` is as of `rototoon_session_weakest_frame`.
+RototoonStatus rototoon_outcomes(const uint8_t *request,
+                                 size_t request_length,
+                                 struct RototoonText **outcomes,
+                                 struct RototoonText **error);
+
 // Reads a text: `length` bytes of UTF-8 at `data`, without a terminating zero. They live as long as the handle.
 RototoonStatus rototoon_text_read(const struct RototoonText *text,
                                   const uint8_t **data,
@@ -292,6 +306,16 @@ RototoonStatus rototoon_session_clear_center(const struct RototoonSession *sessi
                                              size_t part_length,
                                              int32_t frame,
                                              struct RototoonText **error);
+
+// Marks a part as not there on the frames from `first` to `last`, or, with `absent` 0, as there again. Where it is absent it
+// has no track and no confidence. Its keys stay, and it is always there on them. The frames must be in the footage.
+RototoonStatus rototoon_session_set_absent(const struct RototoonSession *session,
+                                           const uint8_t *part,
+                                           size_t part_length,
+                                           int32_t first,
+                                           int32_t last,
+                                           int32_t absent,
+                                           struct RototoonText **error);
 
 // Tracks every part between its keys and stores `tracks` and `confidence` in the document. The default preset tracks a
 // part with a single key outward from that key, as far as the result is reliable. It stores the frames on which it

@@ -83,6 +83,16 @@ pub enum EditError {
         /// Where the frame is, for the message.
         what: &'static str,
     },
+    /// A range of frames that ends before it begins.
+    #[error("part {part:?}: found frames {first} to {last}, expected the first one not after the last")]
+    FrameOrder {
+        /// Name of the part.
+        part: String,
+        /// The first frame given.
+        first: FrameNumber,
+        /// The last frame given.
+        last: FrameNumber,
+    },
     /// The footage has no picture on that frame.
     #[error("part {part:?}: frame {frame} is outside the footage, which has frames {first} to {last}")]
     OutsideFootage {
@@ -260,6 +270,31 @@ pub fn clear_center(scene: &mut Scene, name: &str, frame: FrameNumber) -> Result
     Ok(())
 }
 
+/// Marks a part as not there on the frames from `first` to `last`, or as there again. Its results on frames without it are
+/// removed. Keys stay, and a part is always there on its keys.
+pub fn set_absent(
+    scene: &mut Scene,
+    name: &str,
+    [first, last]: [FrameNumber; 2],
+    absent: bool,
+) -> Result<(), EditError> {
+    let (start, end) = (scene.footage.first, scene.footage.last);
+    let part = part_mut(scene, name)?;
+    if first > last {
+        return Err(EditError::FrameOrder { part: name.into(), first, last });
+    }
+    if let Some(frame) = [first, last].into_iter().find(|frame| !(start..=end).contains(frame)) {
+        return Err(EditError::OutsideFootage { part: name.into(), frame, first: start, last: end });
+    }
+    if absent {
+        part.set_absent(first, last);
+    } else {
+        part.clear_absent(first, last);
+    }
+    part.forget_where_absent();
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -350,6 +385,19 @@ mod tests {
     }
 
     #[test]
+    fn a_part_loses_its_results_where_it_is_absent_but_not_its_keys() {
+        let mut scene = scene();
+        scene.parts[0].wants_key = vec![5, 9];
+        set_absent(&mut scene, "arm", [5, 9], true).unwrap();
+        let part = &scene.parts[0];
+        assert_eq!(part.absent, [[5, 9]]);
+        assert_eq!(part.tracks.keys().copied().collect::<Vec<_>>(), [0, 1, 2, 3, 4, 8], "8 is a key");
+        assert!(part.wants_key.is_empty() && part.confidence.len() == 6 && part.keys.len() == 2);
+        set_absent(&mut scene, "arm", [6, 9], false).unwrap();
+        assert_eq!(scene.parts[0].absent, [[5, 5]]);
+    }
+
+    #[test]
     fn refusals_name_part_frame_and_expectation() {
         let cases = [
             (refused(|s| set_key(s, "leg", 0, &KEY)), r#"no part "leg"; the document has "arm""#),
@@ -368,6 +416,8 @@ mod tests {
             (refused(|s| unpin(s, "arm", 4, -2)), "no point -2"),
             (refused(|s| set_center(s, "arm", 0, Point::ONE)), "frame 0 is a key"),
             (refused(|s| set_center(s, "arm", 4, Point::NAN)), "found (NaN, NaN)"),
+            (refused(|s| set_absent(s, "arm", [4, 3], true)), "found frames 4 to 3, expected the first one not after"),
+            (refused(|s| set_absent(s, "arm", [4, 10], true)), "frame 10 is outside the footage"),
             (refused(|s| clear_center(s, "leg", 4)), r#"no part "leg""#),
         ];
         for (message, expected) in cases {

@@ -2,6 +2,7 @@
 
 use crate::entry::{clear, entry, give, text};
 use crate::matching::answer;
+use crate::outcomes;
 use crate::pool::{install, release};
 use crate::status::RototoonStatus;
 use crate::text::RototoonText;
@@ -103,6 +104,33 @@ pub unsafe extern "C" fn rototoon_match_contours(
             clear(matches, std::ptr::null_mut(), "matches")?;
             let request = text(request, request_length, "request")?;
             give(matches, RototoonText::new(install(|| answer(request))?));
+            Ok(())
+        })
+    }
+}
+
+/// Says what became of parts that the caller holds: which frames are sure, doubtful and lost, and where the next key
+/// helps most. The command line and the reports use the same formula.
+///
+/// `request` is JSON: `{"parts": [{"keys": [frame], "confidence": {"frame": mean}, "wants_key": [frame]}]}`. The means
+/// are those of the confidence of the part's points on that frame. `wants_key` are the frames just beyond a track on
+/// which the part was lost. It may be left out.
+///
+/// `outcomes` is JSON: `{"weakest": {"frame", "score"}, "parts": [{"sure": [frame], "doubtful": [frame], "lost":
+/// [frame]}]}`, in the order of the request. `weakest` is as of `rototoon_session_weakest_frame`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_outcomes(
+    request: *const u8,
+    request_length: usize,
+    outcomes: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(outcomes, std::ptr::null_mut(), "outcomes")?;
+            let request = text(request, request_length, "request")?;
+            give(outcomes, RototoonText::new(outcomes::answer(request)?));
             Ok(())
         })
     }

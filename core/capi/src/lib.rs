@@ -47,6 +47,7 @@ pub mod functions;
 pub mod handles;
 pub mod matching;
 pub mod options;
+pub mod outcomes;
 mod pool;
 pub mod session;
 pub mod session_abi;

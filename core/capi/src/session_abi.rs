@@ -353,6 +353,28 @@ pub unsafe extern "C" fn rototoon_session_clear_center(
     }
 }
 
+/// Marks a part as not there on the frames from `first` to `last`, or, with `absent` 0, as there again. Where it is absent it
+/// has no track and no confidence. Its keys stay, and it is always there on them. The frames must be in the footage.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_set_absent(
+    session: *const RototoonSession,
+    part: *const u8,
+    part_length: usize,
+    first: i32,
+    last: i32,
+    absent: i32,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let part = text(part, part_length, "part")?;
+            session.edit(|scene| edit::set_absent(scene, part, [first, last], absent != 0))
+        })
+    }
+}
+
 /// Tracks every part between its keys and stores `tracks` and `confidence` in the document. The default preset tracks a
 /// part with a single key outward from that key, as far as the result is reliable. It stores the frames on which it
 /// lost the part in `wants_key`.

@@ -4,7 +4,7 @@
 //! - [`project`]: reads and writes documents
 //! - [`progress`]: threads, the progress bar, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
-//! - [`track`], [`snap`], [`trace`], [`render`], [`sheet`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`], [`steps`]: the
+//! - [`track`], [`snap`], [`trace`], [`render`], [`sheet`], [`absent`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`], [`steps`]: the
 //!   subcommands
 //! - [`usage`]: the memory that the program takes
 //!
@@ -12,6 +12,7 @@
 
 #![forbid(unsafe_code)]
 
+mod absent;
 mod arguments;
 mod batch;
 mod check;
@@ -40,13 +41,14 @@ use std::process::ExitCode;
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 /// Each subcommand with the function that runs it.
-fn subcommands() -> [(Command, Run); 14] {
+fn subcommands() -> [(Command, Run); 15] {
     [
         (track::command(), track::run),
         (snap::command(), snap::run),
         (trace::command(), trace::run),
         (render::command(), render::run),
         (sheet::command(), sheet::run),
+        (absent::command(), absent::run),
         (export::command(), export::run),
         (import::command(), import::run),
         (check::command(), check::run),

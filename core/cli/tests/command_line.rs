@@ -508,3 +508,25 @@ fn fit_names_what_is_wrong_and_writes_nothing() {
     assert!(fit(&from, &to, &["--tolerance", "1"]).status.success());
     assert_eq!(fs::read_to_string(&to).unwrap(), "{\"curves\":[]}\n");
 }
+
+#[test]
+fn a_part_is_marked_as_hidden_and_as_there_again() {
+    let cartoon = Cartoon::new();
+    let (project, hidden, again) = (cartoon.keyed(), cartoon.path("hidden.json"), cartoon.path("again.json"));
+    let read = |path: &Path| -> Value { serde_json::from_slice(&fs::read(path).unwrap()).unwrap() };
+    let absent = |from: &Path, frames: &str, to: &Path, more: &[&str]| {
+        let given = [&["absent", text(from), "--part", "square", "--frames", frames, "-o", text(to)], more].concat();
+        command(&given).output().unwrap()
+    };
+    assert!(absent(&project, "2-4", &hidden, &[]).status.success());
+    assert_eq!(read(&hidden)["parts"][0]["absent"], json!([[2, 4]]));
+    let tracked = cartoon.path("tracked.json");
+    good(&["track", text(&hidden), "-o", text(&tracked)]);
+    let frames: Vec<String> = read(&tracked)["parts"][0]["tracks"].as_object().unwrap().keys().cloned().collect();
+    assert_eq!(frames, ["0", "1", "5", "6"]);
+    assert!(absent(&tracked, "3", &again, &["--there"]).status.success());
+    assert_eq!(read(&again)["parts"][0]["absent"], json!([[2, 2], [4, 4]]));
+    let refused = absent(&project, "2-9", &cartoon.path("no.json"), &[]);
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("frame 9 is outside the footage"));
+    assert!(!cartoon.path("no.json").exists());
+}

@@ -1,5 +1,6 @@
 //! What became of every part of a tracked document: frames sure, doubtful and lost.
 
+use super::unseen;
 use crate::scene::outcome::confidence;
 use crate::scene::{FrameNumber, Outcome, Scene};
 use crate::track::weakest_frame;
@@ -50,6 +51,8 @@ pub struct PartReport {
     pub lost: Vec<FrameNumber>,
     /// Frames just beyond the track of a part with one key, on which it needs another.
     pub wants_key: Vec<FrameNumber>,
+    /// Frames on which it can probably not be seen ([`unseen`](fn@super::unseen)): a question for the artist.
+    pub unseen: Vec<FrameNumber>,
     /// Mean confidence of its points, by frame.
     pub confidence: BTreeMap<FrameNumber, f64>,
 }
@@ -57,14 +60,14 @@ pub struct PartReport {
 impl Report {
     /// The report on a scene with tracks.
     pub fn of(scene: &Scene) -> Self {
-        let part = |part: &crate::scene::Part| {
+        let part = |(index, part): (usize, &crate::scene::Part)| {
             let Outcome { sure, doubtful, lost } = Outcome::of(part);
             let (name, wants_key) = (part.name.clone(), part.wants_key.clone());
             let rounded = |value: f64| (value * 1e4).round() / 1e4;
             let confidence = confidence(part).into_iter().map(|(frame, value)| (frame, rounded(value))).collect();
-            PartReport { name, sure, doubtful, lost, wants_key, confidence }
+            PartReport { name, sure, doubtful, lost, wants_key, unseen: unseen(scene, index), confidence }
         };
-        let parts: Vec<PartReport> = scene.parts.iter().map(part).collect();
+        let parts: Vec<PartReport> = scene.parts.iter().enumerate().map(part).collect();
         let count = |of: fn(&PartReport) -> usize| parts.iter().map(of).sum();
         let contours = Counts {
             sure: count(|p| p.sure.len()),
@@ -83,6 +86,7 @@ impl Report {
             let Counts { sure, doubtful, lost } = self.contours;
             lines.push(format!("all {} parts: {}", lines.len(), counted([sure, doubtful, lost])));
         }
+        lines.extend(self.parts.iter().filter(|part| !part.unseen.is_empty()).map(PartReport::question));
         if let Some(weakest) = self.weakest_frame.filter(|_| self.contours.doubtful + self.contours.lost > 0) {
             lines.push(format!("the next key helps most on frame {}", weakest.frame));
         }
@@ -91,6 +95,13 @@ impl Report {
 }
 
 impl PartReport {
+    fn question(&self) -> String {
+        let (name, frames) = (&self.name, runs(&self.unseen));
+        format!(
+            "part {name:?} can probably not be seen on {frames}: if so, `rototoon absent` removes its contour there"
+        )
+    }
+
     fn line(&self) -> String {
         let numbers = counted([self.sure.len(), self.doubtful.len(), self.lost.len()]);
         let named = [("doubtful", &self.doubtful), ("lost", &self.lost)];

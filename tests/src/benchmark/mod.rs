@@ -4,6 +4,7 @@
 //! - [`table`]: the results as Markdown and JSON
 //! - [`errors`]: a plot of errors over frames
 //! - [`overlay`]: a contact sheet of tracked and true contours
+//! - [`evidence`]: tables from which the model of confidence is fitted
 //! - [`own`]: sets that this package draws
 //! - [`growth`]: time and memory by frames, parts, points and pixels
 //!
@@ -12,6 +13,7 @@
 //! caches and peak memory is measured separately.
 
 pub mod errors;
+pub mod evidence;
 pub mod growth;
 pub mod overlay;
 pub mod own;

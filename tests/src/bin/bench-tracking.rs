@@ -8,7 +8,7 @@ use rototoon::scene::Silent;
 use rototoon::track::{Mechanism, Mechanisms, Preset, TrackOptions};
 use rototoon_tests::artist::Rules;
 use rototoon_tests::benchmark::growth::Sample;
-use rototoon_tests::benchmark::{overlay, run};
+use rototoon_tests::benchmark::{evidence, overlay, own, run};
 use rototoon_tests::memory::peak_mb;
 use rototoon_tests::puppet::Puppet;
 use std::io::Cursor;
@@ -55,6 +55,16 @@ enum Command {
         #[arg(long, default_value_t = 0)]
         threads: usize,
     },
+    /// Write tables with the evidence about every point beside the truth, from which `tests/confidence.py` fits the model.
+    Evidence {
+        /// The folder to write to.
+        out: PathBuf,
+        /// Folders with project.json and truth.json. The benchmark's own sets are added.
+        folders: Vec<PathBuf>,
+        /// Number of threads; 0 for one per core.
+        #[arg(long, default_value_t = 0)]
+        threads: usize,
+    },
     /// Draw a scene of limbs.
     Draw {
         /// The folder to make.
@@ -72,6 +82,7 @@ fn main() -> Result<()> {
             pool(threads)?.install(|| run_set(&folder, &set, (options, &id), &out, no_edits))
         }
         Command::Time { folder, threads } => pool(threads)?.install(|| time(&folder)),
+        Command::Evidence { out, folders, threads } => pool(threads)?.install(|| tables(&out, &folders)),
         Command::Draw { folder, numbers } => {
             let [width, height, frames, step, parts, points] = numbers[..] else { return Ok(()) };
             Puppet { width, height, frames, step, parts, points }.write(&folder)
@@ -105,6 +116,19 @@ fn run_set(folder: &Path, set: &str, (options, id): (TrackOptions, &str), out: &
     overlay::sheet(&run)?.write_to(&mut png, image::ImageFormat::Png)?;
     write_whole(&ending(out, ".png"), png.get_ref())?;
     write_whole(&ending(out, ".json"), &serde_json::to_vec_pretty(&run.outcome)?)?;
+    Ok(())
+}
+
+fn tables(out: &Path, folders: &[PathBuf]) -> Result<()> {
+    std::fs::create_dir_all(out).with_context(|| format!("cannot make {out:?}"))?;
+    let drawn = tempfile::tempdir()?;
+    let own = own::write(drawn.path())?;
+    let name = |folder: &PathBuf| folder.file_name().map(|name| name.to_string_lossy().into_owned());
+    let given = folders.iter().map(|folder| Ok((name(folder).context("a folder without a name")?, folder.clone())));
+    for (set, folder) in given.collect::<Result<Vec<_>>>()?.into_iter().chain(own) {
+        eprintln!("{set}");
+        evidence::write(&set, &folder, out)?;
+    }
     Ok(())
 }
 

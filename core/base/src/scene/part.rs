@@ -106,6 +106,49 @@ impl Part {
         !self.keys.contains_key(&frame) && self.absent.iter().any(within)
     }
 
+    /// Marks the part as not there from `first` to `last`. Ranges that touch become one. Nothing happens if `first` is
+    /// after `last`.
+    pub fn set_absent(&mut self, first: FrameNumber, last: FrameNumber) {
+        if first > last {
+            return;
+        }
+        self.absent.push([first, last]);
+        self.absent.sort_unstable();
+        let mut merged: Vec<[FrameNumber; 2]> = Vec::with_capacity(self.absent.len());
+        for &[first, last] in &self.absent {
+            match merged.last_mut() {
+                Some([_, end]) if first <= end.saturating_add(1) => *end = last.max(*end),
+                _ => merged.push([first, last]),
+            }
+        }
+        self.absent = merged;
+    }
+
+    /// Removes the results on frames on which the part is not there.
+    pub fn forget_where_absent(&mut self) {
+        let bare = Self { keys: std::mem::take(&mut self.keys), absent: self.absent.clone(), ..Self::default() };
+        self.tracks.retain(|&frame, _| !bare.is_absent(frame));
+        self.confidence.retain(|&frame, _| !bare.is_absent(frame));
+        self.curves.retain(|&frame, _| !bare.is_absent(frame));
+        self.wants_key.retain(|&frame| !bare.is_absent(frame));
+        self.keys = bare.keys;
+    }
+
+    /// Marks the part as there again from `first` to `last`.
+    pub fn clear_absent(&mut self, first: FrameNumber, last: FrameNumber) {
+        let rest = |&[from, to]: &[FrameNumber; 2]| {
+            if last < from || first > to {
+                return vec![[from, to]];
+            }
+            let before = (from < first).then(|| [from, first - 1]);
+            let after = (to > last).then(|| [last + 1, to]);
+            before.into_iter().chain(after).collect()
+        };
+        if first <= last {
+            self.absent = self.absent.iter().flat_map(rest).collect();
+        }
+    }
+
     /// Depth on a frame.
     pub fn depth_at(&self, frame: FrameNumber) -> f64 {
         self.depths.get(&frame).copied().unwrap_or(self.depth)
@@ -126,6 +169,42 @@ impl Part {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn times_of_absence_are_joined_and_cut() {
+        let mut part = Part::default();
+        for (first, last) in [(10, 12), (3, 4), (5, 6), (20, 19), (12, 14)] {
+            part.set_absent(first, last);
+        }
+        assert_eq!(part.absent, [[3, 6], [10, 14]]);
+        part.clear_absent(5, 11);
+        assert_eq!(part.absent, [[3, 4], [12, 14]]);
+        part.clear_absent(13, 13);
+        assert_eq!(part.absent, [[3, 4], [12, 12], [14, 14]]);
+        part.clear_absent(FrameNumber::MIN, FrameNumber::MAX);
+        assert!(part.absent.is_empty());
+    }
+
+    #[test]
+    fn marking_frames_absent_is_the_same_as_marking_each_of_them() {
+        let mut part = Part::default();
+        let mut naive = [false; 32];
+        // A fixed sequence of pseudo-random edits.
+        let mut state = 12345u32;
+        for _ in 0..500 {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let (first, last) = ((state >> 8) as i32 % 32, (state >> 16) as i32 % 32);
+            let absent = state >> 31 == 1;
+            if absent {
+                part.set_absent(first, last)
+            } else {
+                part.clear_absent(first, last)
+            }
+            (first..=last).for_each(|frame| naive[frame as usize] = absent);
+            assert!((0..32).all(|frame| part.is_absent(frame) == naive[frame as usize]));
+            assert!(part.absent.windows(2).all(|pair| pair[0][1] + 1 < pair[1][0]), "{:?}", part.absent);
+        }
+    }
 
     #[test]
     fn an_outline_joins_snapped_paths_or_takes_the_control_points() {

@@ -59,7 +59,7 @@ fn share_reached(wanted: &[(&Entry, &WantedKey)], worth: f64) -> usize {
 
 fn row(out: &mut String, entry: &Entry, key: &WantedKey, so_far: f64, picture: Option<String>) {
     let name = escaped(&entry.shot.name);
-    let why = if key.lost { "lost" } else { "doubtful" };
+    let why = if key.lost { "lost" } else { "probably wrong" };
     let image = picture.map_or_else(String::new, |data| {
         format!("<img class=\"small\" alt=\"\" loading=\"lazy\" src=\"data:image/jpeg;base64,{data}\">")
     });

@@ -15,6 +15,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use rototoon::memory::Bytes;
 use rototoon::project::WriteError;
+use rototoon::scene::Verdict;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -169,7 +170,7 @@ fn pictures(out: &mut String, entry: &Entry, folder: &Path) {
         let Ok(bytes) = fs::read(&path) else { continue };
         let least = entry.record.findings.least.get(&frame);
         let weak = entry.record.findings.wanted.iter().any(|key| key.frame == frame)
-            || least.is_some_and(|value| *value < 0.5);
+            || least.is_some_and(|value| Verdict::of(*value) == Verdict::Lost);
         let (class, note) = if weak { (" class=\"weak\"", " · weak") } else { ("", "") };
         let _ = write!(
             out,
@@ -286,7 +287,7 @@ mod tests {
         for text in [
             "<h1>3 shots</h1>",
             "<a href=\"#failed\"><b>1</b> failed</a>",
-            "<td class=\"number\">4</td><td class=\"number\">2.5</td><td class=\"number\">100 %</td><td>doubtful</td>",
+            "<td class=\"number\">4</td><td class=\"number\">2.5</td><td class=\"number\">100 %</td><td>probably wrong</td>",
             "1 key in all; the first brings half of what can be gained",
             "blender &quot;shots/b.blend&quot; --python-expr &quot;import bpy; bpy.context.scene.frame_set(4)&quot;",
             "&lt;arm&gt;: lost on frame 12, doubtful on frames 3 to 5, 9",

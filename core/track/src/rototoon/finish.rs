@@ -7,6 +7,7 @@
 
 use super::confidence;
 use super::corrected::freed;
+use super::evidence::{self, Evidence, Reference};
 use super::lattice::texture::Cover;
 use super::mechanisms::Mechanism;
 use super::pool::{Hypothesis, hypothesis};
@@ -97,11 +98,20 @@ struct Settled {
     seen: Option<Hypothesis>,
     /// Control points in working pixels.
     points: Vec<Point>,
-    /// Confidence of each control point, 0 to 1.
-    confidence: Vec<f64>,
+    /// Evidence about each control point; empty on the keys' drawings.
+    evidence: Vec<Evidence>,
 }
 
 impl Finished {
+    /// Of each frame of the span: its drawing, and the evidence about each control point.
+    pub fn evidence(&self) -> Vec<(usize, Vec<Evidence>)> {
+        let of = |(d, drawing): (usize, &Drawing)| {
+            let evidence = self.settled.get(d).map(|settled| settled.evidence.clone()).unwrap_or_default();
+            (drawing.first..=drawing.last).map(move |_| (d, evidence.clone()))
+        };
+        self.source.drawings.iter().enumerate().flat_map(of).collect()
+    }
+
     /// The settled result of drawing `d`, if everything that it depends on is the same again.
     fn of(&self, source: &Pooled, plan: &Finish, d: usize) -> Option<&Settled> {
         let old = &self.source;
@@ -134,21 +144,28 @@ pub(super) fn finish(
     let width = stage.width();
     stage.covers = plan.occluders.iter().map(|contours| Cover::new(contours, width)).collect();
     let stage = &stage;
-    let refiner = OnceLock::new();
+    let tools = Tools::default();
     let settled: Vec<Settled> = (0..stage.drawings.len())
         .into_par_iter()
         .with_max_len(1)
         .map(|d| {
             kit.progress.report("Tracking", 0.9)?;
             let known = before.and_then(|before| before.of(pooled, &plan, d));
-            Ok(known.cloned().unwrap_or_else(|| settle(stage, pooled, &plan, &refiner, d)))
+            Ok(known.cloned().unwrap_or_else(|| settle(stage, pooled, &plan, &tools, d)))
         })
         .collect::<Result<_, TrackError>>()?;
     let track = track(stage, pooled, &settled, &plan.chosen);
     Ok(Finished { source: pooled.clone(), plan, settled, track })
 }
 
-fn settle(stage: &Stage, pooled: &Pooled, plan: &Finish, refiner: &OnceLock<Option<Refiner>>, d: usize) -> Settled {
+/// What all drawings of a part share. It is made when the first drawing needs it.
+#[derive(Default)]
+struct Tools {
+    refiner: OnceLock<Option<Refiner>>,
+    reference: OnceLock<Reference>,
+}
+
+fn settle(stage: &Stage, pooled: &Pooled, plan: &Finish, tools: &Tools, d: usize) -> Settled {
     let (pool, chosen) = (&pooled.pools[d], plan.chosen[d]);
     let between = d != 0 && d != stage.drawings.len() - 1;
     let seen = (between && !plan.occluders[d].is_empty()).then(|| {
@@ -162,25 +179,20 @@ fn settle(stage: &Stage, pooled: &Pooled, plan: &Finish, refiner: &OnceLock<Opti
     let own = seen.as_ref().unwrap_or(&pool[chosen]);
     let mixes = stage.kit.mechanisms.has(Mechanism::Blending);
     let rough = if mixes { blended(pool, own, share) } else { own.points.clone() };
-    let points = match refiner.get_or_init(|| self::refiner(stage)) {
-        Some(refiner) if between && stage.kit.mechanisms.has(Mechanism::Refinement) => {
-            refined(stage, refiner, d, share, rough)
+    if !between {
+        return Settled { seen: None, points: rough, evidence: Vec::new() };
+    }
+    let refiner = tools.refiner.get_or_init(|| refiner(stage)).as_ref();
+    let points = match refiner {
+        Some(refiner) if stage.kit.mechanisms.has(Mechanism::Refinement) => {
+            refined(stage, refiner, d, share, rough.clone())
         }
-        _ => rough,
+        _ => rough.clone(),
     };
-    let confidence = confidence(stage, d, pool, chosen, seen.as_ref());
-    Settled { seen, points, confidence }
-}
-
-/// Confidence of each control point of a drawing. If `seen` is given, it replaces the chosen hypothesis.
-fn confidence(stage: &Stage, d: usize, pool: &[Hypothesis], chosen: usize, seen: Option<&Hypothesis>) -> Vec<f64> {
-    let replaced = seen.map(|seen| {
-        let mut pool = pool.to_vec();
-        pool[chosen] = seen.clone();
-        pool
-    });
-    let pool = replaced.as_deref().unwrap_or(pool);
-    confidence::of_drawing(&stage.models, &stage.features[d], &stage.covers[d], pool, chosen)
+    let reference = tools.reference.get_or_init(|| Reference::new(stage));
+    let found = evidence::Found { drawing: d, pool, own, rough: &rough, points: &points, share };
+    let evidence = evidence::of_drawing(stage, refiner, reference, &found);
+    Settled { seen, points, evidence }
 }
 
 /// The contour's colour templates. None for contours without a shape.
@@ -227,7 +239,12 @@ fn track(stage: &Stage, pooled: &Pooled, settled: &[Settled], path: &[usize]) ->
     let last = stage.job.span.len() - 1;
     let (mut points, mut sure) = (Vec::new(), Vec::new());
     for (d, drawing) in stage.drawings.iter().enumerate() {
-        let Settled { points: found, confidence, .. } = &settled[d];
+        let Settled { points: found, evidence, .. } = &settled[d];
+        let confidence = if evidence.is_empty() {
+            vec![confidence::HELD; found.len()]
+        } else {
+            evidence.iter().map(confidence::probability).collect()
+        };
         for index in drawing.first..=drawing.last {
             let mut on_frame = stage.key_of(d).unwrap_or_else(|| found.iter().map(|&p| p * stage.scale).collect());
             stage.job.enforce_within(stage.center_reach[d] * stage.scale, index, &mut on_frame);

@@ -29,6 +29,7 @@
 
 pub mod confidence;
 mod corrected;
+pub mod evidence;
 mod finish;
 pub mod joint;
 pub mod lattice;
@@ -37,6 +38,7 @@ mod mend;
 pub mod outward;
 pub mod pool;
 mod pooled;
+mod pooling;
 pub mod propagate;
 pub mod refine;
 pub mod search;
@@ -47,7 +49,6 @@ use crate::contract::error::TrackError;
 use crate::contract::job::{Job, SpanTrack};
 use crate::contract::tasks::{SharedProgress, Steps, Task, assemble, job, nearer_contours, next_wave, tasks};
 use crate::contract::tracking::{SceneSolver, Tracking};
-use crate::shared::drawings::Drawing;
 use crate::shared::look::kind::Decided;
 use crate::shared::look::{Kind, Looks};
 use crate::shared::store::Store;
@@ -56,13 +57,13 @@ use joint::Contender;
 use joint::shadow::Memory;
 use joint::tie::{self, Lead, Tie, leads};
 use mechanisms::{Mechanism, Mechanisms};
-use mend::mend;
 use outward::plan::Portion;
 use pooled::Pooled;
+use pooling::{corrected_pools, mended_pools, plain_pools};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, FrameSource, Progress, Scene, Span};
-use stage::{Kit, Stage};
+use stage::Kit;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -144,6 +145,11 @@ impl Rototoon {
     /// A solver without any results yet, with the mechanisms given.
     pub fn new(mechanisms: Mechanisms) -> Self {
         Self { mechanisms, ..Self::default() }
+    }
+
+    /// For studies of confidence: the evidence of the last run.
+    pub fn evidence(&self) -> evidence::BySpan {
+        self.finished.iter().map(|(key, finished)| (key.clone(), finished.evidence())).collect()
     }
 
     /// The looks of the pictures. If they are of another kind than in the last run, its results are forgotten.
@@ -430,53 +436,6 @@ impl Rototoon {
         };
         Ok((plain, with_corrections, solved))
     }
-}
-
-fn plain_pools(kit: Kit, job: Job) -> Result<Pooled, TrackError> {
-    if job.span.len() == 2 || job.keys[0].is_empty() {
-        let drawings = (0..job.span.len()).map(|i| Drawing { first: i, last: i }).collect();
-        return Ok(Pooled {
-            job,
-            drawings,
-            models: None,
-            pools: Arc::default(),
-            carried: Arc::default(),
-            path: Vec::new(),
-            steps: 0,
-            center_reach: Vec::new(),
-        });
-    }
-    let stage = Stage::set(kit, &job, None)?;
-    let (pools, path, carried) = pool::fill(&stage)?;
-    let (drawings, models) = (stage.drawings.clone(), Some(stage.models.clone()));
-    let (pools, steps) = (Arc::new(pools), stage.steps_done.into_inner());
-    let center_reach = vec![0.0; drawings.len()];
-    Ok(Pooled { job, drawings, models, pools, carried: Arc::new(carried), path, steps, center_reach })
-}
-
-fn corrected_pools(kit: Kit, job: &Job, plain: &Pooled) -> Result<Pooled, TrackError> {
-    let mut stage = Stage::set(kit, job, plain.models.clone())?;
-    stage.center_reach = corrected::center_reach(&stage, plain);
-    let pools = corrected::extend(&stage, &plain.drawings, &plain.pools)?;
-    let path = pool::choose(&stage, &pools);
-    let (drawings, models) = (stage.drawings.clone(), Some(stage.models.clone()));
-    let (pools, steps) = (Arc::new(pools), stage.steps_done.into_inner());
-    let center_reach = stage.center_reach;
-    let (job, carried) = (job.clone(), Arc::default());
-    Ok(Pooled { job, drawings, models, pools, carried, path, steps, center_reach })
-}
-
-fn mended_pools(kit: Kit, source: &Pooled, path: &[usize], leads: &[Lead]) -> Result<Pooled, TrackError> {
-    let (drawings, models) = (source.drawings.clone(), source.models.clone());
-    let pools = if models.is_some() {
-        Arc::new(mend(&Stage::set(kit, &source.job, models.clone())?, source, path, leads)?)
-    } else {
-        source.pools.clone()
-    };
-    let Pooled { job, steps, center_reach, .. } = source;
-    let (job, path, center_reach) = (job.clone(), path.to_vec(), center_reach.clone());
-    let carried = Arc::default();
-    Ok(Pooled { job, drawings, models, pools, carried, path, steps: *steps, center_reach })
 }
 
 /// Groups of tasks whose spans share more than a key frame, directly or through others, in the order of time.

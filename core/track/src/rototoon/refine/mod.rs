@@ -48,6 +48,8 @@ const PASSES: [(Window, [(f64, f64); 3]); 2] = [
 ];
 /// Least decrease of the templates' cost for which a refined contour is used.
 const WORTH: f64 = 0.01;
+/// How far a point is moved along its contour to see whether it could slide, in working pixels.
+const SLID: i32 = 5;
 /// Upper limit of the cost of a sample.
 const LOST: f64 = 0.5;
 
@@ -109,6 +111,36 @@ impl Refiner {
             }
         }
         (points, before.unwrap_or(LOST))
+    }
+
+    /// The templates' cost at each control point.
+    pub fn costs(&self, frame: &Frame, points: &[Point]) -> Vec<f64> {
+        let here = |map: &response::Map| f64::from(map.costs[map.costs.len() / 2]);
+        self.at_points(frame, points, &Window { reach: [0, 0] }, here)
+    }
+
+    /// By how much the templates' cost of each control point is larger [`SLID`] px away along the contour.
+    pub fn slides(&self, frame: &Frame, points: &[Point]) -> Vec<f64> {
+        let slide = |map: &response::Map| {
+            let row = map.costs.len() / (2 * SLID as usize + 1);
+            let ends = map.costs[..row].iter().chain(&map.costs[map.costs.len() - row..]);
+            f64::from(ends.copied().fold(f32::INFINITY, f32::min) - map.costs[map.costs.len() / 2])
+        };
+        self.at_points(frame, points, &Window { reach: [SLID, 2] }, slide)
+    }
+
+    /// A number from the map of each control point.
+    fn at_points(
+        &self,
+        frame: &Frame,
+        points: &[Point],
+        window: &Window,
+        of_map: impl Fn(&response::Map) -> f64 + Sync,
+    ) -> Vec<f64> {
+        let (places, angles) = self.samples.frames(points);
+        let control: Vec<usize> = (0..places.len()).filter(|&s| self.samples.terms(s).len() == 1).collect();
+        let of_sample = |s: usize| of_map(&response::map(frame, window, (places[s], angles[s]), self.templates.of(s)));
+        control.into_par_iter().map(of_sample).collect()
     }
 
     /// How badly the templates fit at control points: the mean of the samples' costs, weighted by how much of each

@@ -1,0 +1,91 @@
+"""Part Is Hidden Here: a part has no contour on frames where the picture does not show it."""
+
+import bpy
+import numpy as np
+
+from ...blender import grease_pencil as gp
+from ...blender import guard
+from ...blender.errors import Problem
+from ...common.operators import Guarded, OnContours
+from .. import absence, contours, doubt, live, tracking
+
+
+class ROTOTOON_OT_hide_part(Guarded, OnContours, bpy.types.Operator):
+    bl_idname = "rototoon.hide_part"
+    bl_label = "Part Is Hidden Here"
+    bl_description = (
+        "Say that the picture does not show the part chosen in the list on this frame: Track then draws no contour of it here. "
+        "Press again where it is hidden, and it is there again. Keys stay. On hidden layers too, not on locked ones"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    frames: bpy.props.EnumProperty(
+        name="Frames",
+        description="Where the part is hidden, or there again",
+        items=(
+            ("CURRENT", "This Frame", "The current frame"),
+            ("STRETCH", "This Stretch", "The frames around this one on which the part is lost or already hidden"),
+        ),
+    )
+
+    def run(self, context) -> str:
+        ob, frame = context.object, context.scene.frame_current
+        item = active_part(ob)
+        if item is None:
+            raise Problem("Choose a part in the list first")
+        picture = frame - ob.rototoon.frame_offset
+        if not ob.rototoon.first <= picture <= ob.rototoon.last:
+            raise Problem(f"Frame {frame} has no picture of the footage")
+        found = contours.read(ob)
+        part = found.part(item.number)
+        layer = gp.find_layer(ob, found.layer_names[part.layer])
+        guard.need_open([layer], hidden=True)
+        time = absence.time_of(item, picture)
+        if frame in part.keys and time is None:
+            raise Problem(f'"{item.name}" has a key on frame {frame}: remove the key first if the part is hidden here')
+        if time is not None:
+            absence.show(item, *(time if self.frames == "STRETCH" else (picture, picture)))
+            live.note(ob)
+            return f'"{item.name}" is there again' + ("" if ob.rototoon.live else ": press Track")
+        pictures = self._stretch(ob, part, frame) if self.frames == "STRETCH" else [picture]
+        absence.hide(item, pictures)
+        where = tracking.listed([number + ob.rototoon.frame_offset for number in pictures])
+        _remove(layer, part, [number + ob.rototoon.frame_offset for number in pictures])
+        ob.data.update_tag()
+        live.note(ob)
+        return f'"{item.name}" is hidden on {where}'
+
+    def _stretch(self, ob, part: contours.Part, frame: int) -> list[int]:
+        """The pictures around a frame on which the part is lost."""
+        lost = set(doubt.judged(ob, contours.read(ob, (gp.CONFIDENCE,))).of(part.number).lost)
+        first = last = frame
+        while first - 1 in lost:
+            first -= 1
+        while last + 1 in lost:
+            last += 1
+        return [number - ob.rototoon.frame_offset for number in range(first, last + 1)]
+
+
+def active_part(ob):
+    """The part that is chosen in the list; `None` if there is none."""
+    settings = ob.rototoon
+    return settings.parts[settings.active_part] if settings.active_part < len(settings.parts) else None
+
+
+def _remove(layer, part: contours.Part, frames: list[int]) -> None:
+    """Removes the generated strokes of a part. A generated frame that is empty then goes too."""
+    drawings, gone = gp.drawings(layer), []
+    for frame in frames:
+        if frame not in drawings or frame not in part.made:
+            continue
+        handle, kind = drawings[frame]
+        strokes = len(gp.offsets(handle)) - 1
+        own = gp.value(handle, gp.MADE, strokes) & (gp.value(handle, gp.PART, strokes) == part.number)
+        if kind == gp.GENERATED and own.all():
+            gone.append(frame)
+        else:
+            gp.remove_strokes(handle, np.flatnonzero(own).tolist())
+    gp.remove_frames(layer, gone)
+
+
+CLASSES = (ROTOTOON_OT_hide_part,)

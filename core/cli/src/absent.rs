@@ -1,0 +1,64 @@
+//! `rototoon absent`: says on which frames the picture does not show a part.
+
+use crate::failure::Failure;
+use crate::{arguments, project, render};
+use clap::{Arg, ArgAction, ArgMatches, Command};
+use rototoon::project::output::check_writable;
+use rototoon::scene::FrameNumber;
+use std::ops::RangeInclusive;
+
+/// The subcommand.
+pub fn command() -> Command {
+    Command::new("absent")
+        .about(
+            "Marks a part as hidden on some frames: it has no contour there, and its results on them are removed. Keys stay",
+        )
+        .arg(arguments::project())
+        .arg(arguments::output("OUT", "The document to write"))
+        .arg(Arg::new("part").long("part").value_name("NAME").help("The name of the part").required(true))
+        .arg(
+            Arg::new("frames")
+                .long("frames")
+                .value_name("A-B")
+                .help("First and last frame, or one frame")
+                .required(true)
+                .allow_hyphen_values(true)
+                .value_parser(render::range),
+        )
+        .arg(
+            Arg::new("there")
+                .long("there")
+                .help("Marks the part as there again instead")
+                .action(ArgAction::SetTrue),
+        )
+}
+
+/// Runs the subcommand.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
+    let mut document = project::load(from)?;
+    project::inputs(&document, from).check(to)?;
+    check_writable(to)?;
+    let name = arguments::choice(given, "part");
+    let footage = document.scene.footage.clone();
+    let Some(part) = document.scene.parts.iter_mut().find(|part| part.name == name) else {
+        let known: Vec<String> = document.scene.parts.iter().map(|part| format!("{:?}", part.name)).collect();
+        let known = if known.is_empty() { "no parts".into() } else { known.join(", ") };
+        return Err(Failure::Other(format!("{}: no part {name:?}; the document has {known}", from.display())));
+    };
+    let Some(frames) = given.get_one::<RangeInclusive<FrameNumber>>("frames") else { return Ok(()) };
+    let (first, last) = (*frames.start(), *frames.end());
+    if let Some(frame) = [first, last].into_iter().find(|frame| !(footage.first..=footage.last).contains(frame)) {
+        let (first, last) = (footage.first, footage.last);
+        return Err(Failure::Other(format!(
+            "frame {frame} is outside the footage, which has frames {first} to {last}"
+        )));
+    }
+    if given.get_flag("there") {
+        part.clear_absent(first, last);
+    } else {
+        part.set_absent(first, last);
+        part.forget_where_absent();
+    }
+    project::save(document, from, to)
+}
