@@ -23,9 +23,10 @@ from .native.errors import RototoonError
 from .strokes import Strokes, stroke_buffers
 from .types import Progress
 
-PAIR, SPLIT, JOINED, VANISHED, APPEARED = range(5)
+PAIR, SPLIT, JOINED, VANISHED, APPEARED, CHAINED = range(6)
 """Kinds of rows of `Matches`: a pair; the later stroke is a piece of the earlier one; the earlier stroke is a piece of the later
-one; the earlier stroke has no counterpart; the later stroke has no counterpart."""
+one; the earlier stroke has no counterpart; the later stroke has no counterpart; the two strokes are pieces of one line, cut in
+other places, and share a stretch of it."""
 REVERSED, BY_HAND = 1, 2
 """Flags of rows of `Matches`."""
 CLOSED, PART_BEFORE, PART_AFTER = 1, 2, 4

@@ -272,7 +272,7 @@ class Pairing:
         """The pairs in words."""
         paired = sum(row.kind == tween.PAIR for row in self.pairs)
         hand = sum(row.by_hand for row in self.pairs)
-        pieces = sum(row.kind in (tween.SPLIT, tween.JOINED) for row in self.pairs)
+        pieces = sum(row.kind in (tween.SPLIT, tween.JOINED, tween.CHAINED) for row in self.pairs)
         alone = sum(row.kind in (tween.VANISHED, tween.APPEARED) for row in self.pairs)
         said = f"{paired} pairs"
         if hand:

@@ -75,6 +75,8 @@ pub mod kind {
     pub const VANISHED: i32 = 3;
     /// The later stroke has no counterpart.
     pub const APPEARED: i32 = 4;
+    /// The two strokes are pieces of one line and share a stretch of it.
+    pub const CHAINED: i32 = 5;
 }
 
 const REVERSED: i32 = 1;
@@ -270,6 +272,11 @@ impl RototoonMatches {
         };
         pieces(kind::SPLIT, &matching.split);
         pieces(kind::JOINED, &matching.joined);
+        for line in &matching.chained {
+            for &(from, to) in &line.meetings {
+                row(kind::CHAINED, Some(from), Some(to), 0, [0.0, line.confidence]);
+            }
+        }
         matching.vanished.iter().for_each(|&i| row(kind::VANISHED, Some(i), None, 0, [0.0, 1.0]));
         matching.appeared.iter().for_each(|&j| row(kind::APPEARED, None, Some(j), 0, [0.0, 1.0]));
     }

@@ -117,7 +117,7 @@ pub unsafe extern "C" fn rototoon_match_strokes(
 /// - `rows`: four numbers per row: kind, stroke of the earlier drawing, stroke of the later drawing, flags. Strokes are
 ///   numbered among all strokes, -1 is none. Kinds are: 0 a pair; 1 the later stroke is a piece of the earlier one; 2
 ///   the earlier stroke is a piece of the later one; 3 the earlier stroke has no counterpart; 4 the later stroke has
-///   none. Flags are: 1 the later stroke runs backwards; 2 the pair was made by hand.
+///   none; 5 both are pieces of one line, cut in other places, and share a stretch of it. Flags are: 1 the later stroke runs backwards; 2 the pair was made by hand.
 /// - `values`: two numbers per row. The first one is for closed strokes: the share of the later stroke's length at which
 ///   the first point of the earlier one is. The second one is the confidence of the pair, 0 to 1.
 ///

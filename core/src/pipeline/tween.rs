@@ -190,6 +190,19 @@ fn written(frame: i32, next: i32, matching: &Matching) -> Value {
     let pieces = |list: &[InPieces]| -> Vec<Value> {
         list.iter().map(|found| json!({"whole": found.whole, "pieces": found.pieces})).collect()
     };
-    json!({"frame": frame, "next": next, "pairs": pairs, "split": pieces(&matching.split),
-        "joined": pieces(&matching.joined), "vanished": matching.vanished, "appeared": matching.appeared})
+    let chained: Vec<Value> = matching
+        .chained
+        .iter()
+        .map(|line| {
+            json!({"first": line.first.pieces, "second": line.second.pieces, "closed": line.first.closed,
+                "reversed": line.reversed, "start": short(line.start), "confidence": short(line.confidence)})
+        })
+        .collect();
+    let mut written = json!({"frame": frame, "next": next, "pairs": pairs, "split": pieces(&matching.split),
+        "joined": pieces(&matching.joined), "vanished": matching.vanished, "appeared": matching.appeared});
+    // Most drawings have no such lines.
+    if !chained.is_empty() {
+        written["chained"] = Value::from(chained);
+    }
+    written
 }

@@ -8,7 +8,7 @@
 //! - [`peg`]: pivots that shift, turn and scale over time, given or found
 //! - [`between`]: the drawings between
 //! - [`hidden`]: which parts of lines a filled shape in front covers
-//! - `grid`: nearest places among many, `line`: strokes by shares of their length
+//! - `grid`: nearest places among many, `line`: strokes by shares of their length, `chain`: strokes end to end
 //!
 //! # Example
 //!
@@ -39,6 +39,7 @@
 #![forbid(unsafe_code)]
 
 pub mod between;
+mod chain;
 mod grid;
 pub mod hidden;
 mod line;

@@ -1,6 +1,6 @@
 //! Checks of the input of the in-betweens: drawings, matchings and options.
 
-use super::super::matching::{InPieces, Matching};
+use super::super::matching::Matching;
 use super::super::peg::TimingError;
 use super::super::stroke::{BadPoint, checked};
 use super::{GivenPegs, Key, Options, Spacing};
@@ -141,7 +141,7 @@ pub(super) fn check(
             return Err(BetweenError::Order { frame: next, before: frame });
         }
         pair[0].spacing.check(frame, next).map_err(|source| BetweenError::Spacing { frame, source })?;
-        for (named, count) in named(matching).into_iter().zip([pair[0].strokes.len(), pair[1].strokes.len()]) {
+        for (named, count) in matching.named().into_iter().zip([pair[0].strokes.len(), pair[1].strokes.len()]) {
             if let Some(&found) = named.iter().find(|&&i| i >= count) {
                 return Err(BetweenError::Stroke { frame, found, count });
             }
@@ -154,13 +154,4 @@ pub(super) fn check(
         }
     }
     Ok(())
-}
-
-/// The strokes of both drawings that a matching names.
-fn named(matching: &Matching) -> [Vec<usize>; 2] {
-    let wholes = |list: &[InPieces]| list.iter().map(|s| s.whole).collect::<Vec<_>>();
-    let pieces = |list: &[InPieces]| list.iter().flat_map(|s| s.pieces.iter().map(|p| p.0)).collect::<Vec<_>>();
-    let first = matching.pairs.iter().map(|p| p.from).chain(wholes(&matching.split)).chain(pieces(&matching.joined));
-    let second = matching.pairs.iter().map(|p| p.to).chain(wholes(&matching.joined)).chain(pieces(&matching.split));
-    [first.collect(), second.collect()]
 }

@@ -9,7 +9,6 @@
 //! half a turn lies on itself on both.
 
 use super::super::grid::Grid;
-use super::super::matching::Matching;
 use super::super::stroke::Stroke;
 use rototoon_base::geometry::{Point, polyline};
 
@@ -18,25 +17,10 @@ pub(super) type Lines = Vec<(Vec<Point>, bool)>;
 
 /// A matching with this share of its ink matched surely is believed.
 const SURE: f64 = 0.6;
-/// Confidence of a stroke in pieces.
-const IN_PIECES: f64 = 0.5;
 /// Distance of the samples along the ink, as a share of the size of the first drawing.
 const STEP: f64 = 1.0 / 100.0;
 /// Largest number of samples of a stroke.
 const MOST: f64 = 256.0;
-
-/// The share of the first drawing's ink that is matched, weighted by confidence, 0 to 1.
-pub(super) fn sureness(first: &[Stroke], matching: &Matching) -> f64 {
-    let mut sure = vec![0.0f64; first.len()];
-    for pair in &matching.pairs {
-        sure[pair.from] = if pair.by_hand { 1.0 } else { pair.confidence };
-    }
-    matching.split.iter().for_each(|split| sure[split.whole] = IN_PIECES);
-    matching.joined.iter().flat_map(|joined| &joined.pieces).for_each(|piece| sure[piece.0] = IN_PIECES);
-    let lengths: Vec<f64> = first.iter().map(Stroke::length).collect();
-    let total: f64 = lengths.iter().sum();
-    if total > 0.0 { lengths.iter().zip(&sure).map(|(length, sure)| length * sure).sum::<f64>() / total } else { 1.0 }
-}
 
 /// Whether a drawing half way can be believed, given how surely the keys are matched. Each drawing is a list of lines.
 pub(super) fn is_believed(sureness: f64, first: &[Stroke], second: &[Stroke], half: impl FnOnce() -> Lines) -> bool {

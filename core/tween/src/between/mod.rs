@@ -21,6 +21,7 @@
 //! footage gives it. Without them, a movement to and fro between two keys needs a key at its turning point.
 
 mod captured;
+mod chained;
 mod check;
 mod contacts;
 mod corners;
@@ -224,7 +225,7 @@ impl Sequence {
     ) -> Result<Self, BetweenError> {
         check::check(&keys, matchings, pegs, options)?;
         let sureness: Vec<f64> =
-            keys.iter().zip(matchings).map(|(key, matching)| credible::sureness(&key.strokes, matching)).collect();
+            keys.windows(2).zip(matchings).map(|(two, m)| m.sureness(&two[0].strokes, &two[1].strokes)).collect();
         let pairs = keys.windows(2).zip(matchings);
         let matchings: Vec<Matching> =
             pairs.map(|(two, matching)| sure::carried_out(&two[0].strokes, &two[1].strokes, matching)).collect();

@@ -261,6 +261,31 @@ fn pieces_stay_where_nothing_moves() {
 }
 
 #[test]
+fn an_outline_cut_in_other_places_is_drawn_once_and_whole() {
+    let ring = |shift: f64, from: i32, to: i32| {
+        let at = |k: i32| std::f64::consts::TAU * f64::from(k) / 120.0;
+        let place = |t: f64| Point::new(60.0 * t.cos() + shift, 40.0 * t.sin() + 8.0 * (2.0 * t).sin());
+        Stroke::new((from..=to).map(|k| place(at(k))).collect(), false)
+    };
+    let keys = vec![
+        key(0, vec![ring(0.0, 0, 39), ring(0.0, 40, 79), ring(0.0, 80, 119)]),
+        key(8, vec![ring(30.0, 20, 69), ring(30.0, 70, 139)]),
+    ];
+    let options = Options { rest: false, ..Options::default() };
+    let drawn = sequence(keys, &options).at(4);
+    let whole = ring(15.0, 0, 120).points;
+    let ink = |points: &[Point], p: Point| points.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
+    let all: Vec<Point> = drawn.iter().flat_map(|d| d.stroke.points.clone()).collect();
+    assert!(drawn.iter().all(|d| d.opacity == 1.0 && d.stroke.points.len() > 1));
+    for (from, to) in [(&all, &whole), (&whole, &all)] {
+        let farthest = from.iter().map(|p| ink(to, *p)).fold(0.0, f64::max);
+        assert!(farthest < 3.5, "{farthest}");
+    }
+    let length: f64 = drawn.iter().map(|d| d.stroke.length()).sum();
+    assert!((length / ring(0.0, 0, 120).length() - 1.0).abs() < 0.05, "{length}");
+}
+
+#[test]
 fn a_span_alone_follows_its_own_points() {
     let at = |frame: i32, count: usize| {
         let turn = f64::from(frame) * 0.1;

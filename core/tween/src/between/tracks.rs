@@ -3,11 +3,12 @@
 //! The pairs of neighbouring drawings are chained into tracks. A track follows the points of its stroke on the first
 //! drawing that has it. If the next drawing has a stroke in pieces, each piece becomes a track of its own. It begins on
 //! the part of the complete stroke from which it comes. If pieces join into one stroke, their tracks end on parts of
-//! it.
+//! it. Lines in pieces on both drawings are followed by stretches ([`mod@chained`]).
 
 use super::super::matching::{InPieces, Matching, Pair};
 use super::super::stroke::Stroke;
 use super::Key;
+use super::chained;
 use super::correspond::Places;
 use rototoon_base::geometry::Point;
 
@@ -87,6 +88,11 @@ pub(super) fn chained(keys: &[Key], matchings: &[Matching]) -> Vec<Track> {
                 let places = on_part(stand, &here.strokes[piece], places.0);
                 tracks[track].stands.push(Stand { stroke: joined.whole, part: true, places });
             }
+        }
+        for line in &matching.chained {
+            let stretches = chained::stretches(&here.strokes, &next.strokes, line);
+            let track = |stands: [Stand; 2]| Track { first: k, stands: stands.into(), closed: false };
+            tracks.extend(stretches.into_iter().map(track));
         }
         for (j, track) in of_next.iter_mut().enumerate().filter(|(_, track)| **track == usize::MAX) {
             *track = tracks.len();

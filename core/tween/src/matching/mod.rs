@@ -14,6 +14,9 @@
 //!    counterpart at a price. The pairs give a new movement around each stroke. Steps 3 to 5 run up to three times.
 //! 6. `pieces` examines the strokes that are left over. Such a stroke may be a piece of a stroke that was drawn in one
 //!    go on the other drawing.
+//! 7. Where much of the ink is without a sure counterpart, the drawings may be cut into pieces in different ways.
+//!    `fragments` puts pieces that continue each other together, on both drawings (`joins`), and matches the chains. What
+//!    is surer is kept.
 //!
 //! Pairs made by hand stay as they are. They also count as neighbours of the other strokes.
 //!
@@ -24,6 +27,8 @@
 //! 4.
 
 mod costs;
+mod fragments;
+mod joins;
 mod movement;
 mod outline;
 mod pieces;
@@ -31,6 +36,7 @@ mod relaxation;
 mod similarity;
 mod start;
 
+pub use super::chain::Chain;
 use super::stroke::{BadPoint, Stroke, checked};
 use costs::{Figure, Rows, Ways};
 use outline::Way;
@@ -96,9 +102,26 @@ pub struct InPieces {
     pub pieces: Vec<(usize, bool)>,
 }
 
+/// A line that is in pieces on one drawing, or on both, cut in other places.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chained {
+    /// The pieces on the first drawing.
+    pub first: Chain,
+    /// The pieces on the second drawing, along the line of that drawing.
+    pub second: Chain,
+    /// Whether the line of the second drawing runs in the opposite direction.
+    pub reversed: bool,
+    /// As [`Pair::start`], on the two lines.
+    pub start: f64,
+    /// How sure the pair of the two lines is, 0 to 1.
+    pub confidence: f64,
+    /// Which strokes of the two drawings share a stretch of the line, in the order along the line.
+    pub meetings: Vec<(usize, usize)>,
+}
+
 /// The correspondence of two drawings. Each stroke of the first drawing is in exactly one of `pairs`, `vanished` and
-/// `split`, or is a piece in `joined`. Each stroke of the second drawing is in exactly one of `pairs`, `appeared` and
-/// `joined`, or is a piece in `split`.
+/// `split`, or is a piece in `joined` or `chained`. Each stroke of the second drawing is in exactly one of `pairs`,
+/// `appeared` and `joined`, or is a piece in `split` or `chained`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Matching {
     /// Pairs of one stroke with one stroke, ordered by the index in the first drawing.
@@ -107,6 +130,8 @@ pub struct Matching {
     pub split: Vec<InPieces>,
     /// Strokes of the second drawing that were in several pieces in the first.
     pub joined: Vec<InPieces>,
+    /// Lines in pieces on both drawings.
+    pub chained: Vec<Chained>,
     /// Strokes of the first drawing without counterpart.
     pub vanished: Vec<usize>,
     /// Strokes of the second drawing without counterpart.
@@ -167,13 +192,26 @@ pub fn match_strokes(
     checked(first).map_err(MatchingError::First)?;
     checked(second).map_err(MatchingError::Second)?;
     let fixed = fixed(first.len(), second.len(), by_hand)?;
+    let matching = stroke_by_stroke(first, second, &fixed, options, progress)?;
+    let matching = fragments::surer(first, second, &fixed, matching, options, progress)?;
+    progress.report("matching strokes", 1.0)?;
+    Ok(matching)
+}
+
+/// Matches the strokes as they are.
+fn stroke_by_stroke(
+    first: &[Stroke],
+    second: &[Stroke],
+    fixed: &[Fixed],
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Matching, MatchingError> {
     let (a, b) = (Figure::new(first), Figure::new(second));
     progress.report("matching strokes", 0.1)?;
-    let (found, around) = chosen(&a, &b, &fixed, options, progress)?;
+    let (found, around) = chosen(&a, &b, fixed, options, progress)?;
     progress.report("matching strokes", 0.9)?;
-    let mut matching = laid_out(first, second, &found, &fixed);
-    pieces::find(first, second, &around, &fixed, &mut matching);
-    progress.report("matching strokes", 1.0)?;
+    let mut matching = laid_out(first, second, &found, fixed);
+    pieces::find(first, second, &around, fixed, &mut matching);
     Ok(matching)
 }
 

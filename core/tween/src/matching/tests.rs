@@ -170,6 +170,83 @@ fn a_stroke_drawn_in_pieces_is_put_together() {
     assert!(back.split.is_empty() && back.vanished.is_empty() && back.appeared.is_empty());
 }
 
+/// A figure of closed lines that are cut into pieces in other places on each drawing: each by the shares of its length
+/// at which it is cut.
+fn cut(lines: &[Vec<Point>], cuts: &[&[f64]]) -> Vec<Stroke> {
+    let pieces = |(line, cuts): (&Vec<Point>, &&[f64])| -> Vec<Stroke> {
+        let n = line.len();
+        let at = |share: f64| (share * n as f64) as usize;
+        let piece = |k: usize| {
+            let (from, to) = (at(cuts[k]), at(if k + 1 < cuts.len() { cuts[k + 1] } else { cuts[0] + 1.0 }));
+            // Two points are missing at each cut.
+            let mut points: Vec<Point> = (from..to - 2).map(|i| line[i % n]).collect();
+            if k % 2 == 1 {
+                points.reverse();
+            }
+            Stroke::new(points, false)
+        };
+        (0..cuts.len()).map(piece).collect()
+    };
+    lines.iter().zip(cuts).flat_map(pieces).collect()
+}
+
+/// The outlines of a body, a head and two different limbs.
+fn outlines(shift: Point, turn: f64) -> Vec<Vec<Point>> {
+    let around = |centre: (f64, f64), radii: (f64, f64), bump: f64| -> Vec<Point> {
+        let at = |k: usize| std::f64::consts::TAU * k as f64 / 120.0;
+        let place = |t: f64| {
+            let r = 1.0 + bump * (2.0 * t + 0.6).cos() + 0.5 * bump * (3.0 * t).sin();
+            Point::from(centre) + Point::new(radii.0 * t.cos(), radii.1 * t.sin()) * r
+        };
+        (0..120).map(|k| Point::from_angle(turn).rotate(place(at(k))) + shift).collect()
+    };
+    vec![
+        around((0.0, 0.0), (40.0, 60.0), 0.2),
+        around((0.0, -110.0), (30.0, 30.0), 0.1),
+        around((-90.0, -10.0), (35.0, 12.0), 0.15),
+        around((100.0, 10.0), (14.0, 55.0), 0.25),
+    ]
+}
+
+#[test]
+fn lines_cut_in_other_places_are_put_together_on_both_drawings() {
+    let first = cut(&outlines(Point::ZERO, 0.0), &[&[0.1, 0.4, 0.8], &[0.3, 0.7], &[0.0, 0.2, 0.6], &[0.5, 0.9]]);
+    let second =
+        cut(&outlines(Point::new(30.0, 8.0), 0.25), &[&[0.2, 0.6], &[0.05, 0.35, 0.65], &[0.4, 0.8], &[0.0, 0.4, 0.7]]);
+    let found = run(&first, &second);
+    let pieces = |chain: &Chain| {
+        let mut numbers: Vec<usize> = chain.pieces.iter().map(|piece| piece.0).collect();
+        numbers.sort_unstable();
+        numbers
+    };
+    let mut lines: Vec<_> = found.chained.iter().map(|line| (pieces(&line.first), pieces(&line.second))).collect();
+    lines.sort();
+    let expected = [
+        (vec![0, 1, 2], vec![0, 1]),
+        (vec![3, 4], vec![2, 3, 4]),
+        (vec![5, 6, 7], vec![5, 6]),
+        (vec![8, 9], vec![7, 8, 9]),
+    ];
+    assert_eq!(lines, expected, "{found:?}");
+    assert!(found.pairs.is_empty() && found.vanished.is_empty() && found.appeared.is_empty());
+    let all = found.chained.iter().all(|line| line.first.closed && line.second.closed && line.confidence > 0.5);
+    assert!(all && found.sureness(&first, &second) > 0.8, "{found:?}");
+    // Neighbouring meetings share a piece, so that all pieces of a line are known as one.
+    for line in &found.chained {
+        assert!(line.meetings.windows(2).all(|m| m[0].0 == m[1].0 || m[0].1 == m[1].1), "{:?}", line.meetings);
+    }
+}
+
+#[test]
+fn a_closed_stroke_in_pieces_begins_where_its_first_piece_does() {
+    let whole = vec![Stroke::new(outlines(Point::ZERO, 0.0)[0].clone(), true)];
+    let pieces = cut(&outlines(Point::new(5.0, 0.0), 0.0)[..1], &[&[0.35, 0.7]]);
+    let found = run(&whole, &pieces);
+    assert_eq!(found.chained.len(), 1, "{found:?}");
+    let line = &found.chained[0];
+    assert!(!line.reversed && (line.start - 0.65).abs() < 0.03, "{line:?}");
+}
+
 #[test]
 fn bad_strokes_are_named_or_left_alone() {
     let p = Point::new;
@@ -226,16 +303,14 @@ proptest! {
         };
         let (a, b) = (drawing(false), drawing(true));
         let found = run(&a, &b);
-        let mut from: Vec<usize> = found.pairs.iter().map(|p| p.from).chain(found.vanished.clone()).collect();
-        from.extend(found.split.iter().map(|s| s.whole));
-        from.extend(found.joined.iter().flat_map(|s| s.pieces.iter().map(|p| p.0)));
-        from.sort_unstable();
-        prop_assert_eq!(from, (0..a.len()).collect::<Vec<_>>());
-        let mut to: Vec<usize> = found.pairs.iter().map(|p| p.to).chain(found.appeared.clone()).collect();
-        to.extend(found.joined.iter().map(|s| s.whole));
-        to.extend(found.split.iter().flat_map(|s| s.pieces.iter().map(|p| p.0)));
-        to.sort_unstable();
-        prop_assert_eq!(to, (0..b.len()).collect::<Vec<_>>());
+        let [mut from, mut to] = found.named();
+        from.extend(&found.vanished);
+        to.extend(&found.appeared);
+        for (named, strokes) in [(&mut from, &a), (&mut to, &b)] {
+            named.sort_unstable();
+            prop_assert_eq!(&named[..], &(0..strokes.len()).collect::<Vec<_>>()[..]);
+        }
+        prop_assert!((0.0..=1.0).contains(&found.sureness(&a, &b)));
         prop_assert!(found.pairs.iter().all(|p| (0.0..=1.0).contains(&p.confidence)));
     }
 }
