@@ -1,9 +1,13 @@
 """The artist's corrections of generated strokes: pins and centres.
 
 Tracking stores where it put each point. If a point is elsewhere now, the artist moved it, and it becomes a pin. If all points
-moved in the same way, the artist moved the complete part, and this corrects its centre. Pins and centres stay until they are
-released. Positions of pins are kept bit for bit. So an unchanged correction is equal in every run, and its span is not solved
-again.
+moved in the same way, the artist moved the whole line. The object's setting `moved_line` says what this means:
+
+- `KEEP`: every point becomes a pin, so the line keeps place and shape, as a line that was turned or scaled does.
+- `SETTLE`: only the centre is corrected. The part is looked for there, and takes its shape from the drawing.
+
+Pins and centres stay until they are released. Positions of pins are kept bit for bit. So an unchanged correction is equal in every run,
+and its span is not solved again. A centre that a file brought along stays, also with `KEEP`, until its line is moved again.
 """
 
 from __future__ import annotations
@@ -35,15 +39,22 @@ class Corrections:
     """Pixels by frame."""
     held: dict[int, np.ndarray] = field(default_factory=dict)
     """By frame the stroke's points in layer space, as the artist left them."""
+    whole: list[int] = field(default_factory=list)
+    """Frames on which the artist moved the whole line since the last time."""
 
 
-def detect(found: Contours, mapper: Mapper) -> dict[int, Corrections]:
-    """Corrections by part number, on frames strictly between two keys of the part, or beside its only key."""
+def detect(found: Contours, mapper: Mapper, settles: bool = False) -> dict[int, Corrections]:
+    """Corrections by part number, on frames strictly between two keys of the part, or beside its only key.
+
+    With `settles`, a line that was moved as a whole corrects the part's centre only.
+    """
     corrected = {place: drawing.corrected() for place, drawing in found.drawings.items()}
-    return {part.number: _of_part(part, found, corrected, mapper) for part in found.parts}
+    return {part.number: _of_part(part, found, corrected, mapper, settles) for part in found.parts}
 
 
-def _of_part(part: Part, found: Contours, corrected: dict[tuple[int, int], np.ndarray], mapper: Mapper) -> Corrections:
+def _of_part(
+    part: Part, found: Contours, corrected: dict[tuple[int, int], np.ndarray], mapper: Mapper, settles: bool
+) -> Corrections:
     corrections = Corrections()
     for frame, stroke in part.made.items():
         if not corrected[stroke.layer, frame][stroke.index] or not correctable(part.keys, frame):
@@ -58,9 +69,13 @@ def _of_part(part: Part, found: Contours, corrected: dict[tuple[int, int], np.nd
             points = mapping.to_pixels(stroke.points)
             moved, whole = compare(mapping.to_pixels(tracked), points)
             if whole:
+                corrections.whole.append(frame)
+            if whole and settles:
                 center, has_center = _single(np.append(points.mean(0), 1.0)), True
             else:
                 pinned |= moved
+                # Points that all hold leave nothing to an older centre.
+                has_center = has_center and not moved.all()
         if pinned.any():
             points = mapper.at(stroke.layer, frame).to_pixels(stroke.points)
             corrections.pins[frame] = {int(i): points[i] for i in np.flatnonzero(pinned)}

@@ -53,7 +53,7 @@ def reading(ob, results: bool = False) -> Iterator[float]:
     yield 0.0
     decisions = identity.decide(found, mapper, settings.next_number)
     yield 0.0
-    corrected = corrections.detect(found, mapper)
+    corrected = corrections.detect(found, mapper, settles=settings.moved_line == "SETTLE")
     yield 0.0
     document = _extra(settings.extra)
     known = {

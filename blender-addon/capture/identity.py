@@ -12,7 +12,7 @@ import numpy as np
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
-from . import correspondence, sessions
+from . import closing, correspondence, sessions
 from .contours import Contours, Part, Stroke
 
 CLOSING_GAP = 0.05
@@ -228,7 +228,9 @@ def write_parts(ob, found: Contours) -> None:
         entry = have.get(part.number)
         if entry is None:
             entry = settings.parts.add()
-            entry.number, entry.name, entry.closed = part.number, part.name, part.closed
+            entry.number, entry.name = part.number, part.name
+            with closing.lines_kept():
+                entry.closed = part.closed
             entry.depth, entry.extra = part.depth, part.extra
         entry.count = part.count
     settings.next_number = max([settings.next_number] + [part.number + 1 for part in kept])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import live
+from . import closing, live
 
 PRESETS = (
     (
@@ -33,6 +33,15 @@ PLANES = (
     ("CAMERA", "Camera", "The camera shows the footage in its background"),
     ("REFERENCE", "Reference Image", "A reference image (an empty that shows an image) shows the footage"),
 )
+MOVED_LINES = (
+    ("KEEP", "Keeps Its Shape", "Each of its points holds where you put it, as after turning or scaling the line"),
+    (
+        "SETTLE",
+        "Settles",
+        "Only its middle is corrected: Track looks for the part there, and takes its shape from the drawing. "
+        "For lines that you push roughly to the right place",
+    ),
+)
 
 
 def _is_image_empty(_self, ob) -> bool:
@@ -41,6 +50,11 @@ def _is_image_empty(_self, ob) -> bool:
 
 def _is_camera(_self, ob) -> bool:
     return ob.type == "CAMERA"
+
+
+def _closed(part, context) -> None:
+    closing.follow(part, context)
+    live.setting_changed(part, context)
 
 
 class RototoonPart(bpy.types.PropertyGroup):
@@ -54,7 +68,13 @@ class RototoonPart(bpy.types.PropertyGroup):
         default=0.0,
         update=live.setting_changed,
     )
-    closed: bpy.props.BoolProperty(name="Closed", description="The last point joins the first", default=False)
+    closed: bpy.props.BoolProperty(
+        name="Closed",
+        description="The last point joins the first. Closes or opens the part's lines on all frames, hidden layers too; "
+        "locked ones are not changed",
+        default=False,
+        update=_closed,
+    )
     count: bpy.props.IntProperty(name="Control Points", description="Number of control points on each frame", min=0)
     extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")
     ends: bpy.props.StringProperty(
@@ -115,6 +135,12 @@ class CaptureSettings:
     )
     show_lost: bpy.props.BoolProperty(
         name="Mark Lost Contours", description="Draw contours that are probably wrong in black and red, on any background", default=True
+    )
+    moved_line: bpy.props.EnumProperty(
+        name="Moved Line",
+        description="What it means when you move a tracked line as a whole",
+        items=MOVED_LINES,
+        update=live.setting_changed,
     )
     show_pins: bpy.props.BoolProperty(
         name="Show Pins", description="Mark the points and centres that you fixed", default=True

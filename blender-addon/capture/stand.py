@@ -16,6 +16,18 @@ from bpy.app.handlers import persistent
 from ..blender import grease_pencil as gp
 
 
+@dataclass(frozen=True)
+class Held:
+    """What the artist's corrections hold on a frame."""
+
+    lines: int
+    """Number of lines of which every point is held."""
+    points: int
+    """Number of held points of other lines."""
+    middles: int
+    """Number of corrected centres."""
+
+
 @dataclass
 class Stand:
     """An object's content, counted."""
@@ -29,14 +41,21 @@ class Stand:
     """Numbers of the parts that the artist's contours belong to."""
     tracked: int = 0
     """Number of generated drawings."""
-    corrected: bool = False
-    """Whether a generated contour has a pin or a corrected centre."""
+    held: dict[int, Held] = field(default_factory=dict)
+    """By scene frame what pins and corrected centres hold there."""
     moved: bool = False
     """Whether generated points on the scene's frame were moved since the last Track."""
+    line_moved: bool = False
+    """Whether every point of a line was."""
     snapped: bool = False
     copied: bool = False
     """Whether the contours on two key frames are equal: a key was copied, and is not fitted yet."""
     _shapes: set[bytes] = field(default_factory=set)
+
+    @property
+    def corrected(self) -> bool:
+        """Whether a generated contour has a pin or a corrected centre."""
+        return bool(self.held)
 
     @property
     def strokes(self) -> int:
@@ -68,8 +87,9 @@ def read(ob: bpy.types.Object) -> Stand:
         for name in names:
             for frame, (handle, kind) in gp.drawings(data.layers[name]).items():
                 _count(stand, frame, handle, kind)
-                stand.corrected = stand.corrected or _is_corrected(handle, kind)
-                stand.moved = stand.moved or (frame == current and _is_moved(handle))
+                _note_held(stand, frame, handle, kind)
+                if frame == current:
+                    _note_moved(stand, handle)
     snapped = gp.find_layer(ob, settings.snapped_layer)
     stand.snapped = snapped is not None and bool(gp.frame_numbers(snapped))
     return stand
@@ -99,22 +119,37 @@ def _count(stand: Stand, frame: int, handle, kind: str) -> None:
         stand.loose[frame] = stand.loose.get(frame, 0) + loose
 
 
-def _is_corrected(handle, kind: str) -> bool:
+def _note_held(stand: Stand, frame: int, handle, kind: str) -> None:
     if kind != gp.GENERATED or not gp.has(handle, gp.PIN):
-        return False
+        return
     starts = gp.offsets(handle)
-    return bool(gp.value(handle, gp.PIN, int(starts[-1])).any() or gp.value(handle, gp.CENTER, len(starts) - 1)[:, 2].any())
+    pinned = _of_each(gp.value(handle, gp.PIN, int(starts[-1])), starts)
+    whole = (pinned == np.diff(starts)) & (pinned > 0)
+    middles = int((gp.value(handle, gp.CENTER, len(pinned))[:, 2] != 0).sum())
+    if pinned.any() or middles:
+        before = stand.held.get(frame, Held(0, 0, 0))
+        stand.held[frame] = Held(
+            before.lines + int(whole.sum()), before.points + int(pinned[~whole].sum()), before.middles + middles
+        )
 
 
-def _is_moved(handle) -> bool:
-    """Whether points are not where Track put them. Track makes them pins; before, only the frame at which the artist looks is read."""
+def _note_moved(stand: Stand, handle) -> None:
+    """Notes whether points are not where Track put them. Track makes them pins; before, only the frame at which the artist looks is read."""
     starts = gp.offsets(handle)
     total = int(starts[-1])
     tracked = gp.get(handle, gp.TRACKED, total)
     if tracked is None:
-        return False
-    made = np.repeat(gp.value(handle, gp.MADE, len(starts) - 1), np.diff(starts))
-    return bool(((tracked != gp.positions(handle, total)).any(1) & made).any())
+        return
+    made = gp.value(handle, gp.MADE, len(starts) - 1)
+    moved = _of_each((tracked != gp.positions(handle, total)).any(1), starts)
+    stand.moved = stand.moved or bool((moved[made] > 0).any())
+    stand.line_moved = stand.line_moved or bool((made & (moved > 0) & (moved == np.diff(starts))).any())
+
+
+def _of_each(points: np.ndarray, starts: np.ndarray) -> np.ndarray:
+    """For each stroke the number of its points that are true."""
+    before = np.concatenate([[0], np.cumsum(points)])
+    return before[starts[1:]] - before[starts[:-1]]
 
 
 def has_generated(ob: bpy.types.Object) -> bool:

@@ -34,6 +34,8 @@ class Run:
     """The method in the panel at the beginning."""
     closed: tuple[str, ...]
     """Names of the locked layers at the beginning."""
+    moved: dict[str, list[int]]
+    """By part the scene frames on which the artist moved the whole line since the last run."""
     entry: sessions.Entry
     worker: jobs.Worker
 
@@ -56,7 +58,8 @@ def begin(ob, reading: document.Reading, preset: str) -> Run:
     entry.inputs = None
     threads = preferences.threads()
     worker = jobs.Worker(lambda progress: entry.session.track(preset, progress, threads=threads))
-    return Run(ob.session_uid, reading.document, ob.rototoon.preset, reading.found.closed_names, entry, worker)
+    moved = {p.name: reading.corrections[p.number].whole for p in reading.found.parts if reading.corrections[p.number].whole}
+    return Run(ob.session_uid, reading.document, ob.rototoon.preset, reading.found.closed_names, moved, entry, worker)
 
 
 def finish(ob, run: Run) -> int | None:
@@ -132,6 +135,17 @@ def told(run: Run, strokes: int) -> str:
         frames.update(set(drawn.tolist()) - {int(frame) for frame in part["keys"]})
     text = f"{counted(strokes, 'contour')} drawn on {counted(len(frames), 'frame')}"
     return text if run.worker.result.solved or not strokes else "Nothing had changed: " + text
+
+
+def of_moved_lines(ob, run: Run) -> str:
+    """What became of lines that the artist moved as a whole; empty if there are none."""
+    said = [f'"{name}" on {listed(sorted(frames))}' for name, frames in run.moved.items()]
+    if not said:
+        return ""
+    if len(said) > NAMED:
+        said[NAMED:] = [counted(len(said) - NAMED, "more part")]
+    settles = ob.rototoon.moved_line == "SETTLE"
+    return f"; {'looked for where you moved it' if settles else 'kept as you moved it'}: " + ", ".join(said)
 
 
 def goes_on(ob, run: Run) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 from ..blender import grease_pencil as gp
 from ..blender import guard, placement
 from ..blender.errors import Problem
-from ..capture import contours, correspondence, document, identity
+from ..capture import closing, contours, correspondence, document, identity
 from ..common.operators import OnDrawing
 from .refusing import need, told
 
@@ -118,7 +118,9 @@ def _control(part: contours.Part | None, name: str, points: np.ndarray, frame: i
 def _new_part(ob: bpy.types.Object, found: contours.Contours, name: str, closed: bool, count: int) -> str:
     settings = ob.rototoon
     item = settings.parts.add()
-    item.number, item.name, item.closed, item.count = settings.next_number, name, closed, count
+    item.number, item.name, item.count = settings.next_number, name, count
+    with closing.lines_kept():
+        item.closed = closed
     depths = [part.depth for part in found.parts]
     item.depth = max(depths, default=-1.0) + 1
     found.parts.append(contours.Part(item.number, name, closed, item.depth, count))

@@ -5,7 +5,7 @@ Only what an artist needs all the time is open at first.
 
 import bpy
 
-from ..capture import absence, ends, live, stand
+from ..capture import absence, ends, live, stand, tracking
 from ..style import clip_browser, limbs
 from ..tween import spacing_curve
 from .clips import draw_browser
@@ -112,6 +112,15 @@ def _is_hidden_here(context, settings) -> bool:
     return absence.is_hidden(settings.parts[settings.active_part], context.scene.frame_current - settings.frame_offset)
 
 
+def said_of_held(context) -> str:
+    """What corrections hold on the scene's frame; empty if nothing is held there."""
+    held = stand.of(context.object).held.get(context.scene.frame_current)
+    if held is None:
+        return ""
+    counts = ((held.lines, "whole line"), (held.points, "point"), (held.middles, "middle"))
+    return "Held here: " + ", ".join(tracking.counted(count, noun) for count, noun in counts if count)
+
+
 class ROTOTOON_PT_track(DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_track"
     bl_label = "Track"
@@ -137,7 +146,11 @@ class ROTOTOON_PT_track(DrawingPanel, bpy.types.Panel):
         hidden = _is_hidden_here(context, settings)
         column.operator("rototoon.hide_part", icon="GHOST_DISABLED" if hidden else "GHOST_ENABLED", depress=hidden)
         layout.prop(settings, "show_lost")
+        layout.prop(settings, "moved_line")
         layout.prop(settings, "show_pins")
+        held = said_of_held(context)
+        if held:
+            layout.label(text=held, icon="PINNED")
         row = layout.row(align=True)
         # Blender draws a menu of an operator as if it could always be chosen.
         row.enabled = bpy.ops.rototoon.release_pins.poll()

@@ -50,7 +50,10 @@ def _second_key(ob, now: stand.Stand, keys: int) -> Step:
 
 def _correction(ob, now: stand.Stand) -> Step:
     if now.moved:
-        return Step(False, "Correct", "rototoon.track", "TRACKING_FORWARDS", "You moved points. Track again, and the frames beside follow")
+        hint = "You moved points. Track again, and the frames beside follow"
+        if now.line_moved and ob.rototoon.moved_line == "KEEP":
+            hint = "You moved a line. Track again: it stays as it is here, and the frames beside follow"
+        return Step(False, "Correct", "rototoon.track", "TRACKING_FORWARDS", hint)
     lost = _lost(ob) if now.tracked else ""
     if lost:
         return Step(False, "Correct", "rototoon.new_key", "KEY_HLT", f"{lost}. Go there, set a key, fit the line in Edit Mode (Tab), then Track")

@@ -81,7 +81,9 @@ class Session:
 
 
 def addon(name: str):
-    """A module of the installed add-on."""
+    """A module of the installed add-on, or of the Python package that comes with it."""
+    if name.partition(".")[0] == "rototoon":
+        return importlib.import_module(name)
     return importlib.import_module(f"{MODULE}.{name}")
 
 

@@ -137,7 +137,7 @@ def test_save_move_and_open(addon, fake, tmp_path):
     state = addon("capture.sessions").known(ob).session.state
     assert state["footage"]["pattern"] == str(tmp_path / "elsewhere/frames/shot_%03d.png")
     assert list(state["parts"][1]["pins"]) == ["4"]
-    assert list(state["parts"][0]["centers"]) == ["6"]
+    assert list(state["parts"][0]["pins"]) == ["6"]
 
 
 def test_footage_that_is_gone(addon, fake, tmp_path):

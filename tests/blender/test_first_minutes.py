@@ -155,7 +155,7 @@ def test_track_tells_where_to_look(addon, fake, tmp_path):
     sure = entry.session.confidence
     entry.session.confidence = lambda name: np.where(np.arange(9)[:, None] == 4, 0.1, sure(name))
     summary = SimpleNamespace(ends=[], solved=2)
-    run = SimpleNamespace(entry=entry, inputs=entry.inputs, worker=SimpleNamespace(result=summary))
+    run = SimpleNamespace(entry=entry, inputs=entry.inputs, moved={}, worker=SimpleNamespace(result=summary))
     assert tracking.told(run, 14) == "14 contours drawn on 7 frames"
     assert tracking.where_to_look(ob, run) == '"Part 1" is most likely off on 5; "Part 2" is most likely off on 5'
     assert tracking.listed([3, 4, 5, 9, 12, 13]) == "3 to 5, 9 and 12 and 13"
@@ -213,6 +213,21 @@ def test_the_sample_has_one_mistake_to_correct(addon, library):
     shots.move(addon, ob, frame, number, truth - strokes[number])
     bpy.ops.rototoon.track()
     assert max(off("near wing", frame) for frame in frames) < 5
+
+
+def test_a_line_of_the_sample_that_is_moved_keeps_its_shape(addon, library):
+    """With the tracker itself: by 7 pixels, as a newcomer did it, and farther than the part's size."""
+    bpy.ops.rototoon.open_sample()
+    ob, penguin = bpy.context.object, addon("sample.penguin")
+    bpy.ops.rototoon.track()
+    for name, frame, shift in (("body", 8, (7.0, 0.0)), ("near wing", 12, (-40.0, 25.0))):
+        number = penguin.PARTS.index(name) + 1
+        beside = {at: dict(shots.pixels(addon, ob, at))[number] for at in (frame - 1, frame + 1)}
+        shots.move(addon, ob, frame, number, shift)
+        placed = dict(shots.pixels(addon, ob, frame))[number]
+        bpy.ops.rototoon.track()
+        assert np.array_equal(dict(shots.pixels(addon, ob, frame))[number], placed), name
+        assert any(np.abs(dict(shots.pixels(addon, ob, at))[number] - was).max() > 0.01 for at, was in beside.items())
 
 
 def test_the_sample_is_drawn_once(addon, tmp_path):

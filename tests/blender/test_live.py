@@ -126,12 +126,14 @@ def test_own_writing_is_not_taken_for_an_edit(addon, fake, live, tmp_path, monke
     assert live.step(math.inf) is None and len(reads) == 2
 
 
-def test_moved_part_is_a_centre(addon, fake, live, tmp_path):
+@pytest.mark.parametrize(("meaning", "field"), [("KEEP", "pins"), ("SETTLE", "centers")])
+def test_moved_line_holds_as_the_setting_says(addon, fake, live, tmp_path, meaning, field):
     ob = switched_on(addon, live, tmp_path)
+    ob.rototoon.moved_line = meaning
     shots.move(addon, ob, 7, 1, (9.0, 4.0))
     settle(live)
     assert session(addon, ob).solved == [("Part 1", 5, 9)]
-    assert list(session(addon, ob).state["parts"][0]["centers"]) == ["7"]
+    assert list(session(addon, ob).state["parts"][0][field]) == ["7"]
 
 
 def test_keys_new_moved_and_deleted(addon, fake, live, tmp_path):
@@ -201,7 +203,7 @@ def test_two_quick_edits_give_what_one_track_gives(addon, fake, live, tmp_path, 
     bpy.ops.rototoon.track()
     assert shots.snapshot(ob) == found
     state = session(addon, ob).state["parts"]
-    assert list(state[1]["pins"]) == ["3"] and list(state[0]["centers"]) == ["7"]
+    assert list(state[1]["pins"]) == ["3"] and list(state[0]["pins"]) == ["7"]
 
 
 def test_edit_that_was_not_reported_drops_the_result(addon, fake, live, tmp_path, monkeypatch):
@@ -304,7 +306,7 @@ def test_step_that_holds_no_result_gets_it_again(addon, fake, live, tmp_path, mo
     shots.move(addon, ob, 3, 2, (9.0, 4.0))
     ob.data.update_tag()
     bpy.context.view_layer.update()
-    # Of a moved part, the strokes of the step itself hold only the shift; the centre is written with the result.
+    # Of a moved part, the strokes of the step itself hold only the shift; the pins are written with the result.
     bpy.ops.ed.undo_push(message="Move")
     settle(live)
     result = drawings(ob)

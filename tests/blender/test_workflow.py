@@ -109,8 +109,50 @@ def test_moved_points_become_pins_and_only_their_span_is_solved(addon, fake, tmp
     assert [len(mark.points) for mark in marks] == [1]
 
 
-def test_part_moved_as_a_whole_becomes_a_centre(addon, fake, tmp_path):
+@pytest.mark.parametrize("shift", [(0.6, 0.2), (9.0, 4.0), (60.0, 20.0)])
+def test_a_line_moved_as_a_whole_keeps_its_shape(addon, fake, tmp_path, shift):
     ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.track()
+    bpy.context.scene.frame_set(6)
+    shots.move(addon, ob, 6, 1, shift)
+    (blue,) = addon("ui.overlay").gather(ob, 6)
+    assert len(blue.points) == 4, "the view shows at once what will hold"
+    assert "it stays as it is here" in addon("ui.start").next_of(addon("ui.start").steps_of(ob)).hint
+    placed = dict(shots.pixels(addon, ob, 6))[1]
+    assert placed == pytest.approx(shots.diamond(5) + shift, abs=1e-3)
+    reports = addon("common.reports")
+    reports.take()
+    for times in (1, 2):
+        bpy.ops.rototoon.track()
+        assert np.array_equal(dict(shots.pixels(addon, ob, 6))[1], placed), times
+        state = addon("capture.sessions").known(ob).session.state["parts"][0]
+        assert list(state["pins"]["6"]) == ["0", "1", "2", "3"] and "centers" not in state
+    assert ['kept as you moved it: "Part 1" on 6' in report.text for report in reports.take()] == [True, False]
+    assert addon("ui.panels").said_of_held(bpy.context) == "Held here: 1 whole line"
+    bpy.ops.rototoon.release_pins(which="ALL")
+    bpy.ops.rototoon.track()
+    assert np.abs(dict(shots.pixels(addon, ob, 6))[1] - shots.diamond(5)).max() < 1e-3
+
+
+def test_an_older_centre_gives_way_to_the_whole_line(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    ob.rototoon.moved_line = "SETTLE"
+    bpy.ops.rototoon.track()
+    shots.move(addon, ob, 6, 1, (9.0, 4.0))
+    bpy.ops.rototoon.track()
+    ob.rototoon.moved_line = "KEEP"
+    bpy.ops.rototoon.track()
+    state = addon("capture.sessions").known(ob).session.state["parts"][0]
+    assert list(state["centers"]) == ["6"] and "pins" not in state, "what the file has stays"
+    shots.move(addon, ob, 6, 1, (0.0, 6.0))
+    bpy.ops.rototoon.track()
+    state = addon("capture.sessions").known(ob).session.state["parts"][0]
+    assert "centers" not in state and len(state["pins"]["6"]) == 4
+
+
+def test_part_moved_as_a_whole_becomes_a_centre_where_it_settles(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    ob.rototoon.moved_line = "SETTLE"
     bpy.ops.rototoon.track()
     shots.move(addon, ob, 6, 1, (9.0, 4.0))
     bpy.ops.rototoon.track()

@@ -48,7 +48,8 @@ class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
             raise Problem("The contours changed while they were tracked, so the result was dropped: press Track again")
         self.warn(tracking.where_to_look(self._ob, self._tracking))
         self.warn(guard.left_out(tracking.contour_layers(self._ob), hidden=True))
-        return tracking.told(self._tracking, strokes) + tracking.goes_on(self._ob, self._tracking)
+        moved = tracking.of_moved_lines(self._ob, self._tracking)
+        return tracking.told(self._tracking, strokes) + moved + tracking.goes_on(self._ob, self._tracking)
 
 
 def _match(progress, found: contours.Contours, mapper, number: int) -> None:
