@@ -3,6 +3,7 @@
 //! - [`sample`]: the sample cartoon with exact truth
 //! - [`doll`]: a second drawn character
 //! - [`puppet`]: synthetic footage of any size, for measuring speed and memory
+//! - [`grain`]: noise on pictures
 //! - [`truth`]: truth documents
 //! - [`measure`]: the errors of tracked contours
 //! - [`artist`]: how many corrections tracks still need
@@ -22,6 +23,7 @@ pub mod chart;
 pub mod doll;
 pub mod drawing;
 pub mod golden;
+pub mod grain;
 pub mod lettering;
 pub mod measure;
 pub mod memory;

@@ -3,8 +3,8 @@
 //! Three measurements, with tables in `target/bench-batch/table.md` and a chart beside it:
 //!
 //! 1. Many small generated shots with several numbers of shots at a time: shots a minute, processor time, memory over time.
-//! 2. One shot of 1920 × 1080 with and without the memory to keep its frames, step by step.
-//! 3. From the second: hours, reading and memory of 1000 shots of 100 frames on 1 to 64 workers.
+//! 2. One shot of 1920 × 1080, flat and with grain, with and without the memory to keep its frames, step by step.
+//! 3. From the second, for both: hours, reading and memory of 1000 shots of 100 frames on 1 to 64 workers.
 //!
 //! The hours are computed from processor time, because that is the same on a machine that does other work too. Wall-clock
 //! times are shown beside it.
@@ -12,6 +12,7 @@
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use rototoon_tests::chart::{Axis, Chart, INKS, Panel, Series};
+use rototoon_tests::grain;
 use rototoon_tests::puppet::Puppet;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -26,6 +27,8 @@ use xtask_shell::shell::{cargo, empty_folder, run, target};
 const PAUSE: Duration = Duration::from_millis(100);
 /// The season whose cost is computed.
 const SEASON: (usize, usize) = (1000, 100);
+/// Kinds of footage, and the standard deviation of their grain in steps of 8 bits.
+const FOOTAGE: [(&str, f64); 2] = [("flat", 0.0), ("grainy", 4.0)];
 /// Workers of the table.
 const WORKERS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 
@@ -38,8 +41,8 @@ pub struct Arguments {
     /// Shots at a time, several numbers.
     #[arg(long, value_name = "N", value_delimiter = ',', default_values_t = [1, 2, 4])]
     jobs: Vec<usize>,
-    /// Frames of the shot of 1920x1080.
-    #[arg(long, value_name = "N", default_value_t = 25)]
+    /// Frames of the shots of 1920x1080.
+    #[arg(long, value_name = "N", default_value_t = 100)]
     frames: usize,
     /// The program to measure, instead of one that is built.
     #[arg(long, value_name = "FILE")]
@@ -59,12 +62,14 @@ pub fn bench_batch(arguments: &Arguments) -> Result<()> {
         fs::write(bench.out.join("memory.png"), chart(&runs).draw().png()?)?;
     }
     if arguments.frames > 0 {
-        let (manifest, bytes) = large_shot(&bench.out, arguments.frames)?;
-        let kept = bench.batch(&manifest, 1, None)?;
-        // So little that no frame is kept.
-        let plain = bench.batch(&manifest, 1, Some(0.001))?;
-        text += &by_step(&kept, &plain, arguments.frames);
-        text += &season(&kept, arguments.frames, bytes);
+        for footage in FOOTAGE {
+            let (manifest, bytes) = large_shot(&bench.out, footage, arguments.frames)?;
+            let kept = bench.batch(&manifest, 1, None)?;
+            // So little that no frame is kept.
+            let plain = bench.batch(&manifest, 1, Some(0.001))?;
+            text += &by_step(footage, &kept, &plain, arguments.frames);
+            text += &season(footage, &kept, arguments.frames, bytes);
+        }
     }
     print!("{text}");
     fs::write(bench.out.join("table.md"), text).context("cannot write the tables")
@@ -91,15 +96,20 @@ fn small_shots(out: &Path, count: usize) -> Result<PathBuf> {
     manifest(&out.join("small.json"), &shots)
 }
 
-/// Writes the shot of 1920 × 1080 and its manifest. Returns the bytes of its frames too.
-fn large_shot(out: &Path, frames: usize) -> Result<(PathBuf, u64)> {
+/// Writes a shot of 1920 × 1080 and its manifest. Returns the bytes of its frames too.
+fn large_shot(out: &Path, (name, sigma): (&str, f64), frames: usize) -> Result<(PathBuf, u64)> {
     let puppet = Puppet { width: 1920, height: 1080, frames, step: 12, parts: 16, points: 12 };
-    puppet.write(&out.join("large"))?;
-    let bytes = fs::read_dir(out.join("large/frames"))?
-        .map(|entry| Ok(entry?.metadata()?.len()))
-        .sum::<Result<u64>>()
-        .context("cannot read the frames")?;
-    Ok((manifest(&out.join("large.json"), &[json!({"name": "large", "project": "large/project.json"})])?, bytes))
+    puppet.write(&out.join(name))?;
+    let mut bytes = 0;
+    for frame in 0..frames {
+        let path = out.join(format!("{name}/frames/frame_{frame:04}.png"));
+        if sigma > 0.0 {
+            grain::on_file(&path, sigma, frame as u64)?;
+        }
+        bytes += fs::metadata(&path).with_context(|| format!("cannot read {path:?}"))?.len();
+    }
+    let shot = json!({"name": name, "project": format!("{name}/project.json")});
+    Ok((manifest(&out.join(format!("{name}.json")), &[shot])?, bytes))
 }
 
 fn manifest(path: &Path, shots: &[Value]) -> Result<PathBuf> {
@@ -239,8 +249,8 @@ fn number(line: &Value, field: &str) -> f64 {
     line[field].as_f64().unwrap_or(0.0)
 }
 
-fn by_step(kept: &Run, plain: &Run, frames: usize) -> String {
-    let mut text = format!("## One shot of 1920×1080, {frames} frames, 16 parts, one thread\n\n");
+fn by_step((name, sigma): (&str, f64), kept: &Run, plain: &Run, frames: usize) -> String {
+    let mut text = format!("## One {name} shot of 1920×1080 (σ {sigma}), {frames} frames, 16 parts, one thread\n\n");
     text += "| step | processor ms a frame, frames kept | decoded again | peak MB, frames kept | decoded again |\n";
     text += "| --- | ---: | ---: | ---: | ---: |\n";
     for (one, other) in kept.steps.iter().zip(&plain.steps) {
@@ -263,7 +273,7 @@ fn by_step(kept: &Run, plain: &Run, frames: usize) -> String {
 }
 
 /// What a season costs, from a shot that was measured.
-fn season(run: &Run, frames: usize, bytes: u64) -> String {
+fn season((name, _): (&str, f64), run: &Run, frames: usize, bytes: u64) -> String {
     let (shots, length) = SEASON;
     let each = run.processor / frames as f64;
     let all = each * (shots * length) as f64;
@@ -272,7 +282,7 @@ fn season(run: &Run, frames: usize, bytes: u64) -> String {
     let kept = run.steps.iter().map(|line| number(line, "kept_bytes")).fold(0.0, f64::max);
     // What is kept grows with the frames, and so does what a shot needs.
     let need = (peak + kept * (length as f64 / frames as f64 - 1.0)) / 1e9;
-    let mut text = format!("## {shots} shots of {length} frames of 1920×1080\n\n");
+    let mut text = format!("## {shots} {name} shots of {length} frames of 1920×1080\n\n");
     text += "| workers, one core each | hours | frames a second | read MB a second | GB if all are on one machine |\n";
     text += "| ---: | ---: | ---: | ---: | ---: |\n";
     for workers in WORKERS {
