@@ -226,19 +226,34 @@ fn megabytes(bytes: u64) -> f64 {
     bytes as f64 / 1e6
 }
 
+/// Parts of a run in the chart of the memory. Each shows its greatest value: the memory rises and falls with every shot, and what
+/// matters is whether its height grows.
+const PARTS: usize = 40;
+
+/// The greatest memory in each part of a run: percent of the run, megabytes.
+fn heights(run: &Run) -> Vec<(f64, f64)> {
+    let mut most = [0u64; PARTS];
+    for (at, bytes) in &run.memory {
+        let part = (at / run.seconds * PARTS as f64) as usize;
+        most[part.min(PARTS - 1)] = most[part.min(PARTS - 1)].max(*bytes);
+    }
+    let middle = |part: usize| 100.0 * (part as f64 + 0.5) / PARTS as f64;
+    most.iter().enumerate().map(|(part, bytes)| (middle(part), megabytes(*bytes))).collect()
+}
+
 /// Memory over the run, a line for each number of shots at a time.
 fn chart(runs: &[Run]) -> Chart {
     let most = runs.iter().flat_map(|run| &run.memory).map(|(_, bytes)| megabytes(*bytes)).fold(1.0, f64::max);
     let series = runs.iter().zip(INKS).map(|(run, ink)| Series {
         name: format!("{} at a time", run.jobs),
         ink,
-        dashed: true,
-        runs: vec![run.memory.iter().map(|(at, bytes)| (100.0 * at / run.seconds, megabytes(*bytes))).collect()],
+        dashed: false,
+        runs: vec![heights(run)],
     });
     let axis = |label: &str, high: f64| Axis { label: label.into(), low: 0.0, high, logarithmic: false };
     Chart {
         title: "Memory of rototoon batch and its programs".into(),
-        note: String::new(),
+        note: format!("The most in each of {PARTS} parts of a run."),
         x: axis("% of the run", 100.0),
         panels: vec![Panel { y: axis("MB", 1.1 * most), height: 220.0, series: series.collect() }],
         marked: Vec::new(),

@@ -93,13 +93,7 @@ impl Shape {
         let mut row = vec![0.0f32; window.width()];
         for y in window.top..window.bottom {
             scans.iter_mut().for_each(|scan| scan.row(y, &mut area));
-            if std::mem::take(&mut area.touched) {
-                for (value, sum) in row.iter_mut().zip(&mut area.sums) {
-                    *value = (f64::from(std::mem::take(sum)) * unit) as f32;
-                }
-            } else {
-                row.fill(0.0);
-            }
+            area.take(unit, &mut row);
             if !each(y, &row) {
                 return false;
             }
