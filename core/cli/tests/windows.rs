@@ -128,8 +128,9 @@ fn a_file_that_is_open_elsewhere_is_kept_and_the_reason_told() {
     drop(held);
     assert_eq!(fs::read_to_string(&out).unwrap(), "mine");
     succeeded(&track(&project, &out));
-    let left = fs::read_dir(folder.path()).unwrap().filter_map(|e| e.unwrap().file_name().into_string().ok());
-    assert!(left.clone().all(|name| !name.starts_with(".rototoon")), "{:?}", left.collect::<Vec<_>>());
+    let names = fs::read_dir(folder.path()).unwrap().filter_map(|entry| entry.unwrap().file_name().into_string().ok());
+    let left: Vec<String> = names.filter(|name| name.starts_with(".rototoon")).collect();
+    assert!(left.is_empty(), "{left:?}");
 }
 
 #[test]
