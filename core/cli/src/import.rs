@@ -12,12 +12,12 @@ use std::path::PathBuf;
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("import")
-        .about("Adds shapes of Silhouette or SVG to a document, as keys of parts")
+        .about("Adds shapes of Nuke, Silhouette or SVG to a document, as keys of parts")
         .arg(arguments::project())
         .arg(
             Arg::new("shapes")
                 .value_name("SHAPES")
-                .help("FILE.fxs (Silhouette) or FILE.svg; a shape becomes the part of the same name")
+                .help("FILE.nk (Nuke), FILE.fxs (Silhouette) or FILE.svg; a shape becomes the part of the same name")
                 .required(true)
                 .value_parser(value_parser!(PathBuf)),
         )
@@ -36,9 +36,6 @@ pub fn command() -> Command {
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let [from, shapes, to] = ["project", "shapes", "output"].map(|id| arguments::path(given, id));
     let extension = shapes.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
-    if !["svg", "fxs"].contains(&extension.as_str()) {
-        return Err(Failure::Use(format!("{}: expected a name that ends in .svg or .fxs", shapes.display())));
-    }
     // Warnings about this document are not printed, because the import changes it.
     let mut document = Document::load(from)?;
     let footage = &document.scene.footage;
@@ -47,7 +44,15 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         let own = format!("{} to {}", footage.first, footage.last);
         return Err(Failure::Use(format!("--frame {still}: expected a frame of the footage, {own}")));
     }
-    let format = if extension == "svg" { ShapeFormat::Svg { still } } else { ShapeFormat::Silhouette };
+    let format = match extension.as_str() {
+        "nk" => ShapeFormat::Nuke { still },
+        "fxs" => ShapeFormat::Silhouette,
+        "svg" => ShapeFormat::Svg { still },
+        _ => {
+            let message = format!("{}: expected a name that ends in .nk, .fxs or .svg", shapes.display());
+            return Err(Failure::Use(message));
+        }
+    };
     let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", shapes.display()));
     let text = file::text(shapes).map_err(|error| failed(&format!("cannot read the shapes: {error}")))?;
     let warnings = pipeline::import(&mut document, &text, format).map_err(|error| failed(&error))?;

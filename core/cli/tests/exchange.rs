@@ -100,20 +100,23 @@ fn same(found: &Keys, expected: &Keys, tolerance: f64) {
 }
 
 #[test]
-fn silhouette_shapes_are_the_same_after_export_and_import() {
+fn shapes_of_silhouette_and_nuke_are_the_same_after_export_and_import() {
     let folder = Folder::new();
-    let (shapes, empty, out) = (folder.path("a.fxs"), folder.document("empty.json", json!([])), folder.path("o.json"));
-    run(&["export", text(&folder.captured()), "-o", text(&shapes)], 0);
-    assert_eq!(run(&["import", text(&empty), text(&shapes), "-o", text(&out)], 0), "");
-    let found = parts(&out);
-    assert_eq!(
-        found.iter().map(|part| (part.0.as_str(), part.1)).collect::<Vec<_>>(),
-        [("triangle", true), ("near <line>", false)]
-    );
-    same(&found[0].2, &triangle(), 1e-4);
-    same(&found[1].2, &line(), 1e-4);
-    let said = run(&["check", text(&out)], 1);
-    assert!(said.matches("no file").count() == 1 && said.contains("the same on the next 8 frames"), "{said}");
+    let (empty, out) = (folder.document("empty.json", json!([])), folder.path("o.json"));
+    for name in ["a.fxs", "a.nk"] {
+        let shapes = folder.path(name);
+        run(&["export", text(&folder.captured()), "-o", text(&shapes)], 0);
+        assert_eq!(run(&["import", text(&empty), text(&shapes), "-o", text(&out)], 0), "");
+        let found = parts(&out);
+        assert_eq!(
+            found.iter().map(|part| (part.0.as_str(), part.1)).collect::<Vec<_>>(),
+            [("triangle", true), ("near <line>", false)]
+        );
+        same(&found[0].2, &triangle(), 1e-4);
+        same(&found[1].2, &line(), 1e-4);
+        let said = run(&["check", text(&out)], 1);
+        assert!(said.matches("no file").count() == 1 && said.contains("the same on the next 8 frames"), "{said}");
+    }
 }
 
 #[test]
@@ -174,7 +177,8 @@ fn import_errors_are_named_and_nothing_is_written() {
         ),
         (file("cut.fxs", "<Silhouette><Object"), 1, "cut.fxs: found text that is not XML, expected XML: "),
         (file("none.svg", "<svg/>"), 1, "none.svg: found no shape, expected a path"),
-        (file("a.nk", "RotoPaint {}"), 2, "a.nk: expected a name that ends in .svg or .fxs"),
+        (file("a.nk", "RotoPaint {}"), 1, "a.nk: found no shape, expected a curvegroup of a Roto or RotoPaint node"),
+        (file("a.nk.txt", "RotoPaint {}"), 2, "a.nk.txt: expected a name that ends in .nk, .fxs or .svg"),
         (folder.path("gone.svg"), 1, "gone.svg: cannot read the shapes: "),
     ] {
         let said = run(&["import", text(&captured), text(&path), "-o", text(&out)], status);
