@@ -7,6 +7,7 @@ A lost contour is a black line with a red one in it: one of the two stands out o
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import bpy
@@ -43,57 +44,79 @@ def colours(confidence: np.ndarray) -> np.ndarray:
     return np.where(share < 0.5, low, high).astype(np.float32)
 
 
+@dataclass(frozen=True)
+class Tracked:
+    """The tracked contours of a visible layer on a frame."""
+
+    handle: object
+    starts: np.ndarray
+    """First point of each stroke, and the number of all points."""
+    made: np.ndarray
+    """For each stroke whether Track made it."""
+    points: np.ndarray
+    """All points (N, 3) in the layer."""
+    matrix: np.ndarray
+    """From the layer to the world."""
+
+
+def _tracked(ob, frame: int) -> Iterator[Tracked]:
+    """The tracked contours of an object on a frame, by layer."""
+    for layer in gp.layers(ob, ob.rototoon.contours_layer):
+        found = gp.drawings(layer).get(frame)
+        if layer.hide or found is None:
+            continue
+        handle, kind = found
+        starts = gp.offsets(handle)
+        made = gp.value(handle, gp.MADE, len(starts) - 1)
+        # On an artist's frame on which every stroke is marked, the marks are old: somebody has copied a generated frame.
+        if made.any() and (kind == gp.GENERATED or not made.all()):
+            yield Tracked(handle, starts, made, gp.positions(handle, int(starts[-1])), camera.layer_to_world(ob, layer))
+
+
 def gather(ob, frame: int) -> list[Marks]:
     """The marks of an object on a frame."""
     settings = ob.rototoon
     marks = []
-    for layer in gp.layers(ob, settings.contours_layer):
-        found = gp.drawings(layer).get(frame)
-        if layer.hide or found is None:
-            continue
-        handle, kind = found
-        starts = gp.offsets(handle)
-        made = gp.value(handle, gp.MADE, len(starts) - 1)
-        if not made.any() or (kind != gp.GENERATED and made.all()):
-            continue
-        total, matrix = int(starts[-1]), camera.layer_to_world(ob, layer)
-        points, every = gp.positions(handle, total), np.repeat(made, np.diff(starts))
+    for each in _tracked(ob, frame):
         if settings.show_confidence:
-            sure = gp.value(handle, gp.CONFIDENCE, total)[every]
-            marks.append(Marks(_world(points[every], matrix), colours(sure), 6.0))
+            marks.append(_marks_of_confidence(each))
         if settings.show_pins:
-            chosen = points[every & (gp.value(handle, gp.PIN, total) | _moved(handle, points))]
-            marks.append(Marks(_world(chosen, matrix), np.tile(PIN_COLOUR, (len(chosen), 1)), 9.0))
-            fixed = np.flatnonzero(made & (gp.value(handle, gp.CENTER, len(made))[:, 2] != 0) & (np.diff(starts) > 0))
-            middle = np.array([points[starts[i] : starts[i + 1]].mean(0) for i in fixed]).reshape(-1, 3)
-            marks.append(Marks(_world(middle, matrix), np.tile(CENTER_COLOUR, (len(fixed), 1)), 12.0))
+            marks += _marks_of_pins(each)
     return [mark for mark in marks if len(mark.points)]
+
+
+def _marks_of_confidence(each: Tracked) -> Marks:
+    every = np.repeat(each.made, np.diff(each.starts))
+    sure = gp.value(each.handle, gp.CONFIDENCE, len(each.points))[every]
+    return Marks(_world(each.points[every], each.matrix), colours(sure), 6.0)
+
+
+def _marks_of_pins(each: Tracked) -> list[Marks]:
+    """The held points, and the corrected centres."""
+    starts, points = each.starts, each.points
+    held = gp.value(each.handle, gp.PIN, len(points)) | _moved(each.handle, points)
+    chosen = points[np.repeat(each.made, np.diff(starts)) & held]
+    centres = gp.value(each.handle, gp.CENTER, len(each.made))[:, 2] != 0
+    fixed = np.flatnonzero(each.made & centres & (np.diff(starts) > 0))
+    middle = np.array([points[starts[i] : starts[i + 1]].mean(0) for i in fixed]).reshape(-1, 3)
+    return [
+        Marks(_world(chosen, each.matrix), np.tile(PIN_COLOUR, (len(chosen), 1)), 9.0),
+        Marks(_world(middle, each.matrix), np.tile(CENTER_COLOUR, (len(fixed), 1)), 12.0),
+    ]
 
 
 def lost_lines(ob, frame: int) -> list[np.ndarray]:
     """The lines (N, 3) in the world of the contours that are lost on a frame. A closed one ends where it begins."""
-    settings = ob.rototoon
-    strokes, means = [], []
-    for layer in gp.layers(ob, settings.contours_layer):
-        found = gp.drawings(layer).get(frame)
-        if layer.hide or found is None:
-            continue
-        handle, kind = found
-        starts = gp.offsets(handle)
-        made = gp.value(handle, gp.MADE, len(starts) - 1)
-        if not made.any() or (kind != gp.GENERATED and made.all()):
-            continue
-        total, matrix = int(starts[-1]), camera.layer_to_world(ob, layer)
-        points, sure = gp.positions(handle, total), gp.value(handle, gp.CONFIDENCE, total)
-        cyclic = gp.value(handle, "cyclic", len(starts) - 1)
-        for index in np.flatnonzero(made):
-            span = slice(starts[index], starts[index + 1])
-            if span.stop - span.start < 2:
-                continue
-            line = _world(points[span], matrix)
-            strokes.append(np.concatenate([line, line[:1]]) if cyclic[index] else line)
+    lines, means = [], []
+    for each in _tracked(ob, frame):
+        sure = gp.value(each.handle, gp.CONFIDENCE, len(each.points))
+        cyclic = gp.value(each.handle, "cyclic", len(each.made))
+        for index in np.flatnonzero(each.made & (np.diff(each.starts) > 1)):
+            span = slice(each.starts[index], each.starts[index + 1])
+            line = _world(each.points[span], each.matrix)
+            lines.append(np.concatenate([line, line[:1]]) if cyclic[index] else line)
             means.append(float(np.nan_to_num(np.clip(sure[span], 0, 1), nan=0.0).mean()))
-    return [line for line, verdict in zip(strokes, doubt.lost(means), strict=True) if verdict]
+    return [line for line, verdict in zip(lines, doubt.lost(means), strict=True) if verdict]
 
 
 def _world(points: np.ndarray, matrix: np.ndarray) -> np.ndarray:

@@ -106,6 +106,16 @@ def fake(addon):
 
 
 @pytest.fixture
+def live(addon):
+    """The module of the live mode, left without anything due. What a step can do, it does in one, however slow the machine is."""
+    found = addon("capture.live")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(found, "SLICE", 60.0)
+        yield found
+    found.reset()
+
+
+@pytest.fixture
 def library(addon):
     """Skips where the installed extension has no native library."""
     try:

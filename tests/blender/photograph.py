@@ -185,7 +185,7 @@ def armature() -> None:
 
 def save(name: str, pixels: np.ndarray) -> None:
     """Writes `OUT/name.png`."""
-    window.save(OUT / f"{name}.png", pixels)
+    window.save(OUT / f"{name}.png", pixels, *window.SMALL)
 
 
 def of_panel(pixels: np.ndarray, sidebar) -> np.ndarray:

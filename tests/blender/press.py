@@ -47,6 +47,8 @@ QUIET = {"show_confidence"}
 """Operators whose result is seen at once, so that they say nothing."""
 DIALOGS = {"save_clip", "save_clip_from_armature", "depth_mark", "reshape_drawing", "reshape_picture", "apply_motion", "drive_bones"}
 """Operators that ask first, in a dialog with an OK."""
+NOTICES = ("press: ", "Info: Saved", "Read blend", "Saved as", "mounted file-systems", " × Draw ")
+"""What Blender prints whatever is pressed."""
 SEEN = 12
 """Number of pixels from which on two pictures differ: the text cursor alone has fewer."""
 
@@ -92,7 +94,7 @@ def said_since(start: int) -> list[str]:
     with LOG.open("rb") as file:
         file.seek(start)
         lines = file.read().decode(errors="replace").splitlines()
-    return [line for line in lines if line.strip() and not line.startswith(("press:", "Info: Saved", "Read blend", "Saved as"))]
+    return [line for line in lines if line.strip() and not any(notice in line for notice in NOTICES)]
 
 
 def failed(lines: list[str]) -> str:
@@ -140,23 +142,27 @@ def every_operator(session: Session, every: list):
     for name in named or [name for name in studio.OPERATORS if name != "help"]:
         press_scenes.ready(addon, name)
         yield 0.3
-        panels = [panel for panel in every if buttons_of(panel, name)]
+        panels, fresh = [panel for panel in every if buttons_of(panel, name)], True
         for panel in panels:
-            yield from buttons_in(session, every, panel, name)
+            fresh = yield from buttons_in(session, every, panel, name, fresh)
 
 
-def buttons_in(session: Session, every: list, panel, name: str):
-    """Presses all buttons of an operator in a panel, each in the file as it should be."""
+def buttons_in(session: Session, every: list, panel, name: str, fresh: bool):
+    """Presses all buttons of an operator in a panel, each in the file as it should be. It is so already if `fresh`; returns whether it still
+    is."""
     done = set()
     while True:
-        press_scenes.ready(addon, name)
+        if not fresh:
+            press_scenes.ready(addon, name)
         yield from alone(every, panel)
         found = [(i, b) for i, b in enumerate(BODY.buttons) if b.name == f"rototoon.{name}" and b.key not in done]
-        if not found:
-            return
-        index, button = found[0]
-        done.add(button.key)
-        yield from press_operator(session, panel, BODY, index, name)
+        if found:
+            index, button = found[0]
+            done.add(button.key)
+            yield from press_operator(session, panel, BODY, index, name)
+            fresh = False
+        if len(found) < 2:
+            return fresh
 
 
 def every_step(session: Session, every: list):
@@ -177,14 +183,17 @@ def alone(every: list, panel):
     """Shows a panel alone, its buttons noted."""
     tab.only(every, panel, noted=True)
     yield from tab.shown()
-    yield 0.3
-    window.redrawn()
+    for _ in range(20):
+        yield 0.1
+        window.redrawn()
+        if HEADER.buttons or BODY.buttons:
+            return
 
 
 def press_operator(session: Session, panel, notes, index: int, name: str):
     """Presses a button of an operator and waits for its end."""
     button = notes.buttons[index]
-    box = tab.place(notes, index)
+    box = tab.places(notes)[index]
     if box is None:
         session.note(panel, button, "", "it can't be seen or is grey where the operator should work")
         return
@@ -288,16 +297,21 @@ def every_property(session: Session, every: list):
         for state in ("guess_bones",) if tab.title(panel) == "bones" else ("update_in_betweens",):
             press_scenes.ready(addon, state)
             yield from alone(every, panel)
-            for index, button in enumerate(list(BODY.buttons)):
+            buttons, boxes = list(BODY.buttons), tab.places(BODY)
+            for index, button in enumerate(buttons):
                 if button.kind.startswith("operator") or (tab.title(panel), button.key) in session.keys:
                     continue
-                yield from press_property(session, panel, index)
+                if [each.key for each in BODY.buttons] != [each.key for each in buttons]:
+                    # The last property changed what the panel shows.
+                    press_scenes.ready(addon, state)
+                    yield from alone(every, panel)
+                    boxes = tab.places(BODY)
+                yield from press_property(session, panel, index, boxes[index])
 
 
-def press_property(session: Session, panel, index: int):
+def press_property(session: Session, panel, index: int, box):
     """Changes a property with mouse and keys. It must have another value then, or a menu must be open."""
     button = BODY.buttons[index]
-    box = tab.place(BODY, index)
     if box is None:
         session.note(panel, button, "", "it can't be seen or is grey")
         return
@@ -319,7 +333,8 @@ def press_property(session: Session, panel, index: int):
     yield from window.typed("ESC")
     if new != old:
         setattr(button.data, button.name, old)
-        yield 0.3
+        yield 0.2
+        window.redrawn()
 
 
 def value_of(button: Button):
@@ -378,7 +393,9 @@ def session():
         found.folder.mkdir(parents=True, exist_ok=True)
         for work in (every_panel, every_property, every_operator, every_step, every_help):
             if not ONLY or work.__name__ in ONLY:
+                started = time.monotonic()
                 yield from work(found, every)
+                print(f"press: {variant}: {work.__name__}: {time.monotonic() - started:.0f} s", flush=True)
         if not ONLY:
             missing(found)
         write(found)

@@ -51,6 +51,8 @@ def ready(addon, name: str) -> None:
         call = studio.OPERATORS[name]
         ob = studio.activate(bpy.data.objects[studio.OBJECT])
         studio.activate(bpy.data.objects[call.on])
+        if name == "match_contours":
+            _second_drawing(addon, ob)
         call.prepare(addon, ob)
         if name == "make_part":
             _select(addon, ob, int(call.options["numbers"]))
@@ -58,6 +60,13 @@ def ready(addon, name: str) -> None:
     for key, value in options(name).items():
         if key not in ("filepath", "directory") and last is not None:
             setattr(last, key, value)
+
+
+def _second_drawing(addon, ob) -> None:
+    """Makes a second key frame. With only one, each new contour becomes a part at once, and nothing waits for Match Contours."""
+    bpy.context.scene.frame_set(2)
+    bpy.ops.rototoon.new_key()
+    bpy.context.scene.frame_set(1)
 
 
 def _select(addon, ob, number: int) -> None:

@@ -1,7 +1,8 @@
 """The panels of the tab Rototoon in a window: one of them alone and open, and where each of its buttons is.
 
 Blender tells no script where it draws a button. So the panel is drawn with a layout that passes everything on, notes each button, and
-greys one of them out on demand: where the two pictures differ, that button is.
+greys some of them out on demand: where two pictures differ, these buttons are. Button k is greyed in the pictures of the digits of k that
+are 1 in binary, so that n buttons take 2 + log2(n) pictures.
 """
 
 import importlib
@@ -54,10 +55,10 @@ OF_THE_CHOSEN = {"character", "motion", "content", "page"}
 
 @dataclass
 class Notes:
-    """What a panel drew last, and which of its buttons is greyed out."""
+    """What a panel drew last, and which of its buttons are greyed out."""
 
     buttons: list[Button] = field(default_factory=list)
-    grey: int | None = None
+    grey: range | frozenset[int] = frozenset()
     row: str = ""
 
 
@@ -98,7 +99,7 @@ class Layout:
         notes = self.notes
         # Without a holder of its own a button can't be greyed out.
         holder = self.real.column(align=True) if self.real.use_property_split else self.real.row(align=True)
-        holder.enabled = notes.grey != len(notes.buttons)
+        holder.enabled = len(notes.buttons) not in notes.grey
         data, name = (words[0], words[1]) if isinstance(words[0], bpy.types.bpy_struct) else (None, words[0])
         more = options.get("text", "") if kind != "operator_menu_enum" else words[1]
         button = Button(kind, name, data, more, row=notes.row)
@@ -157,6 +158,8 @@ _alone: list[type] = []
 
 def only(every: list[type], wanted: type | None, noted: bool = False) -> None:
     """Leaves the panel `wanted` alone in the tab, open, or all panels in their order. With `noted`, its buttons are noted."""
+    HEADER.buttons.clear()
+    BODY.buttons.clear()
     while _alone:
         bpy.utils.unregister_class(_alone.pop())
     for cls in every:
@@ -183,7 +186,7 @@ def shown():
         with window.in_view():
             area.spaces.active.show_region_ui = True
         area.tag_redraw()
-        yield 1.0
+        yield 0.2
         tab = sidebar.active_panel_category
         if tab == TAB:
             return
@@ -193,20 +196,34 @@ def shown():
             raise RuntimeError(f"the sidebar shows the tab {tab!r} after {PATIENCE} s")
 
 
-def place(notes: Notes, index: int) -> tuple[int, int, int, int] | None:
-    """Where a button is: left, right, bottom, top in the window. `None` if it can't be seen, or is grey in any case."""
-    pictures = []
-    for grey in (None, index):
-        notes.grey = grey
-        window.redrawn()
-        pictures.append(window.screen().astype(np.int16))
-    notes.grey = None
+def places(notes: Notes) -> list[tuple[int, int, int, int] | None]:
+    """Where each button is: left, right, bottom, top in the window. `None` for one that can't be seen, or is grey in any case."""
+    count = len(notes.buttons)
+    plain, grey = _pictured(notes, frozenset()), _pictured(notes, range(count))
+    numbers, one = np.zeros(plain.shape[:2], int), (np.abs(plain - grey) > 2).any(2)
+    for digit in range(max(count - 1, 0).bit_length()):
+        picture = _pictured(notes, frozenset(k for k in range(count) if k >> digit & 1))
+        greyed = (picture == grey).all(2)
+        # Where two buttons meet, a pixel may be of both.
+        one &= greyed | (picture == plain).all(2)
+        numbers += greyed.astype(int) << digit
+    notes.grey = frozenset()
     window.redrawn()
-    rows, columns = window.rows_of(pictures[0], view()[2])
-    differs = (np.abs(pictures[0] - pictures[1])[rows, columns] > 2).any(2)
-    if not differs.any():
+    return [_box(one & (numbers == number)) for number in range(count)]
+
+
+def _pictured(notes: Notes, grey) -> np.ndarray:
+    """The sidebar with some buttons greyed out."""
+    notes.grey = grey
+    window.redrawn()
+    return window.of_region(window.screen(), view()[2]).astype(np.int16)
+
+
+def _box(where: np.ndarray) -> tuple[int, int, int, int] | None:
+    """The rectangle around the true pixels of the sidebar's picture, in the window."""
+    if not where.any():
         return None
-    down, across = np.flatnonzero(differs.any(1)), np.flatnonzero(differs.any(0))
-    height = pictures[0].shape[0]
-    top, bottom = rows.start + down[0], rows.start + down[-1] + 1
-    return columns.start + across[0], columns.start + across[-1] + 1, height - bottom, height - top
+    sidebar = view()[2]
+    down, across = np.flatnonzero(where.any(1)), np.flatnonzero(where.any(0))
+    top = sidebar.y + sidebar.height
+    return sidebar.x + int(across[0]), sidebar.x + int(across[-1]) + 1, top - int(down[-1]) - 1, top - int(down[0])

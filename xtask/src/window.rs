@@ -31,8 +31,8 @@ rm -rf ready pictures resources table.md studio
 # Without saved preferences the first start asks for a quick set-up in front of everything.
 blender --background --python-expr "import bpy; bpy.context.preferences.view.show_splash = False; bpy.ops.wm.save_userpref()" \
   >blender.log 2>&1
-# Xvfb looks for a free number, since other screens may be in use.
-Xvfb -displayfd 3 -screen 0 "${WIDTH}x${HEIGHT}x24" 3>display >xvfb.log 2>&1 &
+# Xvfb looks for a free number, since other screens may be in use. The screen is a file, which is read faster than by a client.
+Xvfb -displayfd 3 -fbdir /photograph -screen 0 "${WIDTH}x${HEIGHT}x24" 3>display >xvfb.log 2>&1 &
 screen=$!
 for second in $(seq 30); do [ -s display ] && break; sleep 1; done
 export DISPLAY=:$(cat display)
@@ -44,8 +44,6 @@ for second in $(seq $PATIENCE); do
   sleep 1
 done
 kill "$blender" "$screen" 2>/dev/null
-[ -d pictures ] && find pictures -name '*.png' -exec \
-  mogrify -resize "1200x>" -strip +dither -colors 256 -define png:compression-level=9 {} +
 cat ready 2>/dev/null || { echo "Blender ended early:"; tail -n 20 blender.log; }
 "#;
 

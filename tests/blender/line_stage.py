@@ -1,0 +1,69 @@
+"""What the tests of traced lines share: the small line film, the film traced once, and what its strokes are."""
+
+import bpy
+import line_shots as ls
+import numpy as np
+import pytest
+
+
+@pytest.fixture(scope="module")
+def pictures(tmp_path_factory):
+    """The first picture of the film."""
+    return ls.draw_sequence(tmp_path_factory.mktemp("film"))
+
+
+@pytest.fixture
+def film(addon, library, pictures):
+    """The scene with the film."""
+    return ls.set_up(pictures)
+
+
+@pytest.fixture(scope="module")
+def kept():
+    """Where the file of the traced film is, once a test has made it."""
+    return {}
+
+
+@pytest.fixture
+def traced(addon, film, kept, pictures):
+    """The film, traced."""
+    if not kept:
+        addon("lines.tracing").make = addon("rototoon").Session.from_document
+        assert bpy.ops.rototoon.trace_drawing() == {"FINISHED"}
+        assert said(addon).text == "6 strokes on 6 frames"
+        kept["path"] = str(pictures.with_name("traced.blend"))
+        bpy.ops.wm.save_as_mainfile(filepath=kept["path"])
+    bpy.ops.wm.open_mainfile(filepath=kept["path"])
+    return bpy.context.object
+
+
+def kinds(addon, ob, layer):
+    gp = addon("blender.grease_pencil")
+    return {frame: kind for frame, (_, kind) in gp.drawings(gp.find_layer(ob, layer)).items()}
+
+
+def attribute(addon, ob, layer, frame, name):
+    gp = addon("blender.grease_pencil")
+    handle, _ = gp.drawings(gp.find_layer(ob, layer))[frame]
+    starts = gp.offsets(handle)
+    return gp.value(handle, name, int(starts[-1]) if gp.TYPES[name][1] == "POINT" else len(starts) - 1)
+
+
+def away(points, line):
+    """Greatest distance of points from a line given by dense points."""
+    return max(np.linalg.norm(line - point, axis=1).min() for point in points)
+
+
+def said(addon):
+    return addon("common.reports").take()[-1]
+
+
+def handle_of(addon, ob, layer, frame):
+    gp = addon("blender.grease_pencil")
+    return gp.drawings(gp.find_layer(ob, layer))[frame][0]
+
+
+def number_of(addon, ob, line):
+    """The number of a line of the film."""
+    first = ls.strokes(addon, ob, "Lines", 1)
+    return min(first, key=lambda number: away(first[number], ls.lines(0)[line][0]))

@@ -1,0 +1,166 @@
+"""Traced lines corrected: wrong identities, parts from strokes, and edits that go to all frames. With the real library."""
+
+import bpy
+import line_shots as ls
+import numpy as np
+import pytest
+from line_stage import film, kept, pictures, traced  # noqa: F401 - fixtures
+from line_stage import attribute, away, handle_of, kinds, number_of, said
+
+
+def test_a_wrong_identity_is_mended_from_a_frame_on(addon, traced):
+    eyes = [number_of(addon, traced, 1), number_of(addon, traced, 2)]
+    before = {frame: ls.strokes(addon, traced, "Lines", frame) for frame in range(1, 7)}
+    bpy.context.scene.frame_set(3)
+    assert bpy.ops.rototoon.match_lines(earlier=eyes[0], later=eyes[1]) == {"FINISHED"}
+    assert said(addon).text == "6 strokes are the same"
+    for frame in range(1, 7):
+        now = ls.strokes(addon, traced, "Lines", frame)
+        other = eyes if frame < 4 else eyes[::-1]
+        assert np.array_equal(now[eyes[0]], before[frame][other[0]]) and np.array_equal(now[eyes[1]], before[frame][other[1]])
+    bpy.ops.rototoon.carry_strokes()
+    assert kinds(addon, traced, "Lines")[4] == "KEYFRAME" and kinds(addon, traced, "Lines")[5] == "GENERATED"
+    now = ls.strokes(addon, traced, "Lines", 6)
+    assert away(now[eyes[0]], ls.lines(5)[2][0]) < 1.5 and away(now[eyes[1]], ls.lines(5)[1][0]) < 1.5
+
+
+def test_clicks_swap_free_and_undo(addon, traced):
+    pairing = addon("lines.pairing")
+    gp = addon("blender.grease_pencil")
+    found = pairing.LinePairing(traced, [gp.find_layer(traced, "Lines")], 2)
+    found.take()
+    item = addon("tween.pairing").Item
+    assert not found.click(item(0, 0, 1)) and found.click(item(0, 1, 2))
+    found.take()
+    assert [row.later for row in found.pairs][:3] == [0, 2, 1] and found.pairs[1].by_hand
+    assert found.free(item(0, 1, 0))
+    found.take()
+    assert found.summary() == "5 strokes are the same, 1 end, 1 begin"
+    assert found.undo() and found.undo() and not found.undo()
+    found.take()
+    assert found.summary() == "6 strokes are the same" and len(found.marks()) == 12
+
+
+def test_strokes_around_a_part_become_its_contour(addon, traced):
+    body = number_of(addon, traced, 0)
+    assert bpy.ops.rototoon.make_part(numbers=str(body), name="body") == {"FINISHED"}
+    (part,) = traced.rototoon.parts
+    assert part.name == "body" and part.closed and 8 <= part.count <= 60
+    contour = ls.strokes(addon, traced, "Contours", 1)
+    assert away(next(iter(contour.values())), ls.lines(0)[0][0]) < 2
+    with pytest.raises(RuntimeError, match="No strokes are selected"):
+        bpy.ops.rototoon.make_part(numbers="99")
+    with pytest.raises(RuntimeError, match='There is a part "body" already'):
+        bpy.ops.rototoon.make_part(numbers=str(body), name="body")
+    # On the next frame the artist selects the stroke. It is the same part.
+    bpy.context.scene.frame_set(2)
+    gp, handle = addon("blender.grease_pencil"), handle_of(addon, traced, "Lines", 2)
+    numbers = gp.value(handle, gp.TRACK, len(gp.offsets(handle)) - 1)
+    handle.attributes.new(".selection", "BOOLEAN", "CURVE").data.foreach_set("value", numbers == body)
+    bpy.ops.rototoon.make_part()
+    assert said(addon).text == "The strokes fit a part that has a contour already: this is its key on frame 2"
+    assert len(traced.rototoon.parts) == 1 and list(kinds(addon, traced, "Contours")) == [1, 2]
+
+
+def test_strokes_in_any_order_that_cross_are_cut_and_joined(addon):
+    outline = addon("lines.outline")
+    corners = np.array([(0, 0), (100, 0), (100, 60), (0, 60)], float)
+    sides = []
+    for k, (a, b) in enumerate(zip(corners, np.roll(corners, -1, 0))):
+        way = (b - a) / np.linalg.norm(b - a)
+        # The lines run 4 px beyond the corners.
+        line = a - 4 * way + np.linspace(0, 1, 30)[:, None] * (b - a + 8 * way)
+        sides.append((line[::-1] if k % 2 else line, False))
+    contour, gap = outline.joined([sides[k] for k in (2, 0, 3, 1)])
+    assert gap == 0 and contour.min() > -1e-6 and contour[:, 0].max() < 100 + 1e-6 and contour[:, 1].max() < 60 + 1e-6
+    thin = outline.thinned(contour, 0.5, 1000)
+    assert len(thin) == 4 and sorted(map(tuple, thin.round().tolist())) == sorted(map(tuple, corners.tolist()))
+    assert outline.joined([(corners[:2], False), (corners[2:], False)])[1] == pytest.approx(60)
+
+
+def edit(addon, ob, frame, number, change):
+    """Changes the points of a stroke as the artist does: `change(points)` gets layer points."""
+    gp = addon("blender.grease_pencil")
+    handle = handle_of(addon, ob, "Lines", frame)
+    starts = gp.offsets(handle)
+    i = gp.value(handle, gp.TRACK, len(starts) - 1).tolist().index(number)
+    points = gp.positions(handle, int(starts[-1]))
+    points[starts[i] : starts[i + 1]] = change(points[starts[i] : starts[i + 1]])
+    gp.put(handle, "position", points)
+    return i, slice(starts[i], starts[i + 1])
+
+
+def test_a_reshaped_stroke_is_reshaped_on_all_frames_in_its_own_frame(addon, traced):
+    arm = number_of(addon, traced, 4)
+    before = {frame: ls.strokes(addon, traced, "Lines", frame) for frame in range(1, 7)}
+    mapping = addon("blender.placement").Mapper(traced, [1], {}, ["Lines"]).at(0, 1)
+
+    def bulge(points):
+        pixels = mapping.to_pixels(points)
+        way = pixels[-1] - pixels[0]
+        side = np.array([-way[1], way[0]]) / np.linalg.norm(way)
+        return mapping.to_layer(pixels + np.sin(np.linspace(0, np.pi, len(pixels)))[:, None] * 8 * side)
+
+    edit(addon, traced, 1, arm, bulge)
+    assert bpy.ops.rototoon.spread_edits() == {"FINISHED"}
+    assert said(addon).text == "1 edited stroke, on 5 other frames"
+    for frame in range(1, 7):
+        now = ls.strokes(addon, traced, "Lines", frame)
+        assert list(now) == list(before[frame])
+        assert all(np.array_equal(now[number], before[frame][number]) for number in now if number != arm)
+        a, b = before[frame][arm][0], before[frame][arm][-1]
+        side = np.array([a[1] - b[1], b[0] - a[0]]) / np.linalg.norm(b - a)
+        height = (now[arm] - a) @ side
+        assert height.max() == pytest.approx(8, abs=1.0) and abs(height[0]) < 1.0
+    with pytest.raises(RuntimeError, match="No stroke on this frame differs"):
+        bpy.ops.rototoon.spread_edits()
+
+
+def test_looks_and_deletions_go_to_all_frames(addon, traced):
+    gp = addon("blender.grease_pencil")
+    mouth, eye = number_of(addon, traced, 3), number_of(addon, traced, 1)
+    bpy.context.scene.frame_set(3)
+    handle = handle_of(addon, traced, "Lines", 3)
+    starts = gp.offsets(handle)
+    numbers = gp.value(handle, gp.TRACK, len(starts) - 1).tolist()
+    i = numbers.index(mouth)
+    radii, used = gp.value(handle, "radius", int(starts[-1])), gp.value(handle, "material_index", len(numbers))
+    radii[starts[i] : starts[i + 1]] = 0.2
+    used[i] = 0
+    gp.put(handle, "radius", radii)
+    gp.put(handle, "material_index", used)
+    gp.remove_strokes(handle, [numbers.index(eye)])
+    before = ls.strokes(addon, traced, "Lines", 5)
+    bpy.ops.rototoon.spread_edits()
+    assert said(addon).text == "1 edited and 1 deleted strokes, on 5 other frames"
+    for frame in range(1, 7):
+        now = ls.strokes(addon, traced, "Lines", frame)
+        assert eye not in now and len(now) == 5
+        j, at = list(now).index(mouth), np.cumsum([0] + [len(points) for points in now.values()])
+        assert np.allclose(attribute(addon, traced, "Lines", frame, "radius")[at[j] : at[j + 1]], 0.2)
+        assert attribute(addon, traced, "Lines", frame, "material_index")[j] == 0
+    assert np.allclose(ls.strokes(addon, traced, "Lines", 5)[mouth], before[mouth], atol=1e-3)
+
+
+def test_a_cut_stroke_is_cut_on_all_frames(addon, traced):
+    gp, strokes, spreading = addon("blender.grease_pencil"), addon("blender.strokes"), addon("lines.spreading")
+    arm = number_of(addon, traced, 4)
+    handle = handle_of(addon, traced, "Lines", 1)
+    content = strokes.read(handle)
+    i = content.strokes(gp.TRACK).tolist().index(arm)
+    half = content.sizes[i] // 2
+    whole = np.ones(len(content.sizes), bool)
+    whole[i] = False
+    one = spreading.part(content, ~whole)
+    pieces = [strokes.Content(np.array([n]), one.types, {k: v[s] for k, v in one.point.items()}, one.curve, one.kinds)
+              for n, s in ((half, slice(0, half)), (content.sizes[i] - half, slice(half, None)))]
+    strokes.write(handle, strokes.joined(strokes.joined(spreading.part(content, whole), pieces[0]), pieces[1]))
+    before = {frame: ls.strokes(addon, traced, "Lines", frame)[arm] for frame in range(2, 7)}
+    assert bpy.ops.rototoon.spread_edits() == {"FINISHED"}
+    for frame in range(2, 7):
+        now = ls.strokes(addon, traced, "Lines", frame)
+        assert len(now) == 7 and 7 in now
+        length = np.linalg.norm(np.diff(before[frame], axis=0), axis=1).sum()
+        found = [np.linalg.norm(np.diff(now[n], axis=0), axis=1).sum() for n in (arm, 7)]
+        assert found[0] == pytest.approx(length / 2, rel=0.1) and found[1] == pytest.approx(length / 2, rel=0.1)
+        assert away(np.vstack([now[arm], now[7]]), before[frame]) < 1.5
