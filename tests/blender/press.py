@@ -104,7 +104,7 @@ def failed(lines: list[str]) -> str:
 
 def look() -> np.ndarray:
     """The window as it is, without the time of redraws in it."""
-    window.redrawn()
+    window.redrawn(whole=True)
     return window.screen()
 
 

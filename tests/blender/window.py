@@ -52,11 +52,11 @@ def install(zip_path: Path) -> None:
         raise RuntimeError(f"{zip_path} was not installed and enabled")
 
 
-def redrawn() -> None:
-    """Draws the sidebar now, and all else that Blender knows to have changed. The whole window would take twice as long."""
+def redrawn(whole: bool = False) -> None:
+    """Draws the sidebar now, and all else that Blender knows to have changed. The whole window takes twice as long."""
     area, _, sidebar = view()
     with bpy.context.temp_override(window=main_window(), area=area, region=sidebar):
-        bpy.ops.wm.redraw_timer(type="DRAW_SWAP", iterations=1)
+        bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP" if whole else "DRAW_SWAP", iterations=1)
 
 
 def filled() -> None:
