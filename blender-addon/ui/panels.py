@@ -146,7 +146,10 @@ class ROTOTOON_PT_track(DrawingPanel, bpy.types.Panel):
         hidden = _is_hidden_here(context, settings)
         column.operator("rototoon.hide_part", icon="GHOST_DISABLED" if hidden else "GHOST_ENABLED", depress=hidden)
         layout.prop(settings, "show_lost")
-        layout.prop(settings, "moved_line")
+        # In the row of a label and a menu, Blender cuts off the label in a sidebar of its usual width.
+        split = layout.split(factor=0.4)
+        split.label(text="Moved Line:")
+        split.prop(settings, "moved_line", text="")
         layout.prop(settings, "show_pins")
         held = said_of_held(context)
         if held:
@@ -241,7 +244,7 @@ class ROTOTOON_PT_lines(DrawingPanel, bpy.types.Panel):
         row.operator("rototoon.trace_drawing", icon="LINE_DATA").frames = "ALL"
         side = row.row(align=True)
         side.ui_units_x = 4
-        side.operator("rototoon.trace_drawing", text="Current").frames = "CURRENT"
+        side.operator("rototoon.trace_drawing", text="This Frame").frames = "CURRENT"
         column = layout.column(align=True)
         column.operator("rototoon.trace_image", icon="IMAGE_REFERENCE")
         column.operator("rototoon.carry_strokes", icon="TRACKING_FORWARDS")

@@ -187,7 +187,9 @@ def alone(every: list, panel):
         yield 0.1
         window.redrawn()
         if HEADER.buttons or BODY.buttons:
-            return
+            break
+    # Headers and shelves come and go with the mode, and move the panel.
+    yield from settled()
 
 
 def press_operator(session: Session, panel, notes, index: int, name: str):
@@ -198,7 +200,7 @@ def press_operator(session: Session, panel, notes, index: int, name: str):
         session.note(panel, button, "", "it can't be seen or is grey where the operator should work")
         return
     yield from window.moved(*press_scenes.aside())
-    before = yield from settled()
+    before = look()
     start = LOG.stat().st_size
     addon("common.reports").take()
     yield from window.clicked((box[0] + box[1]) / 2, (box[2] + box[3]) / 2)

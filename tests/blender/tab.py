@@ -220,10 +220,11 @@ def _pictured(notes: Notes, grey) -> np.ndarray:
 
 
 def _box(where: np.ndarray) -> tuple[int, int, int, int] | None:
-    """The rectangle around the true pixels of the sidebar's picture, in the window."""
+    """The rectangle around most of the true pixels of the sidebar's picture, in the window. What changed by itself has few of them."""
     if not where.any():
         return None
-    sidebar = view()[2]
-    down, across = np.flatnonzero(where.any(1)), np.flatnonzero(where.any(0))
+    sidebar, heights = view()[2], where.sum(1)
+    down = np.flatnonzero(heights > heights.max() / 3)
+    across = np.flatnonzero(where[down].any(0))
     top = sidebar.y + sidebar.height
     return sidebar.x + int(across[0]), sidebar.x + int(across[-1]) + 1, top - int(down[-1]) - 1, top - int(down[0])
