@@ -181,6 +181,8 @@ def every_step(session: Session, every: list):
 
 def alone(every: list, panel):
     """Shows a panel alone, its buttons noted."""
+    # Where the mouse is, a button is bright, and its tooltip covers others.
+    yield from window.moved(*press_scenes.aside())
     tab.only(every, panel, noted=True)
     yield from tab.shown()
     for _ in range(20):

@@ -1,8 +1,8 @@
 """The panels of the tab Rototoon in a window: one of them alone and open, and where each of its buttons is.
 
 Blender tells no script where it draws a button. So the panel is drawn with a layout that passes everything on, notes each button, and
-greys some of them out on demand: where two pictures differ, these buttons are. Button k is greyed in the pictures of the digits of k that
-are 1 in binary, so that n buttons take 2 + log2(n) pictures.
+greys some of them out on demand: where two pictures differ, these buttons are. Each digit of a button's number in binary
+has two pictures: in one the buttons are grey that have a 1 there, in the other those that have a 0. So n buttons take 2 + 2 log2(n) pictures.
 """
 
 import importlib
@@ -202,10 +202,10 @@ def places(notes: Notes) -> list[tuple[int, int, int, int] | None]:
     plain, grey = _pictured(notes, frozenset()), _pictured(notes, range(count))
     numbers, one = np.zeros(plain.shape[:2], int), (np.abs(plain - grey) > 2).any(2)
     for digit in range(max(count - 1, 0).bit_length()):
-        picture = _pictured(notes, frozenset(k for k in range(count) if k >> digit & 1))
-        greyed = (picture == grey).all(2)
-        # Where two buttons meet, a pixel may be of both.
-        one &= greyed | (picture == plain).all(2)
+        ones = frozenset(k for k in range(count) if k >> digit & 1)
+        greyed, other = ((_pictured(notes, chosen) == grey).all(2) for chosen in (ones, frozenset(range(count)) - ones))
+        # The edge between two buttons is of both: it is grey only where both are.
+        one &= greyed != other
         numbers += greyed.astype(int) << digit
     notes.grey = frozenset()
     window.redrawn()
@@ -220,11 +220,10 @@ def _pictured(notes: Notes, grey) -> np.ndarray:
 
 
 def _box(where: np.ndarray) -> tuple[int, int, int, int] | None:
-    """The rectangle around most of the true pixels of the sidebar's picture, in the window. What changed by itself has few of them."""
+    """The rectangle around the true pixels of the sidebar's picture, in the window."""
     if not where.any():
         return None
-    sidebar, heights = view()[2], where.sum(1)
-    down = np.flatnonzero(heights > heights.max() / 3)
-    across = np.flatnonzero(where[down].any(0))
+    sidebar = view()[2]
+    down, across = np.flatnonzero(where.any(1)), np.flatnonzero(where.any(0))
     top = sidebar.y + sidebar.height
     return sidebar.x + int(across[0]), sidebar.x + int(across[-1]) + 1, top - int(down[-1]) - 1, top - int(down[0])
