@@ -5,7 +5,10 @@ mod season;
 use season::{FRAMES, Season, draw, outcomes, square, steps};
 use serde_json::{Value, json};
 use std::fs;
-use std::process::{Child, Command, Stdio};
+#[cfg(unix)]
+use std::process::Child;
+use std::process::{Command, Stdio};
+#[cfg(unix)]
 use std::time::Duration;
 
 #[test]

@@ -5,6 +5,7 @@ mod season;
 use season::{Season, outcomes, steps};
 use serde_json::{Value, json};
 use std::fs;
+#[cfg(unix)]
 use std::process::Command;
 use std::time::{Duration, SystemTime};
 

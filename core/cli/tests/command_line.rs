@@ -351,6 +351,7 @@ fn the_svg_has_a_path_for_each_part() {
 }
 
 /// Checks that a command which could not write has left the old file, and no temporary file.
+#[cfg(unix)]
 fn unharmed(cartoon: &Cartoon, out: &Path, before: &[u8]) {
     assert_eq!(fs::read(out).unwrap(), before);
     assert!(cartoon.names().iter().all(|name| !name.starts_with(".rototoon")), "{:?}", cartoon.names());
