@@ -84,8 +84,9 @@ fn outside(pattern: &str) -> Option<String> {
         };
         depth < 0
     });
-    (path.is_absolute() || leaves)
-        .then(|| format!("the frames {pattern:?} are read from outside the document's folder"))
+    // On Windows a path with only a root or only a drive is not absolute, and leaves the folder all the same.
+    let elsewhere = path.has_root() || matches!(path.components().next(), Some(Component::Prefix(_)));
+    (elsewhere || leaves).then(|| format!("the frames {pattern:?} are read from outside the document's folder"))
 }
 
 #[cfg(test)]
