@@ -18,7 +18,8 @@ commands work together.
 fn help(command: &[&str]) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_rototoon")).args(command).arg("--help").output().unwrap();
     assert!(output.status.success(), "{command:?}");
-    String::from_utf8(output.stdout).unwrap()
+    // On Windows the program's name ends in .exe.
+    String::from_utf8(output.stdout).unwrap().replace("rototoon.exe", "rototoon")
 }
 
 /// The names below the line "Commands:".

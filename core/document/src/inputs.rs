@@ -61,7 +61,7 @@ struct Identity {
 impl Identity {
     /// The identity of the file at a path; `None` where there is no file.
     fn of(path: &Path) -> Option<Self> {
-        let real = fs::canonicalize(path).ok()?;
+        let real = crate::path::real(path).ok()?;
         // Pipes and devices may be read and written.
         real.is_file().then(|| Self { place: place(&real), path: real })
     }

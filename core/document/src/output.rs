@@ -9,7 +9,7 @@
 //! writes leaves its temporary file. The first write of a later process into the folder
 //! removes such files if they are more than an hour old.
 
-use crate::path::slashed;
+use crate::path::{real, slashed};
 use crate::unfinished::Unfinished;
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
@@ -23,6 +23,9 @@ const PREFIX: &str = ".rototoon-";
 
 /// Number of random letters and digits that follow the prefix.
 const RANDOM: usize = 6;
+
+/// Most UTF-16 letters in the name of a file of Windows.
+const MOST_LETTERS: usize = 255;
 
 /// Age after which a temporary file is left over from a process that was killed. No write takes that long.
 const LEFT_OVER: Duration = Duration::from_secs(3600);
@@ -53,7 +56,7 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Some(data) if !data.is_file() => return OpenOptions::new().write(true).open(path)?.write_all(bytes),
         _ => {}
     }
-    let target = if existing.is_some() { fs::canonicalize(path)? } else { resolved(&end_of_links(path)?)? };
+    let target = if existing.is_some() { real(path)? } else { resolved(&end_of_links(path)?)? };
     if existing.as_ref().is_some_and(|data| data.permissions().readonly()) {
         return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
     }
@@ -87,13 +90,22 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
 ///
 /// A [`WriteError`] if the file certainly cannot be written.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
+    let length = path.file_name().map_or(0, |name| name.to_string_lossy().encode_utf16().count());
+    if cfg!(windows) && length > MOST_LETTERS {
+        // Wine and some disks find such a name only when the file is made.
+        let source = io::Error::new(
+            io::ErrorKind::InvalidFilename,
+            format!("the name has {length} letters, expected at most {MOST_LETTERS}"),
+        );
+        return Err(WriteError { path: path.to_owned(), source });
+    }
     let probe = || match fs::metadata(path) {
         Ok(data) if data.is_dir() => Err(io::Error::other("it is a folder, expected a file")),
         Ok(data) if !data.is_file() => Ok(()),
         Ok(data) if data.permissions().readonly() => {
             Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"))
         }
-        Ok(_) => tempfile::tempfile_in(parent(&fs::canonicalize(path)?)).map(drop),
+        Ok(_) => tempfile::tempfile_in(parent(&real(path)?)).map(drop),
         // A name that is too long, or a folder that may not be entered.
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         Err(_) => tempfile::tempfile_in(parent(&end_of_links(path)?)).map(drop),
@@ -120,7 +132,7 @@ fn end_of_links(path: &Path) -> io::Result<PathBuf> {
 /// that renames temporary files hands paths to the system as they are.
 fn resolved(path: &Path) -> io::Result<PathBuf> {
     match path.file_name() {
-        Some(name) if cfg!(windows) => Ok(fs::canonicalize(parent(path))?.join(name)),
+        Some(name) if cfg!(windows) => Ok(real(parent(path))?.join(name)),
         _ => Ok(path.to_owned()),
     }
 }
@@ -154,7 +166,7 @@ fn parent(path: &Path) -> &Path {
 pub fn moved_pattern(pattern: &str, from: &Path, to: &Path) -> String {
     let real = |folder: &Path| {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-        fs::canonicalize(folder).or_else(|_| std::path::absolute(folder)).unwrap_or_else(|_| folder.to_owned())
+        real(folder).or_else(|_| std::path::absolute(folder)).unwrap_or_else(|_| folder.to_owned())
     };
     let pattern = slashed(Path::new(pattern));
     let (from, to) = (real(from), real(to));
