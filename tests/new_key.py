@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 """Checks that a correct new key never harms drawings that were right before.
 
-    python3 tests/new_key.py target/x86_64-unknown-linux-gnu/release/rototoon SET... [--every N]
+    python3 tests/new_key.py target/x86_64-unknown-linux-gnu/release/rototoon SET... [--some N]
 
 A set is a folder with project.json (key frames only) and truth.json. The scene is tracked once as it is. Then each part
 gets one more key, the truth, on each frame between its keys, one at a time, and the scene is tracked again. What counts are
 the drawings (a part on a frame) of which at least 95 % of the scored points were good at first, but for the one with the new
-key: the mean share of their points that are good. It may fall by at most 0.5 of 100. `--every` takes each N-th of the new
-keys, because all of them take hours on a long film.
+key: the mean share of their points that are good. It may fall by at most 0.5 of 100. `--some` takes N of the new keys by
+chance, always the same ones, because all of them take an hour on a long film.
 
-It prints the worst new keys of each set, and fails where one does harm.
+It prints the worst new keys of each set, with the share of the fall on drawings of the part itself and of other parts, and fails
+where one does harm.
 """
 
 from __future__ import annotations
@@ -18,10 +19,12 @@ import argparse
 import copy
 import json
 import math
+import random
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 RIGHT = 0.95
 """Share of good points from which on a drawing is right."""
@@ -71,23 +74,38 @@ def track(program: str, project: dict, folder: Path) -> dict:
     return json.loads(target.read_text())
 
 
-def harm(program: str, folder: Path, every: int) -> list[tuple[float, str, int]]:
-    """By how much each new key lowers the mean of what was right, worst first, with its part and frame."""
+class Fall(NamedTuple):
+    """By how many points of a hundred a new key lowers the mean of what was right: in all, on its own part, on other parts."""
+
+    points: float
+    own: float
+    others: float
+    part: str
+    frame: int
+
+
+def harm(program: str, folder: Path, some: int | None) -> list[Fall]:
+    """What each new key does, the worst first."""
     project = json.loads((folder / "project.json").read_text())
     truth = json.loads((folder / "truth.json").read_text())
     project["footage"]["pattern"] = str((folder / project["footage"]["pattern"]).resolve())
-    falls: list[tuple[float, str, int]] = []
+    falls: list[Fall] = []
     with tempfile.TemporaryDirectory() as temporary:
         before = good(project, track(program, project, Path(temporary)), truth)
         right = {drawing: share for drawing, share in before.items() if share >= RIGHT}
-        for k, frame in sorted(before)[::every]:
+        keys = sorted(before)
+        if some is not None and some < len(keys):
+            keys = random.Random(7).sample(keys, some)
+        for k, frame in keys:
             changed = copy.deepcopy(project)
             part = changed["parts"][k]
             part["keys"][str(frame)] = truth["parts"][k]["points"][str(frame)]
             after = good(project, track(program, changed, Path(temporary)), truth)
-            counted = [drawing for drawing in right if drawing != (k, frame)]
-            fall = sum(right[drawing] - after[drawing] for drawing in counted) / max(len(counted), 1)
-            falls.append((100 * fall, part["name"], frame))
+            lost = {drawing: right[drawing] - after[drawing] for drawing in right if drawing != (k, frame)}
+            scale = 100 / max(len(lost), 1)
+            own = scale * sum(fall for drawing, fall in lost.items() if drawing[0] == k)
+            others = scale * sum(fall for drawing, fall in lost.items() if drawing[0] != k)
+            falls.append(Fall(own + others, own, others, part["name"], frame))
     return sorted(falls, reverse=True)
 
 
@@ -96,17 +114,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("sets", nargs="+", type=Path)
-    parser.add_argument("--every", type=int, default=1, metavar="N")
+    parser.add_argument("--some", type=int, metavar="N")
     options = parser.parse_args()
     harmful = 0
     for folder in options.sets:
-        falls = harm(options.program, folder, options.every)
-        bad = [fall for fall in falls if fall[0] > ALLOWED]
+        falls = harm(options.program, folder, options.some)
+        bad = [fall for fall in falls if fall.points > ALLOWED]
         harmful += len(bad)
-        mean = sum(fall for fall, _, _ in falls) / max(len(falls), 1)
+        mean = sum(fall.points for fall in falls) / max(len(falls), 1)
         print(f"{folder.name}: {len(falls)} new keys, {len(bad)} do harm, mean fall {mean:.2f}", flush=True)
-        for fall, part, frame in falls[:3]:
-            print(f"    {fall:6.2f}  {part}, frame {frame}", flush=True)
+        for fall in falls[:3]:
+            shares = f"own {fall.own:.2f}, others {fall.others:.2f}"
+            print(f"    {fall.points:6.2f}  {fall.part}, frame {fall.frame} ({shares})", flush=True)
     sys.exit(1 if harmful else 0)
 
 

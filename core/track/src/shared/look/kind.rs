@@ -7,6 +7,10 @@
 //!   steeper than grain, and less steep than a line. Where light moves over the figure most of them are.
 //! - **Painted** is everything else.
 //!
+//! Pixels are counted over several key frames together, so a frame has the weight of what it shows. Only frames with at least
+//! half as many contours as the fullest one are measured. A new key of one small part therefore does not decide about the film:
+//! with equal weights for all frames one key of a hat's ribbon made a shaded film a painted one, for all parts.
+//!
 //! On six painted films 24 to 64 % of the box is solid, on seven line films at most 0.2 %. Inside the parts of flat painted
 //! films at most 34 % is shaded, of airbrushed ones at least 67 %.
 
@@ -15,7 +19,7 @@ use crate::shared::features::{Features, Level};
 use crate::shared::store::Store;
 use rototoon_base::geometry::{Point, polygon, polyline};
 use rototoon_base::scene::{FrameNumber, FrameSource, Progress, Raster, Scene};
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 /// What the drawings are made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -76,32 +80,61 @@ impl Decided {
         let by = keyed(scene);
         if by != self.by {
             let scale = crate::shared::features::working_scale(scene.footage.height);
-            let mut sums = [0.0; 2];
+            let mut sums = [Share::default(); 2];
             for (frame, contours) in &by {
                 progress.report("Reading frames", 0.0)?;
                 let working: Vec<(Vec<Point>, bool)> =
                     contours.iter().map(|(c, closed)| (c.iter().map(|&p| p / scale).collect(), *closed)).collect();
                 let shares = shares(&*store.features(frames, *frame)?, &working, scale);
-                sums = [sums[0] + shares[0], sums[1] + shares[1]];
+                sums = [sums[0].plus(shares[0]), sums[1].plus(shares[1])];
             }
-            let [solid, shaded] = sums.map(|sum| sum / by.len().max(1) as f64);
-            self.kind = match by.is_empty() {
-                false if solid < MOST_SOLID => Kind::Lines,
-                false if shaded > LEAST_SHADED => Kind::Shaded,
-                _ => Kind::Painted,
-            };
+            self.kind = kind_of(sums);
             self.by = by;
         }
         Ok(self.kind)
     }
 }
 
-/// At most [`MEASURED`] of the key frames within the footage, evenly spread, with their contours.
+/// The kind of drawings with these shares of solid and of shaded pixels.
+fn kind_of([solid, shaded]: [Share; 2]) -> Kind {
+    // A box without pixels says nothing for a line drawing.
+    if solid.of > 0 && solid.value() < MOST_SOLID {
+        Kind::Lines
+    } else if shaded.value() > LEAST_SHADED {
+        Kind::Shaded
+    } else {
+        Kind::Painted
+    }
+}
+
+/// A number of pixels among others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Share {
+    count: usize,
+    of: usize,
+}
+
+impl Share {
+    fn plus(self, other: Self) -> Self {
+        Self { count: self.count + other.count, of: self.of + other.of }
+    }
+
+    /// 0 where there are no pixels.
+    fn value(self) -> f64 {
+        self.count as f64 / self.of.max(1) as f64
+    }
+}
+
+/// At most [`MEASURED`] of the key frames within the footage, evenly spread over those with at least half as many contours as
+/// the fullest one, with their contours.
 fn keyed(scene: &Scene) -> Vec<Keyed> {
     let footage = scene.footage.first..=scene.footage.last;
-    let all: BTreeSet<FrameNumber> =
-        scene.parts.iter().flat_map(|part| part.keys.keys().copied()).filter(|f| footage.contains(f)).collect();
-    let all = Vec::from_iter(all);
+    let mut numbers: BTreeMap<FrameNumber, usize> = BTreeMap::new();
+    for (frame, _) in scene.parts.iter().flat_map(|part| &part.keys).filter(|(frame, _)| footage.contains(frame)) {
+        *numbers.entry(*frame).or_default() += 1;
+    }
+    let most = numbers.values().copied().max().unwrap_or(0);
+    let all: Vec<FrameNumber> = numbers.iter().filter(|(_, n)| 2 * **n >= most).map(|(frame, _)| *frame).collect();
     let count = all.len().min(MEASURED);
     let chosen = (0..count).map(|k| all[k * (all.len() - 1) / (count - 1).max(1)]);
     let contours = |frame: FrameNumber| {
@@ -113,23 +146,23 @@ fn keyed(scene: &Scene) -> Vec<Keyed> {
 
 /// The shares of solid and of shaded pixels of a picture. Contours are in working pixels, each of which is `scale`
 /// pixels of the picture wide.
-fn shares(features: &Features, contours: &[(Vec<Point>, bool)], scale: f64) -> [f64; 2] {
+fn shares(features: &Features, contours: &[(Vec<Point>, bool)], scale: f64) -> [Share; 2] {
     let all: Vec<Point> = contours.iter().flat_map(|(contour, _)| contour.iter().copied()).collect();
     match polygon::bounds(&all) {
         Some(bounds) => [solid(features.level(2), bounds), shaded(features.level(1), contours, AWAY.max(2.0 / scale))],
-        None => [1.0, 0.0],
+        None => [Share::default(); 2],
     }
 }
 
-/// The share of solid pixels in a box. A box without pixels is solid: it says nothing for a line drawing.
-fn solid(level: &Level, (low, high): (Point, Point)) -> f64 {
+/// The share of solid pixels in a box.
+fn solid(level: &Level, (low, high): (Point, Point)) -> Share {
     let (width, height) = level.dimensions();
     let pixel = |at: f64, count: usize| (at / level.pixel()).clamp(0.0, count as f64) as usize;
     let (x0, x1) = (pixel(low.x, width), pixel(high.x, width));
     let (y0, y1) = (pixel(low.y, height), pixel(high.y, height));
     let (columns, rows) = (x1 - x0, y1 - y0);
     if columns * rows == 0 {
-        return 1.0;
+        return Share::default();
     }
     let center = |x: usize, y: usize| Point::new((x0 + x) as f64 + 0.5, (y0 + y) as f64 + 0.5) * level.pixel();
     let colours = Raster::from_fn(columns, rows, |x, y| level.colour(center(x, y)).to_array());
@@ -142,11 +175,11 @@ fn solid(level: &Level, (low, high): (Point, Point)) -> f64 {
     let within = |at: usize, count: usize| at.saturating_sub(SOLID_REACH)..(at + SOLID_REACH + 1).min(count);
     let is_solid = |x: usize, y: usize| within(y, rows).all(|v| within(x, columns).all(|u| differs.get(u, v)));
     let count = (0..rows).map(|y| (0..columns).filter(|&x| is_solid(x, y)).count()).sum::<usize>();
-    count as f64 / (columns * rows) as f64
+    Share { count, of: columns * rows }
 }
 
 /// The share of shaded pixels of those inside the closed contours and further than `away` working pixels from all contours.
-fn shaded(level: &Level, contours: &[(Vec<Point>, bool)], away: f64) -> f64 {
+fn shaded(level: &Level, contours: &[(Vec<Point>, bool)], away: f64) -> Share {
     let (width, height) = level.dimensions();
     let mut inside = Raster::new(width, height, false);
     for (contour, _) in contours.iter().filter(|(contour, closed)| *closed && contour.len() > 2) {
@@ -169,7 +202,7 @@ fn shaded(level: &Level, contours: &[(Vec<Point>, bool)], away: f64) -> f64 {
         count += 1;
         gentle += usize::from(slope > GENTLE.0 && slope < GENTLE.1);
     }
-    gentle as f64 / count.max(1) as f64
+    Share { count: gentle, of: count }
 }
 
 /// Clears the square around a pixel.
@@ -194,7 +227,7 @@ mod tests {
     fn shares_of(colour: impl Fn(Point) -> Colour) -> [f64; 2] {
         let picture = Raster::from_fn(540, 540, |x, y| colour(Point::new(x as f64 + 0.5, y as f64 + 0.5)));
         let square = SQUARE.map(|(x, y)| Point::new(x, y)).to_vec();
-        shares(&Features::new(&picture), &[(square, true)], 1.0)
+        shares(&Features::new(&picture), &[(square, true)], 1.0).map(Share::value)
     }
 
     fn inside(p: Point) -> bool {
@@ -211,5 +244,47 @@ mod tests {
         let light = |p: Point| 0.2 + 0.8 * ((p.x - 100.0) / 300.0) as f32;
         let [solid, shaded] = shares_of(|p| if inside(p) { [1.0, 0.9, 0.8].map(|c| c * light(p)) } else { [0.95; 3] });
         assert!(solid > 0.2 && shaded > LEAST_SHADED, "{solid} {shaded}");
+    }
+
+    #[test]
+    fn a_frame_weighs_as_much_as_it_shows() {
+        let share = |count, of| Share { count, of };
+        let full = [share(4000, 10_000), share(670, 1000)];
+        let sum = |frames: &[[Share; 2]]| {
+            frames.iter().fold([Share::default(); 2], |sum, frame| [sum[0].plus(frame[0]), sum[1].plus(frame[1])])
+        };
+        assert_eq!(kind_of(sum(&[full, full])), Kind::Shaded);
+        // A part without pixels away from its contours, and one with a few that are flat.
+        for small in [[share(90, 100), Share::default()], [share(90, 100), share(0, 12)]] {
+            assert_eq!(kind_of(sum(&[full, full, small])), Kind::Shaded);
+        }
+        let lines = [share(20, 10_000), share(10, 1000)];
+        assert_eq!(kind_of(sum(&[lines, lines, [share(50, 60), Share::default()]])), Kind::Lines);
+        assert_eq!(kind_of([Share::default(); 2]), Kind::Painted);
+    }
+
+    #[test]
+    fn a_key_of_one_part_is_not_measured_beside_full_ones() {
+        let square = SQUARE.map(|(x, y)| Point::new(x, y)).to_vec();
+        let part = |frames: &[FrameNumber]| rototoon_base::scene::Part {
+            keys: frames.iter().map(|frame| (*frame, square.clone())).collect(),
+            closed: true,
+            ..Default::default()
+        };
+        let footage = rototoon_base::scene::Footage {
+            pattern: "%d".into(),
+            first: 0,
+            last: 20,
+            fps: 24.0,
+            width: 540,
+            height: 540,
+        };
+        let scene = |extra: &[FrameNumber]| Scene {
+            footage: footage.clone(),
+            parts: vec![part(&[0, 20]), part(&[0, 20]), part(&[&[0, 20], extra].concat())],
+        };
+        let frames = |extra: &[FrameNumber]| keyed(&scene(extra)).iter().map(|keyed| keyed.0).collect::<Vec<_>>();
+        assert_eq!(frames(&[]), [0, 20]);
+        assert_eq!(frames(&[8, 9, 10, 11]), [0, 20]);
     }
 }
