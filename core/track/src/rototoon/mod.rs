@@ -316,6 +316,7 @@ impl Rototoon {
             let (task, pooled) = (tasks[stretch[m]], members[m]);
             let part = &scene.parts[task.part];
             Some(Contender {
+                part: task.part,
                 span: task.span,
                 depth: task.depth,
                 hides: part.closed && part.point_count() > 2,

@@ -14,6 +14,8 @@ pub type State = (usize, usize);
 
 /// One part over one span with its hypotheses, as the joint choice reads it.
 pub struct Contender<'a> {
+    /// Index of the part. A part that is keyed between the ends of a stretch has a contender for each of its spans.
+    pub part: usize,
     /// The frames, with both keys.
     pub span: Span,
     /// Depth of the part. Larger is nearer.

@@ -5,6 +5,7 @@ use super::shadow::Shadows;
 use super::tie::Tie;
 use crate::rototoon::select::Smoothness;
 use rototoon_base::geometry::Point;
+use rototoon_base::scene::Span;
 
 /// The parts of a joint choice, their occlusions and their joints.
 pub struct Scene<'a> {
@@ -52,10 +53,19 @@ impl Scene<'_> {
     pub fn joints(&self, c: usize, state: State, paths: &Paths, but: Option<usize>) -> f64 {
         let cost = |tie: &Tie| {
             let other = tie.other(c).filter(|&(other, _)| Some(other) != but)?.0;
-            let near = self.contenders[other].drawing_at(self.contenders[c].frame_of(state.0))?;
+            let near = self.meeting(c, state.0, other)?;
             Some(self.joint(tie, (c, state), (other, (near, paths[other][near]))))
         };
         self.ties.iter().filter_map(cost).sum()
+    }
+
+    /// The drawing of contender `b` that is joined to drawing `d` of contender `a`. A key within the other part's span ends one
+    /// span and begins the next; it counts with the one that it ends.
+    fn meeting(&self, a: usize, d: usize, b: usize) -> Option<usize> {
+        let (own, other) = (&self.contenders[a], &self.contenders[b]);
+        let near = other.drawing_at(own.frame_of(d))?;
+        let begins = |drawing: usize, span: Span, outer: Span| drawing == 0 && span.first > outer.first;
+        (!begins(d, own.span, other.span) && !begins(near, other.span, own.span)).then_some(near)
     }
 
     /// Cost of one joint between two contenders in their states.
@@ -104,7 +114,7 @@ impl Scene<'_> {
         let cost = |tie: &Tie| {
             let [a, b] = tie.parts;
             let on = |(d, &h): (usize, &usize)| {
-                let near = self.contenders[b].drawing_at(self.contenders[a].frame_of(d))?;
+                let near = self.meeting(a, d, b)?;
                 Some(self.joint(tie, (a, (d, h)), (b, (near, paths[b][near]))))
             };
             paths[a].iter().enumerate().filter_map(on).sum::<f64>()

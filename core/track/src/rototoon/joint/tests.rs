@@ -61,9 +61,16 @@ fn two_parts_do_not_take_the_same_place() {
     let span = Span { first: 0, last: 2 };
     let mut memory = Memory::default();
     let chosen = |depth: f64, memory: &mut Memory| {
-        let contender =
-            |pools, models, depth| Contender { span, depth, hides: true, drawings: &drawings, pools, models };
-        let both = [contender(&far, &far_models, 0.0), contender(&near, &near_models, depth)];
+        let contender = |part, pools, models, depth| Contender {
+            part,
+            span,
+            depth,
+            hides: true,
+            drawings: &drawings,
+            pools,
+            models,
+        };
+        let both = [contender(0, &far, &far_models, 0.0), contender(1, &near, &near_models, depth)];
         choose(&both, &tie::find(&both), 0.0, vec![vec![0, 0, 0]; 2], memory)
     };
     // Parts of the same depth do not hide each other.
@@ -98,13 +105,89 @@ fn the_hinge_of_a_swinging_limb_is_its_pivot() {
     let (limb_pools, body_pools) = (pools(&limb_models), pools(&body_models));
     let span = Span { first: 0, last: 2 };
     let contenders = [
-        Contender { span, depth: 0.0, hides: true, drawings: &drawings, pools: &limb_pools, models: &limb_models },
-        Contender { span, depth: 1.0, hides: true, drawings: &drawings, pools: &body_pools, models: &body_models },
+        Contender {
+            part: 0,
+            span,
+            depth: 0.0,
+            hides: true,
+            drawings: &drawings,
+            pools: &limb_pools,
+            models: &limb_models,
+        },
+        Contender {
+            part: 1,
+            span,
+            depth: 1.0,
+            hides: true,
+            drawings: &drawings,
+            pools: &body_pools,
+            models: &body_models,
+        },
     ];
     let ties = tie::find(&contenders);
     assert_eq!(ties.len(), 1);
     let place = ties[0].place(0, 0, &limb_models[0].texture.mesh.rest).unwrap();
     assert!(place.distance(pivot) < 8.0, "{place}");
+}
+
+#[test]
+fn a_further_key_of_a_part_keeps_its_joints() {
+    let pivot = Point::new(250.0, 150.0);
+    let body: Vec<Point> =
+        [(-60.0, -80.0), (60.0, -80.0), (60.0, 25.0), (-60.0, 25.0)].map(|(x, y)| Point::new(x, y) + pivot).to_vec();
+    let limb = turned(&bar(), 0.0, pivot - Point::new(0.0, 8.0));
+    // The limb swings by 25° to its further key, and by as much again to the last one.
+    let about = |degrees: f64| {
+        let swing = Point::from_angle(degrees.to_radians());
+        (degrees, pivot - swing.rotate(pivot))
+    };
+    let at = |degrees: f64| -> Vec<Point> {
+        let swing = Point::from_angle(degrees.to_radians());
+        limb.iter().map(|&p| swing.rotate(p - pivot) + pivot).collect()
+    };
+    let spans = [Span { first: 0, last: 2 }, Span { first: 2, last: 4 }];
+    let limb_models: Vec<[Model; 2]> = [0.0, 25.0]
+        .map(|from| [model(&at(from), about(25.0)), model(&at(from + 25.0), about(-25.0))])
+        .into_iter()
+        .collect();
+    let body_models = [model(&body, (0.0, Point::ZERO)), model(&body, (0.0, Point::ZERO))];
+    let pools = |models: &[Model; 2], count: usize| -> Arc<Pools> {
+        let still = |m: usize| vec![hypothesis(&models[m], 0.0, Point::ZERO, 0.0)];
+        Arc::new((0..count).map(|d| still(usize::from(d + 1 == count))).collect())
+    };
+    let (three, five): (Vec<Drawing>, Vec<Drawing>) = (
+        (0..3).map(|i| Drawing { first: i, last: i }).collect(),
+        (0..5).map(|i| Drawing { first: i, last: i }).collect(),
+    );
+    let limb_pools = [pools(&limb_models[0], 3), pools(&limb_models[1], 3)];
+    let body_pools = pools(&body_models, 5);
+    let span_of = |k: usize| Contender {
+        part: 0,
+        span: spans[k],
+        depth: 0.0,
+        hides: true,
+        drawings: &three,
+        pools: &limb_pools[k],
+        models: &limb_models[k],
+    };
+    let whole = Contender {
+        part: 1,
+        span: Span { first: 0, last: 4 },
+        depth: 1.0,
+        hides: true,
+        drawings: &five,
+        pools: &body_pools,
+        models: &body_models,
+    };
+    let contenders = [span_of(0), span_of(1), whole];
+    let ties = tie::find(&contenders);
+    let mut joined: Vec<[usize; 2]> = ties.iter().map(|tie| tie.parts).collect();
+    joined.sort_unstable();
+    assert_eq!(joined, [[0, 2], [1, 2]]);
+    for tie in &ties {
+        let place = tie.place(tie.parts[0], 0, &limb_models[tie.parts[0]][0].texture.mesh.rest).unwrap();
+        assert!(place.distance(pivot) < 8.0, "{place}");
+    }
 }
 
 #[test]
@@ -118,7 +201,8 @@ fn the_jump_of_a_stretch_is_measured_on_the_best_hypotheses() {
         };
         let pools: Arc<Pools> = Arc::new(places.map(pool).to_vec());
         let span = Span { first: 0, last: 4 };
-        let alone = Contender { span, depth: 0.0, hides: true, drawings: &drawings, pools: &pools, models: &models };
+        let alone =
+            Contender { part: 0, span, depth: 0.0, hides: true, drawings: &drawings, pools: &pools, models: &models };
         jumps::measured(&[alone])
     };
     assert!(jump([0.0, 10.0, 20.0, 30.0, 40.0]) < 1e-9, "even motion has none");
