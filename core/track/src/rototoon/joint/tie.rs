@@ -59,12 +59,11 @@ pub fn find(contenders: &[Contender]) -> Vec<Tie> {
             (0..contenders.len()).filter(|&b| contenders[b].part != own.part && overlap(own.span, contenders[b].span));
         let hinges = others.filter_map(|b| {
             let chains = shared(contenders, c, b)?;
-            hinge(&chains).map(|(tear, places)| (tear, b, chains, places))
+            hinge(&chains).map(|(tear, places)| (tear, chains, places))
         });
-        let Some((_, best, chains, places)) = hinges.min_by(|x, y| x.0.total_cmp(&y.0)) else { continue };
+        let Some((_, chains, places)) = hinges.min_by(|x, y| x.0.total_cmp(&y.0)) else { continue };
         for &b in chains[1].links.iter().filter(|&&b| overlap(own.span, contenders[b].span)) {
-            debug_assert_eq!(contenders[b].part, contenders[best].part);
-            if !ties.iter().any(|t| t.parts == [b, c] || t.parts == [c, b]) {
+            if !ties.iter().any(|t| t.parts == [b, c]) {
                 ties.push(Tie {
                     parts: [c, b],
                     bindings: [chains[0].bindings(c, places), chains[1].bindings(b, places)],
