@@ -263,11 +263,6 @@ def offsets(drawing: bpy.types.bpy_struct) -> np.ndarray:
     return found
 
 
-def names(drawing: bpy.types.bpy_struct) -> frozenset[str]:
-    """The names of a drawing's attributes."""
-    return frozenset(attribute.name for attribute in drawing.attributes)
-
-
 def has(drawing: bpy.types.bpy_struct, name: str) -> bool:
     """Whether a drawing has an attribute."""
     return drawing.attributes.get(name) is not None

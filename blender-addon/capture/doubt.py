@@ -61,6 +61,16 @@ def mean(drawing: contours.Drawing, span: slice) -> float:
     return float(np.nan_to_num(np.clip(values, 0, 1), nan=0.0).mean()) if len(values) else 0.0
 
 
+def means(handle) -> np.ndarray:
+    """The mean confidence of each generated stroke of a drawing. What is no number counts as lost."""
+    starts = gp.offsets(handle)
+    sizes = np.diff(starts)
+    values = np.nan_to_num(np.clip(gp.value(handle, gp.CONFIDENCE, int(starts[-1])), 0, 1), nan=0.0)
+    before = np.concatenate([[0.0], np.cumsum(values, dtype=np.float64)])
+    made = gp.value(handle, gp.MADE, len(sizes)) & (sizes > 0)
+    return (before[starts[1:]] - before[starts[:-1]])[made] / sizes[made]
+
+
 def weakest(ob, found: contours.Contours) -> tuple[int, float]:
     """The scene frame where the next key helps most, and its doubt as a share of the parts there, 0 to 1."""
     answer = judged(ob, found)

@@ -1,7 +1,7 @@
 """Where an object's work stands: what the panels say, and which step comes next.
 
-Reading it costs one look at the drawings that the artist made; of generated drawings only the pins are read. They are read from a copy,
-which Blender does not allow while it draws panels. So panels are told what was read last, and a moment after a change `arrivals`
+Reading it costs one look at the drawings that the artist made; of generated drawings only pins and confidence are read. They are read
+from a copy, which Blender does not allow while it draws panels. So panels are told what was read last, and a moment after a change `arrivals`
 reads again.
 """
 
@@ -14,6 +14,7 @@ import numpy as np
 from bpy.app.handlers import persistent
 
 from ..blender import grease_pencil as gp
+from . import doubt
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,8 @@ class Stand:
     """Whether generated points on the scene's frame were moved since the last Track."""
     line_moved: bool = False
     """Whether every point of a line was."""
+    lost: list[int] = field(default_factory=list)
+    """Scene frames with a lost contour. The list rises."""
     snapped: bool = False
     copied: bool = False
     """Whether the contours on two key frames are equal: a key was copied, and is not fitted yet."""
@@ -83,13 +86,16 @@ def read(ob: bpy.types.Object) -> Stand:
     if not stand.footage:
         return stand
     names = [layer.name for layer in gp.layers(ob, settings.contours_layer)]
+    least: dict[int, float] = {}
     with gp.copied(ob.data) as data:
         for name in names:
             for frame, (handle, kind) in gp.drawings(data.layers[name]).items():
                 _count(stand, frame, handle, kind)
                 _note_held(stand, frame, handle, kind)
+                _note_least(least, frame, handle, kind)
                 if frame == current:
                     _note_moved(stand, handle)
+    stand.lost = sorted(frame for frame, verdict in zip(least, doubt.lost(list(least.values())), strict=True) if verdict)
     snapped = gp.find_layer(ob, settings.snapped_layer)
     stand.snapped = snapped is not None and bool(gp.frame_numbers(snapped))
     return stand
@@ -131,6 +137,16 @@ def _note_held(stand: Stand, frame: int, handle, kind: str) -> None:
         stand.held[frame] = Held(
             before.lines + int(whole.sum()), before.points + int(pinned[~whole].sum()), before.middles + middles
         )
+
+
+def _note_least(least: dict[int, float], frame: int, handle, kind: str) -> None:
+    """Notes the least sure of a frame's tracked contours. If any contour is lost, this one is."""
+    if not gp.has(handle, gp.CONFIDENCE):
+        return
+    means = doubt.means(handle)
+    # The marks on a copied frame of which every stroke is generated are old, see `_count`.
+    if len(means) and (kind == gp.GENERATED or len(means) < len(gp.offsets(handle)) - 1):
+        least[frame] = min(least.get(frame, 1.0), float(means.min()))
 
 
 def _note_moved(stand: Stand, handle) -> None:

@@ -57,6 +57,9 @@ def _correction(ob, now: stand.Stand) -> Step:
     lost = _lost(ob) if now.tracked else ""
     if lost:
         return Step(False, "Correct", "rototoon.new_key", "KEY_HLT", f"{lost}. Go there, set a key, fit the line in Edit Mode (Tab), then Track")
+    if now.lost:
+        hint = f"Contours are lost on {frames(now.lost)}. Go there, move them in Edit Mode (Tab, G, R), then Track"
+        return Step(False, "Correct", "rototoon.weakest_frame", "FRAME_NEXT", hint)
     done = now.corrected or (now.snapped and now.tracked > 0)
     hint = "In Edit Mode, press 2 and click a line that is off. Move it (G), turn it (R), then Track"
     return Step(done, "Correct", "rototoon.weakest_frame", "FRAME_NEXT", hint)
@@ -68,6 +71,14 @@ def _lost(ob) -> str:
         for picture in ends.wanted(part):
             return f'"{part.name}" needs a key on frame {picture + ob.rototoon.frame_offset}'
     return ""
+
+
+def frames(numbers: list[int]) -> str:
+    """Frames in words. More than three are counted."""
+    if len(numbers) > 3:
+        return f"{len(numbers)} frames, first on {numbers[0]}"
+    *before, last = map(str, numbers)
+    return f"frames {', '.join(before)} and {last}" if before else f"frame {last}"
 
 
 def next_of(steps: list[Step]) -> Step | None:

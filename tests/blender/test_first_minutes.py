@@ -318,6 +318,30 @@ def test_steps_name_the_part_that_needs_a_key(addon, fake, tmp_path):
     assert step.text == "Correct" and step.hint.startswith('"Part 2" needs a key on frame 4')
 
 
+def test_steps_name_the_frames_with_lost_contours(addon, fake, library, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.track()
+    start, stand, gp = addon("ui.start"), addon("capture.stand"), addon("blender.grease_pencil")
+    assert stand.read(ob).lost == [], "half sure is not lost"
+    layer = gp.layers(ob, ob.rototoon.contours_layer)[0]
+    made = [frame for frame, (_, kind) in gp.drawings(layer).items() if kind == gp.GENERATED]
+    for count in (1, 2, 4):
+        for frame in made[:count]:
+            handle = gp.drawings(layer)[frame][0]
+            strokes = gp.offsets(handle)
+            sure = gp.value(handle, gp.CONFIDENCE, int(strokes[-1]))
+            sure[strokes[-2] :] = 0.2
+            gp.put(handle, gp.CONFIDENCE, sure)
+        found = stand.read(ob)
+        assert found.lost == made[:count]
+        step = start.next_of(start.steps_of(ob))
+        assert (step.text, step.operator) == ("Correct", "rototoon.weakest_frame")
+        assert f"lost on {start.frames(made[:count])}." in step.hint
+    assert start.frames(made[:1]) == f"frame {made[0]}"
+    assert start.frames(made[:2]) == f"frames {made[0]} and {made[1]}"
+    assert start.frames(made[:4]) == f"4 frames, first on {made[0]}"
+
+
 @pytest.mark.parametrize(
     ("path", "name"),
     [
