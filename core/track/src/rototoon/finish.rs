@@ -207,6 +207,9 @@ fn refiner(stage: &Stage) -> Option<Refiner> {
     if !stage.kit.mechanisms.has(Mechanism::FigureAndGround) {
         refiner.forget_figure();
     }
+    if !stage.kit.mechanisms.has(Mechanism::Noise) {
+        refiner.forget_noise();
+    }
     Some(refiner)
 }
 

@@ -33,11 +33,15 @@ pub enum Mechanism {
     Blending,
     /// Contours are refined by their own colour templates.
     Refinement,
+    /// Pulls of the refinement count less where they are wrong between the keys.
+    Noise,
+    /// Parts that moved as one body between the keys stay together.
+    Companions,
 }
 
 impl Mechanism {
     /// Every mechanism with its id on the command line of the benchmark.
-    pub const ALL: [(Self, &str); 12] = [
+    pub const ALL: [(Self, &str); 14] = [
         (Self::Looks, "looks"),
         (Self::Flow, "flow"),
         (Self::Search, "search"),
@@ -50,6 +54,8 @@ impl Mechanism {
         (Self::FigureAndGround, "figure-and-ground"),
         (Self::Blending, "blending"),
         (Self::Refinement, "refinement"),
+        (Self::Noise, "noise"),
+        (Self::Companions, "companions"),
     ];
 
     /// The mechanism with an id. `None` if there is no such mechanism.

@@ -4,8 +4,11 @@
 //! - Where a part is in doubt but a part that it is joined to is not, the place of the joint is known. So the part is
 //!   tried in all directions about the joint. That finds limbs that swung too far or bent too much for the chains, also
 //!   in places that the search over the complete picture ranks too low.
+//! - Where a part is not where the body that it goes with takes it, the body's motion is tried.
 
-use super::joint::tie::Lead;
+use super::joint::companion::Motions;
+use super::joint::lead::Lead;
+use super::lattice::mesh::Binding;
 use super::pool::{Hypothesis, Pools, hypothesis, is_new, swept};
 use super::pooled::Pooled;
 use super::propagate::{Pose, mean_distance};
@@ -39,7 +42,7 @@ pub(super) fn mend(stage: &Stage, source: &Pooled, path: &[usize], leads: &[Lead
     Ok(extended)
 }
 
-/// New hypotheses about the joints with surer parts.
+/// New hypotheses about the joints with surer parts, and where bodies carry the part.
 fn led(stage: &Stage, pools: &Pools, last: usize, leads: &[Lead]) -> Result<Pools, TrackError> {
     (0..last + 1)
         .into_par_iter()
@@ -47,10 +50,15 @@ fn led(stage: &Stage, pools: &Pools, last: usize, leads: &[Lead]) -> Result<Pool
         .map(|d| {
             let mut found = Vec::new();
             for lead in leads.iter().filter(|_| d != 0 && d != last && !stage.corrected(d)) {
-                let Some(place) = lead.places[d] else { continue };
                 stage.kit.progress.report("Tracking", 0.85)?;
                 for model in 0..2 {
-                    found.extend(about(stage, d, model, lead, place).into_iter().filter(|h| is_new(&pools[d], h)));
+                    let new = match lead {
+                        Lead::Hinge { bindings, places } => {
+                            places[d].map(|place| about(stage, d, model, &bindings[model], place))
+                        }
+                        Lead::Body(motions) => motions[d].map(|motions| vec![carried(stage, d, model, &motions)]),
+                    };
+                    found.extend(new.into_iter().flatten().filter(|h| is_new(&pools[d], h)));
                 }
             }
             Ok(found)
@@ -59,11 +67,11 @@ fn led(stage: &Stage, pools: &Pools, last: usize, leads: &[Lead]) -> Result<Pool
 }
 
 /// The best poses of a model rotated about its joint, aligned. `place` is the place of the joint in working pixels.
-fn about(stage: &Stage, d: usize, model: usize, lead: &Lead, place: Point) -> Vec<Hypothesis> {
+fn about(stage: &Stage, d: usize, model: usize, joint: &Binding, place: Point) -> Vec<Hypothesis> {
     let (own, scenery) = (&stage.models[model], stage.scenery(model, d));
     let mut starts: Vec<Pose> = Vec::new();
     for shape in [&own.texture.mesh.rest, &own.bent] {
-        let pivot = lead.bindings[model].at(shape);
+        let pivot = joint.at(shape);
         for degrees in (0..360).step_by(TURN_STEP) {
             let turn = Point::from_angle((degrees as f64).to_radians());
             let nodes = shape.iter().map(|&q| turn.rotate(q - pivot) + place).collect();
@@ -81,4 +89,11 @@ fn about(stage: &Stage, d: usize, model: usize, lead: &Lead, place: Point) -> Ve
         }
     }
     kept.into_iter().map(|start| hypothesis(stage, d, model, own.realigned(&scenery, &start.nodes), None)).collect()
+}
+
+/// The pose of a model that a body's motion carries from the model's key, aligned.
+fn carried(stage: &Stage, d: usize, model: usize, motions: &Motions) -> Hypothesis {
+    let (own, scenery) = (&stage.models[model], stage.scenery(model, d));
+    let nodes: Vec<Point> = own.texture.mesh.rest.iter().map(|&q| motions[model].apply(q)).collect();
+    hypothesis(stage, d, model, own.realigned(&scenery, &nodes), None)
 }

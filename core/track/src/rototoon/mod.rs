@@ -53,9 +53,9 @@ use crate::shared::look::kind::Decided;
 use crate::shared::look::{Kind, Looks};
 use crate::shared::store::Store;
 use finish::{Finish, Finished, finish};
-use joint::Contender;
+use joint::lead::{Lead, leads};
 use joint::shadow::Memory;
-use joint::tie::{self, Lead, Tie, leads};
+use joint::{Bonds, Contender, companion, tie};
 use mechanisms::{Mechanism, Mechanisms};
 use outward::plan::Portion;
 use pooled::Pooled;
@@ -195,11 +195,11 @@ impl Rototoon {
         for stretch in stretches(tasks) {
             let members: Vec<&Pooled> = stretch.iter().map(|&t| &*pooled[t]).collect();
             let start = members.iter().map(|m| m.path.clone()).collect();
-            let mut joints = None;
-            let (paths, leads) = self.chosen((scene, tasks, &stretch), &members, start, &mut joints);
+            let mut bonds = None;
+            let (paths, leads) = self.chosen((scene, tasks, &stretch), &members, start, &mut bonds);
             let mended = self.mend_all(&stretch, &pooled, &paths, &leads, frames, &shared)?;
             let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
-            let (paths, _) = self.chosen((scene, tasks, &stretch), &members, paths, &mut joints);
+            let (paths, _) = self.chosen((scene, tasks, &stretch), &members, paths, &mut bonds);
             let hiding = self.mechanisms.has(Mechanism::Hiding);
             let plan = |m: usize| Finish::of(scene, tasks, &stretch, &members, &paths, (m, hiding));
             let plans = (0..members.len()).map(plan).collect();
@@ -306,7 +306,7 @@ impl Rototoon {
         (scene, tasks, stretch): (&Scene, &[Task], &[usize]),
         members: &[&Pooled],
         start: Vec<Vec<usize>>,
-        ties: &mut Option<Vec<Tie>>,
+        bonds: &mut Option<Bonds>,
     ) -> (Vec<Vec<usize>>, Vec<Vec<Lead>>) {
         if !self.mechanisms.has(Mechanism::JointChoice) {
             return (start, vec![Vec::new(); members.len()]);
@@ -326,15 +326,18 @@ impl Rototoon {
             })
         };
         let mut contenders: Vec<Contender> = free.iter().filter_map(contender).collect();
-        let hang = self.mechanisms.has(Mechanism::Joints);
-        let ties = ties.get_or_insert_with(|| if hang { tie::find(&contenders) } else { Vec::new() });
+        let has = |mechanism| self.mechanisms.has(mechanism);
+        let bonds = bonds.get_or_insert_with(|| Bonds {
+            ties: if has(Mechanism::Joints) { tie::find(&contenders) } else { Vec::new() },
+            companions: if has(Mechanism::Companions) { companion::find(&contenders) } else { Vec::new() },
+        });
         if !self.mechanisms.has(Mechanism::Hiding) {
             contenders.iter_mut().for_each(|contender| contender.hides = false);
         }
         let start = free.iter().map(|&m| start[m].clone()).collect();
         let jump = if self.mechanisms.has(Mechanism::Jumps) { joint::jumps::measured(&contenders) } else { 0.0 };
-        let found = joint::choose(&contenders, ties, jump, start, &mut self.shadows);
-        let led = leads(&contenders, ties, &found);
+        let found = joint::choose(&contenders, bonds, jump, start, &mut self.shadows);
+        let led = leads(&contenders, bonds, &found);
         let (mut paths, mut all_leads) = (vec![Vec::new(); members.len()], vec![Vec::new(); members.len()]);
         for ((&m, path), lead) in free.iter().zip(found).zip(led) {
             (paths[m], all_leads[m]) = (path, lead);

@@ -2,7 +2,7 @@
 //! joint choice. Each is a pure function of its input.
 
 use super::corrected;
-use super::joint::tie::Lead;
+use super::joint::lead::Lead;
 use super::mend::mend;
 use super::pool;
 use super::pooled::Pooled;

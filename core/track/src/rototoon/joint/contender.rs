@@ -3,6 +3,7 @@
 use crate::rototoon::pool::Pools;
 use crate::rototoon::propagate::Model;
 use crate::shared::drawings::Drawing;
+use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, Span};
 use std::sync::Arc;
 
@@ -31,6 +32,11 @@ pub struct Contender<'a> {
 }
 
 impl Contender<'_> {
+    /// The part's control points at both keys, in working pixels.
+    pub fn keys(&self) -> [&[Point]; 2] {
+        [0, self.pools.len() - 1].map(|d| &self.pools[d][0].points[..])
+    }
+
     /// Index of the drawing that a frame shows. `None` if the frame is outside the span.
     pub fn drawing_at(&self, frame: FrameNumber) -> Option<usize> {
         if frame < self.span.first || frame > self.span.last {

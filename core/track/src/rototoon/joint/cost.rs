@@ -1,5 +1,6 @@
-//! The cost of a choice of hypotheses: their fit, given their occluders, and torn joints.
+//! The cost of a choice of hypotheses: their fit, given their occluders, torn joints, and companions that come apart.
 
+use super::companion::{Companions, Pair};
 use super::contender::{Contender, Paths, State};
 use super::shadow::Shadows;
 use super::tie::Tie;
@@ -15,6 +16,8 @@ pub struct Scene<'a> {
     pub shadows: &'a Shadows,
     /// The joints between parts.
     pub ties: &'a [Tie],
+    /// The parts that go with others.
+    pub companions: &'a Companions<'a>,
     /// How far drawings jump ([`super::jumps`]), in working pixels.
     pub jump: f64,
 }
@@ -49,14 +52,15 @@ impl Scene<'_> {
         sum
     }
 
-    /// Cost of the joints of `c` if `c` is in the state given. The joint with the contender `but` is left out.
+    /// Cost of the joints and companions of `c` if `c` is in the state given. Those with the contender `but` are left out.
     pub fn joints(&self, c: usize, state: State, paths: &Paths, but: Option<usize>) -> f64 {
-        let cost = |tie: &Tie| {
-            let other = tie.other(c).filter(|&(other, _)| Some(other) != but)?.0;
-            let near = self.meeting(c, state.0, other)?;
-            Some(self.joint(tie, (c, state), (other, (near, paths[other][near]))))
+        let present = |other: usize| {
+            let near = self.meeting(c, state.0, other).filter(|_| Some(other) != but)?;
+            Some((other, (near, paths[other][near])))
         };
-        self.ties.iter().filter_map(cost).sum()
+        let hinge = |tie: &Tie| Some(self.joint(tie, (c, state), present(tie.other(c)?.0)?));
+        let pair = |&pair: &Pair| Some(self.together(pair, (c, state), present(other(pair, c)?)?));
+        self.ties.iter().filter_map(hinge).sum::<f64>() + self.companions.pairs.iter().filter_map(pair).sum::<f64>()
     }
 
     /// The drawing of contender `b` that is joined to drawing `d` of contender `a`. A key within the other part's span ends one
@@ -80,9 +84,18 @@ impl Scene<'_> {
         }
     }
 
-    /// The joint between two contenders, if they have one.
-    pub fn tie_of(&self, a: usize, b: usize) -> Option<&Tie> {
-        self.ties.iter().find(|tie| tie.other(a).is_some_and(|(other, _)| other == b))
+    /// Cost of a pair of companions in their states, given in either order.
+    fn together(&self, pair: Pair, a: (usize, State), b: (usize, State)) -> f64 {
+        let [part, body] = if pair[0] == a.0 { [a.1, b.1] } else { [b.1, a.1] };
+        self.companions.cost(pair, part, body)
+    }
+
+    /// Cost of all joints and companions between two contenders in their states.
+    pub fn bond(&self, a: (usize, State), b: (usize, State)) -> f64 {
+        let joined = |tie: &&Tie| tie.other(a.0).is_some_and(|(other, _)| other == b.0);
+        let ties = self.ties.iter().filter(joined).map(|tie| self.joint(tie, a, b)).sum::<f64>();
+        let pairs = self.companions.pairs.iter().filter(|&&pair| other(pair, a.0) == Some(b.0));
+        ties + pairs.map(|&pair| self.together(pair, a, b)).sum::<f64>()
     }
 
     /// The cost of motion of a contender.
@@ -108,17 +121,25 @@ impl Scene<'_> {
         seen.iter().map(looks).sum::<f64>() + who.iter().map(smooth).sum::<f64>() + self.torn(who, paths)
     }
 
-    /// Cost of the joints of the contenders in `who`. A joint between two of them counts once.
+    /// Cost of the joints and companions of the contenders in `who`. What is between two of them counts once.
     fn torn(&self, who: &[usize], paths: &Paths) -> f64 {
-        let touched = self.ties.iter().filter(|tie| who.iter().any(|&c| tie.other(c).is_some()));
-        let cost = |tie: &Tie| {
-            let [a, b] = tie.parts;
+        let touched = |parts: &[usize; 2]| who.iter().any(|c| parts.contains(c));
+        let along = |[a, b]: [usize; 2], cost: &dyn Fn((usize, State), (usize, State)) -> f64| -> f64 {
             let on = |(d, &h): (usize, &usize)| {
                 let near = self.meeting(a, d, b)?;
-                Some(self.joint(tie, (a, (d, h)), (b, (near, paths[b][near]))))
+                Some(cost((a, (d, h)), (b, (near, paths[b][near]))))
             };
-            paths[a].iter().enumerate().filter_map(on).sum::<f64>()
+            paths[a].iter().enumerate().filter_map(on).sum()
         };
-        touched.map(cost).sum()
+        let ties = self.ties.iter().filter(|tie| touched(&tie.parts));
+        let pairs = self.companions.pairs.iter().filter(|pair| touched(pair));
+        ties.map(|tie| along(tie.parts, &|a, b| self.joint(tie, a, b))).sum::<f64>()
+            + pairs.map(|&pair| along(pair, &|a, b| self.together(pair, a, b))).sum::<f64>()
     }
+}
+
+/// The contender that a pair has beside `c`. `None` if `c` is not in it.
+pub fn other(pair: Pair, c: usize) -> Option<usize> {
+    let end = pair.iter().position(|&p| p == c)?;
+    Some(pair[1 - end])
 }

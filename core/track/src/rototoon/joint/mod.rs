@@ -5,7 +5,8 @@
 //! right one. So if two equal legs both choose the same drawn leg, that costs more than one on each. And a part that is
 //! really hidden is not pulled out to a place that happens to have its colour.
 //!
-//! The energy is E = Σ_parts [ Σ_drawings √U + smoothness ] plus the cost of torn joints ([`tie`]). U is the visible
+//! The energy is E = Σ_parts [ Σ_drawings √U + smoothness ] plus the cost of torn joints ([`tie`]) and of companions that
+//! come apart ([`companion`]). U is the visible
 //! energy of a hypothesis, given the choices of the nearer parts. The smoothness is that of [`super::select`].
 //!
 //! E is lowered by moves. A move changes the paths of one part, or of two parts of which one hides the other, on all
@@ -15,9 +16,11 @@
 //! Limits: the result is a local minimum with respect to these moves. Parts that are keyed on different frames move
 //! singly only.
 
+pub mod companion;
 mod contender;
 pub mod cost;
 pub mod jumps;
+pub mod lead;
 mod moves;
 pub mod pairs;
 pub mod shadow;
@@ -27,6 +30,7 @@ pub mod tie;
 
 pub use contender::Contender;
 
+use companion::{Companions, Pair};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use shadow::{Memory, Shadows};
 use std::collections::BTreeMap;
@@ -37,20 +41,29 @@ const ROUNDS: usize = 4;
 /// Number of moves computed in parallel.
 const AT_ONCE: usize = 8;
 
-/// The hypothesis that each contender follows on each of its drawings; `ties` are their hinges ([`tie::find`]), `jump`
-/// is how far drawings jump ([`jumps`]), and `paths` is where to start from.
+/// What holds contenders together.
+#[derive(Default)]
+pub struct Bonds {
+    /// Their joints.
+    pub ties: Vec<Tie>,
+    /// Parts that go with others.
+    pub companions: Vec<Pair>,
+}
+
+/// The hypothesis that each contender follows on each of its drawings; `bonds` hold them together, `jump` is how far drawings jump ([`jumps`]), and `paths` is where to start from.
 pub fn choose(
     contenders: &[Contender],
-    ties: &[Tie],
+    bonds: &Bonds,
     jump: f64,
     mut paths: Vec<Vec<usize>>,
     memory: &mut Memory,
 ) -> Vec<Vec<usize>> {
     let shadows = Shadows::cast(contenders, memory);
-    if shadows.none() && ties.is_empty() && jump == 0.0 {
+    if shadows.none() && bonds.ties.is_empty() && bonds.companions.is_empty() && jump == 0.0 {
         return paths;
     }
-    let scene = cost::Scene { contenders, shadows: &shadows, ties, jump };
+    let companions = Companions::new(contenders, &bonds.companions);
+    let scene = cost::Scene { contenders, shadows: &shadows, ties: &bonds.ties, companions: &companions, jump };
     let pairs = shadows.pairs();
     let same = |a: usize, b: usize| {
         contenders[a].drawings == contenders[b].drawings && contenders[a].span == contenders[b].span

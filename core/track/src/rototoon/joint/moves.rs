@@ -5,7 +5,7 @@
 //! pair of hypotheses, and its motion cost is the sum of both parts' motion costs ([`pairs`](super::pairs)).
 
 use super::contender::{Paths, State};
-use super::cost::Scene;
+use super::cost::{Scene, other};
 use super::pairs::{PairProblem, best_pair};
 use crate::rototoon::select::{Candidate, best_path};
 
@@ -27,7 +27,7 @@ impl Scene<'_> {
     }
 
     /// The contenders whose choices a move of `who` depends on: the contenders that hide them, that they hide, that
-    /// hide the same contenders as they do, and that they are joined to.
+    /// hide the same contenders as they do, that they are joined to, and that are their companions.
     pub fn seen_by(&self, who: &[usize]) -> Vec<usize> {
         let mut seen: Vec<usize> = who.to_vec();
         for &c in who {
@@ -37,6 +37,7 @@ impl Scene<'_> {
                 seen.extend(self.shadows.in_front_of(far));
             }
             seen.extend(self.ties.iter().filter_map(|tie| Some(tie.other(c)?.0)));
+            seen.extend(self.companions.pairs.iter().filter_map(|&pair| other(pair, c)));
         }
         seen.sort_unstable();
         seen.dedup();
@@ -85,12 +86,11 @@ impl Scene<'_> {
             |&f: &usize| self.look_behind(far, (d, f), paths, Some(near)) + self.joints(far, (d, f), paths, Some(near));
         let far_costs: Vec<f64> = states[0][d].iter().map(far_alone).collect();
         let near_costs: Vec<f64> = states[1][d].iter().map(|&n| self.alone(near, (d, n), paths, Some(far))).collect();
-        let tie = self.tie_of(far, near);
         let mut table = Vec::new();
         for (&f, far_cost) in states[0][d].iter().zip(&far_costs) {
             for (&n, near_cost) in states[1][d].iter().zip(&near_costs) {
                 let look = self.look(far, (d, f), paths, Some((near, n)));
-                let torn = tie.map_or(0.0, |tie| self.joint(tie, (far, (d, f)), (near, (d, n))));
+                let torn = self.bond((far, (d, f)), (near, (d, n)));
                 table.push(look + torn + far_cost + near_cost);
             }
         }

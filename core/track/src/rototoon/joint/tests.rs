@@ -1,7 +1,9 @@
 //! The joint choice on made-up hypotheses.
 
+use super::companion::{self, Companions};
+use super::lead::{Lead, leads};
 use super::shadow::Memory;
-use super::{Contender, choose, jumps, tie};
+use super::{Bonds, Contender, choose, jumps, tie};
 use crate::rototoon::lattice::align::Aligner;
 use crate::rototoon::lattice::mesh::Mesh;
 use crate::rototoon::lattice::texture::{Cover, Texture};
@@ -71,7 +73,7 @@ fn two_parts_do_not_take_the_same_place() {
             models,
         };
         let both = [contender(0, &far, &far_models, 0.0), contender(1, &near, &near_models, depth)];
-        choose(&both, &tie::find(&both), 0.0, vec![vec![0, 0, 0]; 2], memory)
+        choose(&both, &Bonds { ties: tie::find(&both), companions: Vec::new() }, 0.0, vec![vec![0, 0, 0]; 2], memory)
     };
     // Parts of the same depth do not hide each other.
     assert_eq!(chosen(0.0, &mut memory), [[0, 0, 0], [0, 0, 0]]);
@@ -208,4 +210,68 @@ fn the_jump_of_a_stretch_is_measured_on_the_best_hypotheses() {
     assert!(jump([0.0, 10.0, 20.0, 30.0, 40.0]) < 1e-9, "even motion has none");
     let uneven = jump([0.0, 60.0, 0.0, 60.0, 0.0]);
     assert!(uneven > 120.0, "{uneven}");
+}
+
+/// A head of 120 × 120 and an eye of 20 × 20 working pixels in it, which both move by `step` from key to key; the eye by `more`
+/// in addition. On the middle drawing the head is 80 px lower, and the eye is either there or where even motion has it.
+fn with_head_and_eye<T>(step: Point, more: Point, then: impl Fn(&[Contender]) -> T) -> T {
+    let square = |middle: Point, half: f64| -> Vec<Point> {
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| middle + Point::new(x, y) * half).to_vec()
+    };
+    let middle = Point::new(200.0, 200.0);
+    let models =
+        |half: f64, to: Point| [model(&square(middle, half), (0.0, to)), model(&square(middle + to, half), (0.0, -to))];
+    let (head, eye) = (models(60.0, step), models(10.0, step + more));
+    let key = |models: &[Model; 2], k: usize| vec![hypothesis(&models[k], 0.0, Point::ZERO, 0.0)];
+    let low = step * 0.5 + Point::new(0.0, 80.0);
+    let head_there = vec![hypothesis(&head[0], 0.0, low, 0.0)];
+    let eye_there = vec![hypothesis(&eye[0], 0.0, step * 0.5, 0.0225), hypothesis(&eye[0], 0.0, low, 0.0)];
+    let head_pools = Arc::new(vec![key(&head, 0), head_there, key(&head, 1)]);
+    let eye_pools = Arc::new(vec![key(&eye, 0), eye_there, key(&eye, 1)]);
+    let (drawings, span) = (three_drawings(), Span { first: 0, last: 2 });
+    let contender =
+        |part, pools, models| Contender { part, span, depth: 0.0, hides: true, drawings: &drawings, pools, models };
+    then(&[contender(0, &head_pools, &head), contender(1, &eye_pools, &eye)])
+}
+
+#[test]
+fn an_eye_stays_with_the_head_that_jumps() {
+    with_head_and_eye(Point::new(30.0, 10.0), Point::ZERO, |both| {
+        let pairs = companion::find(both);
+        assert_eq!(pairs, [[1, 0]], "the eye goes with the head, and not the head with the eye");
+        let companions = Companions::new(both, &pairs);
+        assert!(companions.apart([1, 0], (1, 1), (1, 0)) < 1e-9);
+        assert!((companions.apart([1, 0], (1, 0), (1, 0)) - 80.0).abs() < 1e-9);
+        let chosen = |companions: Vec<[usize; 2]>| {
+            let bonds = Bonds { ties: Vec::new(), companions };
+            choose(both, &bonds, 1e-6, vec![vec![0, 0, 0]; 2], &mut Memory::default())
+        };
+        assert_eq!(chosen(Vec::new()), [[0, 0, 0], [0, 0, 0]], "alone it moves evenly");
+        assert_eq!(chosen(pairs), [[0, 0, 0], [0, 1, 0]]);
+    });
+}
+
+#[test]
+fn the_head_leads_an_eye_that_is_elsewhere() {
+    with_head_and_eye(Point::new(30.0, 10.0), Point::ZERO, |both| {
+        let bonds = Bonds { ties: Vec::new(), companions: companion::find(both) };
+        let led = leads(both, &bonds, &[vec![0, 0, 0], vec![0, 0, 0]]);
+        let [Lead::Body(motions)] = &led[1][..] else { panic!("one lead, {:?}", led[1]) };
+        assert!(led[0].is_empty() && motions[0].is_none() && motions[2].is_none());
+        let there = &both[1].pools[1][1].points;
+        for (motion, key) in motions[1].unwrap().iter().zip(both[1].keys()) {
+            assert!(key.iter().zip(there).all(|(&p, q)| motion.apply(p).distance(*q) < 1e-9));
+        }
+        assert!(
+            leads(both, &bonds, &[vec![0, 0, 0], vec![0, 1, 0]])[1].is_empty(),
+            "where it is right it needs no lead"
+        );
+    });
+}
+
+#[test]
+fn parts_that_come_apart_from_key_to_key_are_no_companions() {
+    with_head_and_eye(Point::new(30.0, 10.0), Point::new(9.0, 0.0), |both| {
+        assert_eq!(companion::find(both), [] as [[usize; 2]; 0]);
+    });
 }

@@ -27,7 +27,7 @@ pub struct Tie {
     /// Indices of the contenders.
     pub parts: [usize; 2],
     /// The hinge in the lattice of each model (second index) of each part (first index).
-    bindings: [[Binding; 2]; 2],
+    pub(super) bindings: [[Binding; 2]; 2],
 }
 
 impl Tie {
@@ -161,41 +161,4 @@ fn hinge([a, b]: &[Chain; 2]) -> Option<(f64, [Point; 2])> {
     let (score, apart, places) = shared.iter().map(tear).min_by(|x, y| x.0.total_cmp(&y.0))?;
     let fits = apart <= 4.0 + 0.05 * mesh_a.size && belongs(ends_a, 1, places[1]) && belongs(ends_b, 1, places[1]);
     fits.then_some((score, places))
-}
-
-/// Places of a part's joint on the drawings on which the part is in doubt and the part at the other end is surer. They
-/// lead the part.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Lead {
-    /// The joint in the lattices of the part's models.
-    pub bindings: [Binding; 2],
-    /// Place of the joint in working pixels, by drawing of the part.
-    pub places: Vec<Option<Point>>,
-}
-
-/// A part is in doubt if the first hypotheses of its two models, or the ends of its torn joint, are further apart than
-/// this, in working pixels.
-const DOUBT: f64 = 4.0;
-
-/// The leads of each contender. `paths` are the present choices.
-pub fn leads(contenders: &[Contender], ties: &[Tie], paths: &[Vec<usize>]) -> Vec<Vec<Lead>> {
-    let of = |c: usize| {
-        let lead = |tie: &Tie| {
-            let (other, end) = tie.other(c)?;
-            let place = |d: usize| {
-                let near = contenders[other].drawing_at(contenders[c].frame_of(d))?;
-                let pool = &contenders[c].pools[d];
-                let (own, theirs) = (&pool[paths[c][d]], &contenders[other].pools[near][paths[other][near]]);
-                let there = tie.place(other, theirs.model, &theirs.pose.nodes)?;
-                let torn = tie.place(c, own.model, &own.pose.nodes)?.distance(there) > DOUBT;
-                let unsure = pool.len() < 2 || pool[0].distance(&pool[1]) > DOUBT;
-                (theirs.pose.energy < own.pose.energy && (torn || unsure)).then_some(there)
-            };
-            let places: Vec<Option<Point>> = (0..contenders[c].pools.len()).map(place).collect();
-            let any = places.iter().any(Option::is_some);
-            any.then(|| Lead { bindings: tie.bindings[end], places })
-        };
-        ties.iter().filter_map(lead).collect()
-    };
-    (0..contenders.len()).map(of).collect()
 }

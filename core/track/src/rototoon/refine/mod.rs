@@ -7,7 +7,8 @@
 //! 2. On a frame the templates are compared with the picture over a window around the sample. The result is a small map
 //!    of costs ([`response`]).
 //! 3. A step of mean shift over this map gives a target place and a weight for each axis. An edge pulls along its
-//!    normal only, a corner in both directions, a flat area not at all ([`pull`]).
+//!    normal only, a corner in both directions, a flat area not at all ([`pull`]). Pulls that are wrong between the keys
+//!    count less ([`noise`]).
 //! 4. Links between neighbouring control points preserve the shape of the keys, rotated and scaled like their
 //!    neighbourhood. They are softer where the keys themselves bend ([`links`]).
 //! 5. Targets and links give a linear least-squares problem for all points of a frame ([`solve`]).
@@ -22,6 +23,7 @@
 //! ([`Refiner::cost`]).
 
 pub mod links;
+pub mod noise;
 pub mod pull;
 pub mod response;
 pub mod samples;
@@ -59,6 +61,7 @@ pub struct Refiner {
     keys: [Vec<Point>; 2],
     templates: Templates,
     links: Links,
+    noise: Vec<noise::Variance>,
 }
 
 impl Refiner {
@@ -70,15 +73,21 @@ impl Refiner {
         }
         let samples = Samples::new(count, closed);
         let templates = Templates::new(&keys, &samples, closed);
+        let noise = noise::measured(&keys, &samples, &templates);
         let points = keys.map(|key| key.points.to_vec());
         let links = Links::new(&points, closed);
-        Some(Self { samples, keys: points, templates, links })
+        Some(Self { samples, keys: points, templates, links, noise })
     }
 
     /// Forgets the difference between part and background, for measurements without it: offsets outside have the same
     /// cost function as offsets inside.
     pub fn forget_figure(&mut self) {
         self.templates.forget_figure();
+    }
+
+    /// Takes every pull for right, for measurements without the noise of the pulls.
+    pub fn forget_noise(&mut self) {
+        self.noise.fill([0.0; 2]);
     }
 
     /// Refined control points, or the rough ones if refinement does not lower the cost enough. All places are in
@@ -101,9 +110,11 @@ impl Refiner {
             before.get_or_insert_with(|| mean_cost(&maps));
             for &(reach, weight) in rounds {
                 let now = self.samples.places(&points);
-                let pulls: Vec<pull::Pull> = (0..places.len())
-                    .map(|s| pull::pull(&maps[s], (places[s], angles[s]), now[s], reach, self.samples.trust(s)))
-                    .collect();
+                let pull = |s: usize| {
+                    let trust = self.samples.trust(s);
+                    pull::pull(&maps[s], (places[s], angles[s]), now[s], (reach, trust), self.noise[s])
+                };
+                let pulls: Vec<pull::Pull> = (0..places.len()).map(pull).collect();
                 let edges = self.links.wanted(&self.keys, &points, frame.share);
                 let solved = solve::solve(&self.samples, &pulls, &self.links, &edges, weight, &points, &frame.pins);
                 let Some(solved) = solved else { return (points, before.unwrap_or(LOST)) };

@@ -4,10 +4,11 @@
 //! displacement, C the cost and ρ the reach. Its mean is μ and its covariance Σ. The Gaussian around u is a part of
 //! this probability and is removed again: P = (Σ + s² I)⁻¹, π = 1/(ρ² + s²), Λ = P − π I, target = Λ⁻¹ (P μ − π u).
 //! This is done on the eigenvector axes of Λ, and the target is at most 2ρ from u. Along an edge Λ is zero, so there is
-//! no pull.
+//! no pull. The weight is 1 / (1/Λ + σ²), where σ² is the noise of the sample's pulls ([`super::noise`]).
 //!
 //! Source: regularised mean shift, Saragih, Lucey & Cohn 2011.
 
+use super::noise::Variance;
 use super::response::Map;
 use nalgebra::{Matrix2, Vector2};
 use rototoon_base::geometry::Point;
@@ -33,8 +34,14 @@ pub struct Pull {
 }
 
 /// The pull on a sample that is now at `now`. The map is around `place`, with the unit vector `tangent` as its first
-/// axis. `reach` is ρ in working pixels, and `trust` scales the weights.
-pub fn pull(map: &Map, (place, tangent): (Point, Point), now: Point, reach: f64, trust: f64) -> Pull {
+/// axis. `reach` is ρ in working pixels, `trust` scales the weights, and `noise` is the variance along both axes of the map.
+pub fn pull(
+    map: &Map,
+    (place, tangent): (Point, Point),
+    now: Point,
+    (reach, trust): (f64, f64),
+    noise: Variance,
+) -> Pull {
     let back = Point::new(tangent.x, -tangent.y);
     let u = back.rotate(now - place);
     let (mean, [xx, xy, yy], least) = moments(map, u, reach);
@@ -51,7 +58,8 @@ pub fn pull(map: &Map, (place, tangent): (Point, Point), now: Point, reach: f64,
         let from = axes[k].dot(u);
         let to = from + (axes[k].dot(eta) / value - from).clamp(-2.0 * reach, 2.0 * reach);
         let axis = tangent.rotate(axes[k]);
-        (axis, value * sure, to + axis.dot(place))
+        let noise = noise[0] * axes[k].x * axes[k].x + noise[1] * axes[k].y * axes[k].y;
+        (axis, sure / (1.0 / value + noise), to + axis.dot(place))
     };
     let (a, b) = (along(0), along(1));
     Pull { axes: [a.0, b.0], weights: [a.1, b.1], targets: [a.2, b.2] }
@@ -118,7 +126,7 @@ mod tests {
     #[test]
     fn an_edge_pulls_along_its_normal_only() {
         let edge = map(|_, v| 0.004 * (v - 2.0) * (v - 2.0));
-        let found = pull(&edge, (Point::new(50.0, 60.0), Point::X), Point::new(50.0, 60.0), 4.0, 1.0);
+        let found = pull(&edge, (Point::new(50.0, 60.0), Point::X), Point::new(50.0, 60.0), (4.0, 1.0), [0.0; 2]);
         let (strong, weak) = if found.weights[0] > found.weights[1] { (0, 1) } else { (1, 0) };
         assert!(found.axes[strong].y.abs() > 0.999);
         assert!((found.targets[strong] * found.axes[strong].y - 62.0).abs() < 0.2, "{}", found.targets[strong]);
@@ -130,13 +138,13 @@ mod tests {
         let corner = map(|u, v| 0.004 * ((u - 1.0).powi(2) + (v + 2.0).powi(2)));
         let tangent = Point::from_angle(0.7);
         let place = Point::new(20.0, 30.0);
-        let found = pull(&corner, (place, tangent), place, 4.0, 1.0);
+        let found = pull(&corner, (place, tangent), place, (4.0, 1.0), [0.0; 2]);
         let want = place + tangent.rotate(Point::new(1.0, -2.0));
         for k in 0..2 {
             assert!((found.targets[k] - found.axes[k].dot(want)).abs() < 0.2);
             assert!(found.weights[k] > 0.1, "{:?}", found.weights);
         }
-        let flat = pull(&map(|_, _| 0.05), (place, tangent), place, 4.0, 1.0);
+        let flat = pull(&map(|_, _| 0.05), (place, tangent), place, (4.0, 1.0), [0.0; 2]);
         assert!((0..2).all(|k| flat.weights[k] < 0.5 * found.weights[k]), "{:?}", flat.weights);
     }
 }

@@ -108,3 +108,59 @@ fn contours_without_a_shape_are_not_refined() {
     let key = || Key { points: &two, picture: &picture, cover: &cover };
     assert!(Refiner::new([key(), key()], false).is_none());
 }
+
+#[test]
+fn a_line_that_is_drawn_anew_has_noisy_pulls_and_points_slide_less() {
+    let keys = [placed(0.0, Point::new(150.0, 200.0)), placed(0.0, Point::new(330.0, 260.0))];
+    let middle = placed(0.0, Point::new(250.0, 240.0));
+    let cover = Cover::none(LINES as f64);
+    // Marks on the contour, at other places on each drawing, as a rough pencil leaves them.
+    let marked = |contour: &[Point], shift: f64| {
+        let marks: Vec<Point> = (0..24).map(|k| along(contour, 15.0 * f64::from(k) + shift)).collect();
+        inked(contour, &marks)
+    };
+    let slid = |shifts: [f64; 3]| {
+        let pictures = [marked(&keys[0], shifts[0]), marked(&keys[1], shifts[1])];
+        let key = |k: usize| Key { points: &keys[k], picture: &pictures[k], cover: &cover };
+        let mut refiner = Refiner::new([key(0), key(1)], true).unwrap();
+        let along = refiner.noise.iter().map(|variance| variance[0]).sum::<f64>() / refiner.noise.len() as f64;
+        let picture = marked(&middle, shifts[2]);
+        let frame = Frame { picture: &picture, cover: &cover, share: 0.5, pins: BTreeMap::new() };
+        let off = |points: Vec<Point>| points.iter().zip(&middle).map(|(p, q)| p.distance(*q)).sum::<f64>() / 12.0;
+        let with = off(refiner.refine(&frame, &middle).0);
+        refiner.forget_noise();
+        (along, with, off(refiner.refine(&frame, &middle).0))
+    };
+    let (clean, ..) = slid([0.0; 3]);
+    let (noisy, with, without) = slid([0.0, 5.0, 9.0]);
+    assert!(clean < 0.1 && noisy > 20.0 * clean.max(0.02), "{clean} {noisy}");
+    assert!(with < 0.7 * without, "{with} {without}");
+}
+
+/// The place at a length along a closed contour.
+fn along(contour: &[Point], mut length: f64) -> Point {
+    for (k, &p) in contour.iter().enumerate().cycle() {
+        let q = contour[(k + 1) % contour.len()];
+        if length <= p.distance(q) {
+            return p.lerp(q, length / p.distance(q));
+        }
+        length -= p.distance(q);
+    }
+    Point::ZERO
+}
+
+/// A thin line on paper with dark marks.
+fn inked(contour: &[Point], marks: &[Point]) -> Features {
+    let (low, high) = polygon::bounds(contour).unwrap();
+    let colour = |p: Point| -> Colour {
+        let near = p.x > low.x - 6.0 && p.y > low.y - 6.0 && p.x < high.x + 6.0 && p.y < high.y + 6.0;
+        if near && marks.iter().any(|m| m.distance(p) <= 3.0) {
+            [0.2; 3]
+        } else if near && polyline::distance(p, contour, true) <= 1.5 {
+            [0.5; 3]
+        } else {
+            [0.95; 3]
+        }
+    };
+    Features::new(&Raster::from_fn(LINES, LINES, |x, y| colour(Point::new(x as f64 + 0.5, y as f64 + 0.5))))
+}

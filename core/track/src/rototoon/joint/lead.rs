@@ -1,0 +1,70 @@
+//! Leads: where a part in doubt is, by what a surer part says.
+//!
+//! - At a **hinge** ([`super::tie`]) the surer part gives one place. The part may turn about it.
+//! - A **body** with which the part goes ([`super::companion`]) gives its whole motion.
+
+use super::Bonds;
+use super::companion::{Companions, Motions};
+use super::contender::{Contender, Paths};
+use super::tie::Tie;
+use crate::rototoon::lattice::mesh::Binding;
+use rototoon_base::geometry::Point;
+
+/// A part is in doubt if the first hypotheses of its two models, the ends of its torn joint, or it and the place to which its
+/// body takes it are further apart than this, in working pixels.
+const DOUBT: f64 = 4.0;
+
+/// What a surer part says about a part, by drawing of the part. `None` where the part is not in doubt.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Lead {
+    /// Places of the joint.
+    Hinge {
+        /// The joint in the lattices of the part's models.
+        bindings: [Binding; 2],
+        /// Its places in working pixels.
+        places: Vec<Option<Point>>,
+    },
+    /// Motions from both keys.
+    Body(Vec<Option<Motions>>),
+}
+
+/// The leads of each contender. `paths` are the present choices.
+pub fn leads(contenders: &[Contender], bonds: &Bonds, paths: &Paths) -> Vec<Vec<Lead>> {
+    let companions = Companions::new(contenders, &bonds.companions);
+    let of = |c: usize| {
+        let hinges = bonds.ties.iter().filter_map(|tie| hinge(contenders, tie, c, paths));
+        let bodies = bonds.companions.iter().filter(|pair| pair[0] == c);
+        hinges.chain(bodies.filter_map(|&pair| body(contenders, &companions, pair, paths))).collect()
+    };
+    (0..contenders.len()).map(of).collect()
+}
+
+/// What the part at the other end of a joint of `c` says.
+fn hinge(contenders: &[Contender], tie: &Tie, c: usize, paths: &Paths) -> Option<Lead> {
+    let (other, end) = tie.other(c)?;
+    let place = |d: usize| {
+        let near = contenders[other].drawing_at(contenders[c].frame_of(d))?;
+        let pool = &contenders[c].pools[d];
+        let (own, theirs) = (&pool[paths[c][d]], &contenders[other].pools[near][paths[other][near]]);
+        let there = tie.place(other, theirs.model, &theirs.pose.nodes)?;
+        let torn = tie.place(c, own.model, &own.pose.nodes)?.distance(there) > DOUBT;
+        let unsure = pool.len() < 2 || pool[0].distance(&pool[1]) > DOUBT;
+        (theirs.pose.energy < own.pose.energy && (torn || unsure)).then_some(there)
+    };
+    let places: Vec<Option<Point>> = (0..contenders[c].pools.len()).map(place).collect();
+    let any = places.iter().any(Option::is_some);
+    any.then(|| Lead::Hinge { bindings: tie.bindings[end], places })
+}
+
+/// What the second part of a pair says about the first. It need not be the surer one: small parts fit anything.
+fn body(contenders: &[Contender], companions: &Companions, pair: [usize; 2], paths: &Paths) -> Option<Lead> {
+    let [part, body] = pair;
+    let motions = |d: usize| {
+        let near = contenders[body].drawing_at(contenders[part].frame_of(d))?;
+        let there = (near, paths[body][near]);
+        let apart = companions.apart(pair, (d, paths[part][d]), there);
+        (apart > DOUBT).then(|| companions.motions(body, there))
+    };
+    let motions: Vec<Option<Motions>> = (0..contenders[part].pools.len()).map(motions).collect();
+    motions.iter().any(Option::is_some).then_some(Lead::Body(motions))
+}
