@@ -12,10 +12,13 @@
 //! are companions too. A hypothesis of the other part costs [`COST`] times its mean distance from there over [`APART`], at most
 //! [`COST`]: the cost of a torn joint.
 //!
-//! **Limits.** Only parts with the same keys are companions. What moves with the body at both keys may move by itself
-//! between them: the cost has an upper limit for its sake.
+//! A part may have further keys between two that both parts have. Then these two are meant here by its keys, as for joints.
+//!
+//! **Limits.** What moves with the body at both keys may move by itself between them: the cost has an upper limit for its
+//! sake. A further key of a part does not change where its body is expected to take it.
 
-use super::contender::{Contender, State};
+use super::contender::{Contender, Paths, State};
+use super::tie::{overlap, shared};
 use rototoon_base::geometry::similarity::Similarity;
 use rototoon_base::geometry::{Point, polygon};
 
@@ -33,40 +36,69 @@ const APART: f64 = 25.0;
 /// About so many of a part's points are compared with where they are expected.
 const COMPARED: usize = 8;
 
-/// The motions of a part from both of its keys to a hypothesis.
+/// The motions of a part from both keys to a hypothesis.
 pub type Motions = [Similarity; 2];
 
-/// A part and one that it goes with: indices of contenders.
-pub type Pair = [usize; 2];
+/// A part and one that it goes with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// The contenders: the part, and the one that it goes with.
+    pub parts: [usize; 2],
+    /// By part: the contenders that begin and end with the keys that both parts have.
+    ends: [[usize; 2]; 2],
+}
+
+impl Pair {
+    /// The contender beside `c`. `None` if `c` is not of the pair.
+    pub fn other(&self, c: usize) -> Option<usize> {
+        let end = self.parts.iter().position(|&p| p == c)?;
+        Some(self.parts[1 - end])
+    }
+
+    /// The control points of a part at both keys, in working pixels.
+    fn keys<'a>(&self, contenders: &'a [Contender], which: usize) -> [&'a [Point]; 2] {
+        [0, 1].map(|k: usize| contenders[self.ends[which][k]].keys()[k])
+    }
+}
 
 /// The companions among all contenders.
 pub fn find(contenders: &[Contender]) -> Vec<Pair> {
-    let of = |c: usize| {
-        let apart = |b: usize| Some((apart(&contenders[b], &contenders[c])?, b));
-        let mut found: Vec<(f64, usize)> = (0..contenders.len()).filter(|&b| b != c).filter_map(apart).collect();
-        found.sort_by(|x, y| x.0.total_cmp(&y.0));
-        found.truncate(MOST);
-        found.into_iter().map(move |(_, b)| [c, b])
-    };
-    (0..contenders.len()).flat_map(of).collect()
+    (0..contenders.len()).flat_map(|c| of(contenders, c)).collect()
 }
 
-/// How far a part is at the second key from where the motion of `body` takes it. `None` if it does not go with it.
-fn apart(body: &Contender, part: &Contender) -> Option<f64> {
-    let (of_body, of_part) = (body.keys(), part.keys());
-    let shaped = of_body[0].len() > 2 && of_part[0].len() > 2;
-    if !shaped || body.part == part.part || body.span != part.span {
+/// The pairs of a part with those that it goes with.
+fn of(contenders: &[Contender], c: usize) -> Vec<Pair> {
+    let own = &contenders[c];
+    let mut found: Vec<(f64, Vec<Pair>)> = Vec::new();
+    for b in (0..contenders.len()).filter(|&b| contenders[b].part != own.part && overlap(own.span, contenders[b].span))
+    {
+        let known = |(_, pairs): &(f64, Vec<Pair>)| pairs.iter().any(|pair| pair.parts[1] == b);
+        let Some(chains) = shared(contenders, c, b).filter(|_| !found.iter().any(known)) else { continue };
+        let ends = chains.each_ref().map(|chain| [chain.links[0], chain.links[chain.links.len() - 1]]);
+        let pair = Pair { parts: [c, b], ends };
+        if let Some(off) = apart(pair.keys(contenders, 1), pair.keys(contenders, 0)) {
+            let links = chains[1].links.iter().filter(|&&b| overlap(own.span, contenders[b].span));
+            found.push((off, links.map(|&b| Pair { parts: [c, b], ends }).collect()));
+        }
+    }
+    found.sort_by(|x, y| x.0.total_cmp(&y.0));
+    found.into_iter().take(MOST).flat_map(|(_, pairs)| pairs).collect()
+}
+
+/// How far a part is at the second key from where the motion of a body takes it. `None` if it does not go with it.
+fn apart(body: [&[Point]; 2], part: [&[Point]; 2]) -> Option<f64> {
+    if body[0].len() <= 2 || part[0].len() <= 2 {
         return None;
     }
-    let bounds = [of_body[0], of_part[0]].map(|points| polygon::bounds(points).unwrap_or_default());
+    let bounds = [body[0], part[0]].map(|points| polygon::bounds(points).unwrap_or_default());
     let [size_of_body, size] = bounds.map(|(low, high)| low.distance(high));
     let [(a, b), (c, d)] = bounds;
     let near = a.x - GAP < d.x && c.x - GAP < b.x && a.y - GAP < d.y && c.y - GAP < b.y;
     if !near || size_of_body < SMALL * size {
         return None;
     }
-    let motion = Similarity::fit(of_body[0], of_body[1]);
-    let off = mean(of_part[0].iter().zip(of_part[1]).map(|(&p, &q)| motion.apply(p).distance(q)));
+    let motion = Similarity::fit(body[0], body[1]);
+    let off = mean(part[0].iter().zip(part[1]).map(|(&p, &q)| motion.apply(p).distance(q)));
     (off <= LOOSE.0 + LOOSE.1 * size).then_some(off)
 }
 
@@ -75,32 +107,30 @@ pub struct Companions<'a> {
     contenders: &'a [Contender<'a>],
     /// The pairs.
     pub pairs: &'a [Pair],
-    /// By contender, drawing and hypothesis; empty for contenders with which no part goes.
+    /// By pair, drawing and hypothesis of the second part.
     motions: Vec<Vec<Vec<Motions>>>,
 }
 
 impl<'a> Companions<'a> {
     /// The companions `pairs` of contenders.
     pub fn new(contenders: &'a [Contender<'a>], pairs: &'a [Pair]) -> Self {
-        let of = |b: usize| {
-            let all = if pairs.iter().any(|pair| pair[1] == b) { &contenders[b].pools[..] } else { &[] };
-            let keys = contenders[b].keys();
+        let of = |pair: &Pair| {
+            let keys = pair.keys(contenders, 1);
             let motions = |there: &[Point]| keys.map(|key| Similarity::fit(key, there));
-            all.iter().map(|pool| pool.iter().map(|hypothesis| motions(&hypothesis.points)).collect()).collect()
+            let pools = contenders[pair.parts[1]].pools.iter();
+            pools.map(|pool| pool.iter().map(|hypothesis| motions(&hypothesis.points)).collect()).collect()
         };
-        Self { contenders, pairs, motions: (0..contenders.len()).map(of).collect() }
+        Self { contenders, pairs, motions: pairs.iter().map(of).collect() }
     }
 
-    /// The motions of a state of a part that others go with.
-    pub fn motions(&self, body: usize, (d, h): State) -> Motions {
-        self.motions[body][d][h]
-    }
-
-    /// How far a state of a pair's first part is from where a state of its second part takes it, in working pixels.
-    pub fn apart(&self, [part, body]: Pair, (d, h): State, there: State) -> f64 {
-        let (part, motions) = (&self.contenders[part], self.motions(body, there));
-        let (keys, points) = (part.keys(), &part.pools[d][h].points);
-        let share = part.drawings[d].first as f64 / f64::from((part.span.last - part.span.first).max(1));
+    /// How far a state of a pair's first part is from where a state of its second part takes it, in working pixels. The pair
+    /// is given by its index.
+    pub fn apart(&self, index: usize, (d, h): State, there: State) -> f64 {
+        let (pair, motions) = (&self.pairs[index], &self.motions[index][there.0][there.1]);
+        let (keys, part) = (pair.keys(self.contenders, 0), &self.contenders[pair.parts[0]]);
+        let [first, last] = [self.contenders[pair.ends[0][0]].span.first, self.contenders[pair.ends[0][1]].span.last];
+        let share = f64::from(part.frame_of(d) - first) / f64::from((last - first).max(1));
+        let points = &part.pools[d][h].points;
         let off = |j: usize| {
             let expected = motions[0].apply(keys[0][j]).lerp(motions[1].apply(keys[1][j]), share);
             expected.distance(points[j])
@@ -109,8 +139,24 @@ impl<'a> Companions<'a> {
     }
 
     /// Cost of the states of a pair.
-    pub fn cost(&self, pair: Pair, part: State, body: State) -> f64 {
-        COST * (self.apart(pair, part, body) / APART).min(1.0)
+    pub fn cost(&self, index: usize, part: State, body: State) -> f64 {
+        COST * (self.apart(index, part, body) / APART).min(1.0)
+    }
+
+    /// The motions that a state of a pair's second part gives the first one from the keys of its own span. `paths` say where
+    /// the second part is at these keys. `None` if it is not there.
+    pub fn carry(&self, index: usize, there: State, paths: &Paths) -> Option<Motions> {
+        let span = self.contenders[self.pairs[index].parts[0]].span;
+        let at = |frame| {
+            let mut links = self.pairs.iter().enumerate().filter(|(_, pair)| pair.ends == self.pairs[index].ends);
+            links.find_map(|(k, pair)| {
+                let d = self.contenders[pair.parts[1]].drawing_at(frame)?;
+                Some(self.motions[k][d][paths[pair.parts[1]][d]])
+            })
+        };
+        let now = self.motions[index][there.0][there.1];
+        let keys = [at(span.first)?, at(span.last)?];
+        Some([0, 1].map(|k: usize| now[k].after(&keys[k][k].inverse())))
     }
 }
 

@@ -59,8 +59,9 @@ impl Scene<'_> {
             Some((other, (near, paths[other][near])))
         };
         let hinge = |tie: &Tie| Some(self.joint(tie, (c, state), present(tie.other(c)?.0)?));
-        let pair = |&pair: &Pair| Some(self.together(pair, (c, state), present(other(pair, c)?)?));
-        self.ties.iter().filter_map(hinge).sum::<f64>() + self.companions.pairs.iter().filter_map(pair).sum::<f64>()
+        let pairs = self.companions.pairs.iter().enumerate();
+        let pair = |(k, pair): (usize, &Pair)| Some(self.together(k, (c, state), present(pair.other(c)?)?));
+        self.ties.iter().filter_map(hinge).sum::<f64>() + pairs.filter_map(pair).sum::<f64>()
     }
 
     /// The drawing of contender `b` that is joined to drawing `d` of contender `a`. A key within the other part's span ends one
@@ -84,18 +85,18 @@ impl Scene<'_> {
         }
     }
 
-    /// Cost of a pair of companions in their states, given in either order.
-    fn together(&self, pair: Pair, a: (usize, State), b: (usize, State)) -> f64 {
-        let [part, body] = if pair[0] == a.0 { [a.1, b.1] } else { [b.1, a.1] };
-        self.companions.cost(pair, part, body)
+    /// Cost of the pair of companions with an index in their states, given in either order.
+    fn together(&self, index: usize, a: (usize, State), b: (usize, State)) -> f64 {
+        let [part, body] = if self.companions.pairs[index].parts[0] == a.0 { [a.1, b.1] } else { [b.1, a.1] };
+        self.companions.cost(index, part, body)
     }
 
     /// Cost of all joints and companions between two contenders in their states.
     pub fn bond(&self, a: (usize, State), b: (usize, State)) -> f64 {
         let joined = |tie: &&Tie| tie.other(a.0).is_some_and(|(other, _)| other == b.0);
         let ties = self.ties.iter().filter(joined).map(|tie| self.joint(tie, a, b)).sum::<f64>();
-        let pairs = self.companions.pairs.iter().filter(|&&pair| other(pair, a.0) == Some(b.0));
-        ties + pairs.map(|&pair| self.together(pair, a, b)).sum::<f64>()
+        let pairs = self.companions.pairs.iter().enumerate().filter(|(_, pair)| pair.other(a.0) == Some(b.0));
+        ties + pairs.map(|(k, _)| self.together(k, a, b)).sum::<f64>()
     }
 
     /// The cost of motion of a contender.
@@ -132,14 +133,8 @@ impl Scene<'_> {
             paths[a].iter().enumerate().filter_map(on).sum()
         };
         let ties = self.ties.iter().filter(|tie| touched(&tie.parts));
-        let pairs = self.companions.pairs.iter().filter(|pair| touched(pair));
+        let pairs = self.companions.pairs.iter().enumerate().filter(|(_, pair)| touched(&pair.parts));
         ties.map(|tie| along(tie.parts, &|a, b| self.joint(tie, a, b))).sum::<f64>()
-            + pairs.map(|&pair| along(pair, &|a, b| self.together(pair, a, b))).sum::<f64>()
+            + pairs.map(|(k, pair)| along(pair.parts, &|a, b| self.together(k, a, b))).sum::<f64>()
     }
-}
-
-/// The contender that a pair has beside `c`. `None` if `c` is not in it.
-pub fn other(pair: Pair, c: usize) -> Option<usize> {
-    let end = pair.iter().position(|&p| p == c)?;
-    Some(pair[1 - end])
 }

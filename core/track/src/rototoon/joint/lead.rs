@@ -33,8 +33,8 @@ pub fn leads(contenders: &[Contender], bonds: &Bonds, paths: &Paths) -> Vec<Vec<
     let companions = Companions::new(contenders, &bonds.companions);
     let of = |c: usize| {
         let hinges = bonds.ties.iter().filter_map(|tie| hinge(contenders, tie, c, paths));
-        let bodies = bonds.companions.iter().filter(|pair| pair[0] == c);
-        hinges.chain(bodies.filter_map(|&pair| body(contenders, &companions, pair, paths))).collect()
+        let bodies = (0..bonds.companions.len()).filter(|&k| bonds.companions[k].parts[0] == c);
+        hinges.chain(bodies.filter_map(|k| body(contenders, &companions, k, paths))).collect()
     };
     (0..contenders.len()).map(of).collect()
 }
@@ -56,14 +56,14 @@ fn hinge(contenders: &[Contender], tie: &Tie, c: usize, paths: &Paths) -> Option
     any.then(|| Lead::Hinge { bindings: tie.bindings[end], places })
 }
 
-/// What the second part of a pair says about the first. It need not be the surer one: small parts fit anything.
-fn body(contenders: &[Contender], companions: &Companions, pair: [usize; 2], paths: &Paths) -> Option<Lead> {
-    let [part, body] = pair;
+/// What the second part of the pair with an index says about the first. It need not be the surer one: small parts fit anything.
+fn body(contenders: &[Contender], companions: &Companions, index: usize, paths: &Paths) -> Option<Lead> {
+    let [part, body] = companions.pairs[index].parts;
     let motions = |d: usize| {
         let near = contenders[body].drawing_at(contenders[part].frame_of(d))?;
         let there = (near, paths[body][near]);
-        let apart = companions.apart(pair, (d, paths[part][d]), there);
-        (apart > DOUBT).then(|| companions.motions(body, there))
+        let apart = companions.apart(index, (d, paths[part][d]), there);
+        companions.carry(index, there, paths).filter(|_| apart > DOUBT)
     };
     let motions: Vec<Option<Motions>> = (0..contenders[part].pools.len()).map(motions).collect();
     motions.iter().any(Option::is_some).then_some(Lead::Body(motions))

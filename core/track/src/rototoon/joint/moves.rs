@@ -5,7 +5,7 @@
 //! pair of hypotheses, and its motion cost is the sum of both parts' motion costs ([`pairs`](super::pairs)).
 
 use super::contender::{Paths, State};
-use super::cost::{Scene, other};
+use super::cost::Scene;
 use super::pairs::{PairProblem, best_pair};
 use crate::rototoon::select::{Candidate, best_path};
 
@@ -37,7 +37,7 @@ impl Scene<'_> {
                 seen.extend(self.shadows.in_front_of(far));
             }
             seen.extend(self.ties.iter().filter_map(|tie| Some(tie.other(c)?.0)));
-            seen.extend(self.companions.pairs.iter().filter_map(|&pair| other(pair, c)));
+            seen.extend(self.companions.pairs.iter().filter_map(|pair| pair.other(c)));
         }
         seen.sort_unstable();
         seen.dedup();

@@ -238,11 +238,12 @@ fn with_head_and_eye<T>(step: Point, more: Point, then: impl Fn(&[Contender]) ->
 fn an_eye_stays_with_the_head_that_jumps() {
     with_head_and_eye(Point::new(30.0, 10.0), Point::ZERO, |both| {
         let pairs = companion::find(both);
-        assert_eq!(pairs, [[1, 0]], "the eye goes with the head, and not the head with the eye");
+        let [pair] = pairs[..] else { panic!("{pairs:?}") };
+        assert_eq!(pair.parts, [1, 0], "the eye goes with the head, and not the head with the eye");
         let companions = Companions::new(both, &pairs);
-        assert!(companions.apart([1, 0], (1, 1), (1, 0)) < 1e-9);
-        assert!((companions.apart([1, 0], (1, 0), (1, 0)) - 80.0).abs() < 1e-9);
-        let chosen = |companions: Vec<[usize; 2]>| {
+        assert!(companions.apart(0, (1, 1), (1, 0)) < 1e-9);
+        assert!((companions.apart(0, (1, 0), (1, 0)) - 80.0).abs() < 1e-9);
+        let chosen = |companions: Vec<companion::Pair>| {
             let bonds = Bonds { ties: Vec::new(), companions };
             choose(both, &bonds, 1e-6, vec![vec![0, 0, 0]; 2], &mut Memory::default())
         };
@@ -272,6 +273,46 @@ fn the_head_leads_an_eye_that_is_elsewhere() {
 #[test]
 fn parts_that_come_apart_from_key_to_key_are_no_companions() {
     with_head_and_eye(Point::new(30.0, 10.0), Point::new(9.0, 0.0), |both| {
-        assert_eq!(companion::find(both), [] as [[usize; 2]; 0]);
+        assert_eq!(companion::find(both), [] as [companion::Pair; 0]);
     });
+}
+
+#[test]
+fn a_further_key_of_a_part_keeps_its_companions() {
+    let still = |at: &[Point]| [model(at, (0.0, Point::ZERO)), model(at, (0.0, Point::ZERO))];
+    let head = still(&turned(&bar(), 0.0, Point::new(200.0, 200.0)));
+    let eye =
+        still(&[(-4.0, 10.0), (4.0, 10.0), (4.0, 18.0), (-4.0, 18.0)].map(|(x, y)| Point::new(200.0 + x, 200.0 + y)));
+    let pools = |models: &[Model; 2], steps: &[f64]| -> Arc<Pools> {
+        let at = |&x: &f64| vec![hypothesis(&models[0], 0.0, Point::new(x, 0.0), 0.0)];
+        Arc::new(steps.iter().map(at).collect())
+    };
+    let drawings = |count: usize| -> Vec<Drawing> { (0..count).map(|i| Drawing { first: i, last: i }).collect() };
+    let (three, five) = (drawings(3), drawings(5));
+    // The head goes 40 px to the right in four drawings. The eye has a further key on the third, and is left behind on the fourth.
+    let eyes = [pools(&eye, &[0.0, 10.0, 20.0]), pools(&eye, &[20.0, 20.0, 40.0])];
+    let heads = pools(&head, &[0.0, 10.0, 20.0, 30.0, 40.0]);
+    let whole = Contender {
+        part: 1,
+        span: Span { first: 0, last: 4 },
+        depth: 0.0,
+        hides: true,
+        drawings: &five,
+        pools: &heads,
+        models: &head,
+    };
+    let half = |k: usize| {
+        let span = Span { first: 2 * k as i32, last: 2 * k as i32 + 2 };
+        Contender { part: 0, span, depth: 0.0, hides: true, drawings: &three, pools: &eyes[k], models: &eye }
+    };
+    let all = [half(0), half(1), whole];
+    let bonds = Bonds { ties: Vec::new(), companions: companion::find(&all) };
+    let parts: Vec<[usize; 2]> = bonds.companions.iter().map(|pair| pair.parts).collect();
+    assert_eq!(parts, [[0, 2], [1, 2]]);
+    let led = leads(&all, &bonds, &[vec![0; 3], vec![0; 3], vec![0; 5]]);
+    let [Lead::Body(motions)] = &led[1][..] else { panic!("one lead, {:?}", led[1]) };
+    assert!(led[0].is_empty() && motions[0].is_none() && motions[2].is_none());
+    let [from_further, from_last] = motions[1].unwrap();
+    assert!(from_further.apply(Point::new(220.0, 5.0)).distance(Point::new(230.0, 5.0)) < 1e-9);
+    assert!(from_last.apply(Point::new(240.0, 5.0)).distance(Point::new(230.0, 5.0)) < 1e-9);
 }

@@ -75,18 +75,18 @@ pub fn find(contenders: &[Contender]) -> Vec<Tie> {
 }
 
 /// Whether two spans have a frame between keys in common.
-fn overlap(a: Span, b: Span) -> bool {
+pub(super) fn overlap(a: Span, b: Span) -> bool {
     a.first < b.last && b.first < a.last
 }
 
 /// Spans of one part that follow each other.
-struct Chain<'a> {
+pub(super) struct Chain<'a> {
     contenders: &'a [Contender<'a>],
-    links: Vec<usize>,
+    pub(super) links: Vec<usize>,
 }
 
 /// The spans of the parts of two contenders between the nearest keys that both parts have around them.
-fn shared<'a>(contenders: &'a [Contender<'a>], c: usize, b: usize) -> Option<[Chain<'a>; 2]> {
+pub(super) fn shared<'a>(contenders: &'a [Contender<'a>], c: usize, b: usize) -> Option<[Chain<'a>; 2]> {
     let of = |k: usize| {
         let mut links: Vec<usize> =
             (0..contenders.len()).filter(|&i| contenders[i].part == contenders[k].part).collect();
