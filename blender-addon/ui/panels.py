@@ -80,21 +80,26 @@ def said_of_contours(settings, now: stand.Stand) -> str:
 
 
 ENDS = {
-    ends.LOST: ("needs a key on frame {}", "KEY_HLT"),
-    ends.CUT: ("ends before the cut on frame {}", "INFO"),
-    ends.LEFT: ("left the picture on frame {}", "INFO"),
+    ends.LOST: ("needs a key on frame {}", "need a key on frame {}", "KEY_HLT"),
+    ends.CUT: ("ends before the cut on frame {}", "end before the cut on frame {}", "INFO"),
+    ends.LEFT: ("left the picture on frame {}", "left the picture on frame {}", "INFO"),
 }
-"""Text and icon for the end of a track from a single key, by its reason."""
+"""Texts for one part and for several, and icon, for the end of tracks from a single key, by its reason."""
 
 
 def said_of_ends(settings) -> list[tuple[str, str]]:
-    """Text and icon for each end of a track from a single key."""
-    said = []
+    """Text and icon for each end of tracks from a single key. Parts that end alike are counted: the list of parts marks them."""
+    alike: dict[tuple[int, str], list[str]] = {}
     for part in settings.parts:
         for frame, reason in ends.of(part):
-            text, icon = ENDS.get(reason, ENDS[ends.LOST])
-            said.append((f"{part.name} {text.format(frame + settings.frame_offset)}", icon))
-    return said
+            alike.setdefault((frame + settings.frame_offset, reason), []).append(part.name)
+    return [_said_of_end(names, frame, reason) for (frame, reason), names in alike.items()]
+
+
+def _said_of_end(names: list[str], frame: int, reason: str) -> tuple[str, str]:
+    one, several, icon = ENDS.get(reason, ENDS[ends.LOST])
+    text = f"{names[0]} {one}" if len(names) == 1 else f"{len(names)} parts {several}"
+    return text.format(frame), icon
 
 
 def _draw_ends(layout, settings) -> None:
