@@ -17,7 +17,8 @@ pub fn photograph() -> Result<()> {
         words: "rototoon.zip sample pictures ready".into(),
         options: "",
         build: Build::WithMeasure,
-        screen: (1600, 1280),
+        // The longest panel, Bones, is this high.
+        screen: (1600, 1480),
         patience: 900,
     };
     let sample = |folder: &Path| run(command(Bundle::of(Build::WithMeasure).measure).arg("sample").arg(folder));

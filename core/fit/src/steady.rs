@@ -2,7 +2,8 @@
 //!
 //! A fit for a smaller tolerance is a fit for every larger one. The search for the fewest guiding points is local, so it may
 //! miss that. The fit is therefore compared with that for the next rung of a fixed ladder of smaller limits. If that one has
-//! fewer pieces or fewer corners, it is taken, and the next rung below is tried in the same way.
+//! fewer pieces or fewer corners, it is taken, and the next rung below is tried in the same way. If it has hardly more
+//! pieces, one rung further is tried before the search ends: a rung may miss what the one below it finds.
 //!
 //! **Not more guiding points than points.** Where noise is as large as the limit, straight lines between some of the points
 //! are what is left, and each has two guiding points. The points themselves may then do better: as guiding points they give
@@ -21,6 +22,10 @@ use rototoon_base::geometry::Point;
 /// Rungs of the ladder for each doubling of the limit.
 const RUNGS: f64 = 2.0;
 
+/// A fit has hardly more pieces than another one if it has at most this many times as many. From rung to rung smooth lines get
+/// 1.12 times as many.
+const HARDLY_MORE: f64 = 1.05;
+
 /// Fits a line of at least two different points. Returns the line as it was fitted, and the fit.
 pub(super) fn fit(points: &[Point], closed: bool, tolerance: f64) -> (Cleaned, Whole) {
     let fine = clean::filled(points, closed);
@@ -28,6 +33,7 @@ pub(super) fn fit(points: &[Point], closed: bool, tolerance: f64) -> (Cleaned, W
     let source = Source { points, closed, fine, grain };
     let mut limit = grain.limit(tolerance);
     let mut best = source.fit(limit);
+    let mut missed = false;
     let mut rung = (RUNGS * limit.log2()).ceil() - 1.0;
     loop {
         limit = (rung / RUNGS).exp2();
@@ -36,10 +42,13 @@ pub(super) fn fit(points: &[Point], closed: bool, tolerance: f64) -> (Cleaned, W
         }
         let stricter = source.fit(limit);
         let fewer = |size: fn(&Whole) -> usize| size(&stricter.1) < size(&best.1);
-        if !(fewer(pieces) || fewer(corner_count)) {
+        if fewer(pieces) || fewer(corner_count) {
+            (best, missed) = (stricter, false);
+        } else if missed || pieces(&stricter.1) as f64 > HARDLY_MORE * pieces(&best.1) as f64 {
             return best;
+        } else {
+            missed = true;
         }
-        best = stricter;
         rung -= 1.0;
     }
 }
