@@ -9,7 +9,9 @@ use rototoon_tests::tweening::between::{
     BreakdownErrors, Errors, PlaceErrors, measure as measure_between, measure_breakdowns, measure_captured,
     measure_one_way, measure_places, rows_of_keys,
 };
-use rototoon_tests::tweening::fragments::{InkErrors, measure as measure_fragments};
+use rototoon_tests::tweening::drawings::{Film, measure as measure_drawings};
+use rototoon_tests::tweening::fragments::measure as measure_fragments;
+use rototoon_tests::tweening::ink::InkErrors;
 use rototoon_tests::tweening::matching::{Chance, Score, measure};
 use rototoon_tests::tweening::{GAPS, Set, sheet};
 use std::path::{Path, PathBuf};
@@ -24,14 +26,21 @@ struct Arguments {
     /// Only breakdowns and fragmented drawings.
     #[arg(long)]
     keys_only: bool,
+    /// Folders with line drawings in `frames`, for in-betweens of whole drawings.
+    #[arg(long, num_args = 1..)]
+    drawings: Vec<PathBuf>,
+    /// Prints every span of the tables of ink.
+    #[arg(long)]
+    each: bool,
 }
 
 fn main() -> Result<()> {
-    let Arguments { out, folders, keys_only } = Arguments::parse();
+    let Arguments { out, folders, keys_only, drawings, each } = Arguments::parse();
     let mut sets = folders.iter().map(|folder| Set::load(folder)).collect::<Result<Vec<_>>>()?;
     if keys_only {
         breakdowns(&sets)?;
-        return fragments(&sets);
+        fragments(&sets, each)?;
+        return whole_drawings(&drawings, each);
     }
     matching(&sets, false)?;
     matching(&sets, true)?;
@@ -44,7 +53,8 @@ fn main() -> Result<()> {
     }
     between(&sets, "strokes that follow the tracked parts of the project", measure_captured)?;
     breakdowns(&sets)?;
-    fragments(&sets)?;
+    fragments(&sets, each)?;
+    whole_drawings(&drawings, each)?;
     for set in &sets {
         sheets(set, &out)?;
     }
@@ -88,29 +98,62 @@ fn breakdowns(sets: &[Set]) -> Result<()> {
     Ok(())
 }
 
-fn fragments(sets: &[Set]) -> Result<()> {
+fn fragments(sets: &[Set], each: bool) -> Result<()> {
     println!(
         "fragmented drawings: keys 12 frames apart, contours in pieces; mean distance between drawn and true ink in px"
     );
-    println!(
-        "{:22}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>10}",
-        "", "pieces", "hold", "ours", "ratio", "spans", "worse", "wrong %"
-    );
+    ink_head("pieces");
     for set in sets {
         for most in [1, 3, 6] {
             let (mut all, mut chance) = (InkErrors::default(), Chance(29));
             for span in spans_of_twelve(set) {
-                all.add(measure_fragments(set, span, most, &mut chance)?);
+                let found = measure_fragments(set, span, most, &mut chance)?;
+                if each {
+                    ink_row(&format!("  {} to {}", span.0, span.1), most, &found);
+                }
+                all.add(found);
             }
-            let n = all.frames.max(1) as f64;
-            let wrong = 100.0 * all.pairs.1 as f64 / (all.pairs.0 + all.pairs.1).max(1) as f64;
-            let (held, ours, ratio) = (all.held / n, all.ours / n, all.ours / all.held.max(f64::MIN_POSITIVE));
-            let (spans, worse) = all.spans;
-            println!("{:22}{most:8}{held:8.2}{ours:8.2}{ratio:8.2}{spans:8}{worse:8}{wrong:10.1}", set.name);
+            ink_row(&set.name, most, &all);
         }
     }
     println!();
     Ok(())
+}
+
+fn whole_drawings(folders: &[PathBuf], each: bool) -> Result<()> {
+    println!("whole line drawings, each traced for itself: mean distance between drawn and true ink in px");
+    ink_head("strokes");
+    for folder in folders {
+        let film = Film::trace(folder)?;
+        let mut all = InkErrors::default();
+        for span in film.spans() {
+            let found = measure_drawings(&film, span)?;
+            if each {
+                ink_row(&format!("  {} to {}", span.0, span.1), film.drawings[span.0].len(), &found);
+            }
+            all.add(found);
+        }
+        let strokes = film.drawings.iter().map(Vec::len).max().unwrap_or(0);
+        ink_row(&film.name, strokes, &all);
+    }
+    println!();
+    Ok(())
+}
+
+fn ink_head(count: &str) {
+    println!(
+        "{:22}{count:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>10}",
+        "", "hold", "ours", "ratio", "spans", "worse", "held", "wrong %"
+    );
+}
+
+fn ink_row(name: &str, count: usize, all: &InkErrors) {
+    let n = all.frames.max(1) as f64;
+    let pairs = all.pairs.0 + all.pairs.1;
+    let wrong = if pairs == 0 { String::new() } else { format!("{:.1}", 100.0 * all.pairs.1 as f64 / pairs as f64) };
+    let (held, ours, ratio) = (all.held / n, all.ours / n, all.ratio());
+    let ((spans, worse), holding) = (all.spans, all.holding);
+    println!("{name:22}{count:8}{held:8.2}{ours:8.2}{ratio:8.3}{spans:8}{worse:8}{holding:8}{wrong:>10}");
 }
 
 fn matching(sets: &[Set], painted: bool) -> Result<()> {

@@ -1,12 +1,16 @@
 //! Measures matching and in-betweens on sets with known truth.
 //!
 //! - [`between`]: compares in-betweens with the true frames
-//! - [`fragments`]: compares in-betweens of fragmented drawings with the true ink
+//! - [`drawings`]: in-betweens of whole line drawings, each traced for itself
+//! - [`fragments`]: in-betweens of contours that are cut into pieces in other places on each key
+//! - [`ink`]: distances between drawn and true ink
 //! - [`matching`]: matches strokes that are drawn in another way
 //! - [`sheet`]: draws in-betweens over the truth
 
 pub mod between;
+pub mod drawings;
 pub mod fragments;
+pub mod ink;
 pub mod matching;
 pub mod sheet;
 

@@ -16,6 +16,9 @@ use xtask_shell::shell::{cargo, command, run, target};
 pub struct Arguments {
     /// Folders with project.json and truth.json; the sample cartoon by default.
     dirs: Vec<PathBuf>,
+    /// Folders with line drawings in `frames`, for in-betweens of whole drawings.
+    #[arg(long, num_args = 1..)]
+    drawings: Vec<PathBuf>,
 }
 
 /// Runs the benchmark.
@@ -30,5 +33,10 @@ pub fn bench_tween(arguments: &Arguments) -> Result<()> {
     eprintln!("building the optimised benchmark");
     run(cargo().args(["build", "--quiet", "--release", "-p", "rototoon-tests", "--bin", "bench-tween"]))?;
     let own = target().join("release").join(format!("bench-tween{}", std::env::consts::EXE_SUFFIX));
-    run(command(&own).arg(&out).args(&dirs))
+    let mut bench = command(&own);
+    bench.arg(&out).args(&dirs);
+    if !arguments.drawings.is_empty() {
+        bench.arg("--drawings").args(&arguments.drawings);
+    }
+    run(&mut bench)
 }

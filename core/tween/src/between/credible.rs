@@ -16,7 +16,7 @@ use rototoon_base::geometry::{Point, polyline};
 pub(super) type Lines = Vec<(Vec<Point>, bool)>;
 
 /// A matching with this share of its ink matched surely is believed.
-const SURE: f64 = 0.6;
+const SURE: f64 = 0.9;
 /// Distance of the samples along the ink, as a share of the size of the first drawing.
 const STEP: f64 = 1.0 / 100.0;
 /// Largest number of samples of a stroke.

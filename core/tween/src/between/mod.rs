@@ -1,6 +1,7 @@
 //! In-betweens: the drawings between drawings on key frames.
 //!
-//! 1. `sure` leaves out pairs that are not sure and would fly across the drawing. `tracks` chains matched strokes through
+//! 1. `sure` leaves out pairs that are not sure and would fly across the drawing, and those whose places contradict the
+//!    drawings. Their strokes are exchanged half way. `tracks` chains matched strokes through
 //!    all drawings. It follows the places of a stroke by proportional arc
 //!    length between corners ([`correspond`], `corners`).
 //! 2. [`super::peg::propose`] finds groups of strokes that move together, with the hinges between them. `motion`
@@ -29,6 +30,7 @@ mod correspond;
 mod credible;
 mod deform;
 mod join;
+mod leaving;
 mod motion;
 mod sure;
 mod tangle;
@@ -37,6 +39,7 @@ mod tracks;
 pub use captured::Captured;
 pub use check::{BetweenError, SpacingError};
 pub use correspond::Places;
+pub use leaving::Leaving;
 pub use tracks::{Stand, Track};
 
 use super::matching::Matching;
@@ -95,21 +98,6 @@ pub struct Key {
     pub spacing: Spacing,
     /// Whether velocities may break at this key: a corner in time.
     pub corner: bool,
-}
-
-/// The behaviour of strokes that only one of two drawings has.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Leaving {
-    /// They shrink into their middle, or grow out of it (Yang et al. 1986).
-    #[default]
-    Grow,
-    /// They become transparent, or appear out of transparency.
-    Fade,
-    /// They move out of a picture of this size, away from its middle, or into it.
-    Leave {
-        /// Width and height of the picture, in pixels.
-        size: Point,
-    },
 }
 
 /// Options of the in-betweens.
@@ -179,6 +167,8 @@ pub struct Sequence {
     followed: Vec<Vec<Option<Following>>>,
     /// By span: whether the earlier key is held, because the movement cannot be believed.
     held: Vec<bool>,
+    /// By span: the strokes of its two keys that are exchanged half way, because their pairs are not carried out.
+    exchanged: Vec<[Vec<usize>; 2]>,
     options: Options,
 }
 
@@ -227,8 +217,10 @@ impl Sequence {
         let sureness: Vec<f64> =
             keys.windows(2).zip(matchings).map(|(two, m)| m.sureness(&two[0].strokes, &two[1].strokes)).collect();
         let pairs = keys.windows(2).zip(matchings);
-        let matchings: Vec<Matching> =
-            pairs.map(|(two, matching)| sure::carried_out(&two[0].strokes, &two[1].strokes, matching)).collect();
+        let (matchings, exchanged): (Vec<Matching>, Vec<[Vec<usize>; 2]>) = pairs
+            .map(|(two, matching)| sure::carried_out(&two[0].strokes, &two[1].strokes, matching))
+            .map(|found| (found.matching, found.exchanged))
+            .unzip();
         let matchings = &matchings[..];
         let tracks = match base {
             Some(base) => tracks::around(&keys, matchings, base.min(matchings.len())),
@@ -256,8 +248,9 @@ impl Sequence {
         let followed = vec![vec![None; spans]; tracks.len()];
         let (contacts, captured) = (vec![Vec::new(); spans], Arc::default());
         let held = vec![false; spans];
+        let options = *options;
         let mut sequence =
-            Self { keys, tracks, motion, changes, local, contacts, captured, followed, held, options: *options };
+            Self { keys, tracks, motion, changes, local, contacts, captured, followed, held, exchanged, options };
         if options.contacts {
             let wanted = |k: &usize| base.is_none_or(|base| base == *k);
             let touching = |k: usize| if wanted(&k) { sequence.touching(k) } else { Vec::new() };
@@ -275,8 +268,16 @@ impl Sequence {
         let (from, to) = (&self.keys[k], &self.keys[k + 1]);
         let half = || -> credible::Lines {
             let maps = self.motion.maps(k, 0.5, 0.5 * (f64::from(from.frame) + f64::from(to.frame)));
-            let there = |t: usize| (self.moved(t, k, 0.5, &self.motion.of_track(t, &maps)).0, self.tracks[t].closed);
-            self.present(k).into_iter().map(there).collect()
+            // What vanishes or appears shows no movement.
+            let moves = |t: usize| {
+                let stands = [self.tracks[t].at(k), self.tracks[t].at(k + 1)];
+                stands.iter().all(Option::is_some) || self.is_exchanged(t, k)
+            };
+            let there = |t: usize| {
+                let (points, opacity) = self.moved(t, k, 0.5, &self.motion.of_track(t, &maps));
+                (opacity > 0.0).then_some((points, self.tracks[t].closed))
+            };
+            self.present(k).into_iter().filter(|&t| moves(t)).filter_map(there).collect()
         };
         credible::is_believed(sureness, &from.strokes, &to.strokes, half)
     }
@@ -296,6 +297,11 @@ impl Sequence {
             self.held[k] &= self.followed.iter().all(|spans| spans[k].is_none());
         }
         self
+    }
+
+    /// Whether the earlier key is held between key `k` and the next one, because no movement between them can be believed.
+    pub fn is_held(&self, k: usize) -> bool {
+        self.held.get(k).copied().unwrap_or(false)
     }
 
     /// The tracks: which stroke of which drawing belongs together, and the places of its points.
@@ -423,15 +429,20 @@ impl Sequence {
         let s = if *spacing == Spacing::Smooth { Timing::EaseInOut.at(u) } else { spacing.at(u).clamp(0.0, 1.0) };
         let there = if goes { 1.0 - s } else { s };
         let points: Vec<Point> = own.iter().map(|p| map.apply(*p)).collect();
-        let middle = polygon::center(&points);
-        match self.options.leaving {
-            Leaving::Grow => (points.iter().map(|p| middle.lerp(*p, there)).collect(), 1.0),
-            Leaving::Fade => (points, there),
-            Leaving::Leave { size } => {
-                let away = way_out(&points, size) * (1.0 - there);
-                (points.iter().map(|p| *p + away).collect(), 1.0)
-            }
+        if self.is_exchanged(t, k) {
+            return (points, f64::from(u8::from(goes == (s < 0.5))));
         }
+        self.options.leaving.drawn(points, there)
+    }
+
+    /// Whether a track that only one key of a span has is exchanged half way for its counterpart, whose pair is not carried
+    /// out.
+    fn is_exchanged(&self, t: usize, k: usize) -> bool {
+        let on = |key: usize, strokes: &[usize]| {
+            self.tracks[t].at(key).is_some_and(|stand| strokes.binary_search(&stand.stroke).is_ok())
+        };
+        let [before, after] = &self.exchanged[k];
+        on(k, before) || on(k + 1, after)
     }
 
     /// The attributes of a track without its points.
@@ -499,22 +510,6 @@ fn changes(places: &[Option<Vec<Point>>], closed: bool, asked: &Asked, options: 
         deforms.iter().map(|d| d.as_ref().map(|d| Ends { start: d.way(), end: d.way() })).collect();
     let runs = join::runs(&ends, asked);
     deforms.into_iter().zip(runs).map(|(deform, run)| deform.map(|deform| Change { deform, run })).collect()
-}
-
-/// The shift that moves points just outside a picture, away from its middle.
-fn way_out(points: &[Point], size: Point) -> Point {
-    let Some((low, high)) = polygon::bounds(points) else { return Point::ZERO };
-    let way = (0.5 * (low + high) - 0.5 * size).normalize_or(Point::X);
-    let out = |way: f64, low: f64, high: f64, size: f64| {
-        if way > 1e-9 {
-            (size - low) / way
-        } else if way < -1e-9 {
-            high / -way
-        } else {
-            f64::INFINITY
-        }
-    };
-    way * out(way.x, low.x, high.x, size.x).min(out(way.y, low.y, high.y, size.y)).max(0.0)
 }
 
 #[cfg(test)]

@@ -10,7 +10,8 @@
 //! two neighbouring keys have hangs on the nearest one whose movement is known, so that it goes with what is around it. If a group
 //! turns relative to its parent, its hinge is the fixed point of this relative turn, provided that the point is near
 //! the strokes of both. Otherwise the hinge is the place where the two groups meet, or the middle of the group if they
-//! are far apart.
+//! are far apart. A group that the turn of its parent would carry far off its own way does not hang on it: a shadow that
+//! lies still does not swing with the leg above it.
 //!
 //! Limits: among few strokes, those that happen to move alike become one group, however far apart they are. With more
 //! than [`ALL_PAIRS`] strokes only near ones are joined.
@@ -38,6 +39,9 @@ const TOLERANCE: f64 = 0.06;
 const HINGE_TURN: f64 = 0.1;
 /// Largest distance of a hinge from the strokes of the two groups, in radii of the child.
 const HINGE_REACH: f64 = 0.7;
+
+/// Half way a group may be this far, in pixels and in shares of its own way, from the middle of that way.
+const OFF_WAY: (f64, f64) = (2.0, 0.5);
 
 /// A stroke on several keys. It has the same number of points on each key; `None` where it does not exist.
 #[derive(Clone, Copy, Debug)]
@@ -320,6 +324,7 @@ fn hung(all: &[Growing], samples: &[Vec<Option<Vec<Point>>>]) -> Vec<Group> {
                 best = Some((worst, parent, first.1));
             }
         }
+        best = best.filter(|&(_, parent, _)| !group.moves() || goes_along(group, &all[parent]));
         let pivot = best.map_or(middles[g], |(gap, parent, place)| {
             let reach = HINGE_REACH * group.radius().max(1.0);
             let on_both = |p: Point| [group, &all[parent]].into_iter().all(|g| g.distance(p, samples) <= reach + gap);
@@ -328,6 +333,20 @@ fn hung(all: &[Growing], samples: &[Vec<Option<Vec<Point>>>]) -> Vec<Group> {
         groups.push(Group { members: group.members.clone(), parent: best.map(|b| b.1), pivot });
     }
     groups
+}
+
+/// Whether a group stays near its own way if it hangs on a parent, between all neighbouring keys that show both. Half way
+/// the parent has turned by half, and the group's middle is half way between its places in the parent's frame.
+fn goes_along(child: &Growing, parent: &Growing) -> bool {
+    let mut spans = child.sums.iter().zip(&parent.sums).filter(|(own, on)| own.count > 0.0 && on.count > 0.0);
+    spans.all(|(own, on)| {
+        let (own, on) = (own.similarity(), on.similarity());
+        let (from, to) = (own.source, own.target);
+        let local = from.midpoint(on.inverse().apply(to)) - on.source;
+        let half = Point::from_angle(0.5 * on.angle()) * on.scale().sqrt();
+        let hung = on.source.midpoint(on.target) + half.rotate(local);
+        hung.distance(from.midpoint(to)) <= OFF_WAY.0 + OFF_WAY.1 * from.distance(to)
+    })
 }
 
 /// The fixed point of a group's turn relative to its parent.
