@@ -40,6 +40,8 @@ const ON: f64 = 0.008;
 const AT: f64 = 0.03;
 /// Share of the places that may lie on the counterpart without lying at their own counterparts.
 const ASTRAY: f64 = 0.35;
+/// Root mean square that the similarity of a stroke that keeps its shape leaves, as a share of the stroke's own.
+const RIGID: f64 = 0.15;
 /// Number of samples of the counterpart, and of the places that are tried.
 const DENSE: usize = 256;
 const TRIED: usize = 64;
@@ -95,7 +97,8 @@ fn size<'a>(strokes: impl Iterator<Item = &'a Stroke>) -> f64 {
 }
 
 /// Whether many places lie on the counterpart once they have moved, but far from their own counterparts. The movement is
-/// that of the neighbourhood, or the one that fits the pair itself best. Both directions are tried.
+/// that of the neighbourhood, or the one that fits the pair itself best. Both directions are tried. A stroke that keeps its
+/// shape may slide along itself.
 fn goes_astray(a: &Stroke, b: &Stroke, pair: &Pair, around: &Similarity, size: f64) -> bool {
     if a.points.len() < 2 || b.points.len() < 2 {
         return false;
@@ -103,6 +106,14 @@ fn goes_astray(a: &Stroke, b: &Stroke, pair: &Pair, around: &Similarity, size: f
     let own = Places::all(&Stroke::new(polyline::resample(&a.points, a.closed, TRIED), a.closed));
     let resampled = Stroke::new(own.points.clone(), a.closed);
     let there = own.on(&resampled, b, pair).points;
+    let fitted = Similarity::fit(&own.points, &there);
+    let middle = polygon::center(&there);
+    let (left, spread) = own.points.iter().zip(&there).fold((0.0, 0.0), |(left, spread), (p, q)| {
+        (left + fitted.apply(*p).distance_squared(*q), spread + middle.distance_squared(*q))
+    });
+    if left <= RIGID * RIGID * spread {
+        return false;
+    }
     let dense = |s: &Stroke| polyline::resample(&s.points, s.closed, DENSE);
     let (on_a, on_b) = (dense(a), dense(b));
     let (grid_a, grid_b) = (Grid::new(&on_a), Grid::new(&on_b));
@@ -114,7 +125,7 @@ fn goes_astray(a: &Stroke, b: &Stroke, pair: &Pair, around: &Similarity, size: f
         };
         from.iter().zip(to).filter(|&(p, q)| is((p, q))).count() as f64 > ASTRAY * from.len() as f64
     };
-    [*around, Similarity::fit(&own.points, &there)].iter().any(|map| {
+    [*around, fitted].iter().any(|map| {
         astray(&own.points, &there, map, &on_b, &grid_b) || astray(&there, &own.points, &map.inverse(), &on_a, &grid_a)
     })
 }
