@@ -40,6 +40,8 @@ const ON: f64 = 0.008;
 const AT: f64 = 0.03;
 /// Share of the places that may lie on the counterpart without lying at their own counterparts.
 const ASTRAY: f64 = 0.35;
+/// A movement that shrinks more than this does not lead back.
+const LEAST_SCALE: f64 = 1e-6;
 /// Root mean square that the similarity of a stroke that keeps its shape leaves, as a share of the stroke's own.
 const RIGID: f64 = 0.15;
 /// Number of samples of the counterpart, and of the places that are tried.
@@ -100,7 +102,7 @@ fn size<'a>(strokes: impl Iterator<Item = &'a Stroke>) -> f64 {
 /// that of the neighbourhood, or the one that fits the pair itself best. Both directions are tried. A stroke that keeps its
 /// shape may slide along itself.
 fn goes_astray(a: &Stroke, b: &Stroke, pair: &Pair, around: &Similarity, size: f64) -> bool {
-    if a.points.len() < 2 || b.points.len() < 2 {
+    if [a, b].iter().any(|stroke| stroke.points.len() < 2 || stroke.length() <= 0.0) {
         return false;
     }
     let own = Places::all(&Stroke::new(polyline::resample(&a.points, a.closed, TRIED), a.closed));
@@ -125,7 +127,8 @@ fn goes_astray(a: &Stroke, b: &Stroke, pair: &Pair, around: &Similarity, size: f
         };
         from.iter().zip(to).filter(|&(p, q)| is((p, q))).count() as f64 > ASTRAY * from.len() as f64
     };
-    [*around, fitted].iter().any(|map| {
+    let usable = |map: &&Similarity| map.scale().is_finite() && map.scale() > LEAST_SCALE;
+    [*around, fitted].iter().filter(usable).any(|map| {
         astray(&own.points, &there, map, &on_b, &grid_b) || astray(&there, &own.points, &map.inverse(), &on_a, &grid_a)
     })
 }
