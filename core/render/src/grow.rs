@@ -27,14 +27,7 @@ pub fn grown(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Option<Raster<f32>> {
     let shape = Shape::new(&[polygons.to_vec()]);
-    let mut result = Raster::new(window.width(), window.height(), 0.0f32);
-    let whole = shape.rows(window, &mut |y, row| {
-        result.row_mut((y - window.top) as usize).copy_from_slice(row);
-        go_on()
-    });
-    if !whole {
-        return None;
-    }
+    let mut result = shape.draw(window, go_on)?;
     if amount == 0.0 {
         return Some(result);
     }

@@ -4,6 +4,7 @@
 //! threads.
 
 use super::coverage::{Shape, Window};
+use super::feather::Change;
 use super::{feather, grow};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;
@@ -111,26 +112,24 @@ impl Mask {
     /// Coverage, 0 to 1, of the pixels of a window. `None` if `go_on`, called for each row, returns false.
     pub fn draw(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
         within(self.bounds(), window, &mut |own| {
+            if self.feather == 0.0 {
+                return self.hard(own, go_on);
+            }
             let wide = own.grown(feather::reach(self.feather) as i64);
-            let hard = self.hard(wide, go_on)?;
-            if self.feather > 0.0 { feather::feathered(&hard, self.feather, go_on) } else { Some(hard) }
+            if self.grow != 0.0 {
+                return feather::feathered(&self.hard(wide, go_on)?, self.feather, go_on);
+            }
+            let mut rows = self.shape.rows(wide);
+            let mut next = |changes: &mut Vec<Change>| rows.next(|column, value| changes.push((column, value)));
+            feather::feathered_rows(wide.width(), wide.height(), self.feather, &mut next, go_on)
         })
     }
 
     /// The mask without its feather.
     fn hard(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
         within(self.hard_bounds(), window, &mut |own| {
-            if self.grow == 0.0 { self.covered(own, go_on) } else { self.grown(own, go_on) }
+            if self.grow == 0.0 { self.shape.draw(own, go_on) } else { self.grown(own, go_on) }
         })
-    }
-
-    fn covered(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
-        let mut values = Vec::with_capacity(window.width() * window.height());
-        let whole = self.shape.rows(window, &mut |_, row| {
-            values.extend_from_slice(row);
-            go_on()
-        });
-        if whole { Raster::from_vec(window.width(), window.height(), values) } else { None }
     }
 
     fn grown(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {

@@ -31,13 +31,9 @@ pub fn cutout(
 
 /// Coverage, 0 to 1, of the union of closed polygons in a picture of `width` × `height` pixels.
 pub fn coverage(polygons: &[Vec<Point>], width: usize, height: usize) -> Raster<f32> {
-    let mut result = Raster::new(width, height, 0.0f32);
     let window = Window { left: 0, top: 0, right: width as i64, bottom: height as i64 };
-    Shape::new(&[polygons.to_vec()]).rows(window, &mut |y, row| {
-        result.row_mut(y as usize).copy_from_slice(row);
-        true
-    });
-    result
+    let drawn = Shape::new(&[polygons.to_vec()]).draw(window, &mut || true);
+    drawn.unwrap_or_else(|| Raster::new(width, height, 0.0))
 }
 
 #[cfg(test)]

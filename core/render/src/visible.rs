@@ -158,13 +158,13 @@ fn shares(outlines: &[Outline], band: Window, go_on: &mut dyn FnMut() -> bool) -
     for (index, outline) in outlines.iter().enumerate() {
         let Some(window) = common(outline.bounds, band) else { continue };
         let mut union = Union { outlines, of: Vec::new(), shape: Shape::new(&[]) };
-        let whole = Shape::new(&[vec![outline.points.clone()]]).rows(window, &mut |y, row| {
-            let mixed = pixels.add(index, window.left, y, row);
+        let own = Shape::new(&[vec![outline.points.clone()]]).draw(window, go_on)?;
+        for (row, y) in (window.top..window.bottom).enumerate() {
+            let mixed = pixels.add(index, window.left, y, own.row(row));
             pixels.mix(index, y, &mixed, &mut union);
-            go_on()
-        });
-        if !whole {
-            return None;
+            if !go_on() {
+                return None;
+            }
         }
     }
     let of_scene = |share: Share| Share { part: outlines[share.part].part, ..share };
@@ -209,12 +209,10 @@ impl Pixels {
         met.sort_unstable();
         met.dedup();
         let window = Window { left, top: y, right: last + 1, bottom: y + 1 };
-        union.of(met).rows(window, &mut |y, row| {
-            for &x in mixed {
-                self.show(self.at(x, y), index, row[(x - left) as usize]);
-            }
-            true
-        });
+        let Some(union) = union.of(met).draw(window, &mut || true) else { return };
+        for &x in mixed {
+            self.show(self.at(x, y), index, union.get((x - left) as usize, 0));
+        }
     }
 
     /// Adds an outline to a pixel. `now` is the coverage of the union with it.

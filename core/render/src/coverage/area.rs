@@ -3,18 +3,21 @@
 //! The sums are stored as differences between neighbouring pixels, as in the accumulation buffer of Levien's font-rs. A side
 //! adds the area to its right within each pixel, in closed form. All tiles of all instants add to the same differences, and a
 //! row is summed once, so the cost is that of the sides and not that of the pixels between them. The differences are integers:
-//! their order plays no part.
+//! their order plays no part. A bit for each pixel tells which differences were changed, so that the others are not read.
 
 use super::slabs::{Side, Sink};
 use std::ops::Range;
+
+/// Pixels whose bits are in one word.
+const WORD: usize = u64::BITS as usize;
 
 /// Areas of one row of a window, in steps.
 pub struct Area {
     window: Range<i64>,
     /// Differences of the areas: one entry for each pixel of the window, and one for what lies beyond the last.
     changes: Vec<i32>,
-    /// Whether any of them may differ from zero.
-    touched: bool,
+    /// Which of them may differ from zero.
+    touched: Vec<u64>,
     /// The columns of the tile that are in the window.
     tile: Range<i64>,
     /// The sum of what the tile has added. Beyond the tile it is taken back.
@@ -25,32 +28,34 @@ impl Area {
     /// For the columns of a window.
     pub fn new(window: Range<i64>) -> Self {
         let width = (window.end - window.start).max(0) as usize;
-        Self { window, changes: vec![0; width + 1], touched: false, tile: 0..0, added: 0 }
+        Self { window, changes: vec![0; width + 1], touched: vec![0; width / WORD + 1], tile: 0..0, added: 0 }
     }
 
-    /// Writes the areas times `unit`, and begins the next row.
-    pub fn take(&mut self, unit: f64, row: &mut [f32]) {
-        if !std::mem::take(&mut self.touched) {
-            row.fill(0.0);
-            return;
-        }
+    /// Calls `each` with the columns at which the area changes, from left to right, and with the area times `unit` from
+    /// there on. Left of the first the area is 0. Begins the next row.
+    pub fn take(&mut self, unit: f64, each: &mut impl FnMut(usize, f32)) {
+        let width = self.changes.len() - 1;
         let mut sum = 0;
-        let mut value = 0.0;
-        for (value_at, change) in row.iter_mut().zip(&mut self.changes) {
-            if *change != 0 {
-                sum += std::mem::take(change);
-                value = (f64::from(sum) * unit) as f32;
+        for (word, bits) in self.touched.iter_mut().enumerate() {
+            let mut bits = std::mem::take(bits);
+            while bits != 0 {
+                let column = word * WORD + bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                let change = std::mem::take(&mut self.changes[column]);
+                if change != 0 && column < width {
+                    sum += change;
+                    each(column, (f64::from(sum) * unit) as f32);
+                }
             }
-            *value_at = value;
-        }
-        if let Some(last) = self.changes.last_mut() {
-            *last = 0;
         }
     }
 
     /// Adds a change at a pixel of the tile, or at the one beyond it.
+    #[inline]
     fn change(&mut self, column: i64, by: i32) {
-        self.changes[(column - self.window.start) as usize] += by;
+        let column = (column - self.window.start) as usize;
+        self.changes[column] += by;
+        self.touched[column / WORD] |= 1 << (column % WORD);
         self.added += by;
     }
 }
@@ -66,21 +71,24 @@ impl Sink for Area {
         self.change(self.tile.start, (bottom - top) as i32);
     }
 
+    #[inline]
     fn side(&mut self, side: &Side, top: i64, bottom: i64, enters: bool) {
         self.add(side, (bottom - top) as i32, if enters { 1 } else { -1 });
     }
 
     fn end(&mut self) {
-        self.changes[(self.tile.end - self.window.start) as usize] -= self.added;
-        self.touched = true;
+        let added = self.added;
+        self.change(self.tile.end, -added);
     }
 }
 
 impl Area {
     /// Adds (or subtracts) the area to the right of a side.
+    #[inline]
     fn add(&mut self, side: &Side, height: i32, sign: i32) {
         let (low, high) = if side.above < side.below { (side.above, side.below) } else { (side.below, side.above) };
-        let (first, last) = (low.floor() as i64, high.ceil() as i64);
+        let first = floor(low);
+        let last = ceil(high);
         let (left, right, tall) = (self.tile.start, self.tile.end, f64::from(height));
         if last <= left {
             self.change(left, sign * height);
@@ -90,7 +98,7 @@ impl Area {
             return;
         }
         if last - first <= 1 {
-            let own = (tall * ((first + 1) as f64 - 0.5 * (low + high))).round() as i32;
+            let own = rounded(tall * ((first + 1) as f64 - 0.5 * (low + high)));
             // A side in the column left of the tile was handled with `last` above.
             self.change(first, sign * own);
             self.change(first + 1, sign * (height - own));
@@ -98,18 +106,22 @@ impl Area {
         }
         // The area to the left of `x` and right of the side. Its differences are the areas within pixels.
         let (width, middle) = (high - low, 0.5 * (low + high));
+        let steep = tall / (2.0 * width);
         let until = |x: f64| {
             if x <= low {
                 0.0
             } else if x >= high {
                 tall * (x - middle)
             } else {
-                tall * (x - low) * (x - low) / (2.0 * width)
+                steep * (x - low) * (x - low)
             }
         };
-        let mut before = 0;
-        for x in first.max(left)..last.min(right) {
-            let own = (until((x + 1) as f64) - until(x as f64)).round() as i32;
+        let (mut before, from) = (0, first.max(left));
+        let mut reached = until(from as f64);
+        for x in from..last.min(right) {
+            let next = until((x + 1) as f64);
+            let own = rounded(next - reached);
+            reached = next;
             self.change(x, sign * (own - before));
             before = own;
         }
@@ -117,4 +129,24 @@ impl Area {
             self.change(last, sign * (height - before));
         }
     }
+}
+
+/// The greatest integer that is not above a number. The library's function is slow without newer instructions.
+#[inline]
+fn floor(x: f64) -> i64 {
+    let near = x as i64;
+    near - i64::from(near as f64 > x)
+}
+
+/// The least integer that is not below a number.
+#[inline]
+fn ceil(x: f64) -> i64 {
+    let near = x as i64;
+    near + i64::from((near as f64) < x)
+}
+
+/// The integer nearest to an area, which is not negative.
+#[inline]
+fn rounded(area: f64) -> i32 {
+    (area + 0.5) as i32
 }

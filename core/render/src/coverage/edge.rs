@@ -20,6 +20,8 @@ pub struct Edge {
     pub winding: i32,
     /// The ends of the side before rounding.
     pub ends: [Point; 2],
+    /// The side that begins at the lower end and continues downward.
+    pub next: Option<usize>,
 }
 
 impl Edge {
@@ -29,7 +31,16 @@ impl Edge {
         let ((upper, top), (lower, bottom), winding) =
             if a_y < b_y { ((a, a_y), (b, b_y), 1) } else { ((b, b_y), (a, a_y), -1) };
         let slope = (lower.x - upper.x) / (bottom - top) as f64;
-        (top < bottom).then_some(Self { top, bottom, x: upper.x, slope, polygon, winding, ends: [upper, lower] })
+        (top < bottom).then_some(Self {
+            top,
+            bottom,
+            x: upper.x,
+            slope,
+            polygon,
+            winding,
+            ends: [upper, lower],
+            next: None,
+        })
     }
 
     /// Its x at a height.
@@ -49,6 +60,8 @@ impl Edge {
 pub struct Instant {
     /// Sides in the order of their upper ends.
     pub edges: Vec<Edge>,
+    /// The sides that continue no other one, in the same order. With those that follow they are chains that go downward.
+    pub heads: Vec<usize>,
     /// Number of polygons.
     pub polygons: usize,
 }
@@ -57,10 +70,50 @@ impl Instant {
     /// The sides of closed polygons. A polygon with a coordinate that is not finite has none.
     pub fn new(polygons: &[Vec<Point>]) -> Self {
         let mut edges = Vec::new();
+        // For each side the one that continues it, as numbers in the order of `edges` before sorting.
+        let mut links = Vec::new();
         for (index, points) in polygons.iter().enumerate().filter(|(_, points)| points.iter().all(|p| p.is_finite())) {
-            edges.extend(polyline::segments(points, true).filter_map(|(a, b)| Edge::new(index, a, b)));
+            let own: Vec<Option<Edge>> =
+                polyline::segments(points, true).map(|(a, b)| Edge::new(index, a, b)).collect();
+            link(&own, edges.len(), &mut links);
+            edges.extend(own.into_iter().flatten());
         }
-        edges.sort_by_key(|edge| edge.top);
-        Self { edges, polygons: polygons.len() }
+        let (edges, heads) = sorted(edges, &links);
+        Self { edges, heads, polygons: polygons.len() }
     }
+}
+
+/// Adds for each side of a polygon the number of the side that continues it downward. The first side has the number `first`.
+fn link(sides: &[Option<Edge>], first: usize, links: &mut Vec<Option<usize>>) {
+    let mut number = first;
+    let numbers: Vec<usize> = sides
+        .iter()
+        .map(|side| {
+            number += usize::from(side.is_some());
+            number.wrapping_sub(1)
+        })
+        .collect();
+    let count = sides.len();
+    for (k, side) in sides.iter().enumerate() {
+        let Some(side) = side else { continue };
+        // The polygon runs downward on one side and upward on the other.
+        let beyond = if side.winding > 0 { (k + 1) % count } else { (k + count - 1) % count };
+        let continues = sides[beyond].as_ref().is_some_and(|other| other.winding == side.winding && beyond != k);
+        links.push(continues.then(|| numbers[beyond]));
+    }
+}
+
+/// Sorts sides by their upper ends. Also returns those that continue no other one.
+fn sorted(edges: Vec<Edge>, links: &[Option<usize>]) -> (Vec<Edge>, Vec<usize>) {
+    let mut order: Vec<usize> = (0..edges.len()).collect();
+    order.sort_by_key(|&number| edges[number].top);
+    let mut place = vec![0; edges.len()];
+    for (at, &number) in order.iter().enumerate() {
+        place[number] = at;
+    }
+    let mut continued = vec![false; edges.len()];
+    links.iter().flatten().for_each(|&number| continued[place[number]] = true);
+    let at = |&number: &usize| Edge { next: links[number].map(|next| place[next]), ..edges[number] };
+    let heads = (0..edges.len()).filter(|&edge| !continued[edge]).collect();
+    (order.iter().map(at).collect(), heads)
 }

@@ -44,6 +44,13 @@ impl Left {
         self.rows = (top, bottom);
     }
 
+    /// Lets a polygon without steps cover the line in the whole row.
+    pub fn cover(&mut self, polygon: usize, winding: i32) {
+        self.steps[polygon].extend([(self.rows.0, winding), (self.rows.1, -winding)]);
+        self.touched.push(polygon);
+        self.full += 1;
+    }
+
     /// Moves the line over a side.
     pub fn pass(&mut self, edge: &Edge) {
         let (top, bottom) = self.rows;

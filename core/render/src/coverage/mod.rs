@@ -7,7 +7,8 @@
 //! closed form. The coverage is exact for sides of any slope. Polygons that touch leave no seam, because intervals are
 //! united and not opacities.
 //!
-//! Rows with many sides are divided into tiles, and only the sides in a tile cut its slabs ([`scan`]).
+//! Sides that keep their order in the whole row need no slabs: only the knots of a row do, in which sides cross or outlines
+//! turn ([`quiet`]). Rows with large knots are divided into tiles, and only the sides in a tile cut its slabs ([`scan`]).
 //!
 //! Heights are integer multiples of 2⁻²⁴ of a row, and areas are integer sums. The inside is exactly 1, the outside
 //! exactly 0, and the value of a pixel does not depend on the requested window. Areas of several instants add up in the
@@ -16,14 +17,17 @@
 //! Limits: at most [`MOST_INSTANTS`] instants; a picture's coordinates times 2²⁴ must fit 64-bit integers.
 
 mod area;
+mod chains;
 mod edge;
 mod left;
+mod quiet;
 mod scan;
 mod slabs;
 
 use area::Area;
 use edge::{Instant, ROW};
 use rototoon_base::geometry::Point;
+use rototoon_base::scene::Raster;
 use scan::{Scan, TILE};
 
 pub(super) use edge::Edge;
@@ -77,28 +81,70 @@ impl Shape {
     /// A shape from the closed polygons of some instants; its coverage is their mean. Instants after the first
     /// [`MOST_INSTANTS`] are ignored, and so are polygons with a coordinate that is not finite.
     pub fn new(instants: &[Vec<Vec<Point>>]) -> Self {
-        Self { instants: instants.iter().take(MOST_INSTANTS).map(|polygons| Instant::new(polygons)).collect() }
+        let instants = &instants[..instants.len().min(MOST_INSTANTS)];
+        // What does not move is one instant.
+        let still = instants.windows(2).all(|pair| pair[0] == pair[1]);
+        let count = if still { instants.len().min(1) } else { instants.len() };
+        Self { instants: instants[..count].iter().map(|polygons| Instant::new(polygons)).collect() }
     }
 
-    /// Calls `each` for the rows of a window from top to bottom, with the row's number and coverage (0 to 1), until it
-    /// returns false. Returns whether it never did.
-    pub fn rows(&self, window: Window, each: &mut dyn FnMut(i64, &[f32]) -> bool) -> bool {
-        self.rows_in_tiles(window, TILE, each)
+    /// The rows of a window, from top to bottom.
+    pub fn rows(&self, window: Window) -> Rows<'_> {
+        self.rows_in_tiles(window, TILE)
     }
 
-    fn rows_in_tiles(&self, window: Window, share: usize, each: &mut dyn FnMut(i64, &[f32]) -> bool) -> bool {
-        let mut scans: Vec<Scan> = self.instants.iter().map(|instant| Scan::new(instant, window.top, share)).collect();
-        let mut area = Area::new(window.left..window.right);
-        let unit = 1.0 / (ROW * self.instants.len().max(1) as i64) as f64;
-        let mut row = vec![0.0f32; window.width()];
-        for y in window.top..window.bottom {
-            scans.iter_mut().for_each(|scan| scan.row(y, &mut area));
-            area.take(unit, &mut row);
-            if !each(y, &row) {
-                return false;
+    fn rows_in_tiles(&self, window: Window, share: usize) -> Rows<'_> {
+        Rows {
+            scans: self.instants.iter().map(|instant| Scan::new(instant, window.top, share)).collect(),
+            area: Area::new(window.left..window.right),
+            unit: 1.0 / (ROW * self.instants.len().max(1) as i64) as f64,
+            next: window.top,
+        }
+    }
+
+    /// Draws the coverage of a window. Calls `go_on` for each row, and returns `None` if it returns false.
+    pub fn draw(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
+        let mut picture = Raster::new(window.width(), window.height(), 0.0f32);
+        let mut rows = self.rows(window);
+        for y in 0..window.height() {
+            let row = picture.row_mut(y);
+            let (mut from, mut covered) = (0, 0.0);
+            rows.next(|column, value| {
+                // The picture is 0 already.
+                if covered != 0.0 {
+                    row[from..column].fill(covered);
+                }
+                (from, covered) = (column, value);
+            });
+            if covered != 0.0 {
+                row[from..].fill(covered);
+            }
+            if !go_on() {
+                return None;
             }
         }
-        true
+        Some(picture)
+    }
+}
+
+/// The coverage of the rows of a window, from top to bottom.
+pub struct Rows<'a> {
+    scans: Vec<Scan<'a>>,
+    area: Area,
+    /// The inverse of the area of a pixel over all instants, in steps.
+    unit: f64,
+    next: i64,
+}
+
+impl Rows<'_> {
+    /// Calls `change` with the columns of the next row at which the coverage changes, from left to right, and with the
+    /// coverage (0 to 1) from there on. Left of the first it is 0.
+    pub fn next(&mut self, mut change: impl FnMut(usize, f32)) {
+        for scan in &mut self.scans {
+            scan.row(self.next, &mut self.area);
+        }
+        self.next += 1;
+        self.area.take(self.unit, &mut change);
     }
 }
 
@@ -121,15 +167,9 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
     use rototoon_base::geometry::polyline;
-    use rototoon_base::scene::Raster;
 
     fn picture(instants: &[Vec<Vec<Point>>], window: Window) -> Raster<f32> {
-        let mut values = Vec::new();
-        assert!(Shape::new(instants).rows(window, &mut |_, row| {
-            values.extend_from_slice(row);
-            true
-        }));
-        Raster::from_vec(window.width(), window.height(), values).unwrap()
+        Shape::new(instants).draw(window, &mut || true).unwrap()
     }
 
     fn size(width: i64, height: i64) -> Window {
@@ -178,12 +218,15 @@ mod tests {
     #[test]
     fn rows_end_when_told_and_polygons_of_no_numbers_cover_nothing() {
         let shape = Shape::new(&[vec![vec![p(f64::NAN, 0.0), p(4.0, 0.0), p(0.0, 2.0)]]]);
+        assert_eq!(shape.draw(size(3, 5), &mut || true), Some(Raster::new(3, 5, 0.0)));
         let mut rows = 0;
-        assert!(!shape.rows(size(3, 5), &mut |_, row| {
-            rows += 1;
-            assert_eq!(row, [0.0; 3]);
-            rows < 2
-        }));
+        assert_eq!(
+            shape.draw(size(3, 5), &mut || {
+                rows += 1;
+                rows < 2
+            }),
+            None
+        );
         assert_eq!(rows, 2);
     }
 
@@ -198,11 +241,17 @@ mod tests {
     }
 
     fn in_tiles(polygons: &[Vec<Point>], window: Window, share: usize) -> Vec<f32> {
+        let shape = Shape::new(&[polygons.to_vec()]);
+        let mut rows = shape.rows_in_tiles(window, share);
         let mut values = Vec::new();
-        Shape::new(&[polygons.to_vec()]).rows_in_tiles(window, share, &mut |_, row| {
-            values.extend_from_slice(row);
-            true
-        });
+        for _ in 0..window.height() {
+            let (start, mut covered) = (values.len(), 0.0);
+            rows.next(|column, value| {
+                values.resize(start + column, covered);
+                covered = value;
+            });
+            values.resize(start + window.width(), covered);
+        }
         values
     }
 

@@ -1,17 +1,19 @@
-//! Scans the sides of polygons row by row, and each row in tiles.
+//! Scans the sides of polygons row by row.
 //!
-//! The work in a tile grows with the square of its number of sides and more, because each corner and each crossing cuts
+//! Most rows are simple ([`super::quiet`]). The others are scanned in tiles. The work in a tile grows with the square of its number of sides and more, because each corner and each crossing cuts
 //! all of them. A row with many sides is therefore divided into tiles of about the same number of sides. What is left of
 //! a tile counts by its winding number only ([`super::left`]). A tile that one polygon covers as a whole needs no
 //! slabs. In a picture full of polygons most tiles are such ones, so the time is nearly linear in the number of polygons.
 //!
 //! The tiles depend on the sides in the row, not on the window. So a pixel has the same value in any window.
 
+use super::chains::Chains;
 use super::edge::{Instant, ROW};
 use super::left::Left;
+use super::quiet::Quiet;
 use super::slabs::{Sink, Slabs};
 
-/// Number of sides that begin in a tile. Tiles of half or twice as many are slower where polygons overlap.
+/// Number of sides that begin in a tile, and the most in a knot. Tiles of half or twice as many are slower where polygons overlap.
 pub const TILE: usize = 16;
 /// Sides this close to a tile are taken as in it, so that no pair of sides at one place is torn apart.
 const MARGIN: f64 = 1e-6;
@@ -28,8 +30,8 @@ pub struct Scan<'a> {
     instant: &'a Instant,
     /// Number of sides that begin in a tile.
     share: usize,
-    next: usize,
-    active: Vec<usize>,
+    chains: Chains<'a>,
+    quiet: Quiet,
     entries: Vec<Entry>,
     /// Indices of the entries in the tile.
     current: Vec<usize>,
@@ -42,16 +44,11 @@ pub struct Scan<'a> {
 impl<'a> Scan<'a> {
     /// A scan that begins at row `top`. `share` sides begin in a tile.
     pub fn new(instant: &'a Instant, top: i64, share: usize) -> Self {
-        let above = top.saturating_mul(ROW);
-        // Sides are sorted by upper ends, so sides that end above the first row may be anywhere among the
-        // first ones.
-        let next = instant.edges.partition_point(|edge| edge.top < above);
-        let active = (0..next).filter(|&edge| instant.edges[edge].bottom > above).collect();
         Self {
             instant,
             share,
-            next,
-            active,
+            chains: Chains::new(instant, top),
+            quiet: Quiet::new(instant.polygons),
             entries: Vec::new(),
             current: Vec::new(),
             local: Vec::new(),
@@ -64,18 +61,25 @@ impl<'a> Scan<'a> {
     pub fn row(&mut self, y: i64, sink: &mut impl Sink) {
         let edges = &self.instant.edges;
         let (top, bottom) = (y * ROW, (y + 1) * ROW);
-        while self.next < edges.len() && edges[self.next].top < bottom {
-            self.active.push(self.next);
-            self.next += 1;
+        let rows = (top, bottom);
+        self.chains.advance(rows);
+        let chains = self.chains.list();
+        if chains.is_empty() {
+            return;
         }
-        self.active.retain(|&edge| edges[edge].bottom > top);
+        if self.quiet.find(chains, edges, rows, self.share) {
+            self.quiet.draw(chains, edges, rows, (&mut self.left, &mut self.slabs), sink);
+            return;
+        }
         self.entries.clear();
-        self.entries.extend(self.active.iter().map(|&edge| {
-            let (low, high) = edges[edge].range(top, bottom);
-            Entry { edge, low, high }
-        }));
-        self.entries.sort_by(|a, b| a.low.total_cmp(&b.low));
-        self.tiles((top, bottom), sink);
+        for chain in chains {
+            chain.pieces(edges, rows, |edge, _, _| {
+                let (low, high) = edges[edge].range(top, bottom);
+                self.entries.push(Entry { edge, low, high });
+            });
+        }
+        self.entries.sort_unstable_by(|a, b| a.low.total_cmp(&b.low).then(a.edge.cmp(&b.edge)));
+        self.tiles(rows, sink);
     }
 
     fn tiles(&mut self, rows: (i64, i64), sink: &mut impl Sink) {

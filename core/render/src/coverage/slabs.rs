@@ -8,7 +8,7 @@ use super::left::Left;
 use std::ops::Range;
 
 /// Sides closer than this are not cut at their crossing. It is far less than the smallest step of a pixel.
-const NEAR: f64 = 1e-9;
+pub const NEAR: f64 = 1e-9;
 
 /// A side within a slab.
 #[derive(Clone, Copy)]
