@@ -299,8 +299,7 @@ impl Rototoon {
     }
 
     /// The paths of the members of a stretch, chosen together from the `start` paths, and the leads of each member.
-    /// `ties` are computed if they are not given. They depend only on the keys, so they are the same for every choice
-    /// of a stretch.
+    /// `bonds` are found if they are not given. They stay the same for every choice of a stretch.
     fn chosen(
         &mut self,
         (scene, tasks, stretch): (&Scene, &[Task], &[usize]),
@@ -326,15 +325,17 @@ impl Rototoon {
             })
         };
         let mut contenders: Vec<Contender> = free.iter().filter_map(contender).collect();
+        let start: Vec<Vec<usize>> = free.iter().map(|&m| start[m].clone()).collect();
         let has = |mechanism| self.mechanisms.has(mechanism);
+        let corrected = |c: usize, d: usize| members[free[c]].corrected(d);
+        let companions = || companion::find(&contenders, &start, &corrected);
         let bonds = bonds.get_or_insert_with(|| Bonds {
             ties: if has(Mechanism::Joints) { tie::find(&contenders) } else { Vec::new() },
-            companions: if has(Mechanism::Companions) { companion::find(&contenders) } else { Vec::new() },
+            companions: if has(Mechanism::Companions) { companions() } else { Vec::new() },
         });
         if !self.mechanisms.has(Mechanism::Hiding) {
             contenders.iter_mut().for_each(|contender| contender.hides = false);
         }
-        let start = free.iter().map(|&m| start[m].clone()).collect();
         let jump = if self.mechanisms.has(Mechanism::Jumps) { joint::jumps::measured(&contenders) } else { 0.0 };
         let found = joint::choose(&contenders, bonds, jump, start, &mut self.shadows);
         let led = leads(&contenders, bonds, &found);

@@ -30,6 +30,12 @@ impl Pooled {
         (self.job.name.clone(), self.job.span)
     }
 
+    /// Whether the artist has corrected the part on a drawing.
+    pub fn corrected(&self, drawing: usize) -> bool {
+        let Drawing { first, last } = self.drawings[drawing];
+        (first..=last).any(|index| self.job.corrections.contains_key(&index))
+    }
+
     /// Where the part alone would put its control points on a frame of the span, in pixels of the picture.
     pub fn own_points(&self, index: usize) -> Vec<Point> {
         let drawing = self.drawings.iter().position(|d| d.first <= index && index <= d.last);

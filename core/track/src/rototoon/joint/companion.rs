@@ -14,6 +14,9 @@
 //!
 //! A part may have further keys between two that both parts have. Then these two are meant here by its keys, as for joints.
 //!
+//! An artist's correction may put a part far from where its body takes it. Then the part moves by itself, and it is nobody's
+//! companion.
+//!
 //! **Limits.** What moves with the body at both keys may move by itself between them: the cost has an upper limit for its
 //! sake. A further key of a part does not change where its body is expected to take it.
 
@@ -33,6 +36,8 @@ const SMALL: f64 = 0.5;
 /// Cost of a part that is [`APART`] working pixels or more from where it is expected.
 const COST: f64 = 0.06;
 const APART: f64 = 25.0;
+/// A part that a correction puts further from where its body takes it than this moves by itself, in working pixels.
+const BY_ITSELF: f64 = 10.0;
 /// About so many of a part's points are compared with where they are expected.
 const COMPARED: usize = 8;
 
@@ -61,9 +66,22 @@ impl Pair {
     }
 }
 
-/// The companions among all contenders.
-pub fn find(contenders: &[Contender]) -> Vec<Pair> {
-    (0..contenders.len()).flat_map(|c| of(contenders, c)).collect()
+/// The companions among all contenders. `paths` are their choices so far, and `corrected` says whether a drawing of a
+/// contender is corrected.
+pub fn find(contenders: &[Contender], paths: &Paths, corrected: &dyn Fn(usize, usize) -> bool) -> Vec<Pair> {
+    let mut pairs: Vec<Pair> = (0..contenders.len()).flat_map(|c| of(contenders, c)).collect();
+    let companions = Companions::new(contenders, &pairs);
+    let moves_by_itself = |k: usize| {
+        let [part, body] = pairs[k].parts;
+        let away = |d: usize| {
+            let near = contenders[body].drawing_at(contenders[part].frame_of(d))?;
+            Some(companions.apart(k, (d, paths[part][d]), (near, paths[body][near])) > BY_ITSELF)
+        };
+        (0..contenders[part].pools.len()).any(|d| corrected(part, d) && away(d) == Some(true))
+    };
+    let alone: Vec<usize> = (0..pairs.len()).filter(|&k| moves_by_itself(k)).map(|k| pairs[k].parts[0]).collect();
+    pairs.retain(|pair| !alone.contains(&pair.parts[0]));
+    pairs
 }
 
 /// The pairs of a part with those that it goes with.

@@ -237,7 +237,7 @@ fn with_head_and_eye<T>(step: Point, more: Point, then: impl Fn(&[Contender]) ->
 #[test]
 fn an_eye_stays_with_the_head_that_jumps() {
     with_head_and_eye(Point::new(30.0, 10.0), Point::ZERO, |both| {
-        let pairs = companion::find(both);
+        let pairs = companion::find(both, &[vec![0; 3], vec![0; 3]], &|_, _| false);
         let [pair] = pairs[..] else { panic!("{pairs:?}") };
         assert_eq!(pair.parts, [1, 0], "the eye goes with the head, and not the head with the eye");
         let companions = Companions::new(both, &pairs);
@@ -255,7 +255,8 @@ fn an_eye_stays_with_the_head_that_jumps() {
 #[test]
 fn the_head_leads_an_eye_that_is_elsewhere() {
     with_head_and_eye(Point::new(30.0, 10.0), Point::ZERO, |both| {
-        let bonds = Bonds { ties: Vec::new(), companions: companion::find(both) };
+        let bonds =
+            Bonds { ties: Vec::new(), companions: companion::find(both, &[vec![0; 3], vec![0; 3]], &|_, _| false) };
         let led = leads(both, &bonds, &[vec![0, 0, 0], vec![0, 0, 0]]);
         let [Lead::Body(motions)] = &led[1][..] else { panic!("one lead, {:?}", led[1]) };
         assert!(led[0].is_empty() && motions[0].is_none() && motions[2].is_none());
@@ -273,7 +274,7 @@ fn the_head_leads_an_eye_that_is_elsewhere() {
 #[test]
 fn parts_that_come_apart_from_key_to_key_are_no_companions() {
     with_head_and_eye(Point::new(30.0, 10.0), Point::new(9.0, 0.0), |both| {
-        assert_eq!(companion::find(both), [] as [companion::Pair; 0]);
+        assert_eq!(companion::find(both, &[vec![0; 3], vec![0; 3]], &|_, _| false), [] as [companion::Pair; 0]);
     });
 }
 
@@ -306,7 +307,10 @@ fn a_further_key_of_a_part_keeps_its_companions() {
         Contender { part: 0, span, depth: 0.0, hides: true, drawings: &three, pools: &eyes[k], models: &eye }
     };
     let all = [half(0), half(1), whole];
-    let bonds = Bonds { ties: Vec::new(), companions: companion::find(&all) };
+    let bonds = Bonds {
+        ties: Vec::new(),
+        companions: companion::find(&all, &[vec![0; 3], vec![0; 3], vec![0; 5]], &|_, _| false),
+    };
     let parts: Vec<[usize; 2]> = bonds.companions.iter().map(|pair| pair.parts).collect();
     assert_eq!(parts, [[0, 2], [1, 2]]);
     let led = leads(&all, &bonds, &[vec![0; 3], vec![0; 3], vec![0; 5]]);
@@ -315,4 +319,14 @@ fn a_further_key_of_a_part_keeps_its_companions() {
     let [from_further, from_last] = motions[1].unwrap();
     assert!(from_further.apply(Point::new(220.0, 5.0)).distance(Point::new(230.0, 5.0)) < 1e-9);
     assert!(from_last.apply(Point::new(240.0, 5.0)).distance(Point::new(230.0, 5.0)) < 1e-9);
+}
+
+#[test]
+fn a_part_that_a_correction_puts_elsewhere_moves_by_itself() {
+    with_head_and_eye(Point::new(30.0, 10.0), Point::ZERO, |both| {
+        let found = |eye: usize, corrected: bool| {
+            companion::find(both, &[vec![0; 3], vec![0, eye, 0]], &|part, d| corrected && (part, d) == (1, 1)).len()
+        };
+        assert_eq!([found(0, false), found(0, true), found(1, true)], [1, 0, 1]);
+    });
 }
