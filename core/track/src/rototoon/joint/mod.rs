@@ -6,8 +6,8 @@
 //! really hidden is not pulled out to a place that happens to have its colour.
 //!
 //! The energy is E = Σ_parts [ Σ_drawings √U + smoothness ] plus the cost of torn joints ([`tie`]) and of companions that
-//! come apart ([`companion`]). U is the visible
-//! energy of a hypothesis, given the choices of the nearer parts. The smoothness is that of [`super::select`].
+//! come apart ([`companion`]). U is the visible energy of a hypothesis, given the choices of the nearer parts. The
+//! smoothness is that of [`super::select`].
 //!
 //! E is lowered by moves. A move changes the paths of one part, or of two parts of which one hides the other, on all
 //! drawings. Dynamic programming finds the best paths of a move, and the move is made only if E falls. Moves of two
@@ -50,7 +50,8 @@ pub struct Bonds {
     pub companions: Vec<Pair>,
 }
 
-/// The hypothesis that each contender follows on each of its drawings; `bonds` hold them together, `jump` is how far drawings jump ([`jumps`]), and `paths` is where to start from.
+/// The hypothesis that each contender follows on each of its drawings; `bonds` hold them together, `jump` is how far
+/// drawings jump ([`jumps`]), and `paths` is where to start from.
 pub fn choose(
     contenders: &[Contender],
     bonds: &Bonds,
