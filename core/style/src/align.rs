@@ -17,8 +17,8 @@ use rototoon_base::scene::clip::{between, resample};
 use rototoon_base::scene::skeleton::{COUNT, Posture};
 use std::ops::Range;
 
-/// Half width of the band, as a share of the longer clip.
-const BAND: f64 = 0.3;
+/// Half width of the band, in tenths of the longer clip.
+const BAND: usize = 3;
 
 /// A minimum counts as a cycle if the normalised distance is below this.
 const ALIKE: f64 = 0.35;
@@ -71,19 +71,23 @@ pub fn time_warp(a: &[Posture], b: &[Posture]) -> Vec<(usize, usize)> {
     path
 }
 
-/// The pairs about the diagonal that a path may use.
+/// The pairs about the diagonal that a path may use. The bounds are counted in whole numbers: a pair on the edge of the
+/// band is in it on every machine.
 struct Band {
     columns: usize,
-    slope: f64,
-    half: f64,
+    /// The last row and the last column.
+    last: (usize, usize),
+    /// Half width, in parts of a column of which there are ten times `last.0`.
+    half: usize,
     whole: bool,
 }
 
 impl Band {
     fn new(rows: usize, columns: usize) -> Self {
-        let slope = (columns.max(2) - 1) as f64 / (rows.max(2) - 1) as f64;
-        let half = (BAND * columns.max(rows) as f64).max(slope + 1.0).max(2.0);
-        Self { columns, slope, half, whole: rows == 1 || columns == 1 }
+        let last @ (row, column) = (rows.max(2) - 1, columns.max(2) - 1);
+        // A share of the longer clip, and never less than two columns or one more than the slope.
+        let half = (BAND * columns.max(rows) * row).max(10 * (column + row)).max(20 * row);
+        Self { columns, last, half, whole: rows == 1 || columns == 1 }
     }
 
     /// The columns of row `i`.
@@ -91,9 +95,9 @@ impl Band {
         if self.whole {
             return 0..self.columns;
         }
-        let middle = i as f64 * self.slope;
-        let (first, last) = ((middle - self.half).max(0.0).ceil(), (middle + self.half).floor());
-        first as usize..(last as usize + 1).min(self.columns)
+        let (middle, parts) = (10 * i * self.last.1, 10 * self.last.0);
+        let (first, last) = (middle.saturating_sub(self.half).div_ceil(parts), (middle + self.half) / parts);
+        first..(last + 1).min(self.columns)
     }
 }
 
@@ -256,8 +260,8 @@ mod tests {
     /// The complete table of costs, without a band where it does not bind.
     fn time_warp_naive(a: &[Posture], b: &[Posture]) -> Vec<(usize, usize)> {
         let (n, m) = (a.len(), b.len());
-        let slope = (m.max(2) - 1) as f64 / (n.max(2) - 1) as f64;
-        let band = (BAND * m.max(n) as f64).max(slope + 1.0).max(2.0);
+        let (row, column) = (n.max(2) - 1, m.max(2) - 1);
+        let band = (BAND * m.max(n) * row).max(10 * (column + row)).max(20 * row);
         let steps = |i: usize, j: usize| {
             let diagonal = (i > 0 && j > 0).then(|| (i - 1, j - 1));
             let (up, left) = ((i > 0).then(|| (i - 1, j)), (j > 0).then(|| (i, j - 1)));
@@ -265,7 +269,7 @@ mod tests {
         };
         let mut cost = vec![f64::INFINITY; n * m];
         for (i, j) in (0..n).flat_map(|i| (0..m).map(move |j| (i, j))) {
-            if n == 1 || m == 1 || (j as f64 - i as f64 * slope).abs() <= band {
+            if n == 1 || m == 1 || 10 * (j * row).abs_diff(i * column) <= band {
                 let before = steps(i, j).map(|(i, j)| cost[i * m + j]).fold(f64::INFINITY, f64::min);
                 cost[i * m + j] = distance(&a[i], &b[j]) + if (i, j) == (0, 0) { 0.0 } else { before };
             }
@@ -286,6 +290,13 @@ mod tests {
             let (a, b) = (clip(&a), clip(&b));
             prop_assert_eq!(time_warp(&a, &b), time_warp_naive(&a, &b));
         }
+    }
+
+    /// Row 3 of 6 reaches column 21 of 24 exactly: 3 · 23 / 5 + 0.3 · 24 = 21.
+    #[test]
+    fn a_pair_on_the_edge_of_the_band_is_in_it() {
+        assert_eq!(Band::new(6, 24).columns(3), 7..22);
+        assert_eq!(Band::new(6, 24).columns(2), 2..17);
     }
 
     #[test]
