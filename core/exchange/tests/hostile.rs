@@ -119,3 +119,12 @@ proptest! {
         meet_all(&text.into_iter().collect::<String>());
     }
 }
+
+#[test]
+fn keys_times_points_of_nuke_are_counted_before_they_are_made() {
+    let keys: String = (0..9000).map(|frame| format!("{{{frame} 1}} ")).collect();
+    let points = "{0 0} ".repeat(30_000);
+    let shape = format!("{{curvegroup A 512 bezier {{{{cc {{p {points}}}}} idem}} {{t 0 0 0 {{{keys}}}}}}}");
+    let error = nuke(&shape, &footage(i32::MAX), 0).unwrap_err().to_string();
+    assert!(error.contains("found more than 20000000 points up to here"), "{error}");
+}

@@ -53,6 +53,45 @@ impl Path {
         self.closed = true;
     }
 
+    /// The path through knots: a point, the handle after it, the handle before it.
+    ///
+    /// # Panics
+    ///
+    /// If there is no knot.
+    pub fn through(knots: &[[Point; 3]], closed: bool) -> Self {
+        let mut path = Self::new(knots[0][0]);
+        for pair in knots.windows(2) {
+            path.cubic(pair[0][1], pair[1][2], pair[1][0]);
+        }
+        if let (true, [first, .., last]) = (closed, knots) {
+            path.cubic(last[1], first[2], first[0]);
+        }
+        path.closed = closed;
+        path
+    }
+
+    /// A uniform cubic B-spline. The ends of an open one count three times, so the curve reaches them.
+    ///
+    /// # Panics
+    ///
+    /// If there is no guide.
+    pub fn spline(guides: &[Point], closed: bool) -> Self {
+        let mut guides = guides.to_vec();
+        if !closed {
+            let (first, last) = (guides[0], guides[guides.len() - 1]);
+            guides.splice(0..0, [first, first]);
+            guides.extend([last, last]);
+        }
+        let n = guides.len();
+        let knot = |k: usize| {
+            let (before, own, after) = (guides[(k + n - 1) % n], guides[k], guides[(k + 1) % n]);
+            let (on, back) = (own.lerp(after, 1.0 / 3.0), own.lerp(before, 1.0 / 3.0));
+            [on.midpoint(back), on, back]
+        };
+        let inner = if closed { 0..n } else { 1..n - 1 };
+        Self::through(&inner.map(knot).collect::<Vec<_>>(), closed)
+    }
+
     /// All its points, to change them.
     pub fn points_mut(&mut self) -> impl Iterator<Item = &mut Point> {
         std::iter::once(&mut self.start).chain(self.segments.iter_mut().flatten())

@@ -200,37 +200,12 @@ impl Reading {
 
 /// The path of a key.
 fn built(key: &Key, reading: &Reading) -> Path {
-    let knots = if key.spline { beziers(key) } else { key.knots.iter().map(|knot| reading.knot(*knot)).collect() };
-    let mut path = Path::new(knots[0][0]);
-    for pair in knots.windows(2) {
-        path.cubic(pair[0][1], pair[1][2], pair[1][0]);
+    if key.spline {
+        let guides: Vec<Point> = key.knots.iter().map(|knot| knot[0]).collect();
+        return Path::spline(&guides, key.closed);
     }
-    if let (true, [first, .., last]) = (key.closed, &knots[..]) {
-        path.cubic(last[1], first[2], first[0]);
-        path.closed = true;
-    }
-    path.closed |= key.closed;
-    path
-}
-
-/// The Bézier knots of a uniform cubic B-spline: point, forward handle, backward handle.
-fn beziers(key: &Key) -> Vec<Knot> {
-    let mut guides: Vec<Point> = key.knots.iter().map(|knot| knot[0]).collect();
-    if !key.closed {
-        let (first, last) = (guides[0], guides[guides.len() - 1]);
-        guides.insert(0, first);
-        guides.push(last);
-        // The curve begins and ends at a guide that appears three times.
-        guides.insert(0, first);
-        guides.push(last);
-    }
-    let n = guides.len();
-    let knot = |k: usize| {
-        let (before, own, after) = (guides[(k + n - 1) % n], guides[k], guides[(k + 1) % n]);
-        let (on, back) = (own.lerp(after, 1.0 / 3.0), own.lerp(before, 1.0 / 3.0));
-        [on.midpoint(back), on, back]
-    };
-    if key.closed { (0..n).map(knot).collect() } else { (1..n - 1).map(knot).collect() }
+    let knots: Vec<Knot> = key.knots.iter().map(|knot| reading.knot(*knot)).collect();
+    Path::through(&knots, key.closed)
 }
 
 /// Length of the control polygons of all keys.

@@ -64,14 +64,28 @@ fn what_would_be_wrong_is_left_out_or_told() {
     let same = "{t {{x3f800000 5}} 7 0 0 0 0 0 0 0 1 {{x3f800000 1}} 1}";
     assert_eq!(nuke(&script("bezier", points, same), &footage(), 1).unwrap().shapes.len(), 1);
     for (kind, after, said) in [
-        ("bspline", "", "expected bezier"),
-        ("bezier", "{t 5 7 0 x41200000 0 0 0 0 0 1 1 1}", "transformation"),
-        ("bezier", "{t 5 7 0 0 0 0 0 0 {{1 0} {5 30}} 1 1 1}", "transformation"),
+        ("cubic", "", "expected bezier or bspline"),
+        ("bspline", "", "found handles beside the points"),
+        ("bezier", "{t 5 7 0 0 0 0 x41200000 0 0 1 1 1}", "in depth"),
+        ("bezier", "{t 5 7 0 0 0 x41200000 0 0 0 1 1 1}", "in depth"),
+        ("bezier", "{t 5 7 0 0 0 0 0 0 {{1 0} {5 30}} 1 1 1 {{1 0} {5 x41200000}}}", "skewed"),
+        ("bezier", "{t 5 7 0 0 0 0 0 0 0 1 1 1 0 1 0 0}", "matrix"),
+        ("bezier", "{t 5 7 0 {=parent.x x41200000}}", "expression"),
     ] {
         let found = nuke(&script(kind, points, after), &footage(), 1).unwrap();
+        let told = "line 10, column 5: the shape \"Bezier1\" is left out: ";
         assert!(found.shapes.is_empty() && found.warnings[0].contains(said), "{:?}", found.warnings);
-        assert!(found.warnings[0].starts_with("line 10, column 5"), "{:?}", found.warnings);
+        assert!(found.warnings[0].starts_with(told), "{:?}", found.warnings);
     }
+    for (points, said) in [
+        ("{p {0 0 1} {50 0 1} {50 90 x40000000} {0 90 1}}", "weights"),
+        ("{p {0 0} {{=parent.x x41200000} 0} {50 90} {0 90}}", "expression"),
+    ] {
+        let found = nuke(&script("bspline", points, ""), &footage(), 1).unwrap();
+        assert!(found.shapes.is_empty() && found.warnings[0].contains(said), "{:?}", found.warnings);
+    }
+    let open = script("bspline", "{p {0 0} {50 0} {50 90} {0 90}}", "").replace("{f 8192}", "{f 8224}");
+    assert!(nuke(&open, &footage(), 1).unwrap().warnings[0].contains("open B-spline"));
     for (points, said) in [
         ("{p {0 0} {10 0}}", "found 2 pairs"),
         ("{p {0 0} {nan 0} {0 0} {0 0} {1 1} {0 0}}", "expected a number"),
@@ -83,4 +97,75 @@ fn what_would_be_wrong_is_left_out_or_told() {
         assert!(error.contains(said) && error.contains("line"), "{error}");
     }
     assert!(nuke("Blur {\n size 3\n}", &footage(), 1).unwrap_err().to_string().contains("found no shape"));
+}
+
+/// The rectangle (40, 20) to (60, 30), y up, with straight sides.
+const BOX: &str = "{p {0 0} {40 20} {0 0} {0 0} {60 20} {0 0} {0 0} {60 30} {0 0} {0 0} {40 30} {0 0}}";
+
+#[track_caller]
+fn corners(shape: &Shape, frame: FrameNumber, wanted: [(f64, f64); 4]) {
+    let found = &shape.keys[&frame];
+    assert_eq!(found.len(), 4, "{found:?}");
+    for (p, (x, y)) in found.iter().zip(wanted) {
+        // The footage is 100 high, and y points down in it.
+        assert!(p.distance(Point::new(x, 100.0 - y)) < 1e-9, "frame {frame}: {found:?}");
+    }
+}
+
+#[test]
+fn a_shape_is_scaled_then_turned_about_its_pivot_and_moved() {
+    // Pivot (40, 20), moved by (5, 1), a quarter turn from x to y, scaled by 2 and 3.
+    let text = script("bezier", BOX, "{t 40 20 0 5 1 0 0 0 90 2 3 1 0}");
+    let found = nuke(&text, &footage(), 4).unwrap();
+    assert_eq!(found.warnings, [""; 0]);
+    corners(&found.shapes[0], 4, [(45.0, 21.0), (45.0, 61.0), (15.0, 61.0), (15.0, 21.0)]);
+}
+
+#[test]
+fn keys_of_transformations_are_keys_of_the_shape() {
+    // The shape goes right by 8 from frame 2 to 6, its layer up by 4 from frame 4 to 40, which is past the footage.
+    let own = "{tx 2 0 0 0 {{2 0} {6 8}} 0 0}";
+    let text = script("bezier", BOX, own)
+        .replace("{t x44b40000 x44070000}", "{t 10 20 0 0 {{4 0} {40 4 1 0 257}} 0 0 0 0 {{4 1}} 1 1 {{4 0}}}");
+    let found = nuke(&text, &footage(), 1).unwrap();
+    let shape = &found.shapes[0];
+    assert_eq!(shape.keys.keys().copied().collect::<Vec<_>>(), [2, 4, 6, 9]);
+    let moved =
+        |x: f64, y: f64| [(40.0 + x, 20.0 + y), (60.0 + x, 20.0 + y), (60.0 + x, 30.0 + y), (40.0 + x, 30.0 + y)];
+    for (frame, x) in [(2, 0.0), (4, 4.0), (6, 8.0), (9, 8.0)] {
+        corners(shape, frame, moved(x, f64::from(frame - 4).max(0.0) / 9.0));
+    }
+}
+
+#[test]
+fn a_layer_turns_what_its_shapes_did_before() {
+    // The shape moves by (10, 0); then the layer turns all by a half turn about (50, 50).
+    let text =
+        script("bezier", BOX, "{t 0 0 0 10 0 0}").replace("{t x44b40000 x44070000}", "{t 50 50 0 0 0 0 0 0 180}");
+    let shape = &nuke(&text, &footage(), 1).unwrap().shapes[0];
+    corners(shape, 1, [(50.0, 80.0), (30.0, 80.0), (30.0, 70.0), (50.0, 70.0)]);
+    // A layer that can't be read leaves out its shapes, not the others.
+    let skewed = "{layer Skewed {t 0 0 0 0 0 0 0 0 0 1 1 1 5} {curvegroup Lost 512 bezier {{cc {f 8192} ";
+    let inner = format!("{skewed}{BOX}}}}} idem}}}}\n    {{curvegroup Bezier1");
+    let found = nuke(&text.replace("{curvegroup Bezier1", &inner), &footage(), 1).unwrap();
+    assert_eq!((found.shapes.len(), found.warnings.len()), (1, 1));
+    assert!(found.warnings[0].contains("\"Lost\" is left out: it or its layer is skewed"), "{:?}", found.warnings);
+}
+
+#[test]
+fn a_closed_spline_is_uniform_and_cubic() {
+    let text = script("bspline", "{px 3 {40 20 1} {60 20} {60 30} {{{3 40} {7 52}} 30}}", "{t 50 25 0 0 10}");
+    let found = nuke(&text, &footage(), 1).unwrap();
+    let shape = &found.shapes[0];
+    assert_eq!((found.warnings.len(), shape.closed, shape.keys.len()), (0, true, 2));
+    // Knots are (before + 4 own + after) ∕ 6, moved up by 10.
+    let guides = |x: f64| [(40.0, 30.0), (60.0, 30.0), (60.0, 40.0), (x, 40.0)].map(|(x, y)| Point::new(x, 100.0 - y));
+    for (frame, x) in [(3, 40.0), (7, 52.0)] {
+        let guides = guides(x);
+        for k in 0..4 {
+            let knot = (guides[(k + 3) % 4] + 4.0 * guides[k] + guides[(k + 1) % 4]) / 6.0;
+            let apart = shape.keys[&frame].iter().map(|p| p.distance(knot)).fold(f64::INFINITY, f64::min);
+            assert!(apart < 1e-9, "{knot}: {:?}", shape.keys[&frame]);
+        }
+    }
 }
