@@ -8,8 +8,9 @@ import os
 import bpy
 from bpy.app.handlers import persistent
 
-from .blender import footage, guard
+from .blender import footage, guard, movie
 from .capture import arrivals, live, sessions, stand
+from .capture.operators.footage_base import used_folders
 from .style import clip_browser
 
 _FIELDS = ("pattern", "movie")
@@ -18,6 +19,7 @@ _FIELDS = ("pattern", "movie")
 @persistent
 def _loaded(*_args) -> None:
     sessions.clear()
+    movie.mark_used(used_folders())
 
 
 @persistent

@@ -3,14 +3,20 @@
 Blender decodes the movie: it renders a strip in a temporary scene, without any change of colour. So every movie that Blender
 plays can be tracked. A movie's folder is named after the movie's path, size and date. While the frames are being made, the folder
 has another name, so an incomplete one is never used.
+
+Several Blenders may share a cache, also on several machines. Each makes frames in a folder of its own; the first that is ready gives
+it the movie's name. A movie that was used within a day is not removed, because another Blender may show it.
 """
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import shutil
-from collections.abc import Iterator
+import time
+import uuid
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import bpy
@@ -19,6 +25,8 @@ from .errors import Problem
 
 PICTURE = "frame_%06d.png"
 _UNFINISHED = ".unfinished"
+_RECENT = 24 * 3600
+"""Seconds for which a movie counts as in use after its last use."""
 
 
 @dataclass(frozen=True)
@@ -46,8 +54,15 @@ def cached(path: str, cache: str) -> Movie | None:
             last, fps = file.read().split()
     except (OSError, ValueError):
         return None
-    os.utime(folder)
+    mark_used([folder])
     return Movie(os.path.join(folder, PICTURE), 1, int(last), float(fps))
+
+
+def mark_used(folders: Iterable[str]) -> None:
+    """Notes that movies are in use. A folder that is gone, or belongs to somebody else, stays as it is."""
+    for folder in folders:
+        with contextlib.suppress(OSError):
+            os.utime(folder)
 
 
 def extract(path: str, cache: str) -> Iterator[float]:
@@ -55,7 +70,8 @@ def extract(path: str, cache: str) -> Iterator[float]:
     if not os.path.isfile(path):
         raise Problem(f"No file {path}: it was moved or renamed")
     folder = os.path.join(cache, key(path))
-    unfinished = f"{folder}.{os.getpid()}{_UNFINISHED}"
+    # Processes of two machines may have the same number.
+    unfinished = f"{folder}.{uuid.uuid4().hex[:12]}{_UNFINISHED}"
     scene = bpy.data.scenes.new("Rototoon movie")
     done = False
     try:
@@ -68,15 +84,36 @@ def extract(path: str, cache: str) -> Iterator[float]:
             yield number / count
         with open(os.path.join(unfinished, "movie.txt"), "w", encoding="utf-8") as file:
             file.write(f"{count} {fps!r}\n")
-        shutil.rmtree(folder, ignore_errors=True)
-        os.rename(unfinished, folder)
-        done = True
+        done = _finish(unfinished, folder)
     except OSError as error:
         raise Problem(f"Cannot keep the frames of {path}: {error}") from error
     finally:
         bpy.data.scenes.remove(scene)
         if not done:
             shutil.rmtree(unfinished, ignore_errors=True)
+
+
+def _finish(unfinished: str, folder: str) -> bool:
+    """Gives finished frames the movie's name. False if another Blender was faster: its frames are as good."""
+    try:
+        os.rename(unfinished, folder)
+    except OSError:
+        if os.path.isfile(os.path.join(folder, "movie.txt")):
+            return False
+        _remove(folder)
+        os.rename(unfinished, folder)
+    return True
+
+
+def _remove(folder: str) -> bool:
+    """Removes a folder of the cache. It loses its name first: another Blender must not find half of it."""
+    condemned = f"{folder}.{uuid.uuid4().hex[:12]}{_UNFINISHED}"
+    try:
+        os.rename(folder, condemned)
+    except OSError:
+        return False  # another program reads in it, or has removed it
+    shutil.rmtree(condemned, ignore_errors=True)
+    return True
 
 
 def _prepare(scene, path: str) -> tuple[int, float]:
@@ -111,19 +148,22 @@ def _render(scene, number: int, path: str) -> None:
 def shrink(cache: str, limit: int, keep: set[str]) -> int:
     """Removes the least recently used movies until the cache is within `limit` bytes. `keep` names folders in use.
 
-    Returns the number of removed movies.
+    Movies that were used within a day stay, also above the limit. Returns the number of removed movies.
     """
-    entries = []
+    entries, still_used = [], time.time_ns() - _RECENT * 10**9
     for entry in _folders(cache):
-        if entry.name.endswith(_UNFINISHED):
-            continue
-        entries.append((entry.stat().st_mtime_ns, entry.path, _size(entry.path)))
+        # Another Blender may remove a folder meanwhile.
+        with contextlib.suppress(OSError):
+            used = entry.stat().st_mtime_ns
+            if not entry.name.endswith(_UNFINISHED):
+                entries.append((used, entry.path, _size(entry.path)))
+            elif used < still_used:
+                shutil.rmtree(entry.path, ignore_errors=True)  # its Blender was ended
     total, removed = sum(size for _, _, size in entries), 0
-    for _, path, size in sorted(entries):
-        if total <= limit:
+    for used, path, size in sorted(entries):
+        if total <= limit or used >= still_used:
             break
-        if os.path.basename(path) not in keep:
-            shutil.rmtree(path, ignore_errors=True)
+        if os.path.basename(path) not in keep and _remove(path):
             total, removed = total - size, removed + 1
     return removed
 

@@ -24,7 +24,7 @@ class RototoonPreferences(bpy.types.AddonPreferences):
     )
     cache_limit: bpy.props.IntProperty(
         name="Cache Limit",
-        description="Size in megabytes. Above it, the least recently used movies are removed from the cache",
+        description="Size in megabytes. Above it, the least recently used movies are removed from the cache. Those used within a day stay",
         min=10,
         soft_max=1_000_000,
         default=4096,

@@ -1,6 +1,8 @@
 """Where the pictures are, from files, images, clips and movies."""
 
+import os
 import shutil
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -183,8 +185,6 @@ def test_not_a_movie(addon, tmp_path):
 
 
 def test_cache_keeps_its_limit(addon, tmp_path):
-    import os
-
     movie = addon("blender.movie")
     for age, name in enumerate(("new", "middle", "old", "used")):
         (tmp_path / name).mkdir()
@@ -192,3 +192,51 @@ def test_cache_keeps_its_limit(addon, tmp_path):
         os.utime(tmp_path / name, (1_000_000 - age, 1_000_000 - age))
     assert movie.shrink(str(tmp_path), 250, {"used"}) == 2
     assert sorted(p.name for p in tmp_path.iterdir()) == ["new", "used"]
+
+
+def test_two_blenders_share_a_cache(addon, tmp_path, monkeypatch):
+    """Both make the frames of one movie at the same time; one removes movies while the other shows them."""
+    first = shots.draw_sequence(tmp_path / "frames")
+    movie_path, cache = tmp_path / "shot.mp4", tmp_path / "cache"
+    make_movie(movie_path, sorted(first.parent.iterdir())[:2])
+    movie = addon("blender.movie")
+    steps = [movie.extract(str(movie_path), str(cache)) for _ in range(2)]
+    for at_work in (*steps, *steps):
+        next(at_work)
+    assert len(list(cache.iterdir())) == 2
+    assert [list(at_work) for at_work in steps] == [[], []]
+    assert [path.name for path in cache.iterdir()] == [movie.key(str(movie_path))]
+    frames = movie.cached(str(movie_path), str(cache))
+    assert all((cache / movie.key(str(movie_path)) / (movie.PICTURE % number)).is_file() for number in (1, 2))
+
+    assert movie.shrink(str(cache), 0, set()) == 0, "used within a day"
+    os.utime(Path(frames.pattern).parent, (1_000_000, 1_000_000))
+    killed = cache / f"killed{movie._UNFINISHED}"
+    killed.mkdir()
+    os.utime(killed, (1_000_000, 1_000_000))
+
+    def vanished(folder):
+        raise FileNotFoundError(folder)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(movie, "_size", vanished)
+        assert movie.shrink(str(cache), 0, set()) == 0
+    assert not killed.exists()
+    assert movie.shrink(str(cache), 0, set()) == 1
+    assert list(cache.iterdir()) == []
+
+
+def test_an_opened_file_marks_its_movie_as_used(addon, tmp_path):
+    first = shots.draw_sequence(tmp_path / "frames")
+    movie_path, cache = tmp_path / "shot.mp4", tmp_path / "cache"
+    make_movie(movie_path, sorted(first.parent.iterdir())[:2])
+    preferences = addon("blender.preferences").preferences()
+    preferences.cache_folder = str(cache)
+    bpy.ops.rototoon.setup(filepath=str(movie_path))
+    preferences.cache_folder = ""
+    blend = tmp_path / "shot.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    folder = next(cache.iterdir())
+    os.utime(folder, (1_000_000, 1_000_000))
+    bpy.ops.wm.open_mainfile(filepath=str(blend))
+    assert folder.stat().st_mtime > 1_000_000

@@ -37,6 +37,9 @@ def test_every_function_of_the_header_is_declared():
 def test_missing_and_foreign_libraries_are_named(tmp_path):
     with pytest.raises(LibraryError, match="no native library at .*gone.so"):
         library._open(tmp_path / "gone.so")
+    (tmp_path / "empty.so").write_bytes(b"")
+    with pytest.raises(LibraryError, match="cannot load .*empty.so"):
+        library._open(tmp_path / "empty.so")
     text = tmp_path / "text.so"
     text.write_text("not a library")
     with pytest.raises(LibraryError, match="cannot load .*text.so"):
@@ -64,6 +67,7 @@ def test_errors_of_the_loader_say_what_to_do():
     old = "/lib/x86_64-linux-gnu/libc.so.6: version `GLIBC_2.34' not found (required by librototoon_capi.so)"
     assert "expected glibc 2.28 or newer" in library._advice(old)
     assert "for another system" in library._advice("librototoon_capi.so: invalid ELF header")
+    assert "the file is damaged" in library._advice("librototoon_capi.so: file too short")
     assert "for another system" in library._advice("[WinError 193] %1 is not a valid Win32 application")
     assert library._advice("out of memory") == ""
 

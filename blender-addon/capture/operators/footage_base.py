@@ -43,7 +43,7 @@ class FootageOperator(Long):
             raise Problem(f"The frames of {self._source.path} are not in the cache {self._cache}")
         width, height = footage.size_of(footage.picture(frames.pattern, frames.first))
         start = context.scene.frame_start if self._source.frame_of_first is None else self._source.frame_of_first
-        keep = {os.path.basename(os.path.dirname(frames.pattern))} | used_folders()
+        keep = {os.path.basename(folder) for folder in [os.path.dirname(frames.pattern), *used_folders()]}
         removed = movie.shrink(self._cache, preferences.preferences().cache_limit * 2**20, keep)
         shot = stage.Shot(
             frames.pattern, frames.first, frames.last, width, height, frames.fps, start, self._source.path
@@ -60,9 +60,9 @@ class FootageOperator(Long):
 
 
 def used_folders() -> set[str]:
-    """Folders of the cache that the objects of this file use."""
+    """Folders with the frames of movies that the objects of this file use."""
     patterns = [footage.absolute(ob, ob.rototoon.pattern) for ob in bpy.data.objects if ob.rototoon.movie]
-    return {os.path.basename(os.path.dirname(pattern)) for pattern in patterns}
+    return {os.path.dirname(pattern) for pattern in patterns}
 
 
 def described(shot: stage.Shot) -> str:

@@ -26,6 +26,16 @@ ENVIRONMENT = "ROTOTOON_LIBRARY"
 _SYSTEMS = {"rototoon_capi.dll": "Windows", "librototoon_capi.dylib": "macOS", "librototoon_capi.so": "Linux"}
 """File names of the library by the system that it is for."""
 
+_DAMAGED = (
+    "invalid ELF header",
+    "wrong ELF class",
+    "file too short",
+    "not a valid Win32 application",
+    "WinError 193",
+    "incompatible architecture",
+)
+"""What the loaders of the systems say of a file that is damaged or for another system."""
+
 _lock = threading.Lock()
 _loaded: Library | None = None
 _users: set[int] = set()
@@ -123,8 +133,7 @@ def _advice(error: str) -> str:
     if "GLIBC_" in error:
         found = "".join(os.confstr("CS_GNU_LIBC_VERSION") or "") if hasattr(os, "confstr") else ""
         return f"; found {found or 'an older C library'}, expected glibc 2.28 or newer: a newer Linux is needed"
-    foreign = ("invalid ELF header", "wrong ELF class", "not a valid Win32 application", "WinError 193", "incompatible architecture")
-    if any(words in error for words in foreign):
+    if any(words in error for words in _DAMAGED):
         machine = f"{platform.system()} {platform.machine()}"
         return f"; the file is damaged or for another system: install the package for {machine} again"
     return ""
