@@ -29,6 +29,13 @@ sys.path.insert(0, str(ADDON))
 _find_library()
 
 
+def program() -> Path:
+    """The command line program, beside the library."""
+    found = Path(os.environ.get("ROTOTOON_CLI", Path(os.environ["ROTOTOON_LIBRARY"]).parent / "rototoon"))
+    assert found.is_file(), f"no program {found}: build it, or set ROTOTOON_CLI"
+    return found
+
+
 def corner(frame: int, part: int) -> tuple[float, float]:
     """Top-left corner of a square: one runs to the right and stops half-way to turn down, the other stays behind."""
     x = 8 + 3 * min(frame, 8)

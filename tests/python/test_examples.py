@@ -8,8 +8,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import ADDON, HEIGHT, LAST, ROOT, WIDTH, draw, square, write_png
-from test_farm import program
+from conftest import ADDON, HEIGHT, LAST, ROOT, WIDTH, draw, program, square, write_png
 from test_style import FRAMES, figure
 from test_style import shelf as shelf
 

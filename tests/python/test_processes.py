@@ -30,7 +30,7 @@ def _answer(document, folder, answers):
     answers.put(_tracked(document, str(folder)))
 
 
-@pytest.mark.parametrize("method", ["fork", "spawn"])
+@pytest.mark.parametrize("method", sorted({"fork", "spawn"} & set(multiprocessing.get_all_start_methods())))
 def test_a_child_gets_the_same_result_after_the_parent_has_tracked(document, folder, method):
     expected = _tracked(document, folder)
     context = multiprocessing.get_context(method)

@@ -32,7 +32,7 @@ _DAMAGED = (
     "file too short",
     "not a valid Win32 application",
     "WinError 193",
-    "incompatible architecture",
+    "mach-o file",
 )
 """What the loaders of the systems say of a file that is damaged or for another system."""
 
