@@ -310,6 +310,12 @@ pub fn export_nuke(document: &Document, spacing: f64) -> String {
     export::nuke(&document.scene, spacing)
 }
 
+/// Exports the document as a script that makes a Roto node in Natron. Points of snapped paths are about `spacing` pixels
+/// apart.
+pub fn export_natron(document: &Document, spacing: f64) -> String {
+    export::natron(&document.scene, spacing)
+}
+
 /// Exports the document as Silhouette shapes. Points of snapped paths are about `spacing` pixels apart.
 pub fn export_silhouette(document: &Document, spacing: f64) -> String {
     export::silhouette(&document.scene, spacing)
@@ -330,6 +336,11 @@ pub enum ShapeFormat {
         /// A frame of the footage.
         still: FrameNumber,
     },
+    /// A project of Natron. Shapes without animation get their key on the frame `still`.
+    Natron {
+        /// A frame of the footage.
+        still: FrameNumber,
+    },
 }
 
 /// Puts the shapes in the text of a file into the document as keys of parts. Returns a warning for each element that
@@ -344,6 +355,7 @@ pub fn import(document: &mut Document, text: &str, format: ShapeFormat) -> Resul
         ShapeFormat::Svg { still } => import::svg::svg(text, footage, still)?,
         ShapeFormat::Silhouette => import::silhouette::silhouette(text, footage)?,
         ShapeFormat::Nuke { still } => import::nuke::nuke(text, footage, still)?,
+        ShapeFormat::Natron { still } => import::natron::natron(text, footage, still)?,
     };
     import::into_scene(&mut document.scene, found.shapes);
     Ok(found.warnings)

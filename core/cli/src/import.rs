@@ -12,12 +12,12 @@ use std::path::PathBuf;
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("import")
-        .about("Adds shapes of Nuke, Silhouette or SVG to a document, as keys of parts")
+        .about("Adds shapes of Nuke, Natron, Silhouette or SVG to a document, as keys of parts")
         .arg(arguments::project())
         .arg(
             Arg::new("shapes")
                 .value_name("SHAPES")
-                .help("FILE.nk (Nuke), FILE.fxs (Silhouette) or FILE.svg; a shape becomes the part of the same name")
+                .help("FILE.nk (Nuke), FILE.ntp (Natron), FILE.fxs (Silhouette) or FILE.svg; a shape becomes the part of the same name")
                 .required(true)
                 .value_parser(value_parser!(PathBuf)),
         )
@@ -46,10 +46,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     let format = match extension.as_str() {
         "nk" => ShapeFormat::Nuke { still },
+        "ntp" => ShapeFormat::Natron { still },
         "fxs" => ShapeFormat::Silhouette,
         "svg" => ShapeFormat::Svg { still },
         _ => {
-            let message = format!("{}: expected a name that ends in .nk, .fxs or .svg", shapes.display());
+            let message = format!("{}: expected a name that ends in .nk, .ntp, .fxs or .svg", shapes.display());
             return Err(Failure::Use(message));
         }
     };

@@ -178,7 +178,7 @@ fn import_errors_are_named_and_nothing_is_written() {
         (file("cut.fxs", "<Silhouette><Object"), 1, "cut.fxs: found text that is not XML, expected XML: "),
         (file("none.svg", "<svg/>"), 1, "none.svg: found no shape, expected a path"),
         (file("a.nk", "RotoPaint {}"), 1, "a.nk: found no shape, expected a curvegroup of a Roto or RotoPaint node"),
-        (file("a.nk.txt", "RotoPaint {}"), 2, "a.nk.txt: expected a name that ends in .nk, .fxs or .svg"),
+        (file("a.nk.txt", "RotoPaint {}"), 2, "a.nk.txt: expected a name that ends in .nk, .ntp, .fxs or .svg"),
         (folder.path("gone.svg"), 1, "gone.svg: cannot read the shapes: "),
     ] {
         let said = run(&["import", text(&captured), text(&path), "-o", text(&out)], status);

@@ -3,8 +3,8 @@
 //! This crate translates between texts and scenes. It opens no files, and it neither changes nor checks a project document;
 //! that is the work of `rototoon-document`.
 //!
-//! - [`import`]: Silhouette and Nuke shapes, SVG drawings and animations, BVH motion capture
-//! - [`export`]: Silhouette shapes, SVG, Nuke RotoPaint nodes
+//! - [`import`]: Silhouette, Nuke and Natron shapes, SVG drawings and animations, BVH motion capture
+//! - [`export`]: Silhouette shapes, SVG, Nuke RotoPaint nodes, scripts for Natron
 //!
 //! The two modules do not use each other.
 //!

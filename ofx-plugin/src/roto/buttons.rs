@@ -101,7 +101,7 @@ fn load(effect: &Effect) -> Result<(), Failure> {
 /// The extension of a file of shapes of another program.
 fn foreign(path: &Path) -> Option<String> {
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-    ["nk", "fxs", "svg"].contains(&extension.as_str()).then_some(extension)
+    ["nk", "ntp", "fxs", "svg"].contains(&extension.as_str()).then_some(extension)
 }
 
 fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> {
@@ -113,6 +113,7 @@ fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> 
     let still = document.scene.footage.first;
     let format = match extension {
         "nk" => ShapeFormat::Nuke { still },
+        "ntp" => ShapeFormat::Natron { still },
         "svg" => ShapeFormat::Svg { still },
         _ => ShapeFormat::Silhouette,
     };

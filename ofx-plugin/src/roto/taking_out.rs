@@ -79,13 +79,14 @@ pub fn export(effect: &Effect) -> Result<(), Failure> {
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_ascii_lowercase();
     let text = match extension.as_str() {
         "nk" => pipeline::export_nuke(&document, SPACING),
+        "py" => pipeline::export_natron(&document, SPACING),
         "fxs" => pipeline::export_silhouette(&document, SPACING),
         "svg" => pipeline::export_svg(&document, &SvgOptions { spacing: SPACING, ..SvgOptions::default() })
             .map_err(|error| Failure::Told(error.to_string()))?,
         _ => {
             let shown = path.display();
             return Err(Failure::Told(format!(
-                "export file: found {shown}, expected a name that ends in .nk, .fxs or .svg"
+                "export file: found {shown}, expected a name that ends in .nk, .py, .fxs or .svg"
             )));
         }
     };

@@ -84,7 +84,7 @@ pub const ROTO: [EffectParameter; 69] = [
         "Project",
         EffectKind::File,
         SHAPES,
-        "A Rototoon project document, or shapes of Nuke (.nk), Silhouette (.fxs) or SVG. Choosing a file loads it.",
+        "A Rototoon project document, or shapes of Nuke (.nk), Natron (.ntp), Silhouette (.fxs) or SVG. Choosing a file loads it.",
     ),
     parameter("load", "Load", EffectKind::Button, SHAPES, "Loads the project's shapes into the composition."),
     parameter("save", "Save", EffectKind::Button, SHAPES, "Writes the composition's shapes to the project's file."),
@@ -420,7 +420,7 @@ pub const ROTO: [EffectParameter; 69] = [
         "Export file",
         EffectKind::File,
         MOTION,
-        "File of the shapes for other programs: .nk for Nuke, .fxs for Silhouette, .svg for browsers.",
+        "File of the shapes for other programs: .nk for Nuke, .py for Natron, .fxs for Silhouette, .svg for browsers.",
     ),
     parameter("export", "Export", EffectKind::Button, MOTION, "Writes the shapes to the export file."),
 ];

@@ -1,17 +1,20 @@
 //! Exports the tracked parts to other programs.
 //!
 //! - [`svg`](mod@svg): one animated path for each part and each stroke
+//! - [`natron`](mod@natron): a script that makes a Roto node in Natron
 //! - [`nuke`](mod@nuke): a RotoPaint node for Nuke
 //! - [`silhouette`](mod@silhouette): Silhouette shapes
 //! - [`outlines`]: contours with the same number of points on every frame
 //! - [`xml`]: escaping of text for XML
 
+pub mod natron;
 pub mod nuke;
 pub mod outlines;
 pub mod silhouette;
 pub mod svg;
 pub mod xml;
 
+pub use natron::natron;
 pub use nuke::nuke;
 pub use silhouette::silhouette;
 pub use svg::{Motion, SvgOptions, SvgStroke, svg, svg_with_strokes};

@@ -5,14 +5,18 @@
 //! - `svg_animation`: the keys of animated paths
 //! - [`silhouette`]: Silhouette shapes
 //! - [`nuke`](mod@nuke): shapes of Nuke's Roto and RotoPaint nodes
+//! - [`natron`](mod@natron): shapes of Natron's Roto and RotoPaint nodes
 //! - [`path`](mod@path): Bézier paths as contours with one number of points
 //! - [`problem`]: errors of a file, with their places
+//! - `channel`: numbers that may be animated
 //! - `limits`: what a file may ask for
 //! - `names`: names of shapes, each once
 
 pub mod bvh;
+mod channel;
 mod limits;
 mod names;
+pub mod natron;
 pub mod nuke;
 pub mod path;
 pub mod problem;

@@ -51,6 +51,20 @@ impl ImportError {
     }
 }
 
+/// Why there is no shape.
+pub(super) enum Fault {
+    /// The shape is left out; the reason follows "the shape … is left out: ".
+    Omitted(String),
+    /// The file is wrong.
+    Wrong(ImportError),
+}
+
+impl From<ImportError> for Fault {
+    fn from(error: ImportError) -> Self {
+        Self::Wrong(error)
+    }
+}
+
 /// The place where an element begins.
 pub(super) fn place(node: Node) -> Place {
     let position = node.document().text_pos_at(node.range().start);

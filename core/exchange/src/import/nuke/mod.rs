@@ -16,16 +16,18 @@
 //!
 //! Source: Foundry, Nuke Developer Kit, "Roto serialisation format"; scripts of Nuke 7 to 13 in public repositories.
 
-mod channel;
+mod number;
 mod transform;
 mod words;
 
+use super::channel::Channel;
 use super::limits::MOST_POINTS;
 use super::names::Names;
 use super::path::{Path, contours};
+use super::problem::Fault;
 use super::{ImportError, Shape, Shapes};
-use channel::{Channel, Fault, number};
 use glam::DAffine2;
+use number::{channel, number};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber};
 use std::collections::{BTreeMap, BTreeSet};
@@ -220,11 +222,11 @@ impl Reader<'_> {
             return Err(self.wrong(item, "p", "found no pair of numbers, expected {x y}").into());
         };
         if let (true, Some(weight)) = (weighted, rest.first())
-            && !Channel::read(self.text, weight, "p")?.is(1.0)
+            && !channel(self.text, weight, "p")?.is(1.0)
         {
             return Err(Fault::Omitted("its points have weights".into()));
         }
-        Ok([Channel::read(self.text, x, "p")?, Channel::read(self.text, y, "p")?])
+        Ok([channel(self.text, x, "p")?, channel(self.text, y, "p")?])
     }
 
     /// The path on a frame, in pixels of the footage.

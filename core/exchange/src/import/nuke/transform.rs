@@ -15,7 +15,9 @@
 //! `AnimCTransform`; Nuke reference guide, Transform (scale, then rotation, then translation is the default order); scripts
 //! of Nuke 7 to 13 in public repositories.
 
-use super::channel::{Channel, Fault};
+use super::super::channel::Channel;
+use super::super::problem::Fault;
+use super::number::channel;
 use super::words::Item;
 use glam::DAffine2;
 use rototoon_base::geometry::Point;
@@ -36,7 +38,7 @@ impl Transform {
         let skipped = if list.name() == Some("tx") { 2 } else { 1 };
         let numbers = list.items().get(skipped..).unwrap_or_default();
         let number = |k: usize| match numbers.get(k) {
-            Some(item) => Channel::read(text, item, "t"),
+            Some(item) => channel(text, item, "t"),
             None => Ok(Channel::constant(if (9..12).contains(&k) { 1.0 } else { 0.0 })),
         };
         // An expression in a pivot changes nothing where there is nothing else.
@@ -62,10 +64,10 @@ impl Transform {
         }))
     }
 
-    /// The frames on which it has keys. One key is the same as none.
+    /// The frames on which it has keys.
     pub(super) fn frames(&self) -> impl Iterator<Item = f64> + '_ {
         let all = self.pivot.iter().chain(&self.translation).chain(&self.scale).chain([&self.rotation]);
-        all.filter(|channel| channel.frames().nth(1).is_some()).flat_map(Channel::frames)
+        all.flat_map(Channel::turns)
     }
 
     /// The map of points on a frame.

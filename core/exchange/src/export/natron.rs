@@ -1,0 +1,165 @@
+//! Shapes for Natron: a Python script (`.py`) that makes a Roto node.
+//!
+//! A project of Natron is an archive of the whole program's state, so a file with shapes alone would not load. The script
+//! uses what Natron offers to scripts, and makes the same calls as the scripts that Natron itself writes for a group with a
+//! Roto node. Each part is a Bézier curve in the base layer; the farthest comes first, since the node draws in this
+//! order. A curve has a key on every frame on which the part has a contour. Both handles and the feather's point are at
+//! the point, so the sides are straight like those of the part, and the feather, which Natron begins with 1.5 pixels, is
+//! none. Coordinates are pixels with x right and y up. Before its first and after its last contour a curve is not active.
+//!
+//! Source: Natron 2, Python reference (`Roto`, `BezierCurve`) and the public source of its export of groups.
+//!
+//! Limits: a part that vanishes between its frames is interpolated there. Natron offers scripts no open curves; an
+//! open part becomes a curve that is not closed yet, and has no matte.
+
+use super::outlines::Outlines;
+use rototoon_base::scene::Scene;
+use std::fmt::Write;
+
+/// What comes before the shapes. Natron runs a file that defines a function `createInstance` in another way, so no line may
+/// contain that definition.
+const HEAD: &str = "# -*- coding: utf-8 -*-
+# Shapes of Rototoon for Natron 2. Run this script in Natron's Script Editor, or open it: Natron FILE.py
+# It makes one Roto node.
+
+# Label, whether the shape is closed, and for each frame x and y of each point, in pixels with y up.
+SHAPES = [
+";
+
+const TAIL: &str = "]
+
+# The first and the last frame of the footage.
+FIRST, LAST = ";
+
+const CODE: &str = "
+
+def rototoon_shape(roto, layer, label, closed, frames):
+    bezier = roto.createBezier(0, 0, frames[0][0])
+    bezier.setLabel(label)
+    layer.addItem(bezier)
+    count = len(frames[0][1]) // 2
+    for _ in range(count - 1):
+        bezier.addControlPoint(0, 0)
+    for frame, numbers in frames:
+        for k in range(count):
+            x, y = numbers[2 * k], numbers[2 * k + 1]
+            bezier.setPointAtIndex(k, frame, x, y, x, y, x, y)
+            bezier.setFeatherPointAtIndex(k, frame, x, y, x, y, x, y)
+    if closed:
+        bezier.setCurveFinished(True)
+    bezier.getFeatherDistanceParam().setValue(0, 0)
+    begin, end = frames[0][0], frames[-1][0]
+    active = bezier.getActivatedParam()
+    if begin > FIRST:
+        active.setValueAtTime(False, FIRST)
+    if begin > FIRST or end < LAST:
+        active.setValueAtTime(True, begin)
+    if end < LAST:
+        active.setValueAtTime(False, end + 1)
+
+
+def rototoon_shapes(app):
+    node = app.createNode(\"fr.inria.built-in.Roto\")
+    node.setLabel(\"Rototoon\")
+    roto = node.getRotoContext()
+    layer = roto.getBaseLayer()
+    for label, closed, frames in SHAPES:
+        rototoon_shape(roto, layer, label, closed, frames)
+
+
+try:
+    app
+except NameError:
+    app = app1
+rototoon_shapes(app)
+";
+
+/// The scene's parts as a script for Natron. Points of snapped paths are about `spacing` pixels apart.
+pub fn natron(scene: &Scene, spacing: f64) -> String {
+    let (first, last, height) = (scene.footage.first, scene.footage.last, scene.footage.height as f64);
+    let mut out = String::from(HEAD);
+    for index in super::nearest_first(scene).into_iter().rev() {
+        let part = &scene.parts[index];
+        let keys = Outlines::new(part, spacing).within(first, last);
+        if keys.is_empty() {
+            continue;
+        }
+        let closed = if part.closed { "True" } else { "False" };
+        let _ = writeln!(out, "    ({}, {closed}, [", literal(&part.name));
+        for (frame, points) in keys {
+            let _ = write!(out, "        ({frame}, [");
+            for (k, p) in points.iter().enumerate() {
+                let comma = if k > 0 { ", " } else { "" };
+                let _ = write!(out, "{comma}{}, {}", number(p.x), number(height - p.y));
+            }
+            out += "]),\n";
+        }
+        out += "    ]),\n";
+    }
+    let _ = write!(out, "{TAIL}{first}, {last}\n{CODE}");
+    out
+}
+
+/// A coordinate to a ten-thousandth of a pixel.
+fn number(value: f64) -> String {
+    let rounded = (value * 1e4).round() / 1e4;
+    // Natron takes a whole number without a point as well, and −0 would look odd.
+    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
+}
+
+/// A text for Python 2 and 3, in ASCII.
+fn literal(text: &str) -> String {
+    let mut out = String::from("u\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => out.extend(['\\', c]),
+            ' '..='~' => out.push(c),
+            _ if u32::from(c) < 0x1_0000 => {
+                let _ = write!(out, "\\u{:04x}", u32::from(c));
+            }
+            _ => {
+                let _ = write!(out, "\\U{:08x}", u32::from(c));
+            }
+        }
+    }
+    out + "\""
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon_base::geometry::Point;
+    use rototoon_base::scene::{Footage, Part};
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn shapes_come_farthest_first_with_y_up() {
+        let at = |x: f64| vec![Point::new(x, 2.0), Point::new(8.0, 2.0), Point::new(8.125, 30.0)];
+        let part = |name: &str, depth, closed| Part {
+            name: name.into(),
+            closed,
+            depth,
+            keys: BTreeMap::from([(1, at(0.5)), (3, at(1.0 / 3.0))]),
+            ..Part::default()
+        };
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 5, fps: 12.5, width: 40, height: 30 };
+        let parts = vec![part("near", 2.0, false), part("far", 0.0, true), Part::default()];
+        let text = natron(&Scene { footage, parts }, 1.0);
+        let wanted = "SHAPES = [
+    (u\"far\", True, [
+        (1, [0.5, 28, 8, 28, 8.125, 0]),
+        (3, [0.3333, 28, 8, 28, 8.125, 0]),
+    ]),
+    (u\"near\", False, [
+";
+        assert!(text.contains(wanted), "{text}");
+        assert!(text.contains("FIRST, LAST = 0, 5\n"));
+        assert!(!text.contains("def createInstance") && text.is_ascii());
+    }
+
+    #[test]
+    fn names_are_texts_of_python() {
+        assert_eq!(literal("a\\\"b\n"), "u\"a\\\\\\\"b\\u000a\"");
+        assert_eq!(literal("Größe 🦊"), "u\"Gr\\u00f6\\u00dfe \\U0001f98a\"");
+    }
+}

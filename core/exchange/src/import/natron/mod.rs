@@ -1,0 +1,190 @@
+//! Shapes of Natron's Roto and RotoPaint nodes, from a project (`.ntp`).
+//!
+//! A project of Natron 2 is an XML archive of Boost. Each roto node has a `RotoContext` with one `BaseLayer`. A layer has
+//! `NumChildren` children, each with a `Type` and an `Item`: a Bézier curve, a paint stroke, or a layer. The farthest comes
+//! first, since nodes draw their items in this order. A curve has `NumPoints` pairs of `CP`, a control point, and `FP`, the
+//! feather's point. A control point has six numbers: its place (`X`, `Y`) and the places of the handles before it (`Left_X`,
+//! `Left_Y`) and after it (`Right_X`, `Right_Y`). Each number is followed by its animation, a `KeyFrameSet` of `Time` and
+//! `Value`; without keys the number itself counts. Coordinates are pixels with y up.
+//!
+//! - A shape has keys on the frames on which any of its numbers or of its `transform`'s has one. Between keys numbers are taken
+//!   as linear, as Natron does for control points.
+//! - A curve is open if it is not closed yet or was drawn as an open one.
+//! - Left out with a warning: paint strokes, and curves whose transformation is linked, an expression or a perspective.
+//! - Feather, opacity and activity are ignored.
+//!
+//! Source: the classes `RotoContext`, `RotoLayer`, `RotoDrawableItem`, `Bezier`, `BezierCP`, `Curve` and `Knob` with their
+//! serialisations in the public sources of Natron 2. Natron 3, which was never released, writes YAML instead.
+
+mod number;
+mod transform;
+
+use super::channel::Channel;
+use super::limits::{MOST_POINTS, Points};
+use super::names::Names;
+use super::path::{NoContours, Path, contours};
+use super::problem::{Fault, LeftOut, parsed};
+use super::{ImportError, Shape, Shapes};
+use number::{child, curve, named, text_of};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Footage, FrameNumber};
+use roxmltree::Node;
+use std::collections::BTreeSet;
+use transform::Transform;
+
+/// Reads the shapes of a project for footage. Shapes that are not animated get their key on frame `still`.
+///
+/// # Errors
+///
+/// An [`ImportError`] names the element and its place.
+pub fn natron(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, ImportError> {
+    let document = parsed(text)?;
+    let mut reader = Reader {
+        footage,
+        still,
+        names: Names::default(),
+        points: Points::all(),
+        shapes: Vec::new(),
+        left_out: LeftOut::default(),
+    };
+    for context in document.descendants().filter(|node| named(*node, "RotoContext")) {
+        if let Some(base) = child(context, "BaseLayer") {
+            reader.layer(base)?;
+        }
+    }
+    let warnings = reader.left_out.lines(text);
+    if reader.shapes.is_empty() && warnings.is_empty() {
+        return Err(ImportError::Nothing("a Bézier curve of a Roto or RotoPaint node"));
+    }
+    Ok(Shapes { shapes: reader.shapes, warnings })
+}
+
+struct Reader<'a> {
+    footage: &'a Footage,
+    still: FrameNumber,
+    names: Names,
+    points: Points,
+    shapes: Vec<Shape>,
+    left_out: LeftOut,
+}
+
+/// A control point: its place, the handle after it, the handle before it; x and y each.
+type Knot = [[Channel; 2]; 3];
+
+impl Reader<'_> {
+    fn layer(&mut self, layer: Node) -> Result<(), ImportError> {
+        for item in layer.children().filter(|node| named(*node, "Item")) {
+            if child(item, "NumPoints").is_some() {
+                self.curve(item)?;
+            } else if child(item, "NumChildren").is_some() {
+                self.layer(item)?;
+            } else {
+                let name = name(item);
+                self.left_out.push(item, format!("the paint stroke {name:?} is left out, since it has no outline"));
+            }
+        }
+        Ok(())
+    }
+
+    fn curve(&mut self, item: Node) -> Result<(), ImportError> {
+        match self.shape(item) {
+            Ok(shape) => self.shapes.push(shape),
+            Err(Fault::Wrong(error)) => return Err(error),
+            Err(Fault::Omitted(reason)) => {
+                let name = name(item);
+                self.left_out.push(item, format!("the shape {name:?} is left out: {reason}"));
+            }
+        }
+        Ok(())
+    }
+
+    fn shape(&mut self, item: Node) -> Result<Shape, Fault> {
+        let knots = knots(item)?;
+        let transform = Transform::read(item)?;
+        let frames = self.frames(item, &knots, transform.as_ref())?;
+        if knots.len().saturating_mul(frames.len()) > MOST_POINTS {
+            self.points.take(usize::MAX, item)?;
+        }
+        let closed = flag(item, "Closed") && !flag(item, "OpenBezier");
+        let paths: Vec<Path> =
+            frames.iter().map(|&frame| self.path(&knots, transform.as_ref(), closed, frame.into())).collect();
+        let made = contours(&paths, |count| self.points.take(count, item)).map_err(|problem| match problem {
+            NoContours::Refused(error) => error,
+            NoContours::Unequal => ImportError::at(item, "found no control point, expected at least two"),
+        })?;
+        let name = self.names.free(&name(item));
+        Ok(Shape { name, closed, keys: frames.into_iter().zip(made).collect() })
+    }
+
+    /// The frames on which any number has a key; `still` if none has. Keys of the transformation that lie beyond the footage
+    /// count on its first or last frame.
+    fn frames(
+        &self,
+        item: Node,
+        knots: &[Knot],
+        transform: Option<&Transform>,
+    ) -> Result<BTreeSet<FrameNumber>, ImportError> {
+        let (first, last) = (self.footage.first, self.footage.last);
+        let mut times: BTreeSet<FrameNumber> = BTreeSet::new();
+        for time in knots.iter().flatten().flatten().flat_map(Channel::frames) {
+            let frame = time.round();
+            if !(f64::from(first)..=f64::from(last)).contains(&frame) {
+                let message =
+                    format!("found a key on frame {time}, expected a frame of the footage, {first} to {last}");
+                return Err(ImportError::at(item, message));
+            }
+            times.insert(frame as FrameNumber);
+        }
+        let moved = transform.into_iter().flat_map(Transform::frames);
+        times.extend(moved.map(|time| time.round().clamp(first.into(), last.into()) as FrameNumber));
+        if times.is_empty() {
+            times.insert(self.still);
+        }
+        Ok(times)
+    }
+
+    /// The path on a frame, in pixels of the footage.
+    fn path(&self, knots: &[Knot], transform: Option<&Transform>, closed: bool, frame: f64) -> Path {
+        let height = self.footage.height as f64;
+        let moved = transform.map(|transform| transform.at(frame));
+        let place = |[x, y]: &[Channel; 2]| {
+            let p = Point::new(x.at(frame), y.at(frame));
+            let p = moved.map_or(p, |moved| moved.transform_point2(p));
+            Point::new(p.x, height - p.y)
+        };
+        let knots: Vec<[Point; 3]> = knots.iter().map(|knot| [&knot[0], &knot[1], &knot[2]].map(place)).collect();
+        Path::through(&knots, closed)
+    }
+}
+
+/// The control points of a curve.
+fn knots(item: Node) -> Result<Vec<Knot>, ImportError> {
+    let knot = |point: Node| {
+        let pair = |x, y| Ok([curve(point, x)?, curve(point, y)?]);
+        Ok([pair("X", "Y")?, pair("Right_X", "Right_Y")?, pair("Left_X", "Left_Y")?])
+    };
+    let points = item.children().filter(|node| named(*node, "CP"));
+    let knots = points.map(knot).collect::<Result<Vec<_>, ImportError>>()?;
+    let told = child(item, "NumPoints").map(text_of).unwrap_or_default();
+    if told.parse() != Ok(knots.len()) || knots.len() < 2 {
+        let found = knots.len();
+        let message =
+            format!("{:?}: found {found} <CP> and NumPoints {told:.40}, expected as many, at least 2", name(item));
+        return Err(ImportError::at(item, message));
+    }
+    Ok(knots)
+}
+
+/// The label of an item; its script name if it has none.
+fn name(item: Node) -> String {
+    let own = item.descendants().find(|node| named(*node, "RotoItemSerialization"));
+    let text = |name| own.and_then(|own| child(own, name)).map(text_of).filter(|text| !text.is_empty());
+    text("Label").or_else(|| text("Name")).unwrap_or_default().to_owned()
+}
+
+fn flag(item: Node, name: &str) -> bool {
+    child(item, name).is_some_and(|node| text_of(node) == "1")
+}
+
+#[cfg(test)]
+mod tests;
