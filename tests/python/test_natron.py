@@ -5,7 +5,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from test_farm import program
+from conftest import program
 
 HEIGHT = 48
 

@@ -23,6 +23,7 @@ impl Default for ffi::Settings {
             tiles: true,
             real_scale: 1.0,
             cpus: 1,
+            temporal: true,
         }
     }
 }
@@ -76,7 +77,7 @@ pub mod ffi {
     struct Settings {
         /// The host's name.
         name: String,
-        /// Suites that the host does not have.
+        /// Suites that the host does not have: by name, or by name and version, `OfxMessageSuite/2`.
         missing_suites: Vec<String>,
         /// Rendering is aborted after that many checks by the plugin; never if negative.
         abort_after: i32,
@@ -92,6 +93,8 @@ pub mod ffi {
         real_scale: f64,
         /// Number of processors that the multi-thread suite reports.
         cpus: u32,
+        /// Whether plugins may ask for images at other times.
+        temporal: bool,
     }
 
     /// The images that a clip is connected to.

@@ -648,10 +648,11 @@ public:
     _properties.setStringProperty(kOfxPropLabel, std::string(settings.name));
     _properties.setIntProperty(kOfxImageEffectPropSupportsMultiResolution, settings.multi_resolution);
     _properties.setIntProperty(kOfxImageEffectPropSupportsTiles, settings.tiles);
+    _properties.setIntProperty(kOfxImageEffectPropTemporalClipAccess, settings.temporal);
   }
   const void *fetchSuite(const char *name, int version) override {
     for (const std::string &missing : controls().missing_suites)
-      if (missing == name) return nullptr;
+      if (missing == name || missing == std::string(name) + "/" + std::to_string(version)) return nullptr;
     if (strcmp(name, kOfxDrawSuite) == 0) return version == 1 ? &draw_suite_v1 : nullptr;
     return fx::Host::fetchSuite(name, version);
   }

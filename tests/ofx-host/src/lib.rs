@@ -108,6 +108,12 @@ pub struct Effect<'a> {
     _host: &'a Host,
 }
 
+// SAFETY: the instance is an object of C++ that is bound to no thread: hosts make an instance on one thread, render it on
+// others and delete it on a third. The library's own state that instances share is guarded in `host.cpp`. `Effect` is not
+// `Sync`, so no two threads use one instance at once but through the host's own render threads.
+#[allow(unsafe_code, reason = "hosts move instances between threads, so the tests do")]
+unsafe impl Send for Effect<'_> {}
+
 impl Effect<'_> {
     fn pin(&mut self) -> std::pin::Pin<&mut bridge::ffi::Effect> {
         self.inner.pin_mut()

@@ -113,6 +113,27 @@ fn a_cancelled_track_changes_nothing_and_may_be_started_again() {
 }
 
 #[test]
+fn a_track_that_is_cancelled_in_any_phase_changes_nothing() {
+    let host = host();
+    let mut effect = tracked(&host, false);
+    let before = (effect.text("document"), effect.text("state"), effect.history().len());
+    let mut cancelled = 0;
+    // Each further update of the progress is in a later phase, at last after the end.
+    for updates in (1..).map(|k| k * k) {
+        host.configure(&Settings { cancel_after: updates, ..Settings::default() });
+        assert_eq!(effect.press("track"), OK, "{updates}");
+        assert_eq!((host.messages().len(), host.live_images()), (0, 0), "{updates}");
+        if effect.text("document") != before.0 {
+            break;
+        }
+        assert!((effect.text("document"), effect.text("state"), effect.history().len()) == before, "{updates}");
+        cancelled += 1;
+    }
+    assert!(cancelled > 2, "{cancelled}");
+    clean(&host);
+}
+
+#[test]
 fn tracking_errors_are_reported() {
     let host = host();
     let mut effect = tracked(&host, false);

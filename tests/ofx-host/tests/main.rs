@@ -10,6 +10,8 @@
 //! - `faults`: faults that were seen in real hosts
 //! - `node`: settings of parts, channels, masks, regions, motion and export
 //! - `matrix`: what hosts do, with each output
+//! - `lives`: instances on several threads, at other places and of other versions
+//! - `page`: the documentation lists the matrix's tests
 //! - `session`: the sample cartoon drawn, tracked and corrected in the host
 //! - `lines`: the effect that shows the images that a tracker of edges uses
 
@@ -19,9 +21,11 @@ mod common;
 mod describing;
 mod faults;
 mod lines;
+mod lives;
 mod matrix;
 mod node;
 mod overlay;
+mod page;
 mod pixels;
 mod session;
 mod shapes;

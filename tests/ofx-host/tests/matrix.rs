@@ -43,11 +43,14 @@ fn hosts_of_every_kind_show_the_same_picture() {
     let names = ["MLT", "uk.co.thefoundry.hiero", "DaVinciResolve", "fr.inria.Magic", "com.eyeonline.Fusion"];
     let mut kinds: Vec<Settings> =
         suites.iter().map(|suite| Settings { missing_suites: vec![(*suite).into()], ..Settings::default() }).collect();
+    // A host of OpenFX 1.0 has the first message suite only.
+    kinds.push(Settings { missing_suites: vec!["OfxMessageSuite/2".into()], ..Settings::default() });
     kinds.push(Settings { missing_suites: suites.map(String::from).to_vec(), ..Settings::default() });
     kinds.extend(names.iter().map(|name| Settings { name: (*name).into(), ..Settings::default() }));
     kinds.push(Settings { multi_resolution: false, tiles: false, ..Settings::default() });
     kinds.push(Settings { cpus: 7, ..Settings::default() });
     kinds.push(Settings { cpus: 0, ..Settings::default() });
+    kinds.push(Settings { temporal: false, ..Settings::default() });
     let mut cases = 0;
     for output in OUTPUTS {
         let wanted = plain(&host, output);

@@ -151,39 +151,28 @@ fn good(scene: &Scene, drawings: &[Drawn]) -> f64 {
     f64::from(good as u32) / f64::from(all as u32)
 }
 
-#[test]
-fn a_cartoon_is_drawn_tracked_corrected_and_rendered_in_the_host() {
-    let host = host();
-    let drawings = sample::draw().unwrap();
-    let film = pictures(&drawings);
-    let mut effect = node(&host, &film);
+/// Draws the parts on the key frames with the pen, and returns the document. Its keys are where they were drawn.
+fn drawn(host: &Host, effect: &mut Effect, drawings: &[Drawn]) -> Document {
     for frame in KEYS {
-        draw(&host, &mut effect, &drawings, frame);
+        draw(host, effect, drawings, frame);
     }
-    let drawn = kept(&effect);
+    let drawn = kept(effect);
     assert_eq!(drawn.scene.parts.len(), DRAWN);
     for (index, part) in drawn.scene.parts.iter().enumerate() {
         for frame in KEYS {
-            let wanted = outline(&drawings, index, frame);
+            let wanted = outline(drawings, index, frame);
             let key = &part.keys[&(frame + FIRST as i32)];
             assert!(key.iter().zip(&wanted).all(|(a, b)| a.distance(*b) < 1e-4), "{} {frame}", part.name);
         }
     }
-    photograph(&mut effect, &film, KEYS[1], "drawn");
-    photograph(&mut effect, &film, 1, "old");
-    let before = (effect.text("document"), effect.text("state"));
-    assert_eq!(effect.press_at("track", FIRST), OK, "{:?}", host.messages());
-    let tracked = kept(&effect);
-    let reference = followed(&drawn, &film);
-    assert!(tracked.scene.parts == reference.parts, "as the core tracks the same keys");
-    let first = good(&tracked.scene, &drawings);
+    drawn
+}
 
-    // The worst point of the middle frame is corrected with the pen.
-    let frame = 2;
-    let time = FIRST + f64::from(frame);
-    let number = frame + FIRST as i32;
+/// Moves the worst point of a tracked frame to its true place with the pen, and returns the document.
+fn corrected(effect: &mut Effect, tracked: &Document, drawings: &[Drawn], frame: FrameNumber) -> Document {
+    let (time, number) = (FIRST + f64::from(frame), frame + FIRST as i32);
     let worst = (0..DRAWN).flat_map(|part| {
-        let truth = outline(&drawings, part, frame);
+        let truth = outline(drawings, part, frame);
         let found = tracked.scene.parts[part].tracks[&number].clone();
         truth.into_iter().zip(found).enumerate().map(move |(point, (truth, found))| (part, point, truth, found))
     });
@@ -193,11 +182,50 @@ fn a_cartoon_is_drawn_tracked_corrected_and_rendered_in_the_host() {
         assert_eq!(effect.overlay(action, true, time, shown(at), 0.02), OK);
     }
     effect.set_text("parts", "");
-    let corrected = kept(&effect);
+    let corrected = kept(effect);
     effect.overlay(DOWN, true, time, [5.0, 5.0], 0.5);
     effect.overlay(UP, true, time, [300.0, 250.0], 0.5);
-    photograph(&mut effect, &film, frame, "corrected");
     assert!(corrected.scene.parts[part].pins[&number][&point].distance(truth) < 1e-3);
+    corrected
+}
+
+/// Checks that the matte of a frame is that of the command line.
+fn same_matte(host: &Host, effect: &mut Effect, scene: &Scene, frame: FrameNumber) {
+    effect.set("output", &[MATTE]);
+    let window = Bounds { x1: 0, y1: 0, x2: WIDTH as i32, y2: HEIGHT as i32 };
+    let picture = rendered(host, effect, FIRST + f64::from(frame), window);
+    let wanted = render::matte(scene, frame + FIRST as i32, None);
+    let apart = |y: usize, x: usize| (picture.values[4 * ((HEIGHT - 1 - y) * WIDTH + x)] - wanted.get(x, y)).abs();
+    let most = (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (y, x))).map(|(y, x)| apart(y, x)).fold(0.0, f32::max);
+    assert!(most < 1e-5, "{most}");
+}
+
+/// Undoes the host's steps until after the latest one with this label.
+fn undo(effect: &mut Effect, label: &str) {
+    while effect.history().last().is_some_and(|own| own != label) {
+        effect.undo();
+    }
+    effect.undo();
+}
+
+#[test]
+fn a_cartoon_is_drawn_tracked_corrected_and_rendered_in_the_host() {
+    let host = host();
+    let drawings = sample::draw().unwrap();
+    let film = pictures(&drawings);
+    let mut effect = node(&host, &film);
+    let drawn = drawn(&host, &mut effect, &drawings);
+    photograph(&mut effect, &film, KEYS[1], "drawn");
+    photograph(&mut effect, &film, 1, "old");
+    let before = (effect.text("document"), effect.text("state"));
+    assert_eq!(effect.press_at("track", FIRST), OK, "{:?}", host.messages());
+    let tracked = kept(&effect);
+    assert!(tracked.scene.parts == followed(&drawn, &film).parts, "as the core tracks the same keys");
+    let first = good(&tracked.scene, &drawings);
+
+    let frame = 2;
+    let corrected = corrected(&mut effect, &tracked, &drawings, frame);
+    photograph(&mut effect, &film, frame, "corrected");
     let middle = (effect.text("document"), effect.text("state"));
     assert_eq!(effect.press_at("track", FIRST), OK, "{:?}", host.messages());
     let again = kept(&effect);
@@ -205,29 +233,13 @@ fn a_cartoon_is_drawn_tracked_corrected_and_rendered_in_the_host() {
     let second = good(&again.scene, &drawings);
     println!("good: {first:.4}, after a correction {second:.4}");
     assert!(first > 0.8 && second >= first - 0.01, "{first} {second}");
-
-    // The matte is that of the command line.
-    effect.set("output", &[MATTE]);
-    let window = Bounds { x1: 0, y1: 0, x2: WIDTH as i32, y2: HEIGHT as i32 };
-    let picture = rendered(&host, &mut effect, time, window);
-    let wanted = render::matte(&again.scene, number, None);
-    let apart = |y: usize, x: usize| (picture.values[4 * ((HEIGHT - 1 - y) * WIDTH + x)] - wanted.get(x, y)).abs();
-    let most = (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (y, x))).map(|(y, x)| apart(y, x)).fold(0.0, f32::max);
-    assert!(most < 1e-5, "{most}");
+    same_matte(&host, &mut effect, &again.scene, frame);
 
     // Each step of the host's undo gives back the bytes.
-    for (step, wanted) in [("Track", middle), ("Move points", before)] {
-        while effect.history().last().is_some_and(|label| label != step) {
-            effect.undo();
-        }
-        effect.undo();
-        if step == "Move points" {
-            while effect.history().last().is_some_and(|label| label != "Track") {
-                effect.undo();
-            }
-            effect.undo();
-        }
-        assert!((effect.text("document"), effect.text("state")) == wanted, "{step}");
-    }
+    undo(&mut effect, "Track");
+    assert!((effect.text("document"), effect.text("state")) == middle, "the second track");
+    undo(&mut effect, "Move points");
+    undo(&mut effect, "Track");
+    assert!((effect.text("document"), effect.text("state")) == before, "correction and first track");
     clean(&host);
 }
