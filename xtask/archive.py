@@ -1,8 +1,10 @@
-"""Packs a folder or a file into a zip. The same content gives the same bytes: names are sorted, and all entries have one date.
+"""Packs a folder or a file into a zip, or packs a zip again. The same content gives the same bytes: names are sorted, and all entries
+have one date.
 
     python archive.py FOLDER ZIP DATE
+    python archive.py OLD.zip ZIP DATE
 
-DATE is in seconds since 1970. Programs stay executable.
+DATE is in seconds since 1970. Programs stay executable. ZIP may be OLD.zip.
 """
 
 import os
@@ -10,20 +12,39 @@ import stat
 import sys
 import time
 import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 
 
+def of_folder(source: Path) -> Iterator[tuple[str, int, bytes]]:
+    """Name, mode and content of each file, under the folder's own name."""
+    for path in source.rglob("*") if source.is_dir() else [source]:
+        if path.is_file():
+            mode = 0o755 if os.access(path, os.X_OK) else 0o644
+            yield path.relative_to(source.parent).as_posix(), mode, path.read_bytes()
+
+
+def of_zip(source: Path) -> Iterator[tuple[str, int, bytes]]:
+    """Name, mode and content of each file. Folders have no entries of their own."""
+    with zipfile.ZipFile(source) as file:
+        for entry in file.infolist():
+            if not entry.is_dir():
+                mode = 0o755 if entry.external_attr >> 16 & 0o100 else 0o644
+                yield entry.filename, mode, file.read(entry)
+
+
 def main(source: Path, target: Path, date: int) -> None:
-    """Packs `source` under its own name."""
-    files = sorted(path for path in source.rglob("*") if path.is_file()) if source.is_dir() else [source]
-    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as out:
-        for path in files:
-            name = path.relative_to(source.parent).as_posix()
+    """Packs `source`. The zip appears whole or not at all."""
+    files = sorted(of_zip(source) if zipfile.is_zipfile(source) else of_folder(source))
+    unfinished = target.with_name(f"{target.name}.unfinished")
+    with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as out:
+        for name, mode, data in files:
             entry = zipfile.ZipInfo(name, time.gmtime(date)[:6])
             entry.create_system = 3  # Unix: only then the mode is read
-            entry.external_attr = (stat.S_IFREG | (0o755 if os.access(path, os.X_OK) else 0o644)) << 16
+            entry.external_attr = (stat.S_IFREG | mode) << 16
             entry.compress_type = zipfile.ZIP_DEFLATED
-            out.writestr(entry, path.read_bytes(), compresslevel=9)
+            out.writestr(entry, data, compresslevel=9)
+    unfinished.replace(target)
 
 
 if __name__ == "__main__":

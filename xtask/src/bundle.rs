@@ -128,7 +128,6 @@ pub fn pack_extension(packager: &Packager, wheels: &[(Platform, PathBuf)], help:
     if help {
         docs::put_into(&staged.join("help"))?;
     }
-    set_dates(&staged, wheel::date()?)?;
     pack(packager, &staged, wheels, out)
 }
 
@@ -176,17 +175,20 @@ pub fn release_settings<'c>(build: &'c mut Command, tools: &Path) -> Result<&'c 
     let bin = tools.parent().context("an interpreter is in a folder")?;
     let path = std::env::var_os("PATH").unwrap_or_default();
     let path = std::env::join_paths(std::iter::once(bin.to_path_buf()).chain(std::env::split_paths(&path)))?;
-    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
-    let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo"))).unwrap_or_default();
-    // Messages of panics name source files. The names must not depend on where the sources are.
-    let flags = [(&home, "/cargo"), (&root(), "/rototoon")]
-        .map(|(from, to)| format!("--remap-path-prefix={}={to}", from.display()));
     Ok(build
         .env("PATH", path)
-        .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"))
+        .env("CARGO_ENCODED_RUSTFLAGS", renamed_paths().join("\x1f"))
         // Line tables would only make the zip larger.
         .env("CARGO_PROFILE_RELEASE_DEBUG", "none")
         .env("CARGO_PROFILE_RELEASE_STRIP", "symbols"))
+}
+
+/// Flags of the compiler. Messages of panics name source files. The names must not depend on where the sources are.
+pub fn renamed_paths() -> Vec<String> {
+    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo"))).unwrap_or_default();
+    let renamed = [(&home, "/cargo"), (&root(), "/rototoon")];
+    renamed.map(|(from, to)| format!("--remap-path-prefix={}={to}", from.display())).into()
 }
 
 /// Makes the folder that is packed: the add-on's files and the wheels.
@@ -230,27 +232,11 @@ fn manifest(text: &str, platforms: &[&str], wheels: &[String]) -> Result<String>
     Ok(text.replace(known, &format!("platforms = {platforms:?}\nwheels = {wheels:?}")))
 }
 
-/// Gives every file of a folder the same date, which the zip will hold.
-fn set_dates(folder: &Path, seconds: u64) -> Result<()> {
-    let date = std::time::UNIX_EPOCH + std::time::Duration::from_secs(seconds);
-    for entry in std::fs::read_dir(folder).with_context(|| format!("cannot list {folder:?}"))? {
-        let path = entry?.path();
-        if path.is_dir() {
-            set_dates(&path, seconds)?;
-        } else {
-            let file = std::fs::OpenOptions::new().write(true).open(&path);
-            file.and_then(|file| file.set_modified(date)).with_context(|| format!("cannot date {path:?}"))?;
-        }
-    }
-    Ok(())
-}
-
 fn pack(packager: &Packager, staged: &Path, wheels: &[(Platform, PathBuf)], place: &Path) -> Result<()> {
     let out = target().join("bundle/out");
     empty_folder(&out)?;
-    // The zip holds local times.
     let words = ["build", "--split-platforms", "--source-dir"];
-    run(packager.command()?.env("TZ", "UTC").args(words).arg(staged).arg("--output-dir").arg(&out))?;
+    run(packager.command()?.args(words).arg(staged).arg("--output-dir").arg(&out))?;
     let mut built: Vec<String> = std::fs::read_dir(&out)?
         .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
         .collect::<Result<_>>()?;
@@ -260,6 +246,8 @@ fn pack(packager: &Packager, staged: &Path, wheels: &[(Platform, PathBuf)], plac
     ensure!(built == expected, "the packager made {built:?}, expected {expected:?}");
     for name in built {
         let zip = out.join(&name);
+        // The packager writes the manifest anew, with the time of day.
+        wheel::archive(&zip, &zip)?;
         let said = capture(packager.command()?.arg("validate").arg(&zip))?;
         ensure!(!said.to_lowercase().contains("warning"), "{name}: the validator says: {said}");
         std::fs::rename(&zip, place.join(&name)).with_context(|| format!("cannot move {zip:?} to {place:?}"))?;

@@ -118,6 +118,8 @@ enum Command {
         #[arg(long)]
         twice: bool,
     },
+    /// Build for macOS with zig, and read the files. They are not run.
+    Macos,
     /// Build for Windows, read the files, and run the Rust tests under Wine (Debian sid in a chroot; needs root and debootstrap).
     Windows {
         /// Test this package only; may be given several times. All by default.
@@ -155,6 +157,7 @@ fn main() -> anyhow::Result<()> {
         Command::Photograph => photograph::photograph(),
         Command::Press { variants } => photograph::press(&variants),
         Command::Release { dry_run: _, twice } => release::release(twice),
+        Command::Macos => macos::build().map(|_| ()),
         Command::Windows { package, set, linux, quick } => {
             let profile = if quick { windows::Profile::Tested } else { windows::Profile::Release };
             windows::windows(&package, &set, &linux, profile)

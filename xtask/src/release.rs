@@ -10,7 +10,6 @@ use crate::bundle::{self, Build, Bundle, Packager};
 use crate::platform::{LINUX, MACOS, Platform, WINDOWS};
 use crate::{audit, licences, macos, ofx, wheel, windows};
 use anyhow::{Context, Result, bail, ensure};
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use xtask_shell::shell::{capture, command, copy_folder, empty_folder, root, run, target};
@@ -27,7 +26,7 @@ struct Built {
     plugin: PathBuf,
 }
 
-/// Makes the set and checks it. With `twice` the Linux files are compiled anew and must be the same.
+/// Makes the set and checks it. With `twice` the Linux files are made anew and must be the same.
 pub fn release(twice: bool) -> Result<()> {
     check_versions()?;
     let notes = section(&read("CHANGELOG.md")?, VERSION)?;
@@ -43,7 +42,7 @@ pub fn release(twice: bool) -> Result<()> {
     let set = target().join("release-set");
     make(&set, &built, &notes)?;
     if twice {
-        compare()?;
+        compare(&set)?;
     }
     for (platform, reason) in &missing {
         println!("not in the set: {}: {reason:#}", platform.blender);
@@ -70,24 +69,18 @@ fn make(set: &Path, built: &[Built], notes: &str) -> Result<()> {
         empty_folder(&folder)?;
         copy_folder(&licences::folder(platform)?, &folder, &|_| true)?;
         std::fs::copy(cli, folder.join(platform.cli)).with_context(|| format!("cannot copy {cli:?}"))?;
-        archive(&folder, &set.join(format!("{name}.zip")))?;
+        wheel::archive(&folder, &set.join(format!("{name}.zip")))?;
     }
     bundle::pack_extension(&Packager::from_wheel()?, &wheels, true, set)?;
     let place = target().join("release-parts/Rototoon.ofx.bundle");
     let plugins: Vec<(Platform, PathBuf)> = built.iter().map(|b| (b.platform, b.plugin.clone())).collect();
     ofx::lay_out_at(&place, &plugins)?;
-    archive(&place, &set.join(format!("rototoon-{VERSION}-openfx.zip")))?;
+    wheel::archive(&place, &set.join(format!("rototoon-{VERSION}-openfx.zip")))?;
     for bill in audit::bills()? {
         std::fs::copy(&bill, set.join(bill.file_name().context("a bill has a name")?))?;
     }
     std::fs::write(set.join("RELEASE-NOTES.md"), notes)?;
     std::fs::write(set.join(SUMS), sums(set)?).context("cannot write the checksums")
-}
-
-/// Packs a folder with the time of the commit.
-fn archive(folder: &Path, zip: &Path) -> Result<()> {
-    let date = wheel::date()?.to_string();
-    run(command(wheel::environment()?).arg(root().join("xtask/archive.py")).args([folder, zip]).arg(date))
 }
 
 /// A line for each file of the set with its SHA-256, as `sha256sum --check` reads them.
@@ -149,33 +142,53 @@ with zipfile.ZipFile(sys.argv[1]) as file:
     assert not strange, f'{sys.argv[1]}: {strange}'
     assert any('licen' in name.lower() for name in names), f'{sys.argv[1]}: no licence'";
 
-/// Compiles the Linux files anew in another folder, and compares all bytes.
-fn compare() -> Result<()> {
-    let first = linux()?;
-    let before = hashes(&first)?;
+/// Makes the Linux files of the set anew, in another folder, and compares all bytes.
+fn compare(set: &Path) -> Result<()> {
     let folder = target().join("release-again");
     empty_folder(&folder)?;
-    run(command(std::env::current_exe()?).args(["bundle"]).env("CARGO_TARGET_DIR", &folder))?;
-    let built = folder.join(LINUX.triple).join("release");
-    let at = |name: &str| built.join(name);
-    let again = Built { platform: LINUX, library: at(LINUX.library), cli: at(LINUX.cli), plugin: at(LINUX.plugin) };
-    let after = hashes(&again)?;
-    std::fs::remove_dir_all(&folder)?;
-    for (name, hash) in &before {
-        ensure!(after.get(name) == Some(hash), "{name}: two builds of one commit differ");
-        println!("{name}: two builds of one commit are the same ({})", &hash[..16]);
+    lend_tools(&folder)?;
+    run(command(std::env::current_exe()?).arg("bundle").env("CARGO_TARGET_DIR", &folder))?;
+    let first = Bundle::of(Build::Installed);
+    let wheel = first.wheel.file_name().context("a wheel has a name")?;
+    let pairs = [
+        (first.library.clone(), in_folder(&folder, &first.library)?),
+        (first.cli.clone(), in_folder(&folder, &first.cli)?),
+        (first.plugin.clone(), in_folder(&folder, &first.plugin)?),
+        (set.join(wheel), in_folder(&folder, &first.wheel)?),
+        (set.join(bundle::zip_name(&LINUX)), in_folder(&folder, &first.zip)?),
+    ];
+    let mut differ = Vec::new();
+    for (one, other) in pairs {
+        let name = one.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let (sum, again) = (sum(&one)?, sum(&other)?);
+        println!("{name}: first build {}, second build {}", &sum[..16], &again[..16]);
+        if sum != again {
+            differ.push(name);
+        }
+    }
+    ensure!(differ.is_empty(), "two builds of one commit differ in {differ:?}: compare with the files in {folder:?}");
+    std::fs::remove_dir_all(&folder).with_context(|| format!("cannot remove {folder:?}"))
+}
+
+/// The place of a file of the target folder in another one.
+fn in_folder(folder: &Path, file: &Path) -> Result<PathBuf> {
+    Ok(folder.join(file.strip_prefix(target())?))
+}
+
+/// Shows the installed tools in another target folder: they need not be downloaded again.
+fn lend_tools(folder: &Path) -> Result<()> {
+    for name in names(&target())?.iter().filter(|name| name.starts_with("venv-") || name.starts_with("mdbook-")) {
+        #[cfg(unix)]
+        std::os::unix::fs::symlink(target().join(name), folder.join(name))
+            .with_context(|| format!("cannot show {name} in {folder:?}"))?;
     }
     Ok(())
 }
 
-fn hashes(built: &Built) -> Result<BTreeMap<String, String>> {
-    let hash = |path: &PathBuf| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        Ok((name, capture(command("sha256sum").arg(path))?))
-    };
-    let hashed: Vec<(String, String)> =
-        [&built.library, &built.cli, &built.plugin].into_iter().map(hash).collect::<Result<_>>()?;
-    Ok(hashed.into_iter().map(|(name, line)| (name, line.split(' ').next().unwrap_or_default().to_owned())).collect())
+/// The SHA-256 of a file.
+fn sum(path: &Path) -> Result<String> {
+    let said = capture(command("sha256sum").arg(path))?;
+    Ok(said.split(' ').next().unwrap_or_default().to_owned())
 }
 
 /// Fails unless the places that name the version agree.

@@ -56,6 +56,11 @@ fn stage(platform: &Platform, library: &Path, staged: &Path) -> Result<()> {
     Ok(())
 }
 
+/// Packs a folder, or packs a zip again, with the time of the commit: the same content gives the same bytes.
+pub fn archive(source: &Path, zip: &Path) -> Result<()> {
+    run(command(environment()?).arg(root().join("xtask/archive.py")).args([source, zip]).arg(date()?.to_string()))
+}
+
 /// Seconds since 1970 that packed files carry: the time of the commit, so that two builds of one commit are the same.
 pub fn date() -> Result<u64> {
     /// The earliest time that a zip can hold, for a folder without a history.
@@ -68,4 +73,34 @@ pub fn date() -> Result<u64> {
     }
     let told = capture(command("git").args(["log", "-1", "--format=%ct"]));
     Ok(told.ok().and_then(|text| text.parse().ok()).unwrap_or(EARLIEST).max(EARLIEST))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Packs two files in this order, at this time of day, as other programs would.
+    const PACK: &str = "import sys, zipfile
+with zipfile.ZipFile(sys.argv[1], 'w') as out:
+    for name in sys.argv[3:]:
+        out.writestr(zipfile.ZipInfo(name, (2026, 1, 1, int(sys.argv[2]), 0, 0)), name * 100)";
+
+    #[test]
+    fn a_zip_that_is_packed_again_depends_on_its_content_only() {
+        let folder = target().join("xtask-archive-test");
+        empty_folder(&folder).unwrap();
+        let python = python::find_any().unwrap();
+        let pack = |name: &str, words: [&str; 3]| {
+            let zip = folder.join(name);
+            run(command(&python).args(["-c", PACK]).arg(&zip).args(words)).unwrap();
+            let before = std::fs::read(&zip).unwrap();
+            run(command(&python).arg(root().join("xtask/archive.py")).args([&zip, &zip]).arg("1000000000")).unwrap();
+            (before, std::fs::read(&zip).unwrap())
+        };
+        let (morning, one) = pack("one.zip", ["8", "a.txt", "b/c.txt"]);
+        let (evening, other) = pack("other.zip", ["20", "b/c.txt", "a.txt"]);
+        let (_, more) = pack("more.zip", ["8", "a.txt", "b/d.txt"]);
+        assert!(morning != evening && one == other && one != more);
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
 }
