@@ -77,8 +77,27 @@ pub fn macos(path: &Path) -> Result<MacReport> {
     ensure!(foreign.is_empty(), "{path:?} links {foreign:?}, expected only libraries of the system");
     let major = found.oldest.split('.').next().and_then(|text| text.parse::<u32>().ok());
     ensure!(major.is_some_and(|n| n <= 11), "{path:?} needs macOS {}, expected 11.0 at most", found.oldest);
+    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    if let Some(name) = &found.install_name {
+        ensure!(*name == install_name(&file), "{path:?} calls itself {name:?}, expected {:?}", install_name(&file));
+    }
     ensure!(found.signed, "{path:?} has no signature, expected an ad-hoc one: Apple's processors refuse it otherwise");
     Ok(found)
+}
+
+/// What a library of macOS calls itself: its file name, wherever it lies.
+pub fn install_name(file: &str) -> String {
+    format!("@rpath/{file}")
+}
+
+/// Fails where a file contains one of these paths of this machine.
+pub fn assert_no_paths(path: &Path, paths: &[&Path]) -> Result<()> {
+    let data = read(path)?;
+    let text = String::from_utf8_lossy(&data);
+    for foreign in paths {
+        ensure!(!text.contains(&*foreign.to_string_lossy()), "{path:?} contains the path {foreign:?}");
+    }
+    Ok(())
 }
 
 fn system_of_mac(name: &str) -> bool {
@@ -163,6 +182,17 @@ mod tests {
         if cfg!(target_os = "linux") {
             assert!(report(&own, BinaryFormat::Pe).is_err() && mac_report(&own).is_err());
         }
+    }
+
+    #[test]
+    fn paths_of_the_machine_are_found() {
+        let own = std::env::current_exe().unwrap();
+        let error =
+            assert_no_paths(&own, &[Path::new("/no/such/path-of-a-machine"), Path::new(env!("CARGO_MANIFEST_DIR"))]);
+        // The test names both, so its own program contains the first one at least.
+        assert!(error.unwrap_err().to_string().contains("contains the path"));
+        let text = xtask_shell::shell::root().join("LICENSE");
+        assert_no_paths(&text, &[Path::new("/no/such/path-of-a-machine")]).unwrap();
     }
 
     #[test]

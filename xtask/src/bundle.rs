@@ -183,11 +183,15 @@ pub fn release_settings<'c>(build: &'c mut Command, tools: &Path) -> Result<&'c 
         .env("CARGO_PROFILE_RELEASE_STRIP", "symbols"))
 }
 
+/// The folder with the downloaded packages.
+pub fn cargo_home() -> PathBuf {
+    let home = || Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo"));
+    std::env::var_os("CARGO_HOME").map(PathBuf::from).or_else(home).unwrap_or_default()
+}
+
 /// Flags of the compiler. Messages of panics name source files. The names must not depend on where the sources are.
 pub fn renamed_paths() -> Vec<String> {
-    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
-    let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo"))).unwrap_or_default();
-    let renamed = [(&home, "/cargo"), (&root(), "/rototoon")];
+    let renamed = [(cargo_home(), "/cargo"), (root(), "/rototoon")];
     renamed.map(|(from, to)| format!("--remap-path-prefix={}={to}", from.display())).into()
 }
 

@@ -8,7 +8,7 @@
 
 use crate::bundle::{self, Build, Bundle, Packager};
 use crate::platform::{LINUX, MACOS, Platform, WINDOWS};
-use crate::{audit, licences, macos, ofx, wheel, windows};
+use crate::{audit, binary, licences, macos, ofx, wheel, windows};
 use anyhow::{Context, Result, bail, ensure};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -60,7 +60,10 @@ fn linux() -> Result<Built> {
 fn make(set: &Path, built: &[Built], notes: &str) -> Result<()> {
     empty_folder(set)?;
     let mut wheels = Vec::new();
-    for Built { platform, library, cli, .. } in built {
+    for Built { platform, library, cli, plugin } in built {
+        for file in [library, cli, plugin] {
+            binary::assert_no_paths(file, &[&root(), &target(), &bundle::cargo_home()])?;
+        }
         let made = wheel::build(platform, platform.wheel, library)?;
         std::fs::copy(&made, set.join(made.file_name().context("a wheel has a name")?))?;
         wheels.push((*platform, made));

@@ -4,7 +4,6 @@
 //! the system has resolved them, and files by device and inode, on Windows by volume and file index. A path where no file is names none.
 
 use rototoon_base::scene::{Footage, FramePattern};
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What a command reads.
@@ -74,7 +73,7 @@ impl Identity {
 #[cfg(unix)]
 fn place(path: &Path) -> Option<(u64, u64)> {
     use std::os::unix::fs::MetadataExt;
-    let data = fs::metadata(path).ok()?;
+    let data = std::fs::metadata(path).ok()?;
     Some((data.dev(), data.ino()))
 }
 
@@ -93,6 +92,7 @@ fn place(_: &Path) -> Option<(u64, u64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn other_names_of_a_file_are_found() {
