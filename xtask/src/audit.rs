@@ -8,8 +8,9 @@
 //! `test`.
 
 use crate::licences::SHIPPED;
+use crate::wheel;
 use anyhow::{Context, Result, ensure};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use xtask_shell::shell::{capture, cargo, command, root, run, target};
 
 /// A tool and its version.
@@ -40,7 +41,10 @@ pub fn bills() -> Result<Vec<PathBuf>> {
     let folder = target().join("sbom");
     std::fs::create_dir_all(&folder)?;
     let mut made = Vec::new();
-    run(command(program).current_dir(root()).args(["cyclonedx", "--format", "json", "--quiet"]))?;
+    // With a date of its own the tool takes neither the time of day nor a number by chance.
+    let date = wheel::date()?.to_string();
+    let words = ["cyclonedx", "--format", "json", "--quiet"];
+    run(command(program).current_dir(root()).args(words).env("SOURCE_DATE_EPOCH", date))?;
     for entry in manifests()? {
         let (name, written) = entry;
         if !written.is_file() {
@@ -48,7 +52,8 @@ pub fn bills() -> Result<Vec<PathBuf>> {
         }
         if SHIPPED.contains(&name.as_str()) {
             let to = folder.join(format!("{name}.cdx.json"));
-            std::fs::copy(&written, &to)?;
+            let text = std::fs::read_to_string(&written).with_context(|| format!("cannot read {written:?}"))?;
+            std::fs::write(&to, without_place(&text, &root())).with_context(|| format!("cannot write {to:?}"))?;
             println!("{}", to.display());
             made.push(to);
         }
@@ -56,6 +61,11 @@ pub fn bills() -> Result<Vec<PathBuf>> {
         std::fs::remove_file(&written)?;
     }
     Ok(made)
+}
+
+/// A bill that names the workspace's packages, but not where the workspace lies on this machine.
+fn without_place(bill: &str, workspace: &Path) -> String {
+    bill.replace(&*workspace.to_string_lossy(), "/rototoon")
 }
 
 /// Each package of the workspace with the file that the tool writes for it.
@@ -85,4 +95,16 @@ fn tool((name, version): (&str, &str)) -> Result<PathBuf> {
             .env("CARGO_TARGET_DIR", target().join("tools-build")))?;
     }
     Ok(program)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bills_do_not_name_the_machine() {
+        let bill = r#"{"bom-ref": "path+file:///home/anna/work/core#rototoon@0.1.0"}"#;
+        let made = without_place(bill, Path::new("/home/anna/work"));
+        assert_eq!(made, r#"{"bom-ref": "path+file:///rototoon/core#rototoon@0.1.0"}"#);
+    }
 }

@@ -80,6 +80,7 @@ fn make(set: &Path, built: &[Built], notes: &str) -> Result<()> {
     ofx::lay_out_at(&place, &plugins)?;
     wheel::archive(&place, &set.join(format!("rototoon-{VERSION}-openfx.zip")))?;
     for bill in audit::bills()? {
+        binary::assert_no_paths(&bill, &[&root(), &target(), &bundle::cargo_home()])?;
         std::fs::copy(&bill, set.join(bill.file_name().context("a bill has a name")?))?;
     }
     std::fs::write(set.join("RELEASE-NOTES.md"), notes)?;
@@ -151,14 +152,15 @@ fn compare(set: &Path) -> Result<()> {
     empty_folder(&folder)?;
     lend_tools(&folder)?;
     run(command(std::env::current_exe()?).arg("bundle").env("CARGO_TARGET_DIR", &folder))?;
-    let first = Bundle::of(Build::Installed);
+    // The zips of the set name the wheels of all systems. So the zip for Linux alone is made of the first build too.
+    let first = bundle::bundle(&Packager::from_wheel()?, Build::Installed)?;
     let wheel = first.wheel.file_name().context("a wheel has a name")?;
     let pairs = [
         (first.library.clone(), in_folder(&folder, &first.library)?),
         (first.cli.clone(), in_folder(&folder, &first.cli)?),
         (first.plugin.clone(), in_folder(&folder, &first.plugin)?),
         (set.join(wheel), in_folder(&folder, &first.wheel)?),
-        (set.join(bundle::zip_name(&LINUX)), in_folder(&folder, &first.zip)?),
+        (first.zip.clone(), in_folder(&folder, &first.zip)?),
     ];
     let mut differ = Vec::new();
     for (one, other) in pairs {
