@@ -273,9 +273,23 @@ fn the_head_leads_an_eye_that_is_elsewhere() {
 
 #[test]
 fn parts_that_come_apart_from_key_to_key_are_no_companions() {
-    with_head_and_eye(Point::new(30.0, 10.0), Point::new(9.0, 0.0), |both| {
+    with_head_and_eye(Point::new(30.0, 10.0), Point::new(15.0, 0.0), |both| {
         assert_eq!(companion::find(both, &[vec![0; 3], vec![0; 3]], &|_, _| false), [] as [companion::Pair; 0]);
     });
+}
+
+#[test]
+fn a_companion_that_drifts_from_key_to_key_costs_less() {
+    let cost = |drift: f64| {
+        with_head_and_eye(Point::new(30.0, 10.0), Point::new(drift, 0.0), |both| {
+            let pairs = companion::find(both, &[vec![0; 3], vec![0; 3]], &|_, _| false);
+            let companions = Companions::new(both, &pairs);
+            companions.cost(0, (1, 1), (1, 0)) / companions.apart(0, (1, 1), (1, 0))
+        })
+    };
+    // The head's motion leaves the eye 5 px from its second key, and half of that between the keys.
+    assert!((cost(5.0) - 0.06 / 30.0).abs() < 1e-9, "{}", cost(5.0));
+    assert!((cost(10.0) - 0.06 / 35.0).abs() < 1e-9, "{}", cost(10.0));
 }
 
 #[test]
