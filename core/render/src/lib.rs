@@ -15,6 +15,7 @@
 //! - [`grow`]: the outline moved outward or inward
 //! - [`feather`]: soft borders
 //! - [`line`](mod@line): lines of a width
+//! - [`part`](mod@part): a rectangle of a picture, to draw into
 //! - `near`: distances where they decide something
 //! - [`encode`]: pictures as bytes of a file
 //!
@@ -56,6 +57,7 @@ pub mod matte;
 pub mod motion;
 mod near;
 pub mod overlay;
+pub mod part;
 pub mod visible;
 
 pub use encode::{EncodeError, Format};

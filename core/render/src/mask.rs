@@ -5,6 +5,7 @@
 
 use super::coverage::{Shape, Window};
 use super::feather::Change;
+use super::part::Part;
 use super::{feather, grow};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;
@@ -111,25 +112,30 @@ impl Mask {
 
     /// Coverage, 0 to 1, of the pixels of a window. `None` if `go_on`, called for each row, returns false.
     pub fn draw(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
-        within(self.bounds(), window, &mut |own| {
+        within(self.bounds(), window, &mut |own, to| {
             if self.feather == 0.0 {
-                return self.hard(own, go_on);
+                return self.hard_into(own, to, go_on);
             }
             let wide = own.grown(feather::reach(self.feather) as i64);
+            let (width, height) = (wide.width(), wide.height());
             if self.grow != 0.0 {
-                return feather::feathered(&self.hard(wide, go_on)?, self.feather, go_on);
+                let hard = within(self.hard_bounds(), wide, &mut |own, to| self.hard_into(own, to, go_on))?;
+                copy(&feather::feathered(&hard, self.feather, go_on)?, to);
+                return Some(());
             }
             let mut rows = self.shape.rows(wide);
             let mut next = |changes: &mut Vec<Change>| rows.next(|column, value| changes.push((column, value)));
-            feather::feathered_rows(wide.width(), wide.height(), self.feather, &mut next, go_on)
+            feather::feathered_rows(width, height, self.feather, &mut next, to, go_on)
         })
     }
 
-    /// The mask without its feather.
-    fn hard(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
-        within(self.hard_bounds(), window, &mut |own| {
-            if self.grow == 0.0 { self.shape.draw(own, go_on) } else { self.grown(own, go_on) }
-        })
+    /// Draws the mask without its feather.
+    fn hard_into(&self, window: Window, to: &mut Part, go_on: &mut dyn FnMut() -> bool) -> Option<()> {
+        if self.grow == 0.0 {
+            return self.shape.draw_into(window, to, go_on);
+        }
+        copy(&self.grown(window, go_on)?, to);
+        Some(())
     }
 
     fn grown(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
@@ -145,25 +151,26 @@ impl Mask {
     }
 }
 
-/// A picture of a window that is drawn only within bounds, and is 0 elsewhere.
+/// A picture of a window that is drawn only within bounds, and is 0 elsewhere. `draw` gets the window within the bounds, and
+/// the rectangle of the picture to draw it into.
 fn within(
     bounds: Option<Bounds>,
     window: Window,
-    draw: &mut dyn FnMut(Window) -> Option<Raster<f32>>,
+    draw: &mut dyn FnMut(Window, &mut Part) -> Option<()>,
 ) -> Option<Raster<f32>> {
-    let Some(own) = bounds.and_then(|bounds| bounds.pixels(window)) else {
-        return Some(Raster::new(window.width(), window.height(), 0.0));
-    };
-    let drawn = draw(own)?;
-    if own == window {
-        return Some(drawn);
-    }
     let mut result = Raster::new(window.width(), window.height(), 0.0);
-    let columns = (own.left - window.left) as usize..(own.right - window.left) as usize;
-    for y in 0..own.height() {
-        result.row_mut(y + (own.top - window.top) as usize)[columns.clone()].copy_from_slice(drawn.row(y));
+    if let Some(own) = bounds.and_then(|bounds| bounds.pixels(window)) {
+        let (left, top) = ((own.left - window.left) as usize, (own.top - window.top) as usize);
+        draw(own, &mut Part::whole(&mut result).inner(left, top, own.width()))?;
     }
     Some(result)
+}
+
+/// Copies a picture into a rectangle of its size.
+fn copy(picture: &Raster<f32>, to: &mut Part) {
+    for y in 0..picture.height() {
+        to.row_mut(y).copy_from_slice(picture.row(y));
+    }
 }
 
 #[cfg(test)]

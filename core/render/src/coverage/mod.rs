@@ -24,6 +24,7 @@ mod quiet;
 mod scan;
 mod slabs;
 
+use crate::part::Part;
 use area::Area;
 use edge::{Instant, ROW};
 use rototoon_base::geometry::Point;
@@ -105,9 +106,15 @@ impl Shape {
     /// Draws the coverage of a window. Calls `go_on` for each row, and returns `None` if it returns false.
     pub fn draw(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
         let mut picture = Raster::new(window.width(), window.height(), 0.0f32);
+        self.draw_into(window, &mut Part::whole(&mut picture), go_on)?;
+        Some(picture)
+    }
+
+    /// Like [`Self::draw`], into a rectangle of zeros.
+    pub fn draw_into(&self, window: Window, to: &mut Part, go_on: &mut dyn FnMut() -> bool) -> Option<()> {
         let mut rows = self.rows(window);
         for y in 0..window.height() {
-            let row = picture.row_mut(y);
+            let row = to.row_mut(y);
             let (mut from, mut covered) = (0, 0.0);
             rows.next(|column, value| {
                 // The picture is 0 already.
@@ -123,7 +130,7 @@ impl Shape {
                 return None;
             }
         }
-        Some(picture)
+        Some(())
     }
 }
 

@@ -38,7 +38,9 @@ impl Bell {
     /// A sum of values times weights as an integer number of steps.
     #[inline(always)]
     pub fn rounded(&self, sum: f64) -> f32 {
-        (sum * self.share + 0.5) as i32 as f32
+        // A float this large has no bits below one, so the sum with it is rounded.
+        const WHOLE: f64 = 3.0 * (1u64 << 51) as f64;
+        ((sum * self.share + WHOLE) - WHOLE) as f32
     }
 }
 

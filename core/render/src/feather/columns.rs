@@ -1,7 +1,8 @@
 //! The blur of columns, row by row on the way down.
 //!
 //! Columns are taken in strips. A strip in which no row within the reach has changed, and whose sums have come to rest, stays
-//! as it is.
+//! as it is. The closure that does the work is marked to be inlined: otherwise the compiler keeps one copy of it for all
+//! processors, and the vector instructions are lost.
 
 use super::bell::Bell;
 use rototoon_base::numeric::vector::vectorised;
@@ -36,12 +37,12 @@ impl Strip {
 
     /// Takes the next row. Returns whether it differs from the latest one, and by how much.
     #[inline(always)]
-    fn take(&mut self, row: &Values<f32>, difference: &mut Values<f32>) -> bool {
+    fn take(&mut self, row: &Values<f32>, difference: &mut Values<f64>) -> bool {
         let bits = |value: &f32| value.to_bits();
         let changed = row.iter().zip(&self.row).fold(0, |all, (now, before)| all | (bits(now) ^ bits(before))) != 0;
         if changed {
             for k in 0..STRIP {
-                difference[k] = row[k] - self.row[k];
+                difference[k] = f64::from(row[k] - self.row[k]);
             }
             self.row = *row;
             self.quiet = 0;
@@ -53,14 +54,16 @@ impl Strip {
 
     /// Sums the filtered differences.
     #[inline(always)]
-    fn sum(&mut self, bell: &Bell, filtered: &Values<f64>) {
-        let [once, twice, thrice, whole] = &mut self.sums;
+    fn sum(&mut self, bell: &Bell, mut filtered: Values<f64>) {
+        // One sum after the other, each over all columns: so the compiler takes several columns at once.
+        for sums in &mut self.sums {
+            for k in 0..STRIP {
+                filtered[k] += sums[k];
+            }
+            *sums = filtered;
+        }
         for k in 0..STRIP {
-            once[k] += filtered[k];
-            twice[k] += once[k];
-            thrice[k] += twice[k];
-            whole[k] += thrice[k];
-            self.shown[k] = bell.rounded(whole[k]) * (1.0 / STEPS);
+            self.shown[k] = bell.rounded(filtered[k]) * (1.0 / STEPS);
         }
     }
 
@@ -79,7 +82,7 @@ pub struct Columns {
     strips: Vec<Strip>,
     /// By how much each of the latest rows differs from the row before it, in each strip. A row keeps its place until it is
     /// beyond the reach.
-    differences: Vec<Values<f32>>,
+    differences: Vec<Values<f64>>,
     /// Whether it differs at all.
     changed: Vec<bool>,
     /// Number of rows that are kept.
@@ -117,34 +120,37 @@ impl Columns {
         self.taps.extend(bell.taps.iter().map(|&(back, weight)| ((place + depth - back) % depth * count, weight)));
         self.count += 1;
         let (rows, _) = row.as_chunks::<STRIP>();
-        vectorised(|| {
-            for (index, (strip, row)) in self.strips.iter_mut().zip(rows).enumerate() {
-                let at = place * count + index;
-                self.changed[at] = strip.take(row, &mut self.differences[at]);
-                if strip.quiet < depth {
-                    let mut filtered = [0.0; STRIP];
-                    for &(first, weight) in &self.taps {
-                        if self.changed[first + index] {
-                            let difference = &self.differences[first + index];
-                            for k in 0..STRIP {
-                                filtered[k] += weight * f64::from(difference[k]);
+        vectorised(
+            #[inline(always)]
+            || {
+                for (index, (strip, row)) in self.strips.iter_mut().zip(rows).enumerate() {
+                    let at = place * count + index;
+                    self.changed[at] = strip.take(row, &mut self.differences[at]);
+                    if strip.quiet < depth {
+                        let mut filtered = [0.0; STRIP];
+                        for &(first, weight) in &self.taps {
+                            if self.changed[first + index] {
+                                let difference = &self.differences[first + index];
+                                for k in 0..STRIP {
+                                    filtered[k] = difference[k].mul_add(weight, filtered[k]);
+                                }
                             }
                         }
+                        strip.sum(bell, filtered);
+                        strip.still = false;
+                    } else if !strip.still {
+                        strip.still = strip.rests();
+                        if !strip.still {
+                            strip.sum(bell, [0.0; STRIP]);
+                        }
                     }
-                    strip.sum(bell, &filtered);
-                    strip.still = false;
-                } else if !strip.still {
-                    strip.still = strip.rests();
-                    if !strip.still {
-                        strip.sum(bell, &[0.0; STRIP]);
+                    if let Some(to) = &mut to {
+                        let left = index * STRIP;
+                        let right = to.len().min(left + STRIP);
+                        to[left..right].copy_from_slice(&strip.shown[..right - left]);
                     }
                 }
-                if let Some(to) = &mut to {
-                    let left = index * STRIP;
-                    let right = to.len().min(left + STRIP);
-                    to[left..right].copy_from_slice(&strip.shown[..right - left]);
-                }
-            }
-        });
+            },
+        );
     }
 }

@@ -22,6 +22,7 @@ mod bell;
 mod columns;
 mod rows;
 
+use crate::part::Part;
 use bell::Bell;
 use columns::Columns;
 use rototoon_base::scene::Raster;
@@ -38,9 +39,12 @@ pub fn reach(radius: f64) -> usize {
 /// Blurs a picture of values from 0 to 1 by a radius in pixels. The result is smaller by [`reach`] on each side,
 /// because pixels nearer to the border are unknown. `None` if `go_on`, called for each row, returns false.
 pub fn feathered(picture: &Raster<f32>, radius: f64, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
-    if reach(radius) == 0 {
+    let margin = reach(radius);
+    if margin == 0 {
         return Some(picture.clone());
     }
+    let (width, height) = (picture.width(), picture.height());
+    let mut result = Raster::new(width.saturating_sub(2 * margin), height.saturating_sub(2 * margin), 0.0f32);
     let mut y = 0;
     let mut next = |changes: &mut Vec<Change>| {
         let mut before = 0.0;
@@ -52,21 +56,22 @@ pub fn feathered(picture: &Raster<f32>, radius: f64, go_on: &mut dyn FnMut() -> 
         }
         y += 1;
     };
-    feathered_rows(picture.width(), picture.height(), radius, &mut next, go_on)
+    feathered_rows(width, height, radius, &mut next, &mut Part::whole(&mut result), go_on)?;
+    Some(result)
 }
 
-/// Blurs a picture of `width` × `height` values like [`feathered`]. `next` adds the changes of the next row to an empty list,
+/// Blurs a picture of `width` × `height` values like [`feathered`], into a rectangle of the size of the result. `next` adds the changes of the next row to an empty list,
 /// from left to right. Left of the first a row is 0. The picture itself is never in memory.
 pub fn feathered_rows(
     width: usize,
     height: usize,
     radius: f64,
     next: &mut dyn FnMut(&mut Vec<Change>),
+    to: &mut Part,
     go_on: &mut dyn FnMut() -> bool,
-) -> Option<Raster<f32>> {
+) -> Option<()> {
     let (margin, bell) = (reach(radius), Bell::new(radius));
-    let (inner, rows) = (width.saturating_sub(2 * margin), height.saturating_sub(2 * margin));
-    let mut result = Raster::new(inner, rows, 0.0f32);
+    let inner = width.saturating_sub(2 * margin);
     let (mut line, mut columns) = (Line::new(&bell, width), Columns::new(&bell, inner));
     let (mut changes, mut row) = (Vec::new(), vec![0.0f32; columns.padded()]);
     for y in 0..height {
@@ -76,10 +81,9 @@ pub fn feathered_rows(
         changes.clear();
         next(&mut changes);
         line.blur(&bell, &changes, &mut row[..inner]);
-        let to = y.checked_sub(bell.last).map(|y| result.row_mut(y));
-        columns.next(&bell, &row, to);
+        columns.next(&bell, &row, y.checked_sub(bell.last).map(|y| to.row_mut(y)));
     }
-    Some(result)
+    Some(())
 }
 
 #[cfg(test)]

@@ -35,7 +35,10 @@ impl Line {
 
     /// Blurs a row given by its changes. The result is in steps, and narrower by twice the reach.
     pub fn blur(&mut self, bell: &Bell, changes: &[Change], to: &mut [f32]) {
-        vectorised(|| self.find(bell, changes));
+        vectorised(
+            #[inline(always)]
+            || self.find(bell, changes),
+        );
         let mut sums = [0.0; 4];
         let mut done = 0;
         for stretch in &self.stretches {
