@@ -164,7 +164,9 @@ impl Sheet {
             return Err(PipelineError::Tween(text));
         }
         let duration = f64::from(to.frame) - f64::from(from.frame);
-        let share = |&frame: &FrameNumber| from.spacing.at((f64::from(frame) - f64::from(from.frame)) / duration);
+        // A held key keeps its own widths and colours too.
+        let way = if sequence.is_held(base) { 0.0 } else { 1.0 };
+        let share = |&frame: &FrameNumber| way * from.spacing.at((f64::from(frame) - f64::from(from.frame)) / duration);
         Ok(DrawnSpan {
             wanted: wanted.clone(),
             strokes: drawn_strokes(&sequence, base, [&from.strokes, &to.strokes]),

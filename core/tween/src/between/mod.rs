@@ -11,7 +11,7 @@
 //! 4. `join` makes movements and changes of shape run through several keys with one velocity.
 //! 5. `contacts` keeps strokes together that touch on both keys.
 //! 6. `credible` looks at the drawing half way. Where strokes are matched unsurely and it is farther from both keys than they
-//!    are from each other, the earlier key is held.
+//!    are from each other, the earlier key is held: its own strokes are drawn (`present`).
 //!
 //! Where the movement between the keys was captured from footage, strokes follow it instead: `captured`,
 //! [`Sequence::following`].
@@ -32,6 +32,7 @@ mod deform;
 mod join;
 mod leaving;
 mod motion;
+mod present;
 mod sure;
 mod tangle;
 mod tracks;
@@ -51,10 +52,9 @@ use deform::Deform;
 use join::{Asked, Ends, Run};
 use motion::{Hung, Motion};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rototoon_base::geometry::Point;
 use rototoon_base::geometry::similarity::Similarity;
-use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::FrameNumber;
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The progress of the drawings between two keys.
@@ -299,11 +299,6 @@ impl Sequence {
         self
     }
 
-    /// Whether the earlier key is held between key `k` and the next one, because no movement between them can be believed.
-    pub fn is_held(&self, k: usize) -> bool {
-        self.held.get(k).copied().unwrap_or(false)
-    }
-
     /// The tracks: which stroke of which drawing belongs together, and the places of its points.
     pub fn tracks(&self) -> &[Track] {
         &self.tracks
@@ -335,56 +330,16 @@ impl Sequence {
         strokes.iter().zip(tracks).map(drawn).collect()
     }
 
-    /// The tracks that are drawn between key `k` and the next one, from back to front. For a stroke in pieces these are
-    /// the pieces only.
-    pub fn present(&self, k: usize) -> Vec<usize> {
-        let parts = |key: usize| -> BTreeSet<usize> {
-            let part = |track: &Track| {
-                let in_span = track.at(k).is_some() && track.at(k + 1).is_some();
-                track.at(key).filter(|stand| in_span && stand.part).map(|stand| stand.stroke)
-            };
-            self.tracks.iter().filter_map(part).collect()
-        };
-        let (split, joined) = (parts(k), parts(k + 1));
-        let whole = |track: &Track, key: usize, parts: &BTreeSet<usize>| {
-            track.at(key).is_some_and(|stand| !stand.part && parts.contains(&stand.stroke))
-        };
-        // A stroke that joins with others into one, or comes out of one, neither vanishes nor appears.
-        let there = |track: &Track| match (track.at(k), track.at(k + 1)) {
-            (Some(_), Some(_)) => true,
-            (Some(stand), None) => !stand.part && !whole(track, k, &split),
-            (None, Some(stand)) => !stand.part && !whole(track, k + 1, &joined),
-            (None, None) => false,
-        };
-        let mut found: Vec<usize> = (0..self.tracks.len()).filter(|&t| there(&self.tracks[t])).collect();
-        let mut rank = vec![0.0; self.tracks.len()];
-        let mut by_later: Vec<(usize, usize)> =
-            found.iter().filter_map(|&t| Some((self.tracks[t].at(k + 1)?.stroke, t))).collect();
-        by_later.sort_unstable();
-        let mut last = -1.0;
-        for (_, t) in by_later {
-            last = self.tracks[t].at(k).map_or(last + 1e-6, |stand| stand.stroke as f64);
-            rank[t] = last;
-        }
-        for &t in &found {
-            if let Some(stand) = self.tracks[t].at(k) {
-                rank[t] = stand.stroke as f64;
-            }
-        }
-        found.sort_by(|&a, &b| rank[a].total_cmp(&rank[b]).then(a.cmp(&b)));
-        found
-    }
-
     fn between(&self, k: usize, frame: FrameNumber) -> Vec<InBetween> {
         let (from, to) = (&self.keys[k], &self.keys[k + 1]);
         let u = (f64::from(frame) - f64::from(from.frame)) / (f64::from(to.frame) - f64::from(from.frame));
-        let maps = self.motion.maps(k, u, f64::from(frame));
         let present = self.present(k);
+        if self.held[k] {
+            return present.into_iter().filter_map(|t| self.held_at(t, k)).collect();
+        }
+        let maps = self.motion.maps(k, u, f64::from(frame));
         let mut points = vec![Vec::new(); self.tracks.len()];
         let mut opacity = vec![1.0; self.tracks.len()];
-        if self.held[k] {
-            return present.into_iter().map(|t| self.held_at(t, k)).collect();
-        }
         for &t in &present {
             let moved = || self.moved(t, k, u, &self.motion.of_track(t, &maps));
             (points[t], opacity[t]) = self.followed_at(t, k, frame).map_or_else(moved, |points| (points, 1.0));
@@ -397,17 +352,6 @@ impl Sequence {
             opacity: opacity[t],
         });
         drawn.collect()
-    }
-
-    /// A track in a span in which the earlier key is held. What that key does not have is a point out of sight.
-    fn held_at(&self, t: usize, k: usize) -> InBetween {
-        let look = self.look(t, k, 0.0);
-        if let Some(points) = self.tracks[t].points(k) {
-            return InBetween { stroke: Stroke { points: points.clone(), ..look }, track: t, opacity: 1.0 };
-        }
-        let later = self.tracks[t].points(k + 1).map_or(&[][..], Vec::as_slice);
-        let points = vec![polygon::center(later); later.len()];
-        InBetween { stroke: Stroke { points, ..look }, track: t, opacity: 0.0 }
     }
 
     /// The points of a track that follows a captured part, on a frame.

@@ -1,6 +1,7 @@
 use super::*;
 use crate::matching::{self, Pair, match_strokes};
 use proptest::prelude::*;
+use rototoon_base::geometry::polygon;
 use rototoon_base::scene::Silent;
 
 fn key(frame: i32, strokes: Vec<Stroke>) -> Key {
@@ -258,6 +259,28 @@ fn pieces_stay_where_nothing_moves() {
     let stand = long.tracks()[2].at(1).unwrap();
     let (low, high) = (stand.places.shares[20], stand.places.shares[0]);
     assert!((low - 7.0 / 9.0).abs() < 0.03 && (high - 1.0).abs() < 1e-9, "{low} {high}");
+}
+
+#[test]
+fn a_held_key_is_drawn_by_its_own_strokes() {
+    let (whole, pieces) = whole_and_pieces();
+    let inside = matching::InPieces { whole: 0, pieces: vec![(0, true), (1, false), (2, true)] };
+    let split = Matching { split: vec![inside.clone()], ..Matching::default() };
+    let joined = Matching { joined: vec![inside], ..Matching::default() };
+    let other = Stroke::new(vec![Point::new(0.0, 70.0), Point::new(90.0, 75.0)], false);
+    let mut first = pieces.clone();
+    first.push(other);
+    // The last stroke of the first key vanishes, and the whole line of the second one falls into pieces.
+    let keys = vec![key(0, first.clone()), key(4, vec![whole.clone()]), key(8, pieces)];
+    let mut held = Sequence::new(keys, &[joined, split], &GivenPegs::default(), &Options::default()).unwrap();
+    held.held = vec![true; 2];
+    for (frame, own) in [(2, &first), (6, &vec![whole])] {
+        let drawn = held.at(frame);
+        let strokes: Vec<&Stroke> = drawn.iter().map(|d| &d.stroke).collect();
+        assert_eq!(strokes, own.iter().collect::<Vec<_>>(), "frame {frame}");
+        assert!(drawn.iter().all(|d| d.opacity == 1.0));
+        assert_eq!(drawn.iter().map(|d| d.track).collect::<Vec<_>>(), held.present(usize::from(frame > 4)));
+    }
 }
 
 #[test]
