@@ -16,9 +16,9 @@ use rototoon_base::geometry::Point;
 use std::collections::BTreeMap;
 
 /// Mean distance of the two chains' control points (working pixels) from which on both models are searched.
-const DISAGREEMENT: f64 = 6.0;
+const DISAGREEMENT: f64 = 3.0;
 /// Number of hypotheses kept per model and search.
-const FOUND: usize = 2;
+const FOUND: usize = 4;
 /// A carried pose is new if its mean distance (working pixels) from every known one of the same model exceeds this.
 const KNOWN_PLACE: f64 = 1.0;
 /// A chosen pose is confirmed if the other key's model has a pose within this mean distance (working pixels). Then the

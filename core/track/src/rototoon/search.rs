@@ -22,7 +22,7 @@ use rototoon_image::correlation::{Correlator, Spectrum};
 const TURN_STEP: usize = 15;
 /// Places taken of each turn, and of all turns together.
 const PLACES_OF_A_TURN: usize = 2;
-const PLACES: usize = 4;
+const PLACES: usize = 8;
 /// Parts of at most this size (working pixels) are searched on the middle level.
 const SMALL: f64 = 50.0;
 /// Parts larger than this share of the lines are not searched, because they fill the picture.
