@@ -250,6 +250,31 @@ mod tests {
         sheet.draw(&wanted, &Options::default(), &MatchingOptions::default(), &Silent).unwrap().0
     }
 
+    /// Short bars at places that have nothing to do with each other.
+    fn bars(seed: u32, count: u32) -> Vec<Stroke> {
+        let number = |k: u32| f64::from((k.wrapping_add(seed).wrapping_mul(2_654_435_761) >> 8) % 1000) / 10.0;
+        let bar = |k: u32| {
+            let (at, turn) = (Point::new(number(3 * k), number(3 * k + 1)), Point::from_angle(number(3 * k + 2)));
+            Stroke::new((0..6).map(|i| at + turn * (4.0 * f64::from(i))).collect(), false)
+        };
+        (0..count).map(bar).collect()
+    }
+
+    #[test]
+    fn a_held_key_keeps_its_other_attributes_too() {
+        let key = |frame, strokes| Key { frame, strokes, spacing: Spacing::Timing(Timing::Linear), corner: false };
+        let drawn = |first: &[Stroke], second: Vec<Stroke>| {
+            let sheet = Sheet { keys: vec![key(0, first.to_vec()), key(8, second)], ..Sheet::default() };
+            draw(&sheet, &[0]).remove(0)
+        };
+        let (first, second) = (bars(17, 6), bars(517, 6));
+        let held = drawn(&first, second);
+        assert_eq!(held.shares, [0.0; 7]);
+        assert!(held.drawings.iter().all(|drawing| drawing.iter().map(|d| &d.stroke).eq(&first)));
+        let moved = first.iter().map(|s| Stroke::new(s.points.iter().map(|p| *p + Point::X).collect(), false));
+        assert_eq!(drawn(&first, moved.collect()).shares[3], 0.5, "what moves blends them");
+    }
+
     #[test]
     fn a_span_depends_on_its_keys_alone() {
         for (spacing, touched) in [(Spacing::Smooth, vec![1, 2, 3]), (Spacing::Timing(Timing::Linear), vec![2, 3])] {

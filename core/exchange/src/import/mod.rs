@@ -19,6 +19,8 @@ mod names;
 pub mod natron;
 pub mod nuke;
 pub mod path;
+#[cfg(test)]
+mod probes;
 pub mod problem;
 pub mod silhouette;
 pub mod svg;

@@ -1,8 +1,8 @@
 //! Which tracks are drawn between two keys, and in which order.
 //!
-//! A stroke that falls into pieces is drawn as its pieces, and pieces that join as what they join into. Where the earlier
-//! key is held, its own strokes are drawn: a piece has its points on the whole stroke by shares of length, so a drawing of
-//! pieces would be up to 0.2 px off the artist's.
+//! A stroke that falls into pieces, or that pieces join into, is drawn as its pieces. Where the earlier key is held, its own
+//! strokes are drawn: a piece has its points on the whole stroke by shares of length, so a drawing of pieces would be up to
+//! 0.2 px off the artist's.
 
 use super::{InBetween, Sequence, Track};
 use crate::stroke::Stroke;

@@ -1,8 +1,5 @@
+use super::super::probes::{corners, footage};
 use super::*;
-
-fn footage() -> Footage {
-    Footage { pattern: "%d".into(), first: 1, last: 9, fps: 24.0, width: 200, height: 100 }
-}
 
 /// A number of a control point with its keys, as an archive has it.
 fn animated(name: &str, still: f64, keys: &[(f64, f64)]) -> String {
@@ -76,16 +73,6 @@ fn project(items: &str) -> String {
 /// The rectangle (40, 20) to (60, 30), y up, with straight sides.
 fn rectangle(keys: &[(f64, f64)]) -> Vec<String> {
     [(40.0, 20.0), (60.0, 20.0), (60.0, 30.0), (40.0, 30.0)].map(|p| point("CP", p, (0.0, 0.0), keys)).to_vec()
-}
-
-#[track_caller]
-fn corners(shape: &Shape, frame: FrameNumber, wanted: [(f64, f64); 4]) {
-    let found = &shape.keys[&frame];
-    assert_eq!(found.len(), 4, "{found:?}");
-    for (p, (x, y)) in found.iter().zip(wanted) {
-        // The footage is 100 high, and y points down in it.
-        assert!(p.distance(Point::new(x, 100.0 - y)) < 1e-9, "frame {frame}: {found:?}");
-    }
 }
 
 #[test]

@@ -1,10 +1,7 @@
+use super::super::probes::{corners, footage};
 use super::*;
 use crate::export;
 use rototoon_base::scene::{Part, Scene};
-
-fn footage() -> Footage {
-    Footage { pattern: "%d".into(), first: 1, last: 9, fps: 24.0, width: 200, height: 100 }
-}
 
 /// A script with one shape as Nuke writes it.
 fn script(kind: &str, points: &str, after: &str) -> String {
@@ -101,16 +98,6 @@ fn what_would_be_wrong_is_left_out_or_told() {
 
 /// The rectangle (40, 20) to (60, 30), y up, with straight sides.
 const BOX: &str = "{p {0 0} {40 20} {0 0} {0 0} {60 20} {0 0} {0 0} {60 30} {0 0} {0 0} {40 30} {0 0}}";
-
-#[track_caller]
-fn corners(shape: &Shape, frame: FrameNumber, wanted: [(f64, f64); 4]) {
-    let found = &shape.keys[&frame];
-    assert_eq!(found.len(), 4, "{found:?}");
-    for (p, (x, y)) in found.iter().zip(wanted) {
-        // The footage is 100 high, and y points down in it.
-        assert!(p.distance(Point::new(x, 100.0 - y)) < 1e-9, "frame {frame}: {found:?}");
-    }
-}
 
 #[test]
 fn a_shape_is_scaled_then_turned_about_its_pivot_and_moved() {
