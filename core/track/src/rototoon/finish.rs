@@ -3,7 +3,7 @@
 //! 1. The chosen pose is aligned to the samples that nearer parts leave visible.
 //! 2. It is blended with the nearest pose of the other key's model.
 //! 3. The contour is refined by its own colour templates, if they fit better afterwards.
-//! 4. The artist's corrections are enforced.
+//! 4. The artist's corrections are enforced, after contours were steadied ([`super::steady`]).
 
 use super::confidence;
 use super::corrected::freed;
@@ -18,6 +18,7 @@ use crate::contract::error::TrackError;
 use crate::contract::job::{Correction, SpanSummary, SpanTrack, Termination};
 use crate::contract::tasks::Task;
 use crate::shared::drawings::Drawing;
+use crate::shared::features::working_scale;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::Scene;
@@ -88,7 +89,8 @@ pub(super) struct Finished {
     pub source: Arc<Pooled>,
     pub plan: Finish,
     settled: Vec<Settled>,
-    pub track: SpanTrack,
+    /// The track of the last run.
+    pub track: Option<SpanTrack>,
 }
 
 /// The result for one drawing.
@@ -103,6 +105,11 @@ struct Settled {
 }
 
 impl Finished {
+    /// The control points on each drawing as they were found, in working pixels. None for a part without free drawings.
+    pub fn points(&self) -> Vec<Vec<Point>> {
+        self.settled.iter().map(|settled| settled.points.clone()).collect()
+    }
+
     /// Of each frame of the span: its drawing, and the evidence about each control point.
     pub fn evidence(&self) -> Vec<(usize, Vec<Evidence>)> {
         let of = |(d, drawing): (usize, &Drawing)| {
@@ -128,7 +135,7 @@ impl Finished {
     }
 }
 
-/// The track of a part whose path is chosen. `before` is the part's result of the last run.
+/// What is found of a part whose path is chosen. `before` is the part's result of the last run.
 pub(super) fn finish(
     kit: Kit,
     pooled: &Arc<Pooled>,
@@ -136,8 +143,7 @@ pub(super) fn finish(
     before: Option<&Finished>,
 ) -> Result<Finished, TrackError> {
     if pooled.models.is_none() {
-        let track = pooled.job.keys_only();
-        return Ok(Finished { source: pooled.clone(), plan, settled: Vec::new(), track });
+        return Ok(Finished { source: pooled.clone(), plan, settled: Vec::new(), track: None });
     }
     let mut stage = Stage::set(kit, &pooled.job, pooled.models.clone())?;
     stage.center_reach = pooled.center_reach.clone();
@@ -154,8 +160,7 @@ pub(super) fn finish(
             Ok(known.cloned().unwrap_or_else(|| settle(stage, pooled, &plan, &tools, d)))
         })
         .collect::<Result<_, TrackError>>()?;
-    let track = track(stage, pooled, &settled, &plan.chosen);
-    Ok(Finished { source: pooled.clone(), plan, settled, track })
+    Ok(Finished { source: pooled.clone(), plan, settled, track: None })
 }
 
 /// What all drawings of a part share. It is made when the first drawing needs it.
@@ -238,34 +243,47 @@ fn blended(pool: &[Hypothesis], own: &Hypothesis, share: f64) -> Vec<Point> {
     own.points.iter().zip(&other.points).map(blend).collect()
 }
 
-fn track(stage: &Stage, pooled: &Pooled, settled: &[Settled], path: &[usize]) -> SpanTrack {
-    let last = stage.job.span.len() - 1;
-    let (mut points, mut sure) = (Vec::new(), Vec::new());
-    for (d, drawing) in stage.drawings.iter().enumerate() {
-        let Settled { points: found, evidence, .. } = &settled[d];
-        let confidence = if evidence.is_empty() {
-            vec![confidence::HELD; found.len()]
-        } else {
-            evidence.iter().map(confidence::probability).collect()
-        };
-        for index in drawing.first..=drawing.last {
-            let mut on_frame = stage.key_of(d).unwrap_or_else(|| found.iter().map(|&p| p * stage.scale).collect());
-            stage.job.enforce_within(stage.center_reach[d] * stage.scale, index, &mut on_frame);
-            points.push(on_frame);
-            sure.push(if index == 0 || index == last { vec![1.0; found.len()] } else { confidence.clone() });
+impl Finished {
+    /// The track with these control points on each drawing, in working pixels.
+    pub fn track_along(&self, drawn: &[Vec<Point>]) -> SpanTrack {
+        let (pooled, job) = (&self.source, &self.source.job);
+        if self.settled.is_empty() {
+            return job.keys_only();
+        }
+        let (last, last_drawing, scale) = (job.span.len() - 1, drawn.len() - 1, working_scale(job.size.1));
+        let (mut points, mut sure) = (Vec::new(), Vec::new());
+        for (d, drawing) in pooled.drawings.iter().enumerate() {
+            let evidence = &self.settled[d].evidence;
+            let confidence = if evidence.is_empty() {
+                vec![confidence::HELD; drawn[d].len()]
+            } else {
+                evidence.iter().map(confidence::probability).collect()
+            };
+            // Frames held from a key get exactly its points.
+            let key = (d == 0 || d == last_drawing).then(|| &job.keys[usize::from(d != 0)]);
+            for index in drawing.first..=drawing.last {
+                let found = || drawn[d].iter().map(|&p| p * scale).collect();
+                let mut on_frame = key.map_or_else(found, Clone::clone);
+                job.enforce_within(pooled.center_reach[d] * scale, index, &mut on_frame);
+                points.push(on_frame);
+                sure.push(if index == 0 || index == last { vec![1.0; drawn[d].len()] } else { confidence.clone() });
+            }
+        }
+        for (&index, correction) in &job.corrections {
+            correction.pins.keys().for_each(|&j| sure[index][j] = 1.0);
+        }
+        SpanTrack { points, confidence: sure, summary: self.summary() }
+    }
+
+    fn summary(&self) -> SpanSummary {
+        let (pools, settled) = (&self.source.pools, &self.settled);
+        let mean = |of: &dyn Fn(usize) -> f64| (0..settled.len()).map(of).sum::<f64>() / settled.len() as f64;
+        let seen = |d: usize| settled[d].seen.as_ref().unwrap_or(&pools[d][self.plan.chosen[d]]);
+        SpanSummary {
+            termination: Termination::PathChosen,
+            iterations: self.source.steps,
+            initial_cost: mean(&|d| pools[d][0].pose.energy),
+            final_cost: mean(&|d| seen(d).pose.energy),
         }
     }
-    for (&index, correction) in &stage.job.corrections {
-        correction.pins.keys().for_each(|&j| sure[index][j] = 1.0);
-    }
-    let mean = |of: &dyn Fn(usize) -> f64| (0..settled.len()).map(of).sum::<f64>() / settled.len() as f64;
-    let first = |d: usize| pooled.pools[d][0].pose.energy;
-    let last_seen = |d: usize| settled[d].seen.as_ref().unwrap_or(&pooled.pools[d][path[d]]).pose.energy;
-    let summary = SpanSummary {
-        termination: Termination::PathChosen,
-        iterations: pooled.steps,
-        initial_cost: mean(&first),
-        final_cost: mean(&last_seen),
-    };
-    SpanTrack { points, confidence: sure, summary }
 }

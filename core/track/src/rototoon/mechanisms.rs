@@ -37,11 +37,13 @@ pub enum Mechanism {
     Noise,
     /// Parts that moved as one body between the keys stay together.
     Companions,
+    /// Contours are steadied over time where the film wobbles.
+    Steadying,
 }
 
 impl Mechanism {
     /// Every mechanism with its id on the command line of the benchmark.
-    pub const ALL: [(Self, &str); 14] = [
+    pub const ALL: [(Self, &str); 15] = [
         (Self::Looks, "looks"),
         (Self::Flow, "flow"),
         (Self::Search, "search"),
@@ -56,6 +58,7 @@ impl Mechanism {
         (Self::Refinement, "refinement"),
         (Self::Noise, "noise"),
         (Self::Companions, "companions"),
+        (Self::Steadying, "steadying"),
     ];
 
     /// The mechanism with an id. `None` if there is no such mechanism.

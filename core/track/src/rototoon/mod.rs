@@ -14,7 +14,7 @@
 //!    parts hide farther ones, and connected parts stay together. The choice adds hypotheses to the pools, and is made
 //!    again ([`mend`](mod@mend)).
 //! 3. **Finish.** The chosen poses are aligned once more to the samples that nearer parts leave visible, and their
-//!    contours are refined ([`finish`](mod@finish)).
+//!    contours are refined ([`finish`](mod@finish)). On a film that wobbles they are steadied ([`steady`]).
 //! 4. **Outward.** Parts with a single key are followed from it, after all others ([`outward`]).
 //!
 //! **Memory.** Each step is a pure function of its input, and its last result is kept. A pin on one part does not
@@ -44,6 +44,8 @@ pub mod refine;
 pub mod search;
 pub mod select;
 pub mod stage;
+mod steadied;
+pub mod steady;
 
 use crate::contract::error::TrackError;
 use crate::contract::job::{Job, SpanTrack};
@@ -192,7 +194,9 @@ impl Rototoon {
         let shared = SharedProgress::new(&rest, scene, tasks);
         let (pooled, fresh) = self.pool_all(scene, tasks, frames, &shared)?;
         let mut done: Vec<Option<(SpanTrack, bool)>> = vec![None; tasks.len()];
-        for stretch in stretches(tasks) {
+        let stretches = stretches(tasks);
+        let wobble = self.wobble(&stretches, &pooled);
+        for stretch in stretches {
             let members: Vec<&Pooled> = stretch.iter().map(|&t| &*pooled[t]).collect();
             let start = members.iter().map(|m| m.path.clone()).collect();
             let mut bonds = None;
@@ -203,7 +207,8 @@ impl Rototoon {
             let hiding = self.mechanisms.has(Mechanism::Hiding);
             let plan = |m: usize| Finish::of(scene, tasks, &stretch, &members, &paths, (m, hiding));
             let plans = (0..members.len()).map(plan).collect();
-            let tracks = self.finish_all(&stretch, &mended, plans, frames, &shared)?;
+            let new = self.finish_all(&stretch, &mended, plans, frames, &shared)?;
+            let tracks = self.steadied(&mended, &new, &wobble);
             for (&t, (track, new)) in stretch.iter().zip(tracks) {
                 shared.of(t).report("Tracking", 1.0)?;
                 done[t] = Some((track, new || fresh[t]));
@@ -384,8 +389,8 @@ impl Rototoon {
         Ok(results)
     }
 
-    /// The tracks of a stretch's members on their chosen paths, and whether they were computed in this run. A track
-    /// with the same pools and the same plan as before is reused.
+    /// Finds the contours of a stretch's members on their chosen paths. Returns which were found in this run: a result with
+    /// the same pools and the same plan as before is kept.
     fn finish_all(
         &mut self,
         stretch: &[usize],
@@ -393,32 +398,31 @@ impl Rototoon {
         plans: Vec<Finish>,
         frames: &Looks,
         shared: &SharedProgress,
-    ) -> Result<Vec<(SpanTrack, bool)>, TrackError> {
-        let results: Vec<Result<(SpanTrack, Option<Finished>), TrackError>> = stretch
+    ) -> Result<Vec<bool>, TrackError> {
+        let results: Vec<Result<Option<Finished>, TrackError>> = stretch
             .par_iter()
             .with_max_len(1)
             .zip(plans)
             .zip(mended)
             .map(|((&t, plan), source)| {
                 let before = self.finished.get(&source.key());
-                if let Some(known) = before.filter(|known| Arc::ptr_eq(&known.source, source) && known.plan == plan) {
-                    return Ok((known.track.clone(), None));
+                if before.is_some_and(|known| Arc::ptr_eq(&known.source, source) && known.plan == plan) {
+                    return Ok(None);
                 }
                 let progress = shared.of(t);
                 let kit = self.kit(frames, &progress);
-                let new = finish(kit, source, plan, before)?;
-                Ok((new.track.clone(), Some(new)))
+                finish(kit, source, plan, before).map(Some)
             })
             .collect();
-        let mut tracks = Vec::with_capacity(results.len());
+        let mut new = Vec::with_capacity(results.len());
         for result in results {
-            let (track, new) = result?;
-            tracks.push((track, new.is_some()));
-            if let Some(new) = new {
-                self.finished.insert(new.source.key(), new);
+            let result = result?;
+            new.push(result.is_some());
+            if let Some(found) = result {
+                self.finished.insert(found.source.key(), found);
             }
         }
-        Ok(tracks)
+        Ok(new)
     }
 
     /// The pools of a job without and with its corrections, and whether any of them was computed in this run.

@@ -137,13 +137,6 @@ impl<'a> Stage<'a> {
         !self.anchors[0][drawing].is_empty()
     }
 
-    /// The artist's control points if the drawing is that of a key, in pixels of the picture. Frames held from a key
-    /// get these exact points.
-    pub fn key_of(&self, drawing: usize) -> Option<Vec<Point>> {
-        let last = self.drawings.len() - 1;
-        (drawing == 0 || drawing == last).then(|| self.job.keys[usize::from(drawing != 0)].clone())
-    }
-
     /// Width of the picture in working pixels.
     pub fn width(&self) -> f64 {
         self.job.size.0 as f64 / self.scale
