@@ -13,7 +13,8 @@ Coordinates are pixels. A stroke is named by its index among the strokes of all 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Iterable
+import json
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -129,6 +130,59 @@ def draw_in_betweens(
         kinds = handles.MatchArrays, handles.InBetweenArrays
         matches, drawn = handles.take_both(*kinds, "rototoon_draw_in_betweens", *arguments)
     return InBetweens(*drawn), Matches(*matches)
+
+
+@dataclass(frozen=True)
+class Breakdown:
+    """A frame on which one more drawing helps most."""
+
+    frame: int
+    first: int
+    """The key before it."""
+    last: int
+    """The key after it."""
+    by: str
+    """``"picture"``: its in-between is farthest from the picture. ``"movement"``: no picture shows the movement, and it is the middle
+    of the span that moves most."""
+    distance: float
+    """Pixels: how far the in-between is from its picture, or how far the span moves."""
+    keys: float | None
+    """Pixels: how far the keys are from their pictures. `None` without pictures."""
+    foreign: float | None
+    """Pixels: how far the keys are from pictures that show something else, which count for nothing then."""
+    looked: list[tuple[int, float]]
+    """Frame and distance of each drawing that has a picture."""
+    text: str
+    """The suggestion in a sentence."""
+
+
+def suggest_breakdown(
+    drawings: Drawings,
+    keys: Iterable[int],
+    footage: Mapping[str, Any] | None = None,
+    folder: str = "",
+    progress: Progress | None = None,
+    *,
+    threads: int = 0,
+) -> Breakdown | None:
+    """Suggests the frame for a breakdown. `None` where nothing lies between two keys.
+
+    `drawings` are keys and in-betweens in time order, with their `frames`; colours, labels and pairs do not count. `keys` are the
+    frames of the keys. `footage` is the footage in the form of documents, with the same frames and pixels; `folder` is the folder of a
+    relative pattern. Where its pictures show the drawings, the suggestion is the in-between that is farthest from its picture.
+    """
+    if drawings.frames is None:
+        raise RototoonError("frames: found none, expected one for each drawing")
+    given = _arguments(drawings)
+    asked = {"keys": [int(key) for key in keys], "footage": footage, "folder": folder, "threads": threads}
+    if footage is not None:
+        asked["footage"] = dict(footage)
+    with handles.progress_callback(progress) as callback:
+        arguments = (*given[:4], *given[6:9], *as_json(asked), callback, None)
+        found = json.loads(handles.take(handles.Text, "rototoon_suggest_breakdown", *arguments))
+    if found is None:
+        return None
+    return Breakdown(**{**found, "looked": [(frame, distance) for frame, distance in found["looked"]]})
 
 
 def _arguments(drawings: Drawings) -> tuple[Any, ...]:

@@ -46,11 +46,13 @@ class Plan:
     """Number of spans that are up to date."""
     blank: int = 0
     """Number of chosen spans with a blank key."""
+    again: bool = False
+    """Whether spans that are up to date are drawn too."""
 
 
-def plan(ob, layers: Iterable, choose: Choose) -> Plan:
-    """The plan for some layers."""
-    result = Plan(records=records.read(ob.data))
+def plan(ob, layers: Iterable, choose: Choose, again: bool = False) -> Plan:
+    """The plan for some layers. With `again`, spans that are up to date are drawn too."""
+    result = Plan(records=records.read(ob.data), again=again)
     groups: dict[tuple, list[str]] = {}
     spans: dict[str, dict[tuple[int, int], Choices]] = {}
     for layer in layers:
@@ -91,7 +93,7 @@ def _plan_group(
         surroundings.prepare(ob, sheet, points)
         captured.put_on(ob, sheet, parts)
         sheet.read(ob)
-        for k in [k for k in mine if _is_current(sheet, k, result)]:
+        for k in [k for k in mine if not result.again and _is_current(sheet, k, result)]:
             del sheet.wanted[k]
             result.current += 1
         _add_calls(ob, sheet, result)

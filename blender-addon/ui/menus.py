@@ -36,7 +36,7 @@ class ROTOTOON_MT_strokes(_Menu):
 class ROTOTOON_MT_tween(_Menu):
     bl_idname = "ROTOTOON_MT_tween"
     bl_label = "Tween"
-    names = ("match_strokes", "in_between", "update_in_betweens", "clear_in_betweens")
+    names = ("match_strokes", "in_between", "update_in_betweens", "suggest_breakdown", "clear_in_betweens")
 
 
 class ROTOTOON_MT_lines(_Menu):

@@ -227,6 +227,7 @@ class ROTOTOON_PT_tween(DrawingPanel, bpy.types.Panel):
         button = column.operator("rototoon.in_between", text="All Keys", icon="NEXT_KEYFRAME")
         button.frames = "ALL"
         column.operator("rototoon.update_in_betweens", icon="FILE_REFRESH")
+        column.operator("rototoon.suggest_breakdown", icon="MARKER_HLT")
         layout.operator("rototoon.clear_in_betweens", icon="TRASH")
 
 

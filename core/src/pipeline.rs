@@ -4,6 +4,7 @@
 //! This is the only module that knows all stages. The result of a stage enters the document completely. After an error,
 //! or when cancelled, the document is unchanged.
 
+mod breakdown;
 mod check;
 mod error;
 pub mod memory;
@@ -16,6 +17,7 @@ mod trace;
 mod tween;
 mod unseen;
 
+pub use breakdown::{Suggestion, suggest_breakdown};
 pub use check::{check, drawing_problems};
 pub use error::PipelineError;
 pub use report::{Counts, PartReport, Report, Weakest};
@@ -23,7 +25,7 @@ pub use reshape::{Given, ReshapeJob, Reshaped, reshape};
 pub use sheet::sheet;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
 pub use trace::trace;
-pub use tween::{captured, pegs_of, spacing_of, tween};
+pub use tween::{captured, pegs_of, spacing_of, tween, tween_drawn};
 pub use unseen::unseen;
 
 use crate::export::{self, SvgOptions, svg_with_strokes};

@@ -283,6 +283,7 @@ OPERATORS = {
     "spread_edits": Call(_L, prepare=_traced_and_moved),
     "trace_drawing": Call(_L, prepare=_one_traced),
     "trace_image": Call(_L, prepare=_one_traced_and_reference),
+    "suggest_breakdown": Call(changes=False),
     "track": Call(_C, _C, prepare=_not_tracked),
     "update_in_betweens": Call(_I, prepare=_in_between_and_moved),
     "weakest_frame": Call(changes=False),

@@ -1,6 +1,7 @@
 """Matching and in-betweens through the Python API."""
 
 import array
+import dataclasses
 import math
 
 import pytest
@@ -132,6 +133,27 @@ def captured(*contours, first=1):
 def test_bad_input_is_named(call, message):
     with pytest.raises(RototoonError, match=message):
         call()
+
+
+def moving(places):
+    """A bar on frames 1, 2, …, at these places."""
+    sheets = [[[(x, 10.0 * i) for i in range(6)]] for x in places]
+    return dataclasses.replace(drawings(sheets), frames=list(range(1, len(places) + 1)))
+
+
+def test_a_breakdown_is_suggested():
+    found = tween.suggest_breakdown(moving([0, 1, 2, 3, 9, 15, 21]), [1, 4, 7])
+    assert (found.frame, found.first, found.last, found.by) == (5, 4, 7, "movement")
+    assert found.distance == pytest.approx(18, abs=0.5)
+    assert found.keys is None and found.foreign is None and found.looked == []
+    assert found.text.startswith("frame 5, between the keys 4 and 7:")
+    assert tween.suggest_breakdown(moving([0, 1]), [1, 2]) is None
+    nowhere = {"pattern": "none_%03d.png", "first": 1, "last": 7, "fps": 24, "width": 64, "height": 64}
+    assert tween.suggest_breakdown(moving([0, 1, 2, 3, 9, 15, 21]), [1, 4, 7], nowhere) == found
+    with pytest.raises(RototoonError, match="options: keys: found 8"):
+        tween.suggest_breakdown(moving([0, 1, 2]), [1, 8])
+    with pytest.raises(Cancelled):
+        tween.suggest_breakdown(moving([0, 1, 2]), [1, 3], progress=lambda share, step: False)
 
 
 def test_nothing_gives_nothing():

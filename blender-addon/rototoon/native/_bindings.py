@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0x5aa5bbe348dd3ff2
+HEADER_HASH = 0x093dc2695faf6df2
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -22,6 +22,11 @@ ROTOTOON_STATUS_BUSY = 5
 RototoonProgress = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p, ctypes.c_size_t)
 
 INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
+    "rototoon_suggest_breakdown": (
+        (1, "stroke_count", ctypes.c_size_t),
+        (5, "drawing_count", ctypes.c_size_t),
+        (8, "options_length", ctypes.c_size_t),
+    ),
     "rototoon_match_contours": (
         (1, "request_length", ctypes.c_size_t),
     ),
@@ -150,6 +155,22 @@ INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
 
 def declare(library: ctypes.CDLL) -> None:
     """Sets result and argument types of every function."""
+    library.rototoon_suggest_breakdown.restype = ctypes.c_int32
+    library.rototoon_suggest_breakdown.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
     library.rototoon_abi_version.restype = ctypes.c_uint32
     library.rototoon_abi_version.argtypes = []
     library.rototoon_header_hash.restype = ctypes.c_uint64

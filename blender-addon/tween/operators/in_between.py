@@ -2,15 +2,13 @@
 
 import bpy
 
-from ...blender import grease_pencil as gp
 from ...blender import strokes as st
 from .. import charts, spacing_curve
-from .. import keys as ks
 from ..charts import Choices
-from .tweening_base import LAYERS, Tweening
+from .tweening_base import LAYERS, SCOPES, Scoped, Tweening
 
 
-class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
+class ROTOTOON_OT_in_between(Scoped, Tweening, bpy.types.Operator):
     bl_idname = "rototoon.in_between"
     bl_label = "In-between"
     bl_description = (
@@ -22,12 +20,7 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
     frames: bpy.props.EnumProperty(
         name="Frames",
         description="Between which keys",
-        items=(
-            ("CURRENT", "Around the Playhead", "The two keys around the current frame"),
-            ("SELECTED", "Selected Keys", "Neighbouring keys that are both selected"),
-            ("RANGE", "Scene Range", "All keys within the scene's range"),
-            ("ALL", "All", "All keys"),
-        ),
+        items=SCOPES,
     )
     layers: bpy.props.EnumProperty(name="Layers", description="On which layers", items=LAYERS, default="ALL")
     spacing: bpy.props.EnumProperty(
@@ -127,26 +120,16 @@ class ROTOTOON_OT_in_between(Tweening, bpy.types.Operator):
             self.pegs,
             self.follow,
         )
-        scene = context.scene
-        self._range = scene.frame_start, scene.frame_end
-        self._selected = {
-            layer.name: set(gp.frame_numbers(layer, selected=True)) for layer in gp.every_layer(context.object)
-        }
-        self._now = scene.frame_current
+        self.note_scope(context)
         return super().begin(context)
 
     def choose(self, name, found, record):
-        spans = list(zip(found.keys, found.keys[1:]))
-        if self.frames == "CURRENT":
-            around = ks.around(found.keys, self._now)
+        spans = self.in_scope(name, found)
+        if self.frames == "CURRENT" and found.edited:
             # An in-between that the artist changed is a key now. The spans on both its sides are drawn again.
-            held = record.holding(*around) if around is not None else None
-            touched = held is not None and bool(found.edited)
-            spans = [span for span in spans if span == around or (touched and record.holding(*span) is held)]
-        elif self.frames == "SELECTED":
-            spans = [span for span in spans if set(span) <= self._selected[name]]
-        elif self.frames == "RANGE":
-            spans = [span for span in spans if self._range[0] <= span[0] and span[1] <= self._range[1]]
+            held = record.holding(*spans[0]) if spans else None
+            every = zip(found.keys, found.keys[1:])
+            spans = [span for span in every if span in spans or (held is not None and record.holding(*span) is held)]
         return dict.fromkeys(spans, self._choices)
 
 

@@ -12,6 +12,37 @@ from ..charts import Choices
 
 LAYERS = (("ACTIVE", "Active", "The active layer"), ("ALL", "All", "All layers that are neither locked nor hidden"))
 
+SCOPES = (
+    ("CURRENT", "Around the Playhead", "The two keys around the current frame"),
+    ("SELECTED", "Selected Keys", "Neighbouring keys that are both selected"),
+    ("RANGE", "Scene Range", "All keys within the scene's range"),
+    ("ALL", "All", "All keys"),
+)
+
+
+class Scoped:
+    """An operator with a property `frames` of the items `SCOPES`: between which keys it works."""
+
+    def note_scope(self, context) -> None:
+        """Notes what the scopes mean now."""
+        scene = context.scene
+        self._range = scene.frame_start, scene.frame_end
+        self._selected = {
+            layer.name: set(gp.frame_numbers(layer, selected=True)) for layer in gp.every_layer(context.object)
+        }
+        self._now = scene.frame_current
+
+    def in_scope(self, name: str, found: ks.Frames) -> list[tuple[int, int]]:
+        """The spans of a layer within the scope."""
+        spans = list(zip(found.keys, found.keys[1:]))
+        if self.frames == "CURRENT":
+            return [span for span in spans if span == ks.around(found.keys, self._now)]
+        if self.frames == "SELECTED":
+            return [span for span in spans if set(span) <= self._selected[name]]
+        if self.frames == "RANGE":
+            return [span for span in spans if self._range[0] <= span[0] and span[1] <= self._range[1]]
+        return spans
+
 
 class OnKeys(OnDrawing):
     """An operator that needs a Grease Pencil object with at least two frames on a layer."""

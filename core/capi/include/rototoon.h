@@ -113,6 +113,35 @@ typedef int32_t (*RototoonProgress)(void *user, double fraction, const uint8_t *
 extern "C" {
 #endif // __cplusplus
 
+// Suggests the frame on which a breakdown, one more drawing between two keys, helps most: where the in-between is
+// farthest from its picture, or without pictures in the middle of the span that moves most.
+//
+// - `offsets`, `points`, `closed`, `drawings_of`, `frames`: keys and in-betweens in time order, as of
+//   `rototoon_draw_in_betweens`.
+// - `options`: a JSON object. `keys` are the frames of the keys. `footage` is the footage in the form of documents, on
+//   whose frames and pixels the drawings are; it may be null or left out. `folder` is the folder of a relative pattern.
+//   `threads` is the number of threads, 0 for one per core. Frames without a picture file are not judged.
+//
+// `suggestion` is JSON: `null` where nothing lies between two keys, or `{"frame", "first", "last", "by", "distance",
+// "keys", "foreign", "looked", "text"}`. `first` and `last` are the keys around the frame. `by` is "picture" or
+// "movement". `distance` is how far, in pixels, the in-between is from its picture, or how far the span moves. `keys` is
+// how far the keys are from their pictures, or null. `foreign` is null, or how far the keys are from pictures that show
+// something else and count for nothing. `looked` lists `[frame, distance]` for each drawing with a picture. `text` says
+// it in a sentence.
+RototoonStatus rototoon_suggest_breakdown(const int32_t *offsets,
+                                          size_t stroke_count,
+                                          const double *points,
+                                          const uint8_t *closed,
+                                          const int32_t *drawings_of,
+                                          size_t drawing_count,
+                                          const int32_t *frames,
+                                          const uint8_t *options,
+                                          size_t options_length,
+                                          RototoonProgress progress,
+                                          void *user,
+                                          struct RototoonText **suggestion,
+                                          struct RototoonText **error);
+
 // The `ROTOTOON_ABI_VERSION` that the library was built with. Compare it with the header's before any other call.
 uint32_t rototoon_abi_version(void);
 

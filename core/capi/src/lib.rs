@@ -40,6 +40,8 @@
 #![allow(clippy::missing_safety_doc)]
 
 mod asked;
+pub mod breakdown;
+pub mod breakdown_abi;
 pub mod callback;
 pub mod edit;
 pub mod entry;

@@ -84,7 +84,7 @@ const BY_HAND: i32 = 2;
 
 impl Drawings<'_> {
     /// The range of each drawing's strokes. It is an error if the lengths of the arrays do not fit together.
-    fn checked(&self) -> Result<Vec<Range<usize>>, Failure> {
+    pub fn checked(&self) -> Result<Vec<Range<usize>>, Failure> {
         let count = self.strokes.checked()?;
         let wrong = |text: String| Err(Failure::Error(text));
         let rising = self.drawings.windows(2).all(|pair| pair[0] <= pair[1]);

@@ -1,9 +1,9 @@
 //! `rototoon tween`: makes the in-betweens of drawings on key frames.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use clap::{Arg, ArgMatches, Command};
+use clap::{Arg, ArgAction, ArgMatches, Command};
 use rototoon::geometry::Point;
 use rototoon::pipeline;
 use rototoon::project::output::check_writable;
@@ -57,6 +57,10 @@ pub fn command() -> Command {
                 .default_value("follow")
                 .value_parser(captured),
         )
+        .arg(Arg::new("suggest").long("suggest").action(ArgAction::SetTrue).help(
+            "Says on which frame a breakdown, one more drawing, helps most: where the in-betweens differ most from the \
+             footage, or else in the middle of the span that moves most",
+        ))
         .args(arguments::of_stage(Stage::Run))
 }
 
@@ -75,12 +79,22 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let arcs = given.get_one::<f64>("arcs").copied().unwrap_or(Options::default().arcs);
     let options = Options { arcs, leaving, rest: arguments::choice(given, "ends") == "rest", ..Options::default() };
     let follow = arguments::choice(given, "captured") == "follow";
-    let document = progress::run(arguments::threads(given), |bar| {
-        pipeline::tween(&mut document, &options, follow, bar).map_err(|error| match error {
+    let (document, suggested) = progress::run(arguments::threads(given), |bar| {
+        let shown = pipeline::tween_drawn(&mut document, &options, follow, bar).map_err(|error| match error {
             pipeline::PipelineError::Tween(reason) => Failure::Other(format!("{}: {reason}", from.display())),
             other => other.into(),
         })?;
-        Ok(document)
+        if !given.get_flag("suggest") {
+            return Ok((document, None));
+        }
+        let pictures = pipeline::frames(&document, project::folder(from))?;
+        let found = pipeline::suggest_breakdown(shown, Some(&pictures), bar)?;
+        let nothing = || "no breakdown: nothing lies between the keys".to_owned();
+        Ok((document, Some(found.map_or_else(nothing, |found| format!("breakdown: {}", found.sentence())))))
     })?;
-    project::save(document, from, to)
+    project::save(document, from, to)?;
+    if let Some(text) = suggested {
+        line("note", &text);
+    }
+    Ok(())
 }

@@ -1,5 +1,6 @@
 //! Tests of `rototoon tween` from the command line.
 
+use image::{ImageBuffer, Rgb};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -136,6 +137,47 @@ fn errors_are_named_and_nothing_is_written() {
     bad(&|f| f["pegs"] = pegs(json!([{"frame": 2, "scale": 0}])), "peg \"a\", frame 2: scale is 0");
     let wrong_use = tween(Path::new("none.json"), Path::new("out.json"), &["--arcs", "2"]);
     assert_eq!(wrong_use.status.code(), Some(2));
+}
+
+/// What `--suggest` says of a line test. The drawings show a bar that moves by 80 px from frame 2 to frame 10; on the
+/// frames between, the pictures show it at `places`.
+fn suggested(places: &[(i32, f64)]) -> String {
+    let bar = |x: f64| json!({"closed": false, "points": [[x, 20], [x, 50], [x, 80]]});
+    let (folder, path) = project(json!({"drawings": [
+        {"frame": 2, "spacing": "linear", "strokes": [bar(40.5)]}, {"frame": 10, "strokes": [bar(120.5)]}]}));
+    for &(frame, place) in places {
+        let picture = ImageBuffer::from_fn(200, 100, |x, y| {
+            let ink = (f64::from(x) + 0.5 - place).abs() < 1.5 && (20..80).contains(&y);
+            Rgb([if ink { 20u8 } else { 250 }; 3])
+        });
+        picture.save(folder.path().join(format!("f_{frame:03}.png"))).unwrap();
+    }
+    let output = tween(&path, &folder.path().join("out.json"), &["--suggest"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8_lossy(&output.stderr).trim_end().to_owned()
+}
+
+#[test]
+fn a_breakdown_is_suggested_where_the_line_test_differs_most() {
+    // The bar runs ahead of an even movement, most of all on frame 8.
+    let ahead = [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 1.5, 0.0];
+    let mut places: Vec<(i32, f64)> =
+        (2..=10).zip(ahead).map(|(frame, ahead)| (frame, 40.5 + 10.0 * f64::from(frame - 2) + ahead)).collect();
+    let said = suggested(&places);
+    let start = "note: breakdown: frame 8, between the keys 2 and 10: the in-between is ";
+    assert!(said.starts_with(start) && said.contains("px off the picture, the keys 0."), "{said}");
+    // A picture that is missing is not judged.
+    places.remove(6);
+    assert!(!suggested(&places).contains("frame 8"));
+}
+
+#[test]
+fn a_breakdown_is_suggested_in_the_middle_where_no_picture_shows_it() {
+    let middle = "note: breakdown: frame 6, between the keys 2 and 10: the middle of the span that moves most. ";
+    assert_eq!(suggested(&[]), format!("{middle}No picture shows the movement"));
+    let elsewhere: Vec<(i32, f64)> = (2..=10).map(|frame| (frame, 190.0)).collect();
+    let said = suggested(&elsewhere);
+    assert!(said.starts_with(&format!("{middle}The pictures show something else: the keys are ")), "{said}");
 }
 
 #[test]

@@ -21,6 +21,7 @@
 //! - `drawing`, `stroke`: all of this for one picture
 //! - `finish`: fitted curves, widths, colours
 //! - `carry`: the next drawing
+//! - [`apart`]: how far drawn lines are from what a picture shows
 //!
 //! Methods that solve for a frame field over the ink (Favreau et al. 2016, Bessmeltsev & Solomon 2019, Puhachov et al.
 //! 2021) place junctions better in blots, but take minutes for a drawing. A skeleton takes a tenth of a second. What it gets
@@ -61,6 +62,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod apart;
 mod carry;
 mod centre;
 mod cluster;

@@ -8,9 +8,10 @@ use crate::project::drawings::{
     read_pegs, read_timing,
 };
 use crate::project::schema::MAX_FRAMES;
-use crate::scene::{Cancelled, Part, Progress, Scene};
+use crate::scene::{Cancelled, FrameNumber, Part, Progress, Scene};
 use crate::tween::Stroke;
 use crate::tween::between::{Captured, GivenPegs, InBetween, Key, Options, Sequence, Spacing};
+use crate::tween::breakdown::Shown;
 use crate::tween::matching::{HandPair, InPieces, Matching, Options as MatchingOptions, match_strokes};
 use crate::tween::peg::{Peg, PegKey, PegTree, Timing};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -32,6 +33,20 @@ pub fn tween(
     follow: bool,
     progress: &dyn Progress,
 ) -> Result<(), PipelineError> {
+    tween_drawn(document, options, follow, progress).map(|_| ())
+}
+
+/// Like [`tween`]. Returns the drawings and the in-betweens in time order, for [`super::suggest_breakdown`].
+///
+/// # Errors
+///
+/// As for [`tween`].
+pub fn tween_drawn(
+    document: &mut Document,
+    options: &Options,
+    follow: bool,
+    progress: &dyn Progress,
+) -> Result<Vec<Shown>, PipelineError> {
     let wrong = |error: &dyn std::fmt::Display| PipelineError::Tween(error.to_string());
     let read = document.drawings().map_err(|e| wrong(&e))?;
     if read.drawings.len() < 2 {
@@ -53,6 +68,7 @@ pub fn tween(
     progress.report("drawing in-betweens", 0.8)?;
     let matches = keys.windows(2).zip(&matchings).map(|(pair, m)| written(pair[0].frame, pair[1].frame, m)).collect();
     let frames: Vec<i32> = keys.windows(2).flat_map(|pair| pair[0].frame + 1..pair[1].frame).collect();
+    let on_keys: Vec<i32> = keys.iter().map(|key| key.frame).collect();
     let mut sequence = Sequence::new(keys, &matchings, &pegs, options).map_err(|e| wrong(&e))?;
     if follow {
         sequence = sequence.following(captured(&document.scene));
@@ -66,7 +82,23 @@ pub fn tween(
     let drawn = drawn.collect::<Result<Vec<_>, Cancelled>>()?;
     progress.report("drawing in-betweens", 1.0)?;
     document.set_in_betweens(matches, &drawn);
-    Ok(())
+    Ok(shown(&sequence, &on_keys, drawn))
+}
+
+/// The drawings on keys and between them, in time order.
+fn shown(sequence: &Sequence, keys: &[FrameNumber], between: Vec<DrawnBetween>) -> Vec<Shown> {
+    let key = |&frame: &FrameNumber| {
+        let strokes = sequence.at(frame).into_iter().map(|drawn| drawn.stroke).collect();
+        Shown { frame, key: true, strokes, apart: None }
+    };
+    let drawn = |DrawnBetween { frame, strokes }: DrawnBetween| {
+        let seen = strokes.into_iter().filter(|(_, opacity, _)| *opacity > 0.0);
+        let strokes = seen.map(|(_, _, stroke)| Stroke::new(stroke.points, stroke.closed)).collect();
+        Shown { frame, key: false, strokes, apart: None }
+    };
+    let mut all: Vec<Shown> = keys.iter().map(key).chain(between.into_iter().map(drawn)).collect();
+    all.sort_by_key(|shown| shown.frame);
+    all
 }
 
 /// Refuses drawings so far apart that their in-betweens would fill the memory.

@@ -7,8 +7,10 @@
 //! - [`matching`]: which stroke of one drawing is which of the next
 //! - [`peg`]: pivots that shift, turn and scale over time, given or found
 //! - [`between`]: the drawings between
+//! - [`breakdown`]: the frame on which one more drawing helps most
 //! - [`hidden`]: which parts of lines a filled shape in front covers
-//! - `grid`: nearest places among many, `line`: strokes by shares of their length, `chain`: strokes end to end
+//! - `grid`: nearest places among many, `ink`: places along lines, `line`: strokes by shares of their length, `chain`:
+//!   strokes end to end
 //!
 //! # Example
 //!
@@ -39,9 +41,11 @@
 #![forbid(unsafe_code)]
 
 pub mod between;
+pub mod breakdown;
 mod chain;
 mod grid;
 pub mod hidden;
+mod ink;
 mod line;
 pub mod matching;
 pub mod peg;

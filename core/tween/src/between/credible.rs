@@ -9,36 +9,26 @@
 //! half a turn lies on itself on both.
 
 use super::super::grid::Grid;
+use super::super::ink::{self, apart};
 use super::super::stroke::Stroke;
-use rototoon_base::geometry::{Point, polyline};
+use rototoon_base::geometry::Point;
 
 /// Lines of points, each with whether it is closed.
 pub(super) type Lines = Vec<(Vec<Point>, bool)>;
 
 /// A matching with this share of its ink matched surely is believed.
 const SURE: f64 = 0.9;
-/// Distance of the samples along the ink, as a share of the size of the first drawing.
-const STEP: f64 = 1.0 / 100.0;
-/// Largest number of samples of a stroke.
-const MOST: f64 = 256.0;
 
 /// Whether a drawing half way can be believed, given how surely the keys are matched. Each drawing is a list of lines.
 pub(super) fn is_believed(sureness: f64, first: &[Stroke], second: &[Stroke], half: impl FnOnce() -> Lines) -> bool {
     if sureness >= SURE {
         return true;
     }
-    let (low, high) = first
-        .iter()
-        .flat_map(|s| &s.points)
-        .fold((Point::INFINITY, Point::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
-    let step = (STEP * low.distance(high)).max(1e-6);
-    let ink = |lines: &mut dyn Iterator<Item = (&[Point], bool)>| -> Vec<Point> {
-        lines.flat_map(|(points, closed)| samples(points, closed, step)).collect()
-    };
-    let a = ink(&mut first.iter().map(|s| (&s.points[..], s.closed)));
-    let b = ink(&mut second.iter().map(|s| (&s.points[..], s.closed)));
+    let step = ink::step(first.iter().flat_map(|s| &s.points));
+    let drawn = |strokes: &[Stroke]| ink::places(strokes.iter().map(|s| (&s.points[..], s.closed)), step);
+    let (a, b) = (drawn(first), drawn(second));
     let half = half();
-    let between = ink(&mut half.iter().map(|(points, closed)| (&points[..], *closed)));
+    let between = ink::places(half.iter().map(|(points, closed)| (&points[..], *closed)), step);
     if a.is_empty() || b.is_empty() || between.is_empty() {
         return true;
     }
@@ -46,20 +36,6 @@ pub(super) fn is_believed(sureness: f64, first: &[Stroke], second: &[Stroke], ha
     let passing = 0.5 * (apart(&between, &a, &on_a) + apart(&between, &b, &on_b));
     let keys = 0.5 * (apart(&a, &b, &on_b) + apart(&b, &a, &on_a));
     passing <= keys
-}
-
-fn samples(points: &[Point], closed: bool, step: f64) -> Vec<Point> {
-    let length = polyline::length(points, closed);
-    if points.len() < 2 || length <= 0.0 {
-        return points.first().copied().into_iter().collect();
-    }
-    polyline::resample(points, closed, (length / step).ceil().clamp(2.0, MOST) as usize)
-}
-
-/// The mean distance from samples to the nearest of others, in pixels.
-fn apart(from: &[Point], to: &[Point], grid: &Grid) -> f64 {
-    let nearest = |p: &Point| grid.nearest(*p, 1).first().map_or(0.0, |&i| to[i].distance(*p));
-    from.iter().map(nearest).sum::<f64>() / from.len() as f64
 }
 
 #[cfg(test)]
