@@ -10,8 +10,9 @@
 //!    drawing to drawing, and motion is not.
 //! 2. Pose and shape are smoothed as much as this noise asks for. A change that is larger than the part's usual motion and
 //!    noise is a change that was drawn, and stays ([`smooth`]).
-//! 3. A centre's motion is too uneven for that. But the centres of parts of one body move evenly against each other. So
-//!    the centres of all parts are smoothed together, by pairs of parts ([`together`]).
+//! 3. A centre's motion is too uneven for that. But parts of one body move evenly against each other, and turn evenly. So
+//!    the centres of all parts are smoothed together first, by pairs of parts, and so are their poses ([`together`]). After
+//!    that a centre's second difference that is no larger than noise is smoothed, and a larger one stays.
 //!
 //! If all points of a part have independent noise, its centre and its pose times its size have the same noise. So the
 //! noise of poses is taken for that of centres too. Keys and corrected drawings stay. A contour moves by at most [`FARTHEST`].
@@ -32,13 +33,19 @@ use motion::Motion;
 use noise::{Differences, Split};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Span;
-use std::collections::BTreeMap;
-use together::Pairs;
+use together::{Pairs, Series};
 
 /// Farthest that a contour is moved, in working pixels: root mean square over its points.
 const FARTHEST: f64 = 2.0;
 /// Least and largest noise of shapes that is taken for a wobble of lines: variance in square working pixels.
 const WOBBLE: (f64, f64) = (0.1, 1.5);
+/// Pairs of a part: by centre, and by pose.
+const PAIRS: [usize; 2] = [4, 2];
+/// How many standard deviations the second difference of a pose or a shape, and that of a centre, may have before it counts as
+/// drawn.
+const USUAL: [f64; 2] = [2.0, 1.0];
+/// Noise that a centre still has after pairs were smoothed, as a share of the noise before.
+const LEFT: f64 = 0.5;
 /// Largest noise of poses, as a multiple of that of shapes.
 const OF_SHAPE: f64 = 4.0;
 
@@ -59,8 +66,8 @@ pub struct Member {
 pub struct Wobble {
     pose: Split,
     shape: Split,
-    /// Motion of pairs of parts of one body against each other.
-    pairs: Pairs,
+    /// Motion of parts of one body against each other: of their centres and of their poses.
+    pairs: [Pairs; 2],
 }
 
 impl Wobble {
@@ -68,14 +75,17 @@ impl Wobble {
     pub fn measured(groups: &[Vec<Member>]) -> Self {
         let mut pose = Differences::default();
         let mut shape = Differences::default();
-        let mut pairs = BTreeMap::new();
+        let mut pairs = [Pairs::new(), Pairs::new()];
         for group in groups {
             let motions: Vec<Motion> = group.iter().map(|member| Motion::of(&member.times, &member.points)).collect();
             for (member, motion) in group.iter().zip(&motions) {
                 pose.add(&member.times, &motion.poses);
                 shape.add(&member.times, &motion.shapes);
             }
-            pairs.extend(together::found(group, &motions));
+            let series = [centres(&motions), turns(&motions)];
+            for ((pairs, series), most) in pairs.iter_mut().zip(&series).zip(PAIRS) {
+                pairs.extend(together::found(group, series, most));
+            }
         }
         let (mut pose, shape) = (pose.split(), shape.split());
         pose.noise = pose.noise.min(OF_SHAPE * shape.noise);
@@ -93,21 +103,35 @@ impl Wobble {
             return group.iter().map(|member| member.points.clone()).collect();
         }
         let motions: Vec<Motion> = group.iter().map(|member| Motion::of(&member.times, &member.points)).collect();
-        let centres = together::smoothed(group, &motions, self.pose.noise, &self.pairs);
-        let one = |((member, motion), centres): ((&Member, &Motion), Vec<Vec<f64>>)| {
-            let of = |series: &[Vec<f64>], split: Split| smooth::smoothed(&member.times, series, &member.set, split);
-            let (poses, shapes) = (of(&motion.poses, self.pose), of(&motion.shapes, self.shape));
-            let new = motion.points(&centres, &poses, &shapes);
-            member
-                .points
-                .iter()
-                .zip(new)
-                .zip(&member.set)
-                .map(|((old, new), &set)| within_reach(old, new, set))
-                .collect()
-        };
-        group.iter().zip(&motions).zip(centres).map(one).collect()
+        let noise: Vec<f64> = vec![self.pose.noise; group.len()];
+        let centres = together::smoothed(group, centres(&motions), &noise, &self.pairs[0]);
+        let noise: Vec<f64> = motions.iter().map(|motion| self.pose.noise / (motion.size * motion.size)).collect();
+        let turns = together::smoothed(group, turns(&motions), &noise, &self.pairs[1]);
+        (0..group.len()).map(|m| self.by_itself(&group[m], &motions[m], &centres[m], &turns[m])).collect()
     }
+
+    /// The points of a part on each drawing. Its centres and turns have been smoothed together with others'.
+    fn by_itself(&self, member: &Member, motion: &Motion, centres: &[Vec<f64>], turns: &[Vec<f64>]) -> Vec<Vec<Point>> {
+        let of = |series: &[Vec<f64>], split: Split, usual: f64| {
+            smooth::smoothed(&member.times, series, &member.set, split, usual)
+        };
+        let poses: Vec<Vec<f64>> = turns.iter().map(|turn| turn.iter().map(|x| x * motion.size).collect()).collect();
+        let rest = Split { noise: LEFT * self.pose.noise, motion: self.pose.noise };
+        let new = motion.points(
+            &of(centres, rest, USUAL[1]),
+            &of(&poses, self.pose, USUAL[0]),
+            &of(&motion.shapes, self.shape, USUAL[0]),
+        );
+        member.points.iter().zip(new).zip(&member.set).map(|((old, new), &set)| within_reach(old, new, set)).collect()
+    }
+}
+
+fn centres(motions: &[Motion]) -> Series {
+    motions.iter().map(|motion| motion.centres.clone()).collect()
+}
+
+fn turns(motions: &[Motion]) -> Series {
+    motions.iter().map(Motion::turns).collect()
 }
 
 /// The new points, or points between old and new ones at most [`FARTHEST`] from the old ones. Drawings that the artist has set

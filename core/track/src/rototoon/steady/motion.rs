@@ -16,7 +16,8 @@ pub struct Motion {
     /// The shape: x and y of each point.
     pub shapes: Vec<Vec<f64>>,
     blends: Vec<Vec<Complex<f64>>>,
-    size: f64,
+    /// The root mean square distance of the points from their centre at the first key.
+    pub size: f64,
 }
 
 /// Added to sizes that divide, in working pixels.
@@ -46,6 +47,11 @@ impl Motion {
         self.poses.push(vec![pose.re * self.size, pose.im * self.size]);
         self.shapes.push(blend.iter().zip(&own).flat_map(|(b, x)| [(x - pose * b).re, (x - pose * b).im]).collect());
         self.blends.push(blend);
+    }
+
+    /// The poses as pure numbers.
+    pub fn turns(&self) -> Vec<Vec<f64>> {
+        self.poses.iter().map(|pose| pose.iter().map(|x| x / self.size).collect()).collect()
     }
 
     /// The points of each drawing that have these centres, poses and shapes.

@@ -6,15 +6,13 @@
 //! Σ (x − a)² / r  +  Σ ρ(Δx) / q,   ρ(e) = e² / (1 + e² / s²)
 //! ```
 //!
-//! For a small Δ this is the best linear estimate. A Δ far above s² = [`USUAL`]² (q + r / 2) adds nothing more by growing, so a
-//! drawn change is not smoothed (Geman & McClure 1987). The minimum is found by weights that are computed anew a few times. At
+//! For a small Δ this is the best linear estimate. A Δ far above s² = u² (q + r / 2) adds nothing more by growing, so a drawn
+//! change is not smoothed (Geman & McClure 1987). u says how many standard deviations a Δ may have before it counts as drawn. The minimum is found by weights that are computed anew a few times. At
 //! first s² allows for all the noise that Δ has, 6 r.
 
 use super::noise::{Split, second_differences, weights};
 use rototoon_base::numeric::banded::BandMatrix;
 
-/// How many standard deviations a second difference may have before it counts as drawn.
-const USUAL: f64 = 2.0;
 /// Number of times that the weights are computed.
 const ROUNDS: usize = 6;
 /// Least variance of the motion, as a share of the noise's.
@@ -22,8 +20,8 @@ const LEAST: f64 = 0.02;
 /// Weight of entries that stay, as a multiple of the others'.
 pub const STAYS: f64 = 1e6;
 
-/// The smoothed series. Entries that are `set` stay.
-pub fn smoothed(times: &[f64], series: &[Vec<f64>], set: &[bool], split: Split) -> Vec<Vec<f64>> {
+/// The smoothed series. Entries that are `set` stay; `usual` is u.
+pub fn smoothed(times: &[f64], series: &[Vec<f64>], set: &[bool], split: Split, usual: f64) -> Vec<Vec<f64>> {
     let noise = split.noise;
     if series.len() < 3 || noise <= 0.0 {
         return series.to_vec();
@@ -31,7 +29,7 @@ pub fn smoothed(times: &[f64], series: &[Vec<f64>], set: &[bool], split: Split) 
     let motion = split.motion.max(LEAST * noise);
     let mut found = series.to_vec();
     for round in 0..ROUNDS {
-        let usual = USUAL * USUAL * if round == 0 { motion + 6.0 * noise } else { motion + noise / 2.0 };
+        let usual = usual * usual * if round == 0 { motion + 6.0 * noise } else { motion + noise / 2.0 };
         let tensions: Vec<f64> =
             second_differences(times, &found).iter().map(|e| tension(mean_square(e), usual) / motion).collect();
         let Some(next) = solved(times, series, set, noise, &tensions) else { return series.to_vec() };
@@ -92,7 +90,7 @@ mod tests {
         let truth = |d: usize| if d < 20 { 0.5 * d as f64 } else { 60.0 };
         let noisy: Vec<Vec<f64>> = (0..40).map(|d| vec![truth(d) + random.normal(), random.normal()]).collect();
         let split = Split { noise: 1.0, motion: 0.05 };
-        let smooth = smoothed(&times(40), &noisy, &[false; 40], split);
+        let smooth = smoothed(&times(40), &noisy, &[false; 40], split, 2.0);
         let error =
             |x: &[Vec<f64>]| (0..40).map(|d| (x[d][0] - truth(d)).powi(2) + x[d][1].powi(2)).sum::<f64>() / 40.0;
         assert!(error(&smooth) < 0.5 * error(&noisy), "{} of {}", error(&smooth), error(&noisy));
@@ -103,12 +101,12 @@ mod tests {
     fn what_is_set_stays_and_without_noise_all_stays() {
         let series: Vec<Vec<f64>> = (0..9).map(|d| vec![f64::from(d % 2) * 3.0]).collect();
         let set = [true, false, false, false, true, false, false, false, true];
-        let smooth = smoothed(&times(9), &series, &set, Split { noise: 4.0, motion: 0.1 });
+        let smooth = smoothed(&times(9), &series, &set, Split { noise: 4.0, motion: 0.1 }, 2.0);
         for d in 0..9 {
             let moved = (smooth[d][0] - series[d][0]).abs();
             assert!(if set[d] { moved < 1e-4 } else { moved > 0.02 }, "{smooth:?}");
         }
-        assert_eq!(smoothed(&times(9), &series, &set, Split { noise: 0.0, motion: 1.0 }), series);
+        assert_eq!(smoothed(&times(9), &series, &set, Split { noise: 0.0, motion: 1.0 }, 2.0), series);
     }
 
     #[test]

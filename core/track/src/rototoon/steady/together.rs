@@ -1,15 +1,15 @@
-//! Smooths the centres of parts of one body together.
+//! Smooths the motion of parts of one body together.
 //!
 //! The centre of a head that nods is uneven, and so is that of its eye. Their difference is even, and its second differences
 //! are small, but for noise. So the smoothness of [`super::smooth`] is asked of the differences of pairs of parts, each pair
-//! with the variance of its own motion, and the centres of all parts are found at once. Where many parts hang together this is
-//! nearly the mean of their errors. Parts that do not hang together have a large variance, and leave each other alone.
+//! with the variance of its own motion, and the series of all parts are found at once. Where many parts hang together this is
+//! nearly the mean of their errors. Parts that do not hang together have a large variance, and leave each other alone. The same
+//! holds for how parts turn and grow.
 //!
-//! A part has pairs with the [`MOST`] parts against which it moves most evenly. Pairs have the same keys. Drawings that only one
+//! A part has pairs with the few parts against which it moves most evenly. Pairs have the same keys. Drawings that only one
 //! of them has, because a correction divides a held drawing, are left out.
 
 use super::Member;
-use super::motion::Motion;
 use super::noise::{Differences, weights};
 use super::smooth::{STAYS, mean_square, tension};
 use rototoon_base::numeric::banded::BandMatrix;
@@ -19,14 +19,19 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The variance of the motion of pairs of parts, which are named by their keys.
 pub type Pairs = BTreeMap<[(String, Span); 2], f64>;
 
-/// Pairs of a part.
-const MOST: usize = 4;
 /// How many standard deviations a second difference may have before it counts as drawn.
 const USUAL: f64 = 2.0;
 /// Number of times that the weights are computed.
 const ROUNDS: usize = 6;
-/// Least variance of a pair's motion, as a share of a centre's noise.
+/// Least variance of a pair's motion, as a multiple of the mean noise of both parts.
 const LEAST: f64 = 1.0;
+
+/// A pair of parts: their indices in the group, the mean variance of their noise, and that of their motion.
+struct Pair {
+    parts: [usize; 2],
+    noise: f64,
+    motion: f64,
+}
 
 /// Three drawings in a row that both parts of a pair have: the pair, the indices of the first drawings, and the weights.
 struct Triple {
@@ -35,12 +40,15 @@ struct Triple {
     weights: [f64; 3],
 }
 
-/// The pairs of a group, each with the variance of its motion.
-pub fn found(group: &[Member], motions: &[Motion]) -> Pairs {
+/// A series of each part of a group: by part, by drawing, two numbers.
+pub type Series = Vec<Vec<Vec<f64>>>;
+
+/// The pairs of a group, at least `most` with each part, each with the variance of its motion.
+pub fn found(group: &[Member], series: &Series, most: usize) -> Pairs {
     let mut measured: BTreeMap<[usize; 2], Differences> = BTreeMap::new();
     for a in 0..group.len() {
         for b in a + 1..group.len() {
-            if let Some(differences) = between([&group[a], &group[b]], [&motions[a], &motions[b]]) {
+            if let Some(differences) = between([&group[a], &group[b]], [&series[a], &series[b]]) {
                 measured.insert([a, b], differences);
             }
         }
@@ -50,44 +58,44 @@ pub fn found(group: &[Member], motions: &[Motion]) -> Pairs {
         let of_part = measured.iter().filter(|(pair, _)| pair.contains(&a));
         let mut own: Vec<(f64, [usize; 2])> = of_part.map(|(pair, found)| (found.variance(), *pair)).collect();
         own.sort_by(|x, y| x.0.total_cmp(&y.0));
-        chosen.extend(own.iter().take(MOST).map(|(_, pair)| *pair));
+        chosen.extend(own.iter().take(most).map(|(_, pair)| *pair));
     }
     let motion = |pair: &[usize; 2]| measured[pair].split().motion;
     chosen.iter().map(|pair| (pair.map(|m| group[m].key.clone()), motion(pair))).collect()
 }
 
-/// The second differences of the difference of two parts' centres. `None` if the parts have different drawings, or few.
-fn between(members: [&Member; 2], motions: [&Motion; 2]) -> Option<Differences> {
+/// The second differences of the difference of two parts' series. `None` if the parts have different drawings, or few.
+fn between(members: [&Member; 2], series: [&[Vec<f64>]; 2]) -> Option<Differences> {
     let [a, b] = members;
     if a.key.1 != b.key.1 || a.times != b.times || a.times.len() < 5 {
         return None;
     }
-    let apart: Vec<Vec<f64>> =
-        motions[0].centres.iter().zip(&motions[1].centres).map(|(a, b)| vec![a[0] - b[0], a[1] - b[1]]).collect();
+    let apart: Vec<Vec<f64>> = series[0].iter().zip(series[1]).map(|(a, b)| vec![a[0] - b[0], a[1] - b[1]]).collect();
     let mut differences = Differences::default();
     differences.add(&a.times, &apart);
     Some(differences)
 }
 
-/// The centres of all parts of a group on their drawings, where a centre has noise of variance `noise`.
-pub fn smoothed(group: &[Member], motions: &[Motion], noise: f64, pairs: &Pairs) -> Vec<Vec<Vec<f64>>> {
-    let start: Vec<Vec<Vec<f64>>> = motions.iter().map(|motion| motion.centres.clone()).collect();
+/// The series of all parts of a group, smoothed. `noise` has the variance of each part's noise.
+pub fn smoothed(group: &[Member], start: Series, noise: &[f64], pairs: &Pairs) -> Series {
     let index = |key: &(String, Span)| group.iter().position(|member| member.key == *key);
-    let pairs: Vec<([usize; 2], f64)> = pairs
-        .iter()
-        .filter_map(|([a, b], &motion)| Some(([index(a)?, index(b)?], motion.max(LEAST * noise))))
-        .collect();
-    let triples: Vec<Triple> = (0..pairs.len()).flat_map(|p| triples(group, pairs[p].0, p)).collect();
-    if noise <= 0.0 || triples.is_empty() {
+    let pair = |([a, b], &motion): (&[(String, Span); 2], &f64)| {
+        let parts = [index(a)?, index(b)?];
+        let noise = (noise[parts[0]] + noise[parts[1]]) / 2.0;
+        Some(Pair { parts, noise, motion: motion.max(LEAST * noise) })
+    };
+    let pairs: Vec<Pair> = pairs.iter().filter_map(pair).collect();
+    let triples: Vec<Triple> = (0..pairs.len()).flat_map(|p| triples(group, pairs[p].parts, p)).collect();
+    if noise.iter().any(|&noise| noise <= 0.0) || triples.is_empty() {
         return start;
     }
     let system = System::new(group, &pairs, &triples, noise);
-    let mut centres = start.clone();
+    let mut found = start.clone();
     for round in 0..ROUNDS {
-        let Some(next) = system.solved(&start, &centres, round == 0) else { return start };
-        centres = next;
+        let Some(next) = system.solved(&start, &found, round == 0) else { return start };
+        found = next;
     }
-    centres
+    found
 }
 
 /// The drawings in a row that both parts of a pair have.
@@ -101,12 +109,13 @@ fn triples(group: &[Member], [a, b]: [usize; 2], pair: usize) -> Vec<Triple> {
     (0..a.len().saturating_sub(2)).filter_map(triple).collect()
 }
 
-/// The normal equations of all centres.
+/// The normal equations of all series.
 struct System<'a> {
     group: &'a [Member],
-    pairs: &'a [([usize; 2], f64)],
+    pairs: &'a [Pair],
     triples: &'a [Triple],
-    noise: f64,
+    /// By member: the variance of its noise.
+    noise: &'a [f64],
     /// By member and drawing: the number of the unknown. Unknowns are numbered by time, so the matrix is a band.
     number: Vec<Vec<usize>>,
     count: usize,
@@ -114,7 +123,7 @@ struct System<'a> {
 }
 
 impl<'a> System<'a> {
-    fn new(group: &'a [Member], pairs: &'a [([usize; 2], f64)], triples: &'a [Triple], noise: f64) -> Self {
+    fn new(group: &'a [Member], pairs: &'a [Pair], triples: &'a [Triple], noise: &'a [f64]) -> Self {
         let all = |m: usize| (0..group[m].times.len()).map(move |d| (m, d));
         let mut order: Vec<(usize, usize)> = (0..group.len()).flat_map(all).collect();
         order.sort_by(|x, y| group[x.0].times[x.1].total_cmp(&group[y.0].times[y.1]));
@@ -132,7 +141,7 @@ impl<'a> System<'a> {
 
     /// The unknowns of a triple's second difference, with their factors.
     fn entries(&self, triple: &Triple) -> [(usize, f64); 6] {
-        let ([a, b], [i, j]) = (self.pairs[triple.pair].0, triple.first);
+        let ([a, b], [i, j]) = (self.pairs[triple.pair].parts, triple.first);
         let w = triple.weights;
         [
             (self.number[a][i], w[0]),
@@ -144,29 +153,29 @@ impl<'a> System<'a> {
         ]
     }
 
-    /// The weight of a triple at these centres.
-    fn weight(&self, triple: &Triple, centres: &[Vec<Vec<f64>>], first: bool) -> f64 {
-        let ([a, b], motion) = self.pairs[triple.pair];
+    /// The weight of a triple at these values.
+    fn weight(&self, triple: &Triple, values: &Series, first: bool) -> f64 {
+        let Pair { parts: [a, b], noise, motion } = self.pairs[triple.pair];
         let [i, j] = triple.first;
-        let apart = |t: usize, k: usize| centres[a][i + t][k] - centres[b][j + t][k];
+        let apart = |t: usize, k: usize| values[a][i + t][k] - values[b][j + t][k];
         let difference = [0, 1].map(|k| (0..3).map(|t| triple.weights[t] * apart(t, k)).sum::<f64>());
-        let usual = USUAL * USUAL * (motion + if first { 12.0 * self.noise } else { self.noise });
+        let usual = USUAL * USUAL * (motion + if first { 12.0 * noise } else { noise });
         tension(mean_square(&difference), usual) / motion
     }
 
-    /// The centres for the weights that `centres` give.
-    fn solved(&self, start: &[Vec<Vec<f64>>], centres: &[Vec<Vec<f64>>], first: bool) -> Option<Vec<Vec<Vec<f64>>>> {
+    /// The series for the weights that `values` give.
+    fn solved(&self, start: &Series, values: &Series, first: bool) -> Option<Series> {
         let mut matrix = BandMatrix::zeros(self.count, self.half);
         let mut sides = [vec![0.0; self.count], vec![0.0; self.count]];
         for (m, member) in self.group.iter().enumerate() {
             for (d, &set) in member.set.iter().enumerate() {
-                let (k, trust) = (self.number[m][d], if set { STAYS / self.noise } else { 1.0 / self.noise });
+                let (k, trust) = (self.number[m][d], if set { STAYS / self.noise[m] } else { 1.0 / self.noise[m] });
                 matrix.add(k, k, trust);
                 sides.iter_mut().zip(&start[m][d]).for_each(|(side, x)| side[k] = trust * x);
             }
         }
         for triple in self.triples {
-            let (weight, entries) = (self.weight(triple, centres, first), self.entries(triple));
+            let (weight, entries) = (self.weight(triple, values, first), self.entries(triple));
             for (n, &(i, a)) in entries.iter().enumerate() {
                 entries[n..].iter().for_each(|&(j, b)| matrix.add(i, j, weight * a * b));
             }
@@ -180,12 +189,13 @@ impl<'a> System<'a> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::motion::Motion;
     use super::super::tests::{Random, member};
     use super::*;
     use rototoon_base::geometry::Point;
 
     /// Three parts of a head that nods unevenly, and one that goes its own uneven way, with noise of variance `noise`.
-    fn scene(noise: f64, nod: &dyn Fn(usize) -> Point) -> (Vec<Member>, Vec<Motion>) {
+    fn scene(noise: f64, nod: &dyn Fn(usize) -> Point) -> (Vec<Member>, Series) {
         let (mut random, mut own) = (Random::new(11), Random::new(12));
         let mut group = Vec::new();
         for m in 0..4 {
@@ -196,8 +206,8 @@ mod tests {
             };
             group.push(member(&format!("part {m}"), (0..16).map(|d| vec![place(d)]).collect()));
         }
-        let motions = group.iter().map(|member| Motion::of(&member.times, &member.points)).collect();
-        (group, motions)
+        let centres = group.iter().map(|member| Motion::of(&member.times, &member.points).centres).collect();
+        (group, centres)
     }
 
     fn nod(d: usize) -> Point {
@@ -206,29 +216,32 @@ mod tests {
 
     #[test]
     fn parts_of_one_body_lose_their_noise_and_keep_their_motion() {
-        let (group, motions) = scene(1.0, &nod);
-        let smooth = smoothed(&group, &motions, 1.0, &found(&group, &motions));
-        let error = |centres: &dyn Fn(usize, usize) -> Vec<f64>| -> f64 {
+        let (group, centres) = scene(1.0, &nod);
+        let smooth = smoothed(&group, centres.clone(), &[1.0; 4], &found(&group, &centres, 4));
+        let error = |of_part: &dyn Fn(usize, usize) -> Vec<f64>| -> f64 {
             let of = |m: usize, d: usize| {
                 let truth = nod(d) + Point::new(30.0 * m as f64, 0.1 * d as f64);
-                (centres(m, d)[0] - truth.x).powi(2) + (centres(m, d)[1] - truth.y).powi(2)
+                (of_part(m, d)[0] - truth.x).powi(2) + (of_part(m, d)[1] - truth.y).powi(2)
             };
             (0..3).flat_map(|m| (1..15).map(move |d| (m, d))).map(|(m, d)| of(m, d)).sum()
         };
-        let (before, after) = (error(&|m, d| motions[m].centres[d].clone()), error(&|m, d| smooth[m][d].clone()));
+        let (before, after) = (error(&|m, d| centres[m][d].clone()), error(&|m, d| smooth[m][d].clone()));
         assert!(after < 0.7 * before, "{after} of {before}");
-        let moved = (1..15).map(|d| (smooth[3][d][0] - motions[3].centres[d][0]).abs()).fold(0.0, f64::max);
+        let moved = (1..15).map(|d| (smooth[3][d][0] - centres[3][d][0]).abs()).fold(0.0, f64::max);
         assert!(moved < 0.5, "a part by itself moved by {moved}");
     }
 
     #[test]
     fn a_motion_of_all_parts_is_not_smoothed_at_all() {
-        let (group, motions) = scene(0.5, &nod);
+        let (group, centres) = scene(0.5, &nod);
         let (still_group, still) = scene(0.5, &|_| Point::ZERO);
         // The pairs of the still scene, since the single part's own way is no motion of all.
-        let pairs: Pairs =
-            found(&still_group, &still).into_iter().filter(|([a, b], _)| a.0 != "part 3" && b.0 != "part 3").collect();
-        let (moving, resting) = (smoothed(&group, &motions, 0.5, &pairs), smoothed(&still_group, &still, 0.5, &pairs));
+        let pairs: Pairs = found(&still_group, &still, 4)
+            .into_iter()
+            .filter(|([a, b], _)| a.0 != "part 3" && b.0 != "part 3")
+            .collect();
+        let (moving, resting) =
+            (smoothed(&group, centres, &[0.5; 4], &pairs), smoothed(&still_group, still, &[0.5; 4], &pairs));
         for m in 0..3 {
             for d in 1..15 {
                 let difference = moving[m][d][1] - resting[m][d][1] - nod(d).y;
@@ -239,11 +252,10 @@ mod tests {
 
     #[test]
     fn parts_with_other_keys_are_no_pairs() {
-        let (mut group, motions) = scene(1.0, &nod);
+        let (mut group, centres) = scene(1.0, &nod);
         (0..4).for_each(|m| group[m].key.1.last += m as i32);
-        assert!(found(&group, &motions).is_empty());
-        let smooth = smoothed(&group, &motions, 1.0, &Pairs::new());
-        assert!((0..4).all(|m| smooth[m] == motions[m].centres));
+        assert!(found(&group, &centres, 4).is_empty());
+        assert!(smoothed(&group, centres.clone(), &[1.0; 4], &Pairs::new()) == centres);
     }
 
     #[test]
