@@ -102,12 +102,48 @@ struct Settled {
     points: Vec<Point>,
     /// Evidence about each control point; empty on the keys' drawings.
     evidence: Vec<Evidence>,
+    /// By round of refining again: control points before and after, as in the last run.
+    again: Vec<[Vec<Point>; 2]>,
 }
 
 impl Finished {
     /// The control points on each drawing as they were found, in working pixels. None for a part without free drawings.
     pub fn points(&self) -> Vec<Vec<Point>> {
         self.settled.iter().map(|settled| settled.points.clone()).collect()
+    }
+
+    /// The control points of each drawing, refined once more from those that are `drawn`, in working pixels. Keys stay. What
+    /// was refined in the same round of the last run from the same points is not refined again.
+    pub fn refined_again(&self, kit: Kit, round: usize, drawn: &[Vec<Point>]) -> Result<Vec<Vec<Point>>, TrackError> {
+        let last = drawn.len().saturating_sub(1);
+        let known = |d: usize| {
+            let before = self.settled[d].again.get(round).filter(|[from, _]| *from == drawn[d]);
+            if d == 0 || d == last { Some(&drawn[d]) } else { before.map(|[_, to]| to) }
+        };
+        if (0..drawn.len()).all(|d| known(d).is_some()) {
+            return Ok((0..drawn.len()).filter_map(known).cloned().collect());
+        }
+        let mut stage = Stage::set(kit, &self.source.job, self.source.models.clone())?;
+        let width = stage.width();
+        stage.covers = self.plan.occluders.iter().map(|contours| Cover::new(contours, width)).collect();
+        let (stage, refiner) = (&stage, refiner(&stage));
+        let refined_on = |d: usize| {
+            kit.progress.report("Tracking", 0.95)?;
+            Ok(match (known(d), &refiner) {
+                (Some(points), _) => points.clone(),
+                (None, Some(refiner)) => refiner.polished(&frame(stage, d), drawn[d].clone()),
+                (None, None) => drawn[d].clone(),
+            })
+        };
+        (0..drawn.len()).into_par_iter().with_max_len(1).map(refined_on).collect()
+    }
+
+    /// Remembers what a round of refining again made of each drawing. Rounds come in their order.
+    pub fn remember(&mut self, round: usize, from: &[Vec<Point>], to: &[Vec<Point>]) {
+        for ((settled, from), to) in self.settled.iter_mut().zip(from).zip(to) {
+            settled.again.truncate(round);
+            settled.again.push([from.clone(), to.clone()]);
+        }
     }
 
     /// Of each frame of the span: its drawing, and the evidence about each control point.
@@ -180,24 +216,24 @@ fn settle(stage: &Stage, pooled: &Pooled, plan: &Finish, tools: &Tools, d: usize
             hypothesis(stage, d, chosen.model, pose, None)
         })
     });
-    let share = stage.drawings[d].first as f64 / (stage.job.span.len() - 1) as f64;
+    let share = stage.share(d);
     let own = seen.as_ref().unwrap_or(&pool[chosen]);
     let mixes = stage.kit.mechanisms.has(Mechanism::Blending);
     let rough = if mixes { blended(pool, own, share) } else { own.points.clone() };
     if !between {
-        return Settled { seen: None, points: rough, evidence: Vec::new() };
+        return Settled { seen: None, points: rough, evidence: Vec::new(), again: Vec::new() };
     }
     let refiner = tools.refiner.get_or_init(|| refiner(stage)).as_ref();
     let points = match refiner {
         Some(refiner) if stage.kit.mechanisms.has(Mechanism::Refinement) => {
-            refined(stage, refiner, d, share, rough.clone())
+            refiner.improved(&frame(stage, d), rough.clone())
         }
         _ => rough.clone(),
     };
     let reference = tools.reference.get_or_init(|| Reference::new(stage));
     let found = evidence::Found { drawing: d, pool, own, rough: &rough, points: &points, share };
     let evidence = evidence::of_drawing(stage, refiner, reference, &found);
-    Settled { seen, points, evidence }
+    Settled { seen, points, evidence, again: Vec::new() }
 }
 
 /// The contour's colour templates. None for contours without a shape.
@@ -218,11 +254,11 @@ fn refiner(stage: &Stage) -> Option<Refiner> {
     Some(refiner)
 }
 
-/// Refined control points of a drawing, or the rough ones if refinement does not improve the fit of the templates.
-fn refined(stage: &Stage, refiner: &Refiner, d: usize, share: f64, rough: Vec<Point>) -> Vec<Point> {
+/// What refinement sees of a drawing.
+fn frame<'a>(stage: &'a Stage, d: usize) -> Frame<'a> {
     let pins = stage.correction(d).map(|c| c.pins.iter().map(|(&j, &p)| (j, p / stage.scale)).collect());
-    let frame = Frame { picture: &stage.features[d], cover: &stage.covers[d], share, pins: pins.unwrap_or_default() };
-    refiner.improved(&frame, rough)
+    let share = stage.share(d);
+    Frame { picture: &stage.features[d], cover: &stage.covers[d], share, pins: pins.unwrap_or_default() }
 }
 
 /// The control points of the chosen hypothesis, blended with the nearest hypothesis of the other model. The weight of

@@ -208,7 +208,8 @@ impl Rototoon {
             let plan = |m: usize| Finish::of(scene, tasks, &stretch, &members, &paths, (m, hiding));
             let plans = (0..members.len()).map(plan).collect();
             let new = self.finish_all(&stretch, &mended, plans, frames, &shared)?;
-            let tracks = self.steadied(&mended, &new, &wobble);
+            let drawn = self.steadied(&mended, &wobble, frames, &rest)?;
+            let tracks = self.tracks(&mended, &new, drawn);
             for (&t, (track, new)) in stretch.iter().zip(tracks) {
                 shared.of(t).report("Tracking", 1.0)?;
                 done[t] = Some((track, new || fresh[t]));

@@ -142,6 +142,11 @@ impl<'a> Stage<'a> {
         self.job.size.0 as f64 / self.scale
     }
 
+    /// Share of the time from the first key to the second at which a drawing begins.
+    pub fn share(&self, drawing: usize) -> f64 {
+        self.drawings[drawing].first as f64 / (self.job.span.len() - 1) as f64
+    }
+
     /// The first frame of a drawing.
     pub fn frame_of(&self, drawing: usize) -> FrameNumber {
         self.job.span.first + self.drawings[drawing].first as FrameNumber

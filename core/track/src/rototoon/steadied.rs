@@ -1,12 +1,26 @@
 //! Steadies the tracks of a stretch: connects [`steady`](super::steady) with what the solver remembers.
+//!
+//! A contour that was steadied lies nearer to its line, and refined from there it finds the line more often. So a film that
+//! wobbles is steadied and refined by turns, [`ROUNDS`] times, and steadied last. Steadied contours have coordinates on a grid.
+//! So a correction, whose effect on far drawings fades to nothing, changes only what is near it, and the rest is remembered.
 
 use super::Rototoon;
 use super::mechanisms::Mechanism;
 use super::pooled::Pooled;
 use super::steady::{Member, Wobble};
+use crate::contract::error::TrackError;
 use crate::contract::job::SpanTrack;
+use crate::shared::look::Looks;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
+use rototoon_base::scene::Progress;
 use std::sync::Arc;
+
+/// Times that a film which wobbles is refined again.
+const ROUNDS: usize = 3;
+
+/// Control points on each drawing, in working pixels.
+type Drawn = Vec<Vec<Point>>;
 
 impl Rototoon {
     /// How much the film wobbles, by where each part alone goes without corrections.
@@ -24,24 +38,48 @@ impl Rototoon {
         Wobble::measured(&groups)
     }
 
-    /// The steadied tracks of a stretch's members, and whether they are new: found in this run, or changed by their
-    /// companions.
+    /// The control points of a stretch's members on each of their drawings, steadied and refined by turns.
     pub(super) fn steadied(
         &mut self,
         mended: &[Arc<Pooled>],
-        found: &[bool],
         wobble: &Wobble,
-    ) -> Vec<(SpanTrack, bool)> {
-        let keys = || mended.iter().map(|pooled| pooled.key());
-        let points = |source: &Arc<Pooled>| {
-            let finished = self.finished.get(&source.key());
-            finished.map(|finished| member(source, finished.points())).unwrap_or_else(|| member(source, Vec::new()))
+        frames: &Looks,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Drawn>, TrackError> {
+        let found: Vec<Drawn> = mended.iter().map(|source| self.finished[&source.key()].points()).collect();
+        let steady = |points: Vec<Drawn>| {
+            let group: Vec<Member> = mended.iter().zip(points).map(|(source, points)| member(source, points)).collect();
+            wobble.steadied(&group)
         };
-        let group: Vec<Member> = mended.iter().map(points).collect();
-        let steady = wobble.steadied(&group);
+        let mut drawn = steady(found);
+        for round in 0..if wobble.steadies() { ROUNDS } else { 0 } {
+            let kit = self.kit(frames, progress);
+            let again =
+                |(source, from): (&Arc<Pooled>, &Drawn)| self.finished[&source.key()].refined_again(kit, round, from);
+            let refined: Vec<Result<Drawn, TrackError>> =
+                mended.par_iter().with_max_len(1).zip(&drawn).map(again).collect();
+            let refined = refined.into_iter().collect::<Result<Vec<Drawn>, TrackError>>()?;
+            for ((source, from), to) in mended.iter().zip(&drawn).zip(&refined) {
+                if let Some(finished) = self.finished.get_mut(&source.key()) {
+                    finished.remember(round, from, to);
+                }
+            }
+            drawn = steady(refined);
+        }
+        Ok(drawn)
+    }
+
+    /// The tracks of a stretch's members with these control points, and whether they are new: found in this run, or changed by
+    /// their companions.
+    pub(super) fn tracks(
+        &mut self,
+        mended: &[Arc<Pooled>],
+        found: &[bool],
+        drawn: Vec<Drawn>,
+    ) -> Vec<(SpanTrack, bool)> {
         let mut tracks = Vec::new();
-        for ((key, points), &found) in keys().zip(&steady).zip(found) {
-            let Some(finished) = self.finished.get_mut(&key) else { continue };
+        for ((source, points), &found) in mended.iter().zip(&drawn).zip(found) {
+            let Some(finished) = self.finished.get_mut(&source.key()) else { continue };
             let track = finished.track_along(points);
             let new = found || finished.track.as_ref() != Some(&track);
             finished.track = Some(track.clone());

@@ -7,3 +7,4 @@ mod outward;
 mod progress;
 mod rotoscope;
 mod scene;
+mod wobble;

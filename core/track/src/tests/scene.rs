@@ -56,7 +56,7 @@ impl Drawn {
 }
 
 /// Colour at a point: the fill of the nearest shape, its outline of 2 px, or paper.
-fn colour_at(shown: &[(Vec<Point>, (Point, Point), Colour)], p: Point) -> Colour {
+pub(super) fn colour_at(shown: &[(Vec<Point>, (Point, Point), Colour)], p: Point) -> Colour {
     let near = shown.iter().filter(|(_, (low, high), _)| p.cmpge(*low).all() && p.cmple(*high).all());
     for (contour, _, colour) in near {
         if polyline::distance(p, contour, true) <= OUTLINE {

@@ -42,9 +42,11 @@ use rototoon_base::geometry::Point;
 use samples::Samples;
 use template::Templates;
 
-/// The windows of the passes. Each has three rounds, with the reach of the pull (working pixels) and the weight of the
-/// links.
-const PASSES: [(Window, [(f64, f64); 3]); 2] = [
+/// A window, and three rounds, each with the reach of the pull (working pixels) and the weight of the links.
+type Pass = (Window, [(f64, f64); 3]);
+
+/// The passes.
+const PASSES: [Pass; 2] = [
     (Window { reach: [5, 6] }, [(6.0, 0.5), (4.0, 0.3), (3.0, 0.2)]),
     (Window { reach: [2, 3] }, [(3.0, 0.2), (2.0, 0.15), (2.0, 0.1)]),
 ];
@@ -93,15 +95,24 @@ impl Refiner {
     /// Refined control points, or the rough ones if refinement does not lower the cost enough. All places are in
     /// working pixels.
     pub fn improved(&self, frame: &Frame, rough: Vec<Point>) -> Vec<Point> {
-        let (fine, before) = self.refine(frame, &rough);
-        if self.cost(frame, &fine) < before - WORTH { fine } else { rough }
+        self.refined(frame, rough, &PASSES, WORTH)
+    }
+
+    /// Control points that are near already, refined over the small window, or as they are if that does not lower the cost.
+    pub fn polished(&self, frame: &Frame, near: Vec<Point>) -> Vec<Point> {
+        self.refined(frame, near, &PASSES[1..], 0.0)
+    }
+
+    fn refined(&self, frame: &Frame, start: Vec<Point>, passes: &[Pass], worth: f64) -> Vec<Point> {
+        let (fine, before) = self.refine(frame, &start, passes);
+        if self.cost(frame, &fine) < before - worth { fine } else { start }
     }
 
     /// Refined control points from rough ones, and the cost of the rough ones as in [`Refiner::cost`].
-    fn refine(&self, frame: &Frame, start: &[Point]) -> (Vec<Point>, f64) {
+    fn refine(&self, frame: &Frame, start: &[Point], passes: &[Pass]) -> (Vec<Point>, f64) {
         let mut before = None;
         let mut points = start.to_vec();
-        for (window, rounds) in &PASSES {
+        for (window, rounds) in passes {
             let (places, angles) = self.samples.frames(&points);
             let maps: Vec<response::Map> = (0..places.len())
                 .into_par_iter()

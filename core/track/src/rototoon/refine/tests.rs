@@ -1,6 +1,6 @@
 //! Refinement of rough contours on a drawn shape.
 
-use super::{Frame, Key, Refiner};
+use super::{Frame, Key, PASSES, Refiner};
 use crate::rototoon::lattice::texture::Cover;
 use crate::shared::features::Features;
 use rototoon_base::geometry::{Point, polygon, polyline};
@@ -65,14 +65,14 @@ fn a_rough_contour_comes_back_to_the_ink() {
     let off = |points: &[Point]| points.iter().map(|&p| polyline::distance(p, &middle, true)).fold(0.0, f64::max);
     let mean =
         |points: &[Point]| points.iter().zip(&middle).map(|(p, q)| p.distance(*q)).sum::<f64>() / points.len() as f64;
-    let (fine, before) = refiner.refine(&frame(BTreeMap::new()), &rough);
+    let (fine, before) = refiner.refine(&frame(BTreeMap::new()), &rough, &PASSES);
     assert!(off(&rough) > 5.0 && off(&fine) < 1.0, "{} from {}", off(&fine), off(&rough));
     assert!(mean(&rough) > 5.0 && mean(&fine) < 2.0, "{} from {}", mean(&fine), mean(&rough));
     let free = frame(BTreeMap::new());
     assert!((before - refiner.cost(&free, &rough)).abs() < 1e-6);
     assert!(refiner.cost(&free, &fine) < 0.5 * before);
     let pin = middle[5] + Point::new(9.0, -4.0);
-    let (pinned, _) = refiner.refine(&frame(BTreeMap::from([(5, pin)])), &rough);
+    let (pinned, _) = refiner.refine(&frame(BTreeMap::from([(5, pin)])), &rough, &PASSES);
     assert!(pinned[5].distance(pin) < 0.05);
 }
 
@@ -127,9 +127,9 @@ fn a_line_that_is_drawn_anew_has_noisy_pulls_and_points_slide_less() {
         let picture = marked(&middle, shifts[2]);
         let frame = Frame { picture: &picture, cover: &cover, share: 0.5, pins: BTreeMap::new() };
         let off = |points: Vec<Point>| points.iter().zip(&middle).map(|(p, q)| p.distance(*q)).sum::<f64>() / 12.0;
-        let with = off(refiner.refine(&frame, &middle).0);
+        let with = off(refiner.refine(&frame, &middle, &PASSES).0);
         refiner.forget_noise();
-        (along, with, off(refiner.refine(&frame, &middle).0))
+        (along, with, off(refiner.refine(&frame, &middle, &PASSES).0))
     };
     let (clean, ..) = slid([0.0; 3]);
     let (noisy, with, without) = slid([0.0, 5.0, 9.0]);

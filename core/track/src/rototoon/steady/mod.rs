@@ -37,6 +37,8 @@ use together::{Pairs, Series};
 
 /// Farthest that a contour is moved, in working pixels: root mean square over its points.
 const FARTHEST: f64 = 2.0;
+/// Steadied points are on a grid of so many lines a working pixel.
+const GRID: f64 = 64.0;
 /// Least and largest noise of shapes that is taken for a wobble of lines: variance in square working pixels.
 const WOBBLE: (f64, f64) = (0.1, 1.5);
 /// Pairs of a part: by centre, and by pose.
@@ -93,7 +95,7 @@ impl Wobble {
     }
 
     /// Whether contours are changed at all.
-    fn steadies(&self) -> bool {
+    pub fn steadies(&self) -> bool {
         WOBBLE.0 <= self.shape.noise && self.shape.noise.max(self.pose.noise) <= WOBBLE.1
     }
 
@@ -135,7 +137,7 @@ fn turns(motions: &[Motion]) -> Series {
 }
 
 /// The new points, or points between old and new ones at most [`FARTHEST`] from the old ones. Drawings that the artist has set
-/// stay.
+/// stay, and others get coordinates on the grid.
 fn within_reach(old: &[Point], new: Vec<Point>, set: bool) -> Vec<Point> {
     if set || old.is_empty() {
         return old.to_vec();
@@ -146,7 +148,12 @@ fn within_reach(old: &[Point], new: Vec<Point>, set: bool) -> Vec<Point> {
         return old.to_vec();
     }
     let share = (FARTHEST / moved.max(FARTHEST)).min(1.0);
-    old.iter().zip(&new).map(|(a, b)| a.lerp(*b, share)).collect()
+    let on_grid = |x: f64| (x * GRID).round() / GRID;
+    let point = |(a, b): (&Point, &Point)| {
+        let p = a.lerp(*b, share);
+        Point::new(on_grid(p.x), on_grid(p.y))
+    };
+    old.iter().zip(&new).map(point).collect()
 }
 
 #[cfg(test)]
