@@ -12,7 +12,11 @@
 
 use super::coverage::Window;
 use super::mask::{Bounds, Mask};
+use super::rows::MaskRows;
 use rototoon_base::scene::Raster;
+
+/// Rows of more layers than one keep at most this many values of them. Layers that would keep more are drawn one by one.
+const MOST_KEPT: usize = 1 << 24;
 
 /// How a layer changes the layers below it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -63,6 +67,16 @@ impl Layer {
             Blend::Intersect => below * own,
         }
     }
+
+    /// Applies the latest row of the mask to the row below.
+    fn apply(&self, rows: &MaskRows, below: &mut [f32]) {
+        // Where the coverage is 0, other layers change nothing.
+        let all = self.invert || self.blend == Blend::Intersect;
+        let drawn = if all { 0..below.len() } else { rows.drawn() };
+        for (below, coverage) in below[drawn.clone()].iter_mut().zip(&rows.latest()[drawn]) {
+            *below = self.applied(*below, *coverage);
+        }
+    }
 }
 
 /// Layers, the first at the bottom.
@@ -98,28 +112,78 @@ impl Layers {
 
     /// The values, 0 to 1, of the pixels of a window. `None` if `go_on`, called for each row, returns false.
     pub fn draw(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
-        if let [Layer { mask, opacity: 1.0, invert: false, blend: Blend::Add }] = &self.0[..] {
-            return mask.draw(window, go_on);
+        let mut result = Raster::new(window.width(), window.height(), 0.0f32);
+        let mut rows = self.rows(window, go_on)?;
+        for y in 0..window.height() {
+            result.row_mut(y).copy_from_slice(rows.next(go_on)?);
         }
+        Some(result)
+    }
+
+    /// The rows of a window. Layers that are grown are drawn first, and so are many wide feathers: `None` if `go_on`, called
+    /// for each row, returns false.
+    pub fn rows<'a>(&'a self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<LayerRows<'a>> {
+        self.rows_keeping(MOST_KEPT, window, go_on)
+    }
+
+    fn rows_keeping<'a>(
+        &'a self,
+        most: usize,
+        window: Window,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Option<LayerRows<'a>> {
+        let kept = self.0.iter().fold(0usize, |sum, layer| sum.saturating_add(layer.mask.kept(window)));
+        let row = vec![0.0; window.width()];
+        if self.0.len() > 1 && kept > most {
+            return Some(LayerRows { layers: Vec::new(), drawn: Some((self.drawn(window, go_on)?, 0)), row });
+        }
+        let rows = |layer: &'a Layer| Some((layer, layer.mask.rows(window, go_on)?));
+        Some(LayerRows { layers: self.0.iter().map(rows).collect::<Option<_>>()?, drawn: None, row })
+    }
+
+    /// Draws one layer after the other.
+    fn drawn(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
         let mut result = Raster::new(window.width(), window.height(), 0.0f32);
         for layer in &self.0 {
-            let own = if layer.invert || layer.blend == Blend::Intersect {
-                Some(window)
-            } else {
-                // Where the coverage is 0, the layer changes nothing.
-                layer.mask.bounds().and_then(|bounds| bounds.pixels(window))
-            };
-            let Some(own) = own else { continue };
-            let coverage = layer.mask.draw(own, go_on)?;
-            let (left, top) = ((own.left - window.left) as usize, (own.top - window.top) as usize);
-            for y in 0..own.height() {
-                let below = &mut result.row_mut(top + y)[left..left + own.width()];
-                for (below, coverage) in below.iter_mut().zip(coverage.row(y)) {
-                    *below = layer.applied(*below, *coverage);
-                }
+            let mut rows = layer.mask.rows(window, go_on)?;
+            for y in 0..window.height() {
+                rows.next(go_on)?;
+                layer.apply(&rows, result.row_mut(y));
             }
         }
         Some(result)
+    }
+}
+
+/// The rows of layers in a window, from top to bottom.
+pub struct LayerRows<'a> {
+    layers: Vec<(&'a Layer, MaskRows<'a>)>,
+    /// All rows if they were drawn before, and the number of the next.
+    drawn: Option<(Raster<f32>, usize)>,
+    row: Vec<f32>,
+}
+
+impl LayerRows<'_> {
+    /// Whether the values are those of one mask.
+    fn is_plain(&self) -> bool {
+        matches!(self.layers[..], [(Layer { opacity: 1.0, invert: false, blend: Blend::Add, .. }, _)])
+    }
+
+    /// The values, 0 to 1, of the next row. `None` if `go_on` returns false.
+    pub fn next(&mut self, go_on: &mut dyn FnMut() -> bool) -> Option<&[f32]> {
+        if self.is_plain() {
+            return self.layers[0].1.next(go_on);
+        }
+        if let Some((drawn, next)) = &mut self.drawn {
+            *next += 1;
+            return go_on().then(|| drawn.row(*next - 1));
+        }
+        self.row.fill(0.0);
+        for (layer, rows) in &mut self.layers {
+            rows.next(go_on)?;
+            layer.apply(rows, &mut self.row);
+        }
+        Some(&self.row)
     }
 }
 
@@ -152,6 +216,29 @@ mod tests {
         assert_eq!(half[..4], [0.5, 0.75, 0.5, 0.0]);
         let outside = row(vec![Layer { invert: true, opacity: 0.25, ..strip(2.0, 12.0) }]);
         assert_eq!(outside[..4], [0.25, 0.25, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn layers_drawn_one_by_one_or_row_by_row_are_the_same() {
+        let soft = |from, to| {
+            let corners = [(from, 0.0), (to, 1.2), (to, 3.3), (from, 4.0)].map(|(x, y)| Point::new(x, y));
+            Layer::new(Mask::new(vec![vec![corners.into()]], 0.0, 2.0))
+        };
+        let layers = Layers(vec![
+            soft(0.0, 8.0),
+            Layer { invert: true, opacity: 0.3, ..soft(1.0, 3.0) },
+            Layer { blend: Blend::Subtract, ..soft(2.5, 4.0) },
+            Layer { blend: Blend::Intersect, ..strip(1.5, 12.0) },
+        ]);
+        let mut by_rows = layers.rows_keeping(usize::MAX, WINDOW, &mut || true).unwrap();
+        let mut one_by_one = layers.rows_keeping(0, WINDOW, &mut || true).unwrap();
+        assert!(by_rows.drawn.is_none() && one_by_one.drawn.is_some());
+        for _ in 0..WINDOW.height() {
+            let row = by_rows.next(&mut || true).unwrap();
+            assert_eq!(row, one_by_one.next(&mut || true).unwrap());
+            assert!(row.iter().any(|value| *value > 0.0 && *value < 1.0), "{row:?}");
+        }
+        assert_eq!(by_rows.next(&mut || false), None);
     }
 
     #[test]

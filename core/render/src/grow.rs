@@ -64,19 +64,20 @@ impl Exchanged for Point {
 
 /// The pieces of sides with a slope of at least 45° that bound the union.
 fn steep(shape: &Shape, window: Window) -> Vec<Stretch> {
-    let edges = edges(shape);
-    let mut found = Border { edges, last: vec![None; edges.len()], pieces: Vec::new() };
+    let (edges, ends) = edges(shape);
+    let mut found = Border { ends, last: vec![None; edges.len()], pieces: Vec::new() };
     border(shape, window, &mut found);
     let share = |edge: &Edge, height: i64| (height - edge.top) as f64 / (edge.bottom - edge.top) as f64;
     let stretch = |&(index, top, bottom): &(usize, i64, i64)| {
         let edge: &Edge = &edges[index];
-        Stretch { ends: edge.ends, from: share(edge, top), to: share(edge, bottom) }
+        Stretch { ends: ends[index], from: share(edge, top), to: share(edge, bottom) }
     };
     found.pieces.iter().map(stretch).collect()
 }
 
 struct Border<'a> {
-    edges: &'a [Edge],
+    /// The ends of each side.
+    ends: &'a [[Point; 2]],
     /// Index of the latest piece of each side.
     last: Vec<Option<usize>>,
     /// Index of the side, and the heights where the piece begins and ends.
@@ -92,7 +93,7 @@ impl Sink for Border<'_> {
 
     fn side(&mut self, side: &Side, top: i64, bottom: i64, _enters: bool) {
         let index = side.edge;
-        let [a, b] = self.edges[index].ends;
+        let [a, b] = self.ends[index];
         if (b.x - a.x).abs() > (b.y - a.y).abs() {
             return;
         }

@@ -5,6 +5,7 @@
 //! - [`overlay`](mod@overlay): contours, control points, keys and confidence over the footage
 //! - [`coverage`]: exact area coverage of unions of polygons
 //! - [`mask`]: parts at a time, blurred by motion, grown and feathered
+//! - [`rows`]: a mask row by row
 //! - [`composite`]: several masks as one
 //! - [`matte`](mod@matte): coverage of the closed parts, and what of the footage they cover
 //! - [`visible`]: how much of each pixel every part shows, nearer parts over farther ones
@@ -15,7 +16,6 @@
 //! - [`grow`]: the outline moved outward or inward
 //! - [`feather`]: soft borders
 //! - [`line`](mod@line): lines of a width
-//! - [`part`](mod@part): a rectangle of a picture, to draw into
 //! - `near`: distances where they decide something
 //! - [`encode`]: pictures as bytes of a file
 //!
@@ -57,7 +57,7 @@ pub mod matte;
 pub mod motion;
 mod near;
 pub mod overlay;
-pub mod part;
+pub mod rows;
 pub mod visible;
 
 pub use encode::{EncodeError, Format};

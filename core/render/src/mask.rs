@@ -4,8 +4,8 @@
 //! threads.
 
 use super::coverage::{Shape, Window};
-use super::feather::Change;
-use super::part::Part;
+use super::feather::Feather;
+use super::rows::{MaskRows, Source};
 use super::{feather, grow};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;
@@ -88,10 +88,6 @@ impl Mask {
         self.grown_bounds(margin_of(self.feather))
     }
 
-    fn hard_bounds(&self) -> Option<Bounds> {
-        self.grown_bounds(0.0)
-    }
-
     /// The bounds of the moved outlines, larger by `more` on each side.
     fn grown_bounds(&self, more: f64) -> Option<Bounds> {
         let tight = self.tight?;
@@ -105,6 +101,17 @@ impl Mask {
         feather::reach(self.feather)
     }
 
+    /// Whether the mask is grown or shrunk. It is then drawn as a whole, not row by row.
+    pub fn is_grown(&self) -> bool {
+        self.grow != 0.0
+    }
+
+    /// Number of values that the rows of a window keep, because of the feather.
+    pub(super) fn kept(&self, window: Window) -> usize {
+        let own = self.bounds().and_then(|bounds| bounds.pixels(window));
+        own.map_or(0, |own| own.width().saturating_mul(2 * self.reach()))
+    }
+
     /// Whether the mask is empty in a window.
     pub fn misses(&self, window: Window) -> bool {
         self.bounds().is_none_or(|bounds| bounds.misses(window))
@@ -112,30 +119,40 @@ impl Mask {
 
     /// Coverage, 0 to 1, of the pixels of a window. `None` if `go_on`, called for each row, returns false.
     pub fn draw(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
-        within(self.bounds(), window, &mut |own, to| {
-            if self.feather == 0.0 {
-                return self.hard_into(own, to, go_on);
-            }
-            let wide = own.grown(feather::reach(self.feather) as i64);
-            let (width, height) = (wide.width(), wide.height());
-            if self.grow != 0.0 {
-                let hard = within(self.hard_bounds(), wide, &mut |own, to| self.hard_into(own, to, go_on))?;
-                copy(&feather::feathered(&hard, self.feather, go_on)?, to);
-                return Some(());
-            }
-            let mut rows = self.shape.rows(wide);
-            let mut next = |changes: &mut Vec<Change>| rows.next(|column, value| changes.push((column, value)));
-            feather::feathered_rows(width, height, self.feather, &mut next, to, go_on)
-        })
+        let mut picture = Raster::new(window.width(), window.height(), 0.0);
+        let mut rows = self.rows(window, go_on)?;
+        for y in 0..window.height() {
+            rows.next_into(picture.row_mut(y), go_on)?;
+        }
+        Some(picture)
     }
 
-    /// Draws the mask without its feather.
-    fn hard_into(&self, window: Window, to: &mut Part, go_on: &mut dyn FnMut() -> bool) -> Option<()> {
-        if self.grow == 0.0 {
-            return self.shape.draw_into(window, to, go_on);
+    /// The rows of a window. A mask that is grown is drawn first: `None` if `go_on`, called for each row, returns false.
+    pub fn rows(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<MaskRows<'_>> {
+        let Some(own) = self.bounds().and_then(|bounds| bounds.pixels(window)) else {
+            return Some(MaskRows::new(window, None));
+        };
+        let wide = own.grown(feather::reach(self.feather) as i64);
+        let source = match (self.grow == 0.0, self.feather == 0.0) {
+            (true, true) => Source::Sides(self.shape.rows(own)),
+            (true, false) => Source::Soft(Box::new(Feather::new(self.feather, wide.width())), self.shape.rows(wide)),
+            (false, true) => Source::Picture(self.grown(own, go_on)?),
+            (false, false) => Source::Picture(feather::feathered(&self.hard(wide, go_on)?, self.feather, go_on)?),
+        };
+        Some(MaskRows::new(window, Some((own, source))))
+    }
+
+    /// Draws the grown mask in a window without its feather.
+    fn hard(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
+        let mut picture = Raster::new(window.width(), window.height(), 0.0);
+        if let Some(own) = self.grown_bounds(0.0).and_then(|bounds| bounds.pixels(window)) {
+            let grown = self.grown(own, go_on)?;
+            let (left, top) = ((own.left - window.left) as usize, (own.top - window.top) as usize);
+            for y in 0..own.height() {
+                picture.row_mut(top + y)[left..left + own.width()].copy_from_slice(grown.row(y));
+            }
         }
-        copy(&self.grown(window, go_on)?, to);
-        Some(())
+        Some(picture)
     }
 
     fn grown(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
@@ -148,28 +165,6 @@ impl Mask {
             }
         }
         Some(sum)
-    }
-}
-
-/// A picture of a window that is drawn only within bounds, and is 0 elsewhere. `draw` gets the window within the bounds, and
-/// the rectangle of the picture to draw it into.
-fn within(
-    bounds: Option<Bounds>,
-    window: Window,
-    draw: &mut dyn FnMut(Window, &mut Part) -> Option<()>,
-) -> Option<Raster<f32>> {
-    let mut result = Raster::new(window.width(), window.height(), 0.0);
-    if let Some(own) = bounds.and_then(|bounds| bounds.pixels(window)) {
-        let (left, top) = ((own.left - window.left) as usize, (own.top - window.top) as usize);
-        draw(own, &mut Part::whole(&mut result).inner(left, top, own.width()))?;
-    }
-    Some(result)
-}
-
-/// Copies a picture into a rectangle of its size.
-fn copy(picture: &Raster<f32>, to: &mut Part) {
-    for y in 0..picture.height() {
-        to.row_mut(y).copy_from_slice(picture.row(y));
     }
 }
 

@@ -49,6 +49,11 @@ pub fn each(effect: &Effect, count: usize, job: &(dyn Fn(usize) + Sync)) {
     work.go();
 }
 
+/// The number of threads that the host lends.
+pub fn count(effect: &Effect) -> usize {
+    effect.suites.threads.map_or(1, threads)
+}
+
 fn threads(suite: &OfxMultiThreadSuiteV1) -> usize {
     // SAFETY: the function has no arguments. OpenFX allows no threads within threads.
     if suite.multiThreadIsSpawnedThread.is_some_and(|function| unsafe { function() } != 0) {

@@ -8,7 +8,6 @@ use super::state::State;
 use crate::encoding::Encoding;
 use crate::ofx::{Failure, Parameters};
 use crate::pixels::{Format, Pixel};
-use rototoon::scene::Raster;
 
 /// How a picture and the source become the output.
 #[derive(Clone, Copy, Debug)]
@@ -41,28 +40,24 @@ impl Mixing {
         matches!(self.output, Output::Matte | Output::Mattes)
     }
 
-    /// Makes the output of the drawn pixels. `below` are the source's pixels if they are needed, `limit` the values of the
-    /// input Mask.
-    pub fn finish(
-        &self,
-        pixels: &mut Raster<Pixel>,
-        below: Option<&Raster<Pixel>>,
-        limit: Option<&Raster<f32>>,
-        format: &Format,
-    ) {
+    /// Makes the output of drawn pixels. `below` are the source's pixels if they are needed, `limit` the values of the input
+    /// Mask.
+    pub fn finish(&self, pixels: &mut [Pixel], below: Option<&[Pixel]>, limit: Option<&[f32]>, format: &Format) {
         if let Some(limit) = limit.filter(|_| self.is_raw() || self.output == Output::Cutout) {
-            for (pixel, limit) in pixels.data_mut().iter_mut().zip(limit.data()) {
+            for (pixel, limit) in pixels.iter_mut().zip(limit) {
                 pixel.iter_mut().for_each(|value| *value *= limit);
             }
         }
         if let Some(below) = below {
-            for (pixel, below) in pixels.data_mut().iter_mut().zip(below.data()) {
+            for (pixel, below) in pixels.iter_mut().zip(below) {
                 *pixel = self.matte(pixel[3], *below);
             }
         }
-        let encoding = Encoding::of(format);
-        if self.output == Output::Ids && encoding.is_linear() {
-            pixels.data_mut().iter_mut().for_each(|pixel| *pixel = light(*pixel, &encoding));
+        if self.output == Output::Ids {
+            let encoding = Encoding::of(format);
+            if encoding.is_linear() {
+                pixels.iter_mut().for_each(|pixel| *pixel = light(*pixel, &encoding));
+            }
         }
     }
 

@@ -8,9 +8,9 @@ use super::outlines::Lines;
 use super::placement::Placement;
 use super::settings::{Output, Settings};
 use super::state::PartLook;
-use crate::pixels::Pixel;
+use crate::pixels::{CLEAR, Pixel};
 use rototoon::geometry::Point;
-use rototoon::render::composite::{Layer, Layers};
+use rototoon::render::composite::{Layer, LayerRows, Layers};
 use rototoon::render::coverage::Window;
 use rototoon::render::mask::{Bounds, Mask};
 use rototoon::render::motion::{outline_at, shutter_from};
@@ -107,28 +107,48 @@ impl Picture {
         }
     }
 
-    /// Draws over the pixels of a window. Calls `go_on` at each row, and returns `None` if it returns false.
+    /// Whether [`Self::painting`] makes the rows one by one and in little memory.
+    pub fn is_made_of_rows(&self) -> bool {
+        let still = |layers: &Layers| layers.0.iter().all(|layer| !layer.mask.is_grown());
+        match self {
+            Self::Cutout(layers, _) | Self::Matte(layers, _) => still(layers),
+            Self::Mattes(mattes, _) => mattes.iter().all(still),
+            Self::Ids(_) | Self::SoftIds(_) | Self::Lines(_) => false,
+        }
+    }
+
+    /// Begins to draw a window over pixels. `below` writes a row of them, counted from the top. Calls `go_on` at each row,
+    /// and returns `None` if it returns false.
     ///
     /// A cutout multiplies the pixels. A matte is in all four channels, ids are display colours times their alpha.
-    pub fn paint(&self, window: Window, pixels: &mut Raster<Pixel>, go_on: &mut dyn FnMut() -> bool) -> Option<()> {
-        match self {
-            Self::Cutout(layers, invert) => {
-                let mask = layers.draw(window, go_on)?;
-                each(pixels, &mask, |pixel, m| {
-                    let m = inverted(m, *invert);
-                    *pixel = pixel.map(|value| value * m);
-                });
-            }
-            Self::Matte(layers, invert) => {
-                let mask = layers.draw(window, go_on)?;
-                each(pixels, &mask, |pixel, m| *pixel = [inverted(m, *invert); 4]);
-            }
+    pub fn painting(
+        &self,
+        window: Window,
+        below: &dyn Fn(usize, &mut [Pixel]),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Option<Painting<'_>> {
+        Some(match self {
+            Self::Cutout(layers, invert) => Painting::Cutout(layers.rows(window, go_on)?, *invert),
+            Self::Matte(layers, invert) => Painting::Matte(layers.rows(window, go_on)?, *invert),
             Self::Mattes(mattes, invert) => {
-                for (channel, layers) in mattes.iter().enumerate() {
-                    let mask = layers.draw(window, go_on)?;
-                    each(pixels, &mask, |pixel, m| pixel[channel] = inverted(m, *invert));
-                }
+                let rows: Option<Vec<_>> = mattes.iter().map(|layers| layers.rows(window, go_on)).collect();
+                Painting::Mattes(rows?, *invert)
             }
+            Self::Ids(_) | Self::SoftIds(_) | Self::Lines(_) => {
+                let mut pixels = Raster::new(window.width(), window.height(), CLEAR);
+                for y in 0..window.height() {
+                    below(y, pixels.row_mut(y));
+                }
+                self.paint(window, &mut pixels, go_on)?;
+                Painting::Picture(pixels)
+            }
+        })
+    }
+
+    /// Draws what is not made of rows over the pixels of a window.
+    fn paint(&self, window: Window, pixels: &mut Raster<Pixel>, go_on: &mut dyn FnMut() -> bool) -> Option<()> {
+        match self {
+            Self::Cutout(..) | Self::Matte(..) | Self::Mattes(..) => {}
             Self::Ids(stacks) => {
                 let share = 1.0 / stacks.len().max(1) as f32;
                 for stack in stacks {
@@ -147,6 +167,46 @@ impl Picture {
                 }
             }
             Self::Lines(lines) => lines.paint(window, pixels, go_on)?,
+        }
+        Some(())
+    }
+}
+
+/// A picture that is drawn row by row from the top.
+pub enum Painting<'a> {
+    /// Rows that multiply the pixels.
+    Cutout(LayerRows<'a>, bool),
+    /// Rows of coverage for all channels.
+    Matte(LayerRows<'a>, bool),
+    /// Rows of coverage for each channel.
+    Mattes(Vec<LayerRows<'a>>, bool),
+    /// Pixels that were drawn before.
+    Picture(Raster<Pixel>),
+}
+
+impl Painting<'_> {
+    /// Draws row `y` over pixels. The rows must be asked for in their order. `None` if `go_on` returns false.
+    pub fn row(&mut self, y: usize, pixels: &mut [Pixel], go_on: &mut dyn FnMut() -> bool) -> Option<()> {
+        match self {
+            Self::Cutout(rows, invert) => {
+                for (pixel, m) in pixels.iter_mut().zip(rows.next(go_on)?) {
+                    let m = inverted(*m, *invert);
+                    *pixel = pixel.map(|value| value * m);
+                }
+            }
+            Self::Matte(rows, invert) => {
+                for (pixel, m) in pixels.iter_mut().zip(rows.next(go_on)?) {
+                    *pixel = [inverted(*m, *invert); 4];
+                }
+            }
+            Self::Mattes(channels, invert) => {
+                for (channel, rows) in channels.iter_mut().enumerate() {
+                    for (pixel, m) in pixels.iter_mut().zip(rows.next(go_on)?) {
+                        pixel[channel] = inverted(*m, *invert);
+                    }
+                }
+            }
+            Self::Picture(picture) => pixels.copy_from_slice(picture.row(y)),
         }
         Some(())
     }

@@ -1,7 +1,8 @@
 //! Renders the effect's pixels.
 //!
-//! The window is divided into bands of rows, which the host's threads draw. Neither bands nor threads change a pixel. Each row
-//! begins with a check whether the host has aborted.
+//! The window is divided into bands of rows, which the host's threads draw. Neither bands nor threads change a pixel. A row is
+//! read, drawn and written before the next one, so mattes and cutouts are never in memory as a whole. Each row begins with a
+//! check whether the host has aborted.
 
 use super::measured;
 use super::mixing::Mixing;
@@ -14,7 +15,6 @@ use crate::ofx::{Bounds, Effect, Failure, Image, threads};
 use crate::pixels::{CLEAR, Layout, Pixel};
 use openfx::sys::generic::core::kOfxPropTime;
 use openfx::sys::image_effect_v1::image_effect::{kOfxImageEffectPropRenderScale, kOfxImageEffectPropRenderWindow};
-use rototoon::scene::Raster;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -22,6 +22,8 @@ use std::sync::{Mutex, PoisonError};
 const BAND: i32 = 64;
 /// Least height of a band as a multiple of the reach of soft borders, which neighbouring bands repeat.
 const REACHES: usize = 3;
+/// Number of bands for each thread, so that none waits long for the last.
+const BANDS: i32 = 4;
 
 /// Renders a window.
 pub fn render(action: &Action) -> Result<(), Failure> {
@@ -46,8 +48,7 @@ pub fn render(action: &Action) -> Result<(), Failure> {
     let source = fetched.source.as_ref().map(|image| (&clips.1, image));
     let scale = measured::of_render((&clips.0, &output), source, asked, time, scale);
     let drawn = drawn(effect, time, scale)?;
-    let reach = drawn.as_ref().map_or(0, |drawn| drawn.picture.reach());
-    let rows = BAND.max(i32::try_from(REACHES * reach).unwrap_or(i32::MAX));
+    let rows = band(drawn.as_ref(), asked, threads::count(effect));
     let bands: Vec<Mutex<Rows>> = output.bands(asked, rows).into_iter().map(Mutex::new).collect();
     let aborted = AtomicBool::new(false);
     threads::each(effect, bands.len(), &|index| {
@@ -57,6 +58,19 @@ pub fn render(action: &Action) -> Result<(), Failure> {
         }
     });
     if aborted.into_inner() { Err(Failure::Aborted) } else { Ok(()) }
+}
+
+/// The number of rows of a band. What is made row by row needs only as many bands as keep all threads busy; other pictures
+/// are in memory while they are drawn, so their bands are low.
+fn band(drawn: Option<&Drawn>, asked: Bounds, threads: usize) -> i32 {
+    let reach = drawn.map_or(0, |drawn| drawn.picture.reach());
+    let least = BAND.max(i32::try_from(REACHES * reach).unwrap_or(i32::MAX));
+    if drawn.is_some_and(|drawn| !drawn.picture.is_made_of_rows()) {
+        return least;
+    }
+    let height = asked.y2 - asked.y1;
+    let count = if threads > 1 { BANDS.saturating_mul(i32::try_from(threads).unwrap_or(i32::MAX)) } else { 1 };
+    least.max(height / count + 1)
 }
 
 /// The input images of a render.
@@ -92,44 +106,55 @@ fn draw(
     let mut go_on = || !aborted.load(Ordering::Relaxed) && !effect.aborted();
     let mixing = drawn.map(|drawn| Mixing::of(&drawn.settings));
     let raw = mixing.as_ref().is_some_and(Mixing::is_raw);
-    let mut pixels = Raster::new(area.width(), area.height(), CLEAR);
+    let source = |y: i32, pixels: &mut [Pixel]| {
+        pixels.fill(CLEAR);
+        if let Some(source) = &sources.source {
+            read(source, raw, &bounds, y, pixels);
+        }
+    };
+    let mut painting = match drawn {
+        Some(drawn) => {
+            Some(drawn.picture.painting(area, &|row, pixels| source(bounds.y2 - 1 - row as i32, pixels), &mut go_on)?)
+        }
+        None => None,
+    };
+    let (mut pixels, mut below) = (vec![CLEAR; area.width()], vec![CLEAR; area.width()]);
+    let mut limits = vec![0.0; area.width()];
+    let format = rows.format();
     for (row, y) in (bounds.y1..bounds.y2).rev().enumerate() {
         if !go_on() {
             return None;
         }
-        if let Some(source) = &sources.source {
-            read(source, raw, &bounds, y, pixels.row_mut(row));
+        source(y, &mut pixels);
+        if let (Some(painting), Some(mixing)) = (&mut painting, &mixing) {
+            let below = mixing.needs_source().then(|| {
+                below.copy_from_slice(&pixels);
+                &below[..]
+            });
+            painting.row(row, &mut pixels, &mut go_on)?;
+            let limit = sources.mask.as_ref().map(|mask| {
+                limit(mask, &bounds, y, &mut limits);
+                &limits[..]
+            });
+            mixing.finish(&mut pixels, below, limit, &format);
         }
-    }
-    if let (Some(drawn), Some(mixing)) = (drawn, mixing) {
-        let below = mixing.needs_source().then(|| pixels.clone());
-        drawn.picture.paint(area, &mut pixels, &mut go_on)?;
-        let limit = sources.mask.as_ref().map(|mask| limits(mask, &bounds));
-        mixing.finish(&mut pixels, below.as_ref(), limit.as_ref(), &rows.format());
-    }
-    let format = if raw { rows.format().raw() } else { rows.format() };
-    for (row, y) in (bounds.y1..bounds.y2).rev().enumerate() {
         if let Some(bytes) = rows.row(y) {
-            format.write(pixels.row(row), bytes);
+            let format = if raw { format.raw() } else { format };
+            format.write(&pixels, bytes);
         }
     }
     Some(())
 }
 
-/// The values of the input Mask in a band. It is 0 where the mask has no pixels.
-fn limits(mask: &Image, bounds: &Bounds) -> Raster<f32> {
-    let mut limits = Raster::new(bounds.width(), (bounds.y2 - bounds.y1) as usize, 0.0f32);
-    let mut pixels = vec![CLEAR; bounds.width()];
-    for (row, y) in (bounds.y1..bounds.y2).rev().enumerate() {
-        pixels.fill(CLEAR);
-        read(mask, true, bounds, y, &mut pixels);
-        for (limit, pixel) in limits.row_mut(row).iter_mut().zip(&pixels) {
-            // An image without alpha limits by its red.
-            let value = if mask.format.layout == Layout::Rgb { pixel[0] } else { pixel[3] };
-            *limit = if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) };
-        }
+/// The values of the input Mask in row `y` of a band. It is 0 where the mask has no pixels.
+fn limit(mask: &Image, bounds: &Bounds, y: i32, limits: &mut [f32]) {
+    let mut pixels = vec![CLEAR; limits.len()];
+    read(mask, true, bounds, y, &mut pixels);
+    for (limit, pixel) in limits.iter_mut().zip(&pixels) {
+        // An image without alpha limits by its red.
+        let value = if mask.format.layout == Layout::Rgb { pixel[0] } else { pixel[3] };
+        *limit = if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) };
     }
-    limits
 }
 
 /// Reads row `y` of an image, as it is if `raw`, otherwise premultiplied. The image may be smaller than the window; pixels

@@ -51,7 +51,7 @@ impl Chain {
             && edges[edge].top < rows.1
         {
             each(edge, edges[edge].top.max(rows.0), edges[edge].bottom.min(rows.1));
-            next = edges[edge].next;
+            next = edges[edge].next();
         }
     }
 
@@ -99,7 +99,7 @@ impl<'a> Chains<'a> {
     fn begin(&mut self, height: i64) {
         let edges = &self.instant.edges;
         while let Some(&edge) = self.instant.heads.get(self.begun).filter(|&&edge| edges[edge].top < height) {
-            let Edge { polygon, winding, .. } = edges[edge];
+            let (polygon, winding) = (edges[edge].polygon(), edges[edge].winding);
             let (above, below, low, high) = (0.0, 0.0, 0.0, 0.0);
             self.list.push(Chain { edge, polygon, winding, above, below, low, high, whole: false, single: false });
             self.begun += 1;
@@ -113,7 +113,7 @@ impl<'a> Chains<'a> {
         let edges = &self.instant.edges[..];
         self.list.retain_mut(|chain| {
             while edges[chain.edge].bottom <= rows.0 {
-                match edges[chain.edge].next {
+                match edges[chain.edge].next() {
                     Some(next) => chain.edge = next,
                     None => return false,
                 }

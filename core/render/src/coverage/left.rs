@@ -54,19 +54,19 @@ impl Left {
     /// Moves the line over a side.
     pub fn pass(&mut self, edge: &Edge) {
         let (top, bottom) = self.rows;
-        let before = self.state(edge.polygon);
-        let steps = &mut self.steps[edge.polygon];
+        let before = self.state(edge.polygon());
+        let steps = &mut self.steps[edge.polygon()];
         if steps.is_empty() {
-            self.touched.push(edge.polygon);
+            self.touched.push(edge.polygon());
         }
         add(steps, edge.top.max(top), edge.winding);
         add(steps, edge.bottom.min(bottom), -edge.winding);
-        let after = self.state(edge.polygon);
+        let after = self.state(edge.polygon());
         self.full = self.full + usize::from(after == State::All) - usize::from(before == State::All);
         if after == State::Some {
-            self.partly.insert(edge.polygon);
+            self.partly.insert(edge.polygon());
         } else if before == State::Some {
-            self.partly.remove(&edge.polygon);
+            self.partly.remove(&edge.polygon());
         }
     }
 
@@ -126,11 +126,11 @@ mod tests {
         let mut left = Left::new(1);
         left.begin(0, ROW);
         let passed: Vec<&Edge> =
-            instant.edges.iter().filter(|edge| edge.bottom > 0 && edge.top < ROW && edge.ends[0].x < 5.0).collect();
+            instant.edges.iter().filter(|edge| edge.bottom > 0 && edge.top < ROW && edge.at(edge.top) < 5.0).collect();
         assert!(passed.len() > 2);
         passed.iter().for_each(|edge| left.pass(edge));
         assert!(left.is_full(0) && left.full() == 1 && left.partly().count() == 0, "{:?}", left.steps(0));
-        for edge in instant.edges.iter().filter(|edge| edge.ends[0].x > 5.0) {
+        for edge in instant.edges.iter().filter(|edge| edge.at(edge.top) > 5.0) {
             left.pass(edge);
         }
         assert!(left.full() == 0 && left.steps(0).is_empty());

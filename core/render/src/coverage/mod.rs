@@ -17,6 +17,7 @@
 //! Limits: at most [`MOST_INSTANTS`] instants; a picture's coordinates times 2²⁴ must fit 64-bit integers.
 
 mod area;
+mod batch;
 mod chains;
 mod edge;
 mod left;
@@ -24,7 +25,6 @@ mod quiet;
 mod scan;
 mod slabs;
 
-use crate::part::Part;
 use area::Area;
 use edge::{Instant, ROW};
 use rototoon_base::geometry::Point;
@@ -106,15 +106,9 @@ impl Shape {
     /// Draws the coverage of a window. Calls `go_on` for each row, and returns `None` if it returns false.
     pub fn draw(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
         let mut picture = Raster::new(window.width(), window.height(), 0.0f32);
-        self.draw_into(window, &mut Part::whole(&mut picture), go_on)?;
-        Some(picture)
-    }
-
-    /// Like [`Self::draw`], into a rectangle of zeros.
-    pub fn draw_into(&self, window: Window, to: &mut Part, go_on: &mut dyn FnMut() -> bool) -> Option<()> {
         let mut rows = self.rows(window);
         for y in 0..window.height() {
-            let row = to.row_mut(y);
+            let row = picture.row_mut(y);
             let (mut from, mut covered) = (0, 0.0);
             rows.next(|column, value| {
                 // The picture is 0 already.
@@ -130,7 +124,7 @@ impl Shape {
                 return None;
             }
         }
-        Some(())
+        Some(picture)
     }
 }
 
@@ -164,9 +158,9 @@ pub(super) fn border(shape: &Shape, window: Window, sink: &mut impl Sink) {
     }
 }
 
-/// The sides of the first instant.
-pub(super) fn edges(shape: &Shape) -> &[Edge] {
-    shape.instants.first().map_or(&[], |instant| &instant.edges)
+/// The sides of the first instant, and the upper and lower end of each.
+pub(super) fn edges(shape: &Shape) -> (&[Edge], &[[Point; 2]]) {
+    shape.instants.first().map_or((&[], &[]), |instant| (&instant.edges, &instant.ends))
 }
 
 #[cfg(test)]

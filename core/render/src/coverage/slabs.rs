@@ -64,7 +64,7 @@ impl Slabs {
     /// their indices. `left` are the winding numbers at the left border, without these sides.
     pub fn tile(&mut self, edges: &[Edge], local: &[usize], left: &Left, rows: (i64, i64), sink: &mut impl Sink) {
         for &edge in local {
-            self.list(edges[edge].polygon);
+            self.list(edges[edge].polygon());
         }
         let own = self.polygons.iter().filter(|&&polygon| left.is_full(polygon)).count();
         if left.full() > own {
@@ -160,7 +160,7 @@ impl Slabs {
         let mut ended: Option<Side> = None;
         for side in &self.sides {
             let edge = &edges[side.edge];
-            let winding = &mut self.winding[edge.polygon];
+            let winding = &mut self.winding[edge.polygon()];
             let before = *winding;
             *winding += edge.winding;
             if before == 0 {

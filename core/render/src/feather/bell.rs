@@ -7,10 +7,15 @@ pub const MOST_P: f64 = 562.0;
 /// Greatest Q.
 const MOST_Q: i64 = 1024;
 
+/// Number of taps of a group: at each place where pieces meet there are as many.
+pub const GROUP: usize = 4;
+
 /// The third differences of the weights of the bell.
 pub struct Bell {
     /// Position and value of those that are not zero.
     pub taps: Vec<(usize, f64)>,
+    /// The same in groups of neighbours: the position of the first, and the values.
+    pub groups: Vec<(usize, [f64; GROUP])>,
     /// The inverse of the sum of the weights.
     share: f64,
     /// Number of weights minus one: twice the reach.
@@ -31,8 +36,16 @@ impl Bell {
         let weights: Vec<f64> = (0..=2 * reach).map(weight).collect();
         let at = |k: usize, back: usize| k.checked_sub(back).and_then(|k| weights.get(k)).copied().unwrap_or(0.0);
         let difference = |k: usize| at(k, 0) - 3.0 * at(k, 1) + 3.0 * at(k, 2) - at(k, 3);
-        let taps = (0..=2 * reach + 3).map(|k| (k, difference(k))).filter(|(_, value)| *value != 0.0).collect();
-        Self { taps, share: 1.0 / (48.0 * p.powi(3)), last: 2 * reach }
+        let taps: Vec<(usize, f64)> =
+            (0..=2 * reach + 3).map(|k| (k, difference(k))).filter(|(_, value)| *value != 0.0).collect();
+        let mut groups: Vec<(usize, [f64; GROUP])> = Vec::new();
+        for &(k, value) in &taps {
+            match groups.last_mut() {
+                Some((first, values)) if k < *first + GROUP => values[k - *first] = value,
+                _ => groups.push((k, [value, 0.0, 0.0, 0.0])),
+            }
+        }
+        Self { taps, groups, share: 1.0 / (48.0 * p.powi(3)), last: 2 * reach }
     }
 
     /// A sum of values times weights as an integer number of steps.

@@ -22,8 +22,6 @@ struct Strip {
     sums: [Values<f64>; 4],
     /// The latest row.
     row: Values<f32>,
-    /// The latest row of the result.
-    shown: Values<f32>,
     /// For how many rows nothing has changed.
     quiet: usize,
     /// Whether all sums but the last are zero, so that the last one stays constant.
@@ -32,17 +30,17 @@ struct Strip {
 
 impl Strip {
     fn new() -> Self {
-        Self { sums: [[0.0; STRIP]; 4], row: [0.0; STRIP], shown: [0.0; STRIP], quiet: usize::MAX, still: true }
+        Self { sums: [[0.0; STRIP]; 4], row: [0.0; STRIP], quiet: usize::MAX, still: true }
     }
 
     /// Takes the next row. Returns whether it differs from the latest one, and by how much.
     #[inline(always)]
-    fn take(&mut self, row: &Values<f32>, difference: &mut Values<f64>) -> bool {
+    fn take(&mut self, row: &Values<f32>, difference: &mut Values<f32>) -> bool {
         let bits = |value: &f32| value.to_bits();
         let changed = row.iter().zip(&self.row).fold(0, |all, (now, before)| all | (bits(now) ^ bits(before))) != 0;
         if changed {
             for k in 0..STRIP {
-                difference[k] = f64::from(row[k] - self.row[k]);
+                difference[k] = row[k] - self.row[k];
             }
             self.row = *row;
             self.quiet = 0;
@@ -52,9 +50,9 @@ impl Strip {
         changed
     }
 
-    /// Sums the filtered differences.
+    /// Sums the filtered differences, and shows the last sum.
     #[inline(always)]
-    fn sum(&mut self, bell: &Bell, mut filtered: Values<f64>) {
+    fn sum(&mut self, bell: &Bell, mut filtered: Values<f64>, shown: &mut Values<f32>) {
         // One sum after the other, each over all columns: so the compiler takes several columns at once.
         for sums in &mut self.sums {
             for k in 0..STRIP {
@@ -63,7 +61,7 @@ impl Strip {
             *sums = filtered;
         }
         for k in 0..STRIP {
-            self.shown[k] = bell.rounded(filtered[k]) * (1.0 / STEPS);
+            shown[k] = bell.rounded(filtered[k]) * (1.0 / STEPS);
         }
     }
 
@@ -80,9 +78,11 @@ impl Strip {
 /// State of all columns.
 pub struct Columns {
     strips: Vec<Strip>,
+    /// The latest row of the result.
+    shown: Vec<f32>,
     /// By how much each of the latest rows differs from the row before it, in each strip. A row keeps its place until it is
     /// beyond the reach.
-    differences: Vec<Values<f64>>,
+    differences: Vec<Values<f32>>,
     /// Whether it differs at all.
     changed: Vec<bool>,
     /// Number of rows that are kept.
@@ -99,6 +99,7 @@ impl Columns {
         let (strips, depth) = (width.div_ceil(STRIP), bell.last + 4);
         Self {
             strips: vec![Strip::new(); strips],
+            shown: vec![0.0; strips * STRIP],
             differences: vec![[0.0; STRIP]; strips * depth],
             changed: vec![false; strips * depth],
             depth,
@@ -112,18 +113,23 @@ impl Columns {
         self.strips.len() * STRIP
     }
 
-    /// Takes the next row, in steps. If all rows that it needs are known, it writes a row of the result.
-    pub fn next(&mut self, bell: &Bell, row: &[f32], mut to: Option<&mut [f32]>) {
+    /// The latest row of the result.
+    pub fn shown(&self) -> &[f32] {
+        &self.shown
+    }
+
+    /// Takes the next row, in steps.
+    pub fn next(&mut self, bell: &Bell, row: &[f32]) {
         let (count, depth) = (self.strips.len(), self.depth);
         let place = self.count % depth;
         self.taps.clear();
         self.taps.extend(bell.taps.iter().map(|&(back, weight)| ((place + depth - back) % depth * count, weight)));
         self.count += 1;
-        let (rows, _) = row.as_chunks::<STRIP>();
+        let ((rows, _), (shown, _)) = (row.as_chunks::<STRIP>(), self.shown.as_chunks_mut::<STRIP>());
         vectorised(
             #[inline(always)]
             || {
-                for (index, (strip, row)) in self.strips.iter_mut().zip(rows).enumerate() {
+                for (index, ((strip, row), shown)) in self.strips.iter_mut().zip(rows).zip(shown).enumerate() {
                     let at = place * count + index;
                     self.changed[at] = strip.take(row, &mut self.differences[at]);
                     if strip.quiet < depth {
@@ -132,22 +138,17 @@ impl Columns {
                             if self.changed[first + index] {
                                 let difference = &self.differences[first + index];
                                 for k in 0..STRIP {
-                                    filtered[k] = difference[k].mul_add(weight, filtered[k]);
+                                    filtered[k] = f64::from(difference[k]).mul_add(weight, filtered[k]);
                                 }
                             }
                         }
-                        strip.sum(bell, filtered);
+                        strip.sum(bell, filtered, shown);
                         strip.still = false;
                     } else if !strip.still {
                         strip.still = strip.rests();
                         if !strip.still {
-                            strip.sum(bell, [0.0; STRIP]);
+                            strip.sum(bell, [0.0; STRIP], shown);
                         }
-                    }
-                    if let Some(to) = &mut to {
-                        let left = index * STRIP;
-                        let right = to.len().min(left + STRIP);
-                        to[left..right].copy_from_slice(&strip.shown[..right - left]);
                     }
                 }
             },

@@ -22,7 +22,6 @@ mod bell;
 mod columns;
 mod rows;
 
-use crate::part::Part;
 use bell::Bell;
 use columns::Columns;
 use rototoon_base::scene::Raster;
@@ -45,45 +44,56 @@ pub fn feathered(picture: &Raster<f32>, radius: f64, go_on: &mut dyn FnMut() -> 
     }
     let (width, height) = (picture.width(), picture.height());
     let mut result = Raster::new(width.saturating_sub(2 * margin), height.saturating_sub(2 * margin), 0.0f32);
-    let mut y = 0;
-    let mut next = |changes: &mut Vec<Change>| {
-        let mut before = 0.0;
-        for (column, &value) in picture.row(y).iter().enumerate() {
-            if value != before {
-                changes.push((column, value));
-                before = value;
-            }
-        }
-        y += 1;
-    };
-    feathered_rows(width, height, radius, &mut next, &mut Part::whole(&mut result), go_on)?;
-    Some(result)
-}
-
-/// Blurs a picture of `width` × `height` values like [`feathered`], into a rectangle of the size of the result. `next` adds the changes of the next row to an empty list,
-/// from left to right. Left of the first a row is 0. The picture itself is never in memory.
-pub fn feathered_rows(
-    width: usize,
-    height: usize,
-    radius: f64,
-    next: &mut dyn FnMut(&mut Vec<Change>),
-    to: &mut Part,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Option<()> {
-    let (margin, bell) = (reach(radius), Bell::new(radius));
-    let inner = width.saturating_sub(2 * margin);
-    let (mut line, mut columns) = (Line::new(&bell, width), Columns::new(&bell, inner));
-    let (mut changes, mut row) = (Vec::new(), vec![0.0f32; columns.padded()]);
+    let mut feather = Feather::new(radius, width);
     for y in 0..height {
         if !go_on() {
             return None;
         }
-        changes.clear();
-        next(&mut changes);
-        line.blur(&bell, &changes, &mut row[..inner]);
-        columns.next(&bell, &row, y.checked_sub(bell.last).map(|y| to.row_mut(y)));
+        let mut before = 0.0;
+        feather.changes.clear();
+        for (column, &value) in picture.row(y).iter().enumerate() {
+            if value != before {
+                feather.changes.push((column, value));
+                before = value;
+            }
+        }
+        if let Some(row) = feather.take() {
+            result.row_mut(y - 2 * margin).copy_from_slice(row);
+        }
     }
-    Some(())
+    Some(result)
+}
+
+/// A blur like [`feathered`] that takes a picture row by row. The picture itself is never in memory.
+pub struct Feather {
+    bell: Bell,
+    line: Line,
+    columns: Columns,
+    /// The changes of the next row, from left to right. Left of the first the row is 0.
+    pub changes: Vec<Change>,
+    row: Vec<f32>,
+    width: usize,
+    taken: usize,
+}
+
+impl Feather {
+    /// For rows of `width` values. Those of the result have twice the [`reach`] less.
+    pub fn new(radius: f64, width: usize) -> Self {
+        let bell = Bell::new(radius);
+        let inner = width.saturating_sub(2 * reach(radius));
+        let (line, columns) = (Line::new(&bell, width), Columns::new(&bell, inner));
+        let row = vec![0.0; columns.padded()];
+        Self { bell, line, columns, changes: Vec::new(), row, width: inner, taken: 0 }
+    }
+
+    /// Takes the row of the changes. Returns a row of the result, once all rows that it needs were taken: from the first on
+    /// twice the reach.
+    pub fn take(&mut self) -> Option<&[f32]> {
+        self.line.blur(&self.bell, &self.changes, &mut self.row[..self.width]);
+        self.columns.next(&self.bell, &self.row);
+        self.taken += 1;
+        (self.taken > self.bell.last).then(|| &self.columns.shown()[..self.width])
+    }
 }
 
 #[cfg(test)]

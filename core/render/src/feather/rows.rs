@@ -1,7 +1,7 @@
 //! The blur of one row.
 
 use super::Change;
-use super::bell::Bell;
+use super::bell::{Bell, GROUP};
 use rototoon_base::numeric::vector::vectorised;
 use std::ops::Range;
 
@@ -20,6 +20,8 @@ fn in_steps(value: f32) -> f32 {
 pub struct Line {
     /// Neighbouring changes, the first at column `start`.
     block: Vec<f64>,
+    /// The same between zeros.
+    padded: Vec<f64>,
     start: usize,
     /// The differences of the row, filtered with the taps.
     filtered: Vec<f64>,
@@ -30,7 +32,13 @@ pub struct Line {
 impl Line {
     /// For rows of a width.
     pub fn new(bell: &Bell, width: usize) -> Self {
-        Self { block: Vec::new(), start: 0, filtered: vec![0.0; width + bell.last + 4], stretches: Vec::new() }
+        Self {
+            block: Vec::new(),
+            padded: Vec::new(),
+            start: 0,
+            filtered: vec![0.0; width + bell.last + 4 + GROUP],
+            stretches: Vec::new(),
+        }
     }
 
     /// Blurs a row given by its changes. The result is in steps, and narrower by twice the reach.
@@ -89,9 +97,19 @@ impl Line {
             return;
         }
         let (start, end) = (self.start, self.start + self.block.len() + bell.last + 3);
-        for &(ahead, weight) in &bell.taps {
-            let sums = &mut self.filtered[start + ahead..][..self.block.len()];
-            sums.iter_mut().zip(&self.block).for_each(|(sum, change)| *sum += weight * change);
+        // Zeros before and behind, so that each sum takes as many changes as there are taps in a group.
+        let length = self.block.len();
+        self.padded.clear();
+        self.padded.resize(GROUP - 1, 0.0);
+        self.padded.extend_from_slice(&self.block);
+        self.padded.resize(length + 2 * (GROUP - 1), 0.0);
+        for &(ahead, weights) in &bell.groups {
+            let sums = &mut self.filtered[start + ahead..][..length + GROUP - 1];
+            for (sum, changes) in sums.iter_mut().zip(self.padded.windows(GROUP)) {
+                for (weight, change) in weights.iter().zip(changes.iter().rev()) {
+                    *sum += weight * change;
+                }
+            }
         }
         match self.stretches.last_mut() {
             Some(last) if last.end >= start => last.end = end,

@@ -49,10 +49,13 @@ fn drawn(document: &Document, u: &mut Unstructured) -> Result<()> {
     }
     let mut pixels = Raster::from_fn(window.width(), window.height(), |_, _| CLEAR);
     let mut rows = u.int_in_range(0..=255u8)?;
-    let painted = picture.paint(window, &mut pixels, &mut || {
+    let mut go_on = || {
         rows = rows.saturating_sub(1);
         rows != 1
-    });
+    };
+    let painted = picture
+        .painting(window, &|_, pixels| pixels.fill(CLEAR), &mut go_on)
+        .and_then(|mut painting| (0..window.height()).try_for_each(|y| painting.row(y, pixels.row_mut(y), &mut go_on)));
     if painted.is_some() {
         assert!(pixels.data().iter().flatten().all(|v| v.is_finite()), "a pixel is not finite");
     }
