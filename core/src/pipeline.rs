@@ -176,6 +176,8 @@ pub enum Picture {
     Cutout,
     /// The matte of the closed parts, and in a layer for each part its complete matte; OpenEXR only.
     Layers,
+    /// The same mattes as the parts of one file; OpenEXR only.
+    Parts,
     /// A colour for each part, nearer parts over farther ones. An OpenEXR file also has Cryptomatte layers.
     Ids,
 }
@@ -248,6 +250,7 @@ fn picture(
             render::encode::layer(&render::cutout(&document.scene, frame, &pixels, parts), plan.format)
         }
         Picture::Layers => render::matte_layers(&document.scene, frame, parts),
+        Picture::Parts => render::matte_parts(&document.scene, frame, parts),
         Picture::Ids => render::id_picture(&document.scene, frame, parts, plan.format),
         Picture::Overlay(options) => {
             let below = sequence.picture(frame)?;
@@ -261,8 +264,13 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
     let footage = &document.scene.footage;
     let format = Format::of(Path::new(&job.output))
         .ok_or_else(|| PipelineError::Request(format!("{}: expected a name that ends in .png or .exr", job.output)))?;
-    if job.picture == Picture::Layers && format != Format::Exr {
-        return Err(PipelineError::Request(format!("{}: expected a name that ends in .exr for layers", job.output)));
+    let needs_exr = match job.picture {
+        Picture::Layers => Some("layers"),
+        Picture::Parts => Some("several parts"),
+        _ => None,
+    };
+    if let Some(what) = needs_exr.filter(|_| format != Format::Exr) {
+        return Err(PipelineError::Request(format!("{}: expected a name that ends in .exr for {what}", job.output)));
     }
     let range = job.frames.clone().unwrap_or(footage.first..=footage.last);
     if range.is_empty() || !(footage.first..=footage.last).contains(range.start()) || *range.end() > footage.last {

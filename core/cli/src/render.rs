@@ -43,9 +43,14 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let from = arguments::path(given, "project");
     let output = arguments::path(given, "output");
     let output = output.to_str().ok_or_else(|| Failure::Use(format!("{}: expected UTF-8 text", output.display())))?;
+    let (layers, parts) = (arguments::flag(given, "layers"), arguments::flag(given, "multipart"));
+    if layers && parts {
+        return Err(Failure::Use("found --layers on and --multipart on: expected one of them".to_owned()));
+    }
     let job = RenderJob {
         picture: match arguments::choice(given, "what") {
-            "matte" if arguments::flag(given, "layers") => Picture::Layers,
+            "matte" if layers => Picture::Layers,
+            "matte" if parts => Picture::Parts,
             "matte" => Picture::Matte,
             "cutout" => Picture::Cutout,
             "ids" => Picture::Ids,

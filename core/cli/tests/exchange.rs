@@ -299,14 +299,21 @@ fn pictures_of_ids_and_layers_are_written() {
         assert!(holds(&ids, text), "{text}");
     }
     assert_eq!(image::open(file("a.png")).unwrap().to_rgba8().dimensions(), (64, 48));
-    let matte = |name: &str, layers: &str, status: i32| {
+    let matte = |name: &str, options: &[&str], status: i32| {
         let (output, path) = (file(name), text(&captured).to_owned());
-        run(&["render", &path, "-o", text(&output), "--frames", "3", "--what", "matte", "--layers", layers], status)
+        let words = ["render", &path, "-o", text(&output), "--frames", "3", "--what", "matte"];
+        run(&[&words, options].concat(), status)
     };
-    matte("layers.exr", "on", 0);
-    matte("plain.exr", "off", 0);
+    matte("layers.exr", &["--layers", "on"], 0);
+    matte("parts.exr", &["--multipart", "on"], 0);
+    matte("plain.exr", &[], 0);
     assert!(holds(&fs::read(file("layers.exr")).unwrap(), "triangle.A"));
-    let [layers, plain] = ["layers.exr", "plain.exr"].map(|name| image::open(file(name)).unwrap().to_rgba32f());
-    assert_eq!(layers, plain);
-    assert!(matte("layers.png", "on", 2).contains("expected a name that ends in .exr for layers"));
+    assert!(holds(&fs::read(file("parts.exr")).unwrap(), "name\0string\0\u{8}\0\0\0triangle"));
+    let files = ["layers.exr", "parts.exr", "plain.exr"];
+    let [layers, parts, plain] = files.map(|name| image::open(file(name)).unwrap().to_rgba32f());
+    assert!(layers == plain && parts == plain);
+    assert!(matte("a.png", &["--layers", "on"], 2).contains("expected a name that ends in .exr for layers"));
+    assert!(matte("c.png", &["--multipart", "on"], 2).contains("expected a name that ends in .exr for several parts"));
+    let both = matte("both.exr", &["--layers", "on", "--multipart", "on"], 2);
+    assert!(both.contains("expected one of them") && !file("both.exr").exists() && !file("c.png").exists());
 }

@@ -1,9 +1,9 @@
-//! Pictures of ids and mattes with layers, as bytes of a file.
+//! Pictures of ids and mattes of each part, as bytes of a file.
 //!
 //! A picture of ids has a colour for each part. In OpenEXR its channels R, G, B and A contain that picture in linear
 //! light, and Cryptomatte layers accompany it. A matte with layers has the matte of all parts in R, G, B and A, as
 //! without layers. In addition, a layer with the name of each part has that part's own matte in its channel A, even
-//! where other parts hide it.
+//! where other parts hide it. Instead of a layer it can be a part of the file.
 
 use super::encode::{self, EncodeError, Format};
 use super::layers::{self, Channel, layer_name};
@@ -70,16 +70,43 @@ pub fn id_picture(
 /// An [`EncodeError`].
 pub fn matte_layers(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Result<Vec<u8>, EncodeError> {
     let whole = matte::matte(scene, frame, parts);
-    let mut channels: Vec<Channel> =
-        ["R", "G", "B", "A"].map(|name| Channel { name: name.to_owned(), values: whole.data().to_vec() }).into();
+    let mut channels = equal(&whole);
     let mut taken = BTreeSet::new();
-    for (index, part) in scene.parts.iter().enumerate() {
-        if part.closed && parts.is_none_or(|parts| parts.contains(&index)) {
-            let name = format!("{}.A", layer_name(&part.name, &mut taken));
-            channels.push(Channel { name, values: matte::matte(scene, frame, Some(&[index])).data().to_vec() });
-        }
+    for index in closed(scene, parts) {
+        let name = format!("{}.A", layer_name(&scene.parts[index].name, &mut taken));
+        channels.push(Channel { name, values: matte::matte(scene, frame, Some(&[index])).data().to_vec() });
     }
     layers::encode(whole.width(), whole.height(), channels, &[])
+}
+
+/// Encodes the same mattes as the parts of one OpenEXR file. The first has the matte of all parts in R, G, B and A, and the
+/// name `rgba`, by which compositors know the main part. The others have the names of the document's parts and a channel A.
+///
+/// # Errors
+///
+/// An [`EncodeError`].
+pub fn matte_parts(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Result<Vec<u8>, EncodeError> {
+    let whole = matte::matte(scene, frame, parts);
+    let (mut taken, mut own) = (BTreeSet::new(), Vec::new());
+    for index in closed(scene, parts) {
+        let values = matte::matte(scene, frame, Some(&[index])).data().to_vec();
+        let channel = Channel { name: "A".to_owned(), values };
+        own.push((layer_name(&scene.parts[index].name, &mut taken), vec![channel]));
+    }
+    // A part of the document keeps its name, whatever it is.
+    own.insert(0, (layer_name("rgba", &mut taken), equal(&whole)));
+    layers::encode_parts(whole.width(), whole.height(), own)
+}
+
+/// A matte in all four channels.
+fn equal(matte: &Raster<f32>) -> Vec<Channel> {
+    ["R", "G", "B", "A"].map(|name| Channel { name: name.to_owned(), values: matte.data().to_vec() }).into()
+}
+
+/// The closed ones of some parts.
+fn closed(scene: &Scene, parts: Option<&[usize]>) -> impl Iterator<Item = usize> {
+    (0..scene.parts.len())
+        .filter(move |index| scene.parts[*index].closed && parts.is_none_or(|parts| parts.contains(index)))
 }
 
 #[cfg(test)]
@@ -218,6 +245,29 @@ mod tests {
         assert_eq!(names, ["A", "B", "G", "R", "part 0_é.A", "part 2_é.A"]);
         assert_eq!(channels["A"], matte::matte(&scene, 0, Some(&[0, 2])).data());
         assert_eq!(channels["part 2_é.A"], matte::matte(&scene, 0, Some(&[2])).data());
+    }
+
+    #[test]
+    fn parts_of_a_file_hold_whole_mattes() {
+        let mut scene = scene(3);
+        // A name that the file's first part would have.
+        scene.parts[1].name = "rgba".into();
+        let bytes = matte_parts(&scene, 0, Some(&[1, 2])).unwrap();
+        let read = exr::prelude::read_all_flat_layers_from_file;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        std::fs::write(&path, &bytes).unwrap();
+        let parts = read(&path).unwrap().layer_data;
+        let names = parts.iter().map(|part| part.attributes.layer_name.as_ref().unwrap().as_slice().to_vec());
+        let names: Vec<String> = names.map(|name| String::from_utf8(name).unwrap()).collect();
+        assert_eq!(names, ["rgba 2", "rgba", "part 2_é"]);
+        let expected = [Some(&[1, 2][..]), Some(&[1]), Some(&[2])].map(|parts| matte::matte(&scene, 0, parts));
+        for (part, (expected, channels)) in parts.iter().zip(expected.iter().zip([4, 1, 1])) {
+            assert_eq!(part.channel_data.list.len(), channels);
+            for channel in &part.channel_data.list {
+                assert!(channel.sample_data.values_as_f32().eq(expected.data().iter().copied()));
+            }
+        }
     }
 
     #[test]

@@ -1,14 +1,15 @@
-//! OpenEXR files with any number of named channels of 32-bit floats, compressed without loss.
+//! OpenEXR files with any number of named channels of 32-bit floats, in one part or in several, compressed without loss.
 //!
 //! A channel `near arm.A` belongs to the layer `near arm`; all readers of OpenEXR follow this rule. Part names may be
 //! any text. Characters that separate layers or are not allowed in names are replaced ([`layer_name`]).
 
 use super::encode::EncodeError;
 use exr::image::write::WritableImage;
+use exr::image::write::layers::WritableLayers;
 use exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer};
 use exr::meta::attribute::{AttributeValue, LineOrder, Text};
-use exr::meta::header::LayerAttributes;
-use exr::prelude::{Blocks, Compression};
+use exr::meta::header::{ImageAttributes, LayerAttributes};
+use exr::prelude::{Blocks, Compression, IntegerBounds};
 use std::collections::BTreeSet;
 use std::io::Cursor;
 
@@ -60,36 +61,94 @@ pub fn encode(
     channels: Vec<Channel>,
     attributes: &[Attribute],
 ) -> Result<Vec<u8>, EncodeError> {
-    let failed = |reason: String| EncodeError { width, height, reason };
-    let text = |value: &str| Text::from_slice_unchecked(value.as_bytes());
-    let mut list = Vec::new();
-    for channel in channels {
-        if channel.values.len() != width * height {
-            return Err(failed(format!("channel {:?} has {} values", channel.name, channel.values.len())));
-        }
-        list.push(AnyChannel::new(text(&channel.name), FlatSamples::F32(channel.values)));
-    }
     let mut header = LayerAttributes::default();
     for Attribute { name, value } in attributes {
         header.other.insert(text(name), AttributeValue::Text(text(value)));
     }
+    let layer = layer((width, height), channels, header)?;
+    written((width, height), &Image::from_layer(layer))
+}
+
+/// Encodes pictures of `width` × `height` pixels as the parts of one OpenEXR file. Each has its own channels. The names must
+/// differ. A reader that takes only one part of a file takes the first.
+///
+/// # Errors
+///
+/// An [`EncodeError`] if there is no part, two have the same name, a channel has another number of values, or the encoder
+/// fails.
+pub fn encode_parts(width: usize, height: usize, parts: Vec<(String, Vec<Channel>)>) -> Result<Vec<u8>, EncodeError> {
+    let failed = |reason: String| EncodeError { width, height, reason };
+    let mut names = BTreeSet::new();
+    if let Some((name, _)) = parts.iter().find(|(name, _)| !names.insert(name)) {
+        return Err(failed(format!("two parts of the file have the name {name:?}")));
+    }
+    if parts.is_empty() {
+        return Err(failed("found no part: expected at least one".to_owned()));
+    }
+    let part = |(name, channels): (String, _)| layer((width, height), channels, LayerAttributes::named(text(&name)));
+    let layers: Vec<_> = parts.into_iter().map(part).collect::<Result<_, _>>()?;
+    let shown = ImageAttributes::new(IntegerBounds::from_dimensions((width, height)));
+    written((width, height), &Image::from_layers(shown, layers))
+}
+
+/// Text in UTF-8. All readers take the bytes as they are.
+fn text(value: &str) -> Text {
+    Text::from_slice_unchecked(value.as_bytes())
+}
+
+/// A part of a file, compressed without loss.
+fn layer(
+    (width, height): (usize, usize),
+    channels: Vec<Channel>,
+    header: LayerAttributes,
+) -> Result<Layer<AnyChannels<FlatSamples>>, EncodeError> {
+    let mut list = Vec::new();
+    for channel in channels {
+        if channel.values.len() != width * height {
+            let reason = format!("channel {:?} has {} values", channel.name, channel.values.len());
+            return Err(EncodeError { width, height, reason });
+        }
+        list.push(AnyChannel::new(text(&channel.name), FlatSamples::F32(channel.values)));
+    }
     let encoding =
         Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
-    let layer = Layer::new((width, height), header, encoding, AnyChannels::sort(list.into_iter().collect()));
+    Ok(Layer::new((width, height), header, encoding, AnyChannels::sort(list.into_iter().collect())))
+}
+
+/// The bytes of a file.
+fn written<'a, L>((width, height): (usize, usize), image: &'a Image<L>) -> Result<Vec<u8>, EncodeError>
+where
+    L: WritableLayers<'a>,
+{
+    let failed = |reason: String| EncodeError { width, height, reason };
     let mut bytes = Cursor::new(Vec::new());
-    let written = Image::from_layer(layer).write().non_parallel().to_buffered(&mut bytes);
+    let written = image.write().non_parallel().to_buffered(&mut bytes);
     written.map_err(|error| failed(error.to_string()))?;
     let mut bytes = bytes.into_inner();
-    sort_header(&mut bytes).ok_or_else(|| failed("its header cannot be read again".to_owned()))?;
+    sort_headers(&mut bytes).ok_or_else(|| failed("its header cannot be read again".to_owned()))?;
     Ok(bytes)
 }
 
-/// Sorts the entries of the header by name. The encoder writes them in an order that changes between runs.
-fn sort_header(bytes: &mut [u8]) -> Option<()> {
+/// Sorts the entries of each part's header by name. The encoder writes them in an order that changes between runs.
+fn sort_headers(bytes: &mut [u8]) -> Option<()> {
     /// Magic number and version.
     const START: usize = 8;
+    /// The bit of the version's second byte that tells of several parts. An empty header follows the last of them.
+    const SEVERAL: u8 = 0x10;
+    let several = bytes.get(5)? & SEVERAL != 0;
+    let mut start = START;
+    loop {
+        start = sort_header(bytes, start)? + 1;
+        if !several || *bytes.get(start)? == 0 {
+            return Some(());
+        }
+    }
+}
+
+/// Sorts the entries of the header that begins at a byte. Returns the place of the zero that ends it.
+fn sort_header(bytes: &mut [u8], start: usize) -> Option<usize> {
     let mut entries: Vec<&[u8]> = Vec::new();
-    let mut at = START;
+    let mut at = start;
     while *bytes.get(at)? != 0 {
         let name = bytes[at..].iter().position(|byte| *byte == 0)? + 1;
         let kind = bytes[at + name..].iter().position(|byte| *byte == 0)? + 1;
@@ -101,8 +160,8 @@ fn sort_header(bytes: &mut [u8]) -> Option<()> {
     }
     entries.sort();
     let sorted = entries.concat();
-    bytes[START..at].copy_from_slice(&sorted);
-    Some(())
+    bytes[start..at].copy_from_slice(&sorted);
+    Some(at)
 }
 
 #[cfg(test)]
@@ -135,6 +194,49 @@ mod tests {
         let names: Vec<String> = read.layer_data[0].channel_data.list.iter().map(|c| c.name.to_string()).collect();
         assert_eq!(names, ["A", "B", "near arm.A"]);
         assert_eq!(read.layer_data[0].attributes.other.len(), 20);
+    }
+
+    #[test]
+    fn parts_of_a_file_keep_names_order_and_values() {
+        let channel = |name: &str, value: f32| Channel { name: name.into(), values: vec![value; 12] };
+        let file = || {
+            let parts = vec![
+                ("rgba".to_owned(), vec![channel("R", 0.25), channel("A", 0.5)]),
+                ("près.1 \"x\"".to_owned(), vec![channel("A", 0.75)]),
+                ("arm".to_owned(), vec![channel("A", 1.0)]),
+            ];
+            encode_parts(4, 3, parts).unwrap()
+        };
+        let first = file();
+        assert!((0..8).all(|_| file() == first));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        std::fs::write(&path, &first).unwrap();
+        let read = exr::prelude::read_all_flat_layers_from_file(&path).unwrap();
+        let found: Vec<_> = read
+            .layer_data
+            .iter()
+            .map(|layer| {
+                let name = String::from_utf8(layer.attributes.layer_name.as_ref().unwrap().as_slice().to_vec());
+                let of = |c: &AnyChannel<FlatSamples>| (c.name.to_string(), c.sample_data.values_as_f32().next());
+                (name.unwrap(), layer.channel_data.list.iter().map(of).collect::<Vec<_>>())
+            })
+            .collect();
+        let one = |value| vec![("A".to_owned(), Some(value))];
+        let expected = [
+            ("rgba".to_owned(), vec![("A".to_owned(), Some(0.5)), ("R".to_owned(), Some(0.25))]),
+            ("près.1 \"x\"".to_owned(), one(0.75)),
+            ("arm".to_owned(), one(1.0)),
+        ];
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn parts_of_a_file_without_names_of_their_own_are_refused() {
+        let part = |name: &str| (name.to_owned(), vec![Channel { name: "A".into(), values: vec![0.0; 4] }]);
+        let told = |parts: Vec<_>| encode_parts(2, 2, parts).unwrap_err().to_string();
+        assert!(told(vec![part("arm"), part("leg"), part("arm")]).contains("have the name \"arm\""));
+        assert!(told(vec![]).contains("found no part"));
     }
 
     #[test]

@@ -61,6 +61,6 @@ pub mod rows;
 pub mod visible;
 
 pub use encode::{EncodeError, Format};
-pub use ids::{id_picture, matte_layers};
+pub use ids::{id_picture, matte_layers, matte_parts};
 pub use matte::{cutout, matte};
 pub use overlay::{OverlayOptions, overlay};

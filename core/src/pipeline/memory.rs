@@ -28,7 +28,7 @@ pub fn frames_at_once(
     parts: usize,
     threads: usize,
 ) -> Result<usize, PipelineError> {
-    let layers = if matches!(picture, Picture::Layers) { parts as u64 } else { 0 };
+    let layers = if matches!(picture, Picture::Layers | Picture::Parts) { parts as u64 } else { 0 };
     let one = pixels(footage).saturating_mul(RENDER + RENDER_PART * layers);
     let fits = |count: &usize| memory::ask(one.saturating_mul(*count as u64)).is_ok();
     (2..=threads).rev().find(fits).map_or_else(|| ask(footage, one).map(|()| 1), Ok)

@@ -89,7 +89,7 @@ const fn choice(id: &'static str, label: &'static str) -> Choice {
 }
 
 /// Every parameter, in the order of the stages.
-pub const ALL: [Parameter; 13] = [
+pub const ALL: [Parameter; 14] = [
     Parameter {
         id: "threads",
         label: "Threads",
@@ -167,6 +167,13 @@ pub const ALL: [Parameter; 13] = [
         id: "layers",
         label: "Layers",
         help: "Whether a matte in OpenEXR also contains the complete matte of each part, in a layer with the part's name.",
+        stage: Stage::Render,
+        kind: Kind::Flag { default: false },
+    },
+    Parameter {
+        id: "multipart",
+        label: "Multi-part",
+        help: "Whether a matte in OpenEXR also contains the complete matte of each part, as a part of the file with its name.",
         stage: Stage::Render,
         kind: Kind::Flag { default: false },
     },
