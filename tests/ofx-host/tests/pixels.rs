@@ -2,7 +2,9 @@
 
 use crate::common::{
     CUTOUT, FILTER, GENERAL, HEIGHT, IDS, MATTE, OK, OVERLAY, WHOLE, WIDTH, clean, effect, host, pattern, rendered,
+    scene,
 };
+use rototoon::project::Document;
 use rototoon_ofx_host::{Bounds, ClipSettings, Picture, Settings};
 
 /// Half a code value of a byte, and the rounding of a half.
@@ -81,6 +83,42 @@ fn every_image_format_gives_the_same_picture() {
                 }
             }
             clean(&host);
+        }
+    }
+}
+
+/// By how much a picture is taller that threads divide among them. The usual one is drawn in one piece.
+const TALLER: usize = 9;
+
+#[test]
+fn any_number_of_threads_draws_the_same_picture() {
+    let host = host();
+    let mut tall = scene();
+    tall.footage.height = TALLER * HEIGHT;
+    for part in &mut tall.parts {
+        let shapes = part.keys.values_mut().chain(part.tracks.values_mut());
+        shapes.flatten().for_each(|point| point.y *= TALLER as f64);
+    }
+    let clip = ClipSettings { y2: (TALLER * HEIGHT) as i32, ..ClipSettings::default() };
+    let mut effect = effect(&host, FILTER, &clip);
+    effect.set_frame("Source", 2.0, WIDTH, &pattern(2).repeat(TALLER));
+    effect.set_text("document", &Document::new(tall).to_json());
+    let whole = Bounds { y2: (TALLER * HEIGHT) as i32, ..WHOLE };
+    for output in [CUTOUT, MATTE, OVERLAY, IDS] {
+        set(&mut effect, output);
+        for (grow, feather) in [(0.0, 0.0), (0.0, 2.0), (1.5, 2.0)] {
+            effect.set("grow", &[grow]);
+            effect.set("feather", &[feather]);
+            let mut drawn = |cpus| {
+                host.configure(&Settings { cpus, ..Settings::default() });
+                rendered(&host, &mut effect, 2.0, whole)
+            };
+            let alone = drawn(1);
+            let row = |y: usize| &alone.values[4 * y * WIDTH..4 * (y + 1) * WIDTH];
+            assert!((100..300).all(|y| row(y).iter().any(|value| *value > 0.1)), "{output} {grow} {feather}");
+            for cpus in [2, 3, 7] {
+                assert!(drawn(cpus).values == alone.values, "{output} {grow} {feather} {cpus}");
+            }
         }
     }
 }
