@@ -121,3 +121,37 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
     fs::remove_file(folder.path().join("f_001.png")).unwrap();
     assert!(said(&[], 1).contains("f_001.png"));
 }
+
+#[test]
+fn two_drawings_bind_the_frames_between_and_stay_as_they_are() {
+    // The first drawing has the bar and the ring, the last one the ring, drawn the other way, and the post.
+    let ring = |middle: f64, way: f64| -> Vec<[f64; 2]> {
+        let at = |k: u32| (f64::from(k) * way * std::f64::consts::TAU / 40.0).sin_cos();
+        (0..40).map(|k| [middle + 15.0 * at(k).1, 40.0 + 15.0 * at(k).0]).collect()
+    };
+    let bar = json!({"points": [[20, 60], [90, 60]], "closed": false});
+    let post = json!({"points": [[62, 20], [62, 100]], "closed": false});
+    let rings = [(110.0, 1.0), (122.0, -1.0)].map(|(x, way)| json!({"points": ring(x, way), "closed": true}));
+    let drawings = json!([{"frame": 0, "strokes": [bar, rings[0]]}, {"frame": 3, "strokes": [rings[1], post]}]);
+    let (folder, path) = project(json!({"drawings": drawings}));
+    let out = folder.path().join("traced.json");
+    assert!(trace(&path, &out, &[]).status.success());
+    let document = read(&out);
+    let found = numbers(&document);
+    // The post began behind the first drawing. It has one number from there to the second drawing.
+    assert_eq!(found, [(0, vec![0, 1]), (1, vec![0, 1, 2]), (2, vec![0, 1, 2]), (3, vec![1, 2])]);
+    for (frame, own) in [(0, &drawings[0]), (3, &drawings[1])] {
+        let kept = document["traced"][frame]["strokes"].as_array().unwrap();
+        let points = |strokes: &Value| -> Vec<Vec<[f64; 2]>> {
+            let list = strokes.as_array().unwrap().iter();
+            list.map(|s| serde_json::from_value(s["points"].clone()).unwrap()).collect()
+        };
+        let far = |(a, b): (&[f64; 2], &[f64; 2])| (a[0] - b[0]).hypot(a[1] - b[1]);
+        for (a, b) in points(&own["strokes"]).iter().zip(points(&json!(kept))) {
+            assert!(a.len() == b.len() && a.iter().zip(&b).all(|pair| far(pair) < 1e-3), "frame {frame}");
+        }
+    }
+    let again = folder.path().join("again.json");
+    assert!(trace(&path, &again, &["--threads", "1"]).status.success());
+    assert_eq!(fs::read(&out).unwrap(), fs::read(&again).unwrap(), "one thread gives the same bytes");
+}

@@ -2,7 +2,8 @@
 //!
 //! [`trace`] turns a picture of a line drawing into strokes with width and colour, as long and as few as a person would
 //! draw. [`carry()`] finds the same strokes on the next drawing: a stroke keeps its number, ink that no stroke explains gets
-//! a new one, and a stroke without ink ends. [`identify`] gives the numbers to strokes that an artist drew there, and [`bind`] joins what comes from both keys.
+//! a new one, and a stroke without ink ends. [`identify`] gives the numbers to strokes that an artist drew there, and
+//! [`between()`] carries strokes from two drawings of the artist to those between them.
 //!
 //! This crate finds lines in pictures. It does not follow contours of painted parts (`rototoon-track`) and makes no
 //! in-betweens (`rototoon-tween`).
@@ -80,7 +81,7 @@ mod stroke;
 mod strokes;
 mod thin;
 
-pub use carry::{bind, carry, identify};
+pub use carry::{Key, between, bind, carry, carry_known, identify};
 pub use drawing::Drawing;
 pub use stroke::{Options, Stroke, Style, Tracked};
 

@@ -5,89 +5,80 @@ mod characters;
 mod common;
 
 use characters::{Character, Manner, cat, drawn, flower, look, penguin, right, strokes, walker};
-use rototoon_lines::{Tracked, bind, carry, identify};
+use rototoon_lines::{Key, Tracked, between, carry};
+use std::convert::Infallible;
 
 /// Asked share of the strokes' length that lies on the stroke with the right number.
 const SHARE: f64 = 0.95;
 /// Drawings from one key to the next.
 const SPAN: u32 = 6;
+/// Drawings over which strokes are carried from one key.
+const OUTWARD: u32 = 4;
 
 /// Distance at which a line is on its stroke, in pixels: what the lines of these manners wander, and a pixel.
 fn reach(manner: Manner) -> f64 {
     if manner == Manner::Clean { 2.0 } else { 3.5 }
 }
 
-/// Carries the strokes of the drawing `start` over the drawings that follow. Gives the strokes of each.
-fn carried(
-    character: Character,
-    manner: Manner,
-    start: (u32, Vec<Tracked>),
-    drawings: impl Iterator<Item = u32>,
-    mut next: usize,
-) -> Vec<Vec<Tracked>> {
-    let ink = |drawing: u32| look(&character(f64::from(drawing)), manner, drawing);
-    let (mut from, mut now) = (ink(start.0), start.1);
-    let step = |drawing: u32| {
+/// Over four characters, each clean, in pencil and with boil, the least of these shares is 0.960. Half of the twelve are
+/// tested, for time.
+///
+/// From one drawing outward over four; and between two drawn keys, where the strokes of the second key get their numbers
+/// from what was carried there, and each drawing is bound to both.
+fn check(name: &str, character: Character, manner: Manner) {
+    let at = |drawing: u32| character(f64::from(drawing));
+    let ink = |drawing: u32| look(&at(drawing), manner, drawing);
+    let parts = at(0);
+    let known = strokes(&parts);
+    let first = Key { drawing: ink(0), drawn: drawn(&parts, &known), beside: Vec::new() };
+    let share = |drawing: u32, now: &[Tracked]| right(now, &at(drawing), &known, reach(manner));
+
+    let (mut from, mut now, mut next) = (ink(0), first.all(), 1000);
+    let outward = (1..=OUTWARD).map(|drawing| {
         let to = ink(drawing);
         now = carry(&from, &now, &to, &mut next);
         from = to;
-        now.clone()
-    };
-    drawings.map(step).collect()
-}
+        share(drawing, &now)
+    });
+    let outward: Vec<f64> = outward.collect();
 
-/// From one drawing outward over four; and between two drawn keys, where the strokes of the second key get their numbers
-/// from what was carried there, and each drawing is bound to both.
-fn check(name: &str, character: Character, manner: Manner, least: f64) {
-    let at = |drawing: u32| character(f64::from(drawing));
-    let parts = at(0);
-    let known = strokes(&parts);
-    let share = |drawing: u32, now: &[Tracked]| right(now, &at(drawing), &known, reach(manner));
-    let there = carried(character, manner, (0, drawn(&parts, &known)), 1..=SPAN, 1000);
-    let outward: Vec<f64> = (1..=4).map(|k| share(k, &there[k as usize - 1])).collect();
-
-    let parts = at(SPAN);
-    let key = drawn(&parts, &strokes(&parts)).into_iter().map(|t| t.stroke).collect();
-    let key = identify(&there[SPAN as usize - 1], key, &look(&parts, manner, SPAN), &mut 2000);
-    let nearer = carried(character, manner, (SPAN, key), (SPAN / 2 + 1..SPAN).rev(), 3000);
-    let mut between = outward[..SPAN as usize / 2].to_vec();
-    for (drawing, nearer) in (SPAN / 2 + 1..SPAN).rev().zip(nearer) {
-        let ink = look(&at(drawing), manner, drawing);
-        between.push(share(drawing, &bind(nearer, &there[drawing as usize - 1], &ink, 3000)));
-    }
+    let key = at(SPAN);
+    let key = drawn(&key, &strokes(&key)).into_iter().map(|tracked| tracked.stroke).collect();
+    let mut look = |place: usize| Ok::<_, Infallible>(ink(place as u32));
+    let Ok((found, _)) = between(&first, SPAN as usize - 1, &mut look, key, &mut 1000);
+    let between: Vec<f64> = (1..SPAN).zip(&found).map(|(drawing, now)| share(drawing, now)).collect();
     println!("{name} {manner:?}: outward {outward:.3?}, between keys {between:.3?}");
-    assert!(outward.iter().chain(&between).all(|&s| s >= least), "{name} {manner:?}: {outward:.3?} {between:.3?}");
+    assert!(outward.iter().chain(&between).all(|&s| s >= SHARE), "{name} {manner:?}: {outward:.3?} {between:.3?}");
 }
 
 #[test]
 fn a_penguin_in_clean_lines() {
-    check("penguin", penguin, Manner::Clean, SHARE);
+    check("penguin", penguin, Manner::Clean);
 }
 
 #[test]
 fn a_penguin_in_pencil() {
-    check("penguin", penguin, Manner::Rough, SHARE);
+    check("penguin", penguin, Manner::Rough);
 }
 
 #[test]
 fn a_walker_in_clean_lines() {
-    check("walker", walker, Manner::Clean, SHARE);
+    check("walker", walker, Manner::Clean);
 }
 
 #[test]
 fn a_walker_whose_lines_boil() {
-    // 0.948 on the drawing before the second key: one of 54 figures is below what is asked.
-    check("walker", walker, Manner::Boil, 0.94);
+    check("walker", walker, Manner::Boil);
 }
 
 #[test]
 fn a_cat_whose_lines_boil() {
-    check("cat", cat, Manner::Boil, SHARE);
+    check("cat", cat, Manner::Boil);
 }
 
 #[test]
 fn a_flower_in_pencil() {
-    check("flower", flower, Manner::Rough, SHARE);
+    check("flower", flower, Manner::Rough);
 }
 
 #[test]

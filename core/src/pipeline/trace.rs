@@ -2,7 +2,7 @@
 
 use super::{PipelineError, frames, memory};
 use crate::export::SvgStroke;
-use crate::lines::{Drawing, Options, Stroke, Tracked, carry, identify};
+use crate::lines::{Drawing, Key, Options, Stroke, Tracked, between, carry};
 use crate::project::Document;
 use crate::project::drawings::{Drawing as Drawn, DrawnStroke};
 use crate::project::traced::{TracedDrawing, TracedStroke};
@@ -18,10 +18,11 @@ const PLAIN: f64 = 2.0;
 /// rayon pool; the result does not depend on the pool.
 ///
 /// Work begins on the document's first drawing within `range` (the complete footage where it is `None`), whose strokes get
-/// the numbers 0, 1, … (or the next free ones, where frames outside of `range` have traced strokes). Without drawings it begins on the first frame, which is traced. From there strokes are carried from
-/// frame to frame, forwards and backwards. Frames with a drawing keep that drawing's strokes; each gets the number of the
-/// carried stroke that it lies on, or a new one. Traced strokes of frames outside of `range` stay; their numbers are not
-/// used again.
+/// the numbers 0, 1, … (or the next free ones, where frames outside of `range` have traced strokes). Without drawings it begins on the first frame,
+/// which is traced. From there strokes are carried from frame to frame, forwards and backwards. Frames with a drawing keep
+/// that drawing's strokes; each gets the number of the carried stroke that it lies on, or a new one. Frames between two
+/// drawings are [bound to both](between()). Traced strokes of frames outside of `range` stay; their numbers are not used
+/// again.
 ///
 /// # Errors
 ///
@@ -48,12 +49,14 @@ pub fn trace(
     let sequence = frames(document, folder)?;
     let drawn: Vec<&Drawn> = drawn.iter().filter(|d| range.contains(&d.frame) && !d.strokes.is_empty()).collect();
     let used = earlier.iter().filter(|d| !range.contains(&d.frame)).flat_map(|d| &d.strokes).map(|s| s.track + 1).max();
+    // Frames between two drawings are looked at twice.
+    let twice: usize = drawn.windows(2).map(|pair| (pair[0].frame + 1..pair[1].frame).count()).sum();
     let mut tracing = Tracing {
         frames: &sequence,
         drawn,
         options,
         progress,
-        all: range.clone().count(),
+        all: range.clone().count() + twice,
         done: 0,
         next: used.unwrap_or(0),
     };
@@ -101,44 +104,60 @@ struct Tracing<'a> {
 
 impl Tracing<'_> {
     fn all(&mut self, range: &RangeInclusive<FrameNumber>) -> Result<Vec<TracedDrawing>, PipelineError> {
-        let start = self.drawn.first().map_or(*range.start(), |drawing| drawing.frame);
+        let drawn = std::mem::take(&mut self.drawn);
+        let start = drawn.first().map_or(*range.start(), |drawing| drawing.frame);
         let first = self.look(start)?;
-        let strokes = match self.drawn(start) {
-            Some(strokes) => strokes,
-            None => first.strokes(),
-        };
+        let strokes = drawn.first().map_or_else(|| first.strokes(), |drawing| of_drawing(drawing));
         let numbers = self.next..;
         let strokes: Vec<Tracked> = numbers.zip(strokes).map(|(track, stroke)| Tracked { track, stroke }).collect();
         self.next += strokes.len();
-        let mut found = vec![(start, strokes.clone())];
-        self.along(&first, &strokes, (*range.start()..start).rev(), &mut found)?;
-        self.along(&first, &strokes, start + 1..=*range.end(), &mut found)?;
+        let mut key = Key { drawing: first, drawn: strokes, beside: Vec::new() };
+        let mut found = vec![(start, key.drawn.clone())];
+        self.outward(&key, (*range.start()..start).rev(), &mut found)?;
+        let mut at = start;
+        for drawing in drawn.iter().skip(1) {
+            key = self.between(&key, at, drawing, &mut found)?;
+            at = drawing.frame;
+        }
+        self.outward(&key, at + 1..=*range.end(), &mut found)?;
         self.progress.report("Tracing", 1.0)?;
         Ok(found.into_iter().map(|(frame, strokes)| written(frame, &strokes)).collect())
     }
 
-    /// Carries strokes from frame to frame. Two frames are in memory at a time.
-    fn along(
+    /// Carries the strokes of a key from frame to frame. Two frames are in memory at a time.
+    fn outward(
         &mut self,
-        first: &Drawing,
-        strokes: &[Tracked],
+        key: &Key,
         frames: impl Iterator<Item = FrameNumber>,
         found: &mut Vec<(FrameNumber, Vec<Tracked>)>,
     ) -> Result<(), PipelineError> {
         let mut before: Option<(Drawing, Vec<Tracked>)> = None;
         for frame in frames {
-            let (from, last) = before.as_ref().map_or((first, strokes), |(drawing, strokes)| (drawing, strokes));
+            let (from, last) = before.take().map_or((None, key.all()), |(drawing, strokes)| (Some(drawing), strokes));
             let drawing = self.look(frame)?;
-            let mut next = self.next;
-            let mut carried = carry(from, last, &drawing, &mut next);
-            if let Some(own) = self.drawn(frame) {
-                carried = identify(&carried, own, &drawing, &mut next);
-            }
-            self.next = next;
+            let carried = carry(from.as_ref().unwrap_or(&key.drawing), &last, &drawing, &mut self.next);
             found.push((frame, carried.clone()));
             before = Some((drawing, carried));
         }
         Ok(())
+    }
+
+    /// Carries the strokes of the key on frame `from` to the next drawing. Returns it as a key.
+    fn between(
+        &mut self,
+        key: &Key,
+        from: FrameNumber,
+        to: &Drawn,
+        found: &mut Vec<(FrameNumber, Vec<Tracked>)>,
+    ) -> Result<Key, PipelineError> {
+        let frames: Vec<FrameNumber> = (from + 1..to.frame).collect();
+        let mut next = self.next;
+        let mut look = |place: usize| self.look(frames.get(place - 1).copied().unwrap_or(to.frame));
+        let (drawings, second) = between(key, frames.len(), &mut look, of_drawing(to), &mut next)?;
+        self.next = next;
+        found.extend(frames.into_iter().zip(drawings));
+        found.push((to.frame, second.drawn.clone()));
+        Ok(second)
     }
 
     /// The ink of a frame.
@@ -147,12 +166,11 @@ impl Tracing<'_> {
         self.done += 1;
         Ok(Drawing::new(self.frames.picture(frame)?, self.options))
     }
+}
 
-    /// The strokes drawn on a frame.
-    fn drawn(&self, frame: FrameNumber) -> Option<Vec<Stroke>> {
-        let drawing = self.drawn.iter().find(|drawing| drawing.frame == frame)?;
-        Some(drawing.strokes.iter().map(of_drawn).collect())
-    }
+/// The strokes of a drawing.
+fn of_drawing(drawing: &Drawn) -> Vec<Stroke> {
+    drawing.strokes.iter().map(of_drawn).collect()
 }
 
 fn of_drawn(drawn: &DrawnStroke) -> Stroke {

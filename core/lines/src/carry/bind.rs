@@ -1,36 +1,124 @@
-//! A drawing between two keys: the strokes that come from both of them.
+//! A drawing to which strokes came from several sides: one set of strokes for its ink.
 //!
-//! The nearer key knows better how the drawing looks, so its strokes are taken. A stroke that only the farther key has is
-//! taken too, where the drawing has ink for it that no other stroke explains. So a stroke that appears or vanishes between
-//! the keys is there as long as its ink is.
+//! The sides come in the order of trust. All strokes of the first one are taken. A stroke of a later one is taken where
+//! nobody before it has its number, and where the drawing has ink for it that no other stroke explains. So a stroke that
+//! appears or vanishes between two keys is there as long as its ink is.
+//!
+//! A stroke that comes from several sides is as long as the sides together: a part of it that is hidden on one key is
+//! known from the other. What goes on from the end of the first side's line, on ink that nobody explains, lengthens it.
 
 use super::EXPLAINS;
 use super::samples::{Cells, of_line};
 use crate::drawing::Drawing;
 use crate::stroke::{Stroke, Tracked};
-use rototoon_base::geometry::Point;
+use rototoon_base::geometry::{Point, polyline};
+use std::collections::BTreeMap;
 
 /// Share of a stroke that others explain, from which it is one of them.
 const SAME: f64 = 0.5;
+/// Length of the shortest piece that lengthens a stroke, in distances in which a stroke explains ink.
+const LEAST: f64 = 1.0;
+/// Distance of a piece from the end that it lengthens, in the same unit.
+const JOINS: f64 = 2.0;
 
-/// The strokes of `nearer` and those of `farther` that it lacks, on `drawing`. Numbers from `new` on are those that the
-/// nearer key's strokes got on the way: they give way to strokes that the farther key knows.
-pub fn bind(nearer: Vec<Tracked>, farther: &[Tracked], drawing: &Drawing, new: usize) -> Vec<Tracked> {
-    let reach = EXPLAINS * drawing.unit + 0.5 * drawing.width;
-    let dense = |stroke: &Stroke| -> Vec<Point> {
-        of_line(&stroke.points, stroke.closed, 0.5 * reach).into_iter().map(|sample| sample.place).collect()
-    };
-    let (mut kept, fresh): (Vec<Tracked>, Vec<Tracked>) = nearer.into_iter().partition(|s| s.track < new);
-    let mut explained: Vec<Point> = kept.iter().flat_map(|s| dense(&s.stroke)).collect();
-    for more in farther.iter().cloned().chain(fresh) {
-        let own = dense(&more.stroke);
-        let cells = Cells::new(explained.iter().copied(), reach);
-        let near = |p: &&Point| cells.near(**p, reach).any(|k| explained[k].distance(**p) <= reach);
-        let shared = own.iter().filter(near).count() as f64;
-        if kept.iter().all(|s| s.track != more.track) && shared < SAME * own.len() as f64 {
-            explained.extend(own);
-            kept.push(more);
+/// The strokes of the first side, and what the others know besides, on `drawing`.
+pub fn bind(sides: impl IntoIterator<Item = Vec<Tracked>>, drawing: &Drawing) -> Vec<Tracked> {
+    let mut sides = sides.into_iter();
+    let mut bound = Bound::new(EXPLAINS * drawing.unit + 0.5 * drawing.width);
+    sides.next().unwrap_or_default().into_iter().for_each(|stroke| bound.add(stroke));
+    for more in sides.flatten().filter(|s| s.stroke.points.len() > 1) {
+        match bound.place.get(&more.track) {
+            Some(&at) => bound.lengthen(at, &more.stroke),
+            None if bound.explained(&bound.dense(&more.stroke)) < SAME => bound.add(more),
+            None => {}
         }
     }
-    kept
+    bound.strokes
+}
+
+/// The strokes that are taken.
+struct Bound {
+    strokes: Vec<Tracked>,
+    /// The place of each number among them.
+    place: BTreeMap<usize, usize>,
+    /// Points along them.
+    points: Vec<Point>,
+    cells: Cells,
+    /// Distance in which a stroke explains ink.
+    reach: f64,
+}
+
+impl Bound {
+    fn new(reach: f64) -> Self {
+        let (strokes, place, points) = (Vec::new(), BTreeMap::new(), Vec::new());
+        Self { strokes, place, points, cells: Cells::new(std::iter::empty(), reach), reach }
+    }
+
+    fn dense(&self, stroke: &Stroke) -> Vec<Point> {
+        of_line(&stroke.points, stroke.closed, 0.5 * self.reach).into_iter().map(|sample| sample.place).collect()
+    }
+
+    fn add(&mut self, tracked: Tracked) {
+        let own = self.dense(&tracked.stroke);
+        self.cover(own);
+        self.place.insert(tracked.track, self.strokes.len());
+        self.strokes.push(tracked);
+    }
+
+    fn cover(&mut self, own: Vec<Point>) {
+        own.iter().enumerate().for_each(|(k, &p)| self.cells.add(self.points.len() + k, p));
+        self.points.extend(own);
+    }
+
+    fn is_explained(&self, p: Point) -> bool {
+        self.cells.near(p, self.reach).any(|k| self.points[k].distance(p) <= self.reach)
+    }
+
+    /// The share of points that strokes explain.
+    fn explained(&self, points: &[Point]) -> f64 {
+        points.iter().filter(|&&p| self.is_explained(p)).count() as f64 / points.len().max(1) as f64
+    }
+
+    /// Adds to a stroke what `other`, the same stroke of another side, has beyond its ends.
+    fn lengthen(&mut self, at: usize, other: &Stroke) {
+        if self.strokes[at].stroke.closed || other.closed {
+            return;
+        }
+        let free: Vec<bool> = other.points.iter().map(|&p| !self.is_explained(p)).collect();
+        let places: Vec<usize> = (0..free.len()).collect();
+        for run in places.chunk_by(|&a, &b| free[a] == free[b]).filter(|run| free[run[0]]) {
+            let points = &other.points[run[0]..run[run.len() - 1] + 1];
+            if polyline::length(points, false) < LEAST * self.reach {
+                continue;
+            }
+            if extended(&mut self.strokes[at].stroke, other, run, JOINS * self.reach) {
+                let own = of_line(points, false, 0.5 * self.reach).into_iter().map(|sample| sample.place).collect();
+                self.cover(own);
+            }
+        }
+    }
+}
+
+/// Joins the points `run` of `other` to an end of a stroke, if one of theirs is within `reach` of it.
+fn extended(stroke: &mut Stroke, other: &Stroke, run: &[usize], reach: f64) -> bool {
+    let (first, last) = (run[0], run[run.len() - 1]);
+    let ends = [stroke.points[0], stroke.points[stroke.points.len() - 1]];
+    let gaps =
+        [(0, first), (0, last), (1, first), (1, last)].map(|(end, k)| (ends[end].distance(other.points[k]), end, k));
+    let Some(&(gap, end, joined)) = gaps.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else { return false };
+    if gap > reach {
+        return false;
+    }
+    let mut order: Vec<usize> = run.to_vec();
+    // At the stroke's start the joined point comes last, at its end first.
+    if (joined == first) == (end == 0) {
+        order.reverse();
+    }
+    let at = if end == 0 { 0 } else { stroke.points.len() };
+    stroke.points.splice(at..at, order.iter().map(|&k| other.points[k]));
+    if !stroke.widths.is_empty() {
+        let own = if end == 0 { stroke.widths[0] } else { stroke.widths[stroke.widths.len() - 1] };
+        stroke.widths.splice(at..at, order.iter().map(|&k| other.widths.get(k).copied().unwrap_or(own)));
+    }
+    true
 }

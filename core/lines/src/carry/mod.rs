@@ -5,9 +5,10 @@
 //! 2. [`follow`] lays each stroke onto the ink there. A stroke that is mostly off the ink has ended.
 //! 3. [`rest`]: ink that no stroke explains lengthens strokes or begins new ones, with numbers of their own.
 //!
-//! Between two drawn keys strokes come from both: [`bind()`].
+//! Between two drawn keys strokes come from both: [`between()`].
 
 mod belief;
+mod between;
 mod bind;
 mod context;
 mod follow;
@@ -16,6 +17,7 @@ mod register;
 mod rest;
 mod samples;
 
+pub use between::{Key, between};
 pub use bind::bind;
 pub use identify::identify;
 
@@ -40,8 +42,24 @@ const NEW: f64 = 3.0;
 /// The strokes of the drawing `from` on the drawing `to`. New strokes get numbers from `next` on, which is raised. If the
 /// drawings have nothing to do with each other, all strokes are new.
 pub fn carry(from: &Drawing, strokes: &[Tracked], to: &Drawing, next: &mut usize) -> Vec<Tracked> {
+    let (mut out, mut rests) = carried(from, strokes, to);
+    rests.retain(|rest| polyline::length(&rest.points, rest.closed) >= NEW * to.unit + to.width);
+    for rest in rests {
+        out.push(Tracked { track: *next, stroke: finish::finished(&rest, &to.picture, to.unit) });
+        *next += 1;
+    }
+    out
+}
+
+/// As [`carry()`], without new strokes.
+pub fn carry_known(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> Vec<Tracked> {
+    carried(from, strokes, to).0
+}
+
+/// The strokes on the drawing `to`, and its ink that no stroke explains.
+fn carried(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> (Vec<Tracked>, Vec<Walked>) {
     if to.graph.branches.is_empty() {
-        return Vec::new();
+        return (Vec::new(), Vec::new());
     }
     let unit = to.unit;
     let mut strokes: Vec<Tracked> = strokes.iter().filter(|s| s.stroke.points.len() > 1).cloned().collect();
@@ -67,18 +85,9 @@ pub fn carry(from: &Drawing, strokes: &[Tracked], to: &Drawing, next: &mut usize
         .map(|s| s.place)
         .collect();
     let rests = rest::left(&to.lines(), &covered, reach, NEW * unit);
-    let mut rests = rest::lengthened(&mut lines, rests, reach);
-    rests.retain(|rest| polyline::length(&rest.points, rest.closed) >= NEW * unit + to.width);
-    let mut out: Vec<Tracked> = numbers
-        .par_iter()
-        .zip(&lines)
-        .map(|(&k, (points, closed))| finished(&strokes[k], points, *closed, to))
-        .collect();
-    for rest in rests {
-        out.push(Tracked { track: *next, stroke: finish::finished(&rest, &to.picture, unit) });
-        *next += 1;
-    }
-    out
+    let rests = rest::lengthened(&mut lines, rests, reach);
+    let known = |(&k, (points, closed)): (&usize, &(Vec<Point>, bool))| finished(&strokes[k], points, *closed, to);
+    (numbers.par_iter().zip(&lines).map(known).collect(), rests)
 }
 
 /// A stroke at its expected place: shifts between its registered points are interpolated.

@@ -51,12 +51,14 @@ pub struct Cells {
 impl Cells {
     /// The cells of points; `size` is the usual distance of searches in pixels.
     pub fn new(places: impl Iterator<Item = Point>, size: f64) -> Self {
-        let mut cells: BTreeMap<(i32, i32), Vec<u32>> = BTreeMap::new();
-        let size = size.max(1e-3);
-        for (k, p) in places.enumerate() {
-            cells.entry(Self::cell(p, size)).or_default().push(k as u32);
-        }
-        Self { size, cells }
+        let mut found = Self { size: size.max(1e-3), cells: BTreeMap::new() };
+        places.enumerate().for_each(|(k, p)| found.add(k, p));
+        found
+    }
+
+    /// Adds the point of index `k`.
+    pub fn add(&mut self, k: usize, p: Point) {
+        self.cells.entry(Self::cell(p, self.size)).or_default().push(k as u32);
     }
 
     fn cell(p: Point, size: f64) -> (i32, i32) {

@@ -1,0 +1,153 @@
+//! Strokes between two drawings of the artist, which bind the drawings between them from both sides.
+//!
+//! 1. The strokes of the first key are carried forwards up to the second key. The strokes drawn there get their numbers
+//!    from those that came ([`identify`]).
+//! 2. The strokes of the second key are carried backwards.
+//! 3. Each drawing between is [bound](bind()): the nearer key knows better how the drawing looks, so its strokes come
+//!    first. Those that only the farther key has come next, and then those that neither key has: they began on the way.
+//!
+//! A stroke may be lost on the way to the second key. The stroke drawn there then has another number, until it meets the
+//! lost one on its way back. There it takes that number, on all drawings.
+//!
+//! What began on the way gets its number forwards only, so a line that neither key has is one stroke on all drawings. It
+//! also goes on behind the second key. A stroke that the first key has and the second one lacks has ended there.
+//!
+//! Pictures are looked at twice, in order and back, so that no more than two are in memory. The time is twice that of
+//! carrying from one side.
+
+use super::bind::bind;
+use super::identify::identify;
+use super::{carry, carry_known};
+use crate::drawing::Drawing;
+use crate::stroke::{Stroke, Tracked};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A drawing with its strokes.
+pub struct Key {
+    /// The drawing.
+    pub drawing: Drawing,
+    /// The strokes that the artist drew.
+    pub drawn: Vec<Tracked>,
+    /// Strokes that began on the way here and that the artist did not draw. They are not on this drawing, but go on behind it.
+    pub beside: Vec<Tracked>,
+}
+
+impl Key {
+    /// All strokes that go on from here.
+    pub fn all(&self) -> Vec<Tracked> {
+        self.drawn.iter().chain(&self.beside).cloned().collect()
+    }
+}
+
+/// Carries strokes from the key `first` to a second key, on which `drawn` were drawn, with `count` drawings between them.
+/// `look` gives a drawing by its place, 1 to `count`, and `count` + 1 for the second key. Returns the strokes of the
+/// drawings between, in order, and the second key. New strokes get numbers from `next` on, which is raised.
+///
+/// # Errors
+///
+/// The first error of `look`.
+pub fn between<E>(
+    first: &Key,
+    count: usize,
+    look: &mut dyn FnMut(usize) -> Result<Drawing, E>,
+    drawn: Vec<Stroke>,
+    next: &mut usize,
+) -> Result<(Vec<Vec<Tracked>>, Key), E> {
+    let mut forwards: Vec<Vec<Tracked>> = Vec::with_capacity(count);
+    let mut before: Option<Drawing> = None;
+    let all = first.all();
+    let mut onward = |place: usize, before: &Option<Drawing>, last: Option<&Vec<Tracked>>| {
+        let drawing = look(place)?;
+        let from = before.as_ref().unwrap_or(&first.drawing);
+        let carried = carry(from, last.unwrap_or(&all), &drawing, next);
+        Ok((drawing, carried))
+    };
+    for place in 1..=count {
+        let (drawing, carried) = onward(place, &before, forwards.last())?;
+        forwards.push(carried);
+        before = Some(drawing);
+    }
+    let (drawing, came) = onward(count + 1, &before, forwards.last())?;
+    drop(before);
+    let known: BTreeSet<usize> = first.drawn.iter().map(|s| s.track).collect();
+    let drawn = identify(&came, drawn, &drawing, next);
+    let began = came.into_iter().filter(|s| !known.contains(&s.track)).collect();
+    let beside = bind([drawn.clone(), began], &drawing).split_off(drawn.len());
+    let mut back =
+        Backwards { known: &known, second: Key { drawing, drawn, beside }, found: Vec::with_capacity(count) };
+    back.run(forwards, look)?;
+    back.found.reverse();
+    Ok((back.found, back.second))
+}
+
+/// The way back from the second key.
+struct Backwards<'a> {
+    /// The numbers of the first key.
+    known: &'a BTreeSet<usize>,
+    second: Key,
+    /// The strokes of the drawings between, from the last one on.
+    found: Vec<Vec<Tracked>>,
+}
+
+impl Backwards<'_> {
+    /// Carries the strokes of the second key back, and binds the drawings between. `forwards` has what came there from the
+    /// first key.
+    fn run<E>(
+        &mut self,
+        mut forwards: Vec<Vec<Tracked>>,
+        look: &mut dyn FnMut(usize) -> Result<Drawing, E>,
+    ) -> Result<(), E> {
+        let count = forwards.len();
+        let mut after: Option<Drawing> = None;
+        let mut back = self.second.drawn.clone();
+        while let Some(there) = forwards.pop() {
+            // Where nothing comes from behind, as before a cut, what came from the front is all.
+            if back.is_empty() {
+                self.found.push(there);
+                continue;
+            }
+            let place = forwards.len() + 1;
+            let drawing = look(place)?;
+            back = carry_known(after.as_ref().unwrap_or(&self.second.drawing), &back, &drawing);
+            let renamed = self.met(&back, &there, &drawing);
+            let mut there = vec![there];
+            for strokes in forwards.iter_mut().chain(&mut self.found).chain(&mut there) {
+                rename(strokes, &renamed);
+            }
+            for strokes in [&mut back, &mut self.second.drawn, &mut self.second.beside] {
+                rename(strokes, &renamed);
+            }
+            let (there, began) = there.into_iter().flatten().partition(|s| self.known.contains(&s.track));
+            let nearer_first = 2 * place <= count + 1;
+            let sides = if nearer_first { [there, back.clone(), began] } else { [back.clone(), there, began] };
+            self.found.push(bind(sides, &drawing));
+            after = Some(drawing);
+        }
+        Ok(())
+    }
+
+    /// The strokes of the second key that meet a lost stroke of the first one: their numbers, and those that they take.
+    fn met(&self, back: &[Tracked], there: &[Tracked], drawing: &Drawing) -> BTreeMap<usize, usize> {
+        let later = self.found.iter().flatten().chain(&self.second.drawn);
+        let later: BTreeSet<usize> = later.map(|s| s.track).collect();
+        let is_lost = |s: &&Tracked| self.known.contains(&s.track) && !later.contains(&s.track);
+        let lost: Vec<Tracked> = there.iter().filter(is_lost).cloned().collect();
+        let (numbers, lines): (Vec<usize>, Vec<Stroke>) =
+            back.iter().filter(|s| !self.known.contains(&s.track)).map(|s| (s.track, s.stroke.clone())).unzip();
+        let none = usize::MAX - lines.len();
+        let found = identify(&lost, lines, drawing, &mut none.clone());
+        numbers.into_iter().zip(found).map(|(own, met)| (own, met.track)).filter(|&(_, met)| met < none).collect()
+    }
+}
+
+/// Gives strokes other numbers. If a drawing has both, the first stroke stays.
+fn rename(strokes: &mut Vec<Tracked>, renamed: &BTreeMap<usize, usize>) {
+    if renamed.is_empty() {
+        return;
+    }
+    let mut seen = BTreeSet::new();
+    strokes.retain_mut(|s| {
+        s.track = renamed.get(&s.track).copied().unwrap_or(s.track);
+        seen.insert(s.track)
+    });
+}
