@@ -6,6 +6,7 @@
 
 mod breakdown;
 mod check;
+mod doubts;
 mod error;
 pub mod memory;
 mod report;
@@ -19,6 +20,7 @@ mod unseen;
 
 pub use breakdown::{Suggestion, suggest_breakdown};
 pub use check::{check, drawing_problems};
+pub use doubts::{Doubt, doubts, traced_lines};
 pub use error::PipelineError;
 pub use report::{Counts, PartReport, Report, Weakest};
 pub use reshape::{Given, ReshapeJob, Reshaped, reshape};

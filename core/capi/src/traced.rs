@@ -148,6 +148,7 @@ mod tests {
             closed: false,
             widths: vec![2.0, 2.5],
             colour: Some([0.0, 0.5, 1.0]),
+            confidence: None,
         };
         let ring = TracedStroke { track: 1, points: vec![Point::ONE; 3], closed: true, ..TracedStroke::default() };
         let drawings =

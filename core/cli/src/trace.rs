@@ -1,6 +1,6 @@
 //! `rototoon trace`: line drawings as strokes, the same on every frame.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, line};
 use crate::{arguments, progress, project, render};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Command};
@@ -71,5 +71,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         pipeline::trace(&mut document, project::folder(from), frames, &Options { style, sensitivity }, bar)?;
         Ok(document)
     })?;
-    project::save(document, from, to)
+    let traced = document.traced().map_err(|error| Failure::Other(error.to_string()))?;
+    project::save(document, from, to)?;
+    pipeline::traced_lines(&traced).iter().for_each(|text| line("note", text));
+    Ok(())
 }

@@ -2,11 +2,13 @@
 //!
 //! ```json
 //! "traced": [{"frame": 0, "strokes": [{"track": 0, "points": [[x, y], "…"], "closed": false, "widths": [2.5, "…"],
-//!   "colour": [r, g, b]}, "…"]}, "…"]
+//!   "colour": [r, g, b], "confidence": 0.9}, "…"]}, "…"]
 //! ```
 //!
 //! - Frames ascend. `track` is the number of a stroke, the same on all frames; on one frame each number occurs once.
 //! - `widths` has one width in pixels for each point. `widths` and `colour` (sRGB, 0 to 1) are optional.
+//! - `confidence` is the probability, 0 to 1, that the stroke is the one of its number. Without it the stroke is beyond
+//!   doubt: it was drawn, or begins here.
 
 use super::Document;
 use super::drawings::lines;
@@ -30,6 +32,8 @@ pub struct TracedStroke {
     pub widths: Vec<f64>,
     /// Colour, sRGB-encoded, 0 to 1.
     pub colour: Option<Colour>,
+    /// The probability that it is the stroke of its number; `None` if it is beyond doubt.
+    pub confidence: Option<f64>,
 }
 
 /// The strokes of one frame.
@@ -110,6 +114,7 @@ fn stroke(value: &Value, place: &str) -> Result<TracedStroke, FieldError> {
         closed: flag(fields.get("closed"), &format!("{place}.closed"))?,
         widths,
         colour: given(fields, place, "colour", colour)?,
+        confidence: given(fields, place, "confidence", share)?,
     })
 }
 
@@ -125,6 +130,14 @@ fn colour(value: Option<&Value>, place: &str) -> Result<Colour, FieldError> {
     Ok(colour)
 }
 
+fn share(value: Option<&Value>, place: &str) -> Result<f64, FieldError> {
+    let found = number(value, place)?;
+    match (0.0..=1.0).contains(&found) {
+        true => Ok(found),
+        false => Err(wrong(place, &found.to_string(), "a number from 0 to 1")),
+    }
+}
+
 fn written(stroke: &TracedStroke) -> Value {
     let rounded = |v: f64| (v * 10f64.powi(DECIMALS)).round() / 10f64.powi(DECIMALS);
     let mut fields = Map::new();
@@ -137,6 +150,9 @@ fn written(stroke: &TracedStroke) -> Value {
     }
     if let Some(colour) = stroke.colour {
         fields.insert("colour".into(), json!(colour.map(|c| (f64::from(c) * 1e4).round() / 1e4)));
+    }
+    if let Some(confidence) = stroke.confidence {
+        fields.insert("confidence".into(), json!((confidence * 1e3).round() / 1e3));
     }
     Value::Object(fields)
 }
@@ -161,9 +177,10 @@ mod tests {
             closed: false,
             widths: vec![2.0, 2.5],
             colour: Some([0.0, 0.5, 1.0]),
+            confidence: Some(0.75),
         };
         let outline = TracedStroke { track: 0, points: vec![Point::ONE; 3], closed: true, ..stroke.clone() };
-        let outline = TracedStroke { widths: Vec::new(), colour: None, ..outline };
+        let outline = TracedStroke { widths: Vec::new(), colour: None, confidence: None, ..outline };
         let drawings = [
             TracedDrawing { frame: -2, strokes: vec![stroke, outline] },
             TracedDrawing { frame: 4, strokes: Vec::new() },
@@ -191,6 +208,8 @@ mod tests {
             "traced[1].frame: found 1, expected more than 1, that of traced[0]"
         );
         let widths = r#"[{"frame": 1, "strokes": [{"track": 0, "points": [[1, 2]], "closed": false, "widths": []}]}]"#;
+        let sure = r#"[{"frame": 1, "strokes": [{"track": 0, "points": [[1, 2]], "closed": false, "confidence": 2}]}]"#;
+        assert_eq!(said(sure), "traced[0] (frame 1).strokes[0].confidence: found 2, expected a number from 0 to 1");
         assert_eq!(said(widths), "traced[0] (frame 1).strokes[0].widths: found a list of 0, expected a list of 1");
     }
 }

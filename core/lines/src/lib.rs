@@ -49,7 +49,7 @@
 //! };
 //! let [first, second] = [0, 6].map(|shift| Drawing::new(cross(shift), &Options::default()));
 //! let strokes: Vec<Tracked> =
-//!     first.strokes().into_iter().enumerate().map(|(track, stroke)| Tracked { track, stroke }).collect();
+//!     first.strokes().into_iter().enumerate().map(|(track, stroke)| Tracked::sure(track, stroke)).collect();
 //! assert_eq!(strokes.len(), 2);
 //!
 //! let mut next = 2;

@@ -30,10 +30,9 @@ impl Outside {
         let (width, height) = (ink.width(), ink.height());
         let mut found = ink.map(|is_ink| if is_ink { Cell::Ink } else { Cell::Paper });
         let mut open: Vec<usize> = Vec::new();
-        let border = (0..width * height).filter(|i| {
-            let (x, y) = (i % width, i / width);
-            x == 0 || y == 0 || x + 1 == width || y + 1 == height
-        });
+        let rows = (0..width).flat_map(|x| [x, (height - 1) * width + x]);
+        let columns = (0..height).flat_map(|y| [y * width, y * width + width - 1]);
+        let border = rows.chain(columns).filter(|_| width > 0 && height > 0);
         for i in border {
             if found.data()[i] == Cell::Paper {
                 found.data_mut()[i] = Cell::Outside;

@@ -50,4 +50,13 @@ pub struct Tracked {
     pub track: usize,
     /// The stroke.
     pub stroke: Stroke,
+    /// The probability that it is the stroke of its number, 0 to 1.
+    pub confidence: f64,
+}
+
+impl Tracked {
+    /// A stroke that is beyond doubt, as where it was drawn or traced.
+    pub fn sure(track: usize, stroke: Stroke) -> Self {
+        Self { track, stroke, confidence: 1.0 }
+    }
 }

@@ -51,7 +51,7 @@ fn drawing(lines: &[Line]) -> Drawing {
 
 fn tracked(lines: &[Line]) -> Vec<Tracked> {
     let stroke = |line: &Line| Stroke { points: line.points.clone(), closed: line.closed, ..Stroke::default() };
-    lines.iter().enumerate().map(|(track, line)| Tracked { track, stroke: stroke(line) }).collect()
+    lines.iter().enumerate().map(|(track, line)| Tracked::sure(track, stroke(line))).collect()
 }
 
 /// The share of the length of `lines` that lies on the stroke with its number.

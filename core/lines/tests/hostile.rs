@@ -23,7 +23,7 @@ fn assert_sound(strokes: &[Stroke], width: usize, height: usize) {
 }
 
 fn tracked(strokes: Vec<Stroke>) -> Vec<Tracked> {
-    strokes.into_iter().enumerate().map(|(track, stroke)| Tracked { track, stroke }).collect()
+    strokes.into_iter().enumerate().map(|(track, stroke)| Tracked::sure(track, stroke)).collect()
 }
 
 #[test]

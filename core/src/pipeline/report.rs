@@ -124,7 +124,7 @@ fn counted([sure, doubtful, lost]: [usize; 3]) -> String {
 }
 
 /// Frames that rise, with runs as ranges: "3, 7-9".
-fn runs(frames: &[FrameNumber]) -> String {
+pub(super) fn runs(frames: &[FrameNumber]) -> String {
     let runs = frames.chunk_by(|a, b| *b == a + 1).map(|run| match run {
         [first, .., last] => format!("{first}-{last}"),
         [one] => one.to_string(),

@@ -109,7 +109,7 @@ impl Tracing<'_> {
         let first = self.look(start)?;
         let strokes = drawn.first().map_or_else(|| first.strokes(), |drawing| of_drawing(drawing));
         let numbers = self.next..;
-        let strokes: Vec<Tracked> = numbers.zip(strokes).map(|(track, stroke)| Tracked { track, stroke }).collect();
+        let strokes: Vec<Tracked> = numbers.zip(strokes).map(|(track, stroke)| Tracked::sure(track, stroke)).collect();
         self.next += strokes.len();
         let mut key = Key { drawing: first, drawn: strokes, beside: Vec::new() };
         let mut found = vec![(start, key.drawn.clone())];
@@ -179,12 +179,13 @@ fn of_drawn(drawn: &DrawnStroke) -> Stroke {
 }
 
 fn written(frame: FrameNumber, strokes: &[Tracked]) -> TracedDrawing {
-    let stroke = |Tracked { track, stroke }: &Tracked| TracedStroke {
+    let stroke = |Tracked { track, stroke, confidence }: &Tracked| TracedStroke {
         track: *track,
         points: stroke.points.clone(),
         closed: stroke.closed,
         widths: stroke.widths.clone(),
         colour: Some(stroke.colour),
+        confidence: (*confidence < 1.0).then_some(*confidence),
     };
     TracedDrawing { frame, strokes: strokes.iter().map(stroke).collect() }
 }

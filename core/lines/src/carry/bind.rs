@@ -5,9 +5,10 @@
 //! appears or vanishes between two keys is there as long as its ink is.
 //!
 //! A stroke that comes from several sides is as long as the sides together: a part of it that is hidden on one key is
-//! known from the other. What goes on from the end of the first side's line, on ink that nobody explains, lengthens it.
+//! known from the other. It is surer where the sides agree, and less sure where they do not. What goes on from the end of the first side's line, on ink that nobody explains, lengthens it.
 
 use super::EXPLAINS;
+use super::confidence::of_both;
 use super::samples::{Cells, of_line};
 use crate::drawing::Drawing;
 use crate::stroke::{Stroke, Tracked};
@@ -28,7 +29,7 @@ pub fn bind(sides: impl IntoIterator<Item = Vec<Tracked>>, drawing: &Drawing) ->
     sides.next().unwrap_or_default().into_iter().for_each(|stroke| bound.add(stroke));
     for more in sides.flatten().filter(|s| s.stroke.points.len() > 1) {
         match bound.place.get(&more.track) {
-            Some(&at) => bound.lengthen(at, &more.stroke),
+            Some(&at) => bound.join(at, &more),
             None if bound.explained(&bound.dense(&more.stroke)) < SAME => bound.add(more),
             None => {}
         }
@@ -77,6 +78,16 @@ impl Bound {
     /// The share of points that strokes explain.
     fn explained(&self, points: &[Point]) -> f64 {
         points.iter().filter(|&&p| self.is_explained(p)).count() as f64 / points.len().max(1) as f64
+    }
+
+    /// Joins a stroke with the same stroke of another side.
+    fn join(&mut self, at: usize, other: &Tracked) {
+        let own = &mut self.strokes[at];
+        let line = &own.stroke;
+        let near = |p: &&Point| polyline::distance(**p, &line.points, line.closed) <= self.reach;
+        let agree = other.stroke.points.iter().filter(near).count() as f64 >= SAME * other.stroke.points.len() as f64;
+        own.confidence = of_both(own.confidence, other.confidence, agree);
+        self.lengthen(at, &other.stroke);
     }
 
     /// Adds to a stroke what `other`, the same stroke of another side, has beyond its ends.

@@ -37,6 +37,8 @@ pub struct Followed {
     pub points: Vec<Point>,
     /// Whether each is on ink.
     pub on: Vec<bool>,
+    /// Mean distance from the expected places, in pixels of 540 lines.
+    pub far: f64,
 }
 
 struct Choice {
@@ -58,8 +60,9 @@ impl Ink {
         let choices: Vec<Vec<Choice>> = steps.iter().map(|step| self.choices(step)).collect();
         let chosen = self.least(&steps, &choices);
         let pick = chosen.iter().zip(&choices).map(|(&c, own)| &own[c]);
-        let (points, on) = pick.map(|choice| (choice.place, choice.on)).unzip();
-        Followed { points, on }
+        let (points, on): (Vec<Point>, Vec<bool>) = pick.map(|choice| (choice.place, choice.on)).unzip();
+        let far: f64 = steps.iter().zip(&points).map(|(step, p)| step.place.distance(*p)).sum();
+        Followed { far: far / (self.unit * points.len().max(1) as f64), points, on }
     }
 
     fn choices(&self, step: &Sample) -> Vec<Choice> {

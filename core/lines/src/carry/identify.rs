@@ -47,7 +47,7 @@ pub fn identify(carried: &[Tracked], drawn: Vec<Stroke>, drawing: &Drawing, next
     let found = assign_sparse(&choices, &vec![1.0 - SHARED; own.len()], carried.len());
     let number = |found: Option<usize>| found.map_or_else(|| (*next, *next += 1).0, |k| carried[k].track);
     let numbers: Vec<usize> = found.into_iter().map(number).collect();
-    numbers.into_iter().zip(drawn).map(|(track, stroke)| Tracked { track, stroke }).collect()
+    numbers.into_iter().zip(drawn).map(|(track, stroke)| Tracked::sure(track, stroke)).collect()
 }
 
 /// The share of the points of `a` within `reach` of a point of `b`.

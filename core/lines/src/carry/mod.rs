@@ -10,6 +10,7 @@
 mod belief;
 mod between;
 mod bind;
+mod confidence;
 mod context;
 mod follow;
 mod identify;
@@ -25,6 +26,7 @@ use crate::drawing::Drawing;
 use crate::finish;
 use crate::stroke::{Stroke, Tracked};
 use crate::strokes::Walked;
+use confidence::Signs;
 use follow::Followed;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polyline};
@@ -45,7 +47,7 @@ pub fn carry(from: &Drawing, strokes: &[Tracked], to: &Drawing, next: &mut usize
     let (mut out, mut rests) = carried(from, strokes, to);
     rests.retain(|rest| polyline::length(&rest.points, rest.closed) >= NEW * to.unit + to.width);
     for rest in rests {
-        out.push(Tracked { track: *next, stroke: finish::finished(&rest, &to.picture, to.unit) });
+        out.push(Tracked::sure(*next, finish::finished(&rest, &to.picture, to.unit)));
         *next += 1;
     }
     out
@@ -67,17 +69,20 @@ fn carried(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> (Vec<Tracked>, 
     if !registered.related {
         strokes.clear();
     }
-    let ink = follow::Ink::new(samples::of_ink(to, 0.5 * follow::STEP * unit), unit);
-    let laid: Vec<Option<(Vec<Point>, bool)>> = strokes
+    let ink = follow::Ink::new(samples::of_ink(to, 0.5 * follow::STEP * unit, false), unit);
+    let laid: Vec<Option<Laid>> = strokes
         .par_iter()
         .enumerate()
         .map(|(k, tracked)| {
             let expected = moved(&tracked.stroke, &registered.lengths[k], &registered.shifts[k]);
-            kept(ink.follow(&expected, tracked.stroke.closed), tracked.stroke.closed)
+            kept(ink.follow(&expected, tracked.stroke.closed), tracked.stroke.closed, registered.signs[k])
         })
         .collect();
-    let (numbers, mut lines): (Vec<usize>, Vec<(Vec<Point>, bool)>) =
-        laid.into_iter().enumerate().filter_map(|(k, line)| Some((k, line?))).unzip();
+    let (mut numbers, mut lines) = (Vec::new(), Vec::new());
+    for (k, laid) in laid.into_iter().enumerate().filter_map(|(k, laid)| Some((k, laid?))) {
+        numbers.push((k, laid.signs));
+        lines.push((laid.points, laid.closed));
+    }
     let reach = EXPLAINS * unit + 0.5 * to.width;
     let covered: Vec<Point> = lines
         .iter()
@@ -86,7 +91,15 @@ fn carried(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> (Vec<Tracked>, 
         .collect();
     let rests = rest::left(&to.lines(), &covered, reach, NEW * unit);
     let rests = rest::lengthened(&mut lines, rests, reach);
-    let known = |(&k, (points, closed)): (&usize, &(Vec<Point>, bool))| finished(&strokes[k], points, *closed, to);
+    for ((own, shared), line) in numbers.iter_mut().zip(confidence::shared(&lines, reach)).zip(&lines) {
+        let before = &strokes[own.0].stroke;
+        own.1 =
+            Signs { shared, longer: confidence::longer((&before.points, before.closed), (&line.0, line.1)), ..own.1 };
+    }
+    let known = |(&(k, signs), (points, closed)): (&(usize, Signs), &(Vec<Point>, bool))| Tracked {
+        confidence: strokes[k].confidence * signs.probability(),
+        ..finished(&strokes[k], points, *closed, to)
+    };
     (numbers.par_iter().zip(&lines).map(known).collect(), rests)
 }
 
@@ -116,9 +129,17 @@ fn moved(stroke: &Stroke, lengths: &[f64], shifts: &[Point]) -> Vec<Point> {
     (0..stroke.points.len()).map(shift).collect()
 }
 
+/// A stroke on the next drawing.
+struct Laid {
+    points: Vec<Point>,
+    closed: bool,
+    signs: Signs,
+}
+
 /// The stroke without the ends that are off the ink; `None` if too little is on it.
-fn kept(followed: Followed, closed: bool) -> Option<(Vec<Point>, bool)> {
-    let Followed { mut points, on } = followed;
+fn kept(followed: Followed, closed: bool, signs: Signs) -> Option<Laid> {
+    let Followed { mut points, on, far } = followed;
+    let all = on.len() as f64;
     let count = on.iter().filter(|&&on| on).count();
     if count < 2 || (count as f64) < ON_INK * on.len() as f64 {
         return None;
@@ -128,7 +149,8 @@ fn kept(followed: Followed, closed: bool) -> Option<(Vec<Point>, bool)> {
         points = points[kept].to_vec();
     }
     points.dedup_by(|a, b| a.distance(*b) < 1e-6);
-    (points.len() > 1).then_some((points, closed))
+    let signs = Signs { off: 1.0 - count as f64 / all, far, ..signs };
+    (points.len() > 1).then_some(Laid { points, closed, signs })
 }
 
 /// The longest stretch of steps that is on ink at both ends and nowhere off it for more than [`AWAY`] steps.
@@ -143,5 +165,5 @@ fn finished(before: &Tracked, points: &[Point], closed: bool, to: &Drawing) -> T
     let widths = &before.stroke.widths;
     let radius = 0.5 * if widths.is_empty() { to.width } else { widths.iter().sum::<f64>() / widths.len() as f64 };
     let walked = Walked { points: points.to_vec(), radii: vec![radius; points.len()], closed, free: [true; 2] };
-    Tracked { track: before.track, stroke: finish::finished(&walked, &to.picture, to.unit) }
+    Tracked::sure(before.track, finish::finished(&walked, &to.picture, to.unit))
 }

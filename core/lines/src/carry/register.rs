@@ -15,12 +15,15 @@
 //! smaller contexts and with the directions that the first round found.
 
 use super::belief::{Tie, choose};
+use super::confidence::Signs;
 use super::context::{Context, context, difference};
-use super::samples::{Cells, Sample, of_ink, of_line};
+use super::samples::{Cells, Sample, of_ink, of_line, of_short_line};
 use crate::drawing::Drawing;
-use crate::stroke::Tracked;
+use crate::stroke::{Stroke, Tracked};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polyline};
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
 
 /// Points of all strokes together, at most about.
 const POINTS: f64 = 800.0;
@@ -57,12 +60,39 @@ pub struct Registered {
     pub shifts: Vec<Vec<Point>>,
     /// Whether the drawings show the same thing.
     pub related: bool,
+    /// For each stroke, what tells how well it was found.
+    pub signs: Vec<Signs>,
 }
 
 /// What one round found.
 struct Round {
     shifts: Vec<Point>,
     related: bool,
+    /// For each point, how its surroundings differ.
+    unlike: Vec<f32>,
+    /// For each tie its cost.
+    torn: Vec<f32>,
+}
+
+/// A place of ink and what it costs. The order is that of the costs, then of the places.
+#[derive(Clone, Copy, PartialEq)]
+struct Found {
+    cost: f32,
+    place: usize,
+}
+
+impl Eq for Found {}
+
+impl Ord for Found {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.cost.total_cmp(&other.cost).then(self.place.cmp(&other.place))
+    }
+}
+
+impl PartialOrd for Found {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
 }
 
 /// Values that both rounds share.
@@ -72,6 +102,8 @@ struct Scene {
     stroke: Vec<usize>,
     ties: Vec<Tie>,
     step: f64,
+    /// Whether there are more strokes than points should be. Then short ones have a single point.
+    many: bool,
     /// Diagonal of the box around all points.
     size: f64,
 }
@@ -79,25 +111,28 @@ struct Scene {
 /// Finds the points of strokes of the drawing `from` on the drawing `to`.
 pub fn register(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> Registered {
     let scene = Scene::new(strokes, from.unit);
-    let (here, there) = (of_ink(from, scene.step), of_ink(to, scene.step));
-    let mut found = Round { shifts: vec![Point::ZERO; scene.points.len()], related: true };
+    let ink = |drawing: &Drawing| of_ink(drawing, scene.step, scene.many);
+    let (here, there) = (ink(from), ink(to));
+    let mut found = Round::still(&scene);
     if !there.is_empty() {
         for round in 0..2 {
             found = scene.round(round, &here, &there, &found.shifts);
         }
     }
     let related = found.related || scene.points.len() < FEWEST;
-    scene.registered(strokes, &found.shifts, related)
+    Registered { related, ..scene.registered(strokes, &found) }
 }
 
 impl Scene {
     fn new(strokes: &[Tracked], unit: f64) -> Self {
         let total: f64 = strokes.iter().map(|s| polyline::length(&s.stroke.points, s.stroke.closed)).sum();
         let step = (STEP * unit).max(total / POINTS).max(1.0);
+        let many = strokes.len() as f64 > POINTS;
         let (mut points, mut stroke, mut ties) = (Vec::new(), Vec::new(), Vec::new());
         for (k, tracked) in strokes.iter().enumerate() {
             let first = points.len();
-            points.extend(of_line(&tracked.stroke.points, tracked.stroke.closed, step));
+            let Stroke { points: line, closed, .. } = &tracked.stroke;
+            points.extend(if many { of_short_line(line, *closed, step) } else { of_line(line, *closed, step) });
             stroke.resize(points.len(), k);
             ties.extend((first + 1..points.len()).map(|i| Tie { a: i - 1, b: i, weight: ALONG }));
             ties.extend((first + REACH..points.len()).map(|i| Tie { a: i - REACH, b: i, weight: STRETCH }));
@@ -108,7 +143,7 @@ impl Scene {
         let low = points.iter().fold(Point::INFINITY, |low, p: &Sample| low.min(p.place));
         let high = points.iter().fold(Point::NEG_INFINITY, |high, p: &Sample| high.max(p.place));
         let size = if points.is_empty() { 1.0 } else { low.distance(high).max(1.0) };
-        let mut scene = Self { points, stroke, ties, step, size };
+        let mut scene = Self { points, stroke, ties, step, many, size };
         scene.tie_across();
         scene
     }
@@ -175,22 +210,26 @@ impl Scene {
             ((longer * longer + turned * turned) as f32).min(if weight == ALONG { MOST_ALONG } else { MOST })
         };
         let chosen = choose(&costs, &self.ties, &pair, ROUNDS);
-        let unlike = median(chosen.iter().enumerate().map(|(i, &c)| difference(&own[i], &theirs[candidates[i][c].1])));
-        let torn = mean(self.ties.iter().enumerate().map(|(t, tie)| pair(t, chosen[tie.a], chosen[tie.b])));
+        let differ = |(i, &c): (usize, &usize)| difference(&own[i], &theirs[candidates[i][c].1]);
+        let unlike: Vec<f32> = chosen.iter().enumerate().map(differ).collect();
+        let torn: Vec<f32> =
+            self.ties.iter().enumerate().map(|(t, tie)| pair(t, chosen[tie.a], chosen[tie.b])).collect();
+        let related = median(unlike.iter().copied()) < UNLIKE || mean(torn.iter().copied()) < TORN;
         let shifts: Vec<Point> =
             chosen.iter().enumerate().map(|(i, &c)| there[candidates[i][c].1].place - self.points[i].place).collect();
-        Round { shifts: self.smoothed(&shifts), related: unlike < UNLIKE || torn < TORN }
+        Round { shifts: self.smoothed(&shifts), related, unlike, torn }
     }
 
     /// The best places of a point, at least a step apart.
     fn candidates(&self, there: &[Sample], cost: impl Fn(usize) -> f64) -> Vec<(f32, usize)> {
-        let mut all: Vec<(f32, usize)> = (0..there.len()).map(|j| (cost(j) as f32, j)).collect();
-        all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        // Few of them are taken, so they are not all sorted.
+        let mut all: BinaryHeap<Reverse<Found>> =
+            (0..there.len()).map(|place| Reverse(Found { cost: cost(place) as f32, place })).collect();
         let mut kept: Vec<(f32, usize)> = Vec::new();
-        for found in all {
-            let apart = |other: &(f32, usize)| there[other.1].place.distance(there[found.1].place) > 0.8 * self.step;
+        while let Some(Reverse(Found { cost, place })) = all.pop() {
+            let apart = |other: &(f32, usize)| there[other.1].place.distance(there[place].place) > 0.8 * self.step;
             if kept.iter().all(apart) {
-                kept.push(found);
+                kept.push((cost, place));
                 if kept.len() == CANDIDATES {
                     break;
                 }
@@ -240,9 +279,36 @@ impl Scene {
         smooth
     }
 
-    fn registered(&self, strokes: &[Tracked], shifts: &[Point], related: bool) -> Registered {
+    /// How well each of `count` strokes was found: means over its points and ties.
+    fn signs(&self, count: usize, round: &Round) -> Vec<Signs> {
+        let mut signs = vec![Signs::default(); count];
+        let (mut points, mut ties) = (vec![0.0f64; count], vec![0.0f64; count]);
+        for (i, &k) in self.stroke.iter().enumerate() {
+            points[k] += 1.0;
+            signs[k].unlike += f64::from(round.unlike[i]);
+        }
+        for (tie, &cost) in self.ties.iter().zip(&round.torn) {
+            for k in [self.stroke[tie.a], self.stroke[tie.b]] {
+                ties[k] += 1.0;
+                signs[k].torn += f64::from(cost);
+            }
+        }
+        for (own, (n, m)) in signs.iter_mut().zip(points.into_iter().zip(ties)) {
+            own.unlike /= n.max(1.0);
+            own.torn /= m.max(1.0);
+        }
+        signs
+    }
+
+    fn registered(&self, strokes: &[Tracked], round: &Round) -> Registered {
+        let shifts = &round.shifts;
         let none = || vec![Vec::new(); strokes.len()];
-        let mut found = Registered { lengths: none(), shifts: vec![Vec::new(); strokes.len()], related };
+        let mut found = Registered {
+            lengths: none(),
+            shifts: vec![Vec::new(); strokes.len()],
+            related: true,
+            signs: self.signs(strokes.len(), round),
+        };
         for (i, &k) in self.stroke.iter().enumerate() {
             let at = match found.lengths[k].last() {
                 Some(&before) => before + self.points[i].place.distance(self.points[i - 1].place),
@@ -252,6 +318,15 @@ impl Scene {
             found.shifts[k].push(shifts[i]);
         }
         found
+    }
+}
+
+impl Round {
+    /// Nothing has moved.
+    fn still(scene: &Scene) -> Self {
+        let n = scene.points.len();
+        let (unlike, torn) = (vec![0.0; n], vec![0.0; scene.ties.len()]);
+        Self { shifts: vec![Point::ZERO; n], related: true, unlike, torn }
     }
 }
 

@@ -26,8 +26,17 @@ pub fn of_line(points: &[Point], closed: bool, step: f64) -> Vec<Sample> {
     (0..n).map(|i| Sample { place: places[i], along: along(i) }).collect()
 }
 
-/// Samples of all ink of a drawing, through its junctions.
-pub fn of_ink(drawing: &Drawing, step: f64) -> Vec<Sample> {
+/// As [`of_line`], but a line shorter than `step` has its middle only.
+pub fn of_short_line(points: &[Point], closed: bool, step: f64) -> Vec<Sample> {
+    let all = of_line(points, closed, step);
+    match &all[..] {
+        [a, b] if a.place.distance(b.place) < step => vec![Sample { place: a.place.midpoint(b.place), along: a.along }],
+        _ => all,
+    }
+}
+
+/// Samples of all ink of a drawing, through its junctions. With `few`, branches shorter than `step` have a single one.
+pub fn of_ink(drawing: &Drawing, step: f64, few: bool) -> Vec<Sample> {
     let graph = &drawing.graph;
     let line = |branch: &crate::graph::Branch| {
         let mut points = branch.points.clone();
@@ -37,7 +46,7 @@ pub fn of_ink(drawing: &Drawing, step: f64) -> Vec<Sample> {
         if let Some(junction) = branch.ends[1] {
             points.push(graph.junctions[junction].place);
         }
-        of_line(&points, branch.closed, step)
+        if few { of_short_line(&points, branch.closed, step) } else { of_line(&points, branch.closed, step) }
     };
     graph.branches.iter().flat_map(line).collect()
 }

@@ -237,7 +237,7 @@ pub fn drawn(parts: &[Part], known: &[Known]) -> Vec<Tracked> {
         closed: known.closed,
         ..Stroke::default()
     };
-    known.iter().enumerate().map(|(track, known)| Tracked { track, stroke: stroke(known) }).collect()
+    known.iter().enumerate().map(|(track, known)| Tracked::sure(track, stroke(known))).collect()
 }
 
 /// The share of the known strokes' visible length that lies on the stroke with the right number.
