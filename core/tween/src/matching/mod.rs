@@ -11,7 +11,8 @@
 //!    Rangarajan 1996): every choice keeps a weight, each choice supports the choices of its neighbours that fit it,
 //!    and the weights sharpen from round to round.
 //! 5. An exact assignment ([`rototoon_base::numeric::sparse_assignment`]) takes the resulting costs. A stroke may stay without
-//!    counterpart at a price. The pairs give a new movement around each stroke. Steps 3 to 5 run up to three times.
+//!    counterpart at a price. The pairs give a new movement around each stroke. Steps 3 to 5 run up to three times. `turns`
+//!    settles how strokes turn whose shape does not show it.
 //! 6. `pieces` examines the strokes that are left over. Such a stroke may be a piece of a stroke that was drawn in one
 //!    go on the other drawing.
 //! 7. Where much of the ink is without a sure counterpart, the drawings may be cut into pieces in different ways.
@@ -35,6 +36,7 @@ mod pieces;
 mod relaxation;
 mod similarity;
 mod start;
+mod turns;
 
 pub use super::chain::Chain;
 use super::stroke::{BadPoint, Stroke, checked};
@@ -244,6 +246,7 @@ fn chosen(
         }
         around = movement::around_each(a, b, &found, &held);
     }
+    turns::settle((a, b), &ways, &mut found);
     Ok((found, around))
 }
 

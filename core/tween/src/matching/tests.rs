@@ -314,3 +314,67 @@ proptest! {
         prop_assert!(found.pairs.iter().all(|p| (0.0..=1.0).contains(&p.confidence)));
     }
 }
+
+fn ellipse(centre: (f64, f64), radii: (f64, f64), count: usize) -> Stroke {
+    let at = |k: usize| Point::from_angle(std::f64::consts::TAU * k as f64 / count as f64);
+    let place = |k| Point::from(centre) + at(k) * Point::from(radii);
+    Stroke::new((0..count).map(place).collect(), true)
+}
+
+/// The turn by which a closed stroke is laid on its counterpart, from the start of the pair.
+fn turn_of(a: &Stroke, b: &Stroke, pair: &Pair) -> f64 {
+    let (from, to) = (super::super::line::Line::new(a), super::super::line::Line::new(b));
+    let sign = if pair.reversed { -1.0 } else { 1.0 };
+    let ways = (0..32).map(|k| f64::from(k) / 32.0);
+    let along: Vec<_> = ways.map(|s| (from.at(s), to.at((pair.start + sign * s).rem_euclid(1.0)))).collect();
+    let centre = |pick: fn(&(Point, Point)) -> Point| along.iter().map(pick).sum::<Point>() / 32.0;
+    let (p, q) = (centre(|two| two.0), centre(|two| two.1));
+    along
+        .iter()
+        .map(|two| Point::new((two.0 - p).dot(two.1 - q), (two.0 - p).perp_dot(two.1 - q)))
+        .sum::<Point>()
+        .to_angle()
+}
+
+#[test]
+fn a_shadow_does_not_turn_over_when_the_feet_above_it_change_places() {
+    let foot = |x: f64| {
+        let sole = [(-14.0, 0.0), (16.0, 0.0), (18.0, -7.0), (2.0, -12.0), (-12.0, -10.0)];
+        Stroke::new(sole.map(|p| Point::from(p) + Point::new(x, 96.0)).into(), true)
+    };
+    let leg = |x: f64, hip: f64| {
+        Stroke::new(vec![Point::new(hip, 40.0), Point::new(0.5 * (x + hip), 70.0), Point::new(x, 86.0)], false)
+    };
+    let walker = |left: f64, right: f64, width: f64| {
+        vec![ellipse((0.0, 100.0), (width, 6.0), 21), foot(left), foot(right), leg(left, -4.0), leg(right, 4.0)]
+    };
+    let (a, b) = (walker(-60.0, 55.0, 90.0), walker(40.0, -45.0, 42.0));
+    let by_hand: Vec<HandPair> = (0..5).map(|k| HandPair { from: k, to: Some(k) }).collect();
+    let found = match_strokes(&a, &b, &by_hand, &Options::default(), &Silent).unwrap();
+    let turn = turn_of(&a[0], &b[0], &found.pairs[0]);
+    assert!(turn.abs() < 0.3, "{turn}");
+}
+
+#[test]
+fn limbs_that_look_the_same_after_half_a_turn_turn_with_their_arm() {
+    // A doll with an arm of three ellipses, which swings by 140°.
+    let doll = |swing: f64| {
+        let mut strokes = vec![
+            Stroke::new([(-30.0, -60.0), (34.0, -52.0), (25.0, 60.0), (-25.0, 55.0)].map(Point::from).into(), true),
+            Stroke::new(arc((0.0, -90.0), 26.0, 0.0, 5.6, 20), true),
+        ];
+        let along = Point::from_angle(swing);
+        for k in 0..3 {
+            let centre = Point::new(34.0, -45.0) + along * (22.0 + 44.0 * f64::from(k));
+            let mut part = ellipse((0.0, 0.0), (24.0, 8.0), 20);
+            part.points.iter_mut().for_each(|p| *p = along.rotate(*p) + centre);
+            strokes.push(part);
+        }
+        strokes
+    };
+    let (a, b) = (doll(1.4), doll(1.4 - 2.44));
+    let by_hand: Vec<HandPair> = (0..5).map(|k| HandPair { from: k, to: Some(k) }).collect();
+    let found = match_strokes(&a, &b, &by_hand, &Options::default(), &Silent).unwrap();
+    let turns: Vec<f64> = found.pairs[2..].iter().map(|pair| turn_of(&a[pair.from], &b[pair.to], pair)).collect();
+    assert!(turns.iter().all(|turn| (turn + 2.44).abs() < 0.2), "{turns:?}");
+}
