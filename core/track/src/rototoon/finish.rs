@@ -126,7 +126,9 @@ impl Finished {
         let mut stage = Stage::set(kit, &self.source.job, self.source.models.clone())?;
         let width = stage.width();
         stage.covers = self.plan.occluders.iter().map(|contours| Cover::new(contours, width)).collect();
-        let (stage, refiner) = (&stage, refiner(&stage));
+        let stage = &stage;
+        let refines = kit.mechanisms.has(Mechanism::Refinement);
+        let refiner = refines.then(|| refiner(stage)).flatten();
         let refined_on = |d: usize| {
             kit.progress.report("Tracking", 0.95)?;
             Ok(match (known(d), &refiner) {
