@@ -208,7 +208,7 @@ impl Rototoon {
             let plan = |m: usize| Finish::of(scene, tasks, &stretch, &members, &paths, (m, hiding));
             let plans = (0..members.len()).map(plan).collect();
             let new = self.finish_all(&stretch, &mended, plans, frames, &shared)?;
-            let drawn = self.steadied(&mended, &wobble, frames, &rest)?;
+            let drawn = self.steadied(&stretch, &mended, &wobble, frames, &shared)?;
             let tracks = self.tracks(&mended, &new, drawn);
             for (&t, (track, new)) in stretch.iter().zip(tracks) {
                 shared.of(t).report("Tracking", 1.0)?;

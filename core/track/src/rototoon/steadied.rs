@@ -10,10 +10,10 @@ use super::pooled::Pooled;
 use super::steady::{Member, Wobble};
 use crate::contract::error::TrackError;
 use crate::contract::job::SpanTrack;
+use crate::contract::tasks::SharedProgress;
 use crate::shared::look::Looks;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::Progress;
 use std::sync::Arc;
 
 /// Times that a film which wobbles is refined again.
@@ -41,10 +41,11 @@ impl Rototoon {
     /// The control points of a stretch's members on each of their drawings, steadied and refined by turns.
     pub(super) fn steadied(
         &mut self,
+        stretch: &[usize],
         mended: &[Arc<Pooled>],
         wobble: &Wobble,
         frames: &Looks,
-        progress: &dyn Progress,
+        shared: &SharedProgress,
     ) -> Result<Vec<Drawn>, TrackError> {
         let found: Vec<Drawn> = mended.iter().map(|source| self.finished[&source.key()].points()).collect();
         let steady = |points: Vec<Drawn>| {
@@ -53,11 +54,12 @@ impl Rototoon {
         };
         let mut drawn = steady(found);
         for round in 0..if wobble.steadies() { ROUNDS } else { 0 } {
-            let kit = self.kit(frames, progress);
-            let again =
-                |(source, from): (&Arc<Pooled>, &Drawn)| self.finished[&source.key()].refined_again(kit, round, from);
-            let refined: Vec<Result<Drawn, TrackError>> =
-                mended.par_iter().with_max_len(1).zip(&drawn).map(again).collect();
+            let again = |((source, from), &t): ((&Arc<Pooled>, &Drawn), &usize)| {
+                let progress = shared.of(t);
+                self.finished[&source.key()].refined_again(self.kit(frames, &progress), round, from)
+            };
+            let members = mended.par_iter().with_max_len(1).zip(&drawn).zip(stretch);
+            let refined: Vec<Result<Drawn, TrackError>> = members.map(again).collect();
             let refined = refined.into_iter().collect::<Result<Vec<Drawn>, TrackError>>()?;
             for ((source, from), to) in mended.iter().zip(&drawn).zip(&refined) {
                 if let Some(finished) = self.finished.get_mut(&source.key()) {

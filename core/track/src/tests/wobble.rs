@@ -4,9 +4,11 @@ use super::scene::{colour_at, points};
 use crate::rototoon::mechanisms::{Mechanism, Mechanisms};
 use crate::{TrackOptions, Tracker, Tracking};
 use rototoon_base::geometry::{Point, polygon};
-use rototoon_base::scene::{Colour, Footage, FrameError, FrameNumber, FrameSource, Part, Raster, Scene, Silent};
+use rototoon_base::scene::{
+    Cancelled, Colour, Footage, FrameError, FrameNumber, FrameSource, Part, Progress, Raster, Scene, Silent,
+};
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 const SIZE: (usize, usize) = (300, 270);
 const LAST: FrameNumber = 11;
@@ -105,6 +107,19 @@ fn shake(tracking: &Tracking) -> f64 {
     (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
 }
 
+/// Progress that must not fall.
+#[derive(Default)]
+struct Rising(Mutex<f64>);
+
+impl Progress for Rising {
+    fn report(&self, step: &str, done: f64) -> Result<(), Cancelled> {
+        let mut before = self.0.lock().unwrap();
+        assert!(done >= *before, "{step}: {done} after {before}");
+        *before = done;
+        Ok(())
+    }
+}
+
 #[test]
 fn contours_are_steadied_where_lines_wobble_and_the_memory_changes_nothing() {
     let (face, scene) = (Face { wobble: WOBBLE }, Face::scene());
@@ -118,7 +133,7 @@ fn contours_are_steadied_where_lines_wobble_and_the_memory_changes_nothing() {
         jobs: Vec::new(),
     };
     let mut tracker = Tracker::new(TrackOptions::default());
-    let tracking = tracker.track(&scene, &face, &Silent).unwrap();
+    let tracking = tracker.track(&scene, &face, &Rising::default()).unwrap();
     let (lines, found) = (shake(&drawn), shake(&tracking));
     let without = TrackOptions { mechanisms: Mechanisms::without(Mechanism::Steadying), ..TrackOptions::default() };
     let before = shake(&Tracker::new(without).track(&scene, &face, &Silent).unwrap());
