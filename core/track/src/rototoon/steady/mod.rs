@@ -19,8 +19,9 @@
 //! Noise is measured where each part alone would go without corrections, so it does not depend on them.
 //!
 //! Below the least [`WOBBLE`] a film is clean, and above the largest its drawings jump: then nothing is changed at all. Six films
-//! in pencil and double lines have a noise of 0.15 to 0.6 square pixels, fourteen clean and shaded ones at most 0.05, twelve of
-//! hand-made drawings at least 3.
+//! in pencil and double lines have a noise of 0.15 to 0.6 square pixels, fifteen clean and shaded ones at most 0.14, twelve of
+//! hand-made drawings at least 3. The clean film with 0.14 has limbs that swing, and much motion. So noise has to be [`OF_MOTION`]
+//! of the motion too: it is 0.5 to 2.6 of it on the six, and at most 0.2 on that film.
 //!
 //! **Limits.** On a film of few drawings noise cannot be told from motion. Parts with a single key are not steadied.
 
@@ -48,6 +49,8 @@ const PAIRS: [usize; 2] = [4, 2];
 const USUAL: [f64; 2] = [2.0, 1.0];
 /// Noise that a centre still has after pairs were smoothed, as a share of the noise before.
 const LEFT: f64 = 0.5;
+/// Least noise of shapes that is taken for one, as a share of their motion.
+const OF_MOTION: f64 = 1.0 / 3.0;
 /// Largest noise of poses, as a multiple of that of shapes.
 const OF_SHAPE: f64 = 4.0;
 
@@ -96,7 +99,8 @@ impl Wobble {
 
     /// Whether contours are changed at all.
     pub fn steadies(&self) -> bool {
-        WOBBLE.0 <= self.shape.noise && self.shape.noise.max(self.pose.noise) <= WOBBLE.1
+        let Split { noise, motion } = self.shape;
+        noise >= WOBBLE.0.max(OF_MOTION * motion) && noise.max(self.pose.noise) <= WOBBLE.1
     }
 
     /// The control points of the parts of one stretch of time on each of their drawings, steadied.
