@@ -70,19 +70,7 @@ impl<'a> MaskRows<'a> {
 /// Writes row `y` of a mask within its bounds over zeros.
 fn fill(source: &mut Source, y: usize, row: &mut [f32], go_on: &mut dyn FnMut() -> bool) -> Option<()> {
     match source {
-        Source::Sides(rows) => {
-            let (mut from, mut covered) = (0, 0.0);
-            rows.next(|column, value| {
-                // The row is 0 already.
-                if covered != 0.0 {
-                    row[from..column].fill(covered);
-                }
-                (from, covered) = (column, value);
-            });
-            if covered != 0.0 {
-                row[from..].fill(covered);
-            }
-        }
+        Source::Sides(rows) => rows.fill(row),
         Source::Soft(feather, rows) => loop {
             feather.changes.clear();
             rows.next(|column, value| feather.changes.push((column, value)));

@@ -108,18 +108,7 @@ impl Shape {
         let mut picture = Raster::new(window.width(), window.height(), 0.0f32);
         let mut rows = self.rows(window);
         for y in 0..window.height() {
-            let row = picture.row_mut(y);
-            let (mut from, mut covered) = (0, 0.0);
-            rows.next(|column, value| {
-                // The picture is 0 already.
-                if covered != 0.0 {
-                    row[from..column].fill(covered);
-                }
-                (from, covered) = (column, value);
-            });
-            if covered != 0.0 {
-                row[from..].fill(covered);
-            }
+            rows.fill(picture.row_mut(y));
             if !go_on() {
                 return None;
             }
@@ -146,6 +135,21 @@ impl Rows<'_> {
         }
         self.next += 1;
         self.area.take(self.unit, &mut change);
+    }
+
+    /// Writes the coverage of the next row over zeros.
+    pub fn fill(&mut self, row: &mut [f32]) {
+        let (mut from, mut covered) = (0, 0.0);
+        self.next(|column, value| {
+            // The row is 0 already.
+            if covered != 0.0 {
+                row[from..column].fill(covered);
+            }
+            (from, covered) = (column, value);
+        });
+        if covered != 0.0 {
+            row[from..].fill(covered);
+        }
     }
 }
 
