@@ -5,7 +5,8 @@
 //! appears or vanishes between two keys is there as long as its ink is.
 //!
 //! A stroke that comes from several sides is as long as the sides together: a part of it that is hidden on one key is
-//! known from the other. It is surer where the sides agree, and less sure where they do not. What goes on from the end of the first side's line, on ink that nobody explains, lengthens it.
+//! known from the other. What goes on from the end of the first side's line, on ink that nobody explains, lengthens it. It is
+//! surer where the sides agree, and less sure where they do not.
 
 use super::EXPLAINS;
 use super::confidence::of_both;
