@@ -328,6 +328,12 @@ pub fn export_natron(document: &Document, spacing: f64) -> String {
     export::natron(&document.scene, spacing)
 }
 
+/// Exports the document as a script that makes masks in After Effects. Points of snapped paths are about `spacing` pixels
+/// apart.
+pub fn export_after_effects(document: &Document, spacing: f64) -> String {
+    export::after_effects(&document.scene, spacing)
+}
+
 /// Exports the document as Silhouette shapes. Points of snapped paths are about `spacing` pixels apart.
 pub fn export_silhouette(document: &Document, spacing: f64) -> String {
     export::silhouette(&document.scene, spacing)

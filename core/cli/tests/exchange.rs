@@ -317,3 +317,31 @@ fn pictures_of_ids_and_layers_are_written() {
     let both = matte("both.exr", &["--layers", "on", "--multipart", "on"], 2);
     assert!(both.contains("expected one of them") && !file("both.exr").exists() && !file("c.png").exists());
 }
+
+#[test]
+fn the_shapes_for_after_effects_are_json_with_every_key() {
+    let folder = Folder::new();
+    let (from, to) = (folder.captured(), folder.path("shapes.jsx"));
+    run(&["export", text(&from), "-o", text(&to)], 0);
+    let script = fs::read_to_string(&to).unwrap();
+    let shapes = script.split_once("var ROTOTOON = ").unwrap().1.split_once(";\n\nfunction").unwrap().0;
+    let shapes: Value = serde_json::from_str(shapes).unwrap();
+    assert_eq!((&shapes["width"], &shapes["height"], &shapes["frames"]), (&json!(64), &json!(48), &json!(9)));
+    assert_eq!(shapes["fps"], json!(12.5));
+    let read = |part: &Value| -> (String, bool, Keys) {
+        let frame = |entry: &Value| {
+            let numbers: Vec<f64> = serde_json::from_value(entry[1].clone()).unwrap();
+            (entry[0].as_i64().unwrap() as i32, numbers.chunks(2).map(|p| [p[0], p[1]]).collect())
+        };
+        let frames = part["frames"].as_array().unwrap().iter().map(frame).collect();
+        (part["name"].as_str().unwrap().into(), part["closed"].as_bool().unwrap(), frames)
+    };
+    let found: Vec<_> = shapes["parts"].as_array().unwrap().iter().map(read).collect();
+    assert_eq!(found.len(), 2);
+    for ((name, closed, keys), (wanted, is_closed, expected)) in
+        found.iter().zip([("near <line>", false, line()), ("triangle", true, triangle())])
+    {
+        assert_eq!((name.as_str(), *closed), (wanted, is_closed));
+        same(keys, &expected, 1e-4);
+    }
+}

@@ -4,7 +4,7 @@
 //! that is the work of `rototoon-document`.
 //!
 //! - [`import`]: Silhouette, Nuke and Natron shapes, SVG drawings and animations, BVH motion capture
-//! - [`export`]: Silhouette shapes, SVG, Nuke RotoPaint nodes, scripts for Natron
+//! - [`export`]: Silhouette shapes, SVG, Nuke RotoPaint nodes, scripts for Natron and After Effects
 //!
 //! The two modules do not use each other.
 //!

@@ -80,13 +80,14 @@ pub fn export(effect: &Effect) -> Result<(), Failure> {
     let text = match extension.as_str() {
         "nk" => pipeline::export_nuke(&document, SPACING),
         "py" => pipeline::export_natron(&document, SPACING),
+        "jsx" => pipeline::export_after_effects(&document, SPACING),
         "fxs" => pipeline::export_silhouette(&document, SPACING),
         "svg" => pipeline::export_svg(&document, &SvgOptions { spacing: SPACING, ..SvgOptions::default() })
             .map_err(|error| Failure::Told(error.to_string()))?,
         _ => {
             let shown = path.display();
             return Err(Failure::Told(format!(
-                "export file: found {shown}, expected a name that ends in .nk, .py, .fxs or .svg"
+                "export file: found {shown}, expected a name that ends in .nk, .py, .jsx, .fxs or .svg"
             )));
         }
     };

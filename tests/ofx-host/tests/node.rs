@@ -226,9 +226,13 @@ fn motion_becomes_keys_and_shapes_become_files() {
         assert!((effect.get("translate", time)[0] - 2.0 * f64::from(frame)).abs() < 1e-3);
     }
     let folder = tempfile::tempdir().unwrap();
-    for (name, said) in
-        [("a größe.nk", "RotoPaint"), ("a.py", "createBezier"), ("a.fxs", "<Silhouette"), ("b.SVG", "<svg")]
-    {
+    for (name, said) in [
+        ("a größe.nk", "RotoPaint"),
+        ("a.py", "createBezier"),
+        ("a.jsx", "ADBE Mask"),
+        ("a.fxs", "<Silhouette"),
+        ("b.SVG", "<svg"),
+    ] {
         let file = folder.path().join(name);
         effect.set_text("exportFile", file.to_str().unwrap());
         assert_eq!(effect.press("export"), OK, "{:?}", host.messages());
@@ -260,7 +264,7 @@ fn motion_becomes_keys_and_shapes_become_files() {
     let _ = (host.log(), host.messages());
     effect.set_text("exportFile", folder.path().join("a.txt").to_str().unwrap());
     assert_eq!(effect.press("export"), "kOfxStatFailed");
-    assert!(host.messages().last().unwrap().contains(".nk, .py, .fxs or .svg"));
+    assert!(host.messages().last().unwrap().contains(".nk, .py, .jsx, .fxs or .svg"));
 }
 
 /// The stored document, in either form.

@@ -1,12 +1,14 @@
 //! Exports the tracked parts to other programs.
 //!
 //! - [`svg`](mod@svg): one animated path for each part and each stroke
+//! - [`after_effects`](mod@after_effects): a script that makes masks in After Effects
 //! - [`natron`](mod@natron): a script that makes a Roto node in Natron
 //! - [`nuke`](mod@nuke): a RotoPaint node for Nuke
 //! - [`silhouette`](mod@silhouette): Silhouette shapes
 //! - [`outlines`]: contours with the same number of points on every frame
 //! - [`xml`]: escaping of text for XML
 
+pub mod after_effects;
 pub mod natron;
 pub mod nuke;
 pub mod outlines;
@@ -14,6 +16,7 @@ pub mod silhouette;
 pub mod svg;
 pub mod xml;
 
+pub use after_effects::after_effects;
 pub use natron::natron;
 pub use nuke::nuke;
 pub use silhouette::silhouette;
