@@ -4,11 +4,11 @@ use crate::ofx::{Failure, Parameters, Properties, host};
 use openfx::sys::generic::core::{kOfxPropLabel, kOfxPropLongLabel, kOfxPropShortLabel};
 use openfx::sys::image_effect_v1::param::{
     kOfxParamPropAnimates, kOfxParamPropChoiceOption, kOfxParamPropDefault, kOfxParamPropDigits,
-    kOfxParamPropDisplayMax, kOfxParamPropDisplayMin, kOfxParamPropHint, kOfxParamPropIncrement, kOfxParamPropMax,
-    kOfxParamPropMin, kOfxParamPropParent, kOfxParamPropSecret, kOfxParamPropStringFilePathExists,
-    kOfxParamPropStringMode, kOfxParamStringIsFilePath, kOfxParamStringIsSingleLine, kOfxParamTypeBoolean,
-    kOfxParamTypeChoice, kOfxParamTypeDouble, kOfxParamTypeDouble2D, kOfxParamTypeGroup, kOfxParamTypeInteger,
-    kOfxParamTypePushButton, kOfxParamTypeRGBA, kOfxParamTypeString,
+    kOfxParamPropDisplayMax, kOfxParamPropDisplayMin, kOfxParamPropEvaluateOnChange, kOfxParamPropHint,
+    kOfxParamPropIncrement, kOfxParamPropMax, kOfxParamPropMin, kOfxParamPropParent, kOfxParamPropSecret,
+    kOfxParamPropStringFilePathExists, kOfxParamPropStringMode, kOfxParamStringIsFilePath, kOfxParamStringIsSingleLine,
+    kOfxParamTypeBoolean, kOfxParamTypeChoice, kOfxParamTypeDouble, kOfxParamTypeDouble2D, kOfxParamTypeGroup,
+    kOfxParamTypeInteger, kOfxParamTypePushButton, kOfxParamTypeRGBA, kOfxParamTypeString,
 };
 use rototoon::scene::effects::{EffectKind, EffectParameter};
 use rototoon::scene::parameters::{self, Kind};
@@ -16,6 +16,8 @@ use std::ffi::{CStr, CString};
 
 const ENDS: [&CStr; 4] = [kOfxParamPropMin, kOfxParamPropMax, kOfxParamPropDisplayMin, kOfxParamPropDisplayMax];
 
+/// Greatest value of a mark: more parts than a document has.
+const MOST_MARKED: i32 = 1_000_000;
 /// Greatest coordinate of a pair of numbers.
 const PLANE: f64 = 1e6;
 
@@ -64,7 +66,7 @@ fn type_of(kind: &EffectKind) -> &'static CStr {
         EffectKind::File | EffectKind::Text | EffectKind::Hidden => kOfxParamTypeString,
         EffectKind::Button => kOfxParamTypePushButton,
         EffectKind::Flag(_) => kOfxParamTypeBoolean,
-        EffectKind::Integer(..) => kOfxParamTypeInteger,
+        EffectKind::Integer(..) | EffectKind::Mark => kOfxParamTypeInteger,
         EffectKind::Number(..) => kOfxParamTypeDouble,
         EffectKind::Choice(_) | EffectKind::Shared(_) => kOfxParamTypeChoice,
         EffectKind::Colour(_) => kOfxParamTypeRGBA,
@@ -79,6 +81,7 @@ fn values(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
         EffectKind::File | EffectKind::Text | EffectKind::Hidden => text(kind, properties),
         EffectKind::Button | EffectKind::Group(_) => Ok(()),
         EffectKind::Flag(default) => properties.set_int(kOfxParamPropDefault, 0, default.into()),
+        EffectKind::Mark => mark(properties),
         EffectKind::Integer(default, range, slider) => {
             properties.set_int(kOfxParamPropDefault, 0, default)?;
             let ends = ENDS.into_iter().zip(ends(range, slider));
@@ -107,6 +110,17 @@ fn values(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
         }
         EffectKind::Colour(default) => properties.set_doubles(kOfxParamPropDefault, &default),
     }
+}
+
+/// A number whose keys are marks in the host's timeline. The picture does not depend on it.
+fn mark(properties: &Properties) -> Result<(), Failure> {
+    properties.set_int(kOfxParamPropDefault, 0, 0)?;
+    for (name, value) in ENDS.into_iter().zip([0, MOST_MARKED, 0, MOST_MARKED]) {
+        properties.set_int(name, 0, value)?;
+    }
+    // Some hosts do not have this property. They then render once more than needed.
+    let _ = properties.set_int(kOfxParamPropEvaluateOnChange, 0, 0);
+    Ok(())
 }
 
 fn text(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {

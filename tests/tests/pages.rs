@@ -24,6 +24,7 @@ fn values(kind: &EffectKind) -> (String, String) {
         EffectKind::Integer(default, [low, high], _) => {
             (format!("whole number, {}", range(low.into(), high.into())), default.to_string())
         }
+        EffectKind::Mark => ("whole number, set by the node".into(), "0".into()),
         EffectKind::Number(default, [low, high], _) => (format!("number, {}", range(low, high)), default.to_string()),
         EffectKind::Choice(labels) => (labels.join(", "), labels.first().unwrap_or(&"").to_string()),
         EffectKind::Shared(id) => match parameters::find(id).map(|parameter| parameter.kind) {

@@ -146,6 +146,13 @@ impl<'a> Effect<'a> {
         status == 0
     }
 
+    /// Moves the host's timeline to a time. Returns whether it did: hosts need not have a timeline that effects move. The
+    /// host may draw and render before this returns, so no lock may be held.
+    pub fn go_to(&self, time: f64) -> bool {
+        let suite = self.suites.timeline;
+        suite.is_some_and(|suite| call!(suite, gotoTime, self.handle.cast(), time).is_ok())
+    }
+
     /// Attaches data to an instance. [`Self::take_data`] must release it.
     pub fn set_data<T: Sync + Send>(&self, data: Box<T>) -> Result<(), Failure> {
         let properties = self.properties()?;

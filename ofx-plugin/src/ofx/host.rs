@@ -16,6 +16,7 @@ use openfx::sys::image_effect_v1::message::{OfxMessageSuiteV1, OfxMessageSuiteV2
 use openfx::sys::image_effect_v1::multi_thread::{OfxMultiThreadSuiteV1, kOfxMultiThreadSuite};
 use openfx::sys::image_effect_v1::param::{OfxParameterSuiteV1, kOfxParameterSuite};
 use openfx::sys::image_effect_v1::progress::{OfxProgressSuiteV1, OfxProgressSuiteV2, kOfxProgressSuite};
+use openfx::sys::image_effect_v1::time_line::{OfxTimeLineSuiteV1, kOfxTimeLineSuite};
 use std::ffi::CStr;
 use std::sync::atomic::{AtomicPtr, Ordering};
 use std::sync::{PoisonError, RwLock};
@@ -35,6 +36,7 @@ pub struct Suites {
     pub(super) progress: Option<ProgressSuite>,
     pub(super) interact: Option<&'static OfxInteractSuiteV1>,
     pub(super) draw: Option<&'static OfxDrawSuiteV1>,
+    pub(super) timeline: Option<&'static OfxTimeLineSuiteV1>,
 }
 
 /// The progress suite, in one of its versions.
@@ -67,6 +69,7 @@ pub fn load() -> Result<(), Failure> {
         threads: suite(host, kOfxMultiThreadSuite, 1),
         interact: suite(host, kOfxInteractSuite, 1),
         draw: suite(host, kOfxDrawSuite, 1),
+        timeline: suite(host, kOfxTimeLineSuite, 1),
         progress: v2.or_else(|| suite(host, kOfxProgressSuite, 1).map(ProgressSuite::V1)),
     };
     *SUITES.write().unwrap_or_else(PoisonError::into_inner) = Some(suites);

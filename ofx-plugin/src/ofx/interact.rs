@@ -6,6 +6,7 @@
 use super::effect::Effect;
 use super::failure::Failure;
 use super::host;
+use super::letters;
 use super::log::log;
 use super::property::{Properties, call, terminated};
 use openfx::sys::generic::core::{
@@ -170,14 +171,19 @@ impl View<'_> {
         }
     }
 
-    /// Writes a text whose lower left corner is at a place in canonical coordinates. OpenGL has no text: nothing is written.
-    pub fn text(&self, text: &str, at: [f64; 2], [r, g, b, a]: [f32; 4]) {
-        if let Some(Canvas::Suite(suite, context)) = &self.canvas {
-            let (text, at) = (terminated(text), OfxPointD { x: at[0], y: at[1] });
-            let colour = OfxRGBAColourF { r, g, b, a };
-            let alignment = kOfxDrawTextAlignmentLeft | kOfxDrawTextAlignmentBottom;
-            let _ = call!(suite, setColour, *context, &colour);
-            let _ = call!(suite, drawText, *context, text.as_ptr(), &at, alignment as c_int);
+    /// Writes a text whose lower left corner is at a place in canonical coordinates. OpenGL has no text: there the letters
+    /// are drawn as pixels ([`letters`]).
+    pub fn text(&self, text: &str, at: [f64; 2], colour: [f32; 4]) {
+        match &self.canvas {
+            Some(Canvas::Suite(suite, context)) => text_by_suite(suite, *context, text, at, colour),
+            Some(Canvas::OpenGl(gl)) => {
+                let [w, h] = self.pixel;
+                let place = |x: i32, y: i32| [at[0] + f64::from(x) * w, at[1] + (f64::from(y) + 0.5) * h];
+                let rows = letters::rows(text);
+                let ends = rows.iter().flat_map(|row| [place(row.from, row.y), place(row.to, row.y)]);
+                gl.segments(&ends.collect::<Vec<_>>(), colour);
+            }
+            None => {}
         }
     }
 }
@@ -205,6 +211,19 @@ fn draw_by_suite(
     let _ = call!(suite, draw, context, primitive, points.as_ptr(), points.len() as c_int);
 }
 
+fn text_by_suite(
+    suite: &OfxDrawSuiteV1,
+    context: OfxDrawContextHandle,
+    text: &str,
+    [x, y]: [f64; 2],
+    [r, g, b, a]: [f32; 4],
+) {
+    let (text, at, colour) = (terminated(text), OfxPointD { x, y }, OfxRGBAColourF { r, g, b, a });
+    let alignment = kOfxDrawTextAlignmentLeft | kOfxDrawTextAlignmentBottom;
+    let _ = call!(suite, setColour, context, &colour);
+    let _ = call!(suite, drawText, context, text.as_ptr(), &at, alignment as c_int);
+}
+
 /// The functions of OpenGL 1.1 that are needed to draw lines.
 struct OpenGl {
     begin: unsafe extern "C" fn(c_uint),
@@ -222,6 +241,7 @@ unsafe extern "C" {
 }
 
 impl OpenGl {
+    const LINES: c_uint = 1;
     const LINE_LOOP: c_uint = 2;
     const LINE_STRIP: c_uint = 3;
     /// The attribute groups to save: the current colour and the line state.
@@ -253,13 +273,22 @@ impl OpenGl {
         None
     }
 
-    fn line(&self, points: &[[f64; 2]], closed: bool, [r, g, b, a]: [f32; 4], width: f32) {
+    fn line(&self, points: &[[f64; 2]], closed: bool, colour: [f32; 4], width: f32) {
+        self.draw(if closed { Self::LINE_LOOP } else { Self::LINE_STRIP }, points, colour, width);
+    }
+
+    /// Draws lines, one pixel wide, each between a point and the next one.
+    fn segments(&self, points: &[[f64; 2]], colour: [f32; 4]) {
+        self.draw(Self::LINES, points, colour, 1.0);
+    }
+
+    fn draw(&self, kind: c_uint, points: &[[f64; 2]], [r, g, b, a]: [f32; 4], width: f32) {
         // SAFETY: during the drawing of an overlay the host's OpenGL context is current, in canonical coordinates.
         unsafe {
             (self.push)(Self::BITS);
             (self.colour)(r, g, b, a);
             (self.width)(width);
-            (self.begin)(if closed { Self::LINE_LOOP } else { Self::LINE_STRIP });
+            (self.begin)(kind);
             for &[x, y] in points {
                 (self.vertex)(x, y);
             }

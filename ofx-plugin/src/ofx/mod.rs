@@ -7,6 +7,7 @@
 //! - [`effect`]: effects, their clips, and their messages to the user
 //! - [`image`]: images of clips
 //! - [`interact`]: overlays over the viewer
+//! - [`letters`]: text as lines of pixels
 //! - `log`: messages that the host cannot show
 //! - [`param`]: parameters of effects
 //! - [`progress`]: the progress display
@@ -25,6 +26,7 @@ pub mod failure;
 pub mod host;
 pub mod image;
 pub mod interact;
+pub mod letters;
 mod log;
 pub mod param;
 pub mod progress;

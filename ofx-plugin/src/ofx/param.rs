@@ -105,7 +105,7 @@ impl<'a> Parameters<'a> {
         call!(self.suites.parameter, paramSetValue, self.handle(id)?, value)
     }
 
-    /// Sets a key of a flag.
+    /// Sets a key of a flag or a whole number.
     pub fn set_int_at(&self, id: &CStr, time: f64, value: i32) -> Result<(), Failure> {
         call!(self.suites.parameter, paramSetValueAtTime, self.handle(id)?, time, value)
     }
@@ -134,6 +134,11 @@ impl<'a> Parameters<'a> {
             call!(self.suites.parameter, paramGetKeyTime, handle, index, place).map(|()| time)
         };
         (0..count).map(key).collect()
+    }
+
+    /// Deletes the key of a parameter at a time.
+    pub fn delete_key(&self, id: &CStr, time: f64) -> Result<(), Failure> {
+        call!(self.suites.parameter, paramDeleteKey, self.handle(id)?, time)
     }
 
     /// Deletes all keys of a parameter.

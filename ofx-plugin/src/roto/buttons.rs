@@ -3,7 +3,7 @@
 //! Only changes by the user are handled. Each value that the plugin sets itself is reported as a change too.
 
 use super::instance::ORIGIN;
-use super::{edits, fresh, instance, page, stored, taking_out, track};
+use super::{edits, fresh, instance, marks, page, stored, taking_out, track, visits};
 use crate::description::SOURCE;
 use crate::ofx::entry::Action;
 use crate::ofx::{Effect, Failure};
@@ -42,9 +42,10 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
         "project" if path(effect)?.is_file() => load(effect),
         "save" => save(effect),
         "track" => track::track(effect, time),
-        "newPart" | "newKey" | "deleteKey" | "insertPoints" | "deletePoints" | "smoothPoints" | "deletePart" => {
-            edits::press(effect, &name, time)
-        }
+        "newPart" | "newKey" | "deleteKey" | "insertPoints" | "deletePoints" | "smoothPoints" | "deletePart"
+        | "hideHere" | "hideStretch" => edits::press(effect, &name, time),
+        "previousLost" | "nextLost" | "weakest" => visits::go(effect, &name, time),
+        "frameOffset" => marks::moved(effect),
         "part" => edits::select(effect, effect.parameters()?.text(c"part")?.trim()),
         "tool" => {
             instance(effect)?.editor().drop_work();

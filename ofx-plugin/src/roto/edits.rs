@@ -1,10 +1,10 @@
 //! Stores edits and selections in the host's parameters, each as one step of the host's undo.
 
-use super::edit::{Edit, Outcome, Refused, Selection, Work, change};
+use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change};
 use super::parts::selected;
 use super::settings::Settings;
 use super::state::State;
-use super::{fresh, instance, page, stored};
+use super::{fresh, instance, marks, page, stored};
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::geometry::Point;
 use rototoon::project::Document;
@@ -64,6 +64,7 @@ fn write(
     parameters.edit(label, || {
         if let Some(document) = document {
             parameters.set_text(c"document", &stored::encode(&document.to_json()))?;
+            marks::set(parameters, document);
         }
         if state.page != page {
             // The part of the page is gone.
@@ -200,6 +201,14 @@ fn on_parts(bench: &Bench, name: &str) -> Outcome {
             "Delete key",
             "the part has no key on this frame",
             bench.chosen().and_then(|part| change::delete_key(&mut document, bench.frame, &[part])),
+        ),
+        "hideHere" | "hideStretch" => (
+            "Hide part",
+            "",
+            bench
+                .chosen()
+                .and_then(|part| absence::toggle(&mut document, part, bench.frame, name == "hideStretch"))
+                .map(|()| true),
         ),
         _ => {
             ("Delete part", "", bench.chosen().and_then(|part| change::delete_part(&mut document, part)).map(|()| true))

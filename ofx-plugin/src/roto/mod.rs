@@ -14,11 +14,13 @@
 //! - [`measured`]: the scale at which a host really gives its pixels
 //! - [`shared`]: documents that instances share
 //! - [`overlay`]: events of the pen and the keyboard in the viewer; [`overlay_entry`]: how the host calls it; [`canvas`]: draws
-//!   over the viewer
+//!   over the viewer, with a [`pen`]
 //! - [`edit`]: what the pen does to a selection and a document, without a host
 //! - [`edits`]: stores edits and selections in the host's parameters; [`fresh`]: the document of a new composition
 //! - [`state`]: the settings of parts, and what tracks were made from; [`page`]: the settings of one part as parameters
 //! - [`buttons`]: the buttons
+//! - [`standing`]: whether a part is lost, doubtful or hidden on a frame; [`marks`]: shows it in the host's timeline;
+//!   [`visits`]: goes to such frames
 //! - [`motion`]: the motion of a part; [`taking_out`]: takes motions and shapes out
 //! - [`track`]: runs the core's tracker on the source's frames
 
@@ -29,6 +31,7 @@ pub mod edit;
 pub mod edits;
 pub mod fresh;
 pub mod instance;
+pub mod marks;
 pub mod measured;
 pub mod mixing;
 pub mod motion;
@@ -37,16 +40,19 @@ pub mod overlay;
 pub mod overlay_entry;
 pub mod page;
 pub mod parts;
+pub mod pen;
 pub mod picture;
 pub mod placement;
 pub mod regions;
 pub mod render;
 pub mod settings;
 pub mod shared;
+pub mod standing;
 pub mod state;
 pub mod stored;
 pub mod taking_out;
 pub mod track;
+pub mod visits;
 
 use crate::ofx::entry::{Action, Perform};
 use crate::ofx::{Effect, Failure};

@@ -224,7 +224,7 @@ impl State {
     }
 }
 
-/// A sum of a part's keys and corrections (FNV-1a, 64 bits). Coordinates count as documents round them.
+/// A sum of a part's keys, corrections and hidden frames (FNV-1a, 64 bits). Coordinates count as documents round them.
 fn inputs(part: &Part) -> String {
     let mut sum = 0xcbf2_9ce4_8422_2325u64;
     let mut add = |value: i64| {
@@ -249,6 +249,10 @@ fn inputs(part: &Part) -> String {
     for (frame, p) in &part.centers {
         add(i64::from(*frame) + (1 << 41));
         [p.x, p.y].map(rounded).into_iter().for_each(&mut add);
+    }
+    for [first, last] in &part.absent {
+        add(i64::from(*first) + (1 << 42));
+        add((*last).into());
     }
     format!("{sum:016x}")
 }
@@ -297,6 +301,8 @@ mod tests {
         assert!(state.is_old(&part) && !state.is_old(&before));
         state.note_tracked([&part]);
         assert!(!state.is_old(&part));
+        part.set_absent(2, 3);
+        assert!(state.is_old(&part), "hidden frames count");
         state.keep_only(&[]);
         assert!(state.tracked.is_empty());
     }

@@ -56,17 +56,25 @@ void begin_line() {
   line_colours().push_back(current_width);
 }
 size_t gl_line = 0;
+// Whether each pair of points is a line of its own, and the number of points since the beginning.
+bool gl_pairs = false;
+size_t gl_points = 0;
+void gl_new_line(bool closed) {
+  begin_line();
+  gl_line = drawn_lines().size();
+  drawn_lines().push_back(closed);
+  drawn_lines().push_back(0);
+}
 } // namespace
 
 extern "C" {
 void glBegin(unsigned mode) {
-  begin_line();
-  gl_line = drawn_lines().size();
-  drawn_lines().push_back(mode == 2);
-  drawn_lines().push_back(0);
+  gl_pairs = mode == 1, gl_points = 0;
+  if (!gl_pairs) gl_new_line(mode == 2);
 }
 void glEnd() {}
 void glVertex2d(double x, double y) {
+  if (gl_pairs && gl_points++ % 2 == 0) gl_new_line(false);
   drawn_lines()[gl_line + 1] += 1;
   drawn_lines().push_back(x);
   drawn_lines().push_back(y);
@@ -213,6 +221,13 @@ public:
   OfxStatus getKeyTime(int nth, OfxTime &time) const override {
     if (nth < 0 || size_t(nth) >= track.keys.size()) return kOfxStatErrBadIndex;
     time = std::next(track.keys.begin(), nth)->first;
+    return kOfxStatOK;
+  }
+  OfxStatus deleteKey(OfxTime time) override {
+    if (track.keys.count(time) == 0) return kOfxStatErrBadIndex;
+    remember();
+    if (track.keys.size() == 1) track.value = track.keys.begin()->second;
+    track.keys.erase(time);
     return kOfxStatOK;
   }
   OfxStatus deleteAllKeys() override {
@@ -479,6 +494,7 @@ public:
       : Recording(plugin, descriptor, context, false) {}
 
   std::atomic<double> scale{1};
+  double gone_to = NAN;
 
   TestClip *clip(const std::string &name) const { return dynamic_cast<TestClip *>(getClip(name)); }
   const std::string &getDefaultOutputFielding() const override {
@@ -532,7 +548,12 @@ public:
     return controls().cancels_left.fetch_sub(left > 0 ? 1 : 0) > 0;
   }
   double timeLineGetTime() override { return 0; }
-  void timeLineGotoTime(double) override {}
+  // As in a real host, the viewer asks for the picture of the new time before this returns.
+  void timeLineGotoTime(double time) override {
+    gone_to = time;
+    OfxRectD region = {0, 0, 0, 0};
+    getRegionOfDefinitionAction(time, {1, 1}, region);
+  }
   void timeLineGetBounds(double &first, double &last) override { first = 0, last = 100; }
 };
 
@@ -958,6 +979,15 @@ void Effect::set_numbers(rust::Str name, rust::Slice<const double> values) {
 void Effect::set_numbers_at(rust::Str name, double time, rust::Slice<const double> values) {
   if (Numbers *param = numbers_of(*impl, name)) param->track.keys[time].assign(values.begin(), values.end());
 }
+
+rust::Vec<double> Effect::key_times(rust::Str name) const {
+  rust::Vec<double> times;
+  if (Numbers *param = numbers_of(*impl, name))
+    for (const auto &key : param->track.keys) times.push_back(key.first);
+  return times;
+}
+
+double Effect::gone_to() const { return impl->effect->gone_to; }
 
 rust::Vec<double> Effect::numbers(rust::Str name, double time) const {
   rust::Vec<double> values;

@@ -35,6 +35,8 @@ public:
   rust::String parameter_property(rust::Str name, rust::Str property, int index) const;
   void set_numbers(rust::Str name, rust::Slice<const double> values);
   void set_numbers_at(rust::Str name, double time, rust::Slice<const double> values);
+  rust::Vec<double> key_times(rust::Str name) const;
+  double gone_to() const;
   rust::Vec<double> numbers(rust::Str name, double time) const;
   void set_text(rust::Str name, rust::Str value);
   rust::String text(rust::Str name) const;

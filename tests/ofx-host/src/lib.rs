@@ -203,6 +203,16 @@ impl Effect<'_> {
         self.inner.numbers(name, time)
     }
 
+    /// The times and values of a parameter's keys.
+    pub fn keys(&self, name: &str) -> Vec<(f64, Vec<f64>)> {
+        self.inner.key_times(name).into_iter().map(|time| (time, self.get(name, time))).collect()
+    }
+
+    /// The time that the plugin moved the timeline to. `None` if it has not.
+    pub fn gone_to(&self) -> Option<f64> {
+        Some(self.inner.gone_to()).filter(|time| !time.is_nan())
+    }
+
     /// Sets a text, as a user does.
     pub fn set_text(&mut self, name: &str, value: &str) {
         self.pin().set_text(name, value);

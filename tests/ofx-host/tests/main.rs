@@ -12,6 +12,7 @@
 //! - `matrix`: what hosts do, with each output
 //! - `lives`: instances on several threads, at other places and of other versions
 //! - `page`: the documentation lists the matrix's tests
+//! - `standing`: lost, doubtful and hidden parts in the viewer and in the timeline
 //! - `session`: the sample cartoon drawn, tracked and corrected in the host
 //! - `lines`: the effect that shows the images that a tracker of edges uses
 
@@ -29,3 +30,4 @@ mod page;
 mod pixels;
 mod session;
 mod shapes;
+mod standing;

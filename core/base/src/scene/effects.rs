@@ -18,6 +18,9 @@ pub enum EffectKind {
     Flag(bool),
     /// A whole number: default, least, greatest, and the ends of the slider.
     Integer(i32, [i32; 2], [i32; 2]),
+    /// A whole number that the effect itself sets with keys, which are marks in the host's timeline. The picture does not
+    /// depend on it.
+    Mark,
     /// A number: default, least, greatest, and the ends of the slider.
     Number(f64, [f64; 2], [f64; 2]),
     /// One of several, by index: labels.
@@ -72,12 +75,13 @@ const PART: Option<&str> = Some("selectedPart");
 const PICTURE: Option<&str> = Some("picture");
 const OVERLAY: Option<&str> = Some("lines");
 const TRACKING: Option<&str> = Some("tracking");
+const MARKS: Option<&str> = Some("marks");
 const MOTION: Option<&str> = Some("motion");
 const FRAMES: [i32; 2] = [-1_000_000, 1_000_000];
 const PLANE: [f64; 2] = [-1_000_000.0, 1_000_000.0];
 
 /// Rototoon Roto: every parameter in order.
-pub const ROTO: [EffectParameter; 69] = [
+pub const ROTO: [EffectParameter; 79] = [
     parameter("shapes", "Shapes", EffectKind::Group(true), None, "Where the shapes come from."),
     parameter(
         "project",
@@ -193,6 +197,20 @@ pub const ROTO: [EffectParameter; 69] = [
         EffectKind::Button,
         DRAW,
         "Deletes the selected part with all of its keys, corrections and tracks.",
+    ),
+    parameter(
+        "hideHere",
+        "Hidden here",
+        EffectKind::Button,
+        DRAW,
+        "Says that the footage does not show the selected part on this frame: it has no contour here. Press again, and it is there again.",
+    ),
+    parameter(
+        "hideStretch",
+        "Hidden while lost",
+        EffectKind::Button,
+        DRAW,
+        "The same on all frames around this one on which the selected part is lost, or hidden already.",
     ),
     parameter(
         "selectedPart",
@@ -375,6 +393,62 @@ pub const ROTO: [EffectParameter; 69] = [
         TRACKING,
         "Tracks the keys through the source's frames and stores the result in the composition.",
     ),
+    parameter(
+        "previousLost",
+        "Previous lost",
+        EffectKind::Button,
+        TRACKING,
+        "Goes to the nearest earlier frame on which a part begins to be lost.",
+    ),
+    parameter(
+        "nextLost",
+        "Next lost",
+        EffectKind::Button,
+        TRACKING,
+        "Goes to the nearest later frame on which a part begins to be lost.",
+    ),
+    parameter(
+        "weakest",
+        "Weakest frame",
+        EffectKind::Button,
+        TRACKING,
+        "Goes to the frame on which the next key helps most.",
+    ),
+    parameter(
+        "marks",
+        "Timeline marks",
+        EffectKind::Group(false),
+        None,
+        "Keys that the node sets itself, so that the host's timeline shows the key frames of the shapes and where parts are lost.",
+    ),
+    parameter(
+        "keyMarks",
+        "Key frames",
+        EffectKind::Mark,
+        MARKS,
+        "Has a key on each key frame of the shapes: the number of parts that are keyed there.",
+    ),
+    parameter(
+        "lostMarks",
+        "Lost parts",
+        EffectKind::Mark,
+        MARKS,
+        "The number of parts that are probably wrong, with keys where it changes.",
+    ),
+    parameter(
+        "doubtfulMarks",
+        "Doubtful parts",
+        EffectKind::Mark,
+        MARKS,
+        "The number of parts that deserve a look, with keys where it changes.",
+    ),
+    parameter(
+        "hiddenMarks",
+        "Hidden parts",
+        EffectKind::Mark,
+        MARKS,
+        "The number of parts that the footage does not show, with keys where it changes.",
+    ),
     parameter("motion", "Motion and export", EffectKind::Group(false), None, "Takes motions and shapes out."),
     parameter(
         "writeMotion",
@@ -420,7 +494,7 @@ pub const ROTO: [EffectParameter; 69] = [
         "Export file",
         EffectKind::File,
         MOTION,
-        "File of the shapes for other programs: .nk for Nuke, .py for Natron, .fxs for Silhouette, .svg for browsers.",
+        "File of the shapes for other programs: .nk for Nuke, .py for Natron, .jsx for After Effects, .fxs for Silhouette, .svg for browsers.",
     ),
     parameter("export", "Export", EffectKind::Button, MOTION, "Writes the shapes to the export file."),
 ];

@@ -5,6 +5,7 @@
 //! - `hit`: what is under the pen
 //! - [`handles`]: the box around the selection, with which it is moved, scaled and rotated
 //! - [`change`]: moves points, makes and deletes keys
+//! - [`absence`]: marks parts as hidden
 //! - [`points`]: inserts and deletes points
 //! - [`contour`]: makes keys of drawn contours
 //! - [`editor`]: the pen's unfinished work, and what each event makes of it
@@ -14,6 +15,7 @@
 //!
 //! Points are in pixels of the footage, y down.
 
+pub mod absence;
 pub mod change;
 pub mod contour;
 pub mod editor;
