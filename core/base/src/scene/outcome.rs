@@ -49,6 +49,12 @@ impl Verdict {
             Self::Lost
         }
     }
+
+    /// Of a part's tracked contour on a frame. None on a key, and where nothing was tracked.
+    pub fn on(part: &Part, frame: FrameNumber) -> Option<Self> {
+        let points = part.confidence.get(&frame).filter(|_| !part.keys.contains_key(&frame))?;
+        mean(points).map(Self::of)
+    }
 }
 
 impl Outcome {
@@ -74,8 +80,12 @@ impl Outcome {
 
 /// The mean confidence of a part's tracked contours by frame, without keys.
 pub fn confidence(part: &Part) -> BTreeMap<FrameNumber, f64> {
-    let tracked = part.confidence.iter().filter(|(frame, points)| !points.is_empty() && !part.keys.contains_key(frame));
-    tracked.map(|(&frame, points)| (frame, points.iter().sum::<f64>() / points.len() as f64)).collect()
+    let tracked = part.confidence.iter().filter(|(frame, _)| !part.keys.contains_key(frame));
+    tracked.filter_map(|(&frame, points)| Some((frame, mean(points)?))).collect()
+}
+
+fn mean(points: &[f64]) -> Option<f64> {
+    (!points.is_empty()).then(|| points.iter().sum::<f64>() / points.len() as f64)
 }
 
 #[cfg(test)]
@@ -93,5 +103,10 @@ mod tests {
         let expected = Outcome { sure: vec![1], doubtful: vec![2], lost: vec![-1, 3, 4, 5] };
         assert_eq!(Outcome::of(&part), expected, "the key on frame 0 is beyond doubt");
         assert_eq!(Outcome::of(&Part::default()), Outcome::default());
+        use Verdict::{Doubtful, Lost, Sure};
+        let on = [0, 1, 2, 3, 4, 5].map(|frame| Verdict::on(&part, frame));
+        assert_eq!(on, [None, Some(Sure), Some(Doubtful), Some(Lost), Some(Lost), None]);
+        part.confidence.insert(6, Vec::new());
+        assert_eq!(Verdict::on(&part, 6), None, "a contour without points");
     }
 }

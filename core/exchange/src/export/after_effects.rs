@@ -15,6 +15,7 @@
 //! Limits: masks do not order parts in depth, they are united. An open part becomes an open mask, which has no matte. A
 //! layer whose time is remapped or stretched is refused, because its frames are not those of the footage.
 
+use super::coordinate;
 use super::outlines::Outlines;
 use rototoon_base::scene::{FrameNumber, Part, Scene, palette};
 use std::fmt::Write;
@@ -148,16 +149,10 @@ fn part(out: &mut String, part: &Part, index: usize, first: FrameNumber, keys: &
     for (k, (frame, points)) in keys.iter().enumerate() {
         let frame = i64::from(*frame) - i64::from(first);
         *out += if k > 0 { ",\n  " } else { "\n  " };
-        let numbers = points.iter().flat_map(|p| [number(p.x), number(p.y)]);
+        let numbers = points.iter().flat_map(|p| [coordinate(p.x), coordinate(p.y)]);
         let _ = write!(out, "[{frame}, [{}]]", numbers.collect::<Vec<_>>().join(", "));
     }
     *out += "]}";
-}
-
-/// A coordinate to a ten-thousandth of a pixel.
-fn number(value: f64) -> String {
-    let rounded = (value * 1e4).round() / 1e4;
-    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
 /// A text for JavaScript and JSON, in ASCII.

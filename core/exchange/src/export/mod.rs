@@ -30,3 +30,9 @@ fn nearest_first(scene: &Scene) -> Vec<usize> {
     order.sort_by(|&a, &b| scene.parts[b].depth.total_cmp(&scene.parts[a].depth).then(b.cmp(&a)));
     order
 }
+
+/// A coordinate to a ten-thousandth of a pixel, as scripts take it. A whole number has no point, and −0 is 0.
+fn coordinate(value: f64) -> String {
+    let rounded = (value * 1e4).round() / 1e4;
+    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
+}

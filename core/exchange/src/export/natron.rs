@@ -12,6 +12,7 @@
 //! Limits: a part that vanishes between its frames is interpolated there. Natron offers scripts no open curves; an
 //! open part becomes a curve that is not closed yet, and has no matte.
 
+use super::coordinate;
 use super::outlines::Outlines;
 use rototoon_base::scene::Scene;
 use std::fmt::Write;
@@ -90,7 +91,7 @@ pub fn natron(scene: &Scene, spacing: f64) -> String {
             let _ = write!(out, "        ({frame}, [");
             for (k, p) in points.iter().enumerate() {
                 let comma = if k > 0 { ", " } else { "" };
-                let _ = write!(out, "{comma}{}, {}", number(p.x), number(height - p.y));
+                let _ = write!(out, "{comma}{}, {}", coordinate(p.x), coordinate(height - p.y));
             }
             out += "]),\n";
         }
@@ -98,13 +99,6 @@ pub fn natron(scene: &Scene, spacing: f64) -> String {
     }
     let _ = write!(out, "{TAIL}{first}, {last}\n{CODE}");
     out
-}
-
-/// A coordinate to a ten-thousandth of a pixel.
-fn number(value: f64) -> String {
-    let rounded = (value * 1e4).round() / 1e4;
-    // Natron takes a whole number without a point as well, and −0 would look odd.
-    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
 /// A text for Python 2 and 3, in ASCII.

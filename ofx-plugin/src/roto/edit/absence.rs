@@ -4,7 +4,7 @@ use super::Refused;
 use super::change::inside_footage;
 use crate::roto::standing::{Standing, Stretch, stretches};
 use rototoon::project::Document;
-use rototoon::scene::{FrameNumber, Part};
+use rototoon::scene::FrameNumber;
 
 /// Marks a part as hidden on a frame, or as there again if it is hidden. `whole` takes the stretch around the frame on
 /// which the part is lost, or hidden. Keys and corrections stay; tracks and snapped paths of hidden frames go, and the next
@@ -26,10 +26,11 @@ pub fn toggle(document: &mut Document, part: usize, frame: FrameNumber, whole: b
     let stretch = if whole { lost() } else { Some([frame; 2]) };
     let [first, last] = stretch.ok_or_else(|| {
         Refused::new(format!(
-            "{name:?} is neither lost nor hidden on frame {frame}: press Hidden Here for this frame alone"
+            "{name:?} is neither lost nor hidden on frame {frame}: press Hidden here for this frame alone"
         ))
     })?;
-    hide(part, first, last);
+    part.set_absent(first, last);
+    part.forget_where_absent();
     Ok(())
 }
 
@@ -37,16 +38,11 @@ fn around(stretches: &[Stretch], frame: FrameNumber) -> Option<Stretch> {
     stretches.iter().copied().find(|[first, last]| (*first..=*last).contains(&frame))
 }
 
-fn hide(part: &mut Part, first: FrameNumber, last: FrameNumber) {
-    part.set_absent(first, last);
-    part.forget_where_absent();
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use rototoon::geometry::Point;
-    use rototoon::scene::{Footage, Scene};
+    use rototoon::scene::{Footage, Part, Scene};
 
     fn document() -> Document {
         let shape = vec![Point::ZERO, Point::X, Point::Y];
