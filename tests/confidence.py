@@ -16,8 +16,8 @@ import pathlib
 
 import numpy as np
 
-EVIDENCE = ("rival", "look", "cost", "apart", "slide", "edge")
-CAUTION = 0.4
+EVIDENCE = ("rival", "look", "cost", "apart", "slide", "edge", "margin")
+CAUTION = 0.8
 HELD = 0.995
 RIDGE = 3.0
 BOUNDS = (0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.001)

@@ -9,10 +9,14 @@
 //! | apart | ln(d + 0.5): d is the distance in working pixels from the nearest place that the other key's model gives the point, at most 50 |
 //! | slide | by how much c is larger 5 px away along the contour, −0.3 to 0.5: a point that could slide along its contour is not known there |
 //! | edge | ln((g + 0.004) / (g' + 0.004)), −2 to 0.7: g is the strength of the picture's edge across the contour around the point, g' that at the keys. A contour must lie on an edge or a line if it did so at its keys. |
+//! | margin | ln(m + 0.01): m is the energy by which the joint choice prefers the part's place to every other one ([`super::joint::margin`]), at most 1, in steps of [`STEP`] |
 //!
-//! Rival and look are the same for all points of a part, because points of a part fail together.
+//! Rival, look and margin are the same for all points of a part, because points of a part fail together.
+//!
+//! The first six are seen on the drawing alone. The margin depends on the choices of other parts.
 
 use super::confidence::local_errors;
+use super::joint::margin::ELSEWHERE;
 use super::lattice::texture::WORST;
 use super::pool::Hypothesis;
 use super::refine::{Frame, Refiner};
@@ -23,11 +27,13 @@ use rototoon_base::scene::Span;
 use std::collections::BTreeMap;
 
 /// Number of measurements of a point.
-pub const COUNT: usize = 6;
+pub const COUNT: usize = 7;
 /// Names of the measurements, in the order of [`Evidence`].
-pub const NAMES: [&str; COUNT] = ["rival", "look", "cost", "apart", "slide", "edge"];
+pub const NAMES: [&str; COUNT] = ["rival", "look", "cost", "apart", "slide", "edge", "margin"];
 /// The measurements of a control point.
 pub type Evidence = [f64; COUNT];
+/// Those of a control point that are seen on the drawing: all but the margin.
+pub type Seen = [f64; COUNT - 1];
 
 /// By part and span: of each frame the index of its drawing, and the evidence about each control point, which is empty on
 /// the keys' drawings.
@@ -35,9 +41,9 @@ pub type BySpan = BTreeMap<(String, Span), Vec<(usize, Vec<Evidence>)>>;
 
 /// Upper limit of d, in working pixels: a larger distance adds no information.
 const FURTHEST_APART: f64 = 50.0;
-/// A hypothesis is at another place if its mean distance exceeds the first number (working pixels) plus this share of the
-/// part's size.
-const ELSEWHERE: (f64, f64) = (3.0, 0.15);
+/// Steps of the margin's logarithm. A correction moves the joint energy of parts far from it by amounts that mean nothing. In
+/// steps their confidence stays the same.
+const STEP: f64 = 0.125;
 /// Limits of the slide and of the edge.
 const SLIDE: (f64, f64) = (-0.3, 0.5);
 const EDGE: (f64, f64) = (-2.0, 0.7);
@@ -86,13 +92,15 @@ impl Reference {
     }
 }
 
-/// The evidence of each control point of a drawing.
-pub(super) fn of_drawing(
-    stage: &Stage,
-    refiner: Option<&Refiner>,
-    reference: &Reference,
-    found: &Found,
-) -> Vec<Evidence> {
+/// The evidence about a control point of a part with this margin on its drawing.
+pub(super) fn with_margin(seen: &Seen, margin: f64) -> Evidence {
+    let [rival, look, cost, apart, slide, edge] = *seen;
+    let steps = ((margin + 0.01).ln() / STEP).round();
+    [rival, look, cost, apart, slide, edge, steps * STEP]
+}
+
+/// What is seen at each control point of a drawing.
+pub(super) fn of_drawing(stage: &Stage, refiner: Option<&Refiner>, reference: &Reference, found: &Found) -> Vec<Seen> {
     let (own, count) = (found.own, found.points.len());
     let model = &stage.models[own.model];
     let (picture, cover) = (&*stage.features[found.drawing], &stage.covers[found.drawing]);
@@ -146,4 +154,19 @@ fn edges(picture: &Features, points: &[Point], closed: bool) -> Vec<f64> {
         halves.iter().sum::<f64>() / halves.len().max(1) as f64
     };
     (0..count).map(around).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn margins_that_differ_little_are_the_same_evidence() {
+        let seen: Seen = [-2.0, 0.0, -2.5, 0.5, 0.05, 0.0];
+        let margin = |margin: f64| with_margin(&seen, margin)[COUNT - 1];
+        assert_eq!(margin(0.2), margin(0.2 + 1e-4));
+        assert!(margin(0.0) < margin(0.005) && margin(0.2) < margin(0.3));
+        assert!((margin(0.2) - 0.21f64.ln()).abs() <= STEP / 2.0);
+        assert_eq!(with_margin(&seen, 0.2)[..COUNT - 1], seen);
+    }
 }

@@ -7,7 +7,8 @@
 
 use super::confidence;
 use super::corrected::freed;
-use super::evidence::{self, Evidence, Reference};
+use super::evidence::{self, Evidence, Reference, Seen, with_margin};
+use super::joint::margin::LARGEST;
 use super::lattice::texture::Cover;
 use super::mechanisms::Mechanism;
 use super::pool::{Hypothesis, hypothesis};
@@ -89,6 +90,8 @@ pub(super) struct Finished {
     pub source: Arc<Pooled>,
     pub plan: Finish,
     settled: Vec<Settled>,
+    /// By drawing: the margin of the joint choice, which depends on other parts too.
+    margins: Vec<f64>,
     /// The track of the last run.
     pub track: Option<SpanTrack>,
 }
@@ -100,8 +103,8 @@ struct Settled {
     seen: Option<Hypothesis>,
     /// Control points in working pixels.
     points: Vec<Point>,
-    /// Evidence about each control point; empty on the keys' drawings.
-    evidence: Vec<Evidence>,
+    /// What is seen at each control point; empty on the keys' drawings.
+    evidence: Vec<Seen>,
     /// By round of refining again: control points before and after, as in the last run.
     again: Vec<[Vec<Point>; 2]>,
 }
@@ -151,10 +154,15 @@ impl Finished {
     /// Of each frame of the span: its drawing, and the evidence about each control point.
     pub fn evidence(&self) -> Vec<(usize, Vec<Evidence>)> {
         let of = |(d, drawing): (usize, &Drawing)| {
-            let evidence = self.settled.get(d).map(|settled| settled.evidence.clone()).unwrap_or_default();
+            let evidence = if self.settled.is_empty() { Vec::new() } else { self.evidence_on(d) };
             (drawing.first..=drawing.last).map(move |_| (d, evidence.clone()))
         };
         self.source.drawings.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// The evidence about each control point on a drawing.
+    fn evidence_on(&self, d: usize) -> Vec<Evidence> {
+        self.settled[d].evidence.iter().map(|seen| with_margin(seen, self.margins[d])).collect()
     }
 
     /// The settled result of drawing `d`, if everything that it depends on is the same again.
@@ -181,7 +189,7 @@ pub(super) fn finish(
     before: Option<&Finished>,
 ) -> Result<Finished, TrackError> {
     if pooled.models.is_none() {
-        return Ok(Finished { source: pooled.clone(), plan, settled: Vec::new(), track: None });
+        return Ok(Finished { source: pooled.clone(), plan, settled: Vec::new(), margins: Vec::new(), track: None });
     }
     let mut stage = Stage::set(kit, &pooled.job, pooled.models.clone())?;
     stage.center_reach = pooled.center_reach.clone();
@@ -198,7 +206,8 @@ pub(super) fn finish(
             Ok(known.cloned().unwrap_or_else(|| settle(stage, pooled, &plan, &tools, d)))
         })
         .collect::<Result<_, TrackError>>()?;
-    Ok(Finished { source: pooled.clone(), plan, settled, track: None })
+    let margins = vec![LARGEST; settled.len()];
+    Ok(Finished { source: pooled.clone(), plan, settled, margins, track: None })
 }
 
 /// What all drawings of a part share. It is made when the first drawing needs it.
@@ -282,8 +291,9 @@ fn blended(pool: &[Hypothesis], own: &Hypothesis, share: f64) -> Vec<Point> {
 }
 
 impl Finished {
-    /// The track with these control points on each drawing, in working pixels.
-    pub fn track_along(&self, drawn: &[Vec<Point>]) -> SpanTrack {
+    /// The track with these control points on each drawing, in working pixels, and these margins of the joint choice.
+    pub fn track_along(&mut self, drawn: &[Vec<Point>], margins: Vec<f64>) -> SpanTrack {
+        self.margins = margins;
         let (pooled, job) = (&self.source, &self.source.job);
         if self.settled.is_empty() {
             return job.keys_only();
@@ -291,7 +301,7 @@ impl Finished {
         let (last, last_drawing, scale) = (job.span.len() - 1, drawn.len() - 1, working_scale(job.size.1));
         let (mut points, mut sure) = (Vec::new(), Vec::new());
         for (d, drawing) in pooled.drawings.iter().enumerate() {
-            let evidence = &self.settled[d].evidence;
+            let evidence = self.evidence_on(d);
             let confidence = if evidence.is_empty() {
                 vec![confidence::HELD; drawn[d].len()]
             } else {

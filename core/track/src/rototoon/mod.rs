@@ -27,6 +27,7 @@
 //! followed; a part that turns its other side to the viewer needs a key. Pictures may be at most [`WIDEST`] times as
 //! wide as high.
 
+mod choice;
 pub mod confidence;
 mod corrected;
 pub mod evidence;
@@ -46,6 +47,7 @@ pub mod select;
 pub mod stage;
 mod steadied;
 pub mod steady;
+pub mod through;
 
 use crate::contract::error::TrackError;
 use crate::contract::job::{Job, SpanTrack};
@@ -54,10 +56,10 @@ use crate::contract::tracking::{SceneSolver, Tracking};
 use crate::shared::look::kind::Decided;
 use crate::shared::look::{Kind, Looks};
 use crate::shared::store::Store;
+use choice::Choice;
 use finish::{Finish, Finished, finish};
-use joint::lead::{Lead, leads};
+use joint::lead::Lead;
 use joint::shadow::Memory;
-use joint::{Bonds, Contender, companion, tie};
 use mechanisms::{Mechanism, Mechanisms};
 use outward::plan::Portion;
 use pooled::Pooled;
@@ -198,18 +200,21 @@ impl Rototoon {
         let wobble = self.wobble(&stretches, &pooled);
         for stretch in stretches {
             let members: Vec<&Pooled> = stretch.iter().map(|&t| &*pooled[t]).collect();
-            let start = members.iter().map(|m| m.path.clone()).collect();
-            let mut bonds = None;
-            let (paths, leads) = self.chosen((scene, tasks, &stretch), &members, start, &mut bonds);
+            let choice = Choice::new((scene, tasks, &stretch), &members, self.mechanisms);
+            let bonds = choice.bonds();
+            let paths = choice.paths(&bonds, choice.start(), &mut self.shadows);
+            let leads = choice.leads(&bonds, &paths);
             let mended = self.mend_all(&stretch, &pooled, &paths, &leads, frames, &shared)?;
             let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
-            let (paths, _) = self.chosen((scene, tasks, &stretch), &members, paths, &mut bonds);
+            let choice = Choice::new((scene, tasks, &stretch), &members, self.mechanisms);
+            let paths = choice.paths(&bonds, paths, &mut self.shadows);
+            let margins = choice.margins(&bonds, &paths, &mut self.shadows);
             let hiding = self.mechanisms.has(Mechanism::Hiding);
             let plan = |m: usize| Finish::of(scene, tasks, &stretch, &members, &paths, (m, hiding));
             let plans = (0..members.len()).map(plan).collect();
             let new = self.finish_all(&stretch, &mended, plans, frames, &shared)?;
             let drawn = self.steadied(&stretch, &mended, &wobble, frames, &shared)?;
-            let tracks = self.tracks(&mended, &new, drawn);
+            let tracks = self.tracks(&mended, &new, (drawn, margins));
             for (&t, (track, new)) in stretch.iter().zip(tracks) {
                 shared.of(t).report("Tracking", 1.0)?;
                 done[t] = Some((track, new || fresh[t]));
@@ -302,54 +307,6 @@ impl Rototoon {
             }
         }
         Ok(done.into_iter().flatten().unzip())
-    }
-
-    /// The paths of the members of a stretch, chosen together from the `start` paths, and the leads of each member.
-    /// `bonds` are found if they are not given. They stay the same for every choice of a stretch.
-    fn chosen(
-        &mut self,
-        (scene, tasks, stretch): (&Scene, &[Task], &[usize]),
-        members: &[&Pooled],
-        start: Vec<Vec<usize>>,
-        bonds: &mut Option<Bonds>,
-    ) -> (Vec<Vec<usize>>, Vec<Vec<Lead>>) {
-        if !self.mechanisms.has(Mechanism::JointChoice) {
-            return (start, vec![Vec::new(); members.len()]);
-        }
-        let free: Vec<usize> = (0..members.len()).filter(|&m| members[m].models.is_some()).collect();
-        let contender = |&m: &usize| {
-            let (task, pooled) = (tasks[stretch[m]], members[m]);
-            let part = &scene.parts[task.part];
-            Some(Contender {
-                part: task.part,
-                span: task.span,
-                depth: task.depth,
-                hides: part.closed && part.point_count() > 2,
-                drawings: &pooled.drawings,
-                pools: &pooled.pools,
-                models: pooled.models.as_deref()?,
-            })
-        };
-        let mut contenders: Vec<Contender> = free.iter().filter_map(contender).collect();
-        let start: Vec<Vec<usize>> = free.iter().map(|&m| start[m].clone()).collect();
-        let has = |mechanism| self.mechanisms.has(mechanism);
-        let corrected = |c: usize, d: usize| members[free[c]].corrected(d);
-        let companions = || companion::find(&contenders, &start, &corrected);
-        let bonds = bonds.get_or_insert_with(|| Bonds {
-            ties: if has(Mechanism::Joints) { tie::find(&contenders) } else { Vec::new() },
-            companions: if has(Mechanism::Companions) { companions() } else { Vec::new() },
-        });
-        if !self.mechanisms.has(Mechanism::Hiding) {
-            contenders.iter_mut().for_each(|contender| contender.hides = false);
-        }
-        let jump = if self.mechanisms.has(Mechanism::Jumps) { joint::jumps::measured(&contenders) } else { 0.0 };
-        let found = joint::choose(&contenders, bonds, jump, start, &mut self.shadows);
-        let led = leads(&contenders, bonds, &found);
-        let (mut paths, mut all_leads) = (vec![Vec::new(); members.len()], vec![Vec::new(); members.len()]);
-        for ((&m, path), lead) in free.iter().zip(found).zip(led) {
-            (paths[m], all_leads[m]) = (path, lead);
-        }
-        (paths, all_leads)
     }
 
     /// The pools of a stretch's members with the hypotheses that their joint choice adds.

@@ -72,17 +72,17 @@ impl Rototoon {
     }
 
     /// The tracks of a stretch's members with these control points, and whether they are new: found in this run, or changed by
-    /// their companions.
+    /// other parts. `margins` are those of the joint choice.
     pub(super) fn tracks(
         &mut self,
         mended: &[Arc<Pooled>],
         found: &[bool],
-        drawn: Vec<Drawn>,
+        (drawn, margins): (Vec<Drawn>, Vec<Vec<f64>>),
     ) -> Vec<(SpanTrack, bool)> {
         let mut tracks = Vec::new();
-        for ((source, points), &found) in mended.iter().zip(&drawn).zip(found) {
+        for (((source, points), margins), &found) in mended.iter().zip(&drawn).zip(margins).zip(found) {
             let Some(finished) = self.finished.get_mut(&source.key()) else { continue };
-            let track = finished.track_along(points);
+            let track = finished.track_along(points, margins);
             let new = found || finished.track.as_ref() != Some(&track);
             finished.track = Some(track.clone());
             tracks.push((track, new));

@@ -21,6 +21,7 @@ mod contender;
 pub mod cost;
 pub mod jumps;
 pub mod lead;
+pub mod margin;
 mod moves;
 pub mod pairs;
 pub mod shadow;
@@ -82,6 +83,20 @@ pub fn choose(
         }
     }
     paths
+}
+
+/// By contender and drawing: how much energy the paths have to spare against another place ([`margin`]).
+pub fn margins(
+    contenders: &[Contender],
+    bonds: &Bonds,
+    jump: f64,
+    paths: &[Vec<usize>],
+    memory: &mut Memory,
+) -> Vec<Vec<f64>> {
+    let shadows = Shadows::cast(contenders, memory);
+    let companions = Companions::new(contenders, &bonds.companions);
+    let scene = cost::Scene { contenders, shadows: &shadows, ties: &bonds.ties, companions: &companions, jump };
+    margin::margins(&scene, paths)
 }
 
 /// Tries all moves in their order. Most moves gain nothing, so the next few are computed in parallel. If one of these

@@ -98,7 +98,7 @@ impl Scene<'_> {
     }
 
     /// Cost of a state without motion. The contender `but` does not count.
-    fn alone(&self, c: usize, state: State, paths: &Paths, but: Option<usize>) -> f64 {
+    pub fn alone(&self, c: usize, state: State, paths: &Paths, but: Option<usize>) -> f64 {
         self.look(c, state, paths, None) + self.look_behind(c, state, paths, but) + self.joints(c, state, paths, but)
     }
 

@@ -2,13 +2,15 @@
 
 use super::companion::{self, Companions};
 use super::lead::{Lead, leads};
+use super::margin::LARGEST;
 use super::shadow::Memory;
-use super::{Bonds, Contender, choose, jumps, tie};
+use super::{Bonds, Contender, choose, jumps, margins, tie};
 use crate::rototoon::lattice::align::Aligner;
 use crate::rototoon::lattice::mesh::Mesh;
 use crate::rototoon::lattice::texture::{Cover, Texture};
 use crate::rototoon::pool::{Hypothesis, Pools};
 use crate::rototoon::propagate::{Model, Pose};
+use crate::rototoon::select::Smoothness;
 use crate::shared::drawings::Drawing;
 use crate::shared::features::Features;
 use rototoon_base::geometry::Point;
@@ -82,6 +84,33 @@ fn two_parts_do_not_take_the_same_place() {
     memory.turn();
     assert_eq!(chosen(1.0, &mut memory), [[0, 1, 0], [0, 0, 0]]);
     assert_eq!(chosen(-1.0, &mut memory), [[0, 1, 0], [0, 0, 0]]);
+}
+
+#[test]
+fn the_margin_is_what_another_place_would_cost_more() {
+    let models = [model(&bar(), (0.0, Point::ZERO)), model(&bar(), (0.0, Point::ZERO))];
+    let drawings = three_drawings();
+    let at = |x: f64, look: f32| hypothesis(&models[0], 0.0, Point::new(x, 0.0), look);
+    // On the middle drawing there is the home, a place beside it that is no other place, and two other places.
+    let middle = vec![at(0.0, 0.01), at(2.0, 0.011), at(60.0, 0.04), at(-60.0, 0.09)];
+    let pools: Arc<Pools> = Arc::new(vec![vec![at(0.0, 0.0)], middle, vec![at(0.0, 0.0)]]);
+    let contender = Contender {
+        part: 0,
+        span: Span { first: 0, last: 2 },
+        depth: 0.0,
+        hides: true,
+        drawings: &drawings,
+        pools: &pools,
+        models: &models,
+    };
+    let smoothness = Smoothness::new(models[0].texture.mesh.size);
+    let places = [0, 2, 0].map(|h| &pools[1][h].points[..]);
+    let still = smoothness.of_path(&[places[0]; 3]);
+    let swung = smoothness.of_path(&[places[0], places[1], places[2]]);
+    let found = margins(&[contender], &Bonds::default(), 0.0, &[vec![0, 0, 0]], &mut Memory::default());
+    let expected = 0.04f64.sqrt() - 0.01f64.sqrt() + swung - still;
+    assert_eq!((found[0][0], found[0][2]), (LARGEST, LARGEST), "a key has no other place");
+    assert!((found[0][1] - expected).abs() < 1e-6, "{} and {expected}", found[0][1]);
 }
 
 #[test]
