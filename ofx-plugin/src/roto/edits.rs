@@ -1,6 +1,6 @@
 //! Stores edits and selections in the host's parameters, each as one step of the host's undo.
 
-use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change};
+use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change, order};
 use super::parts::selected;
 use super::settings::Settings;
 use super::state::State;
@@ -29,6 +29,7 @@ pub fn store(effect: &Effect, label: &str, document: Document) -> Result<(), Fai
     let mut state = State::clone(&*instance.state(&parameters)?);
     if let Some(before) = instance.document_of_text(&parameters)? {
         state.note_known(&before.scene.parts);
+        state.note_order(&before.scene.parts, &document.scene.parts);
     }
     let page = state.page.clone();
     state.keep_only(&document.scene.parts);
@@ -209,6 +210,11 @@ fn on_parts(bench: &Bench, name: &str) -> Outcome {
                 .chosen()
                 .and_then(|part| absence::toggle(&mut document, part, bench.frame, name == "hideStretch"))
                 .map(|()| true),
+        ),
+        "nearer" | "farther" => (
+            "Order of parts",
+            "",
+            bench.chosen().and_then(|part| order::shift(&mut document, part, name == "nearer")).map(|()| true),
         ),
         _ => {
             ("Delete part", "", bench.chosen().and_then(|part| change::delete_part(&mut document, part)).map(|()| true))

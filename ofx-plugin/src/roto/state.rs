@@ -17,6 +17,9 @@ const VERSION: u32 = 1;
 /// Most frames of which a curve has values.
 pub const MOST_FRAMES: i32 = 100_000;
 
+/// What stands for the sum of a part's input where its tracks were made with another order of the parts.
+const OTHER_ORDER: &str = "other order";
+
 /// A number that may have keys.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
@@ -151,7 +154,7 @@ pub struct State {
     /// Settings by part name. Parts without an entry have the defaults.
     #[serde(default)]
     pub parts: BTreeMap<String, PartSettings>,
-    /// For each tracked part a sum of the keys and corrections that its tracks were made from.
+    /// For each tracked part a sum of the keys and corrections that its tracks were made from, or [`OTHER_ORDER`].
     #[serde(default)]
     pub tracked: BTreeMap<String, String>,
 }
@@ -210,6 +213,23 @@ impl State {
     pub fn note_known(&mut self, parts: &[Part]) {
         for part in parts.iter().filter(|part| !part.tracks.is_empty()) {
             self.tracked.entry(part.name.clone()).or_insert_with(|| inputs(part));
+        }
+    }
+
+    /// Before an edit: makes the tracks of parts old that have other parts in front of them after it. Nearer parts hide
+    /// farther ones from the tracker. Parts that come or go do not count, as they have no order in both documents.
+    pub fn note_order(&mut self, before: &[Part], after: &[Part]) {
+        let earlier: BTreeMap<&str, f64> = before.iter().map(|part| (part.name.as_str(), part.depth)).collect();
+        let both: Vec<(&Part, f64)> =
+            after.iter().filter_map(|part| Some((part, *earlier.get(part.name.as_str())?))).collect();
+        if both.iter().all(|(part, was)| part.depth == *was) {
+            return;
+        }
+        for (part, was) in both.iter().filter(|(part, _)| !part.tracks.is_empty()) {
+            let changed = |(other, its): &(&Part, f64)| other.closed && (other.depth > part.depth) != (its > was);
+            if both.iter().any(changed) {
+                self.tracked.insert(part.name.clone(), OTHER_ORDER.into());
+            }
         }
     }
 
@@ -303,6 +323,15 @@ mod tests {
         assert!(!state.is_old(&part));
         part.set_absent(2, 3);
         assert!(state.is_old(&part), "hidden frames count");
+        let behind = Part { name: "b".into(), depth: -1.0, ..part.clone() };
+        let before = [part.clone(), behind.clone()];
+        state.note_tracked(&before);
+        let after = [part.clone(), Part { depth: 1.0, ..behind.clone() }];
+        let same = [part.clone(), Part { depth: -0.5, ..behind }];
+        state.note_order(&before, &same);
+        assert!(same.iter().all(|part| !state.is_old(part)));
+        state.note_order(&before, &after);
+        assert!(after.iter().all(|part| state.is_old(part)), "one comes in front of the other");
         state.keep_only(&[]);
         assert!(state.tracked.is_empty());
     }

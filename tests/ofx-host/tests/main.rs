@@ -9,6 +9,7 @@
 //! - `overlay`: the pen in the viewer: drawing, selecting, correcting, undo
 //! - `faults`: faults that were seen in real hosts
 //! - `node`: settings of parts, channels, masks, regions, motion and export
+//! - `order`: parts nearer and farther
 //! - `matrix`: what hosts do, with each output
 //! - `lives`: instances on several threads, at other places and of other versions
 //! - `page`: the documentation lists the matrix's tests
@@ -25,6 +26,7 @@ mod lines;
 mod lives;
 mod matrix;
 mod node;
+mod order;
 mod overlay;
 mod page;
 mod pixels;

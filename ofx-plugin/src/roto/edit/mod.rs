@@ -6,6 +6,7 @@
 //! - [`handles`]: the box around the selection, with which it is moved, scaled and rotated
 //! - [`change`]: moves points, makes and deletes keys
 //! - [`absence`]: marks parts as hidden
+//! - [`order`]: brings parts nearer or farther away
 //! - [`points`]: inserts and deletes points
 //! - [`contour`]: makes keys of drawn contours
 //! - [`editor`]: the pen's unfinished work, and what each event makes of it
@@ -22,6 +23,7 @@ pub mod editor;
 pub mod handles;
 mod hit;
 mod lens;
+pub mod order;
 pub mod points;
 mod selection;
 

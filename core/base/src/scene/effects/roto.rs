@@ -14,7 +14,7 @@ const FRAMES: [i32; 2] = [-1_000_000, 1_000_000];
 const PLANE: [f64; 2] = [-1_000_000.0, 1_000_000.0];
 
 /// Rototoon Roto: every parameter in order.
-pub const ROTO: [EffectParameter; 79] = [
+pub const ROTO: [EffectParameter; 81] = [
     parameter("shapes", "Shapes", EffectKind::Group(true), None, "Where the shapes come from."),
     parameter(
         "project",
@@ -144,6 +144,20 @@ pub const ROTO: [EffectParameter; 79] = [
         EffectKind::Button,
         DRAW,
         "The same on all frames around this one on which the selected part is lost, or hidden already.",
+    ),
+    parameter(
+        "nearer",
+        "Nearer",
+        EffectKind::Button,
+        DRAW,
+        "Brings the selected part in front of the next nearer part, on all frames.",
+    ),
+    parameter(
+        "farther",
+        "Farther",
+        EffectKind::Button,
+        DRAW,
+        "Puts the selected part behind the next farther part, on all frames.",
     ),
     parameter(
         "selectedPart",
