@@ -339,6 +339,15 @@ pub fn export_silhouette(document: &Document, spacing: f64) -> String {
     export::silhouette(&document.scene, spacing)
 }
 
+/// What shapes for other programs leave out, as a message for the user; `None` if they have everything. Other programs let a
+/// border fade outward from the contour, or alike all around. Neither is the feather of control points.
+pub fn left_out_of_shapes(document: &Document) -> Option<String> {
+    let soft = document.scene.parts.iter().filter(|part| part.soft_widths().is_some());
+    let names: Vec<String> = soft.map(|part| format!("{:?}", part.name)).collect();
+    (!names.is_empty())
+        .then(|| format!("the shapes are sharp: the file has no feather of the points of {}", names.join(", ")))
+}
+
 /// A format of a file with shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShapeFormat {

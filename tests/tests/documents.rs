@@ -170,6 +170,28 @@ fn corrections_without_effect_are_kept_with_a_warning() {
 }
 
 #[test]
+fn a_feather_is_read_written_and_checked() {
+    let with = |more: &str| with_part(&format!(r#""keys": {{"0": {TRIANGLE}}}{more}"#));
+    let document = parse(&with(r#", "feather": [0, 2.5, 12]"#)).unwrap();
+    assert_eq!(document.scene.parts[0].soft_widths(), Some(&[0.0, 2.5, 12.0][..]));
+    assert_eq!(parse(&document.to_json()).unwrap().scene, document.scene);
+    assert!(document.to_json().contains(r#""feather": [0, 2.5, 12]"#));
+    assert!(!parse(&with("")).unwrap().to_json().contains("feather"), "old documents stay as they are");
+    let wrong = errors(&with(r#", "feather": [0, -1, 4000]"#));
+    assert_eq!(
+        wrong,
+        [
+            r#"p.json: parts[0] "arm".feather[1]: found -1, expected a width from 0 to 2048"#,
+            r#"p.json: parts[0] "arm".feather[2]: found 4000, expected a width from 0 to 2048"#
+        ]
+    );
+    assert!(errors(&with(r#", "feather": 3"#))[0].contains("feather"));
+    let odd = with(r#", "feather": [1, 2]"#);
+    assert!(warnings(&odd)[0].contains("found 2 widths, but the keys have 3 points"), "{:?}", warnings(&odd));
+    assert_eq!(parse(&odd).unwrap().scene.parts[0].soft_widths(), None);
+}
+
+#[test]
 fn odd_contours_are_valid_with_a_warning() {
     for (points, warning) in [
         ("[]", "the part has no points"),
@@ -287,7 +309,22 @@ fn part() -> impl Strategy<Value = Part> {
                 let depths = keys.keys().take(1).map(|&frame| (frame, 0.5 - depth)).collect();
                 let absent = keys.keys().take(2).map(|&frame| [frame - 3, frame - 1]).collect();
                 let name = String::new();
-                Part { name, closed, depth, keys, pins, centers, tracks, confidence, curves, wants_key, depths, absent }
+                let feather = (0..count).map(|k| 0.1 * k as f64).collect();
+                Part {
+                    name,
+                    closed,
+                    depth,
+                    keys,
+                    pins,
+                    centers,
+                    tracks,
+                    confidence,
+                    curves,
+                    wants_key,
+                    depths,
+                    absent,
+                    feather,
+                }
             },
         )
     })

@@ -1,6 +1,6 @@
 //! `rototoon export`: writes files for other programs.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, line};
 use crate::{arguments, project};
 use clap::{ArgMatches, Command};
 use rototoon::export::{Motion, SvgOptions};
@@ -47,5 +47,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         "fxs" => pipeline::export_silhouette(&document, spacing),
         _ => pipeline::export_svg(&document, &SvgOptions { motion, spacing })?,
     };
-    Ok(write_whole(to, text.as_bytes())?)
+    write_whole(to, text.as_bytes())?;
+    if let Some(warning) = pipeline::left_out_of_shapes(&document) {
+        line("warning", &format!("{}: {warning}", to.display()));
+    }
+    Ok(())
 }

@@ -321,7 +321,7 @@ impl<'de> Shape<'de> for PartShape {
         let (mut name, mut closed, mut depth) = (None, None, None);
         let (mut keys, mut pins, mut centers) = (None, None, None);
         let (mut tracks, mut confidence, mut curves) = (None, None, None);
-        let (mut wants_key, mut depths, mut absent) = (None, None, None);
+        let (mut wants_key, mut depths, mut absent, mut feather) = (None, None, None, None);
         let mut fields = Vec::new();
         let points = Entries::<FrameNumber, _>::new(List(Pair));
         while let Some(key) = entries.next_key::<String>()? {
@@ -346,6 +346,7 @@ impl<'de> Shape<'de> for PartShape {
                 "wants_key" => field(context, source, "wants_key", List(Frame), &mut wants_key)?,
                 "depths" => field(context, source, "depths", Entries::<FrameNumber, _>::new(Number), &mut depths)?,
                 "absent" => field(context, source, "absent", List(FrameRange), &mut absent)?,
+                "feather" => field(context, source, "feather", List(Number), &mut feather)?,
                 _ => unknown(source, key)?,
             });
         }
@@ -363,6 +364,7 @@ impl<'de> Shape<'de> for PartShape {
             wants_key: wants_key.unwrap_or_default(),
             depths: depths.unwrap_or_default(),
             absent: absent.unwrap_or_default(),
+            feather: feather.unwrap_or_default(),
         };
         Ok(Some((part, fields)))
     }

@@ -110,6 +110,7 @@ fn is_default(part: &Part, name: &str) -> bool {
         "wants_key" => part.wants_key.is_empty(),
         "depths" => part.depths.is_empty(),
         "absent" => part.absent.is_empty(),
+        "feather" => part.feather.is_empty(),
         _ => false,
     }
 }
@@ -142,6 +143,7 @@ fn part_field(out: &mut String, part: &Part, field: &Field) {
         Field::Known("absent") => list(out, &part.absent, "", "", |out, range| {
             list(out, range, "", "", |out, frame| number(out, f64::from(*frame)));
         }),
+        Field::Known("feather") => list(out, &part.feather, "", "", |out, width| number(out, *width)),
         Field::Known("depths") => frames(out, &part.depths, |out, _, depth| number(out, *depth)),
         Field::Known(_) => frames(out, &part.curves, |out, _, paths| {
             list(out, paths, "", "", |out, path| list(out, path, "", "", |out, p| pair(out, rounded_point(*p))))

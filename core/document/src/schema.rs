@@ -5,6 +5,9 @@
 
 use std::collections::BTreeMap;
 
+/// Largest width of a soft border, in pixels.
+pub const MAX_FEATHER: f64 = 2048.0;
+
 /// The major version that this program reads and writes.
 pub const VERSION: u32 = 1;
 
@@ -39,7 +42,9 @@ pub(super) const FOOTAGE: [&str; 6] = ["pattern", "first", "last", "fps", "width
 ///
 /// `absent` is the artist's and left out if empty. It contains the first and the last frame of each time in which the part
 /// is not there.
-pub(super) const PART: [&str; 12] = [
+///
+/// `feather` is the artist's and left out if empty. It has a width for each control point.
+pub(super) const PART: [&str; 13] = [
     "name",
     "closed",
     "depth",
@@ -52,6 +57,7 @@ pub(super) const PART: [&str; 12] = [
     "wants_key",
     "depths",
     "absent",
+    "feather",
 ];
 
 /// A field of an object, as read from the document.

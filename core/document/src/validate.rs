@@ -5,7 +5,7 @@
 
 use super::direction::reversed;
 use super::problem::Problems;
-use super::schema::{MAX_COORDINATE, MAX_FPS, MAX_FRAME_NUMBER, MAX_FRAMES, MAX_SIZE, MIN_FPS};
+use super::schema::{MAX_COORDINATE, MAX_FEATHER, MAX_FPS, MAX_FRAME_NUMBER, MAX_FRAMES, MAX_SIZE, MIN_FPS};
 use super::shape::part_place;
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{Footage, FrameNumber, FramePattern, Part, Scene};
@@ -128,6 +128,7 @@ impl PartCheck<'_> {
         self.pins();
         self.centers();
         self.absence();
+        self.feather();
         self.results();
     }
 
@@ -258,6 +259,20 @@ impl PartCheck<'_> {
                     format!("found frames {first} to {last}; frame {frame}: {why}"),
                 );
             }
+        }
+    }
+
+    fn feather(&mut self) {
+        let part = self.part;
+        for (index, width) in part.feather.iter().enumerate().filter(|(_, w)| !(0.0..=MAX_FEATHER).contains(*w)) {
+            self.error(format!("feather[{index}]"), format!("found {width}, expected a width from 0 to {MAX_FEATHER}"));
+        }
+        let (found, count) = (part.feather.len(), part.point_count());
+        if found > 0 && found != count {
+            let why = format!("but the keys have {count} points, so they are kept but have no effect");
+            self.warning("feather", format!("found {found} widths, {why}"));
+        } else if found > 0 && !part.closed {
+            self.warning("feather", "the part is open and has no area, so the widths are kept but have no effect");
         }
     }
 

@@ -6,6 +6,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use rototoon_base::geometry::Point;
 use rototoon_render::coverage::Window;
 use rototoon_render::mask::Mask;
+use rototoon_render::widths;
 use std::hint::black_box;
 
 /// Twelve overlapping limbs of a figure that fills the picture, at a time in frames.
@@ -48,6 +49,17 @@ fn mattes(bench: &mut Criterion) {
             });
         });
     }
+    group.bench_function("12 parts, each feathered from 0 to 20 along its contour", |bench| {
+        let window = Window { left: 0, top: 0, right: 1920, bottom: 1080 };
+        bench.iter(|| {
+            for part in parts(1920.0, 1080.0, 24, 0.0) {
+                let segments: Vec<Vec<Point>> = (0..24).map(|k| vec![part[k], part[(k + 1) % 24]]).collect();
+                let widths: Vec<f64> = (0..24).map(|k| f64::from(12 - (k - 12i32).abs()) * 20.0 / 12.0).collect();
+                let mask = Mask::new(vec![vec![part]], 0.0, 0.0).with_widths(&widths::pieces(&segments, &widths));
+                black_box(mask.draw(window, &mut || true));
+            }
+        });
+    });
     group.finish();
 }
 

@@ -15,6 +15,7 @@
 //! - [`motion`]: contours between frames
 //! - [`grow`]: the outline moved outward or inward
 //! - [`feather`]: soft borders
+//! - [`widths`]: the feather at any place, from widths along contours
 //! - [`line`](mod@line): lines of a width
 //! - `near`: distances where they decide something
 //! - [`encode`]: pictures as bytes of a file
@@ -59,6 +60,7 @@ mod near;
 pub mod overlay;
 pub mod rows;
 pub mod visible;
+pub mod widths;
 
 pub use encode::{EncodeError, Format};
 pub use ids::{id_picture, matte_layers, matte_parts};

@@ -1,4 +1,5 @@
-//! Contours as a mask: the mean over some instants of the union of polygons, grown or shrunk, then feathered.
+//! Contours as a mask: the mean over some instants of the union of polygons, grown or shrunk, then feathered. The feather
+//! may have other widths along the contours.
 //!
 //! The value of a pixel does not depend on the window. A picture may therefore be computed in tiles and by several
 //! threads.
@@ -6,6 +7,7 @@
 use super::coverage::{Shape, Window};
 use super::feather::Feather;
 use super::rows::{MaskRows, Source};
+use super::widths::{Piece, Widths};
 use super::{feather, grow};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;
@@ -23,6 +25,8 @@ pub struct Mask {
     tight: Option<Bounds>,
     grow: f64,
     feather: f64,
+    /// What is added to the feather along the contours, if it is not the same everywhere.
+    widths: Option<Widths>,
 }
 
 /// A rectangle that contains the mask.
@@ -80,12 +84,32 @@ impl Mask {
         let tight = points.map(|&p| Bounds { least: p, most: p }).reduce(Bounds::united);
         let number = |value: f64| if value.is_nan() { 0.0 } else { value };
         let (grow, feather) = (number(grow).clamp(-MOST_REACH, MOST_REACH), number(feather).clamp(0.0, MOST_REACH));
-        Self { instants, shape, tight, grow, feather }
+        Self { instants, shape, tight, grow, feather, widths: None }
+    }
+
+    /// The mask with widths along its contours, in pixels, that are added to its feather. The sum of both counts as
+    /// [`MOST_REACH`] where it is larger.
+    pub fn with_widths(mut self, pieces: &[Piece]) -> Self {
+        let limited = |piece: &Piece| Piece { width: piece.width.clamp(0.0, MOST_REACH - self.feather), ..*piece };
+        self.widths = Widths::new(&pieces.iter().map(limited).collect::<Vec<_>>());
+        if let Some([least, most]) = self.widths.as_ref().map(|widths| widths.range)
+            && least == most
+        {
+            self.feather += least;
+            self.widths = None;
+        }
+        self
+    }
+
+    /// The least and the greatest radius of the feather.
+    fn radii(&self) -> [f64; 2] {
+        let [least, most] = self.widths.as_ref().map_or([0.0; 2], |widths| widths.range);
+        [self.feather + least, self.feather + most]
     }
 
     /// A rectangle that contains the mask; `None` if the mask is empty.
     pub fn bounds(&self) -> Option<Bounds> {
-        self.grown_bounds(margin_of(self.feather))
+        self.grown_bounds(margin_of(self.radii()[1]))
     }
 
     /// The bounds of the moved outlines, larger by `more` on each side.
@@ -98,12 +122,12 @@ impl Mask {
 
     /// By how many pixels values reach beyond the hard mask, because of its feather.
     pub fn reach(&self) -> usize {
-        feather::reach(self.feather)
+        feather::reach(self.radii()[1])
     }
 
-    /// Whether the mask is grown or shrunk. It is then drawn as a whole, not row by row.
-    pub fn is_grown(&self) -> bool {
-        self.grow != 0.0
+    /// Whether the mask is drawn as a whole, not row by row: it is grown or shrunk, or its feather has several widths.
+    pub fn is_drawn_whole(&self) -> bool {
+        self.grow != 0.0 || self.widths.is_some()
     }
 
     /// Number of values that the rows of a window keep, because of the feather.
@@ -132,7 +156,10 @@ impl Mask {
         let Some(own) = self.bounds().and_then(|bounds| bounds.pixels(window)) else {
             return Some(MaskRows::new(window, None));
         };
-        let wide = own.grown(feather::reach(self.feather) as i64);
+        let wide = own.grown(self.reach() as i64);
+        if let Some(widths) = &self.widths {
+            return Some(MaskRows::new(window, Some((own, Source::Picture(self.varied(widths, own, wide, go_on)?)))));
+        }
         let source = match (self.grow == 0.0, self.feather == 0.0) {
             (true, true) => Source::Sides(self.shape.rows(own)),
             (true, false) => Source::Soft(Box::new(Feather::new(self.feather, wide.width())), self.shape.rows(wide)),
@@ -140,6 +167,21 @@ impl Mask {
             (false, false) => Source::Picture(feather::feathered(&self.hard(wide, go_on)?, self.feather, go_on)?),
         };
         Some(MaskRows::new(window, Some((own, source))))
+    }
+
+    /// Draws a mask whose feather has several widths.
+    fn varied(
+        &self,
+        widths: &Widths,
+        own: Window,
+        wide: Window,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Option<Raster<f32>> {
+        let hard = if self.grow == 0.0 { self.shape.draw(wide, go_on)? } else { self.hard(wide, go_on)? };
+        let mut radius = widths.raster(own, self.bounds()?, go_on)?;
+        let range = self.radii();
+        radius.data_mut().iter_mut().for_each(|width| *width = (f64::from(*width) + self.feather) as f32);
+        feather::varied(&hard, &radius, range, go_on)
     }
 
     /// Draws the grown mask in a window without its feather.
@@ -170,6 +212,7 @@ impl Mask {
 
 #[cfg(test)]
 mod tests {
+    use super::super::widths;
     use super::*;
 
     fn square(x: f64, y: f64, size: f64) -> Vec<Point> {
@@ -214,6 +257,81 @@ mod tests {
         }
         assert_eq!(huge(f64::INFINITY, 0.0).draw(window, &mut || true).unwrap().data(), [1.0; 6]);
         assert_eq!(huge(f64::NAN, f64::NAN).draw(window, &mut || true).unwrap().data(), [1.0, 1.0, 0.0, 1.0, 1.0, 0.0]);
+    }
+
+    fn paths(corners: &[Point]) -> Vec<Vec<Point>> {
+        (0..corners.len()).map(|k| vec![corners[k], corners[(k + 1) % corners.len()]]).collect()
+    }
+
+    /// The share of a quadratic B-spline from -radius to radius that lies below x.
+    fn rise(x: f64, radius: f64) -> f64 {
+        let u = (1.5 * x / radius).clamp(-1.5, 1.5);
+        let tail = |u: f64| (1.5 - u).powi(3) / 6.0;
+        if u > 0.5 {
+            1.0 - tail(u)
+        } else if u < -0.5 {
+            tail(-u)
+        } else {
+            0.5 + 0.75 * u - u.powi(3) / 3.0
+        }
+    }
+
+    #[test]
+    fn equal_widths_are_the_feather_itself() {
+        let window = Window { left: 0, top: 0, right: 40, bottom: 36 };
+        let corners = square(10.0, 9.0, 14.3);
+        for (grow, feather, width) in [(0.0, 0.0, 4.2), (0.0, 1.5, 3.0), (2.0, 0.0, 3.3), (0.0, 2.0, 0.0)] {
+            let mask = Mask::new(vec![vec![corners.clone()]], grow, feather);
+            let soft = mask.with_widths(&widths::pieces(&paths(&corners), &[width; 4]));
+            let plain = Mask::new(vec![vec![corners.clone()]], grow, feather + width);
+            assert_eq!(soft.bounds(), plain.bounds());
+            assert_eq!(soft.draw(window, &mut || true), plain.draw(window, &mut || true), "to the last bit");
+        }
+    }
+
+    #[test]
+    fn widths_that_rise_along_a_border_give_ramps_of_these_widths() {
+        // A border at x = 60 from y = 0 to 200, whose width rises from 4 to 24. The other corners are far away.
+        let corners: Vec<Point> =
+            [(60.0, 0.0), (60.0, 200.0), (-300.0, 200.0), (-300.0, 0.0)].map(|(x, y)| Point::new(x, y)).into();
+        let pieces = widths::pieces(&paths(&corners), &[4.0, 24.0, 24.0, 4.0]);
+        let mask = Mask::new(vec![vec![corners]], 0.0, 2.0).with_widths(&pieces);
+        assert!(mask.is_drawn_whole());
+        let window = Window { left: 20, top: 50, right: 100, bottom: 150 };
+        let drawn = mask.draw(window, &mut || true).unwrap();
+        for (y, radius) in [(20, 2.0 + 4.0 + 7.05), (50, 2.0 + 4.0 + 10.05), (80, 2.0 + 4.0 + 13.05)] {
+            for x in 0..80 {
+                let wanted = 1.0 - rise(x as f64 + 20.5 - 60.0, radius);
+                let found = f64::from(drawn.get(x, y));
+                assert!((found - wanted).abs() < 0.01, "{x} {y}: {found} {wanted}");
+            }
+        }
+    }
+
+    #[test]
+    fn with_widths_nothing_lies_beyond_the_bounds_and_windows_agree() {
+        let corners = square(20.0, 19.0, 30.0);
+        let pieces = widths::pieces(&paths(&corners), &[0.0, 12.0, 3.0, 0.0]);
+        let all = Window { left: 0, top: 0, right: 70, bottom: 66 };
+        let part = Window { left: 17, top: 13, right: 49, bottom: 41 };
+        for (grow, feather) in [(0.0, 0.0), (2.5, 1.0)] {
+            let mask = Mask::new(vec![vec![corners.clone()]], grow, feather).with_widths(&pieces);
+            let [whole, piece] = [all, part].map(|window| mask.draw(window, &mut || true).unwrap());
+            for y in 0..part.height() {
+                for x in 0..part.width() {
+                    assert_eq!(piece.get(x, y), whole.get(x + 17, y + 13), "{grow} {feather}");
+                }
+            }
+            let bounds = mask.bounds().unwrap();
+            assert!(bounds.least.x < 20.0 - 12.0 && whole.get(35, 34) == 1.0);
+            for (k, value) in whole.data().iter().enumerate() {
+                let (p, one) = (Point::new((k % 70) as f64, (k / 70) as f64), Point::ONE);
+                let beyond = (p + one).cmple(bounds.least).any() || p.cmpge(bounds.most).any();
+                assert!(!beyond || *value < 1e-6, "{p} {value}");
+            }
+        }
+        let mask = Mask::new(vec![vec![corners]], 0.0, 0.0).with_widths(&pieces);
+        assert_eq!(mask.draw(all, &mut || false), None);
     }
 
     #[test]

@@ -1,13 +1,24 @@
 //! Coverage of the closed parts on a frame. The areas come from [`super::coverage`].
+//!
+//! Parts with a feather are masks of their own, laid over one another from the farthest to the nearest. Neighbouring parts
+//! without one are united exactly.
 
+use super::composite::{Layer, Layers};
 use super::coverage::{Shape, Window};
+use super::mask::Mask;
+use super::motion::segments_at;
+use super::widths::{self, Piece};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, Part, Raster, Scene};
 
-/// Coverage, 0 to 1, of the union of closed parts on a frame. `parts` selects parts by index; `None` takes all. Snapped
+/// Coverage, 0 to 1, of closed parts on a frame: of their union, with the feather of those that have one. `parts` selects parts by index; `None` takes all. Snapped
 /// paths are used where they exist. Open parts and parts without a contour on the frame cover nothing.
 pub fn matte(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Raster<f32> {
     let wanted = |index: usize| parts.is_none_or(|parts| parts.contains(&index));
+    if scene.parts.iter().enumerate().any(|(index, part)| wanted(index) && part.closed && part.soft_widths().is_some())
+    {
+        return soft(scene, frame, &wanted);
+    }
     let outlines: Vec<_> = scene
         .parts
         .iter()
@@ -16,6 +27,33 @@ pub fn matte(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Rast
         .filter_map(|(_, part): (usize, &Part)| part.outline(frame))
         .collect();
     coverage(&outlines, scene.footage.width, scene.footage.height)
+}
+
+/// The feather of a part at a time as pieces of its contour. `curves` as for [`segments_at`], `place` puts points into the
+/// picture, and a pixel of the footage is `scale` pixels of the picture. Empty for a part without a feather.
+pub fn feather_pieces(part: &Part, time: f64, curves: bool, place: &dyn Fn(Point) -> Point, scale: f64) -> Vec<Piece> {
+    let Some(own) = part.soft_widths() else { return Vec::new() };
+    let Some(mut segments) = segments_at(part, time, curves) else { return Vec::new() };
+    segments.iter_mut().flatten().for_each(|p| *p = place(*p));
+    widths::pieces(&segments, &own.iter().map(|width| width * scale).collect::<Vec<_>>())
+}
+
+/// Coverage of closed parts of which some have a feather.
+fn soft(scene: &Scene, frame: FrameNumber, wanted: &dyn Fn(usize) -> bool) -> Raster<f32> {
+    let (width, height) = (scene.footage.width, scene.footage.height);
+    let mut order: Vec<&Part> =
+        scene.parts.iter().enumerate().filter(|(k, _)| wanted(*k)).map(|(_, part)| part).collect();
+    order.retain(|part| part.closed && part.points_at(frame).is_some());
+    order.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+    let layer = |parts: &[&Part]| {
+        let outlines: Vec<Vec<Point>> = parts.iter().filter_map(|part| part.outline(frame)).collect();
+        let pieces = feather_pieces(parts[0], f64::from(frame), true, &|p| p, 1.0);
+        Layer::new(Mask::new(vec![outlines], 0.0, 0.0).with_widths(&pieces))
+    };
+    let groups = order.chunk_by(|a, b| a.soft_widths().is_none() && b.soft_widths().is_none());
+    let window = Window { left: 0, top: 0, right: width as i64, bottom: height as i64 };
+    let drawn = Layers(groups.map(layer).collect()).draw(window, &mut || true);
+    drawn.unwrap_or_else(|| Raster::new(width, height, 0.0))
 }
 
 /// The pixels of a frame, premultiplied, multiplied by the coverage of closed parts ([`matte`]).
@@ -41,6 +79,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
     use rototoon_base::geometry::polygon;
+    use rototoon_base::scene::Footage;
 
     fn rectangle(x0: f64, y0: f64, x1: f64, y1: f64) -> Vec<Point> {
         vec![Point::new(x0, y0), Point::new(x1, y0), Point::new(x1, y1), Point::new(x0, y1)]
@@ -70,6 +109,27 @@ mod tests {
         let mut twice = rectangle(0.0, 0.0, 2.0, 2.0);
         twice.extend(rectangle(0.0, 0.0, 2.0, 2.0));
         assert!(coverage(&[twice], 2, 2).data().iter().all(|value| (value - 1.0).abs() < 1e-6));
+    }
+
+    #[test]
+    fn a_part_with_a_feather_is_soft_and_others_stay() {
+        let part = |name: &str, x: f64, feather: &[f64]| Part {
+            name: name.into(),
+            closed: true,
+            keys: [(0, rectangle(x, 10.0, x + 20.0, 30.0))].into(),
+            feather: feather.into(),
+            ..Part::default()
+        };
+        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 0, fps: 24.0, width: 80, height: 40 };
+        let parts = vec![part("hard", 4.0, &[]), part("soft", 50.0, &[0.0, 8.0, 8.0, 0.0]), part("odd", 24.0, &[5.0])];
+        let scene = Scene { footage, parts };
+        let all = matte(&scene, 0, None);
+        let [hard, soft] = [0, 1].map(|index| matte(&scene, 0, Some(&[index])));
+        let row = all.row(20);
+        // The left border of the soft part is sharp, the right one falls from 62 to 78. Two hard parts meet at 24.
+        assert!(row[48] == 0.0 && row[52] == 1.0 && row[23] == 1.0 && row[24] == 1.0 && row[3] == 0.0, "{row:?}");
+        assert!((row[69] + row[70] - 1.0).abs() < 0.01 && row[64] < 1.0 && row[75] > 0.0 && row[78] == 0.0, "{row:?}");
+        assert_eq!((hard.get(10, 20), soft.row(20)[46..].to_vec()), (1.0, row[46..].to_vec()));
     }
 
     #[test]

@@ -48,7 +48,27 @@ pub fn outline_at(part: &Part, time: f64, curves: bool) -> Option<Vec<Point>> {
     let share = time - time.floor();
     let points = between(part, first, before, after, share);
     let paths = if curves { paths_between(part, first, &points, share) } else { None };
-    Some(paths.unwrap_or(points))
+    Some(paths.map_or(points, |paths| joined(&paths, part.closed)))
+}
+
+/// The contour of a part at a time as one path for each segment between control points. Joined they are [`outline_at`].
+pub fn segments_at(part: &Part, time: f64, curves: bool) -> Option<Vec<Vec<Point>>> {
+    let points = outline_at(part, time, false)?;
+    let nearest = frame(time.round())?;
+    if curves {
+        let still = (time - time.round()).abs() < SAME_FRAME;
+        let (before, after) = (frame(time.floor())?, frame(time.floor())? + 1);
+        let moving = !still && part.points_at(before).is_some() && part.points_at(after).is_some();
+        let paths = if moving {
+            paths_between(part, before, &points, time - time.floor())
+        } else {
+            part.complete_curves(nearest).cloned()
+        };
+        if let Some(paths) = paths.filter(|paths| paths.len() == polyline::segments(&points, part.closed).count()) {
+            return Some(paths);
+        }
+    }
+    Some(polyline::segments(&points, part.closed).map(|(a, b)| vec![a, b]).collect())
 }
 
 fn frame(time: f64) -> Option<FrameNumber> {
@@ -75,14 +95,14 @@ fn between(part: &Part, first: FrameNumber, before: &[Point], after: &[Point], s
 
 /// The snapped paths of the neighbouring frames, carried to the segments between `points`. `None` if neither frame has
 /// them.
-fn paths_between(part: &Part, first: FrameNumber, points: &[Point], share: f64) -> Option<Vec<Point>> {
+fn paths_between(part: &Part, first: FrameNumber, points: &[Point], share: f64) -> Option<Vec<Vec<Point>>> {
     let sides = [(first, 1.0 - share), (first + 1, share)];
     let known: Vec<_> = sides
         .iter()
         .filter_map(|&(frame, weight)| Some((part.points_at(frame)?, part.complete_curves(frame)?, weight)))
         .collect();
     let total: f64 = known.iter().map(|(_, _, weight)| weight).sum();
-    let mut outline: Vec<Point> = Vec::new();
+    let mut result: Vec<Vec<Point>> = Vec::new();
     for segment in 0..known.first()?.1.len() {
         let end = (segment + 1) % points.len();
         let count = known.iter().map(|(_, paths, _)| paths[segment].len()).max()?.max(2);
@@ -93,13 +113,19 @@ fn paths_between(part: &Part, first: FrameNumber, points: &[Point], share: f64) 
                 *sum += weight / total * carry(p);
             }
         }
-        outline.extend(path);
+        result.push(path);
     }
+    Some(result)
+}
+
+/// Paths as one contour. The last point of a closed one does not repeat the first.
+fn joined(paths: &[Vec<Point>], closed: bool) -> Vec<Point> {
+    let mut outline = paths.concat();
     outline.dedup();
-    if part.closed && outline.len() > 1 && outline.first() == outline.last() {
+    if closed && outline.len() > 1 && outline.first() == outline.last() {
         outline.pop();
     }
-    Some(outline)
+    outline
 }
 
 /// The similarity that maps one pair of points to another; a shift if the points of the first pair coincide.
@@ -155,6 +181,20 @@ mod tests {
         let reach = half.iter().map(|p| p.length()).fold(0.0, f64::max);
         let expected = whole.iter().map(|p| p.length()).fold(0.0, f64::max);
         assert!((reach - expected).abs() < 0.05, "{reach} {expected}");
+    }
+
+    #[test]
+    fn segments_joined_are_the_outline() {
+        let mut part = arm(4);
+        part.curves.remove(&3);
+        for time in [0.0, 1.0, 1.5, 2.25, 2.75, 3.0] {
+            for curves in [false, true] {
+                let segments = segments_at(&part, time, curves).unwrap();
+                assert_eq!(segments.len(), 3);
+                assert_eq!(joined(&segments, true), outline_at(&part, time, curves).unwrap(), "{time} {curves}");
+            }
+        }
+        assert_eq!(segments_at(&part, 9.0, true), None);
     }
 
     #[test]

@@ -43,7 +43,7 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
         "save" => save(effect),
         "track" => track::track(effect, time),
         "newPart" | "newKey" | "deleteKey" | "insertPoints" | "deletePoints" | "smoothPoints" | "deletePart"
-        | "hideHere" | "hideStretch" | "nearer" | "farther" => edits::press(effect, &name, time),
+        | "featherPoints" | "hideHere" | "hideStretch" | "nearer" | "farther" => edits::press(effect, &name, time),
         "previousLost" | "nextLost" | "weakest" => visits::go(effect, &name, time),
         "frameOffset" => marks::moved(effect),
         "part" => edits::select(effect, effect.parameters()?.text(c"part")?.trim()),

@@ -6,6 +6,7 @@
 //! - A contour whose track is older than its keys and corrections is dashed.
 //! - A part without a shape on the frame shows its nearest key: thin and pale, dashed if the part is hidden there, and
 //!   black and red dashes if it is lost.
+//! - The outer edge of a border with a feather of its points is a thin pale line.
 //! - The upper left corner of the footage lists the lost, doubtful and hidden parts.
 //! - Squares are control points: white on a key frame, in the part's colour on a tracked one, filled if selected. A pin has a
 //!   cross, a corrected centre a larger cross.
@@ -15,14 +16,17 @@ use super::overlay::Shown;
 use super::pen::Pen;
 use super::standing::{self, Standing};
 use crate::ofx::interact::View;
-use rototoon::geometry::Point;
-use rototoon::render::motion::outline_at;
+use rototoon::geometry::{Point, polygon, polyline};
+use rototoon::render::motion::{outline_at, segments_at};
+use rototoon::render::widths;
 use rototoon::scene::{FrameNumber, Part, palette};
 
 /// Half the side of a control point's square, in screen pixels.
 const HANDLE: f64 = 3.0;
 /// Opacity of what is not on this frame.
 const PALE: f32 = 0.35;
+/// Opacity of the line up to which a border fades.
+const EDGE: f32 = 0.7;
 const WHITE: [f32; 4] = [1.0; 4];
 const BLACK: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 /// The colour of lost contours.
@@ -93,6 +97,7 @@ fn part(sheet: &Sheet, index: usize, frame: Option<FrameNumber>, editor: &Editor
     let curves = if shown.settings.curves && !editor.drags(&work, index) { part.outline(frame) } else { None };
     contour(sheet, part, curves.as_ref().unwrap_or(&points), colour, standing);
     name(sheet, part, &points, colour, standing);
+    outer_edge(sheet, part, &points, &editor.feather(&work, index), [r, g, b, EDGE]);
     controls(sheet, &work, index, &points, editor, colour);
 }
 
@@ -115,6 +120,28 @@ fn contour(sheet: &Sheet, part: &Part, line: &[Point], colour: [f32; 4], standin
     } else {
         sheet.pen.line(line, part.closed, colour, width);
     }
+}
+
+/// The line up to which the border fades, for a part with a feather of its points.
+fn outer_edge(sheet: &Sheet, part: &Part, points: &[Point], widths: &[f64], colour: [f32; 4]) {
+    if widths.is_empty() || !part.closed {
+        return;
+    }
+    let settings = &sheet.shown.settings;
+    let all = settings.feather + settings.look(&part.name).feather;
+    let moved = part.points_at(settings.document_time as FrameNumber).is_none_or(|own| own != points);
+    let paths = if moved { None } else { segments_at(part, settings.document_time, settings.curves) };
+    let sides = || polyline::segments(points, true).map(|(a, b)| vec![a, b]).collect();
+    let pieces = widths::pieces(&paths.unwrap_or_else(sides), widths);
+    let outward = if polygon::signed_area(points) > 0.0 { -1.0 } else { 1.0 };
+    let count = pieces.len();
+    let edge: Vec<Point> = (0..count)
+        .map(|k| {
+            let along = pieces[(k + 1) % count].at - pieces[(k + count - 1) % count].at;
+            pieces[k].at + outward * (pieces[k].width + all) * along.perp().normalize_or_zero()
+        })
+        .collect();
+    sheet.pen.line(&edge, true, colour, 1.0);
 }
 
 /// A part that has no shape on the frame: its nearest key.

@@ -168,6 +168,7 @@ pub fn press(effect: &Effect, name: &str, time: f64) -> Result<(), Failure> {
     }
     let bench = Bench::of(effect, time)?;
     let work = bench.work();
+    let width = effect.parameters()?.double(c"pointFeather", time)?;
     let outcome = {
         let mut editor = instance(effect)?.editor();
         match name {
@@ -175,6 +176,7 @@ pub fn press(effect: &Effect, name: &str, time: f64) -> Result<(), Failure> {
             "deletePoints" if editor.selection.is_empty() => refused("select points first"),
             "deletePoints" => editor.delete_selected(&work),
             "smoothPoints" => editor.smooth_selected(&work),
+            "featherPoints" => editor.feather_selected(&work, width),
             _ => on_parts(&bench, name),
         }
     };

@@ -1,7 +1,7 @@
 //! The picture of the parts at a time, in pixels with y turned down.
 //!
 //! Mattes and cutouts are made of layers, from the farthest part to the nearest, and parts of equal depth in the document's
-//! order. Neighbouring parts without settings of their own are one layer: their union is exact. In ids the parts share each
+//! order. Neighbouring parts without settings and feather of their own are one layer: their union is exact. In ids the parts share each
 //! pixel by area, as in the command line's ids. If they are grown or feathered, nearer ones are laid over farther ones.
 
 use super::outlines::Lines;
@@ -13,8 +13,10 @@ use rototoon::geometry::Point;
 use rototoon::render::composite::{Layer, LayerRows, Layers};
 use rototoon::render::coverage::Window;
 use rototoon::render::mask::{Bounds, Mask};
+use rototoon::render::matte::feather_pieces;
 use rototoon::render::motion::{outline_at, shutter_from};
 use rototoon::render::visible::Stack;
+use rototoon::render::widths::Piece;
 use rototoon::scene::{Part, Raster, Scene, palette};
 
 /// Something to draw.
@@ -109,7 +111,7 @@ impl Picture {
 
     /// Whether [`Self::painting`] makes the rows one by one and in little memory.
     pub fn is_made_of_rows(&self) -> bool {
-        let still = |layers: &Layers| layers.0.iter().all(|layer| !layer.mask.is_grown());
+        let still = |layers: &Layers| layers.0.iter().all(|layer| !layer.mask.is_drawn_whole());
         match self {
             Self::Cutout(layers, _) | Self::Matte(layers, _) => still(layers),
             Self::Mattes(mattes, _) => mattes.iter().all(still),
@@ -235,7 +237,8 @@ impl Drawing<'_> {
     fn layers(&self, order: &[usize]) -> Layers {
         let mut layers = Vec::new();
         let closed: Vec<usize> = order.iter().copied().filter(|&part| self.scene.parts[part].closed).collect();
-        for parts in closed.chunk_by(|&a, &b| self.look(a).is_plain() && self.look(b).is_plain()) {
+        let plain = |part: usize| self.look(part).is_plain() && self.scene.parts[part].soft_widths().is_none();
+        for parts in closed.chunk_by(|&a, &b| plain(a) && plain(b)) {
             let look = self.look(parts[0]);
             let mask = self.mask(parts, look.grow, look.feather);
             layers.push(Layer { mask, opacity: look.opacity as f32, invert: look.invert, blend: look.blend });
@@ -246,13 +249,29 @@ impl Drawing<'_> {
     fn mask(&self, parts: &[usize], grow: f64, feather: f64) -> Mask {
         let length = |pixels| self.placement.length(pixels);
         let parts: Vec<&Part> = parts.iter().map(|&part| &self.scene.parts[part]).collect();
-        Mask::new(self.instants(&parts), length(self.settings.grow + grow), length(self.settings.feather + feather))
+        let mask = Mask::new(
+            self.instants(&parts),
+            length(self.settings.grow + grow),
+            length(self.settings.feather + feather),
+        );
+        match parts[..] {
+            [part] if part.soft_widths().is_some() => mask.with_widths(&self.feather_pieces(part)),
+            _ => mask,
+        }
+    }
+
+    /// The feather of a part along its contour, where it is at the frame's time: also under motion blur.
+    fn feather_pieces(&self, part: &Part) -> Vec<Piece> {
+        let (time, curves) = (self.settings.document_time, self.settings.curves);
+        feather_pieces(part, time, curves, &|p| self.placement.place(p), self.placement.length(1.0))
     }
 
     fn ids(&self, order: &[usize]) -> Picture {
         let closed: Vec<usize> = order.iter().copied().filter(|&part| self.scene.parts[part].closed).collect();
         let look = |part| self.look(part);
-        let soft = |part: usize| look(part).grow != 0.0 || look(part).feather != 0.0;
+        let soft = |part: usize| {
+            look(part).grow != 0.0 || look(part).feather != 0.0 || self.scene.parts[part].soft_widths().is_some()
+        };
         if self.settings.grow != 0.0 || self.settings.feather != 0.0 || closed.iter().any(|&part| soft(part)) {
             let mask =
                 |&part: &usize| (self.mask(&[part], look(part).grow, look(part).feather), palette::distinct(part));

@@ -91,5 +91,9 @@ pub fn export(effect: &Effect) -> Result<(), Failure> {
             )));
         }
     };
-    write_whole(path, text.as_bytes()).map_err(|error| Failure::Told(error.to_string()))
+    write_whole(path, text.as_bytes()).map_err(|error| Failure::Told(error.to_string()))?;
+    if let Some(warning) = pipeline::left_out_of_shapes(&document) {
+        instance(effect)?.note(effect, &warning, false);
+    }
+    Ok(())
 }

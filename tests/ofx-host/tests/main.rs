@@ -9,6 +9,7 @@
 //! - `overlay`: the pen in the viewer: drawing, selecting, correcting, undo
 //! - `faults`: faults that were seen in real hosts
 //! - `node`: settings of parts, channels, masks, regions, motion and export
+//! - `feather`: the feather of control points
 //! - `order`: parts nearer and farther
 //! - `matrix`: what hosts do, with each output
 //! - `lives`: instances on several threads, at other places and of other versions
@@ -22,6 +23,7 @@ mod buttons;
 mod common;
 mod describing;
 mod faults;
+mod feather;
 mod lines;
 mod lives;
 mod matrix;

@@ -1,6 +1,6 @@
 //! A part: one contour of a character, followed through the frames.
 //!
-//! A part contains the artist's input (keys, pins, corrected centres, depths, absence) and the results of tracking and snapping.
+//! A part contains the artist's input (keys, pins, corrected centres, depths, absence, feather) and the results of tracking and snapping.
 //! Points are in pixels of the footage, x right and y down.
 
 use super::FrameNumber;
@@ -35,6 +35,9 @@ pub struct Part {
     pub depths: BTreeMap<FrameNumber, f64>,
     /// First and last frame of each time in which the part is not there. It has no track there, except on a key.
     pub absent: Vec<[FrameNumber; 2]>,
+    /// Widths in pixels, one for each control point, over which the border fades on each side of the contour, on all frames.
+    /// Between control points the width changes evenly along the contour. Empty if the border is sharp.
+    pub feather: Vec<f64>,
 }
 
 /// The frames between two neighbouring keys of a part, keys included.
@@ -152,6 +155,12 @@ impl Part {
     /// Depth on a frame.
     pub fn depth_at(&self, frame: FrameNumber) -> f64 {
         self.depths.get(&frame).copied().unwrap_or(self.depth)
+    }
+
+    /// The widths of the soft border, if there is one for each control point and one of them is above 0.
+    pub fn soft_widths(&self) -> Option<&[f64]> {
+        let soft = self.feather.iter().any(|width| *width > 0.0) && self.feather.len() == self.point_count();
+        soft.then_some(&self.feather)
     }
 
     /// Number of control points; 0 without a key.

@@ -14,6 +14,8 @@
 //! values are integer multiples of 2⁻²⁰. P is small enough that every sum is an integer below 2⁵³, which a 64-bit float
 //! represents exactly. The fraction differs from the radius by less than 1/200 of it.
 //!
+//! [`varied`] has a radius of its own for each pixel.
+//!
 //! Limits: for radii above about 800 pixels sums may round.
 //!
 //! Source: P. S. Heckbert: Filtering by repeated integration. SIGGRAPH, 1986.
@@ -21,11 +23,13 @@
 mod bell;
 mod columns;
 mod rows;
+mod varied;
 
 use bell::Bell;
 use columns::Columns;
 use rototoon_base::scene::Raster;
 use rows::Line;
+pub use varied::varied;
 
 /// A column at which a row changes, and its value from there on.
 pub type Change = (usize, f32);

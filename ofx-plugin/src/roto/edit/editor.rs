@@ -3,14 +3,14 @@
 //! With the tool *Select* the pen picks, in this order: a handle of the box around the selection, a control point, a
 //! contour, and else it opens a box. A contour that is picked selects its part. A click inside a closed part selects it; a
 //! click beside all of them selects nothing. With Shift, points are added to the selection; with Control, a click on a
-//! contour inserts a point.
+//! contour inserts a point, and a drag away from a point sets the feather of the selected points to its length.
 //!
 //! With *Draw contour* each click sets a point. A click on the first point closes the contour, one on the last point ends an
 //! open one. Return ends it too, Backspace takes the last point back, Escape drops the contour. With *Draw freehand* the
 //! contour is drawn in one stroke.
 
 use super::handles::{Handle, Handles, Transform};
-use super::{Lens, Place, Refused, Selection, change, contour, hit, points};
+use super::{Lens, Place, Refused, Selection, change, contour, feather, hit, points};
 use rototoon::geometry::Point;
 use rototoon::project::Document;
 use rototoon::scene::FrameNumber;
@@ -104,6 +104,8 @@ enum Grip {
     Handle(Handle, Handles),
     /// A freehand stroke.
     Stroke,
+    /// The border's outer edge, from a control point at this place.
+    Feather(Point),
 }
 
 /// A drag of the pen.
@@ -193,6 +195,27 @@ impl Editor {
         }
     }
 
+    /// The feather of a part's points, with the drag that is going on; empty for a sharp border.
+    pub fn feather(&self, work: &Work, part: usize) -> Vec<f64> {
+        let shown = &work.document.scene.parts[part];
+        let own = shown.soft_widths().unwrap_or_default().to_vec();
+        match self.feathering(work) {
+            Some(width) if shown.closed && work.parts.contains(&part) => {
+                feather::changed(&own, shown.point_count(), &self.selection.of_part(part), width)
+            }
+            _ => own,
+        }
+    }
+
+    /// The feather that the drag gives the selected points.
+    fn feathering(&self, work: &Work) -> Option<f64> {
+        let drag = self.drag.as_ref().filter(|drag| drag.frame == work.frame)?;
+        match drag.grip {
+            Grip::Feather(from) if self.moved(work) => Some(feather::dragged(from, drag.to, &work.lens)),
+            _ => None,
+        }
+    }
+
     fn moved(&self, work: &Work) -> bool {
         self.drag.as_ref().is_some_and(|drag| work.lens.distance(drag.from, drag.to) > CLICK)
     }
@@ -244,7 +267,9 @@ impl Editor {
             if !self.selection.contains(place) {
                 self.selection = Selection::of([place]);
             }
-            return self.hold(work, Grip::Points, pen);
+            let at = scene.parts[place.part].points_at(frame).map(|points| points[place.point]);
+            let grip = at.filter(|_| self.control).map_or(Grip::Points, Grip::Feather);
+            return self.hold(work, grip, pen);
         }
         let Some(found) = hit::contour(scene, frame, work.parts, &work.lens, pen) else {
             return self.hold(work, Grip::Box, pen);
@@ -337,7 +362,7 @@ impl Editor {
         };
         drag.to = pen;
         let (frame, corners) = (drag.frame, [drag.from, drag.to]);
-        let (moved, transform) = (self.moved(work), self.transform(work));
+        let (moved, transform, feathering) = (self.moved(work), self.transform(work), self.feathering(work));
         let Some(Drag { grip, .. }) = self.drag.take() else { return Outcome::Ignored };
         if frame != work.frame {
             // The viewer shows another frame: the drag was meant for what is no longer seen.
@@ -351,7 +376,8 @@ impl Editor {
             }
             Grip::Box if moved => self.select_box(work, corners),
             Grip::Box => self.select_inside(work, pen),
-            Grip::Points if !moved => self.selected(work),
+            Grip::Points | Grip::Feather(_) if !moved => self.selected(work),
+            Grip::Feather(_) => feathering.map_or(Outcome::Shown, |width| self.feather_selected(work, width)),
             Grip::Points | Grip::Handle(..) => {
                 let label = if matches!(grip, Grip::Points) { "Move points" } else { "Transform points" };
                 transform.map_or(Outcome::Shown, |transform| self.apply(work, &transform, label))
@@ -434,71 +460,8 @@ impl Editor {
         // The host may have its own use for a key that changes nothing here.
         Outcome::Ignored
     }
-
-    /// Deletes the selected points. A part of which all points are selected is deleted.
-    pub fn delete_selected(&mut self, work: &Work) -> Outcome {
-        self.selection.keep_existing(&work.document.scene);
-        let mut document = work.document.clone();
-        // From the last part to the first, so that indices stay valid.
-        for part in self.selection.parts().into_iter().rev() {
-            if !work.parts.contains(&part) {
-                continue;
-            }
-            let chosen = self.selection.of_part(part);
-            let all = chosen.len() == document.scene.parts[part].point_count();
-            let done = if all {
-                change::delete_part(&mut document, part)
-            } else {
-                points::delete(&mut document, part, &chosen)
-            };
-            if let Err(refused) = done {
-                return Outcome::Refused(refused);
-            }
-        }
-        self.selection = Selection::default();
-        Outcome::Edited(Edit { label: "Delete points", document })
-    }
-
-    /// Inserts a point in the middle between neighbouring selected points.
-    pub fn insert_between(&mut self, work: &Work) -> Outcome {
-        self.selection.keep_existing(&work.document.scene);
-        let mut document = work.document.clone();
-        let mut new = Vec::new();
-        for part in self.selection.parts() {
-            let chosen = self.selection.of_part(part);
-            let (count, segments) =
-                (document.scene.parts[part].point_count(), document.scene.parts[part].segment_count());
-            let both = |k: &usize| chosen.contains(k) && chosen.contains(&((k + 1) % count));
-            let places: BTreeMap<usize, f64> = (0..segments).filter(both).map(|segment| (segment, 0.5)).collect();
-            match points::insert(&mut document, part, &places) {
-                Ok(inserted) => new.extend(inserted.into_iter().map(|point| Place { part, point })),
-                Err(refused) => return Outcome::Refused(refused),
-            }
-        }
-        if new.is_empty() {
-            return Outcome::Refused(Refused::new("select two neighbouring points first"));
-        }
-        self.selection = Selection::of(new);
-        Outcome::Edited(Edit { label: "Insert points", document })
-    }
-
-    /// Smooths the selected points on the frame.
-    pub fn smooth_selected(&mut self, work: &Work) -> Outcome {
-        self.selection.keep_existing(&work.document.scene);
-        let scene = &work.document.scene;
-        let mut moved = BTreeMap::new();
-        for part in self.selection.parts() {
-            let smoothed = change::smoothed(&scene.parts[part], work.frame, &self.selection.of_part(part));
-            moved.extend(smoothed.into_iter().map(|(point, to)| (Place { part, point }, to)));
-        }
-        let mut document = work.document.clone();
-        match change::move_points(&mut document, work.frame, &moved, &BTreeSet::new()) {
-            Ok(true) => Outcome::Edited(Edit { label: "Smooth points", document }),
-            Ok(false) => Outcome::Refused(Refused::new("select points of a shape on this frame first")),
-            Err(refused) => Outcome::Refused(refused),
-        }
-    }
 }
 
+mod on_selection;
 #[cfg(test)]
 mod tests;

@@ -6,6 +6,7 @@
 //! - [`handles`]: the box around the selection, with which it is moved, scaled and rotated
 //! - [`change`]: moves points, makes and deletes keys
 //! - [`absence`]: marks parts as hidden
+//! - [`feather`]: gives points a feather
 //! - [`order`]: brings parts nearer or farther away
 //! - [`points`]: inserts and deletes points
 //! - [`contour`]: makes keys of drawn contours
@@ -20,6 +21,7 @@ pub mod absence;
 pub mod change;
 pub mod contour;
 pub mod editor;
+pub mod feather;
 pub mod handles;
 mod hit;
 mod lens;

@@ -46,6 +46,15 @@ pub fn insert(document: &mut Document, index: usize, places: &BTreeMap<usize, f6
         }
         *values = all;
     }
+    if part.feather.len() == count {
+        let widths = std::mem::take(&mut part.feather);
+        for (k, &width) in widths.iter().enumerate() {
+            part.feather.push(width);
+            if let Some(share) = places.get(&k) {
+                part.feather.push(width + share * (widths[(k + 1) % count] - width));
+            }
+        }
+    }
     let moved = |k: usize| k + places.range(..k).count();
     for pins in part.pins.values_mut() {
         *pins = std::mem::take(pins).into_iter().map(|(k, p)| (moved(k), p)).collect();
@@ -79,6 +88,9 @@ pub fn delete(document: &mut Document, index: usize, gone: &BTreeSet<usize>) -> 
     each_shape(part, |points| retain(points, &gone));
     for values in part.confidence.values_mut().filter(|values| values.len() == count) {
         retain(values, &gone);
+    }
+    if part.feather.len() == count {
+        retain(&mut part.feather, &gone);
     }
     let moved = |k: usize| k - gone.range(..k).count();
     for pins in part.pins.values_mut() {

@@ -14,7 +14,7 @@ const FRAMES: [i32; 2] = [-1_000_000, 1_000_000];
 const PLANE: [f64; 2] = [-1_000_000.0, 1_000_000.0];
 
 /// Rototoon Roto: every parameter in order.
-pub const ROTO: [EffectParameter; 81] = [
+pub const ROTO: [EffectParameter; 83] = [
     parameter("shapes", "Shapes", EffectKind::Group(true), None, "Where the shapes come from."),
     parameter(
         "project",
@@ -123,6 +123,20 @@ pub const ROTO: [EffectParameter; 81] = [
         EffectKind::Button,
         DRAW,
         "Moves the selected points on this frame towards the middle of their neighbours.",
+    ),
+    parameter(
+        "pointFeather",
+        "Point feather",
+        EffectKind::Number(0.0, [0.0, 500.0], [0.0, 50.0]),
+        DRAW,
+        "Width in pixels of the footage that Feather points gives.",
+    ),
+    parameter(
+        "featherPoints",
+        "Feather points",
+        EffectKind::Button,
+        DRAW,
+        "Gives the selected points this width over which the border fades, beside the feather of the part and of all parts.",
     ),
     parameter(
         "deletePart",

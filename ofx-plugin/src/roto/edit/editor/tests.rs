@@ -173,6 +173,37 @@ fn points_are_inserted_deleted_and_smoothed() {
 }
 
 #[test]
+fn a_drag_with_control_gives_the_selected_points_a_feather() {
+    let document = document();
+    let (mut editor, work) = (Editor::default(), work(&document));
+    editor.key(&work, Key::Control(true));
+    // The corner is at (30, 30): its outer edge is dragged 5 pixels away.
+    editor.down(&work, p(31.0, 30.0));
+    editor.move_to(&work, p(27.0, 26.0));
+    assert_eq!(editor.feather(&work, 0), [5.0, 0.0, 0.0, 0.0], "seen while the pen drags");
+    let one = edited(editor.up(&work, p(27.0, 26.0)));
+    assert_eq!(one.scene.parts[0].feather, [5.0, 0.0, 0.0, 0.0]);
+    assert_eq!(one.scene.parts[0].tracks, document.scene.parts[0].tracks, "no point moves");
+    let softer = Work { document: &one, ..work };
+    editor.selection = Selection::of([0, 1].map(|point| Place { part: 0, point }));
+    let two = edited(drag(&mut editor, &softer, p(50.0, 30.0), p(62.34, 30.0)));
+    assert_eq!(two.scene.parts[0].feather, [12.3, 12.3, 0.0, 0.0]);
+    // Points that come between have what was there; points that go take theirs along.
+    editor.key(&softer, Key::Control(false));
+    let inserted = edited(editor.insert_between(&Work { document: &two, ..work }));
+    assert_eq!(inserted.scene.parts[0].feather, [12.3, 12.3, 12.3, 0.0, 0.0]);
+    editor.selection = Selection::of([Place { part: 0, point: 0 }]);
+    let fewer = edited(editor.delete_selected(&Work { document: &two, ..work }));
+    assert_eq!(fewer.scene.parts[0].feather, [12.3, 0.0, 0.0]);
+    // Back at its point the border is sharp again, and a sharp part has no widths.
+    editor.key(&work, Key::Control(true));
+    let sharp = edited(drag(&mut editor, &softer, p(30.0, 34.0), p(30.0, 30.5)));
+    assert!(sharp.scene.parts[0].feather.is_empty());
+    editor.selection = Selection::part(1, &document.scene);
+    assert!(matches!(editor.feather_selected(&work, 3.0), Outcome::Refused(text) if text.0.contains("is open")));
+}
+
+#[test]
 fn handles_scale_and_a_drag_over_a_change_of_frame_is_dropped() {
     let document = document();
     let (mut editor, mut work) = (Editor::default(), work(&document));
