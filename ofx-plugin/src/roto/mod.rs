@@ -21,7 +21,8 @@
 //! - [`buttons`]: the buttons
 //! - [`standing`]: whether a part is lost, doubtful or hidden on a frame; [`marks`]: shows it in the host's timeline;
 //!   [`visits`]: goes to such frames
-//! - [`motion`]: the motion of a part; [`taking_out`]: takes motions and shapes out
+//! - [`motion`]: the motion of a part; [`taking_out`]: takes motions and shapes out;
+//!   [`id_files`]: writes ids as files for keyers
 //! - [`track`]: runs the core's tracker on the source's frames
 
 pub mod buttons;
@@ -30,6 +31,7 @@ pub mod describe;
 pub mod edit;
 pub mod edits;
 pub mod fresh;
+pub mod id_files;
 pub mod instance;
 pub mod marks;
 pub mod measured;

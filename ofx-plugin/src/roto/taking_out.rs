@@ -4,7 +4,7 @@ use super::motion::Motion;
 use super::placement::Placement;
 use super::settings::Settings;
 use super::state::State;
-use super::{instance, motion};
+use super::{id_files, instance, motion};
 use crate::ofx::{Effect, Failure};
 use rototoon::export::SvgOptions;
 use rototoon::geometry::Point;
@@ -77,6 +77,10 @@ pub fn export(effect: &Effect) -> Result<(), Failure> {
         return Err(Failure::Told("choose an export file first".into()));
     }
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_ascii_lowercase();
+    if extension == "exr" {
+        let offset = effect.parameters()?.int(c"frameOffset", 0.0)?;
+        return id_files::write(effect, &document, &path.to_string_lossy(), offset);
+    }
     let text = match extension.as_str() {
         "nk" => pipeline::export_nuke(&document, SPACING),
         "py" => pipeline::export_natron(&document, SPACING),
@@ -87,7 +91,7 @@ pub fn export(effect: &Effect) -> Result<(), Failure> {
         _ => {
             let shown = path.display();
             return Err(Failure::Told(format!(
-                "export file: found {shown}, expected a name that ends in .nk, .py, .jsx, .fxs or .svg"
+                "export file: found {shown}, expected a name that ends in .nk, .py, .jsx, .fxs, .svg or .exr"
             )));
         }
     };

@@ -7,7 +7,7 @@ use crate::common::{
 use rototoon::geometry::Point;
 use rototoon::project::Document;
 use rototoon::scene::Scene;
-use rototoon_ofx_host::{ClipSettings, Effect, Host, Picture, Region};
+use rototoon_ofx_host::{ClipSettings, Effect, Host, Picture, Region, Settings};
 
 /// Two squares: "left" from 4 to 24 pixels, in front of it "right" from 14 to 44, both from row 8 to row 40.
 fn squares() -> String {
@@ -264,7 +264,7 @@ fn motion_becomes_keys_and_shapes_become_files() {
     let _ = (host.log(), host.messages());
     effect.set_text("exportFile", folder.path().join("a.txt").to_str().unwrap());
     assert_eq!(effect.press("export"), "kOfxStatFailed");
-    assert!(host.messages().last().unwrap().contains(".nk, .py, .jsx, .fxs or .svg"));
+    assert!(host.messages().last().unwrap().contains(".nk, .py, .jsx, .fxs, .svg or .exr"));
 }
 
 /// The stored document, in either form.
@@ -285,4 +285,33 @@ fn damaged_settings_of_parts_are_told() {
     effect.set_text("state", "");
     assert_eq!(shown(&host, &mut effect, 1.0)[10], 1.0);
     let _ = kept;
+}
+
+#[test]
+fn ids_for_keyers_are_written_for_each_frame_of_the_composition() {
+    let host = host();
+    let mut effect = node(&host, FILTER);
+    effect.set("frameOffset", &[1001.0]);
+    let folder = tempfile::tempdir().unwrap();
+    effect.set_text("exportFile", folder.path().join("ids_%04d.exr").to_str().unwrap());
+    host.configure(&Settings { cancel_after: 2, ..Settings::default() });
+    assert_eq!(effect.press("export"), OK, "cancelling is no error");
+    let files = || {
+        let names = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+        let mut names: Vec<String> = names.map(|name| name.into_string().unwrap()).collect();
+        names.sort();
+        names
+    };
+    assert!(files().len() < 5, "{:?}", files());
+    host.configure(&Settings::default());
+    assert_eq!(effect.press("export"), OK, "{:?}", host.messages());
+    assert_eq!(files(), [1001, 1002, 1003, 1004, 1005].map(|frame| format!("ids_{frame}.exr")));
+    // The same bytes as those of the command line's function for the document's frame.
+    let scene = Document::parse(&squares(), "squares").unwrap().scene;
+    let wanted = rototoon::render::id_picture(&scene, 2, None, rototoon::render::Format::Exr).unwrap();
+    assert!(std::fs::read(folder.path().join("ids_1003.exr")).unwrap() == wanted);
+    effect.set_text("exportFile", folder.path().join("ids.exr").to_str().unwrap());
+    assert_eq!(effect.press("export"), "kOfxStatFailed");
+    let told = host.messages().join("\n");
+    assert!(told.contains("export file:") && told.contains("ids.exr"), "{told}");
 }

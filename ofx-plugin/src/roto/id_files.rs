@@ -1,0 +1,40 @@
+//! Writes ids as OpenEXR files with Cryptomatte layers, one for each frame of the footage.
+//!
+//! A keyer needs the names of the parts beside the pixels: they are metadata of the file. OpenFX has no metadata of images.
+//! The standard's headers do not know the word, and the proposal for it is open (AcademySoftwareFoundation/openfx, issue
+//! 142). So an effect's output cannot be a Cryptomatte, and the node writes the files itself, as `rototoon render` does.
+//!
+//! Files have the numbers of the composition's frames. They are as large as the project's footage. Borders are sharp.
+//!
+//! Limits: a percent sign in the name is only the frame's number.
+
+use crate::ofx::progress::Bar;
+use crate::ofx::{Effect, Failure};
+use rototoon::pipeline::{self, Picture, RenderJob};
+use rototoon::project::Document;
+use rototoon::scene::Silent;
+use rototoon::scene::pattern::FramePattern;
+use std::path::Path;
+
+/// Writes a file for each frame. `name` is a pattern with one `%d` or `%0Nd`; `offset` is the composition's frame that shows
+/// frame 0 of the document. Files that were finished before the user cancels stay.
+pub fn write(effect: &Effect, document: &Document, name: &str, offset: i32) -> Result<(), Failure> {
+    let told = |error: &dyn std::fmt::Display| Failure::Told(format!("export file: {error}"));
+    let pattern = FramePattern::parse(name).map_err(|error| told(&error))?;
+    let (first, last) = (document.scene.footage.first, document.scene.footage.last);
+    // Threads of its own end with it. Those that all work of a process shares would outlive the plugin.
+    let pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("rototoon-{index}")).build();
+    let pool = pool.map_err(|error| told(&format!("cannot start threads: {error}")))?;
+    let bar = Bar::new(*effect, "Rototoon: writing ids");
+    for frame in first..=last {
+        if !bar.update(f64::from(frame - first) / f64::from(last - first + 1)) {
+            return Err(Failure::Aborted);
+        }
+        let path = pattern.path(frame.saturating_add(offset));
+        let output = path.to_str().ok_or_else(|| told(&"found a name that is not Unicode"))?.to_owned();
+        let job = RenderJob { picture: Picture::Ids, frames: Some(frame..=frame), parts: None, output };
+        let folder = Path::new("");
+        pool.install(|| pipeline::render(document, folder, &job, &Silent)).map_err(|error| told(&error))?;
+    }
+    Ok(())
+}
