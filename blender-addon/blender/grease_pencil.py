@@ -445,6 +445,17 @@ def selected_points(drawing: bpy.types.bpy_struct) -> np.ndarray:
     return get(drawing, ".selection", int(starts[-1]))
 
 
+def select_points(drawing: bpy.types.bpy_struct, chosen: np.ndarray) -> None:
+    """Selects only these points for edit mode."""
+    attribute = drawing.attributes.get(".selection")
+    if attribute is not None and (attribute.domain, attribute.data_type) != ("POINT", "BOOLEAN"):
+        drawing.attributes.remove(attribute)
+        attribute = None
+    if attribute is None:
+        attribute = drawing.attributes.new(".selection", "BOOLEAN", "POINT")
+    attribute.data.foreach_set("value", np.ascontiguousarray(chosen, bool))
+
+
 def selected_strokes(drawing: bpy.types.bpy_struct) -> np.ndarray:
     """Which strokes have a selected point in edit mode. Without a stored selection none has."""
     starts = offsets(drawing)

@@ -12,8 +12,8 @@ import numpy as np
 from ..blender import colours, guard, placement, stroke_lines
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
+from ..lines import doubts, tracing
 from ..lines import drawings as dr
-from ..lines import tracing
 
 Drawing = dict[int, list[tracing.Placed]]
 
@@ -50,7 +50,10 @@ def _stroke(place: str, stroke: Any) -> tracing.Placed:
     colour = _numbers(f"{place}.colour", stroke.get("colour") or [0.0] * 3)
     if colour.shape != (3,):
         raise Problem(f"{place}.colour: expected three numbers")
-    return tracing.Placed(stroke["track"] + 1, points, bool(stroke.get("closed")), widths, colour)
+    sure = stroke.get("confidence", 1.0)
+    if isinstance(sure, bool) or not isinstance(sure, (int, float)) or not 0 <= sure <= 1:
+        raise Problem(f"{place}.confidence: expected a number from 0 to 1")
+    return tracing.Placed(stroke["track"] + 1, points, bool(stroke.get("closed")), widths, colour, float(sure))
 
 
 def _numbers(place: str, values: Any) -> np.ndarray:
@@ -88,13 +91,16 @@ def of(ob) -> list[dict[str, Any]]:
     contents = layer.keys | layer.made
     mapper, palette = placement.Mapper(ob, contents, {}, [name]), colours.palette(ob)
     return [
-        {"frame": frame - offset, "strokes": _written(ob, contents[frame], mapper.at(0, frame), palette)} for frame in sorted(contents)
+        {"frame": frame - offset, "strokes": _written(ob, contents[frame], mapper.at(0, frame), palette, frame in layer.made)}
+        for frame in sorted(contents)
     ]
 
 
-def _written(ob, content, mapping, palette) -> list[dict[str, Any]]:
+def _written(ob, content, mapping, palette, traced: bool) -> list[dict[str, Any]]:
     seen, tracks, closed = colours.of_strokes(ob, content, palette), content.strokes(gp.TRACK), content.strokes("cyclic")
     radii = content.point.get("radius")
+    # What the artist drew is beyond doubt.
+    sure = doubts.of_strokes(content.point.get(gp.CONFIDENCE) if traced else None, content.starts).round(3)
     found, taken = [], {0}
     for i, line in enumerate(stroke_lines.lines(content)):
         line = line[:-1] if closed[i] and len(line) > 2 and np.array_equal(line[0], line[-1]) else line
@@ -109,5 +115,7 @@ def _written(ob, content, mapping, palette) -> list[dict[str, Any]]:
             pixel = np.linalg.norm(mapping.to_layer(points + (1.0, 0.0)) - mapping.to_layer(points), axis=1)
             stroke["widths"] = (2 * own / np.maximum(pixel, 1e-12)).round(4).tolist()
         stroke["colour"] = seen[i].clip(0, 1).round(4).tolist()
+        if sure[i] < 1:
+            stroke["confidence"] = float(sure[i])
         found.append(stroke)
     return found

@@ -106,7 +106,12 @@ def keep(ob, layer: Layer) -> None:
     target = gp.find_layer(ob, layer.name)
     handles = gp.drawings(target) if layer.edited else {}
     for frame in layer.edited:
-        gp.put(handles[frame][0], gp.MADE, np.zeros(len(gp.offsets(handles[frame][0])) - 1, bool))
+        handle = handles[frame][0]
+        starts = gp.offsets(handle)
+        gp.put(handle, gp.MADE, np.zeros(len(starts) - 1, bool))
+        if gp.has(handle, gp.CONFIDENCE):
+            # What the artist has drawn is beyond doubt.
+            gp.put(handle, gp.CONFIDENCE, np.ones(int(starts[-1])))
     gp.set_keyframe_type(target, dict.fromkeys(layer.edited, gp.KEYFRAME))
 
 

@@ -25,3 +25,11 @@ class LineSettings:
         soft_min=0.25,
         soft_max=4.0,
     )
+    show_doubts: bpy.props.BoolProperty(
+        name="Mark Doubtful Strokes",
+        description="Draw strokes that may be another stroke in black and yellow, and those that probably are in black and red",
+        default=True,
+    )
+    doubt_frame: bpy.props.IntProperty(default=0)
+    doubt_layer: bpy.props.StringProperty(default="")
+    doubt_number: bpy.props.IntProperty(default=0)

@@ -47,6 +47,8 @@ class Done:
     """Number of drawings of the artist that were changed traced drawings before."""
     breaks: set[int] = field(default_factory=set)
     """Frames on which many strokes end or begin: identity may be lost there."""
+    confidence: dict[numbers.Key, dict[int, float]] = field(default_factory=dict)
+    """Of each stroke, by scene frame."""
 
 
 BREAK = 0.3
@@ -94,6 +96,8 @@ class Placed:
     closed: bool
     widths: np.ndarray
     colour: np.ndarray
+    confidence: float = 1.0
+    """The probability that it is the stroke of its number."""
 
 
 def finishing(ob, plan: pl.Plan, found: list[Traced], home: str) -> Iterator[float]:
@@ -194,7 +198,7 @@ def _looks_of(group: pl.Group, k: int, keyed) -> looks.Looks:
 def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan) -> dict[int, list[Placed] | None]:
     """The strokes of a layer on the frames that are written, by number; `None` for a frame that holds the drawing before."""
     points, widths = np.asarray(traced.points).reshape(-1, 2), np.asarray(traced.widths)
-    colours, ends = np.asarray(traced.colours).reshape(-1, 3), traced.point_offsets
+    colours, ends, sure = np.asarray(traced.colours).reshape(-1, 3), traced.point_offsets, traced.confidence
     known = {key for seed in (keyed[f] for f in group.seeds) for key in seed}
     result: dict[int, list[Placed]] = {}
     for place, number in enumerate(traced.frames.tolist()):
@@ -207,7 +211,7 @@ def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan
             if key[0] != layer.name or not (plan.new or key in known):
                 continue
             span = slice(ends[i], ends[i + 1])
-            strokes.append(Placed(key[1], points[span], bool(traced.closed[i]), widths[span], colours[i]))
+            strokes.append(Placed(key[1], points[span], bool(traced.closed[i]), widths[span], colours[i], float(sure[i])))
         result[frame] = sorted(strokes, key=lambda stroke: stroke.number)
     if group.mapper.still:
         # A held picture shows the drawing before it, also one of the artist.
@@ -235,6 +239,8 @@ def _write(ob, layer: dr.Layer, mapper, k: int, placed, shown: looks.Looks, reco
         done.strokes += len(strokes)
         done.frames.add(frame)
         done.numbers.update((layer.name, stroke.number) for stroke in strokes)
+        for stroke in strokes:
+            done.confidence.setdefault((layer.name, stroke.number), {})[frame] = stroke.confidence
         yield count / len(placed)
     done.breaks |= _breaks(placed)
     for frame in [frame for frame in record.sums if frame in layer.kept or frame not in handles]:
@@ -296,6 +302,10 @@ def _rows(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str
     rows.values[gp.LINE] = np.repeat(rows.values[gp.TRACK], rows.sizes)
     rows.values[gp.ALONG] = gp.blank(gp.ALONG, total)
     rows.values[gp.LOOK] = gp.blank(gp.LOOK, count)
+    sure = np.array([stroke.confidence for stroke in strokes], np.float32)
+    if (sure < 1).any():
+        # Without values every stroke is beyond doubt.
+        rows.values[gp.CONFIDENCE] = np.repeat(sure, rows.sizes)
     if not count:
         return rows
     rows.values["radius"][:] = _radii(points, np.concatenate([stroke.widths for stroke in strokes]), places, mapping)

@@ -14,7 +14,10 @@ Coordinates are pixels. `Traced` has flat arrays for NumPy; `Traced.on` gives th
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+
+from .outcomes import outcomes
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,28 @@ class Stroke:
     """float64 (N,): the width of the line at each point, in pixels; NaN if it is not known."""
     colour: tuple[float, float, float] | None
     """sRGB from 0 to 1; `None` if it is not known."""
+    confidence: float
+    """The probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt: it was drawn, or begins here."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """A stroke that is in doubt somewhere."""
+
+    track: int
+    """Its number."""
+    doubtful: list[int]
+    """Frames on which a look at it is worth while, rising."""
+    lost: list[int]
+    """Frames on which it is probably another stroke, rising."""
+
+
+def doubts(confidence: Mapping[int, Mapping[int, float]]) -> list[Doubt]:
+    """The strokes that are in doubt, by number. `confidence` has for each number the confidence by frame."""
+    numbers = sorted(confidence)
+    found = outcomes({"keys": [], "confidence": confidence[number]} for number in numbers).parts
+    every = [Doubt(number, each.doubtful, each.lost) for number, each in zip(numbers, found, strict=True)]
+    return [doubt for doubt in every if doubt.doubtful or doubt.lost]
 
 
 @dataclass(frozen=True)
@@ -53,6 +78,8 @@ class Traced:
     """float64 (P, 2), pixels."""
     widths: memoryview
     """float64 (P,): the width of the line at each point in pixels, NaN for a stroke without widths."""
+    confidence: memoryview
+    """float64 (S,): for each stroke the probability that it is the stroke of its number; 1 if that is beyond doubt."""
 
     def on(self, frame: int) -> list[Stroke]:
         """The strokes of a frame, from back to front. There are none on a frame that was not traced."""
@@ -62,6 +89,15 @@ class Traced:
         place = numbers.index(frame)
         return [self._stroke(i) for i in range(self.stroke_offsets[place], self.stroke_offsets[place + 1])]
 
+    def doubts(self) -> list[Doubt]:
+        """The strokes that are in doubt on some frame, by number. Sure, doubtful and lost come from the formula of `outcomes`."""
+        frames, bounds, tracks = self.frames.tolist(), self.stroke_offsets, self.tracks.tolist()
+        means: dict[int, dict[int, float]] = {}
+        for place, frame in enumerate(frames):
+            for i in range(bounds[place], bounds[place + 1]):
+                means.setdefault(tracks[i], {})[frame] = self.confidence[i]
+        return doubts(means)
+
     def _stroke(self, i: int) -> Stroke:
         first, last = self.point_offsets[i], self.point_offsets[i + 1]
         red, green, blue = (self.colours[i, channel] for channel in range(3))
@@ -69,4 +105,4 @@ class Traced:
         flat = self.points.cast("B")[16 * first : 16 * last]
         points = flat.cast("d", (last - first, 2)) if last > first else flat.cast("d")
         colour = None if red != red else (red, green, blue)
-        return Stroke(self.tracks[i], points, bool(self.closed[i]), self.widths[first:last], colour)
+        return Stroke(self.tracks[i], points, bool(self.closed[i]), self.widths[first:last], colour, self.confidence[i])

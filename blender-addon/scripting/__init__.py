@@ -18,7 +18,7 @@ May import: `rototoon`, `blender`, `common`, `capture`, `lines`.
 from ..common.reports import Report
 from ..common.reports import take as take_reports
 from .keys import set_key
-from .lines import Drawn, Line, carry_strokes, lines, trace_drawing
+from .lines import Drawn, Line, carry_strokes, doubtful_lines, lines, trace_drawing
 from .reading import End, Part, Track, ends, lost_frames, parts, tracks, wanted_keys, weakest_frame
 from .work import Tracked, track
 
@@ -31,6 +31,7 @@ __all__ = [
     "Track",
     "Tracked",
     "carry_strokes",
+    "doubtful_lines",
     "ends",
     "lines",
     "lost_frames",

@@ -15,7 +15,7 @@ from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs
 from ..common.operators import OnDrawing
-from ..lines import drawings, tracing
+from ..lines import doubts, drawings, tracing
 from ..lines import plan as plans
 from ..lines.operators.tracing_base import OnFootage, plan_of
 from .refusing import need, told
@@ -32,6 +32,8 @@ class Line:
     closed: bool
     traced: bool
     """Whether tracing wrote the drawing, and nobody has changed it since."""
+    confidence: float
+    """The probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt, as on the artist's drawings."""
 
 
 @dataclass(frozen=True)
@@ -120,10 +122,18 @@ def lines(ob: bpy.types.Object, layer: str = "") -> dict[int, list[Line]]:
     return {frame: _lines(contents[frame], mapper.at(0, frame), frame in found.made) for frame in sorted(contents)}
 
 
+@told
+def doubtful_lines(ob: bpy.types.Object) -> list[doubts.Doubt]:
+    """The traced strokes of all layers that are in doubt on some frame, by layer and number. Changes nothing."""
+    need(ob, OnDrawing, guard.NOTHING)
+    return doubts.summed(doubts.places(ob))
+
+
 def _lines(content: st.Content, mapping, traced: bool) -> list[Line]:
     numbers, closed = content.strokes(gp.TRACK), content.strokes("cyclic")
+    sure = doubts.of_strokes(content.point.get(gp.CONFIDENCE) if traced else None, content.starts)
     return [
-        Line(int(numbers[i]), mapping.to_pixels(line), bool(closed[i]), traced)
+        Line(int(numbers[i]), mapping.to_pixels(line), bool(closed[i]), traced, float(sure[i]))
         for i, line in enumerate(stroke_lines.lines(content))
         if len(line)
     ]

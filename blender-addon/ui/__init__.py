@@ -5,7 +5,7 @@ Only the extension's own `__init__.py` imports this package.
 May import: every package.
 """
 
-from . import bones, clip_preview, clips, help, keymap, lists, menus, overlay, panels, preferences, start
+from . import bones, clip_preview, clips, doubts, help, keymap, lists, menus, overlay, panels, preferences, start
 
 CLASSES = (
     preferences.CLASSES
@@ -15,6 +15,7 @@ CLASSES = (
     + panels.CLASSES
     + bones.CLASSES
     + menus.CLASSES
+    + doubts.CLASSES
     + help.CLASSES
 )
 PARTS = (overlay, clip_preview, menus, keymap, help)

@@ -16,6 +16,7 @@ import numpy as np
 from ..blender import camera
 from ..blender import grease_pencil as gp
 from ..capture import doubt
+from . import doubts
 
 SURE = np.array([0.15, 0.85, 0.35, 1.0], np.float32)
 UNSURE = np.array([0.95, 0.75, 0.1, 1.0], np.float32)
@@ -134,19 +135,22 @@ def _draw() -> None:
     ob = context.object
     if not gp.is_drawing(ob) or context.space_data is None or not context.space_data.overlay.show_overlays:
         return
-    settings = ob.rototoon
+    settings, frame = ob.rototoon, context.scene.frame_current
+    if settings.show_doubts:
+        for strokes, colour, width in doubtful(ob, frame):
+            _draw_lines(strokes, colour, width)
     if not settings.parts or not (settings.show_confidence or settings.show_pins or settings.show_lost):
         return
     import gpu
     from gpu_extras.batch import batch_for_shader
 
     if settings.show_lost:
-        _draw_lost(gpu, lost_lines(ob, context.scene.frame_current))
+        _draw_lines(lost_lines(ob, frame), LOST_COLOUR, LOST_WIDTH)
 
     shader = _shader(gpu)
     gpu.state.depth_test_set("NONE")
     gpu.state.blend_set("ALPHA")
-    for mark in gather(ob, context.scene.frame_current):
+    for mark in gather(ob, frame):
         gpu.state.point_size_set(mark.size)
         points = np.ascontiguousarray(mark.points, np.float32)
         batch_for_shader(shader, "POINTS", {"pos": points, "color": mark.colours}).draw(shader)
@@ -154,8 +158,21 @@ def _draw() -> None:
     gpu.state.point_size_set(1.0)
 
 
-def _draw_lost(gpu, lines: list[np.ndarray]) -> None:
-    """Draws lost contours: black, and red in it."""
+def doubtful(ob, frame: int) -> list[tuple[list[np.ndarray], tuple, float]]:
+    """The traced strokes that are in doubt on a frame: lines (N, 3) in the world, with their colour and width. Lost ones are last, so
+    that they are on top."""
+    groups: dict[tuple[bool, bool], list[np.ndarray]] = {}
+    for each in doubts.marked(ob, frame):
+        groups.setdefault((each.lost, each.chosen), []).append(each.points)
+    return [
+        (groups[lost, chosen], LOST_COLOUR if lost else tuple(UNSURE.tolist()), LOST_WIDTH * (2 if chosen else 1))
+        for lost, chosen in sorted(groups)
+    ]
+
+
+def _draw_lines(lines: list[np.ndarray], colour: tuple, line_width: float) -> None:
+    """Draws lines: black, and a colour in it."""
+    import gpu
     from gpu_extras.batch import batch_for_shader
 
     if not lines:
@@ -167,9 +184,9 @@ def _draw_lost(gpu, lines: list[np.ndarray]) -> None:
     gpu.state.blend_set("ALPHA")
     shader.bind()
     shader.uniform_float("viewportSize", (region.width, region.height))
-    for width, colour in ((LOST_WIDTH, LOST_EDGE), (LOST_WIDTH / 2, LOST_COLOUR)):
+    for width, own in ((line_width, LOST_EDGE), (line_width / 2, colour)):
         shader.uniform_float("lineWidth", width * scale)
-        colours = np.tile(np.asarray(colour, np.float32), (len(ends), 1))
+        colours = np.tile(np.asarray(own, np.float32), (len(ends), 1))
         batch_for_shader(shader, "LINES", {"pos": ends, "color": colours}).draw(shader)
     gpu.state.blend_set("NONE")
 

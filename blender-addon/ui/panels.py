@@ -255,9 +255,13 @@ class ROTOTOON_PT_lines(DrawingPanel, bpy.types.Panel):
         column.operator("rototoon.trace_image", icon="IMAGE_REFERENCE")
         column.operator("rototoon.carry_strokes", icon="TRACKING_FORWARDS")
         column = layout.column(align=True)
+        row = column.row(align=True)
+        row.operator("rototoon.next_doubt", icon="FRAME_NEXT")
+        row.menu("ROTOTOON_MT_doubts", text="", icon="DOWNARROW_HLT")
         column.operator("rototoon.match_lines", icon="UV_SYNC_SELECT")
         column.operator("rototoon.spread_edits", icon="NEXT_KEYFRAME")
         column.operator("rototoon.make_part", icon="MOD_MASK")
+        layout.prop(settings, "show_doubts")
         layout.operator("rototoon.clear_lines", icon="TRASH")
 
 

@@ -42,6 +42,7 @@ class Traced:
     point_offsets: np.ndarray
     points: np.ndarray
     widths: np.ndarray
+    confidence: np.ndarray
 
 
 LINES = [[[20.0, 20.0], [40.0, 20.0], [60.0, 22.0]], [[30.0, 40.0], [50.0, 50.0], [70.0, 40.0], [50.0, 30.0]]]
@@ -78,6 +79,7 @@ class Tracer:
             np.concatenate([[0], np.cumsum(sizes)]),
             np.concatenate(flat),
             np.full(int(sizes.sum()), 2.0),
+            np.ones(len(flat)),
         )
 
     def close(self):

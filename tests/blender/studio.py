@@ -115,6 +115,9 @@ def digests(addon, ob) -> dict[str, str]:
             starts = gp.offsets(handle)
             summed.update(f"{number} {kind}".encode() + starts.tobytes())
             for attribute in sorted(handle.attributes, key=lambda each: each.name):
+                if attribute.name == ".selection":
+                    # What is selected in Edit Mode is no part of the drawing.
+                    continue
                 count = int(starts[-1]) if attribute.domain == "POINT" else len(starts) - 1
                 values = None if attribute.name.startswith(".") else gp.get(handle, attribute.name, count)
                 summed.update(attribute.name.encode() + (b"" if values is None else values.tobytes()))
@@ -219,6 +222,13 @@ def _traced(addon, ob):
     bpy.ops.rototoon.trace_drawing()
 
 
+def _traced_and_doubted(addon, ob):
+    _traced(addon, ob)
+    gp = addon("blender.grease_pencil")
+    handle = gp.drawings(ob.data.layers[LINES])[3][0]
+    gp.put(handle, gp.CONFIDENCE, np.full(int(gp.offsets(handle)[-1]), 0.3))
+
+
 def _traced_and_moved(addon, ob):
     _traced(addon, ob)
     gp = addon("blender.grease_pencil")
@@ -268,6 +278,7 @@ OPERATORS = {
     "match_contours": Call(_C, _C, prepare=_loose_stroke),
     "match_lines": Call(_L, prepare=_traced, options={"earlier": 1, "later": 2}),
     "match_strokes": Call(_I | {SNAPPED}),
+    "next_doubt": Call(prepare=_traced_and_doubted),
     "new_key": Call(_C, _C, prepare=_on_generated),
     "open_sample": Call(changes=False),
     "refresh_clips": Call(changes=False),

@@ -7,7 +7,7 @@ import numpy
 import pytest
 from conftest import write_png
 
-from rototoon import Cancelled, RototoonError, Session
+from rototoon import Cancelled, RototoonError, Session, lines
 
 WIDTH, HEIGHT, LAST, STEP = 160, 120, 3, 4
 
@@ -64,6 +64,31 @@ def test_strokes_of_a_drawing_are_carried_and_kept(film):
     assert own.track == 0 and numpy.asarray(own.points).tolist() == line["points"]
     carried = [next(stroke for stroke in traced.on(frame) if stroke.track == 0) for frame in (0, 1, 3)]
     assert all(abs(numpy.asarray(stroke.points)[:, 1].mean() - 60) < 1 for stroke in carried)
+
+
+def test_doubtful_strokes_are_read_from_a_document(film):
+    line = {"points": [[28, 60], [50, 60]], "closed": False}
+    unsure = {4: (None, 0.9), 5: (0.75, 0.2)}
+    drawings = [
+        {"frame": frame - 3, "strokes": [{"track": k, **line} | ({} if sure is None else {"confidence": sure}) for k, sure in enumerate(own)]}
+        for frame, own in unsure.items()
+    ]
+    with opened(film, traced=drawings) as session:
+        traced = session.traced()
+    assert traced.confidence.tolist() == [1.0, 0.9, 0.75, 0.2]
+    assert [stroke.confidence for stroke in traced.on(2)] == [0.75, 0.2]
+    assert traced.doubts() == [lines.Doubt(0, [2], []), lines.Doubt(1, [], [2])]
+
+
+def test_carried_strokes_have_a_confidence(film):
+    with opened(film) as session:
+        traced = session.trace()
+        document = session.document()
+    first, *others = (traced.on(frame) for frame in traced.frames)
+    assert [stroke.confidence for stroke in first] == [1.0] * 3, "they begin there"
+    assert all(0.8 < stroke.confidence < 1 for strokes in others for stroke in strokes) and traced.doubts() == []
+    kept = [stroke.get("confidence", 1.0) for each in document["traced"] for stroke in each["strokes"]]
+    assert kept == pytest.approx(traced.confidence.tolist(), abs=1e-3)
 
 
 def test_a_range_leaves_the_other_frames(film):

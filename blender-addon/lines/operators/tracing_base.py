@@ -10,7 +10,7 @@ from ...capture.tracking import listed
 from ...common.operators import Long, OnDrawing
 from .. import drawings as dr
 from .. import plan as pl
-from .. import properties, tracing
+from .. import doubts, properties, tracing
 
 FRAMES = (
     ("ALL", "All", "All frames of the footage"),
@@ -76,6 +76,7 @@ class Tracing(Long, OnFootage):
     def finish(self, _context, work):
         done = yield from tracing.finishing(self._ob, self._plan, work.result, self._home)
         self.warn(where_to_look(done))
+        self.warn(doubts.told(done.confidence))
         return told(done)
 
 

@@ -645,6 +645,8 @@ RototoonStatus rototoon_session_traced(const struct RototoonSession *session,
 //   `point_offsets[i + 1]` (excluded).
 // - `points`: two coordinates for each point, x and y in pixels.
 // - `widths`: the width of the line at each point in pixels; NaN if the stroke has no widths.
+// - `confidence`: for each stroke the probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt.
+//   `rototoon_outcomes` tells which values are sure, doubtful and lost.
 RototoonStatus rototoon_traced_read(const struct RototoonTraced *traced,
                                     size_t *frame_count,
                                     const int32_t **frames,
@@ -655,6 +657,7 @@ RototoonStatus rototoon_traced_read(const struct RototoonTraced *traced,
                                     const int32_t **point_offsets,
                                     const double **points,
                                     const double **widths,
+                                    const double **confidence,
                                     struct RototoonText **error);
 
 // Frees traced strokes. Null is allowed.

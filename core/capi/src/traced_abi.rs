@@ -74,6 +74,8 @@ pub unsafe extern "C" fn rototoon_session_traced(
 ///   `point_offsets[i + 1]` (excluded).
 /// - `points`: two coordinates for each point, x and y in pixels.
 /// - `widths`: the width of the line at each point in pixels; NaN if the stroke has no widths.
+/// - `confidence`: for each stroke the probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt.
+///   `rototoon_outcomes` tells which values are sure, doubtful and lost.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_traced_read(
     traced: *const RototoonTraced,
@@ -86,6 +88,7 @@ pub unsafe extern "C" fn rototoon_traced_read(
     point_offsets: *mut *const i32,
     points: *mut *const f64,
     widths: *mut *const f64,
+    confidence: *mut *const f64,
     error: *mut *mut RototoonText,
 ) -> RototoonStatus {
     // SAFETY: the crate's contract; out parameters are written only after `clear` accepted them.
@@ -101,7 +104,9 @@ pub unsafe extern "C" fn rototoon_traced_read(
             ] {
                 clear(out, null(), name)?;
             }
-            for (out, name) in [(colours, "colours"), (points, "points"), (widths, "widths")] {
+            for (out, name) in
+                [(colours, "colours"), (points, "points"), (widths, "widths"), (confidence, "confidence")]
+            {
                 clear(out, null(), name)?;
             }
             let traced = handle(traced, "traced")?;
@@ -114,6 +119,7 @@ pub unsafe extern "C" fn rototoon_traced_read(
             point_offsets.write(traced.point_offsets.as_ptr());
             points.write(traced.points.as_ptr());
             widths.write(traced.widths.as_ptr());
+            confidence.write(traced.confidence.as_ptr());
             Ok(())
         })
     }

@@ -1,0 +1,85 @@
+"""Traced strokes that are in doubt: the list of them, and how the 3D view shows them.
+
+A doubtful stroke is a black line with a yellow one in it, a lost one has red: so they show on white paper, on dark paint and on the
+colours of strokes. The stroke to which Next Doubtful Stroke went is twice as wide.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from ..blender import camera
+from ..blender import grease_pencil as gp
+from ..lines import doubts
+
+
+@dataclass(frozen=True)
+class Marked:
+    """A stroke that is marked."""
+
+    points: np.ndarray
+    """(N, 3) in the world. A closed one ends where it begins."""
+    lost: bool
+    chosen: bool
+    """Whether Next Doubtful Stroke went to it."""
+
+
+def marked(ob, frame: int) -> list[Marked]:
+    """The strokes of an object that are in doubt on a frame. Strokes that the artist changed are not."""
+    settings, found = ob.rototoon, []
+    for layer in ob.data.layers:
+        drawings = gp.drawings(layer)
+        at = max((number for number in drawings if number <= frame), default=None)
+        if layer.hide or at is None:
+            continue
+        handle, kind = drawings[at]
+        if kind != gp.GENERATED or not (gp.has(handle, gp.LINE) and gp.has(handle, gp.CONFIDENCE)):
+            continue
+        here = settings.doubt_layer == layer.name and settings.doubt_frame == at
+        found += _of_drawing(handle, camera.layer_to_world(ob, layer), settings.doubt_number if here else 0)
+    return found
+
+
+def _of_drawing(handle, matrix: np.ndarray, number: int) -> list[Marked]:
+    starts = gp.offsets(handle)
+    total, count = int(starts[-1]), len(starts) - 1
+    points = gp.positions(handle, total)
+    moved = (gp.value(handle, gp.TRACKED, total) != points).any(1)
+    changed = np.concatenate([[0], np.cumsum(moved)])
+    verdict = doubts.verdicts(doubts.of_strokes(gp.value(handle, gp.CONFIDENCE, total), starts))
+    wanted = (verdict != doubts.SURE) & gp.value(handle, gp.MADE, count) & (changed[starts[1:]] == changed[starts[:-1]])
+    cyclic, tracks = gp.value(handle, "cyclic", count), gp.value(handle, gp.TRACK, count)
+    found = []
+    for i in np.flatnonzero(wanted & (np.diff(starts) > 1)):
+        line = points[starts[i] : starts[i + 1]] @ matrix[:3, :3].T + matrix[:3, 3]
+        line = np.concatenate([line, line[:1]]) if cyclic[i] else line
+        found.append(Marked(line, bool(verdict[i] == doubts.LOST), bool(tracks[i] == number)))
+    return found
+
+
+class ROTOTOON_MT_doubts(bpy.types.Menu):
+    """The strokes that are in doubt. They are looked for when the menu opens, so the list is never an old one."""
+
+    bl_idname = "ROTOTOON_MT_doubts"
+    bl_label = "Doubtful Strokes"
+
+    def draw(self, context):
+        """Called by Blender."""
+        layout, ob = self.layout, context.object
+        found = doubts.summed(doubts.places(ob)) if gp.is_drawing(ob) else []
+        if not found:
+            layout.label(text="No stroke is in doubt")
+        for doubt in found[:LISTED]:
+            entry = layout.operator("rototoon.next_doubt", text=str(doubt), icon="ERROR" if doubt.lost else "QUESTION")
+            entry.layer, entry.number = doubt.layer, doubt.number
+        if len(found) > LISTED:
+            layout.label(text=f"{len(found) - LISTED} more")
+
+
+LISTED = 40
+"""Most entries of the list."""
+
+CLASSES = (ROTOTOON_MT_doubts,)
