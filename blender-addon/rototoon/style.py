@@ -65,8 +65,16 @@ class Reshaped:
     """Parts that no limb carries: `part`, and in words what it `follows` instead."""
     rigid: list[str]
     """Parts that move without bending."""
+    still: list[str]
+    """Chains of the drawing's skeleton that no chain of the clip moves."""
     points: dict[str, list[list[list[float]]]]
     """Places of the points of the option `points`, by part and frame."""
+
+
+def skeleton_of(clips: Mapping[str, Any], clip: Mapping[str, Any]) -> str | dict[str, Any]:
+    """The body of a clip of a file: the name of a built-in one, or a definition."""
+    found: str | dict[str, Any] = clip.get("skeleton", clips.get("skeleton", "human"))
+    return found
 
 
 def capture_clip(
@@ -114,7 +122,8 @@ def reshape(
     """Makes a drawing follow a clip.
 
     Options: `character` and `motion` choose one of several clips. `rest` is the frame of the drawing. `sub_keys` is the number of
-    points between the key points of each limb that keep its shape. `points` are more points that follow closed parts, by part.
+    points between the key points of each limb that keep its shape. `chains` are pairs of names: a chain of the clip's skeleton that
+    moves a chain of the drawing's, where the skeletons differ (``[["l_arm", "l_foreleg"]]``). `points` are more points that follow closed parts, by part.
     `threads`.
     """
     with handles.progress_callback(progress) as callback:

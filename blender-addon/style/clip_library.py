@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 import numpy as np
-from rototoon.style import read_library
+from rototoon.style import read_library, skeleton_of
 
 from ..blender.errors import Problem
 from ..blender.preferences import preferences
@@ -69,7 +69,8 @@ def folder_of(ob, chosen: str = "") -> str:
 def read(folder: str) -> Shelf:
     """Reads a library. Damaged files do not affect other files."""
     found = read_library(folder)
-    clips = {(clip["character"], clip["motion"]): clip["points"] for clip in (found.clips or {}).get("clips", [])}
+    file = found.clips or {}
+    clips = {(clip["character"], clip["motion"]): clip | {"skeleton": skeleton_of(file, clip)} for clip in file.get("clips", [])}
     troubles = list(found.troubles)
     rows = [_row(entry, clips, troubles) for entry in found.entries]
     known = {row.file for row in rows}
@@ -85,9 +86,13 @@ def read(folder: str) -> Shelf:
 
 def _row(entry: dict[str, Any], clips: dict[tuple[str, str], Any], troubles: list[str]) -> Row:
     row = Row(**{name: entry[name] for name in ("character", "motion", "frames", "fps", "source", "file")})
-    points = clips.get((row.character, row.motion))
-    if points is not None:
-        row.postures = np.array(points, np.float64)
+    clip = clips.get((row.character, row.motion))
+    if clip is not None and clip["skeleton"] == "human":
+        row.postures = np.array(clip["points"], np.float64)
+        return row
+    if clip is not None:
+        body = clip["skeleton"] if isinstance(clip["skeleton"], str) else clip["skeleton"]["name"]
+        row.trouble = f"{row.file}: the skeleton is {body!r}; Blender's panel uses human clips"
         return row
     mine = [trouble for trouble in troubles if row.file in trouble]
     row.trouble = mine[0] if mine else f"{row.file}: cannot be read"

@@ -102,6 +102,41 @@ def test_a_manner_is_given_and_a_drawing_follows(shelf):
         assert angle(drawn) == pytest.approx(angle(wanted), abs=0.05)
 
 
+def bird(frames):
+    """A bird's body, a wing that beats, a leg."""
+    drawing = figure(frames, swing=0.5)
+    drawing["skeleton"] = "bird"
+    drawing["limbs"] = [
+        limb("pelvis", "breast", "body", [3, 4, 0, 7]),
+        limb("l_shoulder", "l_elbow", "arm", [0, 7, 1.5, 5.5]),
+        limb("l_elbow", "l_wing_tip", "arm", [1.5, 5.5, 3, 4]),
+        limb("l_hip", "l_toes", "leg", [0, 7, 3, 4]),
+    ]
+    return drawing
+
+
+def test_other_bodies_have_clips_of_their_own(tmp_path, shelf):
+    made = style.capture_clip(bird(FRAMES), "tit", "flutter")
+    clip = made.clips["clips"][0]
+    assert (made.clips["rototoon_clips"], len(clip["points"][0]), "l_wrist" in made.guessed) == (2, 23, True)
+    style.add_to_library(shelf, made.clips)
+    found = style.read_library(shelf).clips
+    bodies = {c["character"]: style.skeleton_of(found, c) for c in found["clips"]}
+    assert bodies == {"plain": "human", "old": "human", "tit": "bird"}
+    # Birds are left out of account where a human's manner is learned.
+    walk = style.translate_clip(found, style="old", motion="walk", content="plain")
+    assert style.skeleton_of(walk, walk["clips"][0]) == "human"
+    moved = style.reshape(bird(1), walk, chains=[["l_arm", "l_wing"]])
+    assert "tail" in moved.still and "l_wing" not in moved.still and "r_wing" in moved.still
+    assert moved.document["skeleton"] == "bird"
+    own = style.reshape(bird(1), made.clips)
+    assert own.still == []
+    with pytest.raises(RototoonError, match=r'chains: found "fin", expected a chain of "bird"'):
+        style.reshape(bird(1), walk, chains=[["l_arm", "fin"]])
+    with pytest.raises(RototoonError, match=r'skeleton: found "fish", expected one of human, quadruped, bird'):
+        style.capture_clip(bird(1) | {"skeleton": "fish"}, "tit", "flutter")
+
+
 def test_work_can_be_stopped(shelf):
     clips = style.read_library(shelf).clips
     with pytest.raises(Cancelled):

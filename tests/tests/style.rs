@@ -9,8 +9,9 @@ use rototoon::pipeline::{self, ClipJob, ReshapeJob};
 use rototoon::project::Document;
 use rototoon::project::clips::Clips;
 use rototoon::reshape::puppet::Options as PuppetOptions;
+use rototoon::scene::proportions::Proportions;
 use rototoon::scene::skeleton::{Posture, limb_lengths};
-use rototoon::scene::{Clip, FrameNumber, Silent};
+use rototoon::scene::{Clip, FrameNumber, Silent, Template};
 use rototoon::style::{Options, Request};
 use rototoon::track::TrackOptions;
 use rototoon_tests::sample::{self, FRAMES, HEIGHT, HOLD, WIDTH, background};
@@ -63,7 +64,7 @@ fn aged(clip: &Clip) -> Clip {
             posture[0] + if k < 11 { lean.rotate(p) } else { p }
         })
     };
-    Clip::new("old", clip.motion.as_str(), clip.postures.iter().map(turned).collect())
+    Clip::new("old", clip.motion.as_str(), clip.human().unwrap().iter().map(turned).collect())
 }
 
 fn reshaped(clip: &Clip, marks: bool) -> Document {
@@ -74,7 +75,8 @@ fn reshaped(clip: &Clip, marks: bool) -> Document {
         document.set_limbs(&set);
     }
     let options = PuppetOptions::default();
-    let job = ReshapeJob { clip, fps: 24.0, rest: None, over: None, options, points: Default::default() };
+    let job =
+        ReshapeJob { clip, fps: 24.0, rest: None, over: None, chains: Vec::new(), options, points: Default::default() };
     let made = pipeline::reshape(&mut document, &job, &Silent).unwrap();
     assert_eq!(made.given, []);
     let rigid = |name: &String| ["mitten", "boot", "head"].iter().any(|word| name.contains(word));
@@ -84,7 +86,7 @@ fn reshaped(clip: &Clip, marks: bool) -> Document {
 
 /// The mean lean of the torso to the right, in radians.
 fn lean(clip: &Clip) -> f64 {
-    let angle = |p: &Posture| (p[2] - p[0]).x.atan2((p[0] - p[2]).y);
+    let angle = |p: &Vec<Point>| (p[2] - p[0]).x.atan2((p[0] - p[2]).y);
     clip.postures.iter().map(angle).sum::<f64>() / clip.postures.len() as f64
 }
 
@@ -124,7 +126,7 @@ fn a_tracked_character_s_clip_is_near_the_true_one() {
     let mut errors: Vec<f64> =
         found.postures.iter().zip(&truth.postures).flat_map(|(a, b)| (0..17).map(|k| a[k].distance(b[k]))).collect();
     errors.sort_by(f64::total_cmp);
-    let torso = rototoon::scene::proportions::typical_torso(&truth.postures);
+    let torso = rototoon::scene::proportions::typical_torso(&Template::human(), &truth.postures);
     let (median, mean) = (errors[errors.len() / 2], errors.iter().sum::<f64>() / errors.len() as f64);
     println!("key points: median {median:.2} px, mean {mean:.2} px, torso {torso:.1} px");
     assert!(median < 0.005 * torso && mean < 0.06 * torso, "median {median}, mean {mean}, torso {torso}");
@@ -157,8 +159,8 @@ fn a_doll_performs_a_walk_in_an_old_man_s_style() {
     let performed = captured(&in_manner, "walk", 0..=WALK as FrameNumber - 1);
     let rest = captured(&doll::document().unwrap(), "rest", 0..=0);
     let (own, theirs) =
-        (limb_lengths(&rest.postures[0]), rototoon::scene::proportions::Proportions::of(&made.postures).0);
-    for (drawn, wanted) in performed.postures.iter().zip(&made.postures) {
+        (limb_lengths(&rest.human().unwrap()[0]), Proportions::of(&Template::human(), &made.postures).0);
+    for (drawn, wanted) in performed.human().unwrap().iter().zip(&made.human().unwrap()) {
         let (drawn, wanted) = (limb_lengths(drawn), limb_lengths(wanted));
         for limb in [0, 1, 5, 6, 8, 9, 11, 12, 14, 15].map(|k: usize| k.min(15)) {
             let expected = wanted[limb] / theirs[limb] * own[limb];

@@ -203,6 +203,8 @@ struct ReshapeOptions {
     #[serde(default)]
     sub_keys: Option<usize>,
     #[serde(default)]
+    chains: Vec<(String, String)>,
+    #[serde(default)]
     points: BTreeMap<String, Vec<[f64; 2]>>,
     #[serde(default)]
     threads: usize,
@@ -219,12 +221,20 @@ pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Resu
         return Err(Failure::Error(format!("options.sub_keys: found {sub_keys}, expected 0 to {MOST_SUB_KEYS}")));
     }
     let how = puppet::Options { sub_keys, ..puppet::Options::default() };
-    let job = ReshapeJob { clip, fps: clips.fps, rest: given.rest, over: None, options: how, points: given.points() };
+    let job = ReshapeJob {
+        clip,
+        fps: clips.fps,
+        rest: given.rest,
+        over: None,
+        chains: given.chains.clone(),
+        options: how,
+        points: given.points(),
+    };
     run(given.threads, go_on, |progress| {
         let made = pipeline::reshape(&mut document, &job, progress).map_err(failed)?;
         let loose: Vec<Value> =
             made.given.iter().map(|(part, given)| json!({"part": part, "follows": given.to_string()})).collect();
-        let (given, rigid) = (Value::Array(loose), json!(made.rigid));
+        let (given, rigid, still) = (Value::Array(loose), json!(made.rigid), json!(made.still));
         let pair = |p: &Point| [p.x, p.y];
         let frames = |frames: &Vec<Vec<Point>>| {
             json!(frames.iter().map(|f| f.iter().map(pair).collect()).collect::<Vec<Vec<_>>>())
@@ -234,7 +244,7 @@ pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Resu
         let points = Value::Object(points);
         let document = document.to_json();
         Ok(format!(
-            r#"{{"document": {}, "given": {given}, "rigid": {rigid}, "points": {points}}}"#,
+            r#"{{"document": {}, "given": {given}, "rigid": {rigid}, "still": {still}, "points": {points}}}"#,
             document.trim_end()
         ))
     })

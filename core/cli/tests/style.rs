@@ -75,8 +75,58 @@ fn errors_are_reported_and_nothing_is_written() {
     short["clips"][4]["points"][2].as_array_mut().unwrap().pop();
     let error = said(&short.to_string(), &["--style", "old"]);
     assert!(error.contains("clips[4] (\"old\", \"run\"), frame 2: found 16 key points, expected 17"), "{error}");
-    assert!(said("{\"rototoon_clips\": 9}", &["--style", "old"]).contains("found version 9, expected 1 or less"));
+    assert!(said("{\"rototoon_clips\": 9}", &["--style", "old"]).contains("found version 9, expected 2 or less"));
     assert_eq!(translate(folder.path(), &[]).status.code(), Some(2));
+}
+
+/// A drawn body of one part: a strip from the pelvis to the other end of a bird's torso, with a leg below it.
+fn bird() -> Value {
+    let end = |part: &str, a: usize, b: usize| json!({"points": [{"part": part, "at": a}, {"part": part, "at": b}]});
+    let limb = |from: &str, to: &str, part: &str| json!({"from": from, "to": to, "start": end(part, 0, 3), "end": end(part, 1, 2)});
+    let part = |name: &str, points: Value| json!({"name": name, "closed": true, "keys": {"0": points}});
+    json!({"rototoon": 1,
+        "footage": {"pattern": "f_%d.png", "first": 0, "last": 0, "fps": 12, "width": 200, "height": 200},
+        "parts": [part("body", json!([[60, 90], [120, 70], [120, 90], [60, 110]])),
+            part("leg", json!([[76, 104], [76, 164], [84, 164], [84, 104]]))],
+        "skeleton": "bird",
+        "limbs": [limb("pelvis", "breast", "body"), limb("l_hip", "l_toes", "leg")]})
+}
+
+#[test]
+fn a_human_walk_moves_a_bird_by_named_chains() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    std::fs::write(at("bird.json"), bird().to_string()).unwrap();
+    let mut walk = library();
+    walk["clips"].as_array_mut().unwrap().truncate(1);
+    std::fs::write(at("walk.json"), walk.to_string()).unwrap();
+    let reshape = |more: &[&str]| {
+        let (project, clips, out) = (at("bird.json"), at("walk.json"), at("out.json"));
+        rototoon(&[&["style", "reshape", project.as_str(), clips.as_str(), "-o", out.as_str()], more].concat())
+    };
+    let done = reshape(&["--chain", "l_arm=l_wing", "--chain", "r_arm=r_wing"]);
+    let said = String::from_utf8(done.stderr).unwrap();
+    assert!(done.status.success(), "{said}");
+    assert!(
+        said.contains("chain \"tail\": no chain of the clip belongs to it, so it stays still")
+            && !said.contains("wing")
+    );
+    let made: Value = serde_json::from_str(&std::fs::read_to_string(at("out.json")).unwrap()).unwrap();
+    assert_eq!(made["skeleton"], "bird");
+    assert_eq!(made["parts"][1]["tracks"].as_object().unwrap().len(), 8);
+    // Captured from the result, the clip is a bird's.
+    let clip = ["style", "clip", &at("out.json"), "--character", "tit", "--motion", "walk", "-o", &at("clip.json")]
+        .map(str::to_owned);
+    assert!(rototoon(&clip.each_ref().map(String::as_str)).status.success());
+    let clip: Value = serde_json::from_str(&std::fs::read_to_string(at("clip.json")).unwrap()).unwrap();
+    assert_eq!((&clip["rototoon_clips"], &clip["skeleton"]), (&json!(2), &json!("bird")));
+    assert_eq!(clip["clips"][0]["points"][0].as_array().unwrap().len(), 23);
+    let failed = |more: &[&str]| String::from_utf8(reshape(more).stderr).unwrap();
+    assert!(failed(&["--chain", "l_arm"]).contains("expected two names of chains with = between them"));
+    assert!(
+        failed(&["--chain", "l_arm=wing"])
+            .contains("chains: found \"wing\", expected a chain of \"bird\": one of torso")
+    );
 }
 
 #[test]

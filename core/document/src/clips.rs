@@ -5,18 +5,24 @@
 //!  "clips": [{"character": "anna", "motion": "walk", "points": [[[x, y], "17 of them"], "one list a frame"]}]}
 //! ```
 //!
+//! Clips of another body than the human one say so by `skeleton` ([`super::skeleton`]), for the whole file or for a clip;
+//! their file has version 2. `keypoints` names the key points of the file's body.
+//!
 //! x right, y down, in any one unit a character. A translated clip also holds `deviation`: for each frame and key point
 //! the standard deviation of its place, in the same unit. Fields that are not known are left out of what is written anew.
 
+use super::fields::FieldError;
 use super::output::{WriteError, write_whole};
 use super::plain_clips as plain;
 use super::schema::{MAX_FPS, MIN_FPS};
+use super::skeleton;
 use rototoon_base::file;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::Clip;
-use rototoon_base::scene::skeleton::{COUNT, NAMES, Posture};
+use rototoon_base::scene::skeleton::Posture;
+use rototoon_base::scene::{Clip, Template};
 use serde_json::Value;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Version of the form.
 pub const VERSION: u64 = plain::VERSION;
@@ -101,12 +107,13 @@ impl Clips {
                 reader.wrong("fps", value, &format!("a number of frames a second from {MIN_FPS} to {MAX_FPS}"))
             })?,
         };
-        reader.key_points(&document)?;
+        let template = reader.skeleton(&document, "")?.unwrap_or_default();
+        reader.key_points(&template, &document)?;
         let list = document.get("clips").unwrap_or(&Value::Null);
         let list = list.as_array().ok_or_else(|| reader.wrong("clips", list, "a list of clips"))?;
         let mut clips: Vec<Clip> = Vec::with_capacity(list.len());
         for (k, value) in list.iter().enumerate() {
-            let clip = reader.clip(k, value)?;
+            let clip = reader.clip(&template, k, value)?;
             let twin = clips.iter().position(|c| c.character == clip.character && c.motion == clip.motion);
             if let Some(twin) = twin {
                 let place = place_of(k, &clip.character, &clip.motion);
@@ -154,14 +161,14 @@ pub fn parse_key_poses(text: &str, origin: &str) -> Result<Vec<DrawnPose>, Clips
             .and_then(|frame| usize::try_from(frame).ok())
             .ok_or_else(|| reader.wrong(format!("{place}.frame"), frame, "a frame number from 0"))?;
         let points = value.get("points").unwrap_or(&Value::Null);
-        Ok(DrawnPose { frame, posture: reader.posture(points, &format!("{place}.points"))? })
+        Ok(DrawnPose { frame, posture: reader.human(points, &format!("{place}.points"))? })
     };
     match &document {
         Value::Object(_) => Ok(vec![pose(&document, "key pose")?]),
         Value::Array(list) if list.first().is_some_and(Value::is_object) => {
             list.iter().enumerate().map(|(k, value)| pose(value, &format!("key pose [{k}]"))).collect()
         }
-        other => Ok(vec![DrawnPose { frame: 0, posture: reader.posture(other, "key pose")? }]),
+        other => Ok(vec![DrawnPose { frame: 0, posture: reader.human(other, "key pose")? }]),
     }
 }
 
@@ -200,23 +207,31 @@ impl Reader<'_> {
         match version.as_u64() {
             Some(1..=VERSION) => Ok(()),
             Some(found) if found > VERSION => Err(ClipsError::Later { origin: self.origin.into(), found }),
-            _ => Err(self.wrong("rototoon_clips", version, "the format version 1")),
+            _ => Err(self.wrong("rototoon_clips", version, &format!("a format version from 1 to {VERSION}"))),
         }
     }
 
-    fn key_points(&self, document: &Value) -> Result<(), ClipsError> {
+    /// The body in an object's field `skeleton`; none without that field. `place` is the object's.
+    fn skeleton(&self, object: &Value, place: &str) -> Result<Option<Arc<Template>>, ClipsError> {
+        let Some(value) = object.get(skeleton::FIELD) else { return Ok(None) };
+        let wrong = |e: FieldError| self.field(format!("{place}{}", e.place), e.found, e.expected);
+        skeleton::read(Some(value)).map(Some).map_err(wrong)
+    }
+
+    fn key_points(&self, template: &Template, document: &Value) -> Result<(), ClipsError> {
         let Some(value) = document.get("keypoints") else { return Ok(()) };
         let names = value.as_array().ok_or_else(|| self.wrong("keypoints", value, "a list of names"))?;
-        if names.len() != COUNT {
-            return Err(self.field("keypoints", format!("{} names", names.len()), format!("{COUNT}")));
+        let expected = template.names();
+        if names.len() != expected.len() {
+            return Err(self.field("keypoints", format!("{} names", names.len()), expected.len().to_string()));
         }
-        match names.iter().zip(NAMES).position(|(name, expected)| name.as_str() != Some(expected)) {
+        match names.iter().zip(&expected).position(|(name, expected)| name.as_str() != Some(expected)) {
             None => Ok(()),
-            Some(k) => Err(self.field(format!("keypoints[{k}]"), names[k].to_string(), format!("{:?}", NAMES[k]))),
+            Some(k) => Err(self.field(format!("keypoints[{k}]"), names[k].to_string(), format!("{:?}", expected[k]))),
         }
     }
 
-    fn clip(&self, index: usize, value: &Value) -> Result<Clip, ClipsError> {
+    fn clip(&self, template: &Arc<Template>, index: usize, value: &Value) -> Result<Clip, ClipsError> {
         let name = |field: &str| match value.get(field).and_then(Value::as_str) {
             Some(name) if !name.is_empty() => Ok(name.to_owned()),
             _ => {
@@ -226,6 +241,8 @@ impl Reader<'_> {
         };
         let (character, motion) = (name("character")?, name("motion")?);
         let place = place_of(index, &character, &motion);
+        let own = self.skeleton(value, &format!("{place}."))?;
+        let template = own.unwrap_or_else(|| template.clone());
         let points = value.get("points").unwrap_or(&Value::Null);
         let frames = match points.as_array() {
             Some(frames) if !frames.is_empty() => frames,
@@ -235,26 +252,33 @@ impl Reader<'_> {
         let postures = frames
             .iter()
             .enumerate()
-            .map(|(frame, posture)| self.posture(posture, &format!("{place}, frame {frame}")))
+            .map(|(frame, posture)| self.posture(&template, posture, &format!("{place}, frame {frame}")))
             .collect::<Result<_, _>>()?;
-        Ok(Clip::new(character, motion, postures))
+        Ok(Clip::of(template, character, motion, postures))
     }
 
-    fn posture(&self, value: &Value, place: &str) -> Result<Posture, ClipsError> {
+    /// A human posture.
+    fn human(&self, value: &Value, place: &str) -> Result<Posture, ClipsError> {
+        let points = self.posture(&Template::human(), value, place)?;
+        Posture::try_from(points).map_err(|found| self.field(place, format!("{} key points", found.len()), "17"))
+    }
+
+    fn posture(&self, template: &Template, value: &Value, place: &str) -> Result<Vec<Point>, ClipsError> {
         let points = value.as_array().ok_or_else(|| self.wrong(place, value, "a list of key points"))?;
-        if points.len() != COUNT {
-            return Err(self.field(place, format!("{} key points", points.len()), format!("{COUNT}")));
+        if points.len() != template.len() {
+            return Err(self.field(place, format!("{} key points", points.len()), template.len().to_string()));
         }
-        let mut posture = [Point::ZERO; COUNT];
+        let mut posture = Vec::with_capacity(points.len());
         for (k, point) in points.iter().enumerate() {
             let pair = point.as_array().map(Vec::as_slice);
-            posture[k] = match pair {
+            let name = template.point_name(k);
+            posture.push(match pair {
                 Some([x, y]) => match (x.as_f64(), y.as_f64()) {
                     (Some(x), Some(y)) => Point::new(x, y),
-                    _ => return Err(self.field(format!("{place}, {}", NAMES[k]), point.to_string(), "two numbers")),
+                    _ => return Err(self.field(format!("{place}, {name}"), point.to_string(), "two numbers")),
                 },
-                _ => return Err(self.wrong(format!("{place}, {}", NAMES[k]), point, "two numbers")),
-            };
+                _ => return Err(self.wrong(format!("{place}, {name}"), point, "two numbers")),
+            });
         }
         Ok(posture)
     }
@@ -272,6 +296,7 @@ fn kind(value: &Value) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rototoon_base::scene::skeleton::COUNT;
 
     fn file(points: &str) -> String {
         format!(
@@ -298,7 +323,7 @@ mod tests {
     fn what_is_written_is_read_again() {
         let clips = Clips::parse(&file(&format!("[{}]", posture())), "f").unwrap();
         assert_eq!(clips.fps, 12.0);
-        assert_eq!(clips.clips[0].postures, vec![[Point::new(1.5, -2.0); COUNT]]);
+        assert_eq!(clips.clips[0].postures, vec![vec![Point::new(1.5, -2.0); COUNT]]);
         assert_eq!(Clips::parse(&clips.text(), "f").unwrap(), clips);
     }
 
@@ -316,7 +341,7 @@ mod tests {
             error(&file("[[[NaN, 1]]]"))
                 .starts_with("f.json: found text that is not JSON (JSON has no NaN and no Infinity)")
         );
-        assert!(error(r#"{"rototoon_clips": 2}"#).contains("found version 2, expected 1 or less"));
+        assert!(error(r#"{"rototoon_clips": 3}"#).contains("found version 3, expected 2 or less"));
         assert!(error(r#"{"rototoon_clips": 1}"#).contains("clips: found nothing, expected a list of clips"));
         assert!(error(r#"{"rototoon_clips": 1, "keypoints": ["pelvis"]}"#).contains("found 1 names, expected 17"));
     }
@@ -353,6 +378,31 @@ mod tests {
             }
         }
         assert!(plain::read(&good).is_some() && plain::read(&good.replacen('{', "{\"more\": 0, ", 1)).is_some());
+    }
+
+    #[test]
+    fn other_bodies_are_kept() {
+        let bird = Template::bird();
+        let clip =
+            |template: &Arc<Template>| Clip::of(template.clone(), template.name(), "walk", vec![template.typical()]);
+        let alone = Clips { clips: vec![clip(&bird)], fps: 25.0 };
+        assert!(
+            alone
+                .text()
+                .starts_with(r#"{"rototoon_clips":2,"fps":25.0,"skeleton":"bird","keypoints":["pelvis","breast""#)
+        );
+        let mixed =
+            Clips { clips: vec![clip(&bird), clip(&Template::human()), clip(&Template::quadruped())], fps: 25.0 };
+        let humans_first = Clips { clips: vec![clip(&Template::human()), clip(&bird)], fps: 25.0 };
+        for clips in [alone, mixed, humans_first] {
+            assert_eq!(Clips::parse(&clips.text(), "f").unwrap(), clips);
+        }
+        let text = file(&format!("[{}]", posture())).replace("\"motion\"", "\"skeleton\": \"bird\", \"motion\"");
+        assert_eq!(error(&text), r#"f.json: clips[0] ("a", "walk"), frame 0: found 17 key points, expected 23"#);
+        let unknown = text.replace("bird", "fish");
+        assert!(
+            error(&unknown).starts_with(r#"f.json: clips[0] ("a", "walk").skeleton: found "fish", expected one of"#)
+        );
     }
 
     #[test]

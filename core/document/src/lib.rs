@@ -13,6 +13,7 @@
 //! - [`drawings`]: drawings on key frames, pairs, pegs and in-betweens
 //! - [`traced`]: strokes that tracing found on every frame
 //! - [`limbs`]: limbs on contours, swapped sides, which part is in front
+//! - [`skeleton`]: which body the limbs or clips are of
 //! - [`curves`]: files of curves to fit
 //! - [`clips`], `plain_clips`: files of skeleton clips, and the quick way to read and write them
 //! - [`output`]: files that appear whole or not at all
@@ -63,6 +64,7 @@ pub mod problem;
 pub mod save;
 pub mod schema;
 mod shape;
+pub mod skeleton;
 pub mod traced;
 pub mod unfinished;
 mod unknown;

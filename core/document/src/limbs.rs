@@ -12,7 +12,7 @@
 //! "follows": [{"part": "shadow", "what": "contact"}, {"part": "badge", "of": "coat"}, "…"]
 //! ```
 //!
-//! - `from` and `to`: key points by name ([`rototoon_base::scene::skeleton::NAMES`]). Each end is between two calibration
+//! - `from` and `to`: key points by name, those of the body's [`skeleton`], a human without that field. Each end is between two calibration
 //!   points on contours, `share` of the way from the first to the second (default ½).
 //! - `at`: a parameter of the contour; 7.5 is halfway from point 7 to point 8. `drawn`: points near the contour by
 //!   frame. Each is bound to the nearest point of the contour on its frame, and slides along the contour between these
@@ -30,12 +30,13 @@
 use super::Document;
 use super::drawings::lines;
 use super::fields::{FieldError, array, described, frame, given, number, object, point, wrong};
+use super::skeleton;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::FrameNumber;
 use rototoon_base::scene::limbs::{Binding, Calibration, Carried, DepthMark, Follow, Limb, LimbEnd, LimbSet};
-use rototoon_base::scene::skeleton::NAMES;
+use rototoon_base::scene::{FrameNumber, Template};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Largest rigidity. Beyond it the softest triangles would lose their digits beside the stiffest.
 const MOST_RIGID: f64 = 1e4;
@@ -47,8 +48,9 @@ impl Document {
     ///
     /// The first invalid field.
     pub fn limbs(&self) -> Result<LimbSet, FieldError> {
+        let template = self.skeleton()?;
         let limbs = self.other_list("limbs")?;
-        let limbs = limbs.iter().enumerate().map(|(k, value)| limb(value, &format!("limbs[{k}]")));
+        let limbs = limbs.iter().enumerate().map(|(k, value)| limb(&template, value, &format!("limbs[{k}]")));
         let swaps = self.other_list("limb_swaps")?;
         let swaps = swaps.iter().enumerate().map(|(k, value)| swap(value, &format!("limb_swaps[{k}]")));
         let marks = self.other_list("depth_marks")?;
@@ -60,12 +62,28 @@ impl Document {
             swaps: swaps.collect::<Result<_, _>>()?,
             marks: marks.collect::<Result<_, _>>()?,
             follows: follows.collect::<Result<_, _>>()?,
+            template,
         })
+    }
+
+    /// The body of the limbs.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the field [`skeleton`].
+    pub fn skeleton(&self) -> Result<Arc<Template>, FieldError> {
+        let value = self.other_field(skeleton::FIELD).map(serde_json::from_str::<Value>).transpose();
+        skeleton::read(value.map_err(|e| wrong(skeleton::FIELD, &e.to_string(), "JSON"))?.as_ref())
     }
 
     /// Puts limbs, swaps and marks into the document, in place of earlier ones.
     pub fn set_limbs(&mut self, set: &LimbSet) {
-        self.set_other_field("limbs", lines(set.limbs.iter().map(written)));
+        if let Some(skeleton) = skeleton::written(&set.template) {
+            self.set_other_field(skeleton::FIELD, skeleton.to_string());
+        } else {
+            self.remove_other_field(skeleton::FIELD);
+        }
+        self.set_other_field("limbs", lines(set.limbs.iter().map(|limb| written(&set.template, limb))));
         self.set_other_field("limb_swaps", lines(set.swaps.iter().map(|(first, last)| json!([first, last]))));
         let mark = |m: &DepthMark| {
             let mut fields = Map::from_iter([("front".into(), json!(m.front)), ("behind".into(), json!(m.behind))]);
@@ -121,14 +139,18 @@ impl Document {
     }
 }
 
-fn limb(value: &Value, place: &str) -> Result<Limb, FieldError> {
+fn limb(template: &Template, value: &Value, place: &str) -> Result<Limb, FieldError> {
     let fields = object(value, place)?;
-    let (from, to) = (key_point(fields, place, "from")?, key_point(fields, place, "to")?);
+    let (from, to) = (key_point(template, fields, place, "from")?, key_point(template, fields, place, "to")?);
     if from == to {
-        return Err(wrong(&format!("{place}.to"), &format!("{:?} again", NAMES[to]), "another key point than from"));
+        return Err(wrong(
+            &format!("{place}.to"),
+            &format!("{:?} again", template.point_name(to)),
+            "another key point than from",
+        ));
     }
     // From here on the place also names the limb's key points.
-    let place = format!("{place} ({} to {})", NAMES[from], NAMES[to]);
+    let place = format!("{place} ({} to {})", template.point_name(from), template.point_name(to));
     let (start, end) = (end(fields, &place, "start")?, end(fields, &place, "end")?);
     let carries = match fields.get("carries") {
         None => carried_by_default(&start, &end),
@@ -148,11 +170,12 @@ fn limb(value: &Value, place: &str) -> Result<Limb, FieldError> {
     Ok(Limb { from, to, start, end, carries, bends, rigidity })
 }
 
-fn key_point(fields: &Map<String, Value>, place: &str, name: &str) -> Result<usize, FieldError> {
+fn key_point(template: &Template, fields: &Map<String, Value>, place: &str, name: &str) -> Result<usize, FieldError> {
     let found = fields.get(name);
-    let index = found.and_then(Value::as_str).and_then(|text| NAMES.iter().position(|known| *known == text));
+    let index = found.and_then(Value::as_str).and_then(|text| template.index(text));
     index.ok_or_else(|| {
-        wrong(&format!("{place}.{name}"), &described(found), &format!("a key point: one of {}", NAMES.join(", ")))
+        let names = template.names().join(", ");
+        wrong(&format!("{place}.{name}"), &described(found), &format!("a key point: one of {names}"))
     })
 }
 
@@ -232,7 +255,7 @@ fn swap(value: &Value, place: &str) -> Result<(FrameNumber, FrameNumber), FieldE
     if first <= last { Ok((first, last)) } else { Err(wrong(place, &format!("{first} and {last}"), expected)) }
 }
 
-fn written(limb: &Limb) -> Value {
+fn written(template: &Template, limb: &Limb) -> Value {
     let by_frame = |points: &BTreeMap<FrameNumber, Point>| -> Value {
         points.iter().map(|(frame, p)| (frame.to_string(), json!([p.x, p.y]))).collect::<Map<_, _>>().into()
     };
@@ -243,8 +266,8 @@ fn written(limb: &Limb) -> Value {
     let end = |end: &LimbEnd| json!({"points": end.points.each_ref().map(calibration), "share": end.share});
     let carries = |c: &Carried| if c.turn == 1.0 { json!(c.part) } else { json!({"part": c.part, "turn": c.turn}) };
     let mut fields = Map::new();
-    fields.insert("from".into(), NAMES[limb.from].into());
-    fields.insert("to".into(), NAMES[limb.to].into());
+    fields.insert("from".into(), template.point_name(limb.from).into());
+    fields.insert("to".into(), template.point_name(limb.to).into());
     fields.insert("start".into(), end(&limb.start));
     fields.insert("end".into(), end(&limb.end));
     fields.insert("carries".into(), limb.carries.iter().map(carries).collect());

@@ -5,14 +5,18 @@
 //! reason; the slow way then finds the error.
 
 use super::schema::{MAX_FPS, MIN_FPS};
-use rototoon_base::scene::Clip;
-use rototoon_base::scene::skeleton::{COUNT, NAMES, Posture};
+use super::skeleton;
+use rototoon_base::scene::skeleton::{NAMES, Posture};
+use rototoon_base::scene::{Clip, Template};
 use serde::{Deserialize, Serialize, Serializer};
+use serde_json::Value;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-/// Version of the form.
-pub(super) const VERSION: u64 = 1;
+/// Latest version of the form. Version 2 has other bodies than the human one.
+pub(super) const VERSION: u64 = 2;
+/// Version of files that hold human clips only.
+const HUMAN_VERSION: u64 = 1;
 
 #[derive(Deserialize)]
 struct File<'a> {
@@ -46,6 +50,10 @@ pub(super) fn read(text: &str) -> Option<(Vec<Clip>, f64)> {
         Some(names) => names.iter().eq(NAMES.iter()),
         None => !text.contains("\"keypoints\""),
     };
+    // Other bodies are read the slow way.
+    if text.contains("\"skeleton\"") {
+        return None;
+    }
     let mut seen = BTreeSet::new();
     let whole = file.clips.iter().all(|clip| {
         let labelled = !clip.character.is_empty() && !clip.motion.is_empty();
@@ -62,7 +70,9 @@ pub(super) fn read(text: &str) -> Option<(Vec<Clip>, f64)> {
 struct Written<'a> {
     rototoon_clips: u64,
     fps: Rounded,
-    keypoints: [&'static str; COUNT],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    skeleton: Option<Value>,
+    keypoints: Vec<&'a str>,
     clips: Vec<WrittenClip<'a>>,
 }
 
@@ -70,9 +80,12 @@ struct Written<'a> {
 struct WrittenClip<'a> {
     character: &'a str,
     motion: &'a str,
-    points: Vec<[[Rounded; 2]; COUNT]>,
+    /// Only where it is another than the file's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    skeleton: Option<Value>,
+    points: Vec<Vec<[Rounded; 2]>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    deviation: Vec<[Rounded; COUNT]>,
+    deviation: Vec<Vec<Rounded>>,
 }
 
 /// Numbers are written with six decimals, far below what is visible, in torso lengths as well as in pixels.
@@ -90,15 +103,27 @@ impl Serialize for Rounded {
 
 /// The text of clips.
 pub(super) fn written(clips: &[Clip], fps: f64) -> String {
-    let of = |clip: &'_ Clip| -> (Vec<[[Rounded; 2]; COUNT]>, Vec<[Rounded; COUNT]>) {
-        let points = clip.postures.iter().map(|posture| posture.map(|p| [Rounded(p.x), Rounded(p.y)])).collect();
-        (points, clip.deviation.iter().map(|frame| frame.map(Rounded)).collect())
+    let template = clips.first().map_or_else(Template::human, |clip| clip.template.clone());
+    let own = |clip: &Clip| {
+        let named = || skeleton::written(&clip.template).unwrap_or_else(|| clip.template.name().into());
+        (clip.template != template).then(named)
     };
-    let list = clips.iter().map(|clip| {
-        let (points, deviation) = of(clip);
-        WrittenClip { character: &clip.character, motion: &clip.motion, points, deviation }
+    let clip = |clip: &'_ Clip| -> (Vec<Vec<[Rounded; 2]>>, Vec<Vec<Rounded>>) {
+        let points = clip.postures.iter().map(|p| p.iter().map(|p| [Rounded(p.x), Rounded(p.y)]).collect()).collect();
+        (points, clip.deviation.iter().map(|frame| frame.iter().copied().map(Rounded).collect()).collect())
+    };
+    let list = clips.iter().map(|c| {
+        let (points, deviation) = clip(c);
+        WrittenClip { character: &c.character, motion: &c.motion, skeleton: own(c), points, deviation }
     });
-    let file = Written { rototoon_clips: VERSION, fps: Rounded(fps), keypoints: NAMES, clips: list.collect() };
+    let human = clips.iter().all(|clip| clip.template.is_human());
+    let file = Written {
+        rototoon_clips: if human { HUMAN_VERSION } else { VERSION },
+        fps: Rounded(fps),
+        skeleton: skeleton::written(&template),
+        keypoints: template.names(),
+        clips: list.collect(),
+    };
     // Numbers, names and lists always have a text.
     serde_json::to_string(&file).unwrap_or_default()
 }

@@ -10,7 +10,7 @@ use super::schema::{FOOTAGE, Field, PART, TOP};
 use super::shape::part_place;
 
 /// The document's fields that other stages read.
-const OTHERS: [&str; 11] = [
+const OTHERS: [&str; 12] = [
     "drawings",
     "pairs",
     "pegs",
@@ -18,6 +18,7 @@ const OTHERS: [&str; 11] = [
     "in_betweens",
     "limbs",
     "limb_swaps",
+    "skeleton",
     "depth_marks",
     "follows",
     "traced",

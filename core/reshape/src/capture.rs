@@ -1,14 +1,15 @@
-//! From tracked contours to a skeleton clip: 17 key points on every frame (Liang et al. 2012, section 3).
+//! From tracked contours to a skeleton clip: all key points of a body's template on every frame (Liang et al. 2012,
+//! section 3).
 //!
 //! The four calibration points of a limb determine its key points ([`rototoon_base::scene::limbs`]). Missing key points are
 //! filled in, so every clip is complete:
 //!
 //! 1. A part is missing on a frame: the offset from the parent key point is interpolated linearly between frames that
 //!    have it. Before the first and after the last of them it stays constant.
-//! 2. An elbow or knee is defined nowhere, but what it joins is: it is on the way between them, as in the template.
+//! 2. A joint of a leg or limb is defined nowhere, but one beyond it is: it is on the way there, as in the template.
 //! 3. A limb is defined nowhere: the offset is copied from the other side of the body, if that is known.
-//! 4. Otherwise the template's proportions serve: the torso stands upright through its known points, and limbs hang
-//!    down.
+//! 4. Otherwise the template's typical posture serves, in the size of the torso. Legs and limbs hang as they do there;
+//!    what else hangs on the torso turns with it.
 //!
 //! [`Captured::guessed`] counts the filled-in key points. On frames where the contours show the other side
 //! ([`LimbSet::swaps`]) left and right are exchanged before anything is filled in.
@@ -17,13 +18,12 @@
 
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::limbs::{BindingError, Bound, LimbSet};
-use rototoon_base::scene::proportions::TEMPLATE;
-use rototoon_base::scene::skeleton::{COUNT, GIRDLES, MIRROR, NAMES, PARENTS, Posture};
-use rototoon_base::scene::{FrameNumber, Part};
+use rototoon_base::scene::template::length;
+use rototoon_base::scene::{FrameNumber, Part, Template};
 use std::ops::RangeInclusive;
 
 /// Key points of a frame that the contours determine; `None` where they do not.
-pub type Seen = [Option<Point>; COUNT];
+pub type Seen = Vec<Option<Point>>;
 
 /// A clip captured from contours.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,26 +31,27 @@ pub struct Captured {
     /// The first frame.
     pub first: FrameNumber,
     /// A posture for each frame.
-    pub postures: Vec<Posture>,
+    pub postures: Vec<Vec<Point>>,
     /// For each key point the number of frames on which it was filled in.
-    pub guessed: [usize; COUNT],
+    pub guessed: Vec<usize>,
 }
 
 /// Why a capture failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CaptureError {
     /// The document has no limbs.
-    #[error("limbs: found none, expected at least the torso (pelvis, chest, neck)")]
-    NoLimbs,
+    #[error("limbs: found none, expected at least the torso ({torso})")]
+    NoLimbs {
+        /// The names of its key points.
+        torso: String,
+    },
     /// A calibration point cannot be found on its contour.
-    #[error("limbs[{limb}] ({from} to {to}).{end}.points[{point}].{source}")]
+    #[error("limbs[{limb}] ({name}).{end}.points[{point}].{source}")]
     Binding {
         /// Index of the limb.
         limb: usize,
-        /// Name of the limb's first key point.
-        from: &'static str,
-        /// Name of its second key point.
-        to: &'static str,
+        /// The names of its key points, such as `r_hip to r_knee`.
+        name: String,
         /// `start` or `end`.
         end: &'static str,
         /// Index of the calibration point, 0 or 1.
@@ -59,16 +60,26 @@ pub enum CaptureError {
         source: BindingError,
     },
     /// No frame shows the torso.
-    #[error("frames {first} to {last}: found no frame on which limbs give both pelvis and neck, expected at least one")]
+    #[error(
+        "frames {first} to {last}: found no frame on which limbs give both {root} and {end}, expected at least one"
+    )]
     NoTorso {
+        /// Name of the torso's first key point.
+        root: String,
+        /// Name of its last key point.
+        end: String,
         /// First frame requested.
         first: FrameNumber,
         /// Last frame requested.
         last: FrameNumber,
     },
-    /// Pelvis and neck coincide.
-    #[error("frame {frame}: found pelvis and neck at one point, expected a torso with a length")]
+    /// The ends of the torso coincide.
+    #[error("frame {frame}: found {root} and {end} at one point, expected a torso with a length")]
     FlatTorso {
+        /// Name of the torso's first key point.
+        root: String,
+        /// Name of its last key point.
+        end: String,
         /// The frame.
         frame: FrameNumber,
     },
@@ -89,15 +100,17 @@ impl<'a> Bindings<'a> {
     /// [`CaptureError::NoLimbs`] or [`CaptureError::Binding`].
     pub fn new(set: &'a LimbSet, parts: &'a [Part]) -> Result<Self, CaptureError> {
         if set.limbs.is_empty() {
-            return Err(CaptureError::NoLimbs);
+            let named = |k: &usize| set.template.point_name(*k);
+            let torso = set.template.torso().iter().map(named).collect::<Vec<_>>().join(", ");
+            return Err(CaptureError::NoLimbs { torso });
         }
         let mut ends = Vec::with_capacity(set.limbs.len());
         for (limb, l) in set.limbs.iter().enumerate() {
             let bind = |end: &'static str, point: usize| {
                 let given = if end == "start" { &l.start } else { &l.end };
                 given.points[point].bind(parts).map_err(|source| {
-                    let (from, to) = (NAMES[l.from], NAMES[l.to]);
-                    CaptureError::Binding { limb, from, to, end, point, source }
+                    let [from, to] = [l.from, l.to].map(|k| set.template.point_name(k));
+                    CaptureError::Binding { limb, name: format!("{from} to {to}"), end, point, source }
                 })
             };
             ends.push([[bind("start", 0)?, bind("start", 1)?], [bind("end", 0)?, bind("end", 1)?]]);
@@ -121,7 +134,7 @@ impl<'a> Bindings<'a> {
 
     /// Key points of a frame from the contours, left and right as drawn. A key point of several limbs gets their mean.
     pub fn drawn(&self, frame: FrameNumber) -> Seen {
-        let mut sums = [(Point::ZERO, 0.0); COUNT];
+        let mut sums = vec![(Point::ZERO, 0.0); self.set.template.len()];
         for (k, limb) in self.set.limbs.iter().enumerate() {
             for (point, found) in [limb.from, limb.to].into_iter().zip(self.limb(k, frame)) {
                 if let Some(p) = found {
@@ -130,93 +143,119 @@ impl<'a> Bindings<'a> {
                 }
             }
         }
-        sums.map(|(sum, count)| (count > 0.0).then(|| sum / count))
+        sums.into_iter().map(|(sum, count)| (count > 0.0).then(|| sum / count)).collect()
     }
 
     /// Key points of a frame from the contours. Left and right are exchanged on the frames that the document marks as
     /// swapped.
     pub fn seen(&self, frame: FrameNumber) -> Seen {
         let drawn = self.drawn(frame);
-        if self.set.swapped(frame) { std::array::from_fn(|k| drawn[MIRROR[k]]) } else { drawn }
+        let mirrored = |k: usize| drawn[self.set.template.mirror(k)];
+        if self.set.swapped(frame) { (0..drawn.len()).map(mirrored).collect() } else { drawn }
     }
 }
 
-/// Captures a clip. It covers the given frames from the first to the last on which the limbs determine pelvis and neck.
+/// Captures a clip. It covers the given frames from the first to the last on which the limbs determine both ends of the
+/// torso.
 ///
 /// # Errors
 ///
 /// A [`CaptureError`] if a limb cannot be bound or the torso is missing or has no length.
 pub fn capture(set: &LimbSet, parts: &[Part], frames: RangeInclusive<FrameNumber>) -> Result<Captured, CaptureError> {
     let bindings = Bindings::new(set, parts)?;
+    let template = set.template.as_ref();
     let mut all: Vec<(FrameNumber, Seen)> = frames.clone().map(|frame| (frame, bindings.seen(frame))).collect();
-    all.iter_mut().for_each(|(_, seen)| complete_torso(seen));
-    let told = |(_, seen): &(FrameNumber, Seen)| seen[0].is_some() && seen[2].is_some();
-    let (Some(begin), Some(end)) = (all.iter().position(told), all.iter().rposition(told)) else {
-        return Err(CaptureError::NoTorso { first: *frames.start(), last: *frames.end() });
+    all.iter_mut().for_each(|(_, seen)| complete_torso(template, seen));
+    let end_of_torso = template.torso()[template.torso().len() - 1];
+    let [root, end] = [0, end_of_torso].map(|k| template.point_name(k).to_owned());
+    let ends = |seen: &Seen| seen[0].zip(seen[end_of_torso]);
+    let told = |(_, seen): &(FrameNumber, Seen)| ends(seen).is_some();
+    let (Some(begin), Some(last)) = (all.iter().position(told), all.iter().rposition(told)) else {
+        return Err(CaptureError::NoTorso { root, end, first: *frames.start(), last: *frames.end() });
     };
-    let all = &all[begin..=end];
-    for (frame, seen) in all {
-        if let (Some(pelvis), Some(neck)) = (seen[0], seen[2])
-            && pelvis.distance(neck) <= 1e-6
-        {
-            return Err(CaptureError::FlatTorso { frame: *frame });
-        }
+    let all = &all[begin..=last];
+    let flat = all.iter().find(|(_, seen)| ends(seen).is_some_and(|(a, b)| a.distance(b) <= 1e-6));
+    if let Some((frame, _)) = flat {
+        return Err(CaptureError::FlatTorso { root, end, frame: *frame });
     }
-    let seen: Vec<Seen> = all.iter().map(|(_, seen)| *seen).collect();
-    let guessed = std::array::from_fn(|k| seen.iter().filter(|frame| frame[k].is_none()).count());
-    Ok(Captured { first: all[0].0, postures: filled(&seen), guessed })
+    let seen: Vec<Seen> = all.iter().map(|(_, seen)| seen.clone()).collect();
+    let guessed = (0..template.len()).map(|k| seen.iter().filter(|frame| frame[k].is_none()).count()).collect();
+    Ok(Captured { first: all[0].0, postures: filled(template, &seen), guessed })
 }
 
-/// Fills in missing points of the torso: pelvis and neck from the two sides of the body, the chest from pelvis and
-/// neck.
-fn complete_torso(seen: &mut Seen) {
-    let middle = |a: Option<Point>, b: Option<Point>| a.zip(b).map(|(a, b)| a.midpoint(b));
-    seen[0] = seen[0].or(middle(seen[11], seen[14]));
-    seen[2] = seen[2].or(middle(seen[5], seen[8]));
-    let share = TEMPLATE.0[0] / TEMPLATE.torso();
-    seen[1] = seen[1].or(seen[0].zip(seen[2]).map(|(pelvis, neck)| pelvis.lerp(neck, share)));
+/// Fills in missing points of the torso: its ends from the legs and limbs that hang on them, what is between from the
+/// ends.
+fn complete_torso(template: &Template, seen: &mut Seen) {
+    let (torso, typical) = (template.torso(), template.typical());
+    let last = torso[torso.len() - 1];
+    for end in [torso[0], last] {
+        let hangs = template.hanging().into_iter().map(|chain| chain[0]).filter(|&k| template.parent(k) == end);
+        let on: Option<Vec<Point>> = hangs.map(|k| seen[k]).collect();
+        let middle = on.filter(|on| on.len() > 1).map(|on| on.iter().copied().sum::<Point>() / on.len() as f64);
+        seen[end] = seen[end].or(middle);
+    }
+    let whole = length(&typical, torso);
+    for (k, &point) in torso.iter().enumerate().skip(1).take(torso.len() - 2) {
+        let share = length(&typical, &torso[..=k]) / whole;
+        seen[point] = seen[point].or(seen[0].zip(seen[last]).map(|(a, b)| a.lerp(b, share)));
+    }
 }
 
 /// Postures with all missing key points filled in.
-fn filled(seen: &[Seen]) -> Vec<Posture> {
-    let mut made = vec![[Point::ZERO; COUNT]; seen.len()];
-    let pelvis: Vec<Option<Point>> = seen.iter().map(|frame| frame[0]).collect();
-    for (posture, p) in made.iter_mut().zip(in_between(&pelvis).unwrap_or_default()) {
+fn filled(template: &Template, seen: &[Seen]) -> Vec<Vec<Point>> {
+    let mut made = vec![vec![Point::ZERO; template.len()]; seen.len()];
+    let root: Vec<Option<Point>> = seen.iter().map(|frame| frame[0]).collect();
+    for (posture, p) in made.iter_mut().zip(in_between(&root).unwrap_or_default()) {
         posture[0] = p;
     }
-    for k in 1..COUNT {
+    for k in 1..template.len() {
+        let parent = template.parent(k);
         let way = |k: usize| -> Option<Vec<Point>> {
-            // The offset from the parent if the contours show it, otherwise from the pelvis.
-            let ways: Vec<_> = seen.iter().map(|frame| Some(frame[k]? - frame[PARENTS[k]].or(frame[0])?)).collect();
+            // The offset from the parent if the contours show it, otherwise from the root.
+            let from = template.parent(k);
+            let ways: Vec<_> = seen.iter().map(|frame| Some(frame[k]? - frame[from].or(frame[0])?)).collect();
             in_between(&ways)
         };
         let own = way(k);
-        let joins = own.is_none() && GIRDLES.contains(&PARENTS[k]);
-        let found = own.or_else(|| way(MIRROR[k]));
-        for frame in 0..seen.len() {
-            let parent = made[frame][PARENTS[k]];
-            let end = seen[frame].get(k + 1).copied().flatten().filter(|_| joins);
-            made[frame][k] = match (seen[frame][k], end, &found) {
+        let beyond = if own.is_none() { joints_beyond(template, k) } else { Vec::new() };
+        let found = own.or_else(|| way(template.mirror(k)));
+        for (frame, seen) in seen.iter().enumerate() {
+            let from = made[frame][parent];
+            let end = beyond.iter().find_map(|&(end, share)| Some((seen[end]?, share)));
+            made[frame][k] = match (seen[k], end, &found) {
                 (Some(p), ..) => p,
-                (None, Some(end), _) => parent.lerp(end, TEMPLATE.0[k - 1] / (TEMPLATE.0[k - 1] + TEMPLATE.0[k])),
-                (None, None, Some(ways)) => parent + ways[frame],
-                (None, None, None) => parent + template_way(k, &made[frame]),
+                (None, Some((end, share)), _) => from.lerp(end, share),
+                (None, None, Some(ways)) => from + ways[frame],
+                (None, None, None) => from + typical_way(template, k, &made[frame]),
             };
         }
     }
     made
 }
 
-/// The offset of a key point in the template, scaled to the torso of a posture whose earlier key points are known.
-fn template_way(k: usize, posture: &Posture) -> Point {
-    let torso = if k > 2 { posture[0].distance(posture[1]) + posture[1].distance(posture[2]) } else { 0.0 };
-    let up = if k > 2 { (posture[2] - posture[0]).normalize_or(-Point::Y) } else { -Point::Y };
-    let length = TEMPLATE.0[k - 1] * torso;
-    match k {
-        3 | 4 => up * length,
-        5 | 8 | 11 | 14 => up * (if k < 11 { -0.2 } else { 0.0 } * length),
-        _ => Point::Y * length,
-    }
+/// The joints beyond a joint of a leg or limb, the nearest first, each with the share of the way to it, as in the template.
+fn joints_beyond(template: &Template, joint: usize) -> Vec<(usize, f64)> {
+    let chains = template.hanging();
+    let chain = chains.into_iter().find(|chain| chain[1..].contains(&joint)).unwrap_or_default();
+    let Some(at) = chain.iter().position(|k| *k == joint) else { return Vec::new() };
+    let typical = template.typical();
+    let bone = length(&typical, &chain[at - 1..=at]);
+    let share = |end: usize| bone / length(&typical, &chain[at - 1..=end]).max(f64::MIN_POSITIVE);
+    (at + 1..chain.len()).map(|end| (chain[end], share(end))).collect()
+}
+
+/// The offset of a key point from its parent in the typical posture, in the size of a posture whose earlier key points are
+/// known. Legs and limbs hang as they do there; the rest turns with the torso.
+fn typical_way(template: &Template, k: usize, posture: &[Point]) -> Point {
+    let typical = template.typical();
+    let torso = template.torso();
+    let whole = |posture: &[Point]| posture[torso[torso.len() - 1]] - posture[0];
+    let size = template.torso_length(posture) / template.torso_length(&typical);
+    let turn = match template.on_limb(k) {
+        true => Point::X,
+        false => Point::from_angle(whole(&typical).angle_to(whole(posture))),
+    };
+    turn.rotate(typical[k] - typical[template.parent(k)]) * size
 }
 
 /// Values on all frames: linear between the known ones, constant before the first and after the last. `None` if no
@@ -332,7 +371,10 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named() {
         let (mut set, mut parts) = figure();
-        assert_eq!(capture(&LimbSet::default(), &parts, 0..=4).unwrap_err(), CaptureError::NoLimbs);
+        assert_eq!(
+            capture(&LimbSet::default(), &parts, 0..=4).unwrap_err().to_string(),
+            "limbs: found none, expected at least the torso (pelvis, chest, neck)"
+        );
         let error = capture(&set, &parts, 7..=9).unwrap_err().to_string();
         assert_eq!(
             error,
@@ -346,6 +388,7 @@ mod tests {
         );
         set.limbs.truncate(1);
         parts[0].keys.insert(2, vec![Point::ONE; 4]);
-        assert_eq!(capture(&set, &parts, 0..=4).unwrap_err(), CaptureError::FlatTorso { frame: 2 });
+        let error = capture(&set, &parts, 0..=4).unwrap_err().to_string();
+        assert_eq!(error, "frame 2: found pelvis and neck at one point, expected a torso with a length");
     }
 }

@@ -1,21 +1,21 @@
 //! When the feet of a clip stand on the ground.
 //!
 //! Clips come with the character's way through the picture, on the spot (a treadmill), or with the pelvis fixed in one
-//! place. One rule serves all of them. The ground moves by u, the median velocity of the lower ankle: 0 for a clip with
+//! place. One rule serves all of them. The ground moves by u, the median velocity of the lowest foot: 0 for a clip with
 //! its way, the speed of the walk backwards for the others. A foot stands while
 //!
 //! - it moves nearly as the ground does,
-//! - it is about as low as the lower one of both feet, and
+//! - it is about as low as the lowest of all feet, and
 //! - the figure is not in the air.
 //!
-//! The figure is in the air where even its lower foot is clearly above the level at which it usually is. A clip with a
+//! The figure is in the air where even its lowest foot is clearly above the level at which it usually is. A clip with a
 //! fixed pelvis does not tell a jump from crouching: both bring the feet nearer to the pelvis. There only feet that pass
 //! each other quickly, as in a run, count as in the air.
 //!
 //! Limits: the ground is level. A foot that slides on purpose does not stand.
 
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::skeleton::{LEGS, Posture};
+use rototoon_base::scene::template::length;
 
 /// A foot moves as the ground if the difference is below this share of the ground's speed,
 const OF_GROUND: f64 = 0.35;
@@ -35,8 +35,8 @@ const PASSING: f64 = 0.5;
 /// When feet stand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contacts {
-    /// For each leg of [`LEGS`] and each frame whether its foot stands.
-    pub stands: [Vec<bool>; 2],
+    /// For each leg and each frame whether its foot stands.
+    pub stands: Vec<Vec<bool>>,
     /// For each frame whether the figure is in the air.
     pub air: Vec<bool>,
     /// The ground's velocity along x in the unit of the clip a frame.
@@ -46,31 +46,37 @@ pub struct Contacts {
 }
 
 impl Contacts {
-    /// Finds the contacts of a clip.
-    pub fn of(clip: &[Posture]) -> Self {
+    /// Finds the contacts of a clip. `legs` are the key points of each leg, the last its foot. Without legs the figure is
+    /// never on the ground.
+    pub fn of(legs: &[&[usize]], clip: &[Vec<Point>]) -> Self {
         let n = clip.len();
-        let leg = leg_length(clip);
+        if legs.is_empty() {
+            return Self { stands: Vec::new(), air: vec![true; n], ground: 0.0, way: false };
+        }
+        let leg = leg_length(legs, clip);
         let way = clip.iter().any(|p| p[0].distance(clip[0][0]) > 1e-3 * leg);
-        let ankles = LEGS.map(|leg| clip.iter().map(|p| p[leg[2]]).collect::<Vec<Point>>());
-        let speeds = [velocities(&ankles[0]), velocities(&ankles[1])];
-        let lower: Vec<usize> = (0..n).map(|t| usize::from(ankles[1][t].y > ankles[0][t].y)).collect();
-        let low: Vec<f64> = (0..n).map(|t| ankles[lower[t]][t].y).collect();
+        let foot = |leg: &&[usize]| -> Vec<Point> { clip.iter().map(|p| p[leg[leg.len() - 1]]).collect() };
+        let feet: Vec<Vec<Point>> = legs.iter().map(foot).collect();
+        let speeds: Vec<Vec<Point>> = feet.iter().map(|foot| velocities(foot)).collect();
+        let lowest = |t: usize| (1..feet.len()).fold(0, |low, k| if feet[k][t].y > feet[low][t].y { k } else { low });
+        let lower: Vec<usize> = (0..n).map(lowest).collect();
+        let low: Vec<f64> = (0..n).map(|t| feet[lower[t]][t].y).collect();
         let level = quantile(low.clone(), USUAL);
-        let passing: Vec<f64> = (0..n).map(|t| (speeds[0][t].x - speeds[1][t].x).abs()).collect();
+        let passing: Vec<f64> = (0..n).map(|t| range(speeds.iter().map(|speed| speed[t].x))).collect();
         let quick = PASSING * quantile(passing.clone(), 0.9);
         let air: Vec<bool> =
             (0..n).map(|t| low[t] < level - AIR * leg && (way || (quick > 0.0 && passing[t] > quick))).collect();
         let ground = quantile((0..n).filter(|&t| !air[t]).map(|t| speeds[lower[t]][t].x).collect(), 0.5);
         let fast = quantile(speeds.iter().flatten().map(|v| v.length()).collect(), 0.9);
         let slow = (OF_GROUND * ground.abs()).max(OF_SWING * fast).max(OF_LEG * leg);
-        let stands = [0, 1].map(|foot| {
+        let stands = (0..feet.len()).map(|foot| {
             let one = |t: usize| {
                 let apart = (speeds[foot][t] - Point::new(ground, 0.0)).length();
-                !air[t] && apart < slow && ankles[foot][t].y > low[t] - LOW * leg
+                !air[t] && apart < slow && feet[foot][t].y > low[t] - LOW * leg
             };
             steady((0..n).map(one).collect())
         });
-        Self { stands, air, ground, way }
+        Self { stands: stands.collect(), air, ground, way }
     }
 
     /// The runs of frames during which a foot stands.
@@ -86,12 +92,16 @@ impl Contacts {
     }
 }
 
-/// The length of a straight leg: the median over the frames, of the longer leg.
-pub(crate) fn leg_length(clip: &[Posture]) -> f64 {
-    let of = |[hip, knee, ankle]: [usize; 3]| {
-        quantile(clip.iter().map(|p| p[hip].distance(p[knee]) + p[knee].distance(p[ankle])).collect(), 0.5)
-    };
-    LEGS.map(of).into_iter().fold(0.0, f64::max)
+/// The length of a straight leg: the median over the frames, of the longest leg.
+pub(crate) fn leg_length(legs: &[&[usize]], clip: &[Vec<Point>]) -> f64 {
+    let of = |leg: &&[usize]| quantile(clip.iter().map(|p| length(p, leg)).collect(), 0.5);
+    legs.iter().map(of).fold(0.0, f64::max)
+}
+
+/// The greatest difference between values.
+fn range(values: impl Iterator<Item = f64>) -> f64 {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    high - low
 }
 
 /// Velocities by central differences, one-sided at the ends.
@@ -131,11 +141,12 @@ pub(crate) fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use rototoon_base::scene::skeleton::COUNT;
+    use rototoon_base::scene::Template;
+    use rototoon_base::scene::skeleton::{COUNT, LEGS};
     use std::f64::consts::TAU;
 
     /// A walk of 24 frames a cycle, seen from the side: each foot stands for 14 frames and swings for ten.
-    pub(crate) fn walk(frames: usize, way: bool) -> Vec<Posture> {
+    pub(crate) fn walk(frames: usize, way: bool) -> Vec<Vec<Point>> {
         let step = 4.0; // pixels a frame
         (0..frames)
             .map(|t| {
@@ -158,9 +169,14 @@ pub(crate) mod tests {
                     p[leg[2]] = Point::new(x, -up);
                     p[leg[1]] = p[leg[0]].midpoint(p[leg[2]]) + Point::new(12.0, 0.0);
                 }
-                if way { p } else { p.map(|q| q - pelvis) }
+                if way { p.to_vec() } else { p.map(|q| q - pelvis).to_vec() }
             })
             .collect()
+    }
+
+    /// The contacts of a human clip.
+    pub(crate) fn human(clip: &[Vec<Point>]) -> Contacts {
+        Contacts::of(&Template::human().legs(), clip)
     }
 
     fn wrong(found: &Contacts, frames: usize) -> usize {
@@ -174,7 +190,7 @@ pub(crate) mod tests {
     #[test]
     fn a_walk_is_read_with_its_way_and_with_a_fixed_pelvis() {
         for (way, most) in [(true, 8), (false, 10)] {
-            let found = Contacts::of(&walk(48, way));
+            let found = human(&walk(48, way));
             assert_eq!(found.way, way);
             assert!((found.ground - if way { 0.0 } else { -4.0 }).abs() < 0.3, "{}", found.ground);
             assert!(wrong(&found, 48) <= most, "{} of 92 wrong: {found:?}", wrong(&found, 48));
@@ -185,18 +201,19 @@ pub(crate) mod tests {
     #[test]
     fn a_jump_leaves_the_ground_and_crouching_does_not() {
         let height = |t: usize| if (10..20).contains(&t) { 40.0 * (0.05 * TAU * (t - 10) as f64).sin() } else { 0.0 };
-        let stand = walk(1, true)[0];
-        let jump: Vec<Posture> = (0..30).map(|t| stand.map(|p| p - Point::new(0.0, height(t)))).collect();
-        let found = Contacts::of(&jump);
+        let stand = walk(1, true).remove(0);
+        let lifted = |t: usize| stand.iter().map(|p| *p - Point::new(0.0, height(t))).collect();
+        let jump: Vec<Vec<Point>> = (0..30).map(lifted).collect();
+        let found = human(&jump);
         assert!(found.air[15] && !found.air[5] && !found.stands[0][15] && found.stands[1][4]);
-        let crouch: Vec<Posture> = (0..30)
+        let crouch: Vec<Vec<Point>> = (0..30)
             .map(|t| {
-                let mut p = stand.map(|q| q - stand[0]);
+                let mut p: Vec<Point> = stand.iter().map(|q| *q - stand[0]).collect();
                 LEGS.iter().for_each(|leg| p[leg[2]].y -= height(t));
                 p
             })
             .collect();
-        assert!(!Contacts::of(&crouch).air.iter().any(|air| *air));
-        assert_eq!(Contacts::of(&[]).air, [false; 0]);
+        assert!(!human(&crouch).air.iter().any(|air| *air));
+        assert_eq!(human(&[]).air, [false; 0]);
     }
 }

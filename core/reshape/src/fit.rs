@@ -5,7 +5,7 @@
 //! the length on the frame at rest: a noodle leg that is drawn bent there, or a foreshortened arm, would count as
 //! short.
 //!
-//! **Shoulders and hips.** Arms and legs hang on the body where they are drawn. A skeleton may have its hips beside or
+//! **Shoulders and hips.** Legs and limbs hang on the body where they are drawn. A skeleton may have its hips beside or
 //! below the pelvis, a drawing may have them above it. And a body that turns towards the viewer shows its shoulders
 //! several times as far apart as in profile, but a drawing does not turn. Therefore shoulders and hips keep their drawn
 //! place relative to the body. Of the clip they take how they move about their own mean place, up to half of the drawn
@@ -17,14 +17,18 @@
 //! whichever frame is at rest. Two different figures do not share a posture by chance: with five or more key points
 //! within a hundredth of the torso, they also share their proportions.
 //!
-//! **Place.** Otherwise the pelvis begins where it is drawn, and its way is scaled by the lengths of the legs (of the
+//! **Direction.** A body that lies along the ground, such as a four-legged one, looks to one side. Where the drawing looks
+//! to the other side than the clip, the clip is mirrored ([`facing`]).
+//!
+//! **Place.** Otherwise the root (a human's pelvis) begins where it is drawn, and its way is scaled by the lengths of the legs (of the
 //! torso, if no leg is drawn). [`super::stand`] puts the feet on the ground.
 //!
 //! Coordinates are pixels, x right, y down.
 
 use rototoon_base::geometry::Point;
+use rototoon_base::scene::Template;
 use rototoon_base::scene::proportions::Proportions;
-use rototoon_base::scene::skeleton::{COUNT, GIRDLES, LEGS, PARENTS, Posture, torso};
+use std::sync::Arc;
 
 /// Two postures are one if their key points are this near, as a root mean square in torso lengths.
 const ONE_POSTURE: f64 = 0.01;
@@ -36,81 +40,122 @@ const LEAST_POINTS: usize = 5;
 /// What the document shows of the drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
+    /// Its body.
+    pub template: Arc<Template>,
     /// Its posture at rest.
-    pub rest: Posture,
+    pub rest: Vec<Point>,
     /// Its postures on all frames that show it, the one at rest among them.
-    pub postures: Vec<Posture>,
+    pub postures: Vec<Vec<Point>>,
     /// Which key points its contours determine.
-    pub told: [bool; COUNT],
+    pub told: Vec<bool>,
 }
 
 /// A clip's postures on a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fitted {
     /// A posture for each frame of the clip, in the drawing's pixels.
-    pub postures: Vec<Posture>,
+    pub postures: Vec<Vec<Point>>,
     /// The clip's unit in pixels.
     pub size: f64,
     /// Whether the clip is a motion of the drawing itself.
     pub own: bool,
 }
 
-/// Fits a clip to a drawing; `None` if the clip's torso has no length.
-pub fn fit(shown: &Shown, clip: &[Posture]) -> Option<Fitted> {
+/// A body lies along the ground if its torso is at least this many times as long along x as along y.
+const LIES: f64 = 1.0;
+
+/// A clip of the drawing's body, mirrored if it looks to the other side than the drawing. Only a body whose torso lies
+/// along the ground in its template has such a side.
+pub fn facing(shown: &Shown, clip: &[Vec<Point>]) -> Option<Vec<Vec<Point>>> {
+    let torso = shown.template.torso();
+    let way = |p: &[Point]| p[torso[torso.len() - 1]] - p[0];
+    let side = |postures: &[Vec<Point>]| postures.iter().map(|p| way(p).x).sum::<f64>();
+    let typical = way(&shown.template.typical());
+    let lies = typical.x.abs() > LIES * typical.y.abs();
+    if !lies || side(&shown.postures) * side(clip) >= 0.0 {
+        return None;
+    }
+    let about = clip.first()?[0].x;
+    let mirrored = |p: &Vec<Point>| p.iter().map(|q| Point::new(2.0 * about - q.x, q.y)).collect();
+    Some(clip.iter().map(mirrored).collect())
+}
+
+/// Fits a clip of the drawing's body to the drawing; `None` if the clip's torso has no length.
+pub fn fit(shown: &Shown, clip: &[Vec<Point>]) -> Option<Fitted> {
     if let Some((size, shift)) = own(shown, clip) {
-        let postures = clip.iter().map(|p| p.map(|q| q * size + shift)).collect();
+        let postures = clip.iter().map(|p| p.iter().map(|q| *q * size + shift).collect()).collect();
         return Some(Fitted { postures, size, own: true });
     }
-    let (own, theirs) = (Proportions::of(&shown.postures), Proportions::of(clip));
-    if theirs.torso() <= 0.0 {
+    let template = shown.template.as_ref();
+    let (own, theirs) = (Proportions::of(template, &shown.postures), Proportions::of(template, clip));
+    if theirs.torso(template) <= 0.0 {
         return None;
     }
     let size = scale(shown, &own, &theirs);
     let first = clip.first()?[0];
-    let (drawn, moving) = (GIRDLES.map(|k| hanging(&shown.postures, k)), GIRDLES.map(|k| hanging(clip, k)));
-    let place = |p: &Posture| {
-        let pelvis = shown.rest[0] + (p[0] - first) * size;
-        let mut made = theirs.to(&own, p).map(|q| q - p[0] + pelvis);
-        for (k, (drawn, mean)) in GIRDLES.into_iter().zip(drawn.iter().zip(&moving)) {
-            let moved = (hangs(p, k) - *mean) * size;
-            let way = *drawn + moved.clamp_length_max(SWAY * drawn.length());
-            let shift = made[PARENTS[k]] + body(&made, k).rotate(way) - made[k];
-            (k..k + 3).for_each(|k| made[k] += shift);
+    let joints: Vec<Joint> = template.hanging().iter().map(|c| Joint::new(shown, clip, c[0])).collect();
+    let place = |p: &Vec<Point>| {
+        let root = shown.rest[0] + (p[0] - first) * size;
+        let mut made: Vec<Point> = theirs.to(template, &own, p).iter().map(|q| *q - p[0] + root).collect();
+        for joint in &joints {
+            let k = joint.point;
+            let moved = (hangs(template, p, k) - joint.mean) * size;
+            let way = joint.drawn + moved.clamp_length_max(SWAY * joint.drawn.length());
+            let shift = made[template.parent(k)] + body(template, &made, k).rotate(way) - made[k];
+            joint.carries.iter().for_each(|&q| made[q] += shift);
         }
         made
     };
     Some(Fitted { postures: clip.iter().map(place).collect(), size, own: false })
 }
 
-/// The direction of the body at a shoulder (neck from chest) or a hip (chest from pelvis).
-fn body(posture: &Posture, joint: usize) -> Point {
-    let (from, to) = if PARENTS[joint] == 0 { (0, 1) } else { (1, 2) };
+/// A joint on which a leg or a limb hangs.
+struct Joint {
+    point: usize,
+    /// Where it hangs on average in the drawing, and in the clip.
+    drawn: Point,
+    mean: Point,
+    /// The key points that move with it.
+    carries: Vec<usize>,
+}
+
+impl Joint {
+    fn new(shown: &Shown, clip: &[Vec<Point>], point: usize) -> Self {
+        let template = shown.template.as_ref();
+        let mean = |postures: &[Vec<Point>]| {
+            postures.iter().map(|p| hangs(template, p, point)).sum::<Point>() / postures.len().max(1) as f64
+        };
+        let carries = (point..template.len()).filter(|&k| template.hangs_on(k, point)).collect();
+        Self { point, drawn: mean(&shown.postures), mean: mean(clip), carries }
+    }
+}
+
+/// The direction of the body at a joint: of a human neck from chest at a shoulder, chest from pelvis at a hip.
+fn body(template: &Template, posture: &[Point], joint: usize) -> Point {
+    let (from, to) = template.body_at(template.parent(joint));
     (posture[to] - posture[from]).normalize_or(-Point::Y)
 }
 
-/// Where a shoulder or hip hangs, relative to the body's direction.
-fn hangs(posture: &Posture, joint: usize) -> Point {
-    (body(posture, joint) * Point::new(1.0, -1.0)).rotate(posture[joint] - posture[PARENTS[joint]])
-}
-
-/// Where it hangs on average.
-fn hanging(postures: &[Posture], joint: usize) -> Point {
-    postures.iter().map(|p| hangs(p, joint)).sum::<Point>() / postures.len().max(1) as f64
+/// Where a joint hangs, relative to the body's direction.
+fn hangs(template: &Template, posture: &[Point], joint: usize) -> Point {
+    let back = body(template, posture, joint) * Point::new(1.0, -1.0);
+    back.rotate(posture[joint] - posture[template.parent(joint)])
 }
 
 /// Pixels of the drawing for a unit of the clip: from the legs that are drawn, else from the torso.
 fn scale(shown: &Shown, own: &Proportions, theirs: &Proportions) -> f64 {
-    let drawn = |leg: &&[usize; 3]| leg.iter().all(|&k| shown.told[k]);
-    let legs = |p: &Proportions| LEGS.iter().filter(drawn).map(|leg| p.0[leg[1] - 1] + p.0[leg[2] - 1]).sum::<f64>();
-    match (legs(own), legs(theirs)) {
+    let legs = shown.template.legs();
+    let drawn = |leg: &&&[usize]| leg.iter().all(|&k| shown.told[k]);
+    let along = |p: &Proportions| legs.iter().filter(drawn).map(|leg| p.along(leg)).sum::<f64>();
+    match (along(own), along(theirs)) {
         (a, b) if a > 0.0 && b > 0.0 => a / b,
-        _ => own.torso() / theirs.torso(),
+        _ => own.torso(&shown.template) / theirs.torso(&shown.template),
     }
 }
 
 /// Scale and shift of the clip if a posture of it is one of the drawing.
-fn own(shown: &Shown, clip: &[Posture]) -> Option<(f64, Point)> {
-    let points: Vec<usize> = (0..COUNT).filter(|&k| shown.told[k]).collect();
+fn own(shown: &Shown, clip: &[Vec<Point>]) -> Option<(f64, Point)> {
+    let points: Vec<usize> = (0..shown.told.len()).filter(|&k| shown.told[k]).collect();
     if points.len() < LEAST_POINTS {
         return None;
     }
@@ -118,7 +163,7 @@ fn own(shown: &Shown, clip: &[Posture]) -> Option<(f64, Point)> {
     for drawn in &shown.postures {
         for posture in clip {
             let (size, shift, off) = similarity(&points, posture, drawn);
-            let off = off / torso(drawn).max(f64::MIN_POSITIVE);
+            let off = off / shown.template.torso_length(drawn).max(f64::MIN_POSITIVE);
             if size > 0.0 && off <= ONE_POSTURE && best.is_none_or(|(least, ..)| off < least) {
                 best = Some((off, size, shift));
             }
@@ -129,9 +174,9 @@ fn own(shown: &Shown, clip: &[Posture]) -> Option<(f64, Point)> {
 
 /// Scale and shift that bring key points of one posture nearest to those of another, and the root mean square of what
 /// is left.
-fn similarity(points: &[usize], from: &Posture, to: &Posture) -> (f64, Point, f64) {
+fn similarity(points: &[usize], from: &[Point], to: &[Point]) -> (f64, Point, f64) {
     let n = points.len() as f64;
-    let middle = |p: &Posture| points.iter().map(|&k| p[k]).sum::<Point>() / n;
+    let middle = |p: &[Point]| points.iter().map(|&k| p[k]).sum::<Point>() / n;
     let (a, b) = (middle(from), middle(to));
     let (mut product, mut square) = (0.0, 0.0);
     for &k in points {
@@ -147,11 +192,12 @@ fn similarity(points: &[usize], from: &Posture, to: &Posture) -> (f64, Point, f6
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rototoon_base::scene::skeleton::{COUNT, LEGS};
 
     /// A figure whose left leg is bent by an angle.
-    fn figure(bend: f64) -> Posture {
+    fn figure(bend: f64) -> Vec<Point> {
         let v = Point::new;
-        let mut p = [Point::ZERO; COUNT];
+        let mut p = vec![Point::ZERO; COUNT];
         for (k, at) in [(1, v(0.0, -20.0)), (2, v(0.0, -40.0)), (3, v(1.0, -50.0)), (4, v(2.0, -66.0))] {
             p[k] = at;
         }
@@ -168,21 +214,25 @@ mod tests {
         p
     }
 
-    fn clip(first: usize) -> Vec<Posture> {
-        let at = |frame: usize| figure(0.1 * frame as f64).map(|p| 3.0 * p + Point::new(7.0 * frame as f64, 5.0));
+    fn each(posture: &[Point], map: impl Fn(Point) -> Point) -> Vec<Point> {
+        posture.iter().map(|p| map(*p)).collect()
+    }
+
+    fn clip(first: usize) -> Vec<Vec<Point>> {
+        let at = |frame: usize| each(&figure(0.1 * frame as f64), |p| 3.0 * p + Point::new(7.0 * frame as f64, 5.0));
         (first..first + 8).map(at).collect()
     }
 
-    fn shown(postures: Vec<Posture>, rest: usize) -> Shown {
-        Shown { rest: postures[rest], postures, told: [true; COUNT] }
+    fn shown(postures: Vec<Vec<Point>>, rest: usize) -> Shown {
+        Shown { template: Template::human(), rest: postures[rest].clone(), postures, told: vec![true; COUNT] }
     }
 
     #[test]
     fn the_own_motion_is_the_identity_from_any_rest_and_for_any_frames() {
-        let all: Vec<Posture> = clip(0).iter().map(|p| p.map(|q| q / 3.0)).collect();
+        let all: Vec<Vec<Point>> = clip(0).iter().map(|p| each(p, |q| q / 3.0)).collect();
         for rest in [0, 5] {
             for (frames, scale) in [(0..8, 3.0), (4..8, 1.0), (4..8, 3.0)] {
-                let given: Vec<Posture> = all[frames.clone()].iter().map(|p| p.map(|q| q * scale)).collect();
+                let given: Vec<Vec<Point>> = all[frames.clone()].iter().map(|p| each(p, |q| q * scale)).collect();
                 let found = fit(&shown(all.clone(), rest), &given).unwrap();
                 assert!(found.own);
                 for (made, wanted) in found.postures.iter().zip(&all[frames]) {
@@ -190,7 +240,7 @@ mod tests {
                 }
             }
             // The drawing at rest alone, and a clip that shows it.
-            let alone = fit(&shown(vec![all[rest]], 0), &all).unwrap();
+            let alone = fit(&shown(vec![all[rest].clone()], 0), &all).unwrap();
             assert!(
                 alone.own
                     && alone.postures.iter().flatten().zip(all.iter().flatten()).all(|(a, b)| a.distance(*b) < 1e-9)
@@ -201,13 +251,13 @@ mod tests {
     #[test]
     fn lengths_are_measured_over_all_frames() {
         // At rest the shin is drawn foreshortened; most frames show it longer.
-        let mut drawn: Vec<Posture> = (0..5).map(|_| figure(0.0)).collect();
+        let mut drawn: Vec<Vec<Point>> = (0..5).map(|_| figure(0.0)).collect();
         drawn[0] = figure(1.2);
         let mut longer = vec![figure(0.3), figure(0.35), figure(0.4)];
         longer.iter_mut().for_each(|p| p[4] -= Point::new(0.0, 30.0));
         let found = fit(&shown(drawn, 0), &longer).unwrap();
         assert!(!found.own, "another figure");
-        let shin = |p: &Posture| p[13].distance(p[12]);
+        let shin = |p: &[Point]| p[13].distance(p[12]);
         assert!((shin(&found.postures[1]) - 30.0).abs() < 1e-9, "{}", shin(&found.postures[1]));
     }
 
@@ -217,10 +267,10 @@ mod tests {
         let mut drawn = figure(0.0);
         LEGS.iter().for_each(|leg| leg.iter().for_each(|&k| drawn[k].y -= 9.0));
         let lean = Point::from_angle(0.5);
-        let mut turned: Vec<Posture> =
-            (0..6).map(|t| figure(0.3 + 0.1 * f64::from(t)).map(|p| lean.rotate(p))).collect();
+        let mut turned: Vec<Vec<Point>> =
+            (0..6).map(|t| each(&figure(0.3 + 0.1 * f64::from(t)), |p| lean.rotate(p))).collect();
         turned[3][5] -= Point::new(60.0, 0.0);
-        let found = fit(&shown(vec![drawn], 0), &turned).unwrap();
+        let found = fit(&shown(vec![drawn.clone()], 0), &turned).unwrap();
         for (made, clip) in found.postures.iter().zip(&turned) {
             for hip in [11, 14] {
                 let wanted = lean.rotate(drawn[hip] - drawn[0]);
@@ -234,8 +284,23 @@ mod tests {
     #[test]
     fn few_key_points_are_no_proof() {
         let mut few = shown(vec![figure(0.2)], 0);
-        few.told = std::array::from_fn(|k| k < 3);
+        few.told = (0..COUNT).map(|k| k < 3).collect();
         assert!(!fit(&few, &clip(0)).unwrap().own);
-        assert_eq!(fit(&few, &[[Point::ZERO; COUNT]]), None);
+        assert_eq!(fit(&few, &[vec![Point::ZERO; COUNT]]), None);
+    }
+
+    #[test]
+    fn a_clip_that_looks_to_the_other_side_is_mirrored() {
+        let cat = Template::quadruped();
+        let drawn = each(&cat.typical(), |p| 100.0 * p);
+        let shown =
+            Shown { rest: drawn.clone(), postures: vec![drawn.clone()], told: vec![true; cat.len()], template: cat };
+        let left: Vec<Vec<Point>> = [0.0, 1.0].map(|t| each(&drawn, |p| Point::new(3.0 - p.x - 8.0 * t, p.y))).to_vec();
+        let mirrored = facing(&shown, &left).unwrap();
+        assert!((mirrored[1][0].x - mirrored[0][0].x - 8.0).abs() < 1e-9, "it goes to the right");
+        assert!(mirrored[0].iter().zip(&drawn).all(|(a, b)| a.distance(*b + Point::new(3.0, 0.0)) < 1e-9));
+        assert_eq!(facing(&shown, &mirrored), None);
+        let standing = self::shown(vec![figure(0.0)], 0);
+        assert_eq!(facing(&standing, &[each(&figure(0.0), |p| Point::new(-p.x, p.y))]), None);
     }
 }

@@ -5,7 +5,8 @@
 //!
 //! - [`capture`]: key points from contours
 //! - [`fit`]: a clip in a drawing's proportions and place
-//! - [`contacts`]: when feet stand; [`stand`]: feet on the ground
+//! - [`retarget`]: a clip of one body for another body, chain by chain
+//! - [`contacts`]: when feet stand; [`stand`]: feet on the ground; [`reach`]: inverse kinematics
 //! - [`limb`]: quadratic Bézier limbs, sub-key points
 //! - [`triangulate`]: a triangle mesh of what outlines enclose
 //! - [`puppet`]: a drawn part that follows its limbs
@@ -49,5 +50,7 @@ pub mod fit;
 pub mod limb;
 pub mod mean_value;
 pub mod puppet;
+pub mod reach;
+pub mod retarget;
 pub mod stand;
 pub mod triangulate;

@@ -11,15 +11,16 @@
 //!    fixed pelvis gets back the rise and fall of its steps.
 //! 3. **The way of the pelvis.** A standing foot moves as the ground does. The pelvis takes up what is common to the
 //!    feet that stand, as in `rototoon-style`.
-//! 4. **The legs.** What is left is taken up by the two limbs of the leg (law of cosines), fading beside the contact.
+//! 4. **The legs.** What is left is taken up by the bones of the leg ([`super::reach`]), fading beside the contact.
 //!
 //! The order is 1 to 4, twice, since a leg that moves turns its shin.
 //!
 //! Limits: the ground is a level line. A leg that would have to be longer stays straight and hangs above the ground.
 
 use super::contacts::{Contacts, quantile};
+use super::reach::reach;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::skeleton::{LEGS, Posture};
+use rototoon_base::scene::Template;
 
 /// Rounds of the four steps.
 const ROUNDS: usize = 2;
@@ -39,11 +40,11 @@ const MOST_TILT: f64 = 1.0;
 /// A foot of a drawing at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Foot {
-    /// Which of [`LEGS`] has it.
+    /// Which of the template's legs has it.
     pub leg: usize,
     /// Points of its outline relative to the ankle, at rest.
     pub shape: Vec<Point>,
-    /// The shin at rest, from knee to ankle.
+    /// The leg's last bone at rest: of a human the shin, from knee to ankle.
     pub shin: Point,
     /// For a shoe the share of the shin's turn that it takes in the air; `None` for the end of a leg, which turns with the
     /// shin.
@@ -51,16 +52,15 @@ pub struct Foot {
 }
 
 impl Foot {
-    /// The shin's turn from rest in a posture, in radians.
-    fn shin_turn(&self, posture: &Posture) -> f64 {
-        let [_, knee, ankle] = LEGS[self.leg];
-        let now = posture[ankle] - posture[knee];
+    /// The last bone's turn from rest, in radians, for a leg in a posture.
+    fn shin_turn(&self, leg: &[usize], posture: &[Point]) -> f64 {
+        let now = posture[foot_of(leg)] - posture[leg[leg.len() - 2]];
         if now.length_squared() > 0.0 && self.shin.length_squared() > 0.0 { self.shin.angle_to(now) } else { 0.0 }
     }
 
     /// The foot's turn in the air.
-    pub fn swing(&self, posture: &Posture) -> f64 {
-        self.turn.unwrap_or(1.0) * self.shin_turn(posture)
+    pub fn swing(&self, leg: &[usize], posture: &[Point]) -> f64 {
+        self.turn.unwrap_or(1.0) * self.shin_turn(leg, posture)
     }
 
     /// How far the foot reaches below the ankle, turned by an angle.
@@ -74,6 +74,31 @@ impl Foot {
         let turn = Point::from_angle(flat);
         let touching = on_ground(&self.shape.iter().map(|p| turn.rotate(*p)).collect::<Vec<_>>());
         touching.into_iter().max_by(|a, b| a.x.abs().total_cmp(&b.x.abs())).unwrap_or(Point::X)
+    }
+}
+
+/// The key point of a leg's foot: its last.
+fn foot_of(leg: &[usize]) -> usize {
+    leg[leg.len() - 1]
+}
+
+/// What stands on what: the legs of the body, the feet that are drawn, when they stand, and the ground line's y.
+struct Ground<'a> {
+    legs: &'a [&'a [usize]],
+    feet: &'a [Foot],
+    contacts: &'a Contacts,
+    y: f64,
+}
+
+impl Ground<'_> {
+    /// The key points of a foot's leg.
+    fn leg(&self, foot: &Foot) -> &[usize] {
+        self.legs[foot.leg]
+    }
+
+    /// How far a foot's sole is above the ground.
+    fn above(&self, foot: &Foot, posture: &[Point], turn: f64) -> f64 {
+        self.y - posture[foot_of(self.leg(foot))].y - foot.depth(turn)
     }
 }
 
@@ -129,46 +154,55 @@ fn lower_hull(points: &[Point]) -> Vec<(Point, Point)> {
 
 /// Puts the feet of fitted postures on the ground. `clip` is the motion in its own unit, `size` that unit in pixels,
 /// `ground` the ground line's y. Returns the turn of each foot from rest on each frame, in radians.
-pub fn stand(postures: &mut [Posture], clip: &[Posture], size: f64, feet: &[Foot], ground: f64) -> Vec<Vec<f64>> {
-    let contacts = Contacts::of(clip);
+pub fn stand(
+    template: &Template,
+    postures: &mut [Vec<Point>],
+    (clip, size): (&[Vec<Point>], f64),
+    feet: &[Foot],
+    ground: f64,
+) -> Vec<Vec<f64>> {
+    let legs = template.legs();
+    let contacts = Contacts::of(&legs, clip);
+    let on = Ground { legs: &legs, feet, contacts: &contacts, y: ground };
     let flats: Vec<f64> = feet.iter().map(|foot| foot.turn.map_or(0.0, |_| flat(&foot.shape))).collect();
     let mut turns = vec![vec![0.0; postures.len()]; feet.len()];
     for _ in 0..ROUNDS {
-        set_turns(&mut turns, postures, feet, &flats, (&contacts, ground));
-        set_heights(postures, feet, &turns, (&contacts, ground));
+        set_turns(&mut turns, postures, &flats, &on);
+        set_heights(postures, &turns, &on);
         if contacts.way {
-            set_way(postures, feet, &contacts, size);
+            set_way(postures, &on, size);
         }
-        set_legs(postures, feet, &turns, (&contacts, ground));
+        set_legs(postures, &turns, &on);
     }
-    set_turns(&mut turns, postures, feet, &flats, (&contacts, ground));
-    clear(postures, feet, &turns, ground);
+    set_turns(&mut turns, postures, &flats, &on);
+    clear(postures, &turns, &on);
     turns
 }
 
 /// Lifts feet that are still below the ground.
-fn clear(postures: &mut [Posture], feet: &[Foot], turns: &[Vec<f64>], ground: f64) {
-    for (foot, turns) in feet.iter().zip(turns) {
+fn clear(postures: &mut [Vec<Point>], turns: &[Vec<f64>], on: &Ground) {
+    for (foot, turns) in on.feet.iter().zip(turns) {
         for (posture, turn) in postures.iter_mut().zip(turns) {
-            let above = ground - posture[LEGS[foot.leg][2]].y - foot.depth(*turn);
-            reach(posture, &LEGS[foot.leg], Point::new(0.0, above.min(0.0)));
+            let above = on.above(foot, posture, *turn);
+            reach(posture, on.leg(foot), Point::new(0.0, above.min(0.0)));
         }
     }
 }
 
 /// Step 1.
-fn set_turns(turns: &mut [Vec<f64>], postures: &[Posture], feet: &[Foot], flats: &[f64], on: (&Contacts, f64)) {
-    let (contacts, ground) = on;
-    for ((foot, turns), &flat) in feet.iter().zip(turns).zip(flats) {
+fn set_turns(turns: &mut [Vec<f64>], postures: &[Vec<Point>], flats: &[f64], on: &Ground) {
+    for ((foot, turns), &flat) in on.feet.iter().zip(turns).zip(flats) {
+        let leg = on.leg(foot);
         for (turn, posture) in turns.iter_mut().zip(postures) {
-            *turn = foot.swing(posture);
+            *turn = foot.swing(leg, posture);
         }
         if foot.turn.is_none() {
             continue;
         }
-        for run in contacts.runs(foot.leg) {
+        for run in on.contacts.runs(foot.leg) {
             turns[run.clone()].fill(flat);
-            let rolled = roll(foot, flat, &postures[run.end..], ground);
+            let after = postures[run.end..].iter().map(|posture| posture[foot_of(leg)].y);
+            let rolled = roll(foot, flat, after, on.y);
             let end = run.end + rolled.len();
             for (turn, rolled) in turns[run.end..].iter_mut().zip(&rolled) {
                 *turn = *rolled;
@@ -188,15 +222,14 @@ fn set_turns(turns: &mut [Vec<f64>], postures: &[Posture], feet: &[Foot], flats:
     }
 }
 
-/// The turns after a contact while the toe still stands.
-fn roll(foot: &Foot, flat: f64, after: &[Posture], ground: f64) -> Vec<f64> {
+/// The turns after a contact while the toe still stands. `after` is the ankle's y on the frames after it.
+fn roll(foot: &Foot, flat: f64, after: impl Iterator<Item = f64>, ground: f64) -> Vec<f64> {
     let (toe, stood) = (foot.toe(flat), ground - foot.depth(flat));
     let length = toe.x.abs();
-    let ankle = LEGS[foot.leg][2];
     let mut found: Vec<f64> = Vec::new();
     let mut before = 0.0;
-    for posture in after {
-        let risen = stood - posture[ankle].y;
+    for ankle in after {
+        let risen = stood - ankle;
         if !(risen > before && risen < TOE * length) {
             break;
         }
@@ -207,21 +240,21 @@ fn roll(foot: &Foot, flat: f64, after: &[Posture], ground: f64) -> Vec<f64> {
 }
 
 /// Step 2.
-fn set_heights(postures: &mut [Posture], feet: &[Foot], turns: &[Vec<f64>], (contacts, ground): (&Contacts, f64)) {
+fn set_heights(postures: &mut [Vec<Point>], turns: &[Vec<f64>], on: &Ground) {
     let n = postures.len();
     // How far the lowest sole is above the ground.
     let above = |t: usize, only: bool| {
         let of = |(foot, turns): (&Foot, &Vec<f64>)| {
-            let counts = !only || contacts.stands[foot.leg][t];
-            counts.then(|| ground - postures[t][LEGS[foot.leg][2]].y - foot.depth(turns[t]))
+            let counts = !only || on.contacts.stands[foot.leg][t];
+            counts.then(|| on.above(foot, &postures[t], turns[t]))
         };
-        feet.iter().zip(turns).filter_map(of).fold(f64::INFINITY, f64::min)
+        on.feet.iter().zip(turns).filter_map(of).fold(f64::INFINITY, f64::min)
     };
-    // With both feet drawn the lower one bears the figure. A single foot does so only while it stands.
-    let both = feet.iter().any(|f| f.leg == 0) && feet.iter().any(|f| f.leg == 1);
+    // With all feet drawn the lowest one bears the figure. Some of them do so only while they stand.
+    let all = (0..on.legs.len()).all(|leg| on.feet.iter().any(|foot| foot.leg == leg));
     let known: Vec<(usize, f64)> = (0..n)
-        .filter(|&t| !contacts.air[t])
-        .map(|t| (t, above(t, !both)))
+        .filter(|&t| !on.contacts.air[t])
+        .map(|t| (t, above(t, !all)))
         .filter(|(_, shift)| shift.is_finite())
         .collect();
     let shifts: Vec<f64> = (0..n).map(|t| between(&known, t).min(above(t, false))).collect();
@@ -246,12 +279,13 @@ fn between(known: &[(usize, f64)], t: usize) -> f64 {
 
 /// For each contact of a drawn foot, its leg, frames, and the shift of each frame along x that makes it go with the
 /// ground.
-fn slips(postures: &[Posture], feet: &[Foot], contacts: &Contacts, size: f64) -> Vec<(usize, usize, Vec<f64>)> {
+fn slips(postures: &[Vec<Point>], on: &Ground, size: f64) -> Vec<(usize, usize, Vec<f64>)> {
     let mut found = Vec::new();
-    for foot in feet {
-        for run in contacts.runs(foot.leg) {
-            let goes = |t: usize| contacts.ground * size * (t - run.start) as f64;
-            let at = |t: usize| postures[t][LEGS[foot.leg][2]].x - goes(t);
+    for foot in on.feet {
+        let ankle = foot_of(on.leg(foot));
+        for run in on.contacts.runs(foot.leg) {
+            let goes = |t: usize| on.contacts.ground * size * (t - run.start) as f64;
+            let at = |t: usize| postures[t][ankle].x - goes(t);
             let stood = quantile(run.clone().map(at).collect(), 0.5);
             found.push((foot.leg, run.start, run.clone().map(|t| stood - at(t)).collect()));
         }
@@ -260,9 +294,9 @@ fn slips(postures: &[Posture], feet: &[Foot], contacts: &Contacts, size: f64) ->
 }
 
 /// Step 3.
-fn set_way(postures: &mut [Posture], feet: &[Foot], contacts: &Contacts, size: f64) {
+fn set_way(postures: &mut [Vec<Point>], on: &Ground, size: f64) {
     let mut sums = vec![(0.0, 0.0); postures.len()];
-    for (_, start, shifts) in slips(postures, feet, contacts, size) {
+    for (_, start, shifts) in slips(postures, on, size) {
         for (sum, shift) in sums[start..].iter_mut().zip(shifts) {
             *sum = (sum.0 + shift, sum.1 + 1.0);
         }
@@ -273,54 +307,38 @@ fn set_way(postures: &mut [Posture], feet: &[Foot], contacts: &Contacts, size: f
         let shift = between(&known, t);
         posture.iter_mut().for_each(|p| p.x += shift);
     }
-    for (leg, start, shifts) in slips(postures, feet, contacts, size) {
+    for (leg, start, shifts) in slips(postures, on, size) {
         let shifts: Vec<Point> = shifts.into_iter().map(|x| Point::new(x, 0.0)).collect();
-        faded(postures, leg, start, &shifts);
+        faded(postures, on.legs[leg], start, &shifts);
     }
 }
 
 /// Step 4.
-fn set_legs(postures: &mut [Posture], feet: &[Foot], turns: &[Vec<f64>], (contacts, ground): (&Contacts, f64)) {
-    for (foot, turns) in feet.iter().zip(turns) {
-        for run in contacts.runs(foot.leg) {
-            let gap = |t: usize| ground - postures[t][LEGS[foot.leg][2]].y - foot.depth(turns[t]);
+fn set_legs(postures: &mut [Vec<Point>], turns: &[Vec<f64>], on: &Ground) {
+    for (foot, turns) in on.feet.iter().zip(turns) {
+        for run in on.contacts.runs(foot.leg) {
+            let gap = |t: usize| on.above(foot, &postures[t], turns[t]);
             let shifts: Vec<Point> = run.clone().map(|t| Point::new(0.0, gap(t))).collect();
-            faded(postures, foot.leg, run.start, &shifts);
+            faded(postures, on.leg(foot), run.start, &shifts);
         }
     }
 }
 
-/// Moves an ankle by the shifts of a contact, and less on the frames beside it.
-fn faded(postures: &mut [Posture], leg: usize, start: usize, shifts: &[Point]) {
+/// Moves a foot by the shifts of a contact, and less on the frames beside it.
+fn faded(postures: &mut [Vec<Point>], leg: &[usize], start: usize, shifts: &[Point]) {
     let end = start + shifts.len();
     for t in start.saturating_sub(FADE)..(end + FADE).min(postures.len()) {
         let inside = t.clamp(start, end - 1);
         let weight = 1.0 - t.abs_diff(inside) as f64 / (FADE + 1) as f64;
-        reach(&mut postures[t], &LEGS[leg], shifts[inside - start] * weight);
+        reach(&mut postures[t], leg, shifts[inside - start] * weight);
     }
-}
-
-/// Moves an ankle by a shift. The knee follows: both limbs keep their lengths, and the knee stays on its side.
-fn reach(posture: &mut Posture, &[hip, knee, ankle]: &[usize; 3], shift: Point) {
-    let (h, k, a) = (posture[hip], posture[knee], posture[ankle]);
-    let (upper, lower) = (h.distance(k), k.distance(a));
-    let way = a + shift - h;
-    let distance = way.length().clamp((upper - lower).abs(), upper + lower);
-    if shift == Point::ZERO || distance < 1e-9 || way.length() < 1e-9 {
-        return;
-    }
-    let direction = way.normalize();
-    let along = (distance * distance + upper * upper - lower * lower) / (2.0 * distance);
-    let across = (upper * upper - along * along).max(0.0).sqrt();
-    let side = if (a - h).perp_dot(k - h) >= 0.0 { 1.0 } else { -1.0 };
-    posture[knee] = h + direction * along + direction.perp() * (side * across);
-    posture[ankle] = h + direction * distance;
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::contacts::tests::walk;
+    use super::super::contacts::tests::{human, walk};
     use super::*;
+    use rototoon_base::scene::skeleton::LEGS;
 
     fn shoe(tilt: f64) -> Vec<Point> {
         let turn = Point::from_angle(tilt);
@@ -333,7 +351,7 @@ mod tests {
         (0..2).map(|leg| Foot { leg, shape: shoe(0.0), shin: Point::new(0.0, 40.0), turn }).collect()
     }
 
-    fn soles(postures: &[Posture], feet: &[Foot], turns: &[Vec<f64>], t: usize) -> [f64; 2] {
+    fn soles(postures: &[Vec<Point>], feet: &[Foot], turns: &[Vec<f64>], t: usize) -> [f64; 2] {
         [0, 1].map(|k| postures[t][LEGS[feet[k].leg][2]].y + feet[k].depth(turns[k][t]))
     }
 
@@ -351,10 +369,11 @@ mod tests {
     fn standing_feet_are_flat_on_the_ground_through_a_walk() {
         for way in [true, false] {
             let clip = walk(72, way);
-            let mut made: Vec<Posture> = clip.iter().map(|p| p.map(|q| q * 1.3 + Point::new(20.0, 11.0))).collect();
+            let placed = |p: &Vec<Point>| p.iter().map(|q| *q * 1.3 + Point::new(20.0, 11.0)).collect();
+            let mut made: Vec<Vec<Point>> = clip.iter().map(placed).collect();
             let feet = feet(Some(0.3));
-            let turns = stand(&mut made, &clip, 1.3, &feet, 300.0);
-            let contacts = Contacts::of(&clip);
+            let turns = stand(&Template::human(), &mut made, (&clip, 1.3), &feet, 300.0);
+            let contacts = human(&clip);
             let mut stood = 0;
             for t in 0..72 {
                 let soles = soles(&made, &feet, &turns, t);
@@ -378,8 +397,8 @@ mod tests {
         let clip = walk(48, true);
         let mut made = clip.clone();
         let feet = feet(Some(0.3));
-        let turns = stand(&mut made, &clip, 1.0, &feet, 8.0);
-        let contacts = Contacts::of(&clip);
+        let turns = stand(&Template::human(), &mut made, (&clip, 1.0), &feet, 8.0);
+        let contacts = human(&clip);
         let after = contacts.runs(0)[0].end;
         let corner = |k: usize, t: usize| made[t][13] + Point::from_angle(turns[0][t]).rotate(feet[0].shape[k]);
         let rolls = |t: usize| corner(3, t).y > 7.0 && corner(1, t).y < corner(3, t).y - 2.0;
@@ -389,12 +408,13 @@ mod tests {
 
     #[test]
     fn a_jump_keeps_its_height() {
-        let stood = walk(1, true)[0];
+        let stood = walk(1, true).remove(0);
         let height = |t: usize| if (10..20).contains(&t) { 40.0 * (0.314_16 * (t - 10) as f64).sin() } else { 0.0 };
-        let clip: Vec<Posture> = (0..30).map(|t| stood.map(|p| p - Point::new(0.0, height(t)))).collect();
+        let lifted = |t: usize| stood.iter().map(|p| *p - Point::new(0.0, height(t))).collect();
+        let clip: Vec<Vec<Point>> = (0..30).map(lifted).collect();
         let mut made = clip.clone();
         let feet = feet(Some(0.3));
-        let turns = stand(&mut made, &clip, 1.0, &feet, 50.0);
+        let turns = stand(&Template::human(), &mut made, (&clip, 1.0), &feet, 50.0);
         let low = |t: usize| soles(&made, &feet, &turns, t).into_iter().fold(f64::MIN, f64::max);
         assert!((low(3) - 50.0).abs() < 0.5 && (low(15) - 10.0).abs() < 2.0, "{} {}", low(3), low(15));
     }
@@ -403,11 +423,11 @@ mod tests {
     fn one_drawn_foot_or_none_is_enough() {
         let clip = walk(48, false);
         let mut made = clip.clone();
-        assert_eq!(stand(&mut made, &clip, 1.0, &[], 50.0), Vec::<Vec<f64>>::new());
+        assert_eq!(stand(&Template::human(), &mut made, (&clip, 1.0), &[], 50.0), Vec::<Vec<f64>>::new());
         assert_eq!(made, clip);
         let foot = feet(None).remove(1);
-        let turns = stand(&mut made, &clip, 1.0, std::slice::from_ref(&foot), 50.0);
-        let contacts = Contacts::of(&clip);
+        let turns = stand(&Template::human(), &mut made, (&clip, 1.0), std::slice::from_ref(&foot), 50.0);
+        let contacts = human(&clip);
         let sole = |t: usize| made[t][16].y + foot.depth(turns[0][t]);
         assert!((0..48).all(|t| sole(t) < 50.5));
         assert!(contacts.runs(1)[0].clone().all(|t| (sole(t) - 50.0).abs() < 0.8));

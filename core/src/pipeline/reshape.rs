@@ -44,6 +44,9 @@ pub struct ReshapeJob<'a> {
     pub rest: Option<FrameNumber>,
     /// The footage that the result lies over; none for the drawing's own, with as many frames as the clip has.
     pub over: Option<Footage>,
+    /// Chains of the clip's skeleton and of the drawing's that belong together though their names differ. A clip of another
+    /// skeleton is retargeted ([`crate::reshape::retarget`]).
+    pub chains: Vec<(String, String)>,
     /// How parts are reshaped.
     pub options: Options,
     /// By name of a closed part, points that shall follow it beside its own: those of a picture's mesh.
@@ -57,6 +60,8 @@ pub struct Reshaped {
     pub given: Vec<(String, Given)>,
     /// Parts that move without bending.
     pub rigid: Vec<String>,
+    /// Chains of the drawing's skeleton that no chain of the clip moves.
+    pub still: Vec<String>,
     /// By part and frame where the points of [`ReshapeJob::points`] are.
     pub points: BTreeMap<String, Vec<Vec<Point>>>,
 }
@@ -70,7 +75,7 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let footage = footage(&document.scene.footage, job);
     let parts = &document.scene.parts;
     let bindings = Bindings::new(&set, parts).map_err(wrong)?;
-    let motion = motion::of(&set, &bindings, parts, rest, (job.clip, footage.first))?;
+    let motion = motion::of(&set, &bindings, parts, rest, (job.clip, footage.first), &job.chains)?;
     let mut bodies = bodies::of(parts, &strokes, &set, &motion, rest)?;
     add_points(&mut bodies, &job.points)?;
     let depths = depths(&set, parts, footage.first..=footage.last)?;
@@ -92,7 +97,7 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
         let tail = |points: &Vec<Point>| points[points.len() - body.more..].to_vec();
         (body.name.clone(), moved.frames.iter().map(tail).collect())
     });
-    let report = Reshaped { given: given.collect(), rigid, points: points.collect() };
+    let report = Reshaped { given: given.collect(), rigid, still: motion.still, points: points.collect() };
     let placed = rebound(&set, &bindings, parts, rest);
     store::store(document, footage, (&bodies, &moved), &strokes, &depths);
     document.set_limbs(&placed);
@@ -206,5 +211,7 @@ fn rebound(set: &LimbSet, bindings: &Bindings, parts: &[Part], rest: FrameNumber
     set
 }
 
+#[cfg(test)]
+mod animals;
 #[cfg(test)]
 mod tests;

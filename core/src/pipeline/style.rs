@@ -4,7 +4,6 @@ use super::PipelineError;
 use crate::project::Document;
 use crate::project::clips::Clips;
 use crate::reshape::capture::capture;
-use crate::scene::skeleton::{COUNT, NAMES};
 use crate::scene::{Clip, FrameNumber, Progress};
 use crate::style::{self, Options, Request, StyleError, Sure};
 use std::ops::RangeInclusive;
@@ -29,7 +28,7 @@ pub struct CapturedClip {
     pub first: FrameNumber,
     /// Key points that were filled in on some frames because no contour determines them, with the number of these
     /// frames.
-    pub guessed: Vec<(&'static str, usize)>,
+    pub guessed: Vec<(String, usize)>,
 }
 
 /// Captures a clip from a document's tracked contours and its limbs.
@@ -56,8 +55,9 @@ pub fn clip(document: &Document, job: &ClipJob) -> Result<CapturedClip, Pipeline
     }
     let set = document.limbs().map_err(|e| wrong(&e))?;
     let captured = capture(&set, &document.scene.parts, frames).map_err(|e| wrong(&e))?;
-    let guessed = (0..COUNT).filter(|&k| captured.guessed[k] > 0).map(|k| (NAMES[k], captured.guessed[k])).collect();
-    let clip = Clip::new(job.character.as_str(), job.motion.as_str(), captured.postures);
+    let counts = captured.guessed.iter().enumerate().filter(|(_, count)| **count > 0);
+    let guessed = counts.map(|(k, count)| (set.template.point_name(k).to_owned(), *count)).collect();
+    let clip = Clip::of(set.template.clone(), job.character.as_str(), job.motion.as_str(), captured.postures);
     Ok(CapturedClip { clips: Clips { clips: vec![clip], fps: footage.fps }, first: captured.first, guessed })
 }
 

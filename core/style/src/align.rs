@@ -211,10 +211,10 @@ pub(super) fn pace(clips: &[Clip], request: &Request) -> f64 {
 /// Resamples a clip to play slower (`ratio` above 1) or faster. Its standard deviations come from the nearest frame.
 pub(super) fn change_pace(clip: &mut Clip, ratio: f64) {
     let (before, after) = (clip.postures.len(), (clip.postures.len() as f64 * ratio).round().max(1.0) as usize);
-    clip.postures = resample(&clip.postures, after);
+    clip.postures = resample(&clip.human().unwrap_or_default(), after).into_iter().map(Vec::from).collect();
     let step = (before.max(1) - 1) as f64 / after.saturating_sub(1).max(1) as f64;
     clip.deviation = (0..after)
-        .filter_map(|frame| clip.deviation.get(((frame as f64 * step).round() as usize).min(before - 1)).copied())
+        .filter_map(|frame| clip.deviation.get(((frame as f64 * step).round() as usize).min(before - 1)).cloned())
         .collect();
 }
 

@@ -73,7 +73,8 @@ impl Grid {
         for clip in clips.iter().filter(|c| !is_target(c, request)) {
             let place = |names: &[String], name: &str| names.iter().position(|n| n == name);
             if let (Some(s), Some(m)) = (place(&self.characters, &clip.character), place(&self.motions, &clip.motion)) {
-                let postures = clip.postures.iter().map(|p| unified(p, self.torso[s])).collect();
+                let postures = clip.human().unwrap_or_default();
+                let postures = postures.iter().map(|p| unified(p, self.torso[s])).collect();
                 self.clips[s * self.motions.len() + m] = Some(postures);
             }
         }
@@ -149,7 +150,7 @@ fn is_target(clip: &Clip, request: &Request) -> bool {
 
 fn torso_of(clips: &[Clip], name: &str) -> Result<f64, StyleError> {
     let mut lengths: Vec<f64> =
-        clips.iter().filter(|c| c.character == name).flat_map(|c| c.postures.iter().map(torso)).collect();
+        clips.iter().filter(|c| c.character == name).filter_map(Clip::human).flatten().map(|p| torso(&p)).collect();
     if lengths.is_empty() {
         return Ok(1.0);
     }

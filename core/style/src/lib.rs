@@ -49,7 +49,7 @@
 //! clips.extend(people[..3].iter().map(|&(name, lean)| clip(name, lean, "run", 0.9)));
 //! let request = Request { style: "old", motion: "run", content: "plain", keys: &[] };
 //! let made = translate(&clips, &request, &Options::default(), &Silent)?;
-//! let (found, truth) = (made.postures[4], posture(0.4, 0.9));
+//! let (found, truth) = (&made.postures[4], posture(0.4, 0.9));
 //! let [head, knee] = [4, 15].map(|k| (found[k] - found[0]).distance(truth[k]));
 //! assert!(head < 0.3, "it leans like the old one: the plain runner's head is 0.8 away");
 //! assert!(knee < 0.1, "it strides like a runner: the old walker's knee is 0.25 away");
@@ -78,6 +78,7 @@ use grid::{Grid, Row};
 use rototoon_base::scene::clip::resample;
 use rototoon_base::scene::skeleton::{COUNT, Posture, torso};
 use rototoon_base::scene::{Cancelled, Clip, Progress};
+use std::borrow::Cow;
 
 /// What progress is told.
 const STEP: &str = "Translating";
@@ -210,6 +211,18 @@ pub enum StyleError {
         /// The motion.
         motion: String,
     },
+    /// The content's clip is of another body.
+    #[error(
+        "content ({character:?}, {motion:?}): found the skeleton {found:?}, expected \"human\": a manner is known of human clips only"
+    )]
+    Body {
+        /// The content's character.
+        character: String,
+        /// The motion.
+        motion: String,
+        /// The name of its template.
+        found: String,
+    },
     /// Nothing tells the manner.
     #[error(
         "style: found neither another motion of {character:?} beside {motion:?} nor a key pose, expected at least one"
@@ -298,6 +311,7 @@ pub fn translate_and_judge(
     progress: &dyn Progress,
 ) -> Result<(Clip, Option<Sure>), StyleError> {
     progress.report(STEP, 0.0)?;
+    let clips = &human_clips(clips, request)?[..];
     let grid = Grid::new(clips, request)?;
     let keys = keys(&grid, request);
     let mut made = match options.preset {
@@ -315,19 +329,35 @@ pub fn translate_and_judge(
     }
     let size = size_of(&grid, request);
     let content = clips.iter().find(|c| c.character == request.content && c.motion == request.motion);
-    if let Some(content) = content {
-        place(&mut postures, &content.postures, size, grid.torso[grid.content]);
+    if let Some(content) = content.and_then(Clip::human) {
+        place(&mut postures, &content, size, grid.torso[grid.content]);
         if options.keep_contacts {
-            finish::keep_contacts(&mut postures, &content.postures);
+            finish::keep_contacts(&mut postures, &content);
         }
     }
     let mut clip = Clip::new(request.style, request.motion, postures);
-    clip.deviation = made.deviation.iter().map(|frame| frame.map(|s| s * size)).collect();
+    clip.deviation = made.deviation.iter().map(|frame| frame.iter().map(|s| s * size).collect()).collect();
     if options.pace == Pace::Style {
         align::change_pace(&mut clip, align::pace(clips, request));
     }
     progress.report(STEP, 1.0)?;
     Ok((clip, made.sure))
+}
+
+/// The clips of humans: a library may hold other bodies, from which nothing is learned.
+fn human_clips<'a>(clips: &'a [Clip], request: &Request) -> Result<Cow<'a, [Clip]>, StyleError> {
+    if clips.iter().all(|clip| clip.template.is_human()) {
+        return Ok(Cow::Borrowed(clips));
+    }
+    let asked = |clip: &&Clip| clip.motion == request.motion && clip.character == request.content;
+    match clips.iter().find(asked).filter(|clip| !clip.template.is_human()) {
+        Some(clip) => Err(StyleError::Body {
+            character: clip.character.clone(),
+            motion: clip.motion.clone(),
+            found: clip.template.name().to_owned(),
+        }),
+        None => Ok(clips.iter().filter(|clip| clip.template.is_human()).cloned().collect()),
+    }
 }
 
 /// Key poses as numbers, one a frame (the last given for it).

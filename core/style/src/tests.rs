@@ -2,8 +2,8 @@
 
 use super::*;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::Silent;
 use rototoon_base::scene::skeleton::{LEGS, limb_lengths};
+use rototoon_base::scene::{Silent, Template};
 
 /// A figure at a moment of a motion, with a given stoop and position of the arms.
 fn figure(motion: usize, phase: f64, stoop: f64, arms: f64) -> Posture {
@@ -50,9 +50,18 @@ fn request<'a>(keys: &'a [KeyPose]) -> Request<'a> {
     Request { style: "old", motion: "run", content: "plain", keys }
 }
 
-fn apart(a: &[Posture], b: &[Posture]) -> f64 {
+fn human(clip: &Clip, frame: usize) -> Posture {
+    clip.human().unwrap()[frame]
+}
+
+fn resample_to(clip: &mut Clip, frames: usize) {
+    clip.postures = resample(&clip.human().unwrap(), frames).into_iter().map(Vec::from).collect();
+}
+
+fn apart(a: &[Vec<Point>], b: &[Vec<Point>]) -> f64 {
     assert_eq!(a.len(), b.len());
-    let frame = |p: &Posture, q: &Posture| (1..COUNT).map(|k| (p[k] - p[0]).distance(q[k] - q[0])).sum::<f64>() / 16.0;
+    let frame =
+        |p: &Vec<Point>, q: &Vec<Point>| (1..COUNT).map(|k| (p[k] - p[0]).distance(q[k] - q[0])).sum::<f64>() / 16.0;
     a.iter().zip(b).map(|(p, q)| frame(p, q)).sum::<f64>() / a.len() as f64
 }
 
@@ -100,15 +109,15 @@ fn a_pair_of_characters_is_enough() {
 #[test]
 fn drawn_poses_are_met_and_make_the_rest_better() {
     let (clips, truth) = (library(), clip(1, 1, 24));
-    let pose = |frame: usize| KeyPose { frame, posture: truth.postures[frame].map(|p| p + Point::new(7.0, -3.0)) };
+    let pose = |frame: usize| KeyPose { frame, posture: human(&truth, frame).map(|p| p + Point::new(7.0, -3.0)) };
     for (id, _, preset) in Preset::ALL {
         let options = Options { preset, ..Options::default() };
         let error = |keys: &[KeyPose]| {
             let made = translate(&clips, &request(keys), &options, &Silent).unwrap();
             for key in keys {
-                let at = |p: &Posture| p.map(|q| q - p[0]);
+                let at = |p: &[Point]| p.iter().map(|q| *q - p[0]).collect::<Vec<_>>();
                 let (a, b) = (at(&made.postures[key.frame]), at(&key.posture));
-                assert!(a.iter().zip(b).all(|(a, b)| a.distance(b) < 1e-6), "{id}");
+                assert!(a.iter().zip(&b).all(|(a, b)| a.distance(*b) < 1e-6), "{id}");
             }
             apart(&made.postures, &truth.postures)
         };
@@ -122,7 +131,7 @@ fn drawn_poses_are_met_and_make_the_rest_better() {
 fn of_a_character_without_clips_a_drawn_pose_is_enough() {
     let clips: Vec<Clip> = library().into_iter().filter(|c| c.character != "old").collect();
     let truth = clip(1, 1, 24);
-    let key = KeyPose { frame: 0, posture: truth.postures[0] };
+    let key = KeyPose { frame: 0, posture: human(&truth, 0) };
     let made = translate(&clips, &request(&[key]), &Options::default(), &Silent).unwrap();
     assert!(apart(&made.postures, &truth.postures) < apart(&clip(0, 1, 24).postures, &truth.postures));
 }
@@ -133,15 +142,17 @@ fn holes_unequal_lengths_and_units_do_no_harm() {
     clips.retain(|c| (c.character.as_str(), c.motion.as_str()) != ("shy", "bow"));
     for c in &mut clips {
         if c.character == "bold" {
-            c.postures = c.resampled(31);
+            resample_to(c, 31);
         }
         if c.character == "old" {
-            c.postures.iter_mut().for_each(|p| *p = p.map(|q| q * 80.0 + Point::new(300.0, 200.0)));
+            c.postures.iter_mut().flatten().for_each(|q| *q = *q * 80.0 + Point::new(300.0, 200.0));
         }
     }
     let made = translate(&clips, &request(&[]), &Options::default(), &Silent).unwrap();
-    let truth: Vec<Posture> = clip(1, 1, 24).postures.iter().map(|p| p.map(|q| q * 80.0)).collect();
-    let copied: Vec<Posture> = clip(0, 1, 24).postures.iter().map(|p| p.map(|q| q * 80.0)).collect();
+    let larger = |clip: &Clip| -> Vec<Vec<Point>> {
+        clip.postures.iter().map(|p| p.iter().map(|q| *q * 80.0).collect()).collect()
+    };
+    let (truth, copied) = (larger(&clip(1, 1, 24)), larger(&clip(0, 1, 24)));
     assert!(apart(&made.postures, &truth) < 0.7 * apart(&copied, &truth));
 }
 
@@ -158,8 +169,8 @@ fn one_frame_and_one_motion_are_no_reason_to_fail() {
 #[test]
 fn limbs_keep_the_lengths_of_the_style() {
     let made = translate(&library(), &request(&[]), &Options { strength: 1.5, ..Options::default() }, &Silent).unwrap();
-    let own = limb_lengths(&clip(1, 0, 24).postures[0]);
-    for posture in &made.postures {
+    let own = limb_lengths(&human(&clip(1, 0, 24), 0));
+    for posture in &made.human().unwrap() {
         for limb in [0, 1, 11, 12, 14, 15] {
             assert!((limb_lengths(posture)[limb] - own[limb]).abs() < 1e-3, "{limb}");
         }
@@ -171,7 +182,7 @@ fn the_styles_pace_may_be_taken() {
     let mut clips = library();
     for c in &mut clips {
         if c.character == "old" {
-            c.postures = c.resampled(36);
+            resample_to(c, 36);
         }
     }
     let options = Options { pace: Pace::Style, ..Options::default() };
@@ -203,10 +214,23 @@ fn what_is_wrong_with_a_request_is_named() {
     );
     assert_eq!(error("old", "fly", "plain", &[]), "motion: found \"fly\", expected one of bow, run, stroll, walk");
     assert!(error("old", "run", "old", &[]).contains("expected two characters"));
-    let late = KeyPose { frame: 24, posture: clips[0].postures[0] };
+    let late = KeyPose { frame: 24, posture: human(&clips[0], 0) };
     assert_eq!(error("old", "run", "plain", &[late]), "key pose: found frame 24, expected 0 to 23");
     let flat = KeyPose { frame: 2, posture: [Point::ONE; COUNT] };
     assert!(error("old", "run", "plain", &[flat]).contains("key pose of frame 2: found a torso of length 0"));
+}
+
+#[test]
+fn clips_of_other_bodies_are_left_out_of_account() {
+    let bird = Template::bird();
+    let fly = Clip::of(bird.clone(), "old", "fly", vec![bird.typical(); 24]);
+    let make = |clips: &[Clip]| translate(clips, &request(&[]), &Options::default(), &Silent);
+    let mixed: Vec<Clip> = library().into_iter().chain([fly]).collect();
+    assert_eq!(make(&mixed).unwrap(), make(&library()).unwrap());
+    let mut content = library();
+    content.retain(|c| (c.character.as_str(), c.motion.as_str()) != ("plain", "run"));
+    content.push(Clip::of(bird.clone(), "plain", "run", vec![bird.typical(); 24]));
+    assert!(make(&content).unwrap_err().to_string().contains(r#"found the skeleton "bird", expected "human""#));
 }
 
 #[test]
@@ -219,7 +243,7 @@ fn broken_clips_are_named() {
         "clip (\"plain\", \"stroll\"), frame 5: found a coordinate that is not finite, expected finite coordinates"
     );
     let mut flat = library();
-    flat.iter_mut().filter(|c| c.character == "shy").for_each(|c| c.postures.fill([Point::ZERO; COUNT]));
+    flat.iter_mut().filter(|c| c.character == "shy").for_each(|c| c.postures.fill(vec![Point::ZERO; COUNT]));
     assert!(error(&flat).contains("character \"shy\": found a torso of length 0"));
     let alone: Vec<Clip> = library().into_iter().filter(|c| c.motion == "run" || c.character == "plain").collect();
     assert!(error(&alone).contains("found neither another motion of \"old\" beside \"run\" nor a key pose"));

@@ -6,11 +6,12 @@
 
 use anyhow::{Context, Result, bail};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use rototoon::geometry::Point;
 use rototoon::project::clips::Clips;
 use rototoon::scene::clip::resample;
 use rototoon::scene::proportions::typical_torso;
 use rototoon::scene::skeleton::{COUNT, Posture};
-use rototoon::scene::{Clip, Silent};
+use rototoon::scene::{Clip, Silent, Template};
 use rototoon::style::{Options, Preset, Request, translate};
 use serde::Serialize;
 
@@ -52,13 +53,13 @@ pub fn measure(clips: &Clips, content: Option<&str>) -> Result<Vec<Translated>> 
     let mut found = Vec::new();
     let copied = truths.iter().map(|truth| {
         let of_content = clips.iter().find(|clip| clip.character == content && clip.motion == truth.motion);
-        Ok(distance(&of_content.context("the content's clip")?.postures, &truth.postures))
+        distance(of_content.context("the content's clip")?, truth)
     });
     found.push(Translated { preset: "copy", rank: None, error: mean(copied.collect())? });
     let one = |truth: &Clip, options: &Options| -> Result<f64> {
         let request = Request { style: &truth.character, motion: &truth.motion, content, keys: &[] };
         let made = translate(clips, &request, options, &Silent)?;
-        Ok(distance(&made.postures, &truth.postures))
+        distance(&made, truth)
     };
     for (preset, _, which) in Preset::ALL {
         let ranks: Vec<Option<usize>> = match which {
@@ -75,8 +76,14 @@ pub fn measure(clips: &Clips, content: Option<&str>) -> Result<Vec<Translated>> 
 }
 
 /// Mean distance of key points, with the pelvises on each other, in torso lengths of the truth.
-fn distance(made: &[Posture], truth: &[Posture]) -> f64 {
-    let size = typical_torso(truth).max(f64::MIN_POSITIVE);
+fn distance(made: &Clip, truth: &Clip) -> Result<f64> {
+    let human = |clip: &Clip| clip.human().with_context(|| format!("{:?}: a human clip", clip.character));
+    Ok(apart(&human(made)?, &human(truth)?))
+}
+
+fn apart(made: &[Posture], truth: &[Posture]) -> f64 {
+    let sizes: Vec<Vec<Point>> = truth.iter().copied().map(Vec::from).collect();
+    let size = typical_torso(&Template::human(), &sizes).max(f64::MIN_POSITIVE);
     let made = resample(made, truth.len());
     let apart = |a: &Posture, b: &Posture| {
         (1..COUNT).map(|k| (a[k] - a[0]).distance(b[k] - b[0])).sum::<f64>() / (COUNT - 1) as f64
@@ -87,16 +94,15 @@ fn distance(made: &[Posture], truth: &[Posture]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rototoon::geometry::Point;
 
     #[test]
     fn distances_are_in_torso_lengths_from_the_pelvis() {
         let truth: Posture = std::array::from_fn(|k| Point::new(0.0, -2.0 * k as f64));
         let moved = truth.map(|p| p + Point::new(5.0, 5.0));
-        assert_eq!(distance(&[moved], &[truth]), 0.0);
+        assert_eq!(apart(&[moved], &[truth]), 0.0);
         let mut hand = truth;
         hand[7] += Point::new(0.0, 4.0);
-        assert_eq!(distance(&[hand], &[truth]), 1.0 / 16.0);
+        assert_eq!(apart(&[hand], &[truth]), 1.0 / 16.0);
     }
 
     #[test]

@@ -4,8 +4,10 @@
 //! linearly, key point by key point. This shortens a fast swinging limb a little; callers that need exact lengths
 //! restore them.
 
-use super::skeleton::{self, Posture};
+use super::skeleton::Posture;
+use super::template::Template;
 use crate::geometry::Point;
+use std::sync::Arc;
 
 /// One motion of one character.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,22 +16,39 @@ pub struct Clip {
     pub character: String,
     /// Name of the motion. Clips of one motion by several characters show the same content.
     pub motion: String,
-    /// A posture for each frame, x right and y down. All clips of a character use one unit.
-    pub postures: Vec<Posture>,
+    /// The body that moves.
+    pub template: Arc<Template>,
+    /// A posture for each frame: a place for each key point of the template, x right and y down. All clips of a character
+    /// use one unit.
+    pub postures: Vec<Vec<Point>>,
     /// Standard deviation of the coordinates of each key point in each frame, in the unit of the points. Empty if
     /// unknown.
-    pub deviation: Vec<[f64; skeleton::COUNT]>,
+    pub deviation: Vec<Vec<f64>>,
 }
 
 impl Clip {
-    /// A clip without standard deviations.
+    /// A human clip without standard deviations.
     pub fn new(character: impl Into<String>, motion: impl Into<String>, postures: Vec<Posture>) -> Self {
-        Self { character: character.into(), motion: motion.into(), postures, deviation: Vec::new() }
+        let postures = postures.into_iter().map(Vec::from).collect();
+        Self::of(Template::human(), character, motion, postures)
     }
 
-    /// The postures resampled to `frames` frames, from the first to the last, with linear interpolation.
-    pub fn resampled(&self, frames: usize) -> Vec<Posture> {
-        resample(&self.postures, frames)
+    /// A clip of any body. Each posture has a place for each key point of the template.
+    pub fn of(
+        template: Arc<Template>,
+        character: impl Into<String>,
+        motion: impl Into<String>,
+        postures: Vec<Vec<Point>>,
+    ) -> Self {
+        Self { character: character.into(), motion: motion.into(), template, postures, deviation: Vec::new() }
+    }
+
+    /// The postures of a human clip; none if the body is another.
+    pub fn human(&self) -> Option<Vec<Posture>> {
+        if !self.template.is_human() {
+            return None;
+        }
+        self.postures.iter().map(|posture| Posture::try_from(posture.as_slice()).ok()).collect()
     }
 }
 
@@ -62,15 +81,22 @@ mod tests {
     use super::*;
 
     fn at(x: f64) -> Posture {
-        [Point::new(x, 0.0); skeleton::COUNT]
+        [Point::new(x, 0.0); super::super::skeleton::COUNT]
     }
 
     #[test]
     fn resampling_keeps_ends_and_goes_straight_between() {
-        let clip = Clip::new("a", "walk", vec![at(0.0), at(2.0), at(4.0)]);
-        assert_eq!(clip.resampled(5), vec![at(0.0), at(1.0), at(2.0), at(3.0), at(4.0)]);
-        assert_eq!(clip.resampled(3), clip.postures);
-        assert_eq!(clip.resampled(1), vec![at(0.0)]);
+        let clip = [at(0.0), at(2.0), at(4.0)];
+        assert_eq!(resample(&clip, 5), vec![at(0.0), at(1.0), at(2.0), at(3.0), at(4.0)]);
+        assert_eq!(resample(&clip, 3), clip);
+        assert_eq!(resample(&clip, 1), vec![at(0.0)]);
         assert_eq!(resample(&[at(3.0)], 2), vec![at(3.0), at(3.0)]);
+    }
+    #[test]
+    fn only_human_clips_have_human_postures() {
+        assert_eq!(Clip::new("a", "walk", vec![at(1.0)]).human(), Some(vec![at(1.0)]));
+        let bird = Template::bird();
+        let posture = bird.typical();
+        assert_eq!(Clip::of(bird, "a", "walk", vec![posture]).human(), None);
     }
 }

@@ -1,6 +1,6 @@
 //! Limbs of a drawn character: the points of its contours that determine its key points.
 //!
-//! A limb leads from one key point of the template skeleton to another. At either end two calibration points are on
+//! A limb leads from one key point of a skeleton template to another. At either end two calibration points are on
 //! tracked contours, and the key point is between them: p_j = (1 − ω_j) p₁ + ω_j p₂, p_{j+1} = (1 − ω_{j+1}) p₃ +
 //! ω_{j+1} p₄ (Liang et al. 2012, eqs. 2, 3).
 //!
@@ -10,9 +10,10 @@
 //!
 //! Points are in pixels of the footage, x right and y down.
 
-use super::{FrameNumber, Part};
+use super::{FrameNumber, Part, Template};
 use crate::geometry::{Point, polyline};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Greatest distance of a drawn point from its contour, as a share of the contour's length.
 const REACH: f64 = 0.1;
@@ -57,7 +58,7 @@ pub struct Carried {
 /// A limb.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limb {
-    /// Index of the key point where the limb begins, in the order of [`super::skeleton::NAMES`].
+    /// Index of the key point where the limb begins, in the order of the set's template.
     pub from: usize,
     /// Index of the key point where it ends.
     pub to: usize,
@@ -102,6 +103,8 @@ pub enum Follow {
 /// The limbs of a character, and the marks needed to read its drawing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LimbSet {
+    /// The body's template.
+    pub template: Arc<Template>,
     /// The limbs. A key point that several limbs determine is the mean of their points.
     pub limbs: Vec<Limb>,
     /// Ranges of frames, first and last included, on which the contours show the other side: left and right change

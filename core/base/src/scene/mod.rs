@@ -13,7 +13,8 @@
 //! - [`progress`]: progress reports and cancelling of long work
 //! - [`proportions`]: limb lengths of a character, and postures in other proportions
 //! - [`raster`]: a rectangle of pixels
-//! - [`skeleton`]: the key points of a posture and the limbs between them
+//! - [`skeleton`]: the key points of a human posture and the limbs between them
+//! - [`template`]: the key points of any body, and its chains
 
 pub mod clip;
 pub mod correspondence;
@@ -29,6 +30,7 @@ pub mod progress;
 pub mod proportions;
 pub mod raster;
 pub mod skeleton;
+pub mod template;
 
 pub use clip::Clip;
 pub use footage::{Footage, FrameError, FrameNumber, FrameSource};
@@ -37,6 +39,7 @@ pub use part::{Part, Span};
 pub use pattern::{FramePattern, PatternError};
 pub use progress::{Cancelled, Progress, Silent};
 pub use raster::{Colour, Raster};
+pub use template::Template;
 
 /// Footage and the parts captured from it: the complete input of the tracker, which also receives its results.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use super::{load, named};
 use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use rototoon::pipeline::{self, ReshapeJob};
 use rototoon::project::Document;
 use rototoon::project::clips::Clips;
@@ -54,6 +54,14 @@ pub fn command() -> Command {
                 .default_value("5")
                 .value_parser(value_parser!(i64).range(0..=MOST_SUB_KEYS)),
         )
+        .arg(
+            Arg::new("chain")
+                .long("chain")
+                .value_name("CLIP=DRAWING")
+                .help("For a clip of another skeleton: a chain of the clip's that moves a chain of the drawing's, such as l_arm=l_foreleg. Chains of equal names need none")
+                .action(ArgAction::Append)
+                .value_parser(pair),
+        )
         .arg(arguments::output("OUT", "The document to write, with tracks, depths and strokes on every frame"))
         .args(arguments::of_stage(Stage::Run))
 }
@@ -79,7 +87,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let sub_keys = given.get_one::<i64>("sub_keys").and_then(|n| usize::try_from(*n).ok());
     let options = sub_keys.map_or_else(Options::default, |sub_keys| Options { sub_keys, ..Options::default() });
     let rest = given.get_one::<FrameNumber>("rest").copied();
-    let job = ReshapeJob { clip, fps: clips.fps, rest, over, options, points: Default::default() };
+    let chains = given.get_many::<(String, String)>("chain").into_iter().flatten().cloned().collect();
+    let job = ReshapeJob { clip, fps: clips.fps, rest, over, chains, options, points: Default::default() };
     let (document, made) = progress::run(arguments::threads(given), |bar| {
         let made = pipeline::reshape(&mut document, &job, bar).map_err(|error| named(error, from))?;
         Ok((document, made))
@@ -88,7 +97,18 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         let text = format!("part {part:?}: no limb carries it, so {given}");
         line("warning", &format!("{}: {text}", from.display()));
     }
+    for chain in &made.still {
+        let text = format!("chain {chain:?}: no chain of the clip belongs to it, so it stays still (--chain)");
+        line("warning", &format!("{}: {text}", from.display()));
+    }
     project::save(document, from, to)
+}
+
+/// Two names with `=` between them.
+fn pair(text: &str) -> Result<(String, String), String> {
+    let pair = text.split_once('=').filter(|(a, b)| !a.is_empty() && !b.is_empty());
+    pair.map(|(a, b)| (a.to_owned(), b.to_owned()))
+        .ok_or_else(|| format!("found {text:?}, expected two names of chains with = between them"))
 }
 
 /// The clip that the arguments select.

@@ -183,6 +183,11 @@ impl Document {
         }
     }
 
+    /// Takes a field that is not part of the document's scene out of it.
+    pub(super) fn remove_other_field(&mut self, name: &'static str) {
+        self.layout.top.retain(|field| field.name() != name);
+    }
+
     pub(super) fn other_field(&self, name: &str) -> Option<&str> {
         self.layout.top.iter().find_map(|field| match field {
             Field::Unknown { name: own, json } if own == name => Some(json.as_str()),

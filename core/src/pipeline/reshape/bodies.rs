@@ -8,8 +8,7 @@ use crate::project::drawings::DrawnStroke;
 use crate::reshape::examples::Corrections;
 use crate::reshape::mean_value::weights;
 use crate::reshape::puppet::{Carrier, LimbPose, Options, Puppet, PuppetError};
-use crate::scene::limbs::{Limb, LimbSet};
-use crate::scene::skeleton::NAMES;
+use crate::scene::limbs::LimbSet;
 use crate::scene::{FrameNumber, Part};
 
 /// A closed part with everything that follows it.
@@ -212,14 +211,9 @@ fn carriers(part: &Part, set: &LimbSet, motion: &Motion) -> (Vec<Carrier>, bool)
     }
     let told = set.limbs.iter().enumerate().filter_map(|(limb, l)| {
         let own = l.carries.iter().find(|carried| carried.part == part.name)?;
-        Some(Carrier { limb, turn: own.turn, rigidity: l.rigidity, whole: skull(l) })
+        Some(Carrier { limb, turn: own.turn, rigidity: l.rigidity, whole: set.template.on_head(l.to) })
     });
     (told.collect(), false)
-}
-
-/// Whether a limb holds up the head, which keeps its shape.
-fn skull(limb: &Limb) -> bool {
-    ["head", "head_top"].contains(&NAMES[limb.to])
 }
 
 /// The body that a line lies on: the one with most of its points inside, of several the nearest to the viewer; else the

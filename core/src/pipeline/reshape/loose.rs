@@ -15,7 +15,6 @@
 use super::motion::Motion;
 use crate::geometry::{Point, polygon, polyline};
 use crate::scene::limbs::{Follow, LimbSet};
-use crate::scene::skeleton::GIRDLES;
 
 /// A shadow is at least this many times as wide as high.
 const FLAT: f64 = 4.0;
@@ -110,6 +109,6 @@ fn is_shadow((low, high): (Point, Point), motion: &Motion) -> bool {
 
 /// Whether a limb of an arm or a leg carries a part.
 fn is_limb(set: &LimbSet, name: &str) -> bool {
-    let limb = |to: usize| GIRDLES.iter().any(|girdle| (girdle + 1..girdle + 3).contains(&to));
+    let limb = |to: usize| set.template.on_limb(to);
     set.limbs.iter().any(|l| limb(l.to) && l.carries.iter().any(|carried| carried.part == name))
 }

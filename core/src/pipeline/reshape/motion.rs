@@ -10,13 +10,13 @@
 use super::{PipelineError, wrong};
 use crate::geometry::Point;
 use crate::reshape::capture::{Bindings, capture};
-use crate::reshape::fit::{Shown, fit};
+use crate::reshape::fit::{Shown, facing, fit};
 use crate::reshape::limb::{Bend, bend_at};
 use crate::reshape::puppet::LimbPose;
+use crate::reshape::retarget::retarget;
 use crate::reshape::stand::{Foot, stand};
 use crate::scene::limbs::LimbSet;
-use crate::scene::skeleton::{LEGS, MIRROR, NAMES, Posture, torso};
-use crate::scene::{Clip, FrameNumber, Part};
+use crate::scene::{Clip, FrameNumber, Part, Template};
 use std::collections::BTreeSet;
 
 /// A part hangs on the end of a limb if its centre is nearest to a point of the limb beyond this share of it.
@@ -27,6 +27,9 @@ const LEG_END: f64 = 0.35;
 const GROUND: f64 = 0.75;
 /// Length of a foot's limb, as a share of the torso. It has no influence on the result.
 const FOOT: f64 = 0.25;
+
+/// Postures by frame.
+type ByFrame = Vec<(FrameNumber, Vec<Point>)>;
 
 /// All limbs at rest, on every frame of the clip, and on the frames that show the drawing. After the document's limbs
 /// come those of the feet.
@@ -49,6 +52,8 @@ pub(super) struct Motion {
     pub own: bool,
     /// The feet.
     pub feet: Vec<FootLimb>,
+    /// Chains of the drawing's skeleton that no chain of the clip moves.
+    pub still: Vec<String>,
 }
 
 /// A foot and its limb.
@@ -70,31 +75,36 @@ pub(super) fn of(
     parts: &[Part],
     rest: FrameNumber,
     (clip, first): (&Clip, FrameNumber),
+    chains: &[(String, String)],
 ) -> Result<Motion, PipelineError> {
     check(clip)?;
+    let template = set.template.as_ref();
     let (known, shown) = shown(set, bindings, parts, rest)?;
-    let posture = known.rest;
-    let fitted = fit(&known, &clip.postures)
-        .ok_or_else(|| wrong("clip: found a torso of length 0, expected a positive length"))?;
+    let posture = known.rest.clone();
+    let (moves, still) = moves(set, &known, clip, chains)?;
+    let fitted =
+        fit(&known, &moves).ok_or_else(|| wrong("clip: found a torso of length 0, expected a positive length"))?;
     let poses = Poses::new(set, bindings, rest)?;
     let limbs = poses.at_rest();
-    let feet = feet(set, parts, (rest, set.swapped(rest)), &limbs, &posture);
+    let feet = feet(set, parts, rest, &limbs, &posture);
+    let legs = template.legs();
+    let swing = |foot: &Foot, posture: &[Point]| foot.swing(legs[foot.leg], posture);
     let ground = ground(parts, &feet, &shown).unwrap_or(posture[0].y);
     let mut postures = fitted.postures;
     let plain: Vec<Foot> = feet.iter().map(|f| f.foot.clone()).collect();
     let turns = match fitted.own {
-        true => plain.iter().map(|foot| postures.iter().map(|p| foot.swing(p)).collect()).collect(),
-        false => stand(&mut postures, &clip.postures, fitted.size, &plain, ground),
+        true => plain.iter().map(|foot| postures.iter().map(|p| swing(foot, p)).collect()).collect(),
+        false => stand(template, &mut postures, (&moves, fitted.size), &plain, ground),
     };
     if let Some(frame) = postures.iter().position(|p| p.iter().any(|q| !q.is_finite())) {
         return Err(wrong(format!(
             "clip, frame {frame}: found coordinates too large to compute with, expected smaller ones"
         )));
     }
-    let size = torso(&posture);
-    let with_feet = |mut limbs: Vec<LimbPose>, posture: &Posture, turn: &dyn Fn(usize) -> f64| {
+    let size = template.torso_length(&posture);
+    let with_feet = |mut limbs: Vec<LimbPose>, posture: &[Point], turn: &dyn Fn(usize) -> f64| {
         for (k, foot) in feet.iter().enumerate() {
-            let ankle = posture[LEGS[foot.foot.leg][2]];
+            let ankle = posture[end_of(legs[foot.foot.leg])];
             limbs.push(LimbPose {
                 ends: (ankle, ankle + Point::from_angle(turn(k)) * (FOOT * size)),
                 bend: Bend::STRAIGHT,
@@ -102,11 +112,11 @@ pub(super) fn of(
         }
         limbs
     };
-    let frame_limbs = |(t, posture): (usize, &Posture)| {
+    let frame_limbs = |(t, posture): (usize, &Vec<Point>)| {
         with_feet(poses.of(posture, first + t as FrameNumber), posture, &|k| turns[k][t])
     };
-    let example = |(frame, posture): &(FrameNumber, Posture)| {
-        let limbs = with_feet(poses.drawn(*frame)?, posture, &|k| feet[k].foot.swing(posture));
+    let example = |(frame, posture): &(FrameNumber, Vec<Point>)| {
+        let limbs = with_feet(poses.drawn(*frame)?, posture, &|k| swing(&feet[k].foot, posture));
         Some((*frame, limbs, posture[0]))
     };
     Ok(Motion {
@@ -119,7 +129,30 @@ pub(super) fn of(
         ground,
         own: fitted.own,
         feet,
+        still,
     })
+}
+
+/// The clip's postures as those of the drawing's body: retargeted if the clip is of another body, and mirrored if it looks
+/// to the other side; and the chains that nothing moves.
+fn moves(
+    set: &LimbSet,
+    known: &Shown,
+    clip: &Clip,
+    chains: &[(String, String)],
+) -> Result<(Vec<Vec<Point>>, Vec<String>), PipelineError> {
+    let (postures, still) = if clip.template.same_points(&set.template) && chains.is_empty() {
+        (clip.postures.clone(), Vec::new())
+    } else {
+        let made = retarget(clip, &set.template, chains).map_err(wrong)?;
+        (made.clip.postures, made.still)
+    };
+    Ok((facing(known, &postures).unwrap_or(postures), still))
+}
+
+/// The last key point of a chain.
+fn end_of(chain: &[usize]) -> usize {
+    chain[chain.len() - 1]
 }
 
 fn check(clip: &Clip) -> Result<(), PipelineError> {
@@ -136,14 +169,15 @@ fn shown(
     bindings: &Bindings,
     parts: &[Part],
     rest: FrameNumber,
-) -> Result<(Shown, Vec<(FrameNumber, Posture)>), PipelineError> {
+) -> Result<(Shown, ByFrame), PipelineError> {
     let drawn = capture(set, parts, rest..=rest).map_err(wrong)?;
-    let of_frame = |frame: FrameNumber| Some((frame, capture(set, parts, frame..=frame).ok()?.postures[0]));
+    let of_frame = |frame: FrameNumber| Some((frame, capture(set, parts, frame..=frame).ok()?.postures.swap_remove(0)));
     let frames = frames_shown(set, bindings, parts, rest);
-    let by_frame: Vec<(FrameNumber, Posture)> = frames.into_iter().filter_map(of_frame).collect();
-    let told = std::array::from_fn(|k| drawn.guessed[k] == 0);
-    let postures = by_frame.iter().map(|(_, p)| *p).collect();
-    Ok((Shown { rest: drawn.postures[0], postures, told }, by_frame))
+    let by_frame: ByFrame = frames.into_iter().filter_map(of_frame).collect();
+    let told = drawn.guessed.iter().map(|frames| *frames == 0).collect();
+    let postures = by_frame.iter().map(|(_, p)| p.clone()).collect();
+    let rest = drawn.postures[0].clone();
+    Ok((Shown { template: set.template.clone(), rest, postures, told }, by_frame))
 }
 
 /// The frames on which the contours determine all limbs, the one at rest among them.
@@ -170,7 +204,8 @@ impl<'a> Poses<'a> {
         let drawn = bindings.drawn(rest);
         let mut poses = Self { set, bindings, rest, ends: Vec::new(), bends: Vec::new() };
         for (k, limb) in set.limbs.iter().enumerate() {
-            let named = |what: &str| wrong(format!("limbs[{k}] ({} to {}), {what}", NAMES[limb.from], NAMES[limb.to]));
+            let [from, to] = [limb.from, limb.to].map(|k| set.template.point_name(k));
+            let named = |what: &str| wrong(format!("limbs[{k}] ({from} to {to}), {what}"));
             let ends = drawn[limb.from].zip(drawn[limb.to]);
             let ends =
                 ends.ok_or_else(|| named(&format!("frame {rest}: found no contour for its key points, expected one")))?;
@@ -196,9 +231,9 @@ impl<'a> Poses<'a> {
     }
 
     /// The limbs in a posture. Bends drawn on a few frames are those of the drawing; the motion goes from one to the next.
-    fn of(&self, posture: &Posture, frame: FrameNumber) -> Vec<LimbPose> {
+    fn of(&self, posture: &[Point], frame: FrameNumber) -> Vec<LimbPose> {
         // A drawing that shows the other side hangs on the other side's key points.
-        let side = |point: usize| if self.set.swapped(self.rest) { MIRROR[point] } else { point };
+        let side = |point: usize| if self.set.swapped(self.rest) { self.set.template.mirror(point) } else { point };
         let one = |(limb, bends): (&crate::scene::limbs::Limb, &Vec<_>)| LimbPose {
             ends: (posture[side(limb.from)], posture[side(limb.to)]),
             bend: bend_at(bends, frame),
@@ -217,17 +252,13 @@ impl<'a> Poses<'a> {
 }
 
 /// The feet of the drawing.
-fn feet(
-    set: &LimbSet,
-    parts: &[Part],
-    (rest, swapped): (FrameNumber, bool),
-    limbs: &[LimbPose],
-    posture: &Posture,
-) -> Vec<FootLimb> {
+fn feet(set: &LimbSet, parts: &[Part], rest: FrameNumber, limbs: &[LimbPose], posture: &[Point]) -> Vec<FootLimb> {
+    let (template, swapped): (&Template, bool) = (&set.template, set.swapped(rest));
+    let legs = template.legs();
     let mut found: Vec<FootLimb> = Vec::new();
     for (shin, limb) in set.limbs.iter().enumerate() {
-        let to = if swapped { MIRROR[limb.to] } else { limb.to };
-        let Some(leg) = LEGS.iter().position(|leg| leg[2] == to) else { continue };
+        let to = if swapped { template.mirror(limb.to) } else { limb.to };
+        let Some(leg) = legs.iter().position(|leg| end_of(leg) == to) else { continue };
         let ankle = limbs[shin].ends.1;
         let mut shoes: Vec<(String, f64, Vec<Point>)> = Vec::new();
         let mut end = vec![ankle];
@@ -250,14 +281,14 @@ fn feet(
             false => (shoes.iter().map(|s| s.0.clone()).collect(), shoes.iter().flat_map(|s| s.2.clone()).collect()),
         };
         let shape = outline.into_iter().map(|p| p - ankle).collect();
-        let foot = Foot { leg, shape, shin: posture[LEGS[leg][2]] - posture[LEGS[leg][1]], turn };
+        let foot = Foot { leg, shape, shin: posture[to] - posture[template.parent(to)], turn };
         found.push(FootLimb { limb: limbs.len() + found.len(), shin, parts, foot });
     }
     found
 }
 
 /// The y of the ground: of the lowest foot, on most of the frames that show the drawing; none without feet.
-fn ground(parts: &[Part], feet: &[FootLimb], shown: &[(FrameNumber, Posture)]) -> Option<f64> {
+fn ground(parts: &[Part], feet: &[FootLimb], shown: &[(FrameNumber, Vec<Point>)]) -> Option<f64> {
     let bottom = |frame: FrameNumber| {
         let names = feet.iter().flat_map(|foot| &foot.parts);
         let outlines = names.filter_map(|name| parts.iter().find(|p| p.name == *name)?.outline(frame));

@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::pipeline::{ClipJob, clip};
+use crate::scene::Template;
 use crate::scene::limbs::Follow;
 use crate::scene::skeleton::COUNT;
-use crate::scene::skeleton::Posture;
 use crate::scene::{Cancelled, Silent};
 
 fn ring(x: f64, top: f64, bottom: f64, half: f64) -> String {
@@ -56,20 +56,28 @@ fn figure(fields: &str) -> Document {
 /// The figure's own posture, its arm raised by 30° a frame, its way 5 px a frame.
 fn waving(document: &Document, frames: usize) -> Clip {
     let job = ClipJob { character: "a".into(), motion: "wave".into(), frames: Some(0..=0) };
-    let rest = clip(document, &job).unwrap().clips.clips[0].postures[0];
-    let at = |frame: usize| -> Posture {
+    let rest = clip(document, &job).unwrap().clips.clips[0].postures[0].clone();
+    let at = |frame: usize| -> Vec<Point> {
         let turn = Point::from_angle(-(30.0 * frame as f64).to_radians());
-        let mut posture = rest;
+        let mut posture = rest.clone();
         for k in [9, 10] {
             posture[k] = rest[8] + turn.rotate(rest[k] - rest[8]);
         }
-        posture.map(|p| 2.0 * (p + Point::new(5.0 * frame as f64, 0.0)))
+        posture.iter().map(|p| 2.0 * (*p + Point::new(5.0 * frame as f64, 0.0))).collect()
     };
-    Clip::new("b", "wave", (0..frames).map(at).collect())
+    Clip::of(Template::human(), "b", "wave", (0..frames).map(at).collect())
 }
 
 fn job(clip: &Clip) -> ReshapeJob<'_> {
-    ReshapeJob { clip, fps: 12.0, rest: None, over: None, options: Options::default(), points: BTreeMap::new() }
+    ReshapeJob {
+        clip,
+        fps: 12.0,
+        rest: None,
+        over: None,
+        chains: Vec::new(),
+        options: Options::default(),
+        points: BTreeMap::new(),
+    }
 }
 
 #[test]

@@ -54,6 +54,7 @@ fn reshaped(mut document: Document, clip: &rototoon::scene::Clip, asked: &Reshap
         fps: asked.fps,
         rest: asked.rest,
         over: None,
+        chains: Vec::new(),
         options: Options::default(),
         points: asked.points.clone(),
     };

@@ -15,7 +15,7 @@
 
 use super::parse::{Bvh, Node};
 use glam::DVec3;
-use rototoon_base::scene::proportions::TEMPLATE;
+use rototoon_base::scene::proportions::HUMAN;
 use rototoon_base::scene::skeleton::{COUNT, NAMES};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -41,9 +41,9 @@ const PREFIXES: [&str; 8] = ["mixamorig", "joint", "bip001", "bip01", "bip1", "d
 /// Share of the torso within which a spine's joint is the chest.
 const CHEST_REACH: f64 = 0.2;
 /// Where the head begins between the neck and its top: the template's share.
-const HEAD_SHARE: f64 = TEMPLATE.0[2] / (TEMPLATE.0[2] + TEMPLATE.0[3]);
+const HEAD_SHARE: f64 = HUMAN[2] / (HUMAN[2] + HUMAN[3]);
 /// How far the top of the head lies beyond a head without an end, in lengths of the neck.
-const HEAD_TOP: f64 = TEMPLATE.0[3] / TEMPLATE.0[2];
+const HEAD_TOP: f64 = HUMAN[3] / HUMAN[2];
 
 /// A key point's place among a file's nodes: their weighted sum.
 #[derive(Clone, Debug, PartialEq)]
@@ -250,7 +250,7 @@ impl<'a> Joints<'a> {
 
     /// The chest: the joint between pelvis and neck nearest to the template's share of the way, or that share of it.
     fn chest(&self, pelvis: &Place, neck: &Place) -> Place {
-        let share = TEMPLATE.0[0];
+        let share = HUMAN[0];
         let (from, to) = (pelvis.at(&self.rest), neck.at(&self.rest));
         let wanted = from.lerp(to, share);
         let away = |k: &usize| self.rest[*k].distance(wanted);
