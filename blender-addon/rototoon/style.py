@@ -123,7 +123,8 @@ def reshape(
 
     Options: `character` and `motion` choose one of several clips. `rest` is the frame of the drawing. `sub_keys` is the number of
     points between the key points of each limb that keep its shape. `chains` are pairs of names: a chain of the clip's skeleton that
-    moves a chain of the drawing's, where the skeletons differ (``[["l_arm", "l_foreleg"]]``). `points` are more points that follow closed parts, by part.
+    moves a chain of the drawing's, where the skeletons differ (``[["l_arm", "l_foreleg"]]``). `points` are more points that
+    follow closed parts, by part.
     `threads`.
     """
     with handles.progress_callback(progress) as callback:
