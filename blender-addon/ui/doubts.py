@@ -13,6 +13,7 @@ import numpy as np
 
 from ..blender import camera
 from ..blender import grease_pencil as gp
+from ..blender import strokes as st
 from ..lines import doubts
 
 
@@ -30,7 +31,7 @@ class Marked:
 def marked(ob, frame: int) -> list[Marked]:
     """The strokes of an object that are in doubt on a frame. Strokes that the artist changed are not."""
     settings, found = ob.rototoon, []
-    for layer in ob.data.layers:
+    for layer in st.drawn_layers(ob, active=False):
         drawings = gp.drawings(layer)
         at = max((number for number in drawings if number <= frame), default=None)
         if layer.hide or at is None:

@@ -14,7 +14,7 @@
 //! values are integer multiples of 2⁻²⁰. P is small enough that every sum is an integer below 2⁵³, which a 64-bit float
 //! represents exactly. The fraction differs from the radius by less than 1/200 of it.
 //!
-//! [`varied`] has a radius of its own for each pixel.
+//! [`varied()`] has a radius of its own for each pixel.
 //!
 //! Limits: for radii above about 800 pixels sums may round.
 //!
