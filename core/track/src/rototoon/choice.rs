@@ -68,13 +68,13 @@ impl<'a> Choice<'a> {
         }
     }
 
-    /// The paths of the members, chosen together from the `start` paths.
-    pub fn paths(&self, bonds: &Bonds, start: Paths, memory: &mut Memory) -> Paths {
+    /// The paths of the members, chosen together from the `start` paths. Members that are not `chosen` keep theirs.
+    pub fn paths(&self, bonds: &Bonds, (start, chosen): (Paths, &[bool]), memory: &mut Memory) -> Paths {
         if !self.mechanisms.has(Mechanism::JointChoice) {
             return start;
         }
-        let found = choose(&self.contenders, bonds, self.jump, self.of_contenders(&start), memory);
-        self.of_members(found)
+        let from = (self.of_contenders(&start), &self.of_contenders(chosen)[..]);
+        self.of_members(choose(&self.contenders, bonds, self.jump, from, memory))
     }
 
     /// The leads of each member.
@@ -85,12 +85,13 @@ impl<'a> Choice<'a> {
         self.of_members(leads(&self.contenders, bonds, &self.of_contenders(paths)))
     }
 
-    /// The margin of each member on each of its drawings.
-    pub fn margins(&self, bonds: &Bonds, paths: &Paths, memory: &mut Memory) -> Vec<Vec<f64>> {
+    /// The margin of each member on each of its drawings. Empty for members that are not `chosen`.
+    pub fn margins(&self, bonds: &Bonds, (paths, chosen): (&Paths, &[bool]), memory: &mut Memory) -> Vec<Vec<f64>> {
         if !self.mechanisms.has(Mechanism::JointChoice) {
             return self.members.iter().map(|member| vec![LARGEST; member.drawings.len()]).collect();
         }
-        self.of_members(margins(&self.contenders, bonds, self.jump, &self.of_contenders(paths), memory))
+        let of = (&self.of_contenders(paths)[..], &self.of_contenders(chosen)[..]);
+        self.of_members(margins(&self.contenders, bonds, self.jump, of, memory))
     }
 
     /// The contenders' part of a list of the members.

@@ -39,11 +39,13 @@ pub enum Mechanism {
     Companions,
     /// Contours are steadied over time where the film wobbles.
     Steadying,
+    /// A key that a part has on its own corrects its motion, and does not end its span.
+    CorrectiveKeys,
 }
 
 impl Mechanism {
     /// Every mechanism with its id on the command line of the benchmark.
-    pub const ALL: [(Self, &str); 15] = [
+    pub const ALL: [(Self, &str); 16] = [
         (Self::Looks, "looks"),
         (Self::Flow, "flow"),
         (Self::Search, "search"),
@@ -59,6 +61,7 @@ impl Mechanism {
         (Self::Noise, "noise"),
         (Self::Companions, "companions"),
         (Self::Steadying, "steadying"),
+        (Self::CorrectiveKeys, "corrective-keys"),
     ];
 
     /// The mechanism with an id. `None` if there is no such mechanism.

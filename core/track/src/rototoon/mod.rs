@@ -15,7 +15,9 @@
 //!    again ([`mend`](mod@mend)).
 //! 3. **Finish.** The chosen poses are aligned once more to the samples that nearer parts leave visible, and their
 //!    contours are refined ([`finish`](mod@finish)). On a film that wobbles they are steadied ([`steady`]).
-//! 4. **Outward.** Parts with a single key are followed from it, after all others ([`outward`]).
+//! 4. **Corrective keys.** A key that a part has on its own corrects the tracks of all parts ([`corrective`](mod@corrective)). The
+//!    part itself is tracked between all of its keys afterwards ([`finer`](mod@finer)).
+//! 5. **Outward.** Parts with a single key are followed from it, after all others ([`outward`]).
 //!
 //! **Memory.** Each step is a pure function of its input, and its last result is kept. A pin on one part does not
 //! change the pools of other parts. The tracks of other parts are computed again only if the choice changes them.
@@ -30,7 +32,9 @@
 mod choice;
 pub mod confidence;
 mod corrected;
+mod corrective;
 pub mod evidence;
+mod finer;
 mod finish;
 pub mod joint;
 pub mod lattice;
@@ -51,12 +55,13 @@ pub mod through;
 
 use crate::contract::error::TrackError;
 use crate::contract::job::{Job, SpanTrack};
-use crate::contract::tasks::{SharedProgress, Steps, Task, assemble, job, nearer_contours, next_wave, tasks};
+use crate::contract::tasks::{SharedProgress, Steps, Task, job, nearer_contours, next_wave, tasks};
 use crate::contract::tracking::{SceneSolver, Tracking};
 use crate::shared::look::kind::Decided;
 use crate::shared::look::{Kind, Looks};
 use crate::shared::store::Store;
 use choice::Choice;
+use finer::{Broad, Film, Found};
 use finish::{Finish, Finished, finish};
 use joint::lead::Lead;
 use joint::shadow::Memory;
@@ -119,12 +124,15 @@ impl SceneSolver for Rototoon {
             let Footage { width, height, .. } = scene.footage;
             return Err(TrackError::TooWide { width, height, limit: WIDEST });
         }
-        let tasks = tasks(scene);
+        let corrective =
+            if self.mechanisms.has(Mechanism::CorrectiveKeys) { corrective::found(scene) } else { BTreeMap::new() };
+        let film = Film::new(scene, &corrective);
+        let tasks = tasks(film.broad());
         let single = outward::plan::subjects(scene).len();
         let between = tasks.len() as f64 / (tasks.len() + single).max(1) as f64;
         let first = Portion { listener: progress, range: [0.0, between] };
         let looks = self.look(scene, frames, &first)?;
-        let mut tracking = self.track_between(scene, &tasks, &looks, &first)?;
+        let mut tracking = self.track_between(&film, &tasks, &looks, &first)?;
         if single > 0 {
             let rest = Portion { listener: progress, range: [between, 1.0] };
             let mut outward = std::mem::take(&mut self.outward);
@@ -185,44 +193,51 @@ impl Rototoon {
     /// Tracks the parts between their keys.
     fn track_between(
         &mut self,
-        scene: &Scene,
+        film: &Film,
         tasks: &[Task],
         frames: &Looks,
         progress: &dyn Progress,
     ) -> Result<Tracking, TrackError> {
+        let scene = film.broad();
         let unread = if tasks.iter().all(|task| self.knows(scene, task)) { 0.0 } else { READING };
         self.read(scene, tasks, frames, &Portion { listener: progress, range: [0.0, unread] })?;
         let rest = Portion { listener: progress, range: [unread, 1.0] };
         let shared = SharedProgress::new(&rest, scene, tasks);
         let (pooled, fresh) = self.pool_all(scene, tasks, frames, &shared)?;
         let mut done: Vec<Option<(SpanTrack, bool)>> = vec![None; tasks.len()];
+        let mut finer = Found::new();
         let stretches = stretches(tasks);
         let wobble = self.wobble(&stretches, &pooled);
         for stretch in stretches {
             let members: Vec<&Pooled> = stretch.iter().map(|&t| &*pooled[t]).collect();
             let choice = Choice::new((scene, tasks, &stretch), &members, self.mechanisms);
             let bonds = choice.bonds();
-            let paths = choice.paths(&bonds, choice.start(), &mut self.shadows);
+            let all = vec![true; members.len()];
+            let paths = choice.paths(&bonds, (choice.start(), &all), &mut self.shadows);
             let leads = choice.leads(&bonds, &paths);
-            let mended = self.mend_all(&stretch, &pooled, &paths, &leads, frames, &shared)?;
+            let sources: Vec<Arc<Pooled>> = stretch.iter().map(|&t| pooled[t].clone()).collect();
+            let mended = self.mend_all(&stretch, &sources, (&paths, &leads), frames, &shared)?;
             let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
             let choice = Choice::new((scene, tasks, &stretch), &members, self.mechanisms);
-            let paths = choice.paths(&bonds, paths, &mut self.shadows);
-            let margins = choice.margins(&bonds, &paths, &mut self.shadows);
+            let paths = choice.paths(&bonds, (paths, &all), &mut self.shadows);
+            let margins = choice.margins(&bonds, (&paths, &all), &mut self.shadows);
             let hiding = self.mechanisms.has(Mechanism::Hiding);
             let plan = |m: usize| Finish::of(scene, tasks, &stretch, &members, &paths, (m, hiding));
             let plans = (0..members.len()).map(plan).collect();
             let new = self.finish_all(&stretch, &mended, plans, frames, &shared)?;
             let drawn = self.steadied(&stretch, &mended, &wobble, frames, &shared)?;
             let tracks = self.tracks(&mended, &new, (drawn, margins));
-            for (&t, (track, new)) in stretch.iter().zip(tracks) {
+            let (stretch, pooled, mended, paths, wobble) = (&stretch, &pooled, &mended, &paths, &wobble);
+            let broad = Broad { tasks, stretch, pooled, mended, paths, wobble };
+            for (m, (&t, (track, new))) in stretch.iter().zip(tracks).enumerate() {
+                finer.append(&mut self.finer(film, &broad, (m, &track), frames, &shared)?);
                 shared.of(t).report("Tracking", 1.0)?;
                 done[t] = Some((track, new || fresh[t]));
             }
         }
         self.shadows.turn();
-        self.keep_only(&pooled);
-        Ok(assemble(scene, tasks, done))
+        self.keep_only(film);
+        Ok(film.assembled(tasks, done, finer))
     }
 
     /// Computes the features and flows that many tasks need, before the tasks are given to threads, which would wait
@@ -260,8 +275,8 @@ impl Rototoon {
     }
 
     /// Forgets the spans that no longer exist because keys were added or removed.
-    fn keep_only(&mut self, pooled: &[Arc<Pooled>]) {
-        let present: BTreeSet<(String, Span)> = pooled.iter().map(|p| p.key()).collect();
+    fn keep_only(&mut self, film: &Film) {
+        let present = film.keys();
         self.plain.retain(|key, _| present.contains(key));
         self.corrected.retain(|key, _| present.contains(key));
         self.mended.retain(|key, _| present.contains(key));
@@ -284,8 +299,10 @@ impl Rototoon {
             scene.parts[other.part].closed && (within(other, task.span.first) || within(other, task.span.last))
         };
         while let Some(wave) = next_wave(tasks, |t| done[t].is_some(), waits) {
-            let jobs: Vec<Job> =
-                wave.iter().map(|&t| job(scene, tasks[t], occluders(scene, tasks, &done, t))).collect();
+            let jobs: Vec<Job> = wave
+                .iter()
+                .map(|&t| job(scene, tasks[t], occluders(scene, tasks, |o| Some(&done[o].as_ref()?.0), tasks[t])))
+                .collect();
             let results: Vec<Result<FoundPools, TrackError>> = wave
                 .par_iter()
                 .with_max_len(1)
@@ -314,8 +331,7 @@ impl Rototoon {
         &mut self,
         stretch: &[usize],
         pooled: &[Arc<Pooled>],
-        paths: &[Vec<usize>],
-        leads: &[Vec<Lead>],
+        (paths, leads): (&[Vec<usize>], &[Vec<Lead>]),
         frames: &Looks,
         shared: &SharedProgress,
     ) -> Result<Vec<Arc<Pooled>>, TrackError> {
@@ -324,7 +340,7 @@ impl Rototoon {
             .par_iter()
             .with_max_len(1)
             .map(|&m| {
-                let source = &pooled[stretch[m]];
+                let source = &pooled[m];
                 let key = source.key();
                 let same = |known: &&Mended| {
                     Arc::ptr_eq(&known.source, source) && known.path == paths[m] && known.leads == leads[m]
@@ -425,12 +441,16 @@ fn stretches(tasks: &[Task]) -> Vec<Vec<usize>> {
 
 /// The contours that hide a task's part on its keys. A nearer part between two keys of its own is where its own choice
 /// puts it.
-fn occluders(scene: &Scene, tasks: &[Task], done: &[Option<(Arc<Pooled>, bool)>], t: usize) -> Vec<Vec<Vec<Point>>> {
-    let Task { span, depth, .. } = tasks[t];
+fn occluders<'a>(
+    scene: &Scene,
+    tasks: &[Task],
+    pooled: impl Fn(usize) -> Option<&'a Pooled>,
+    task: Task,
+) -> Vec<Vec<Vec<Point>>> {
+    let Task { span, depth, .. } = task;
     let on = |frame: FrameNumber| {
         nearer_contours(scene, tasks, (depth, frame), |o| {
-            let (pooled, _) = done[o].as_ref()?;
-            Some(pooled.own_points((frame - tasks[o].span.first) as usize))
+            Some(pooled(o)?.own_points((frame - tasks[o].span.first) as usize))
         })
     };
     let mut occluders = vec![Vec::new(); span.len()];

@@ -274,3 +274,32 @@ fn pictures_that_would_fill_the_memory_are_refused() {
     let told = "footage: found pictures of 10000x1 pixels, expected at most 32 times as wide as high";
     assert_eq!(error.to_string(), told);
 }
+
+#[test]
+fn a_key_of_one_part_alone_acts_as_a_correction_on_the_others() {
+    let drawn = twins();
+    let names = [("far leg", 0.0), ("near leg", 1.0), ("body", 2.0)];
+    let parts = drawn.0.iter().zip(names).map(|(shape, (name, depth))| shape.part(name, depth)).collect();
+    let base = drawn.scene(parts);
+    let mut tracker = Tracker::new(TrackOptions::default());
+    tracker.track(&base, &drawn, &Silent).unwrap();
+    // Frame 2 is held on frame 3. The new key is not where the drawing is, so that its effect is seen.
+    let key: Vec<Point> = drawn.0[1].contour(2).into_iter().map(|p| p + Point::new(5.0, 0.0)).collect();
+    let (mut keyed, mut pinned) = (base.clone(), base.clone());
+    keyed.parts[1].keys.insert(2, key.clone());
+    pinned.parts[1].pins.insert(2, key.iter().copied().enumerate().collect());
+    let found = tracker.track(&keyed, &drawn, &Silent).unwrap();
+    let corrected = track(&drawn, &pinned);
+    assert_eq!([&found.parts[0], &found.parts[2]], [&corrected.parts[0], &corrected.parts[2]]);
+    let own = &found.parts[1];
+    assert_eq!([&own.tracks[&2], &own.tracks[&3]], [&key, &key], "a frame held from a key shows the key");
+    assert_eq!(own.confidence[&2], vec![1.0; key.len()]);
+    let spans: Vec<(usize, FrameNumber, FrameNumber)> =
+        found.jobs.iter().map(|job| (job.part, job.span.first, job.span.last)).collect();
+    assert_eq!(spans, [(0, 0, 6), (1, 0, 2), (1, 2, 6), (2, 0, 6)]);
+    assert_eq!(found.parts, track(&drawn, &keyed).parts, "an edit equals a new run");
+    let again = tracker.track(&keyed, &drawn, &Silent).unwrap();
+    assert!(again.jobs.iter().all(|job| !job.solved), "nothing is computed twice");
+    same_on_any_threads(&drawn, &keyed);
+    assert_eq!(tracker.track(&base, &drawn, &Silent).unwrap().parts, track(&drawn, &base).parts, "and can be undone");
+}

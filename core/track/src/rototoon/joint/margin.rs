@@ -29,9 +29,11 @@ pub const ELSEWHERE: (f64, f64) = (3.0, 0.15);
 /// Upper limit of a margin. A larger one adds no information.
 pub const LARGEST: f64 = 1.0;
 
-/// By contender and drawing: the margin, from 0 to [`LARGEST`]. The largest where there is no other place.
-pub fn margins(scene: &Scene, paths: &Paths) -> Vec<Vec<f64>> {
-    (0..scene.contenders.len()).into_par_iter().with_max_len(1).map(|c| of_contender(scene, c, paths)).collect()
+/// By contender and drawing: the margin, from 0 to [`LARGEST`]. The largest where there is no other place. Only contenders that
+/// are `free` have margins.
+pub fn margins(scene: &Scene, paths: &Paths, free: &[bool]) -> Vec<Vec<f64>> {
+    let of = |c: usize| if free[c] { of_contender(scene, c, paths) } else { Vec::new() };
+    (0..scene.contenders.len()).into_par_iter().with_max_len(1).map(of).collect()
 }
 
 fn of_contender(scene: &Scene, c: usize, paths: &Paths) -> Vec<f64> {

@@ -52,12 +52,12 @@ pub struct Bonds {
 }
 
 /// The hypothesis that each contender follows on each of its drawings; `bonds` hold them together, `jump` is how far
-/// drawings jump ([`jumps`]), and `paths` is where to start from.
+/// drawings jump ([`jumps`]), and `paths` is where to start from. Contenders that are not `free` keep their paths.
 pub fn choose(
     contenders: &[Contender],
     bonds: &Bonds,
     jump: f64,
-    mut paths: Vec<Vec<usize>>,
+    (mut paths, free): (Vec<Vec<usize>>, &[bool]),
     memory: &mut Memory,
 ) -> Vec<Vec<usize>> {
     let shadows = Shadows::cast(contenders, memory);
@@ -72,7 +72,8 @@ pub fn choose(
     };
     let moves = (0..contenders.len())
         .map(|c| vec![c])
-        .chain(pairs.into_iter().filter(|&(far, near)| same(far, near)).map(|(far, near)| vec![far, near]));
+        .chain(pairs.into_iter().filter(|&(far, near)| same(far, near)).map(|(far, near)| vec![far, near]))
+        .filter(|who| who.iter().all(|&c| free[c]));
     let mut moves: Vec<Move> = moves.map(|who| Move { seen: scene.seen_by(&who), who, tried: None }).collect();
     let mut changed = Changes { count: 0, last: vec![0; contenders.len()] };
     for _ in 0..ROUNDS {
@@ -85,18 +86,19 @@ pub fn choose(
     paths
 }
 
-/// By contender and drawing: how much energy the paths have to spare against another place ([`margin`]).
+/// By contender and drawing: how much energy the paths have to spare against another place ([`margin`]). Empty for
+/// contenders that are not `free`.
 pub fn margins(
     contenders: &[Contender],
     bonds: &Bonds,
     jump: f64,
-    paths: &[Vec<usize>],
+    (paths, free): (&[Vec<usize>], &[bool]),
     memory: &mut Memory,
 ) -> Vec<Vec<f64>> {
     let shadows = Shadows::cast(contenders, memory);
     let companions = Companions::new(contenders, &bonds.companions);
     let scene = cost::Scene { contenders, shadows: &shadows, ties: &bonds.ties, companions: &companions, jump };
-    margin::margins(&scene, paths)
+    margin::margins(&scene, paths, free)
 }
 
 /// Tries all moves in their order. Most moves gain nothing, so the next few are computed in parallel. If one of these

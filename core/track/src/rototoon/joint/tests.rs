@@ -75,7 +75,13 @@ fn two_parts_do_not_take_the_same_place() {
             models,
         };
         let both = [contender(0, &far, &far_models, 0.0), contender(1, &near, &near_models, depth)];
-        choose(&both, &Bonds { ties: tie::find(&both), companions: Vec::new() }, 0.0, vec![vec![0, 0, 0]; 2], memory)
+        choose(
+            &both,
+            &Bonds { ties: tie::find(&both), companions: Vec::new() },
+            0.0,
+            (vec![vec![0, 0, 0]; 2], &[true; 2]),
+            memory,
+        )
     };
     // Parts of the same depth do not hide each other.
     assert_eq!(chosen(0.0, &mut memory), [[0, 0, 0], [0, 0, 0]]);
@@ -107,7 +113,7 @@ fn the_margin_is_what_another_place_would_cost_more() {
     let places = [0, 2, 0].map(|h| &pools[1][h].points[..]);
     let still = smoothness.of_path(&[places[0]; 3]);
     let swung = smoothness.of_path(&[places[0], places[1], places[2]]);
-    let found = margins(&[contender], &Bonds::default(), 0.0, &[vec![0, 0, 0]], &mut Memory::default());
+    let found = margins(&[contender], &Bonds::default(), 0.0, (&[vec![0, 0, 0]], &[true]), &mut Memory::default());
     let expected = 0.04f64.sqrt() - 0.01f64.sqrt() + swung - still;
     assert_eq!((found[0][0], found[0][2]), (LARGEST, LARGEST), "a key has no other place");
     assert!((found[0][1] - expected).abs() < 1e-6, "{} and {expected}", found[0][1]);
@@ -274,7 +280,7 @@ fn an_eye_stays_with_the_head_that_jumps() {
         assert!((companions.apart(0, (1, 0), (1, 0)) - 80.0).abs() < 1e-9);
         let chosen = |companions: Vec<companion::Pair>| {
             let bonds = Bonds { ties: Vec::new(), companions };
-            choose(both, &bonds, 1e-6, vec![vec![0, 0, 0]; 2], &mut Memory::default())
+            choose(both, &bonds, 1e-6, (vec![vec![0, 0, 0]; 2], &[true; 2]), &mut Memory::default())
         };
         assert_eq!(chosen(Vec::new()), [[0, 0, 0], [0, 0, 0]], "alone it moves evenly");
         assert_eq!(chosen(pairs), [[0, 0, 0], [0, 1, 0]]);
