@@ -10,10 +10,13 @@
 //! share with their neighbours. Then the part is tracked between all of its keys while the other parts stay
 //! ([`finer`](super::finer)). So a key acts on what it explains.
 //!
+//! A correction that pins each control point is drawn by the artist too, as when a contour is moved as a whole. So it is the same
+//! as a corrective key, whatever other parts have on its frame.
+//!
 //! **Limits.** A single part has no corrective keys. Nor has a part that is absent between the two keys around
 //! the frame: it need not be the same drawing before and after.
 
-use rototoon_base::geometry::polygon;
+use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{FrameNumber, Part, Scene};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -63,6 +66,33 @@ pub(super) fn as_corrections(scene: &Scene, corrective: &Corrective) -> Scene {
     Scene { footage: scene.footage.clone(), parts: scene.parts.iter().enumerate().map(of_part).collect() }
 }
 
+/// The scene with complete corrections as keys: on these frames each control point is pinned. `None` if there are none. Like
+/// corrective keys they are between two keys, and the part is not absent around them.
+pub(super) fn completed(scene: &Scene) -> Option<Scene> {
+    let complete = |part: &Part| -> Vec<(FrameNumber, Vec<Point>)> {
+        let (Some((&first, _)), Some((&last, _))) = (part.keys.first_key_value(), part.keys.last_key_value()) else {
+            return Vec::new();
+        };
+        let between = part.pins.iter().filter(|(frame, _)| first < **frame && **frame < last);
+        let free = between.filter(|(frame, _)| !part.keys.contains_key(frame) && !is_absent_around(part, **frame));
+        let all = free.filter(|(_, pins)| pins.len() == part.point_count());
+        all.map(|(&frame, pins)| (frame, pins.values().copied().collect())).collect()
+    };
+    let found: Vec<_> = scene.parts.iter().map(complete).collect();
+    if found.iter().all(Vec::is_empty) {
+        return None;
+    }
+    let mut all = as_corrections(scene, &Corrective::new());
+    for (part, keys) in all.parts.iter_mut().zip(found) {
+        for (frame, points) in keys {
+            part.pins.remove(&frame);
+            part.centers.remove(&frame);
+            part.keys.insert(frame, points);
+        }
+    }
+    Some(all)
+}
+
 /// The frames of a part's keys but for the first and the last one.
 fn within(part: &Part) -> impl Iterator<Item = FrameNumber> {
     part.keys.keys().copied().skip(1).take(part.keys.len().saturating_sub(2))
@@ -100,7 +130,6 @@ fn is_absent_around(part: &Part, frame: FrameNumber) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rototoon_base::geometry::Point;
     use rototoon_base::scene::Footage;
 
     /// A square at this place with keys on these frames.
@@ -160,6 +189,22 @@ mod tests {
         };
         assert_eq!(absent([5, 8]), [(0, vec![15])]);
         assert_eq!(absent([16, 17]), [(0, vec![4, 9])]);
+    }
+
+    #[test]
+    fn a_complete_correction_is_a_key() {
+        let all = |count: usize| (0..count).map(|k| (k, Point::splat(k as f64))).collect::<BTreeMap<_, _>>();
+        let mut own = part(0.0, &[0, 9]);
+        own.pins = BTreeMap::from([(2, all(3)), (4, all(4)), (9, all(4)), (12, all(4))]);
+        own.centers = BTreeMap::from([(4, Point::ZERO)]);
+        let complete = completed(&scene(vec![own.clone(), part(5.0, &[0, 9])])).expect("frame 4 is complete");
+        let [found, other] = &complete.parts[..] else { panic!("two parts") };
+        assert_eq!(found.keys.keys().copied().collect::<Vec<_>>(), [0, 4, 9]);
+        assert_eq!(found.keys[&4], (0..4).map(|k| Point::splat(f64::from(k))).collect::<Vec<_>>());
+        assert_eq!(found.pins.keys().copied().collect::<Vec<_>>(), [2, 9, 12]);
+        assert!(found.centers.is_empty() && *other == part(5.0, &[0, 9]));
+        own.absent = vec![[5, 6]];
+        assert_eq!(completed(&scene(vec![own])), None);
     }
 
     #[test]

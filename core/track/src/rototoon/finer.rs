@@ -1,6 +1,6 @@
 //! Tracks a part between all of its keys, while the other parts stay where the joint choice has put them.
 //!
-//! A part with [corrective](super::corrective) keys has two tracks. The **broad** one takes these keys for corrections. It keeps
+//! A part with [corrective](super::corrective) keys or complete corrections has two tracks. The **broad** one takes these keys for corrections. It keeps
 //! what holds the part to its body, but it compares the pictures with the keys at both ends of the span only. The **fine** one
 //! begins anew at each key. It knows how the part looks there, but each of its spans stands alone. On a drawing the fine track
 //! is taken if its odds of being good, by the [confidence](super::confidence) of its points, are at least [`BETTER`] times
@@ -13,7 +13,7 @@
 //! the same correction has, and the order of the parts does not matter.
 
 use super::choice::{Choice, Paths};
-use super::corrective::{Corrective, as_corrections};
+use super::corrective::{Corrective, as_corrections, completed, found};
 use super::finish::Finish;
 use super::mechanisms::Mechanism;
 use super::pooled::Pooled;
@@ -34,10 +34,10 @@ const BETTER: f64 = std::f64::consts::E;
 /// Confidences beyond these count as these.
 const LIMITS: (f64, f64) = (0.01, 0.995);
 
-/// A scene, and the same with corrective keys as corrections.
+/// A scene, the same with complete corrections as keys, and with corrective keys as corrections.
 pub(super) struct Film<'a> {
-    /// The scene with all keys.
-    pub scene: &'a Scene,
+    scene: &'a Scene,
+    fine: Option<Scene>,
     broad: Option<Scene>,
 }
 
@@ -67,10 +67,16 @@ struct Cast {
 }
 
 impl<'a> Film<'a> {
-    /// A scene with these corrective keys.
-    pub fn new(scene: &'a Scene, corrective: &Corrective) -> Self {
-        let broad = (!corrective.is_empty()).then(|| as_corrections(scene, corrective));
-        Self { scene, broad }
+    /// A scene of which corrective keys and complete corrections may or may not be told from others.
+    pub fn new(scene: &'a Scene, tells: bool) -> Self {
+        let corrective = if tells { found(scene) } else { Corrective::new() };
+        let broad = (!corrective.is_empty()).then(|| as_corrections(scene, &corrective));
+        Self { scene, fine: if tells { completed(scene) } else { None }, broad }
+    }
+
+    /// The scene with complete corrections as keys.
+    pub fn fine(&self) -> &Scene {
+        self.fine.as_ref().unwrap_or(self.scene)
     }
 
     /// The scene with corrective keys as corrections.
@@ -80,7 +86,7 @@ impl<'a> Film<'a> {
 
     /// The tasks between all keys that a task of the broad scene contains. Empty if it has no corrective keys.
     fn finer(&self, broad: Task) -> Vec<Task> {
-        let spans = self.scene.parts[broad.part].spans().into_iter();
+        let spans = self.fine().parts[broad.part].spans().into_iter();
         let inside = spans.filter(|span| broad.span.first <= span.first && span.last <= broad.span.last);
         inside.filter(|span| *span != broad.span).map(|span| Task { span, ..broad }).collect()
     }
@@ -91,18 +97,32 @@ impl<'a> Film<'a> {
             let keys = tasks(scene).into_iter().map(|task| (scene.parts[task.part].name.clone(), task.span));
             keys.collect::<Vec<_>>()
         };
-        of(self.scene).into_iter().chain(of(self.broad())).collect()
+        of(self.fine()).into_iter().chain(of(self.broad())).collect()
     }
 
     /// The tracking of the scene, from the tracks of the broad scene's `tasks` and the finer ones.
     pub fn assembled(&self, broad: &[Task], done: Vec<Option<(SpanTrack, bool)>>, mut finer: Found) -> Tracking {
+        let whole = broad.iter().zip(done).filter(|(task, _)| self.finer(**task).is_empty());
+        let tracks = whole.filter_map(|(task, found)| Some(((task.part, task.span), found?)));
+        let mut tracks: Found = tracks.collect();
+        tracks.append(&mut finer);
         let all = tasks(self.scene);
-        let found = broad.iter().zip(done).filter_map(|(task, found)| Some(((task.part, task.span), found?)));
-        let mut found: Found = found.collect();
-        found.append(&mut finer);
-        let done = all.iter().map(|task| found.remove(&(task.part, task.span))).collect();
+        let done = all.iter().map(|task| tracks.remove(&(task.part, task.span)).or_else(|| joined(*task, &tracks)));
+        let done = done.collect();
         assemble(self.scene, &all, done)
     }
+}
+
+/// The track of a task from those of the spans within it, in the order of time. `None` if there are none.
+fn joined(task: Task, tracks: &Found) -> Option<(SpanTrack, bool)> {
+    let within = |(key, _): &(&(usize, Span), _)| {
+        key.0 == task.part && task.span.first <= key.1.first && key.1.last <= task.span.last
+    };
+    tracks.iter().filter(within).map(|(_, found)| found.clone()).reduce(|(mut all, solved), (next, new)| {
+        all.points.extend(next.points.into_iter().skip(1));
+        all.confidence.extend(next.confidence.into_iter().skip(1));
+        (all, solved || new)
+    })
 }
 
 impl Rototoon {
@@ -128,7 +148,7 @@ impl Rototoon {
         let others = broad.paths.iter().enumerate().filter(|(k, _)| *k != m).map(|(_, path)| path.clone());
         let start = others.chain(cast.members[first..].iter().map(|pooled| pooled.path.clone())).collect();
         let (members, order) = cast.listed();
-        let choice = Choice::new((film.scene, &cast.tasks, &order), &members, self.mechanisms);
+        let choice = Choice::new((film.fine(), &cast.tasks, &order), &members, self.mechanisms);
         let bonds = choice.bonds();
         let paths = choice.paths(&bonds, (start, &cast.free), &mut self.shadows);
         let leads = choice.leads(&bonds, &paths);
@@ -136,11 +156,11 @@ impl Rototoon {
         let mended = self.mend_all(&names, &sources, (&paths[first..], &leads[first..]), frames, shared)?;
         cast.members.splice(first.., mended.iter().cloned());
         let (members, order) = cast.listed();
-        let choice = Choice::new((film.scene, &cast.tasks, &order), &members, self.mechanisms);
+        let choice = Choice::new((film.fine(), &cast.tasks, &order), &members, self.mechanisms);
         let paths = choice.paths(&bonds, (paths, &cast.free), &mut self.shadows);
         let margins = choice.margins(&bonds, (&paths, &cast.free), &mut self.shadows);
         let hiding = self.mechanisms.has(Mechanism::Hiding);
-        let plan = |k: usize| Finish::of(film.scene, &cast.tasks, &order, &members, &paths, (k, hiding));
+        let plan = |k: usize| Finish::of(film.fine(), &cast.tasks, &order, &members, &paths, (k, hiding));
         let plans = (first..count).map(plan).collect();
         let new = self.finish_all(&names, &mended, plans, frames, shared)?;
         let drawn = self.steadied(&names, &mended, broad.wobble, frames, shared)?;
@@ -161,8 +181,8 @@ impl Rototoon {
         fine: &[Task],
         (frames, progress): (&Looks, &JobProgress),
     ) -> Result<(Vec<Arc<Pooled>>, Vec<bool>), TrackError> {
-        let hidden = |&task: &Task| occluders(film.scene, broad.tasks, |o| Some(&*broad.pooled[o]), task);
-        let jobs: Vec<Job> = fine.iter().map(|task| job(film.scene, *task, hidden(task))).collect();
+        let hidden = |&task: &Task| occluders(film.fine(), broad.tasks, |o| Some(&*broad.pooled[o]), task);
+        let jobs: Vec<Job> = fine.iter().map(|task| job(film.fine(), *task, hidden(task))).collect();
         let results: Vec<Result<FoundPools, TrackError>> =
             jobs.par_iter().with_max_len(1).map(|job| self.pool(self.kit(frames, progress), job)).collect();
         let mut found = (Vec::new(), Vec::new());

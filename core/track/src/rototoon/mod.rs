@@ -124,9 +124,7 @@ impl SceneSolver for Rototoon {
             let Footage { width, height, .. } = scene.footage;
             return Err(TrackError::TooWide { width, height, limit: WIDEST });
         }
-        let corrective =
-            if self.mechanisms.has(Mechanism::CorrectiveKeys) { corrective::found(scene) } else { BTreeMap::new() };
-        let film = Film::new(scene, &corrective);
+        let film = Film::new(scene, self.mechanisms.has(Mechanism::CorrectiveKeys));
         let tasks = tasks(film.broad());
         let single = outward::plan::subjects(scene).len();
         let between = tasks.len() as f64 / (tasks.len() + single).max(1) as f64;

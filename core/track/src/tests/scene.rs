@@ -1,6 +1,6 @@
 //! The default solver on drawn scenes of known motion.
 
-use crate::{TrackOptions, Tracker, Tracking};
+use crate::{Mechanism, Mechanisms, TrackOptions, Tracker, Tracking};
 use rototoon_base::geometry::{Point, polygon, polyline};
 use rototoon_base::scene::{Colour, Footage, FrameError, FrameNumber, FrameSource, Part, Raster, Scene, Silent};
 use std::collections::BTreeMap;
@@ -290,7 +290,15 @@ fn a_key_of_one_part_alone_acts_as_a_correction_on_the_others() {
     pinned.parts[1].pins.insert(2, key.iter().copied().enumerate().collect());
     let found = tracker.track(&keyed, &drawn, &Silent).unwrap();
     let corrected = track(&drawn, &pinned);
-    assert_eq!([&found.parts[0], &found.parts[2]], [&corrected.parts[0], &corrected.parts[2]]);
+    assert!(found.parts == corrected.parts, "a contour that is moved as a whole is a key");
+    let whole: Vec<usize> = corrected.jobs.iter().map(|job| job.span.len()).collect();
+    assert_eq!(whole, [7, 7, 7], "but it ends no span");
+    let mechanisms = Mechanisms::without(Mechanism::CorrectiveKeys);
+    let options = TrackOptions { mechanisms, ..TrackOptions::default() };
+    let plain = Tracker::new(options).track(&pinned, &drawn, &Silent).unwrap();
+    let others = |tracking: &Tracking| [tracking.parts[0].clone(), tracking.parts[2].clone()];
+    assert!(others(&plain) == others(&found), "to the others it is a correction");
+    assert!(plain.parts[1] != found.parts[1], "to the part itself it is more");
     let own = &found.parts[1];
     assert_eq!([&own.tracks[&2], &own.tracks[&3]], [&key, &key], "a frame held from a key shows the key");
     assert_eq!(own.confidence[&2], vec![1.0; key.len()]);
