@@ -35,11 +35,13 @@ pub const IDS: f64 = 3.0;
 pub const MATTES: f64 = 4.0;
 
 /// A folder that contains only a bundle, because hosts scan everything in it. The bundle has the library of the bundle that
-/// the variable `ROTOTOON_OFX_BUNDLE` names, or else the library built with the tests.
+/// the variable `ROTOTOON_OFX_BUNDLE` names, or else the library built with the tests. Optimised tests have a folder of their
+/// own: under valgrind they run for long, and other tests must not change their plugin meanwhile.
 pub fn bundles() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ofx-bundles");
+        let name = if cfg!(debug_assertions) { "ofx-bundles" } else { "ofx-bundles-release" };
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         let inner = folder.join("Rototoon.ofx.bundle/Contents/Linux-x86-64");
         std::fs::create_dir_all(&inner).unwrap();
         let library = match std::env::var_os("ROTOTOON_OFX_BUNDLE") {
