@@ -91,6 +91,7 @@ TYPES = {
     "material_index": ("INT", "CURVE"),
     "fill_color": ("FLOAT_COLOR", "CURVE"),
     "fill_id": ("INT", "CURVE"),
+    "hide_stroke": ("BOOLEAN", "CURVE"),
     "softness": ("FLOAT", "CURVE"),
     "aspect_ratio": ("FLOAT", "CURVE"),
     "start_cap": ("INT8", "CURVE"),
@@ -114,9 +115,11 @@ DEFAULTS = {
 }  # fmt: skip
 """The value that Blender uses if the attribute is missing, where it is not 0."""
 
+FILL_BASE = 1_000_000
+"""Added to the number of a part or stroke for its `fill_id`, so that it differs from those of strokes that the artist filled."""
 FILL_BY_ID = bpy.app.version >= (5, 1, 0)
-"""Whether a stroke is filled by its `fill_id` (Blender 5.1 and later: not 0). Before, it is filled if its material shows a
-fill."""
+"""Whether a stroke is filled by its `fill_id` and hides its line by `hide_stroke` (Blender 5.1 and later). Before, its material
+decides both."""
 
 # Property name, NumPy type and width of an attribute's data, by data type.
 _LAYOUT = {

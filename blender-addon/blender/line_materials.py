@@ -1,29 +1,39 @@
-"""Materials of traced lines: one for each ink, named by its colour."""
+"""Materials of traced lines and of solid shapes: one for each ink, named by its colour."""
 
 from __future__ import annotations
 
 import bpy
 import numpy as np
 
+from . import grease_pencil as gp
+
 NAME = "Line "
-"""Beginning of their names. The colour as hexadecimal digits follows."""
+"""Beginning of the names of materials of lines. The colour as hexadecimal digits follows."""
+FILL_NAME = "Line Fill "
+"""Beginning of the names of materials of solid shapes. Before Blender 5.1 the material also says that they have no line."""
 
 
-def known(ob: bpy.types.Object) -> list[tuple[int, np.ndarray]]:
-    """The object's materials of traced lines: index and colour (sRGB)."""
+def known(ob: bpy.types.Object, fill: bool = False) -> list[tuple[int, np.ndarray]]:
+    """The object's materials of traced lines, or of solid shapes: index and colour (sRGB)."""
     found = []
     for place, material in enumerate(ob.data.materials):
         style = material.grease_pencil if material is not None else None
-        if style is not None and material.name.startswith(NAME):
-            found.append((place, _encoded(np.array(style.color[:3], np.float64))))
+        if style is not None and material.name.startswith(NAME) and material.name.startswith(FILL_NAME) == fill:
+            found.append((place, _encoded(np.array((style.fill_color if fill else style.color)[:3], np.float64))))
     return found
 
 
-def make(ob: bpy.types.Object, colour: np.ndarray) -> int:
-    """Makes a material for an ink (sRGB, 0 to 1). Returns its index."""
-    material = bpy.data.materials.new(NAME + "".join(f"{round(255 * float(v)):02x}" for v in colour))
+def make(ob: bpy.types.Object, colour: np.ndarray, fill: bool = False) -> int:
+    """Makes a material for an ink (sRGB, 0 to 1), or for a shape that is filled with it. Returns its index."""
+    digits = "".join(f"{round(255 * float(v)):02x}" for v in colour)
+    material = bpy.data.materials.new((FILL_NAME if fill else NAME) + digits)
     bpy.data.materials.create_gpencil_data(material)
-    material.grease_pencil.color = (*to_linear(colour), 1.0)
+    style = material.grease_pencil
+    style.color = (*to_linear(colour), 1.0)
+    if fill:
+        style.fill_color = style.color
+        if not gp.FILL_BY_ID:
+            style.show_stroke, style.show_fill = False, True
     ob.data.materials.append(material)
     return len(ob.data.materials) - 1
 

@@ -182,6 +182,19 @@ def filled(ob, content: Content) -> np.ndarray:
     return np.where(shown[index], np.arange(1, len(index) + 1), 0).astype(np.int32)
 
 
+def solid(ob, content: Content) -> np.ndarray:
+    """For each stroke: whether it is the outline of a filled shape and no line is drawn along it."""
+    shapes = content.strokes("cyclic") & (filled(ob, content) != 0)
+    if gp.FILL_BY_ID:
+        return shapes & content.strokes("hide_stroke")
+    lined = np.array([_shows_line(material) for material in ob.data.materials] or [True])
+    return shapes & ~lined[np.clip(content.strokes("material_index"), 0, len(lined) - 1)]
+
+
+def _shows_line(material) -> bool:
+    return material is None or material.grease_pencil is None or material.grease_pencil.show_stroke
+
+
 def _shows_fill(material) -> bool:
     return material is not None and material.grease_pencil is not None and material.grease_pencil.show_fill
 

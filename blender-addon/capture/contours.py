@@ -56,8 +56,8 @@ class Stroke:
 
 POINT_STYLE = ("radius", "opacity", "rotation", "vertex_color")
 CURVE_STYLE = (
-    "cyclic", "material_index", "fill_color", "fill_opacity", "fill_id", "softness", "aspect_ratio", "start_cap", "end_cap",
-    "u_translation", "u_scale", "uv_rotation", "uv_translation", "uv_scale",
+    "cyclic", "material_index", "fill_color", "fill_opacity", "fill_id", "hide_stroke", "softness", "aspect_ratio", "start_cap",
+    "end_cap", "u_translation", "u_scale", "uv_rotation", "uv_translation", "uv_scale",
 )  # fmt: skip
 _IDENTITY = (gp.PART, "cyclic", gp.MADE, gp.CONTROL)
 _OF_MADE = (gp.TRACKED, gp.PIN, gp.CENTER)

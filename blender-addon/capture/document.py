@@ -36,17 +36,18 @@ class Reading:
     folder: str
 
 
-def read(ob, results: bool = False) -> Reading:
-    """Reads an object. Changes nothing. With `results`, the document has tracks, confidence and snapped curves."""
-    return jobs.drained(reading(ob, results))
+def read(ob, results: bool = False, needed: bool = True) -> Reading:
+    """Reads an object. Changes nothing. With `results`, the document has tracks, confidence and snapped curves. Raises `Problem` if
+    there is no layer of contours, unless they are not `needed`: then the document may have no parts."""
+    return jobs.drained(reading(ob, results, needed))
 
 
-def reading(ob, results: bool = False) -> Iterator[float]:
+def reading(ob, results: bool = False, needed: bool = True) -> Iterator[float]:
     """As `read`, in steps between which Blender may draw. Returns the reading. Raises `Changed` as `contours.reading` does."""
     settings = ob.rototoon
     pattern = footage.pattern_of(ob)
     found = yield from contours.reading(ob, (gp.CONFIDENCE,) if results else ())
-    if not found.layer_names:
+    if not found.layer_names and needed:
         name = settings.contours_layer
         raise Problem(f'"{ob.name}" has no layer "{name}": draw the contours on a layer of that name')
     mapper = mapper_of(ob, found)

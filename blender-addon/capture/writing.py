@@ -20,8 +20,6 @@ from . import correspondence
 from .contours import CURVE_STYLE, POINT_STYLE, Contours, Drawing, Part, Stroke
 from .corrections import Corrections
 
-FILL_BASE = 1_000_000
-"""Added to a part's number for its `fill_id`, so that it differs from those of strokes that the artist filled."""
 SLICE = 0.03
 """Seconds for which drawings are compared with their result before those that differ are written."""
 AT_ONCE = 24
@@ -72,7 +70,7 @@ def styles(part: Part, found: Contours) -> tuple[dict[str, np.ndarray], dict[str
         if any(d.has(name) for d in drawings) or name == "cyclic":
             curve[name] = np.stack([d.value(name)[part.keys[f].index] for f, d in zip(frames, drawings)])
     if "fill_id" in curve:
-        curve["fill_id"] = np.where(curve["fill_id"] != 0, FILL_BASE + part.number, 0)
+        curve["fill_id"] = np.where(curve["fill_id"] != 0, gp.FILL_BASE + part.number, 0)
     curve["cyclic"] = curve["cyclic"] | part.closed
     return point, curve, frames
 

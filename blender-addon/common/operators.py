@@ -74,6 +74,20 @@ class OnContours(OnDrawing):
         return ""
 
 
+class OnShapes(OnDrawing):
+    """An operator that needs an active Grease Pencil object with footage, and contours or traced lines."""
+
+    @classmethod
+    def lacking(cls, ob, changes: str) -> str:
+        """As `OnDrawing.lacking`."""
+        why = OnContours.lacking(ob, changes)
+        if why and gp.is_drawing(ob) and ob.rototoon.pattern:
+            lines = gp.find_layer(ob, ob.rototoon.lines_layer)
+            if lines is not None and gp.has_strokes(lines):
+                return super().lacking(ob, changes)
+        return why
+
+
 class OnArmature:
     """An operator that needs an active armature that it may change."""
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..blender import colours, guard, placement, stroke_lines
 from ..blender import grease_pencil as gp
+from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..lines import doubts, tracing
 from ..lines import drawings as dr
@@ -53,7 +54,10 @@ def _stroke(place: str, stroke: Any) -> tracing.Placed:
     sure = stroke.get("confidence", 1.0)
     if isinstance(sure, bool) or not isinstance(sure, (int, float)) or not 0 <= sure <= 1:
         raise Problem(f"{place}.confidence: expected a number from 0 to 1")
-    return tracing.Placed(stroke["track"] + 1, points, bool(stroke.get("closed")), widths, colour, float(sure))
+    closed, fill = bool(stroke.get("closed")), stroke.get("fill", False)
+    if not isinstance(fill, bool) or fill and not closed:
+        raise Problem(f"{place}.fill: expected true or false, and a closed stroke for true")
+    return tracing.Placed(stroke["track"] + 1, points, closed, widths, colour, float(sure), fill)
 
 
 def _numbers(place: str, values: Any) -> np.ndarray:
@@ -98,7 +102,7 @@ def of(ob) -> list[dict[str, Any]]:
 
 def _written(ob, content, mapping, palette, traced: bool) -> list[dict[str, Any]]:
     seen, tracks, closed = colours.of_strokes(ob, content, palette), content.strokes(gp.TRACK), content.strokes("cyclic")
-    radii = content.point.get("radius")
+    radii, fills = content.point.get("radius"), st.solid(ob, content)
     # What the artist drew is beyond doubt.
     sure = doubts.of_strokes(content.point.get(gp.CONFIDENCE) if traced else None, content.starts).round(3)
     found, taken = [], {0}
@@ -110,7 +114,9 @@ def _written(ob, content, mapping, palette, traced: bool) -> list[dict[str, Any]
         points = mapping.to_pixels(line)
         stroke = {"track": int(tracks[i]) - 1, "points": points.round(4).tolist(), "closed": bool(closed[i])}
         own = None if radii is None else radii[content.starts[i] : content.starts[i + 1]]
-        if own is not None and len(own) == len(line):
+        if fills[i]:
+            stroke["fill"] = True
+        elif own is not None and len(own) == len(line):
             # The length of a pixel in the layer's units, at each point.
             pixel = np.linalg.norm(mapping.to_layer(points + (1.0, 0.0)) - mapping.to_layer(points), axis=1)
             stroke["widths"] = (2 * own / np.maximum(pixel, 1e-12)).round(4).tolist()

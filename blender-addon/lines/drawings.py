@@ -132,7 +132,7 @@ def mark(content: st.Content, chosen: np.ndarray | None = None) -> None:
         content.point[gp.ALONG][span] = shares(points[span])
 
 
-LOOKS = ("radius", "opacity", "vertex_color", "material_index", "fill_color", "fill_id")
+LOOKS = ("radius", "opacity", "vertex_color", "material_index", "fill_color", "fill_id", "hide_stroke")
 """What of a stroke counts as its look."""
 
 
@@ -142,7 +142,8 @@ def look_sums(content: st.Content) -> np.ndarray:
     of_points = [content.point.get(name) for name in LOOKS if gp.TYPES[name][1] == "POINT"]
     names = [name for name in LOOKS if gp.TYPES[name][1] == "POINT"]
     of_points = [gp.blank(name, points) if each is None else each for name, each in zip(names, of_points)]
-    of_strokes = [content.strokes(name) for name in LOOKS if gp.TYPES[name][1] == "CURVE"]
+    of_strokes = [content.strokes(name) for name in LOOKS if gp.TYPES[name][1] == "CURVE" and name != "hide_stroke"]
+    hidden = content.strokes("hide_stroke")
     found = np.zeros(len(content.sizes), np.int64)
     for i, (a, b) in enumerate(zip(starts, starts[1:])):
         total = 0
@@ -150,7 +151,8 @@ def look_sums(content: st.Content) -> np.ndarray:
             total = zlib.crc32(np.ascontiguousarray(each[a:b]), total)
         for each in of_strokes:
             total = zlib.crc32(np.ascontiguousarray(each[i]), total)
-        found[i] = total
+        # Strokes whose line is shown have the sums of earlier versions.
+        found[i] = zlib.crc32(b"hidden", total) if hidden[i] else total
     return found.astype(np.uint32).view(np.int32)
 
 

@@ -139,10 +139,10 @@ def inks(colours: np.ndarray, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return found, np.asarray(colours, np.float64)[centres].reshape(-1, 3)[used]
 
 
-def material(ob: bpy.types.Object, colour: np.ndarray) -> int:
-    """Index of the object's material for an ink, sRGB. It is made if none of the object's inks is near."""
+def material(ob: bpy.types.Object, colour: np.ndarray, fill: bool = False) -> int:
+    """Index of the object's material for an ink, sRGB, or for a shape that is filled with it. It is made if none is near."""
     wanted = ink_lab(colour[None])[0]
-    for place, known in line_materials.known(ob):
+    for place, known in line_materials.known(ob, fill):
         if np.linalg.norm(ink_lab(known[None])[0] - wanted) <= SAME_INK:
             return place
-    return line_materials.make(ob, np.nan_to_num(colour).clip(0, 1))
+    return line_materials.make(ob, np.nan_to_num(colour).clip(0, 1), fill)

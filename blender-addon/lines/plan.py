@@ -193,6 +193,7 @@ def _drawing(ob, layers: list[dr.Layer], frame: int, mapper: Mapper) -> tuple[Se
             continue
         seen = colours.of_strokes(ob, content, palette)
         tracks, closed = content.strokes(gp.TRACK), content.strokes("cyclic")
+        fills = st.solid(ob, content)
         mapping = mapper.at(k, frame)
         for i, line in enumerate(stroke_lines.lines(content)):
             line = line[:-1] if closed[i] and len(line) > 2 and np.array_equal(line[0], line[-1]) else line
@@ -201,5 +202,8 @@ def _drawing(ob, layers: list[dr.Layer], frame: int, mapper: Mapper) -> tuple[Se
             seed.keys.append((layer.name, int(tracks[i])))
             seed.sources.append((k, i))
             pixels = np.round(mapping.to_pixels(line), 4)
-            strokes.append({"points": pixels.tolist(), "closed": bool(closed[i]), "colour": seen[i].clip(0, 1).tolist()})
+            stroke = {"points": pixels.tolist(), "closed": bool(closed[i]), "colour": seen[i].clip(0, 1).tolist()}
+            if fills[i]:
+                stroke["fill"] = True
+            strokes.append(stroke)
     return seed, strokes

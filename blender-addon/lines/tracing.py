@@ -98,6 +98,15 @@ class Placed:
     colour: np.ndarray
     confidence: float = 1.0
     """The probability that it is the stroke of its number."""
+    fill: bool = False
+    """Whether it is the outline of a solid shape, which is filled and has no line."""
+
+    @property
+    def place(self) -> tuple[bool, float, int]:
+        """Its place from back to front: shapes are behind lines, and a larger one is behind a smaller one, such as its hole."""
+        x, y = self.points[:, 0], self.points[:, 1]
+        area = abs(float(np.dot(x, np.roll(y, 1)) - np.dot(y, np.roll(x, 1)))) if self.fill else 0.0
+        return not self.fill, -area, self.number
 
 
 def finishing(ob, plan: pl.Plan, found: list[Traced], home: str) -> Iterator[float]:
@@ -199,6 +208,7 @@ def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan
     """The strokes of a layer on the frames that are written, by number; `None` for a frame that holds the drawing before."""
     points, widths = np.asarray(traced.points).reshape(-1, 2), np.asarray(traced.widths)
     colours, ends, sure = np.asarray(traced.colours).reshape(-1, 3), traced.point_offsets, traced.confidence
+    closed, fills = traced.closed, traced.fills
     known = {key for seed in (keyed[f] for f in group.seeds) for key in seed}
     result: dict[int, list[Placed]] = {}
     for place, number in enumerate(traced.frames.tolist()):
@@ -211,8 +221,9 @@ def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan
             if key[0] != layer.name or not (plan.new or key in known):
                 continue
             span = slice(ends[i], ends[i + 1])
-            strokes.append(Placed(key[1], points[span], bool(traced.closed[i]), widths[span], colours[i], float(sure[i])))
-        result[frame] = sorted(strokes, key=lambda stroke: stroke.number)
+            own = key[1], points[span], bool(closed[i]), widths[span], colours[i], float(sure[i]), bool(fills[i])
+            strokes.append(Placed(*own))
+        result[frame] = sorted(strokes, key=lambda stroke: stroke.place)
     if group.mapper.still:
         # A held picture shows the drawing before it, also one of the artist.
         for frame in sorted(plan.held & result.keys()):
@@ -268,21 +279,24 @@ def _length(points: np.ndarray) -> float:
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
-def _materials(ob, placed, shown: looks.Looks) -> dict[int, int]:
-    """The material of each number that no stroke of the artist has: one for each ink."""
-    colours: dict[int, list[np.ndarray]] = {}
-    lengths: dict[int, float] = {}
-    for stroke in (stroke for strokes in placed.values() for stroke in strokes):
-        if stroke.number not in shown.sources:
+def _materials(ob, placed, shown: looks.Looks) -> dict[tuple[int, bool], int]:
+    """The material of each number that no stroke of the artist has, as a line and as a shape: one for each ink."""
+    strokes = [each for strokes in placed.values() for each in strokes if each.number not in shown.sources]
+    found: dict[tuple[int, bool], int] = {}
+    for fill in (False, True):
+        colours: dict[int, list[np.ndarray]] = {}
+        lengths: dict[int, float] = {}
+        for stroke in (stroke for stroke in strokes if stroke.fill == fill):
             colours.setdefault(stroke.number, []).append(stroke.colour)
             lengths[stroke.number] = lengths.get(stroke.number, 0.0) + len(stroke.points)
-    if not colours:
-        return {}
-    known = list(colours)
-    means = np.nan_to_num(np.array([np.mean(colours[number], axis=0) for number in known]))
-    which, found = looks.inks(means, np.array([lengths[number] for number in known]))
-    places = [looks.material(ob, colour) for colour in found]
-    return {number: places[ink] for number, ink in zip(known, which)}
+        if not colours:
+            continue
+        known = list(colours)
+        means = np.nan_to_num(np.array([np.mean(colours[number], axis=0) for number in known]))
+        which, inks = looks.inks(means, np.array([lengths[number] for number in known]))
+        places = [looks.material(ob, colour, fill) for colour in inks]
+        found.update({(number, fill): places[ink] for number, ink in zip(known, which)})
+    return found
 
 
 def _rows(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str], materials, mapping) -> gp.Rows:
@@ -306,6 +320,9 @@ def _rows(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str
     if (sure < 1).any():
         # Without values every stroke is beyond doubt.
         rows.values[gp.CONFIDENCE] = np.repeat(sure, rows.sizes)
+    if gp.FILL_BY_ID and any(stroke.fill for stroke in strokes):
+        for name in ("fill_id", "hide_stroke"):
+            rows.values.setdefault(name, gp.blank(name, count))
     if not count:
         return rows
     rows.values["radius"][:] = _radii(points, np.concatenate([stroke.widths for stroke in strokes]), places, mapping)
@@ -314,7 +331,9 @@ def _rows(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str
         where = rows.values[gp.ALONG][starts[i] : starts[i + 1]] = dr.shares(stroke.points)
         found = shown.around(stroke.number, frame)
         if found is None:
-            rows.values["material_index"][i] = materials[stroke.number]
+            rows.values["material_index"][i] = materials[stroke.number, stroke.fill]
+            if stroke.fill and gp.FILL_BY_ID:
+                rows.values["fill_id"][i], rows.values["hide_stroke"][i] = gp.FILL_BASE + stroke.number, True
             continue
         for name in names:
             if gp.TYPES[name][1] == "POINT":

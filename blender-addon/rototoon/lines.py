@@ -36,6 +36,8 @@ class Stroke:
     """sRGB from 0 to 1; `None` if it is not known."""
     confidence: float
     """The probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt: it was drawn, or begins here."""
+    fill: bool
+    """Whether what is inside is filled with the colour, such as a solid black. Without widths there is no line around it."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +82,8 @@ class Traced:
     """float64 (P,): the width of the line at each point in pixels, NaN for a stroke without widths."""
     confidence: memoryview
     """float64 (S,): for each stroke the probability that it is the stroke of its number; 1 if that is beyond doubt."""
+    fills: memoryview
+    """int32 (S,): not 0 if what is inside is filled with the stroke's colour."""
 
     def on(self, frame: int) -> list[Stroke]:
         """The strokes of a frame, from back to front. There are none on a frame that was not traced."""
@@ -105,4 +109,5 @@ class Traced:
         flat = self.points.cast("B")[16 * first : 16 * last]
         points = flat.cast("d", (last - first, 2)) if last > first else flat.cast("d")
         colour = None if red != red else (red, green, blue)
-        return Stroke(self.tracks[i], points, bool(self.closed[i]), self.widths[first:last], colour, self.confidence[i])
+        closed, fill = bool(self.closed[i]), bool(self.fills[i])
+        return Stroke(self.tracks[i], points, closed, self.widths[first:last], colour, self.confidence[i], fill)

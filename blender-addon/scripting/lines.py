@@ -34,6 +34,8 @@ class Line:
     """Whether tracing wrote the drawing, and nobody has changed it since."""
     confidence: float
     """The probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt, as on the artist's drawings."""
+    fill: bool
+    """Whether it is the outline of a solid shape, filled and without a line."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +121,7 @@ def lines(ob: bpy.types.Object, layer: str = "") -> dict[int, list[Line]]:
     (found,) = drawings.read(ob, [name], None)
     contents = {**found.keys, **found.made}
     mapper = placement.Mapper(ob, contents, {}, [name])
-    return {frame: _lines(contents[frame], mapper.at(0, frame), frame in found.made) for frame in sorted(contents)}
+    return {frame: _lines(ob, contents[frame], mapper.at(0, frame), frame in found.made) for frame in sorted(contents)}
 
 
 @told
@@ -129,11 +131,12 @@ def doubtful_lines(ob: bpy.types.Object) -> list[doubts.Doubt]:
     return doubts.summed(doubts.places(ob))
 
 
-def _lines(content: st.Content, mapping, traced: bool) -> list[Line]:
+def _lines(ob: bpy.types.Object, content: st.Content, mapping, traced: bool) -> list[Line]:
     numbers, closed = content.strokes(gp.TRACK), content.strokes("cyclic")
+    fills = st.solid(ob, content)
     sure = doubts.of_strokes(content.point.get(gp.CONFIDENCE) if traced else None, content.starts)
     return [
-        Line(int(numbers[i]), mapping.to_pixels(line), bool(closed[i]), traced, float(sure[i]))
+        Line(int(numbers[i]), mapping.to_pixels(line), bool(closed[i]), traced, float(sure[i]), bool(fills[i]))
         for i, line in enumerate(stroke_lines.lines(content))
         if len(line)
     ]

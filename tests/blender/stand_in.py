@@ -43,6 +43,7 @@ class Traced:
     points: np.ndarray
     widths: np.ndarray
     confidence: np.ndarray
+    fills: np.ndarray
 
 
 LINES = [[[20.0, 20.0], [40.0, 20.0], [60.0, 22.0]], [[30.0, 40.0], [50.0, 50.0], [70.0, 40.0], [50.0, 30.0]]]
@@ -80,6 +81,7 @@ class Tracer:
             np.concatenate(flat),
             np.full(int(sizes.sum()), 2.0),
             np.ones(len(flat)),
+            np.zeros(len(flat), int),
         )
 
     def close(self):

@@ -12,15 +12,16 @@ from rototoon import Cancelled, RototoonError, Session, lines
 WIDTH, HEIGHT, LAST, STEP = 160, 120, 3, 4
 
 
-def draw(frame: int) -> list[list[tuple[int, int, int]]]:
-    """Black ink on paper, four pixels further right on each frame."""
+def draw(frame: int, solid: bool = False) -> list[list[tuple[int, int, int]]]:
+    """Black ink on paper, four pixels further right on each frame. A solid disc can be added."""
 
     def pixel(x: int, y: int) -> tuple[int, int, int]:
         px, py = x + 0.5 - STEP * frame, y + 0.5
         bar = abs(py - 60) < 1.5 and 20 <= px < 90
         post = abs(px - 50) < 1.5 and 20 <= py < 100
         ring = abs(math.hypot(px - 110, py - 40) - 15) < 1.5
-        return (20, 20, 60) if bar or post or ring else (250, 250, 250)
+        disc = solid and math.hypot(px - 90, py - 90) < 14
+        return (20, 20, 60) if bar or post or ring or disc else (250, 250, 250)
 
     return [[pixel(x, y) for x in range(WIDTH)] for y in range(HEIGHT)]
 
@@ -54,6 +55,36 @@ def test_three_lines_are_the_same_strokes_on_every_frame(film):
         document = session.document()
         assert document["note"] == "kept" and [each["frame"] for each in document["traced"]] == [0, 1, 2, 3]
         assert session.traced().points.tobytes() == traced.points.tobytes()
+
+
+def test_a_solid_shape_is_a_filled_outline(tmp_path):
+    for frame in range(LAST + 1):
+        write_png(tmp_path / f"line_{frame:03}.png", draw(frame, solid=True))
+    with opened(tmp_path) as session:
+        traced = session.trace()
+        document = session.document()
+    assert sorted(traced.fills) == [0] * 12 + [1] * 4
+    for frame in range(4):
+        disc, *others = traced.on(frame)
+        assert disc.fill and disc.closed and len(disc.widths) == len(disc.points), "it is behind the lines"
+        assert numpy.isnan(disc.widths).all() and disc.colour == pytest.approx((20 / 255, 20 / 255, 60 / 255), abs=0.03)
+        away = numpy.linalg.norm(numpy.asarray(disc.points) - (90 + STEP * frame, 90), axis=1)
+        assert away == pytest.approx(14, abs=0.7)
+        assert disc.track == traced.on(0)[0].track and not any(stroke.fill for stroke in others)
+    written = [[stroke.get("fill", False) for stroke in each["strokes"]] for each in document["traced"]]
+    assert written == [[True, False, False, False]] * 4
+
+
+def test_the_outline_of_a_drawn_shape_stays_filled(tmp_path):
+    for frame in range(LAST + 1):
+        write_png(tmp_path / f"line_{frame:03}.png", draw(frame, solid=True))
+    turns = [2 * math.pi * k / 24 for k in range(24)]
+    disc = {"points": [[90 + 14 * math.cos(t), 90 + 14 * math.sin(t)] for t in turns], "closed": True, "fill": True}
+    with opened(tmp_path, drawings=[{"frame": 0, "strokes": [disc]}]) as session:
+        traced = session.trace()
+    for frame in range(4):
+        (own,) = [stroke for stroke in traced.on(frame) if stroke.track == 0]
+        assert own.fill and numpy.asarray(own.points).mean(0) == pytest.approx((90 + STEP * frame, 90), abs=0.7)
 
 
 def test_strokes_of_a_drawing_are_carried_and_kept(film):

@@ -7,11 +7,11 @@ import bpy
 from ...blender import guard
 from ...blender.errors import Problem
 from ...capture import document
-from ...common.operators import Guarded, OnContours
+from ...common.operators import Guarded, OnShapes
 from .. import files, traced
 
 
-class ROTOTOON_OT_export_document(Guarded, OnContours, bpy.types.Operator):
+class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
     bl_idname = "rototoon.export_document"
     bl_label = "Export Document"
     bl_description = "Write keys, corrections, tracks, snapped and traced lines as a Rototoon project document"
@@ -32,12 +32,14 @@ class ROTOTOON_OT_export_document(Guarded, OnContours, bpy.types.Operator):
         if not self.filepath:
             raise Problem("No file chosen")
         path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ".json")
-        reading = document.read(context.object, results=True)
+        reading = document.read(context.object, results=True, needed=False)
         lines = traced.of(context.object)
         if lines:
             reading.document["traced"] = lines
         files.save(path, reading.document)
-        return f"{len(reading.document['parts'])} parts in {os.path.basename(path)}"
+        found = [f"{len(reading.document['parts'])} parts"] if reading.document["parts"] or not lines else []
+        found += [f"traced lines of {len(lines)} frames"] if lines else []
+        return f"{' and '.join(found)} in {os.path.basename(path)}"
 
 
 CLASSES = (ROTOTOON_OT_export_document,)

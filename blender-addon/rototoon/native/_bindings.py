@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0x865d0ea68a824247
+HEADER_HASH = 0x02d9bcaf7e0936c5
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -552,6 +552,7 @@ def declare(library: ctypes.CDLL) -> None:
     ]
     library.rototoon_traced_read.restype = ctypes.c_int32
     library.rototoon_traced_read.argtypes = [
+        ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_void_p,

@@ -225,9 +225,9 @@ class TracedArrays(Handle):
     def read(self, *_sizes: int) -> tuple[memoryview, ...]:
         """The arrays of `lines.Traced` in their order, as copies."""
         count = ctypes.c_size_t()
-        out = [ctypes.c_void_p() for _ in range(9)]
+        out = [ctypes.c_void_p() for _ in range(10)]
         call("rototoon_traced_read", self.pointer(), ctypes.byref(count), *map(ctypes.byref, out))
-        frames, stroke_offsets, tracks, closed, colours, point_offsets, points, widths, confidence = out
+        frames, stroke_offsets, tracks, closed, colours, point_offsets, points, widths, confidence, fills = out
         bounds = view(stroke_offsets, "i", count.value + 1)
         strokes = bounds[count.value]
         ends = view(point_offsets, "i", strokes + 1)
@@ -241,6 +241,7 @@ class TracedArrays(Handle):
             view(points, "d", ends[strokes], 2),
             view(widths, "d", ends[strokes]),
             view(confidence, "d", strokes),
+            view(fills, "i", strokes),
         )
 
 

@@ -647,6 +647,8 @@ RototoonStatus rototoon_session_traced(const struct RototoonSession *session,
 // - `widths`: the width of the line at each point in pixels; NaN if the stroke has no widths.
 // - `confidence`: for each stroke the probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt.
 //   `rototoon_outcomes` tells which values are sure, doubtful and lost.
+// - `fills`: for each stroke 1 if what is inside is filled with its colour, such as a solid black, otherwise 0. Only closed
+//   strokes are filled. A fill without widths has no line around it.
 RototoonStatus rototoon_traced_read(const struct RototoonTraced *traced,
                                     size_t *frame_count,
                                     const int32_t **frames,
@@ -658,6 +660,7 @@ RototoonStatus rototoon_traced_read(const struct RototoonTraced *traced,
                                     const double **points,
                                     const double **widths,
                                     const double **confidence,
+                                    const int32_t **fills,
                                     struct RototoonText **error);
 
 // Frees traced strokes. Null is allowed.

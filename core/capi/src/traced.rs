@@ -30,6 +30,8 @@ pub struct RototoonTraced {
     pub widths: Vec<f64>,
     /// For each stroke the probability that it is the stroke of its number; 1 if that is beyond doubt.
     pub confidence: Vec<f64>,
+    /// For each stroke 1 if what is inside is filled, otherwise 0.
+    pub fills: Vec<i32>,
 }
 
 impl RototoonTraced {
@@ -49,6 +51,7 @@ impl RototoonTraced {
             points: Vec::new(),
             widths: Vec::new(),
             confidence: Vec::new(),
+            fills: Vec::new(),
         };
         for drawing in drawings {
             arrays.push(drawing)?;
@@ -65,6 +68,7 @@ impl RototoonTraced {
         for stroke in &drawing.strokes {
             self.tracks.push(counted(stroke.track, "track")?);
             self.closed.push(stroke.closed.into());
+            self.fills.push(stroke.fill.into());
             self.confidence.push(stroke.confidence.unwrap_or(1.0));
             self.colours.extend(stroke.colour.map_or([f64::NAN; 3], |colour| colour.map(f64::from)));
             self.points.extend(stroke.points.iter().flat_map(|p| p.to_array()));
@@ -153,14 +157,16 @@ mod tests {
             widths: vec![2.0, 2.5],
             colour: Some([0.0, 0.5, 1.0]),
             confidence: Some(0.75),
+            fill: false,
         };
-        let ring = TracedStroke { track: 1, points: vec![Point::ONE; 3], closed: true, ..TracedStroke::default() };
+        let ring =
+            TracedStroke { track: 1, points: vec![Point::ONE; 3], closed: true, fill: true, ..TracedStroke::default() };
         let drawings =
             [TracedDrawing { frame: -1, strokes: Vec::new() }, TracedDrawing { frame: 7, strokes: vec![line, ring] }];
         let found = RototoonTraced::of(&drawings).unwrap();
         assert_eq!((&found.frames[..], &found.stroke_offsets[..]), (&[-1, 7][..], &[0, 0, 2][..]));
         assert_eq!((&found.tracks[..], &found.closed[..]), (&[4, 1][..], &[0, 1][..]));
-        assert_eq!(found.confidence, [0.75, 1.0]);
+        assert_eq!((&found.confidence[..], &found.fills[..]), (&[0.75, 1.0][..], &[0, 1][..]));
         assert_eq!((&found.point_offsets[..], found.points.len()), (&[0, 2, 5][..], 10));
         assert_eq!((&found.widths[..2], &found.colours[..3]), (&[2.0, 2.5][..], &[0.0, 0.5, 1.0][..]));
         assert!(found.widths[2..].iter().chain(&found.colours[3..]).all(|value| value.is_nan()));

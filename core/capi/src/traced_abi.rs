@@ -76,6 +76,8 @@ pub unsafe extern "C" fn rototoon_session_traced(
 /// - `widths`: the width of the line at each point in pixels; NaN if the stroke has no widths.
 /// - `confidence`: for each stroke the probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt.
 ///   `rototoon_outcomes` tells which values are sure, doubtful and lost.
+/// - `fills`: for each stroke 1 if what is inside is filled with its colour, such as a solid black, otherwise 0. Only closed
+///   strokes are filled. A fill without widths has no line around it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_traced_read(
     traced: *const RototoonTraced,
@@ -89,6 +91,7 @@ pub unsafe extern "C" fn rototoon_traced_read(
     points: *mut *const f64,
     widths: *mut *const f64,
     confidence: *mut *const f64,
+    fills: *mut *const i32,
     error: *mut *mut RototoonText,
 ) -> RototoonStatus {
     // SAFETY: the crate's contract; out parameters are written only after `clear` accepted them.
@@ -101,6 +104,7 @@ pub unsafe extern "C" fn rototoon_traced_read(
                 (tracks, "tracks"),
                 (closed, "closed"),
                 (point_offsets, "point_offsets"),
+                (fills, "fills"),
             ] {
                 clear(out, null(), name)?;
             }
@@ -120,6 +124,7 @@ pub unsafe extern "C" fn rototoon_traced_read(
             points.write(traced.points.as_ptr());
             widths.write(traced.widths.as_ptr());
             confidence.write(traced.confidence.as_ptr());
+            fills.write(traced.fills.as_ptr());
             Ok(())
         })
     }

@@ -155,3 +155,38 @@ fn two_drawings_bind_the_frames_between_and_stay_as_they_are() {
     assert!(trace(&path, &again, &["--threads", "1"]).status.success());
     assert_eq!(fs::read(&out).unwrap(), fs::read(&again).unwrap(), "one thread gives the same bytes");
 }
+
+#[test]
+fn a_pupil_is_a_fill_in_the_document_and_in_svg() {
+    let (folder, path) = project(json!({}));
+    for frame in 0..4u32 {
+        let file = folder.path().join(format!("f_{frame:03}.png"));
+        let mut picture = image::open(&file).unwrap().into_rgb8();
+        for (x, y, pixel) in picture.enumerate_pixels_mut() {
+            let (x, y) = (f64::from(x) + 0.5 - 4.0 * f64::from(frame), f64::from(y) + 0.5);
+            if (x - 112.0).hypot(y - 90.0) < 12.0 {
+                *pixel = Rgb([20; 3]);
+            }
+        }
+        picture.save(&file).unwrap();
+    }
+    let out = folder.path().join("traced.json");
+    assert!(trace(&path, &out, &[]).status.success());
+    let document = read(&out);
+    assert_eq!(numbers(&document), (0..4).map(|frame| (frame, vec![0, 1, 2, 3])).collect::<Vec<_>>());
+    for drawing in document["traced"].as_array().unwrap() {
+        let strokes = drawing["strokes"].as_array().unwrap();
+        let fills: Vec<usize> = (0..4).filter(|&k| strokes[k]["fill"] == true).collect();
+        assert_eq!(fills, [0], "the fill is behind the lines");
+        assert_eq!((&strokes[0]["track"], &strokes[0]["closed"]), (&json!(0), &json!(true)));
+        assert!(strokes[0]["widths"].is_null());
+    }
+    let svg = folder.path().join("strokes.svg");
+    let export =
+        Command::new(env!("CARGO_BIN_EXE_rototoon")).arg("export").arg(&out).arg("-o").arg(&svg).output().unwrap();
+    assert!(export.status.success(), "{}", String::from_utf8_lossy(&export.stderr));
+    let text = fs::read_to_string(&svg).unwrap();
+    let filled: Vec<&str> = text.lines().filter(|line| line.contains("fill=\"#")).collect();
+    assert_eq!(filled.len(), 1);
+    assert!(filled[0].contains("id=\"stroke-0\"") && filled[0].contains("stroke=\"none\""), "{}", filled[0]);
+}

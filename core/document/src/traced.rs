@@ -7,6 +7,8 @@
 //!
 //! - Frames ascend. `track` is the number of a stroke, the same on all frames; on one frame each number occurs once.
 //! - `widths` has one width in pixels for each point. `widths` and `colour` (sRGB, 0 to 1) are optional.
+//! - `fill` says that what is inside a closed stroke is filled with its colour. Without it the stroke is a line. A fill
+//!   without `widths` has no line around it.
 //! - `confidence` is the probability, 0 to 1, that the stroke is the one of its number. Without it the stroke is beyond
 //!   doubt: it was drawn, or begins here.
 
@@ -34,6 +36,9 @@ pub struct TracedStroke {
     pub colour: Option<Colour>,
     /// The probability that it is the stroke of its number; `None` if it is beyond doubt.
     pub confidence: Option<f64>,
+    /// Whether what is inside is filled with the colour, such as a solid black. Only closed strokes are filled. Without
+    /// widths there is no line around the fill.
+    pub fill: bool,
 }
 
 /// The strokes of one frame.
@@ -108,10 +113,16 @@ fn stroke(value: &Value, place: &str) -> Result<TracedStroke, FieldError> {
             return Err(wrong(&at, &format!("a list of {}", widths.len()), &format!("a list of {}", points.len())));
         }
     }
+    let closed = flag(fields.get("closed"), &format!("{place}.closed"))?;
+    let fill = given(fields, place, "fill", flag)?.unwrap_or(false);
+    if fill && !closed {
+        return Err(wrong(&format!("{place}.fill"), "true on an open stroke", "a closed stroke"));
+    }
     Ok(TracedStroke {
         track: count(fields.get("track"), &format!("{place}.track"))?,
         points,
-        closed: flag(fields.get("closed"), &format!("{place}.closed"))?,
+        closed,
+        fill,
         widths,
         colour: given(fields, place, "colour", colour)?,
         confidence: given(fields, place, "confidence", share)?,
@@ -145,6 +156,9 @@ fn written(stroke: &TracedStroke) -> Value {
     let points: Vec<Value> = stroke.points.iter().map(|p| json!([rounded(p.x), rounded(p.y)])).collect();
     fields.insert("points".into(), Value::Array(points));
     fields.insert("closed".into(), json!(stroke.closed));
+    if stroke.fill {
+        fields.insert("fill".into(), json!(true));
+    }
     if !stroke.widths.is_empty() {
         fields.insert("widths".into(), json!(stroke.widths.iter().map(|&w| rounded(w)).collect::<Vec<_>>()));
     }
@@ -178,11 +192,13 @@ mod tests {
             widths: vec![2.0, 2.5],
             colour: Some([0.0, 0.5, 1.0]),
             confidence: Some(0.75),
+            fill: false,
         };
         let outline = TracedStroke { track: 0, points: vec![Point::ONE; 3], closed: true, ..stroke.clone() };
         let outline = TracedStroke { widths: Vec::new(), colour: None, confidence: None, ..outline };
+        let black = TracedStroke { track: 1, colour: Some([0.0; 3]), fill: true, ..outline.clone() };
         let drawings = [
-            TracedDrawing { frame: -2, strokes: vec![stroke, outline] },
+            TracedDrawing { frame: -2, strokes: vec![black, stroke, outline] },
             TracedDrawing { frame: 4, strokes: Vec::new() },
         ];
         let mut doc = document("[7]");
@@ -191,6 +207,7 @@ mod tests {
         assert_eq!(again.traced().unwrap(), drawings);
         assert_eq!(again.to_json(), doc.to_json());
         assert!(doc.to_json().contains(r#""note": 1"#));
+        assert_eq!(doc.to_json().matches(r#""fill""#).count(), 1, "lines are written as before there were fills");
     }
 
     #[test]
@@ -209,6 +226,11 @@ mod tests {
         );
         let widths = r#"[{"frame": 1, "strokes": [{"track": 0, "points": [[1, 2]], "closed": false, "widths": []}]}]"#;
         let sure = r#"[{"frame": 1, "strokes": [{"track": 0, "points": [[1, 2]], "closed": false, "confidence": 2}]}]"#;
+        let open = r#"[{"frame": 1, "strokes": [{"track": 0, "points": [[1, 2]], "closed": false, "fill": true}]}]"#;
+        assert_eq!(
+            said(open),
+            "traced[0] (frame 1).strokes[0].fill: found true on an open stroke, expected a closed stroke"
+        );
         assert_eq!(said(sure), "traced[0] (frame 1).strokes[0].confidence: found 2, expected a number from 0 to 1");
         assert_eq!(said(widths), "traced[0] (frame 1).strokes[0].widths: found a list of 0, expected a list of 1");
     }

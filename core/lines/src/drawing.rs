@@ -3,6 +3,7 @@
 use crate::graph::Graph;
 use crate::outside::Outside;
 use crate::pairing::{Evidence, Pairing};
+use crate::solid::{Solids, met};
 use crate::stroke::{Options, Stroke, Style};
 use crate::strokes::Walked;
 use crate::{centre, economy, finish, ink, sketch, strokes};
@@ -26,8 +27,15 @@ impl Drawing {
     /// Finds the ink of a picture.
     pub fn new(picture: Arc<Raster<Colour>>, options: &Options) -> Self {
         let mut ink = ink::measure(&picture, options.sensitivity);
+        let unit = picture.height().max(1) as f64 / 540.0;
         let mut graph = Graph::new(&ink);
-        let width = graph.width();
+        // First of all, since what is filled between sketched strokes was not drawn black.
+        let solids = Solids::new(&ink, &graph, unit);
+        if let Some(solids) = &solids {
+            ink = ink.with_mask(solids.lines.clone());
+            graph = Graph::new(&ink);
+        }
+        let width = solids.as_ref().filter(|_| graph.branches.is_empty()).map_or(graph.width(), |solids| solids.width);
         let slivers = sketch::Slivers::new(&ink, width);
         let rough = match options.style {
             Style::Clean => false,
@@ -38,9 +46,13 @@ impl Drawing {
             ink = slivers.filled(ink);
             graph = Graph::new(&ink);
         }
+        let outside = match &solids {
+            Some(solids) => Outside::new(&solids.with(&ink.mask)),
+            None => Outside::new(&ink.mask),
+        };
         graph.branches.par_iter_mut().for_each(|branch| centre::centred(branch, &ink.darkness));
-        let unit = picture.height().max(1) as f64 / 540.0;
-        Self { picture, graph, width, unit, rough, outside: Outside::new(&ink.mask) }
+        graph.add_solids(solids.map(|solids| solids.outlines).unwrap_or_default());
+        Self { picture, graph, width, unit, rough, outside }
     }
 
     /// The strokes of the drawing.
@@ -55,7 +67,8 @@ impl Drawing {
             self.graph.branches.par_iter().map(|branch| finish::colour(&branch.points, &self.picture)).collect();
         let stub = economy::stub(self.width, self.unit);
         let pairing = Pairing::new(&Evidence { graph: &self.graph, outside: &self.outside, colours: &colours, stub });
-        let walked = strokes::walked(&self.graph, &pairing);
+        let mut walked = strokes::walked(&self.graph, &pairing);
+        met(&mut walked, self.width);
         let style = if self.rough { Style::Rough } else { Style::Clean };
         economy::thrifty(walked, self.width, self.unit, style)
     }

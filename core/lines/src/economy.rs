@@ -30,6 +30,9 @@ pub fn thrifty(strokes: Vec<Walked>, width: f64, unit: f64, style: Style) -> Vec
     let rough = style == Style::Rough;
     let stub = stub(width, unit);
     let keep = |stroke: &Walked| {
+        if stroke.fill {
+            return true;
+        }
         let thick = 2.0 * stroke.radii.iter().copied().fold(0.0, f64::max);
         if stroke.free == [true; 2] || stroke.closed {
             stroke.length() + thick >= ALONE_WIDTHS * width
@@ -58,6 +61,9 @@ fn without_repeated(strokes: Vec<Walked>, reach: f64) -> Vec<Walked> {
     let mut seen = Near::new(reach);
     let mut keep = vec![true; strokes.len()];
     for (_, k) in order {
+        if strokes[k].fill {
+            continue;
+        }
         let points = &strokes[k].points;
         let beside = points.iter().filter(|&&p| seen.holds(p)).count();
         keep[k] = (beside as f64) < REPEATED * points.len() as f64;

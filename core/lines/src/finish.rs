@@ -2,7 +2,7 @@
 
 use crate::stroke::Stroke;
 use crate::strokes::Walked;
-use rototoon_base::geometry::{Point, polyline};
+use rototoon_base::geometry::{Point, polygon, polyline};
 use rototoon_base::scene::{Colour, Raster};
 use rototoon_fit::{Options, fit};
 
@@ -15,8 +15,21 @@ const SPACING: f64 = 2.0;
 /// The stroke of a walked line. `unit` is the size of a pixel of 540 lines.
 pub fn finished(walked: &Walked, picture: &Raster<Colour>, unit: f64) -> Stroke {
     let points = curve(&walked.points, walked.closed, unit);
+    if walked.fill {
+        let colour = colour(&inside(&points, picture), picture);
+        return Stroke { widths: Vec::new(), colour, points, closed: true, fill: true };
+    }
     let widths = widths(walked, &points);
-    Stroke { widths, colour: colour(&walked.points, picture), points, closed: walked.closed }
+    Stroke { widths, colour: colour(&walked.points, picture), points, closed: walked.closed, fill: false }
+}
+
+/// The centres of the pixels within an outline, and its own points if it is too thin for any.
+fn inside(points: &[Point], picture: &Raster<Colour>) -> Vec<Point> {
+    let mut found = Vec::new();
+    polygon::for_each_span(points, picture.width(), picture.height(), |y, first, behind| {
+        found.extend((first..behind).map(|x| Point::new(x as f64 + 0.5, y as f64 + 0.5)));
+    });
+    if found.is_empty() { points.to_vec() } else { found }
 }
 
 /// The line, fitted and resampled; corners stay.
@@ -68,7 +81,8 @@ fn widths(walked: &Walked, points: &[Point]) -> Vec<f64> {
 
 /// The middle colour of the ink along the line, channel by channel.
 pub fn colour(points: &[Point], picture: &Raster<Colour>) -> Colour {
-    let step = (points.len() / 200).max(1);
+    // An odd step does not meet the same column of a shape again and again.
+    let step = (points.len() / 200).max(1) | 1;
     let read = |p: &Point| picture.clamped(p.x.floor() as isize, p.y.floor() as isize);
     let colours: Vec<Colour> = points.iter().step_by(step).map(read).collect();
     [0, 1, 2].map(|c| {

@@ -15,6 +15,7 @@
 //! - [`ink`]: which pixels are ink; `paper` behind them, `distance` within them
 //! - `thin`: the skeleton of the ink
 //! - `graph`: branches and junctions
+//! - `solid`: solid blacks as outlines, with `outline`
 //! - `centre`: branches on the ink's centre of gravity
 //! - `pairing`: which branch goes on in which, with `direction`, `cluster`, `outside` and `corner`
 //! - `strokes`: paired branches as strokes
@@ -31,8 +32,8 @@
 //!
 //! # Limits
 //!
-//! Solid blacks become strokes along their middle. Lines of one pixel look up to two pixels broader. Which line is in front
-//! is not known. Limbs that pass each other exchange or lose their numbers.
+//! A solid black that is long against its width becomes a stroke along its middle. Lines of one pixel look up to two
+//! pixels broader. Which line is in front is not known. Limbs that pass each other exchange or lose their numbers.
 //!
 //! # Example
 //!
@@ -74,9 +75,11 @@ mod economy;
 mod finish;
 mod graph;
 pub mod ink;
+mod outline;
 mod outside;
 mod pairing;
 mod sketch;
+mod solid;
 mod stroke;
 mod strokes;
 mod thin;

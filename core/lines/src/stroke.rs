@@ -10,10 +10,13 @@ pub struct Stroke {
     pub points: Vec<Point>,
     /// Whether the last point joins the first.
     pub closed: bool,
-    /// Width in pixels at each point.
+    /// Width in pixels at each point; empty for a fill.
     pub widths: Vec<f64>,
     /// Colour, sRGB-encoded, 0 to 1.
     pub colour: Colour,
+    /// Whether it is the outline of a shape filled with the colour, such as a solid black. Then it is closed. A later fill
+    /// within another one is a hole in it, with the colour of what shows there.
+    pub fill: bool,
 }
 
 /// What kind of drawing it is.

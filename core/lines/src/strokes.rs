@@ -20,6 +20,8 @@ pub struct Walked {
     pub closed: bool,
     /// Whether each end is one of the ink, not a junction.
     pub free: [bool; 2],
+    /// Whether it is the outline of a solid shape.
+    pub fill: bool,
 }
 
 /// Cosine of the turn from which a passage through a junction is a corner.
@@ -41,6 +43,8 @@ pub fn walked(graph: &Graph, pairing: &Pairing) -> Vec<Walked> {
             strokes.push(walk(graph, pairing, (k, 0), &mut done));
         }
     }
+    // Shapes are behind lines.
+    strokes.sort_by_key(|stroke| !stroke.fill);
     strokes
 }
 
@@ -58,6 +62,7 @@ fn walk(graph: &Graph, pairing: &Pairing, start: End, done: &mut [bool]) -> Walk
         let (branch, side) = at;
         done[branch] = true;
         let own = &graph.branches[branch];
+        stroke.fill = own.fill;
         let order: Vec<usize> =
             if side == 0 { (0..own.points.len()).collect() } else { (0..own.points.len()).rev().collect() };
         stroke.points.extend(order.iter().map(|&i| own.points[i]));

@@ -12,11 +12,12 @@ fn clean(picture: Arc<Raster<Colour>>) -> Vec<Stroke> {
     trace(picture, &Options { style: Style::Clean, ..Options::default() })
 }
 
-/// Strokes can be handed on: finite, in the picture, with widths.
+/// Strokes can be handed on: finite, in the picture, lines with widths, fills closed.
 fn assert_sound(strokes: &[Stroke], width: usize, height: usize) {
     let within = |p: &Point| p.x > -8.0 && p.y > -8.0 && p.x < width as f64 + 8.0 && p.y < height as f64 + 8.0;
     for stroke in strokes {
-        assert!(stroke.points.len() > 1 && stroke.widths.len() == stroke.points.len());
+        let widths = if stroke.fill { 0 } else { stroke.points.len() };
+        assert!(stroke.points.len() > 1 && stroke.widths.len() == widths && (stroke.closed || !stroke.fill));
         assert!(stroke.points.iter().all(|p| p.is_finite() && within(p)), "{:?}", stroke.points);
         assert!(stroke.widths.iter().all(|w| w.is_finite() && *w > 0.0));
     }

@@ -2,11 +2,13 @@
 
 use super::{PipelineError, frames, memory};
 use crate::export::SvgStroke;
+use crate::geometry::{Point, polygon};
 use crate::lines::{Drawing, Key, Options, Stroke, Tracked, between, carry};
 use crate::project::Document;
 use crate::project::drawings::{Drawing as Drawn, DrawnStroke};
 use crate::project::traced::{TracedDrawing, TracedStroke};
 use crate::scene::{FrameNumber, FrameSource, Progress};
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -80,10 +82,27 @@ pub(super) fn strokes_to_export(document: &Document) -> Result<Vec<SvgStroke>, P
             closed: stroke.closed,
             width: mean(&stroke.widths).unwrap_or(PLAIN * document.scene.footage.height as f64 / 540.0),
             colour: stroke.colour.unwrap_or_default(),
+            fill: stroke.fill,
+            lined: !stroke.fill || !stroke.widths.is_empty(),
         });
         known.points.insert(frame, stroke.points);
     }
-    Ok(strokes.into_values().collect())
+    let mut strokes: Vec<SvgStroke> = strokes.into_values().collect();
+    let largest = |s: &SvgStroke| s.points.values().map(|points| area(points)).fold(0.0, f64::max);
+    strokes.sort_by(|a, b| behind((a.fill, largest(a)), (b.fill, largest(b))));
+    Ok(strokes)
+}
+
+/// The order from back to front: fills are behind lines, and a larger fill is behind a smaller one, such as its hole.
+fn behind(a: (bool, f64), b: (bool, f64)) -> Ordering {
+    match (a.0, b.0) {
+        (true, true) => b.1.total_cmp(&a.1),
+        (fill, other) => other.cmp(&fill),
+    }
+}
+
+fn area(points: &[Point]) -> f64 {
+    polygon::signed_area(points).abs()
 }
 
 fn mean(values: &[f64]) -> Option<f64> {
@@ -175,7 +194,7 @@ fn of_drawing(drawing: &Drawn) -> Vec<Stroke> {
 
 fn of_drawn(drawn: &DrawnStroke) -> Stroke {
     let colour = drawn.colour.unwrap_or_default();
-    Stroke { points: drawn.points.clone(), closed: drawn.closed, colour, ..Stroke::default() }
+    Stroke { points: drawn.points.clone(), closed: drawn.closed, fill: drawn.fill, colour, ..Stroke::default() }
 }
 
 fn written(frame: FrameNumber, strokes: &[Tracked]) -> TracedDrawing {
@@ -186,6 +205,9 @@ fn written(frame: FrameNumber, strokes: &[Tracked]) -> TracedDrawing {
         widths: stroke.widths.clone(),
         colour: Some(stroke.colour),
         confidence: (*confidence < 1.0).then_some(*confidence),
+        fill: stroke.fill,
     };
-    TracedDrawing { frame, strokes: strokes.iter().map(stroke).collect() }
+    let mut strokes: Vec<TracedStroke> = strokes.iter().map(stroke).collect();
+    strokes.sort_by(|a, b| behind((a.fill, area(&a.points)), (b.fill, area(&b.points))));
+    TracedDrawing { frame, strokes }
 }

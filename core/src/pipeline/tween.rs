@@ -206,7 +206,7 @@ pub(super) fn peg_of(drawn: &DrawnPeg, k: usize) -> Result<Peg, (String, String)
 
 fn stroke_of(drawn: InBetween) -> (usize, f64, DrawnStroke) {
     let Stroke { points, closed, colour, material, layer } = drawn.stroke;
-    (drawn.track, drawn.opacity, DrawnStroke { points, closed, colour, material, layer, peg: None })
+    (drawn.track, drawn.opacity, DrawnStroke { points, closed, fill: false, colour, material, layer, peg: None })
 }
 
 fn written(frame: i32, next: i32, matching: &Matching) -> Value {

@@ -11,7 +11,8 @@
 //! ```
 //!
 //! - `drawings`: frames ascend; strokes are listed from back to front. `colour` (sRGB, 0 to 1), `material`, `layer` and
-//!   `peg` are optional. `corner` is optional too: it marks a corner in time, where velocities need not join. `spacing`
+//!   `peg` are optional. So is `fill`: the closed stroke is the outline of a shape filled with its colour, without a line
+//!   around it. Tracing reads it; in-betweens do not have it. `corner` is optional too: it marks a corner in time, where velocities need not join. `spacing`
 //!   determines the movement to the next drawing: `"smooth"` (the default), a movement function, or a spacing chart,
 //!   which is a list with the share of the way for each frame between.
 //! - A movement function is `"constant"` (a hold), `"linear"`, `"ease_in"`, `"ease_out"`, `"ease_in_out"`, `"cosine"`,
@@ -72,6 +73,9 @@ pub struct DrawnStroke {
     pub points: Vec<Point>,
     /// Whether the last point joins the first.
     pub closed: bool,
+    /// Whether it is the outline of a solid shape without a line around it, as in [`TracedStroke`](crate::traced::TracedStroke).
+    /// Then it is closed.
+    pub fill: bool,
     /// Colour, sRGB-encoded, 0 to 1.
     pub colour: Option<[f32; 3]>,
     /// Number of the stroke's material.
@@ -264,6 +268,9 @@ fn stroke_fields(stroke: &DrawnStroke, written: impl Fn(f64) -> f64) -> Map<Stri
     let points: Vec<Value> = stroke.points.iter().map(|p| json!([written(p.x), written(p.y)])).collect();
     fields.insert("points".into(), Value::Array(points));
     fields.insert("closed".into(), json!(stroke.closed));
+    if stroke.fill {
+        fields.insert("fill".into(), json!(true));
+    }
     if let Some(colour) = stroke.colour {
         fields.insert("colour".into(), json!(colour.map(|c| (f64::from(c) * 1e4).round() / 1e4)));
     }
@@ -301,8 +308,8 @@ mod tests {
         let stroke = &read.drawings[0].strokes[0];
         assert_eq!(stroke.points, [Point::new(1.0, 2.5), Point::new(3.0, 4.0)]);
         assert_eq!(
-            (stroke.colour, stroke.material, stroke.layer, stroke.peg),
-            (Some([0.0, 0.5, 1.0]), Some(3), Some(1), Some(0))
+            (stroke.colour, stroke.material, stroke.layer, stroke.peg, stroke.fill),
+            (Some([0.0, 0.5, 1.0]), Some(3), Some(1), Some(0), false)
         );
         assert_eq!(read.drawings[0].spacing, WrittenTiming::Chart(vec![0.2, 0.9]));
         assert!(read.drawings[1].corner);
@@ -310,6 +317,16 @@ mod tests {
         assert_eq!((read.pegs[0].parent, read.pegs[0].keys[0].turn), (Some(1), 90.0));
         assert_eq!(read.pegs[0].keys[0].timing, WrittenTiming::Curve(vec![(0.5, 0.2)]));
         assert_eq!(document(r#""x": 1"#).drawings(), Ok(Drawings::default()));
+    }
+
+    #[test]
+    fn the_outline_of_a_solid_shape_is_read_and_written() {
+        let text = r#"{"points": [[0, 0], [9, 0], [0, 9]], "closed": true, "fill": true, "colour": [0, 0, 0]}"#;
+        let read = document(&format!(r#""drawings": [{{"frame": 0, "strokes": [{text}]}}]"#)).drawings().unwrap();
+        let stroke = &read.drawings[0].strokes[0];
+        assert!(stroke.fill && stroke.closed);
+        assert_eq!(stroke_fields(stroke, |value| value)["fill"], true);
+        assert_eq!(stroke_fields(&DrawnStroke { fill: false, ..stroke.clone() }, |value| value).get("fill"), None);
     }
 
     #[test]

@@ -178,9 +178,15 @@ fn stroke(value: &Value, place: &str, pegs: &BTreeMap<&str, usize>) -> Result<Dr
         all().ok_or_else(|| wrong(place, &described(value), "three numbers from 0 to 1"))
     };
     let peg = |value: Option<&Value>, place: &str| named(value, place, pegs);
+    let closed = flag(fields.get("closed"), &format!("{place}.closed"))?;
+    let fill = given(fields, place, "fill", flag)?.unwrap_or(false);
+    if fill && !closed {
+        return Err(wrong(&format!("{place}.fill"), "true on an open stroke", "a closed stroke"));
+    }
     Ok(DrawnStroke {
         points: points.collect::<Result<_, _>>()?,
-        closed: flag(fields.get("closed"), &format!("{place}.closed"))?,
+        closed,
+        fill,
         colour: given(fields, place, "colour", colour)?,
         material: given(fields, place, "material", count)?,
         layer: given(fields, place, "layer", count)?,

@@ -67,6 +67,10 @@ pub struct SvgStroke {
     pub width: f64,
     /// Its colour, sRGB-encoded, 0 to 1.
     pub colour: Colour,
+    /// Whether what is inside is filled with the colour.
+    pub fill: bool,
+    /// Whether there is a line along it.
+    pub lined: bool,
 }
 
 /// The scene as an SVG document, in pixels of the footage.
@@ -114,7 +118,12 @@ fn stroke(out: &mut String, scene: &Scene, stroke: &SvgStroke, options: &SvgOpti
         Some(data(&even, stroke.closed))
     };
     let (track, colour, width) = (stroke.track, palette::hex(stroke.colour), decimal(stroke.width, 2));
-    let style = format!("id=\"stroke-{track}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"");
+    let fill = if stroke.fill { colour.as_str() } else { "none" };
+    let line = match stroke.lined {
+        true => format!("stroke=\"{colour}\" stroke-width=\"{width}\""),
+        false => "stroke=\"none\"".into(),
+    };
+    let style = format!("id=\"stroke-{track}\" fill=\"{fill}\" {line}");
     path(out, scene, &style, &format!("stroke {track}"), options.motion, shape);
 }
 
@@ -264,10 +273,15 @@ mod tests {
     fn a_stroke_is_a_path_that_is_hidden_where_it_is_not() {
         let at = |x: f64, count: usize| (0..count).map(|k| Point::new(x + k as f64, 5.0)).collect::<Vec<_>>();
         let points = BTreeMap::from([(1, at(0.0, 2)), (2, at(3.0, 4))]);
-        let stroke = SvgStroke { track: 7, points, closed: false, width: 2.5, colour: [1.0, 0.0, 0.0] };
+        let red =
+            SvgStroke { track: 7, points, closed: false, width: 2.5, colour: [1.0, 0.0, 0.0], ..SvgStroke::default() };
+        let stroke = SvgStroke { lined: true, ..red.clone() };
         let bare = Scene { parts: Vec::new(), ..scene() };
         let text = svg_with_strokes(&bare, &[stroke], &SvgOptions::default());
         assert!(text.contains("id=\"stroke-7\" fill=\"none\" stroke=\"#ff0000\" stroke-width=\"2.5\""), "{text}");
+        let black = SvgStroke { closed: true, colour: [0.0; 3], fill: true, ..red };
+        let filled = svg_with_strokes(&bare, &[black], &SvgOptions::default());
+        assert!(filled.contains("id=\"stroke-7\" fill=\"#000000\" stroke=\"none\" d="), "{filled}");
         let values = attribute(&text, "values");
         assert_eq!(values[1], "hidden;visible;hidden");
         let counts: Vec<usize> = values[0].split(';').map(|d| d.split([' ', 'L']).count()).collect();

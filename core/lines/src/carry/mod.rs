@@ -164,6 +164,7 @@ fn longest(on: &[bool]) -> Range<usize> {
 fn finished(before: &Tracked, points: &[Point], closed: bool, to: &Drawing) -> Tracked {
     let widths = &before.stroke.widths;
     let radius = 0.5 * if widths.is_empty() { to.width } else { widths.iter().sum::<f64>() / widths.len() as f64 };
-    let walked = Walked { points: points.to_vec(), radii: vec![radius; points.len()], closed, free: [true; 2] };
+    let fill = before.stroke.fill && closed;
+    let walked = Walked { points: points.to_vec(), radii: vec![radius; points.len()], closed, free: [true; 2], fill };
     Tracked::sure(before.track, finish::finished(&walked, &to.picture, to.unit))
 }

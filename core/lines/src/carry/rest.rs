@@ -23,6 +23,13 @@ pub fn left(lines: &[Walked], covered: &[Point], reach: f64, least: f64) -> Vec<
             rest.push(line.clone());
             continue;
         }
+        if line.fill {
+            // A shape is there as a whole or not at all.
+            if 2 * free.iter().filter(|&&f| f).count() > free.len() {
+                rest.push(line.clone());
+            }
+            continue;
+        }
         // A ring is opened at a covered place, so that no run goes over its first point.
         let n = free.len();
         let first = if line.closed { free.iter().position(|&f| !f).unwrap_or(0) } else { 0 };
@@ -30,7 +37,7 @@ pub fn left(lines: &[Walked], covered: &[Point], reach: f64, least: f64) -> Vec<
         for run in order.chunk_by(|&a, &b| free[a] == free[b]).filter(|run| free[run[0]]) {
             let (points, radii): (Vec<Point>, Vec<f64>) = run.iter().map(|&i| (line.points[i], line.radii[i])).unzip();
             if points.len() > 1 && polyline::length(&points, false) >= least {
-                rest.push(Walked { points, radii, closed: false, free: [true; 2] });
+                rest.push(Walked { points, radii, closed: false, free: [true; 2], fill: false });
             }
         }
     }

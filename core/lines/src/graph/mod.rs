@@ -34,6 +34,8 @@ pub struct Branch {
     pub ends: [Option<usize>; 2],
     /// Whether it is a ring.
     pub closed: bool,
+    /// Whether it is the outline of a solid shape ([`crate::solid`]), not a line.
+    pub fill: bool,
 }
 
 /// A place where branches meet.
@@ -75,14 +77,31 @@ impl Graph {
 
     /// The usual width of lines in pixels: the middle one of all points.
     pub fn width(&self) -> f64 {
-        let mut radii: Vec<f64> = self.branches.iter().flat_map(|branch| branch.radii.iter().copied()).collect();
+        let lines = self.branches.iter().filter(|branch| !branch.fill);
+        let mut radii: Vec<f64> = lines.flat_map(|branch| branch.radii.iter().copied()).collect();
         radii.sort_unstable_by(f64::total_cmp);
         radii.get(radii.len() / 2).map_or(1.0, |radius| 2.0 * radius)
     }
 
-    /// The length of all branches in pixels.
+    /// The length of all lines in pixels.
     pub fn length(&self) -> f64 {
-        self.branches.iter().map(|branch| polyline::length(&branch.points, branch.closed)).sum()
+        self.branches
+            .iter()
+            .filter(|branch| !branch.fill)
+            .map(|branch| polyline::length(&branch.points, branch.closed))
+            .sum()
+    }
+
+    /// Adds the outlines of solid shapes. What ends at a shape meets its outline.
+    pub fn add_solids(&mut self, outlines: Vec<Vec<Point>>) {
+        let branch = |points: Vec<Point>| Branch {
+            radii: vec![0.5; points.len()],
+            points,
+            ends: [None; 2],
+            closed: true,
+            fill: true,
+        };
+        self.branches.extend(outlines.into_iter().map(branch));
     }
 
     fn of(skeleton: &Skeleton, chains: &[Chain], contracted: &Contracted, ink: &Ink) -> Self {
@@ -98,7 +117,7 @@ impl Graph {
                     junctions[junction].branches.push((branches.len(), side));
                 }
             }
-            branches.push(Branch { points, radii, ends, closed: chain.closed });
+            branches.push(Branch { points, radii, ends, closed: chain.closed, fill: false });
         }
         Self { branches, junctions }
     }
