@@ -7,6 +7,7 @@ mod binary;
 mod bundle;
 mod debian;
 mod demo;
+mod disk;
 mod docs;
 mod elf;
 mod fuzz;

@@ -1,6 +1,7 @@
 //! `test`: runs all checks. Each is a step of its own ([`crate::steps`]).
 
 use crate::bundle::{self, Build, Bundle, Packager, TESTED, bundle};
+use crate::disk;
 use crate::docs::docs;
 use crate::generate::generate;
 use crate::steps::{Step, in_own_process, run_all};
@@ -26,6 +27,7 @@ pub fn test(valgrind: bool, build: Build) -> Result<()> {
     if !works("cc", &["--version"]) {
         bail!("no C compiler (cc) was found; install one, for example: apt-get install gcc");
     }
+    disk::need_room()?;
     let steps = steps(valgrind, build);
     let release: &[&str] = if build == Build::Tested { &[] } else { &["--release"] };
     let program = std::env::current_exe().context("cannot find the path of this program")?;
