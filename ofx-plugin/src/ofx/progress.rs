@@ -12,6 +12,11 @@ pub struct Bar<'a> {
 }
 
 impl<'a> Bar<'a> {
+    /// Whether the host has progress displays.
+    pub fn exists(effect: &Effect) -> bool {
+        effect.suites.progress.is_some()
+    }
+
     /// Opens a display with a label.
     pub fn new(effect: Effect<'a>, label: &str) -> Self {
         let label = terminated(label);

@@ -26,10 +26,13 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
     let is = |name: &std::ffi::CStr, text: &str| text.as_bytes() == name.to_bytes();
     let kind = action.input.text(kOfxPropType, 0)?;
     let reason = action.input.text(kOfxPropChangeReason, 0)?;
+    let (effect, name) = (&action.effect, action.input.text(kOfxPropName, 0)?);
+    if is(kOfxTypeClip, &kind) && is(SOURCE, &name) {
+        instance(effect)?.keep_film(None);
+    }
     if !is(kOfxChangeUserEdited, &reason) {
         return Err(Failure::Default);
     }
-    let (effect, name) = (&action.effect, action.input.text(kOfxPropName, 0)?);
     if is(kOfxTypeClip, &kind) && is(SOURCE, &name) || is(kOfxTypeParameter, &kind) {
         instance(effect)?.changed(effect);
     }
@@ -47,6 +50,10 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
         "previousLost" | "nextLost" | "weakest" => visits::go(effect, &name, time),
         "frameOffset" => marks::moved(effect),
         "part" => edits::select(effect, effect.parameters()?.text(c"part")?.trim()),
+        "live" => {
+            instance(effect)?.keep_film(None);
+            Ok(())
+        }
         "tool" => {
             instance(effect)?.editor().drop_work();
             Ok(())
@@ -120,7 +127,7 @@ fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> 
     };
     let text = file::text(path).map_err(|error| told(&error))?;
     let warnings = pipeline::import(&mut document, &text, format).map_err(|error| told(&error))?;
-    edits::store(effect, "Import shapes", document)?;
+    edits::store(effect, "Import shapes", document, None)?;
     for warning in warnings.iter().take(MOST_WARNINGS) {
         instance(effect)?.note(effect, warning, false);
     }

@@ -4,7 +4,7 @@ use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change, orde
 use super::parts::selected;
 use super::settings::Settings;
 use super::state::State;
-use super::{fresh, instance, marks, page, stored};
+use super::{fresh, instance, marks, page, stored, track};
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::geometry::Point;
 use rototoon::project::Document;
@@ -19,8 +19,8 @@ pub fn is_locked(parameters: &Parameters, state: &State, name: &str) -> bool {
     state.parts.get(name).is_some_and(|settings| settings.lock)
 }
 
-/// Stores an edited document.
-pub fn store(effect: &Effect, label: &str, document: Document) -> Result<(), Failure> {
+/// Stores an edited document. An edit at a time of the host is followed at once where *Live* can, in the same step of undo.
+pub fn store(effect: &Effect, label: &str, mut document: Document, live: Option<f64>) -> Result<(), Failure> {
     let problems = document.problems();
     if problems.error_count() > 0 {
         return Err(Failure::Told(problems.to_string()));
@@ -33,6 +33,11 @@ pub fn store(effect: &Effect, label: &str, document: Document) -> Result<(), Fai
     }
     let page = state.page.clone();
     state.keep_only(&document.scene.parts);
+    let old = document.scene.parts.iter().any(|part| state.is_old(part));
+    if let Some((followed, tracked)) = live.filter(|_| old).and_then(|time| track::follow(effect, &document, time)) {
+        state.note_tracked(tracked.iter().map(|&part| &followed.scene.parts[part]));
+        document = followed;
+    }
     write(&parameters, label, Some(&document), state, &page)
 }
 
@@ -181,7 +186,7 @@ pub fn press(effect: &Effect, name: &str, time: f64) -> Result<(), Failure> {
         }
     };
     match outcome {
-        Outcome::Edited(Edit { label, document }) => store(effect, label, document),
+        Outcome::Edited(Edit { label, document }) => store(effect, label, document, Some(time)),
         Outcome::Refused(refused) => Err(Failure::Told(refused.0)),
         _ => Ok(()),
     }

@@ -2,11 +2,13 @@
 
 use super::edit::Editor;
 use super::state::State;
+use super::track::Film;
 use super::{shared, stored};
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::project::Document;
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
@@ -25,6 +27,8 @@ pub struct Instance {
     told: Mutex<BTreeSet<String>>,
     state: Mutex<Option<ReadState>>,
     editor: Mutex<Editor>,
+    film: Mutex<Option<Arc<Film>>>,
+    following: AtomicBool,
 }
 
 /// A document, or why it could not be read.
@@ -79,8 +83,9 @@ impl Instance {
         if parameters.text(c"document")?.trim().is_empty() { Ok(None) } else { self.document(parameters) }
     }
 
-    /// Drops the document, which can be read again.
+    /// Drops the document, which can be read again, and the frames.
     pub fn forget(&self) {
+        self.keep_film(None);
         *lock(&self.read) = None;
     }
 
@@ -112,12 +117,41 @@ impl Instance {
         lock(&self.editor)
     }
 
+    /// The frames that the last Track has left in memory.
+    pub fn film(&self) -> Option<Arc<Film>> {
+        lock(&self.film).clone()
+    }
+
+    /// Keeps frames in memory, or drops them.
+    pub fn keep_film(&self, film: Option<Arc<Film>>) {
+        *lock(&self.film) = film;
+    }
+
+    /// Begins to follow an edit. `None` if an edit is being followed.
+    pub fn begin_following(&self) -> Option<Following<'_>> {
+        (!self.following.swap(true, Ordering::AcqRel)).then_some(Following(&self.following))
+    }
+
+    /// Whether an edit is being followed. A host may send events of the pen while it shows the progress.
+    pub fn is_following(&self) -> bool {
+        self.following.load(Ordering::Acquire)
+    }
+
     /// Removes the messages, because the user has changed something and they may no longer be true.
     pub fn changed(&self, effect: &Effect) {
         let told = std::mem::take(&mut *lock(&self.told));
         if !told.is_empty() {
             effect.clear_note();
         }
+    }
+}
+
+/// An edit is being followed until this is dropped.
+pub struct Following<'a>(&'a AtomicBool);
+
+impl Drop for Following<'_> {
+    fn drop(&mut self) {
+        self.0.store(false, Ordering::Release);
     }
 }
 

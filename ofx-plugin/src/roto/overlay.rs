@@ -108,6 +108,9 @@ pub fn perform(view: &View) -> Result<(), Failure> {
         canvas::draw(view, &shown, &editor);
         return Ok(());
     }
+    if instance.is_following() {
+        return Ok(());
+    }
     let frame = shown.frame().ok_or(Failure::Default)?;
     // The editor is free again before the host is called.
     let outcome = {
@@ -158,7 +161,7 @@ fn keep(view: &View, shown: &Shown, outcome: Outcome) -> Result<(), Failure> {
             Some(name) if name != shown.name => edits::select(&view.effect, &name),
             _ => Ok(()),
         },
-        Outcome::Edited(Edit { label, document }) => edits::store(&view.effect, label, document),
+        Outcome::Edited(Edit { label, document }) => edits::store(&view.effect, label, document, Some(view.time)),
         Outcome::Refused(refused) => {
             view.effect.complain(&refused.0);
             Ok(())

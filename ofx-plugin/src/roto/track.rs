@@ -29,33 +29,97 @@ const KEPT: usize = 1 << 30;
 type Picture = Arc<Raster<Colour>>;
 
 /// Tracks the document's parts through the source's frames and stores the result in the document.
+///
+/// With *Live* the frames stay in memory, for [`follow`].
 pub fn track(effect: &Effect, time: f64) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let document = instance.document(&parameters)?;
     let document = document.ok_or_else(|| Failure::Told("found no shapes to track: load a project first".into()))?;
-    let source = effect.clip(SOURCE)?;
-    let clip_range = source.connected().then(|| source.frame_range()).flatten();
-    let clip_range = clip_range.ok_or_else(|| Failure::Told("connect the footage to the input Source first".into()))?;
-    let offset = parameters.int(c"frameOffset", time)?;
-    let chosen = [parameters.int(c"firstFrame", time)?, parameters.int(c"lastFrame", time)?];
-    let range = range(clip_range, chosen, offset);
-    let scene = within(&document.scene, range.clone());
-    if scene.parts.iter().all(|part| part.keys.is_empty()) {
-        let (first, last) = (range.start(), range.end());
-        return Err(Failure::Told(format!("no part has a key in the project's frames {first} to {last}")));
+    let job = Job::of(effect, &document, time)?;
+    instance.keep_film(None);
+    let (tracking, kept) = run(effect, Some(effect.clip(SOURCE)?), &job, VecDeque::new())?;
+    if parameters.int(c"live", time)? != 0 && kept.len() < kept_frames(&job.scene) {
+        instance.keep_film(Some(Arc::new(Film { offset: job.offset, size: size(&job.scene), pictures: kept })));
     }
-    let known = shared("preset").0;
-    let preset = known.get(parameters.int(c"preset", time)?.max(0) as usize).and_then(|(id, _)| Preset::from_id(id));
-    let options = TrackOptions { preset: preset.unwrap_or_default(), ..TrackOptions::default() };
-    let tracking = run(effect, source, offset, &scene, options)?;
-    let mut document = Document::clone(&document);
-    merge(&mut document.scene, tracking, &range);
-    let problems = document.problems();
-    if problems.error_count() > 0 {
-        return Err(Failure::Told(problems.to_string()));
-    }
-    let tracked: Vec<usize> = (0..scene.parts.len()).filter(|&part| !scene.parts[part].keys.is_empty()).collect();
+    let (document, tracked) = job.merged(&document, tracking)?;
     edits::store_tracked(effect, &document, &tracked)
+}
+
+/// Tracks an edited document again on the frames that the last Track has left in memory, without a call for images: the
+/// actions of the pen must not make one. Returns the tracked document and the parts that were tracked.
+///
+/// `None` if *Live* is off, a frame is not in memory, the host has no progress display to cancel in, or the user cancels.
+/// The tracks then stay old, and the overlay says so.
+pub fn follow(effect: &Effect, document: &Document, time: f64) -> Option<(Document, Vec<usize>)> {
+    let (instance, parameters) = (instance(effect).ok()?, effect.parameters().ok()?);
+    if parameters.int(c"live", time).ok()? == 0 || !Bar::exists(effect) {
+        return None;
+    }
+    let film = instance.film()?;
+    let job = Job::of(effect, document, time).ok()?;
+    if (film.offset, film.size) != (job.offset, size(&job.scene)) {
+        return None;
+    }
+    let busy = instance.begin_following()?;
+    let result = run(effect, None, &job, film.pictures.clone());
+    drop(busy);
+    job.merged(document, result.ok()?.0).ok()
+}
+
+/// Frames of the source that stay in memory after a Track.
+#[derive(Debug)]
+pub struct Film {
+    offset: i32,
+    size: [usize; 2],
+    pictures: Kept,
+}
+
+fn size(scene: &Scene) -> [usize; 2] {
+    [scene.footage.width, scene.footage.height]
+}
+
+/// What is tracked.
+struct Job {
+    /// The parts, with only the keys and corrections in the range.
+    scene: Scene,
+    range: RangeInclusive<FrameNumber>,
+    offset: i32,
+    options: TrackOptions,
+}
+
+impl Job {
+    fn of(effect: &Effect, document: &Document, time: f64) -> Result<Self, Failure> {
+        let parameters = effect.parameters()?;
+        let source = effect.clip(SOURCE)?;
+        let clip_range = source.connected().then(|| source.frame_range()).flatten();
+        let clip_range =
+            clip_range.ok_or_else(|| Failure::Told("connect the footage to the input Source first".into()))?;
+        let offset = parameters.int(c"frameOffset", time)?;
+        let chosen = [parameters.int(c"firstFrame", time)?, parameters.int(c"lastFrame", time)?];
+        let range = range(clip_range, chosen, offset);
+        let scene = within(&document.scene, range.clone());
+        if scene.parts.iter().all(|part| part.keys.is_empty()) {
+            let (first, last) = (range.start(), range.end());
+            return Err(Failure::Told(format!("no part has a key in the project's frames {first} to {last}")));
+        }
+        let known = shared("preset").0;
+        let preset = known.get(parameters.int(c"preset", time)?.max(0) as usize);
+        let preset = preset.and_then(|(id, _)| Preset::from_id(id));
+        let options = TrackOptions { preset: preset.unwrap_or_default(), ..TrackOptions::default() };
+        Ok(Self { scene, range, offset, options })
+    }
+
+    /// The document with its new tracks, and the parts that were tracked.
+    fn merged(&self, document: &Document, tracking: Tracking) -> Result<(Document, Vec<usize>), Failure> {
+        let mut document = document.clone();
+        merge(&mut document.scene, tracking, &self.range);
+        let problems = document.problems();
+        if problems.error_count() > 0 {
+            return Err(Failure::Told(problems.to_string()));
+        }
+        let parts = &self.scene.parts;
+        Ok((document, (0..parts.len()).filter(|&part| !parts[part].keys.is_empty()).collect()))
+    }
 }
 
 /// The document's frames to track: those of the source, limited to the frames that the user has chosen.
@@ -93,16 +157,21 @@ fn merge(scene: &mut Scene, mut tracking: Tracking, range: &RangeInclusive<Frame
     pipeline::store(scene, &tracking);
 }
 
-fn run(effect: &Effect, source: Clip, offset: i32, scene: &Scene, options: TrackOptions) -> Result<Tracking, Failure> {
+/// Frames in memory, the oldest first.
+type Kept = VecDeque<(FrameNumber, Picture)>;
+
+/// Runs the tracker. Frames that are not among the kept ones come from the source; without a source they are an error.
+fn run(effect: &Effect, source: Option<Clip>, job: &Job, kept: Kept) -> Result<(Tracking, Kept), Failure> {
     let (ask, asked) = channel();
-    let frames = HostFrames { ask: Mutex::new(ask), kept: Mutex::default(), most: kept_frames(scene) };
+    let scene = &job.scene;
+    let frames = HostFrames { ask: Mutex::new(ask), kept: Mutex::new(kept), most: kept_frames(scene) };
     let board = Board::default();
     let pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("rototoon-{index}")).build();
     let pool = pool.map_err(|error| Failure::Told(format!("cannot start threads to track on: {error}")))?;
     let bar = Bar::new(*effect, "Rototoon: tracking");
-    let clerk = Clerk { effect, source, offset, scene };
+    let clerk = Clerk { effect, source, offset: job.offset, scene };
     let result = std::thread::scope(|scope| {
-        let worker = scope.spawn(|| pool.install(|| Tracker::new(options).track(scene, &frames, &board)));
+        let worker = scope.spawn(|| pool.install(|| Tracker::new(job.options).track(scene, &frames, &board)));
         while !worker.is_finished() {
             clerk.serve(&asked);
             if !board.cancelled() && !bar.update(board.done()) {
@@ -114,10 +183,11 @@ fn run(effect: &Effect, source: Clip, offset: i32, scene: &Scene, options: Track
     if board.cancelled() {
         return Err(Failure::Aborted);
     }
-    result.map_err(|error| match error {
+    let tracking = result.map_err(|error| match error {
         TrackError::Cancelled(_) => Failure::Aborted,
         other => Failure::Told(other.to_string()),
-    })
+    })?;
+    Ok((tracking, frames.kept.into_inner().unwrap_or_else(PoisonError::into_inner)))
 }
 
 fn kept_frames(scene: &Scene) -> usize {
@@ -134,7 +204,7 @@ struct Request {
 /// The source's frames. They are requested from the thread that may call the host. The last ones are kept.
 struct HostFrames {
     ask: Mutex<Sender<Request>>,
-    kept: Mutex<VecDeque<(FrameNumber, Picture)>>,
+    kept: Mutex<Kept>,
     most: usize,
 }
 
@@ -165,7 +235,7 @@ fn unreadable(frame: FrameNumber, reason: &str) -> FrameError {
 /// Answers requests for frames, on the thread that may call the host.
 struct Clerk<'a> {
     effect: &'a Effect<'a>,
-    source: Clip<'a>,
+    source: Option<Clip<'a>>,
     offset: i32,
     scene: &'a Scene,
 }
@@ -184,7 +254,8 @@ impl Clerk<'_> {
     fn fetch(&self, frame: FrameNumber) -> Result<Picture, FrameError> {
         let time = f64::from(frame) + f64::from(self.offset);
         let failed = |failure: Failure| unreadable(frame, &failure.to_string());
-        let image = self.source.image(time).map_err(failed)?;
+        let source = self.source.as_ref().ok_or_else(|| unreadable(frame, "it is not in memory"))?;
+        let image = source.image(time).map_err(failed)?;
         let image = image.ok_or_else(|| unreadable(frame, "the host has no image of this frame"))?;
         let placement = Placement::of(self.effect, &self.scene.footage, time, [1.0; 2]).map_err(failed)?;
         Ok(Arc::new(self.picture(&image, &placement)))

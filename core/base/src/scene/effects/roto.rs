@@ -14,7 +14,7 @@ const FRAMES: [i32; 2] = [-1_000_000, 1_000_000];
 const PLANE: [f64; 2] = [-1_000_000.0, 1_000_000.0];
 
 /// Rototoon Roto: every parameter in order.
-pub const ROTO: [EffectParameter; 83] = [
+pub const ROTO: [EffectParameter; 84] = [
     parameter("shapes", "Shapes", EffectKind::Group(true), None, "Where the shapes come from."),
     parameter(
         "project",
@@ -353,6 +353,13 @@ pub const ROTO: [EffectParameter; 83] = [
         EffectKind::Button,
         TRACKING,
         "Tracks the keys through the source's frames and stores the result in the composition.",
+    ),
+    parameter(
+        "live",
+        "Live",
+        EffectKind::Flag(false),
+        TRACKING,
+        "Whether each edit is tracked at once, on the frames that the last Track has left in memory.",
     ),
     parameter(
         "previousLost",
