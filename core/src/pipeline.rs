@@ -26,7 +26,7 @@ pub use report::{Counts, PartReport, Report, Weakest};
 pub use reshape::{Given, ReshapeJob, Reshaped, reshape};
 pub use sheet::sheet;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
-pub use trace::trace;
+pub use trace::{TraceMemory, trace};
 pub use tween::{captured, pegs_of, spacing_of, tween, tween_drawn};
 pub use unseen::unseen;
 

@@ -6,7 +6,7 @@ use crate::status::Failure;
 use crate::traced::{Asked, RototoonTraced};
 use crate::work::{self, GoOn};
 use rototoon::image::sequence::Sequence;
-use rototoon::pipeline::{self, PipelineError};
+use rototoon::pipeline::{self, PipelineError, TraceMemory};
 use rototoon::project::Document;
 use rototoon::scene::parameters::Stage;
 use rototoon::scene::{FrameNumber, Part, Progress, Scene};
@@ -16,9 +16,13 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::{LazyLock, Mutex};
 
 /// The name of a document without a file, for messages.
 const ORIGIN: &str = "document";
+
+/// Traced spans of all sessions: hosts such as the Blender extension make a new session for each run.
+static TRACED: LazyLock<Mutex<TraceMemory>> = LazyLock::new(Mutex::default);
 
 /// A session.
 pub struct Session {
@@ -207,7 +211,10 @@ impl Session {
         let asked = Asked::parse(options)?;
         let mut document = self.document.clone();
         let traced = work::run(asked.threads, go_on, |progress: &dyn Progress| {
-            pipeline::trace(&mut document, &self.folder, asked.frames(), &asked.options(), progress).map_err(
+            // Another session that traces at the same time has the memory; this one does without.
+            let mut memory = TRACED.try_lock().ok();
+            let (frames, options) = (asked.frames(), asked.options());
+            pipeline::trace(&mut document, &self.folder, frames, &options, memory.as_deref_mut(), progress).map_err(
                 |error| match error {
                     PipelineError::Cancelled(cancelled) => cancelled.into(),
                     other => Failure::error(other),

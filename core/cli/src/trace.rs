@@ -68,7 +68,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let sensitivity = given.get_one::<f64>("sensitivity").copied().unwrap_or(1.0);
     let frames = given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned();
     let document = progress::run(arguments::threads(given), |bar| {
-        pipeline::trace(&mut document, project::folder(from), frames, &Options { style, sensitivity }, bar)?;
+        pipeline::trace(&mut document, project::folder(from), frames, &Options { style, sensitivity }, None, bar)?;
         Ok(document)
     })?;
     let traced = document.traced().map_err(|error| Failure::Other(error.to_string()))?;

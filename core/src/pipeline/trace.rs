@@ -1,6 +1,12 @@
 //! Strokes of line drawings: traced on one frame, and the same strokes on the others.
 
-use super::{PipelineError, frames, memory};
+mod kept;
+#[cfg(test)]
+mod tests;
+
+pub use kept::TraceMemory;
+
+use super::{PipelineError, frames};
 use crate::export::SvgStroke;
 use crate::geometry::{Point, polygon};
 use crate::lines::{Drawing, Key, Options, Stroke, Tracked, between, carry};
@@ -8,10 +14,13 @@ use crate::project::Document;
 use crate::project::drawings::{Drawing as Drawn, DrawnStroke};
 use crate::project::traced::{TracedDrawing, TracedStroke};
 use crate::scene::{FrameNumber, FrameSource, Progress};
+use blake3::Hash;
+use kept::{Numbers, Span, of_picture};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Width of an exported stroke without widths, in pixels of 540 lines.
 const PLAIN: f64 = 2.0;
@@ -26,6 +35,8 @@ const PLAIN: f64 = 2.0;
 /// drawings are [bound to both](between()). Traced strokes of frames outside of `range` stay; their numbers are not used
 /// again.
 ///
+/// With a `memory`, spans between drawings that are the same as in an earlier run are taken from it. The result is the same.
+///
 /// # Errors
 ///
 /// [`PipelineError::Request`] for a range outside of the footage, and for fields that cannot be read; an unreadable frame;
@@ -35,6 +46,7 @@ pub fn trace(
     folder: &Path,
     range: Option<RangeInclusive<FrameNumber>>,
     options: &Options,
+    memory: Option<&mut TraceMemory>,
     progress: &dyn Progress,
 ) -> Result<(), PipelineError> {
     let wrong = |error: &dyn std::fmt::Display| PipelineError::Request(error.to_string());
@@ -45,7 +57,7 @@ pub fn trace(
         let (first, last) = (range.start(), range.end());
         return Err(PipelineError::Request(format!("frames {first} to {last}: expected frames of the footage, {own}")));
     }
-    memory::to_trace(footage)?;
+    super::memory::to_trace(footage)?;
     let drawn = document.drawings().map_err(|error| wrong(&error))?.drawings;
     let earlier = document.traced().map_err(|error| wrong(&error))?;
     let sequence = frames(document, folder)?;
@@ -57,6 +69,8 @@ pub fn trace(
         frames: &sequence,
         drawn,
         options,
+        memory,
+        hashes: BTreeMap::new(),
         progress,
         all: range.clone().count() + twice,
         done: 0,
@@ -114,6 +128,9 @@ struct Tracing<'a> {
     frames: &'a dyn FrameSource,
     drawn: Vec<&'a Drawn>,
     options: &'a Options,
+    memory: Option<&'a mut TraceMemory>,
+    /// The hashes of pictures that were looked at.
+    hashes: BTreeMap<FrameNumber, Hash>,
     progress: &'a dyn Progress,
     all: usize,
     done: usize,
@@ -121,69 +138,186 @@ struct Tracing<'a> {
     next: usize,
 }
 
+/// A drawing from which strokes are carried. Its ink is looked at where it is needed.
+struct Place {
+    frame: FrameNumber,
+    ink: Option<Drawing>,
+    drawn: Vec<Tracked>,
+    beside: Vec<Tracked>,
+}
+
+impl Place {
+    fn all(&self) -> Vec<Tracked> {
+        self.drawn.iter().chain(&self.beside).cloned().collect()
+    }
+}
+
+/// Traced drawings by frame.
+type Found = Vec<(FrameNumber, Vec<Tracked>)>;
+
 impl Tracing<'_> {
     fn all(&mut self, range: &RangeInclusive<FrameNumber>) -> Result<Vec<TracedDrawing>, PipelineError> {
         let drawn = std::mem::take(&mut self.drawn);
         let start = drawn.first().map_or(*range.start(), |drawing| drawing.frame);
-        let first = self.look(start)?;
-        let strokes = drawn.first().map_or_else(|| first.strokes(), |drawing| of_drawing(drawing));
-        let numbers = self.next..;
-        let strokes: Vec<Tracked> = numbers.zip(strokes).map(|(track, stroke)| Tracked::sure(track, stroke)).collect();
-        self.next += strokes.len();
-        let mut key = Key { drawing: first, drawn: strokes, beside: Vec::new() };
-        let mut found = vec![(start, key.drawn.clone())];
-        self.outward(&key, (*range.start()..start).rev(), &mut found)?;
-        let mut at = start;
+        let mut found = Found::new();
+        let mut place = self.begun(start, drawn.first().copied())?;
+        found.push((start, place.drawn.clone()));
+        self.outward(&mut place, (*range.start()..start).rev().collect(), &mut found)?;
         for drawing in drawn.iter().skip(1) {
-            key = self.between(&key, at, drawing, &mut found)?;
-            at = drawing.frame;
+            place = self.between(place, drawing, &mut found)?;
         }
-        self.outward(&key, at + 1..=*range.end(), &mut found)?;
+        let rest = place.frame + 1..=*range.end();
+        self.outward(&mut place, rest.collect(), &mut found)?;
         self.progress.report("Tracing", 1.0)?;
         Ok(found.into_iter().map(|(frame, strokes)| written(frame, &strokes)).collect())
     }
 
-    /// Carries the strokes of a key from frame to frame. Two frames are in memory at a time.
-    fn outward(
-        &mut self,
-        key: &Key,
-        frames: impl Iterator<Item = FrameNumber>,
-        found: &mut Vec<(FrameNumber, Vec<Tracked>)>,
-    ) -> Result<(), PipelineError> {
+    /// The place at which work begins: a drawing, or the traced picture of the frame.
+    fn begun(&mut self, frame: FrameNumber, drawing: Option<&Drawn>) -> Result<Place, PipelineError> {
+        let numbers = self.next..;
+        let sure = |strokes: Vec<Stroke>| -> Vec<Tracked> {
+            numbers.zip(strokes).map(|(track, stroke)| Tracked::sure(track, stroke)).collect()
+        };
+        let mut place = Place { frame, ink: None, drawn: Vec::new(), beside: Vec::new() };
+        if let Some(drawing) = drawing {
+            place.drawn = sure(of_drawing(drawing));
+        } else {
+            let key = self.key("first", &[], &[frame], &[])?;
+            let numbers = Numbers::new([], self.next);
+            place.drawn = if let Some(span) = self.recall(key) {
+                self.done += 1;
+                span.drawings.iter().flat_map(|strokes| numbers.numbered(strokes)).collect()
+            } else {
+                let ink = self.look(frame)?;
+                let strokes = sure(ink.strokes());
+                place.ink = Some(ink);
+                let (drawings, new) = (vec![numbers.ranked(&strokes)], strokes.len());
+                self.keep(key, || Span { drawings, beside: Vec::new(), new });
+                strokes
+            };
+        }
+        self.next += place.drawn.len();
+        Ok(place)
+    }
+
+    /// Carries the strokes of a place from frame to frame. Two frames are in memory at a time.
+    fn outward(&mut self, place: &mut Place, frames: Vec<FrameNumber>, found: &mut Found) -> Result<(), PipelineError> {
+        if frames.is_empty() {
+            return Ok(());
+        }
+        let (all, next) = (place.all(), self.next);
+        let numbers = Numbers::new(&all, next);
+        let looked: Vec<FrameNumber> = [place.frame].into_iter().chain(frames.iter().copied()).collect();
+        let key = self.key("outward", &[&numbers.ranked(&all)], &looked, &[])?;
+        if let Some(span) = self.recall(key) {
+            self.next += span.new;
+            self.done += frames.len();
+            found.extend(frames.into_iter().zip(span.drawings.iter().map(|strokes| numbers.numbered(strokes))));
+            return Ok(());
+        }
+        let first = self.ink(place)?;
         let mut before: Option<(Drawing, Vec<Tracked>)> = None;
+        let mut drawings = Vec::new();
         for frame in frames {
-            let (from, last) = before.take().map_or((None, key.all()), |(drawing, strokes)| (Some(drawing), strokes));
+            let (from, last) = before.take().map_or((None, all.clone()), |(drawing, strokes)| (Some(drawing), strokes));
             let drawing = self.look(frame)?;
-            let carried = carry(from.as_ref().unwrap_or(&key.drawing), &last, &drawing, &mut self.next);
+            let carried = carry(from.as_ref().unwrap_or(&first), &last, &drawing, &mut self.next);
+            drawings.push(numbers.ranked(&carried));
             found.push((frame, carried.clone()));
             before = Some((drawing, carried));
         }
+        place.ink = Some(first);
+        let new = self.next - next;
+        self.keep(key, || Span { drawings, beside: Vec::new(), new });
         Ok(())
     }
 
-    /// Carries the strokes of the key on frame `from` to the next drawing. Returns it as a key.
-    fn between(
-        &mut self,
-        key: &Key,
-        from: FrameNumber,
-        to: &Drawn,
-        found: &mut Vec<(FrameNumber, Vec<Tracked>)>,
-    ) -> Result<Key, PipelineError> {
-        let frames: Vec<FrameNumber> = (from + 1..to.frame).collect();
+    /// Carries the strokes of a place to the next drawing. Returns the place there.
+    fn between(&mut self, mut place: Place, to: &Drawn, found: &mut Found) -> Result<Place, PipelineError> {
+        let frames: Vec<FrameNumber> = (place.frame + 1..to.frame).collect();
+        let numbers = Numbers::new(place.drawn.iter().chain(&place.beside), self.next);
+        let before = [numbers.ranked(&place.drawn), numbers.ranked(&place.beside)];
+        let looked: Vec<FrameNumber> = (place.frame..=to.frame).collect();
+        let key = self.key("between", &[&before[0], &before[1]], &looked, &of_drawing(to))?;
+        if let Some(span) = self.recall(key) {
+            self.next += span.new;
+            self.done += 2 * frames.len() + 1;
+            let mut drawings = span.drawings.iter().map(|strokes| numbers.numbered(strokes));
+            found.extend(frames.into_iter().zip(&mut drawings));
+            let drawn = drawings.next().unwrap_or_default();
+            found.push((to.frame, drawn.clone()));
+            return Ok(Place { frame: to.frame, ink: None, drawn, beside: numbers.numbered(&span.beside) });
+        }
+        let drawing = self.ink(&mut place)?;
+        let first = Key { drawing, drawn: place.drawn, beside: place.beside };
         let mut next = self.next;
         let mut look = |place: usize| self.look(frames.get(place - 1).copied().unwrap_or(to.frame));
-        let (drawings, second) = between(key, frames.len(), &mut look, of_drawing(to), &mut next)?;
+        let (drawings, second) = between(&first, frames.len(), &mut look, of_drawing(to), &mut next)?;
+        let new = next - self.next;
         self.next = next;
+        let ranked = drawings.iter().chain([&second.drawn]).map(|strokes| numbers.ranked(strokes)).collect();
+        let beside = numbers.ranked(&second.beside);
+        self.keep(key, || Span { drawings: ranked, beside, new });
         found.extend(frames.into_iter().zip(drawings));
         found.push((to.frame, second.drawn.clone()));
-        Ok(second)
+        let Key { drawing, drawn, beside } = second;
+        Ok(Place { frame: to.frame, ink: Some(drawing), drawn, beside })
+    }
+
+    /// The key of a span, if spans are kept.
+    fn key(
+        &mut self,
+        kind: &str,
+        strokes: &[&[Tracked]],
+        frames: &[FrameNumber],
+        drawn: &[Stroke],
+    ) -> Result<Option<Hash>, PipelineError> {
+        if self.memory.is_none() {
+            return Ok(None);
+        }
+        let mut key = kept::Key::new(kind, self.options);
+        strokes.iter().for_each(|strokes| {
+            key.tracked(strokes);
+        });
+        key.strokes(drawn);
+        for &frame in frames {
+            if !self.hashes.contains_key(&frame) {
+                self.progress.report("Tracing", self.share())?;
+                self.hashes.insert(frame, of_picture(&*self.frames.picture(frame)?));
+            }
+            key.picture(&self.hashes[&frame]);
+        }
+        Ok(Some(key.hash()))
+    }
+
+    fn recall(&mut self, key: Option<Hash>) -> Option<Arc<Span>> {
+        self.memory.as_mut()?.recall(&key?)
+    }
+
+    fn keep(&mut self, key: Option<Hash>, span: impl FnOnce() -> Span) {
+        if let (Some(memory), Some(key)) = (self.memory.as_mut(), key) {
+            memory.keep(key, span());
+        }
+    }
+
+    /// The ink of a place, which is taken from it.
+    fn ink(&mut self, place: &mut Place) -> Result<Drawing, PipelineError> {
+        match place.ink.take() {
+            Some(ink) => Ok(ink),
+            None => Ok(Drawing::new(self.frames.picture(place.frame)?, self.options)),
+        }
     }
 
     /// The ink of a frame.
     fn look(&mut self, frame: FrameNumber) -> Result<Drawing, PipelineError> {
-        self.progress.report("Tracing", self.done as f64 / self.all.max(1) as f64)?;
+        self.progress.report("Tracing", self.share())?;
         self.done += 1;
         Ok(Drawing::new(self.frames.picture(frame)?, self.options))
+    }
+
+    /// The share of the work that is done.
+    fn share(&self) -> f64 {
+        (self.done as f64 / self.all.max(1) as f64).min(1.0)
     }
 }
 
