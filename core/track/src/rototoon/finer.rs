@@ -15,9 +15,10 @@
 use super::choice::{Choice, Paths};
 use super::corrective::{Corrective, as_corrections, completed, found};
 use super::finish::Finish;
-use super::mechanisms::Mechanism;
+use super::mechanisms::{Mechanism, Mechanisms};
 use super::pooled::Pooled;
 use super::steady::Wobble;
+use super::untouched::uncorrected;
 use super::{FoundPools, Rototoon, occluders};
 use crate::contract::error::TrackError;
 use crate::contract::job::{Job, SpanTrack};
@@ -39,6 +40,7 @@ pub(super) struct Film<'a> {
     scene: &'a Scene,
     fine: Option<Scene>,
     broad: Option<Scene>,
+    untouched: Option<Scene>,
 }
 
 /// Tracks of parts over spans, and whether each was found in this run.
@@ -67,11 +69,19 @@ struct Cast {
 }
 
 impl<'a> Film<'a> {
-    /// A scene of which corrective keys and complete corrections may or may not be told from others.
-    pub fn new(scene: &'a Scene, tells: bool) -> Self {
+    /// A scene. By the mechanisms, corrective keys and complete corrections are told from others, and untouched parts kept.
+    pub fn new(scene: &'a Scene, mechanisms: Mechanisms) -> Self {
+        let tells = mechanisms.has(Mechanism::CorrectiveKeys);
         let corrective = if tells { found(scene) } else { Corrective::new() };
         let broad = (!corrective.is_empty()).then(|| as_corrections(scene, &corrective));
-        Self { scene, fine: if tells { completed(scene) } else { None }, broad }
+        let keeps = mechanisms.has(Mechanism::Untouched);
+        let untouched = if keeps { uncorrected(broad.as_ref().unwrap_or(scene)) } else { None };
+        Self { scene, fine: if tells { completed(scene) } else { None }, broad, untouched }
+    }
+
+    /// The scene without corrections and corrective keys. `None` if it has none.
+    pub fn untouched(&self) -> Option<&Scene> {
+        self.untouched.as_ref()
     }
 
     /// The scene with complete corrections as keys.
@@ -232,7 +242,7 @@ fn chosen((span, broad): (Span, &SpanTrack), source: &Pooled, mut fine: SpanTrac
 }
 
 /// The mean logarithm of the odds of points with these probabilities.
-fn odds(confidence: &[f64]) -> f64 {
+pub(super) fn odds(confidence: &[f64]) -> f64 {
     let of = |c: &f64| c.clamp(LIMITS.0, LIMITS.1);
     confidence.iter().map(of).map(|c| (c / (1.0 - c)).ln()).sum::<f64>() / confidence.len().max(1) as f64
 }

@@ -86,6 +86,7 @@ impl Finish {
 
 /// A track, its sources, and the intermediate results that the next run may reuse. The sources contain the complete
 /// pools, not only the chosen poses: other hypotheses are blended in and affect the confidence.
+#[derive(Clone)]
 pub(super) struct Finished {
     pub source: Arc<Pooled>,
     pub plan: Finish,

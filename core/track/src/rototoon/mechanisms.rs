@@ -41,11 +41,13 @@ pub enum Mechanism {
     Steadying,
     /// A key that a part has on its own corrects its motion, and does not end its span.
     CorrectiveKeys,
+    /// Parts without corrections keep their tracks, unless corrections of other parts make them clearly surer.
+    Untouched,
 }
 
 impl Mechanism {
     /// Every mechanism with its id on the command line of the benchmark.
-    pub const ALL: [(Self, &str); 16] = [
+    pub const ALL: [(Self, &str); 17] = [
         (Self::Looks, "looks"),
         (Self::Flow, "flow"),
         (Self::Search, "search"),
@@ -62,6 +64,7 @@ impl Mechanism {
         (Self::Companions, "companions"),
         (Self::Steadying, "steadying"),
         (Self::CorrectiveKeys, "corrective-keys"),
+        (Self::Untouched, "untouched"),
     ];
 
     /// The mechanism with an id. `None` if there is no such mechanism.

@@ -17,7 +17,9 @@
 //!    contours are refined ([`finish`](mod@finish)). On a film that wobbles they are steadied ([`steady`]).
 //! 4. **Corrective keys.** A key that a part has on its own corrects the tracks of all parts ([`corrective`](mod@corrective)). The
 //!    part itself is tracked between all of its keys afterwards ([`finer`](mod@finer)).
-//! 5. **Outward.** Parts with a single key are followed from it, after all others ([`outward`]).
+//! 5. **Untouched parts.** Where a correction is not of the part itself, it moves the part only if that makes it clearly surer
+//!    ([`untouched`](mod@untouched)).
+//! 6. **Outward.** Parts with a single key are followed from it, after all others ([`outward`]).
 //!
 //! **Memory.** Each step is a pure function of its input, and its last result is kept. A pin on one part does not
 //! change the pools of other parts. The tracks of other parts are computed again only if the choice changes them.
@@ -52,9 +54,10 @@ pub mod stage;
 mod steadied;
 pub mod steady;
 pub mod through;
+mod untouched;
 
 use crate::contract::error::TrackError;
-use crate::contract::job::{Job, SpanTrack};
+use crate::contract::job::Job;
 use crate::contract::tasks::{SharedProgress, Steps, Task, job, nearer_contours, next_wave, tasks};
 use crate::contract::tracking::{SceneSolver, Tracking};
 use crate::shared::look::kind::Decided;
@@ -75,6 +78,7 @@ use rototoon_base::scene::{Footage, FrameNumber, FrameSource, Progress, Scene, S
 use stage::Kit;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+use untouched::{Done, Untouched};
 
 /// Largest ratio of width to height of a picture. The tracker works on [540 lines](crate::shared::features), so a strip of few
 /// lines would be enlarged to hundreds of millions of pixels.
@@ -97,6 +101,7 @@ pub struct Rototoon {
     mended: BTreeMap<(String, Span), Mended>,
     finished: BTreeMap<(String, Span), Finished>,
     shadows: Memory,
+    untouched: Untouched,
     outward: outward::plan::Memory,
     mechanisms: Mechanisms,
 }
@@ -124,7 +129,7 @@ impl SceneSolver for Rototoon {
             let Footage { width, height, .. } = scene.footage;
             return Err(TrackError::TooWide { width, height, limit: WIDEST });
         }
-        let film = Film::new(scene, self.mechanisms.has(Mechanism::CorrectiveKeys));
+        let film = Film::new(scene, self.mechanisms);
         let tasks = tasks(film.broad());
         let single = outward::plan::subjects(scene).len();
         let between = tasks.len() as f64 / (tasks.len() + single).max(1) as f64;
@@ -199,10 +204,33 @@ impl Rototoon {
         let scene = film.broad();
         let unread = if tasks.iter().all(|task| self.knows(scene, task)) { 0.0 } else { READING };
         self.read(scene, tasks, frames, &Portion { listener: progress, range: [0.0, unread] })?;
-        let rest = Portion { listener: progress, range: [unread, 1.0] };
-        let shared = SharedProgress::new(&rest, scene, tasks);
+        // A run without corrections and one with them, if there are any.
+        let half = if film.untouched().is_some() { 0.5 * (1.0 + unread) } else { unread };
+        let first = Portion { listener: progress, range: [unread, half] };
+        let untouched = self.untouched(film, tasks, frames, &first)?;
+        let rest = Portion { listener: progress, range: [half, 1.0] };
+        let (mut done, finer) = self.run(scene, Some(film), tasks, frames, &rest)?;
+        match untouched {
+            Some(untouched) => self.settle(scene, tasks, &untouched, &mut done),
+            None => self.untouched.keep(scene, &done),
+        }
+        self.shadows.turn();
+        self.keep_only(film);
+        Ok(film.assembled(tasks, done, finer))
+    }
+
+    /// Tracks the parts of a scene together, and with a `film` also those with corrective keys between all of their keys.
+    fn run(
+        &mut self,
+        scene: &Scene,
+        film: Option<&Film>,
+        tasks: &[Task],
+        frames: &Looks,
+        progress: &dyn Progress,
+    ) -> Result<(Done, Found), TrackError> {
+        let shared = SharedProgress::new(progress, scene, tasks);
         let (pooled, fresh) = self.pool_all(scene, tasks, frames, &shared)?;
-        let mut done: Vec<Option<(SpanTrack, bool)>> = vec![None; tasks.len()];
+        let mut done: Done = vec![None; tasks.len()];
         let mut finer = Found::new();
         let stretches = stretches(tasks);
         let wobble = self.wobble(&stretches, &pooled);
@@ -228,14 +256,14 @@ impl Rototoon {
             let (stretch, pooled, mended, paths, wobble) = (&stretch, &pooled, &mended, &paths, &wobble);
             let broad = Broad { tasks, stretch, pooled, mended, paths, wobble };
             for (m, (&t, (track, new))) in stretch.iter().zip(tracks).enumerate() {
-                finer.append(&mut self.finer(film, &broad, (m, &track), frames, &shared)?);
+                if let Some(film) = film {
+                    finer.append(&mut self.finer(film, &broad, (m, &track), frames, &shared)?);
+                }
                 shared.of(t).report("Tracking", 1.0)?;
                 done[t] = Some((track, new || fresh[t]));
             }
         }
-        self.shadows.turn();
-        self.keep_only(film);
-        Ok(film.assembled(tasks, done, finer))
+        Ok((done, finer))
     }
 
     /// Computes the features and flows that many tasks need, before the tasks are given to threads, which would wait
@@ -279,6 +307,7 @@ impl Rototoon {
         self.corrected.retain(|key, _| present.contains(key));
         self.mended.retain(|key, _| present.contains(key));
         self.finished.retain(|key, _| present.contains(key));
+        self.untouched.keep_only(&present);
     }
 
     /// The pools of all tasks, and whether they were computed in this run.

@@ -311,3 +311,28 @@ fn a_key_of_one_part_alone_acts_as_a_correction_on_the_others() {
     same_on_any_threads(&drawn, &keyed);
     assert_eq!(tracker.track(&base, &drawn, &Silent).unwrap().parts, track(&drawn, &base).parts, "and can be undone");
 }
+
+#[test]
+fn a_part_that_nobody_corrected_stays_unless_it_becomes_clearly_surer() {
+    let drawn = twins();
+    let names = [("far leg", 0.0), ("near leg", 1.0), ("body", 2.0)];
+    let parts = drawn.0.iter().zip(names).map(|(shape, (name, depth))| shape.part(name, depth)).collect();
+    let base = drawn.scene(parts);
+    // Somebody drags the near leg onto the far one.
+    let mut wrong = base.clone();
+    wrong.parts[1].centers.insert(2, polygon::center(&drawn.0[0].contour(2)));
+    let off = TrackOptions { mechanisms: Mechanisms::without(Mechanism::Untouched), ..TrackOptions::default() };
+    let before = track(&drawn, &base);
+    let moved = Tracker::new(off).track(&wrong, &drawn, &Silent).unwrap();
+    assert!(moved.parts[0].tracks[&2] != before.parts[0].tracks[&2], "the choice would move the far leg too");
+    let mut tracker = Tracker::new(TrackOptions::default());
+    tracker.track(&base, &drawn, &Silent).unwrap();
+    let found = tracker.track(&wrong, &drawn, &Silent).unwrap();
+    assert!(found.parts[0] == before.parts[0] && found.parts[2] == before.parts[2]);
+    assert!(
+        found.parts[1] == moved.parts[1] && found.parts[1] != before.parts[1],
+        "the near leg goes where it is dragged"
+    );
+    assert!(found.parts == track(&drawn, &wrong).parts, "an edit equals a new run");
+    same_on_any_threads(&drawn, &wrong);
+}
