@@ -23,7 +23,7 @@
 
 use crate::graph::{Branch, Graph};
 use crate::ink::Ink;
-use crate::ink::distance;
+use crate::ink::{discs, distance};
 use crate::outline::outlines;
 use crate::strokes::Walked;
 use rototoon_base::geometry::{Point, polygon, polyline};
@@ -136,7 +136,7 @@ fn radius(ink: &Ink, pixel: usize) -> f64 {
 struct Cores<'a> {
     ink: &'a Ink,
     graph: &'a Graph,
-    /// The pixels of each core.
+    /// The pixels within the discs of ink around each core.
     found: Vec<Vec<usize>>,
 }
 
@@ -146,8 +146,12 @@ impl Cores<'_> {
         let deep: Vec<usize> = among.iter().copied().filter(|&i| radius(self.ink, i) >= level).collect();
         for core in components(&deep, self.ink.mask.width(), self.ink.mask.height()) {
             match self.broadest_line(&core, level) {
-                None if is_even(self.ink, &core, 0.5 * level) => self.found.push(core),
-                None => {}
+                None => {
+                    let shape = discs::union(&self.ink.depth, &core);
+                    if is_even(self.ink, &shape, 0.5 * level) {
+                        self.found.push(shape);
+                    }
+                }
                 // The line is at least half as thick as the core's run, and so the level rises.
                 Some(width) => self.search(&core, FAT * width),
             }
@@ -196,13 +200,10 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-/// Whether the ink around a core is even, without seams between lines. What is less than `edge` pixels deep does not count.
-fn is_even(ink: &Ink, core: &[usize], edge: f64) -> bool {
-    let mut around = Raster::new(ink.mask.width(), ink.mask.height(), false);
-    discs(&mut around, ink, core);
+/// Whether the ink of a shape is even, without seams between lines. What is less than `edge` pixels deep does not count.
+fn is_even(ink: &Ink, shape: &[usize], edge: f64) -> bool {
     let (columns, reach) = (ink.mask.width(), 2.0 * edge);
-    let inner: Vec<usize> =
-        (0..around.data().len()).filter(|&i| around.data()[i] && f64::from(ink.depth.data()[i]) >= edge).collect();
+    let inner: Vec<usize> = shape.iter().copied().filter(|&i| f64::from(ink.depth.data()[i]) >= edge).collect();
     let seams = inner.iter().filter(|&&i| is_seam(&ink.darkness, (i % columns, i / columns), reach)).count();
     SEAMS * seams <= inner.len()
 }
@@ -224,11 +225,11 @@ fn is_seam(darkness: &Raster<f32>, (x, y): (usize, usize), reach: f64) -> bool {
         .any(|(dx, dy)| own < EVEN * darkest((dx, dy)).min(darkest((-dx, -dy))))
 }
 
-/// The pixels of the shapes that grow from cores.
-fn shapes(ink: &Ink, cores: &[Vec<usize>]) -> Raster<bool> {
+/// The pixels of shapes, with what hangs on them and is short.
+fn shapes(ink: &Ink, found: &[Vec<usize>]) -> Raster<bool> {
     let (columns, rows) = (ink.mask.width(), ink.mask.height());
     let mut shape = Raster::new(columns, rows, false);
-    cores.iter().for_each(|core| discs(&mut shape, ink, core));
+    found.iter().flatten().for_each(|&i| shape.data_mut()[i] = true);
     // What is left of the ink beside them.
     let away = distance::inside(&shape.map(|on| !on));
     let left: Vec<usize> = (0..columns * rows).filter(|&i| ink.mask.data()[i] && !shape.data()[i]).collect();
@@ -240,25 +241,6 @@ fn shapes(ink: &Ink, cores: &[Vec<usize>]) -> Raster<bool> {
         }
     }
     shape
-}
-
-/// Sets the discs of ink around pixels.
-fn discs(mask: &mut Raster<bool>, ink: &Ink, pixels: &[usize]) {
-    let columns = mask.width();
-    pixels.iter().for_each(|&i| disc(mask, (i % columns, i / columns), ink.depth.data()[i]));
-}
-
-/// Sets the pixels whose centres are nearer to that of a pixel than `radius`.
-fn disc(mask: &mut Raster<bool>, (x, y): (usize, usize), radius: f32) {
-    let reach = radius.ceil() as usize;
-    let (bottom, right) = ((y + reach + 1).min(mask.height()), (x + reach + 1).min(mask.width()));
-    for v in y.saturating_sub(reach)..bottom {
-        let high = v.abs_diff(y) as f32;
-        let half = (radius * radius - high * high).max(0.0).sqrt();
-        // Only centres nearer than the radius: those at it are not ink.
-        let half = if high < radius { (half - 1e-4).max(0.0) as usize } else { continue };
-        mask.row_mut(v)[x.saturating_sub(half)..(x + half + 1).min(right)].fill(true);
-    }
 }
 
 /// The outlines of shapes and of their holes.

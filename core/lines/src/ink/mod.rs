@@ -11,6 +11,7 @@
 //!
 //! **Limits.** A photograph has no paper; what is found then are its dark details.
 
+pub mod discs;
 pub mod distance;
 mod paper;
 
