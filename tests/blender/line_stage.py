@@ -67,3 +67,15 @@ def number_of(addon, ob, line):
     """The number of a line of the film."""
     first = ls.strokes(addon, ob, "Lines", 1)
     return min(first, key=lambda number: away(first[number], ls.lines(0)[line][0]))
+
+
+def rendered(ob, frame, folder):
+    """The picture of a frame, RGBA with rows from the top."""
+    scene = bpy.context.scene
+    scene.render.engine, scene.render.film_transparent, scene.display.render_aa = "BLENDER_WORKBENCH", True, "FXAA"
+    scene.render.filepath = str(folder / "line.png")
+    scene.frame_set(frame)
+    bpy.ops.render.render(write_still=True)
+    image = bpy.data.images.load(scene.render.filepath)
+    width, height = image.size
+    return np.array(image.pixels[:]).reshape(height, width, 4)[::-1]

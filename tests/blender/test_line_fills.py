@@ -6,7 +6,7 @@ import bpy
 import line_shots as ls
 import numpy as np
 import pytest
-from line_stage import attribute, said
+from line_stage import attribute, rendered, said
 from shots import write_png
 
 RADIUS = 13.0
@@ -97,18 +97,6 @@ def test_a_shape_of_the_artist_is_carried_with_its_material(addon, film):
     for frame, (line,) in found.items():
         assert line.number == 1 and line.closed
         assert line.pixels.mean(0) == pytest.approx(centre(frame - 1), abs=1)
-
-
-def rendered(ob, frame, folder):
-    """The picture of a frame, RGBA with rows from the top."""
-    scene = bpy.context.scene
-    scene.render.engine, scene.render.film_transparent, scene.display.render_aa = "BLENDER_WORKBENCH", True, "FXAA"
-    scene.render.filepath = str(folder / "solid.png")
-    scene.frame_set(frame)
-    bpy.ops.render.render(write_still=True)
-    image = bpy.data.images.load(scene.render.filepath)
-    width, height = image.size
-    return np.array(image.pixels[:]).reshape(height, width, 4)[::-1]
 
 
 def coverage(pixels, middle):

@@ -5,7 +5,7 @@ import line_shots as ls
 import numpy as np
 import pytest
 from line_stage import film, kept, pictures, traced  # noqa: F401 - fixtures
-from line_stage import attribute, away, handle_of, kinds, number_of, said
+from line_stage import attribute, away, handle_of, kinds, number_of, rendered, said
 from mathutils import Matrix
 
 
@@ -318,7 +318,7 @@ def test_the_sample_is_traced_carried_edited_and_rendered(addon, library, tmp_pa
     assert bpy.ops.rototoon.spread_edits() == {"FINISHED"}
     edited = scripting.lines(ob, "Ink")[3][0].pixels
     assert edited[:, 0].max() - belly[1][0] == pytest.approx(51, abs=4)
-    assert rendered(addon, ob, 3, tmp_path)
+    assert is_seen(addon, ob, 3, tmp_path)
 
 
 def lies_on(points, line):
@@ -326,16 +326,10 @@ def lies_on(points, line):
     return np.mean([np.linalg.norm(line - point, axis=1).min() < 3 for point in points]) > 0.5
 
 
-def rendered(addon, ob, frame, folder):
+def is_seen(addon, ob, frame, folder):
     """Renders a frame, and tells whether its strokes are seen where they are, and nothing else is."""
-    scene = bpy.context.scene
-    scene.render.engine, scene.render.film_transparent, scene.display.render_aa = "BLENDER_WORKBENCH", True, "FXAA"
-    scene.render.filepath = str(folder / "line.png")
-    scene.frame_set(frame)
-    bpy.ops.render.render(write_still=True)
-    image = bpy.data.images.load(scene.render.filepath)
-    width, height = image.size
-    seen = np.array(image.pixels[:]).reshape(height, width, 4)[::-1, :, 3] > 0.5
+    seen = rendered(ob, frame, folder)[..., 3] > 0.5
+    height, width = seen.shape
     scripting = addon("scripting")
     wanted = np.zeros_like(seen)
     for layer in ("Lines", "Ink"):

