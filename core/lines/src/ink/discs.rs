@@ -63,7 +63,7 @@ impl Area {
 struct Envelope(Vec<(i32, i32, f64)>);
 
 impl Envelope {
-    /// Puts into each place k the least value[j] + (k − j)².
+    /// Puts into each place k the least `value[j] + (k − j)²`.
     fn lower(&mut self, values: &mut [i32]) {
         let parabolas = &mut self.0;
         parabolas.clear();
