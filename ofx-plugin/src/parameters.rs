@@ -3,12 +3,13 @@
 use crate::ofx::{Failure, Parameters, Properties, host};
 use openfx::sys::generic::core::{kOfxPropLabel, kOfxPropLongLabel, kOfxPropShortLabel};
 use openfx::sys::image_effect_v1::param::{
-    kOfxParamPropAnimates, kOfxParamPropChoiceOption, kOfxParamPropDefault, kOfxParamPropDigits,
-    kOfxParamPropDisplayMax, kOfxParamPropDisplayMin, kOfxParamPropEvaluateOnChange, kOfxParamPropHint,
-    kOfxParamPropIncrement, kOfxParamPropMax, kOfxParamPropMin, kOfxParamPropParent, kOfxParamPropSecret,
-    kOfxParamPropStringFilePathExists, kOfxParamPropStringMode, kOfxParamStringIsFilePath, kOfxParamStringIsSingleLine,
-    kOfxParamTypeBoolean, kOfxParamTypeChoice, kOfxParamTypeDouble, kOfxParamTypeDouble2D, kOfxParamTypeGroup,
-    kOfxParamTypeInteger, kOfxParamTypePushButton, kOfxParamTypeRGBA, kOfxParamTypeString,
+    kOfxParamHostPropSupportsChoiceAnimation, kOfxParamPropAnimates, kOfxParamPropCanUndo, kOfxParamPropChoiceOption,
+    kOfxParamPropDefault, kOfxParamPropDigits, kOfxParamPropDisplayMax, kOfxParamPropDisplayMin, kOfxParamPropEnabled,
+    kOfxParamPropEvaluateOnChange, kOfxParamPropHint, kOfxParamPropIncrement, kOfxParamPropMax, kOfxParamPropMin,
+    kOfxParamPropParent, kOfxParamPropPersistant, kOfxParamPropSecret, kOfxParamPropStringFilePathExists,
+    kOfxParamPropStringMode, kOfxParamStringIsFilePath, kOfxParamStringIsSingleLine, kOfxParamTypeBoolean,
+    kOfxParamTypeChoice, kOfxParamTypeDouble, kOfxParamTypeDouble2D, kOfxParamTypeGroup, kOfxParamTypeInteger,
+    kOfxParamTypePushButton, kOfxParamTypeRGBA, kOfxParamTypeString,
 };
 use rototoon::scene::effects::{EffectKind, EffectParameter};
 use rototoon::scene::parameters::{self, Kind};
@@ -63,12 +64,14 @@ fn terminated(id: &str) -> Result<CString, Failure> {
 
 fn type_of(kind: &EffectKind) -> &'static CStr {
     match kind {
-        EffectKind::File | EffectKind::Text | EffectKind::Hidden => kOfxParamTypeString,
+        EffectKind::File | EffectKind::Text | EffectKind::Hidden | EffectKind::Shown => kOfxParamTypeString,
         EffectKind::Button => kOfxParamTypePushButton,
         EffectKind::Flag(_) => kOfxParamTypeBoolean,
         EffectKind::Integer(..) | EffectKind::Mark => kOfxParamTypeInteger,
         EffectKind::Number(..) => kOfxParamTypeDouble,
-        EffectKind::Choice(_) | EffectKind::Shared(_) => kOfxParamTypeChoice,
+        EffectKind::Choice(_) | EffectKind::KeyedChoice(_) | EffectKind::Shared(_) | EffectKind::Menu(_) => {
+            kOfxParamTypeChoice
+        }
         EffectKind::Colour(_) => kOfxParamTypeRGBA,
         EffectKind::Pair(_) => kOfxParamTypeDouble2D,
         EffectKind::Group(_) => kOfxParamTypeGroup,
@@ -78,7 +81,7 @@ fn type_of(kind: &EffectKind) -> &'static CStr {
 /// Sets the default, the range and the choices of a parameter.
 fn values(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
     match *kind {
-        EffectKind::File | EffectKind::Text | EffectKind::Hidden => text(kind, properties),
+        EffectKind::File | EffectKind::Text | EffectKind::Hidden | EffectKind::Shown => text(kind, properties),
         EffectKind::Button | EffectKind::Group(_) => Ok(()),
         EffectKind::Flag(default) => properties.set_int(kOfxParamPropDefault, 0, default.into()),
         EffectKind::Mark => mark(properties),
@@ -96,10 +99,16 @@ fn values(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
             properties.set_int(kOfxParamPropDigits, 0, 2)
         }
         EffectKind::Choice(labels) => choice(labels.iter().copied(), 0, properties),
+        EffectKind::KeyedChoice(labels) => {
+            choice(labels.iter().copied(), 0, properties)?;
+            let keys = host::properties()?.int(kOfxParamHostPropSupportsChoiceAnimation, 0);
+            properties.set_int(kOfxParamPropAnimates, 0, keys.is_ok_and(|keys| keys != 0).into())
+        }
         EffectKind::Shared(id) => {
             let (choices, default) = shared(id);
             choice(choices.iter().map(|(_, label)| *label), default, properties)
         }
+        EffectKind::Menu(first) => menu(first, properties),
         EffectKind::Pair(default) => {
             properties.set_doubles(kOfxParamPropDefault, &default)?;
             // Some hosts need a range of every number.
@@ -131,7 +140,24 @@ fn text(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
         return properties.set_int(kOfxParamPropStringFilePathExists, 0, 0);
     }
     properties.set_name(kOfxParamPropStringMode, 0, kOfxParamStringIsSingleLine)?;
-    if *kind == EffectKind::Hidden { properties.set_int(kOfxParamPropSecret, 0, 1) } else { Ok(()) }
+    match kind {
+        EffectKind::Hidden => properties.set_int(kOfxParamPropSecret, 0, 1),
+        EffectKind::Shown => {
+            let _ = properties.set_int(kOfxParamPropEvaluateOnChange, 0, 0);
+            properties.set_int(kOfxParamPropEnabled, 0, 0)
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A choice whose options the effect sets. Hosts in which the options stay as they are described do not show it. It repeats
+/// what a text says, so it is neither stored nor a step of undo. Some hosts do not have these two properties.
+fn menu(first: &str, properties: &Properties) -> Result<(), Failure> {
+    choice([first].into_iter(), 0, properties)?;
+    for name in [kOfxParamPropPersistant, kOfxParamPropCanUndo, kOfxParamPropEvaluateOnChange] {
+        let _ = properties.set_int(name, 0, 0);
+    }
+    properties.set_int(kOfxParamPropSecret, 0, (!host::changes_menus()).into())
 }
 
 fn choice<'a>(labels: impl Iterator<Item = &'a str>, default: i32, properties: &Properties) -> Result<(), Failure> {

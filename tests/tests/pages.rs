@@ -19,6 +19,8 @@ fn values(kind: &EffectKind) -> (String, String) {
         EffectKind::File => ("file".into(), String::new()),
         EffectKind::Text => ("text".into(), "empty".into()),
         EffectKind::Hidden => ("text, hidden".into(), "empty".into()),
+        EffectKind::Shown => ("text, set by the node".into(), "empty".into()),
+        EffectKind::Menu(first) => (format!("{first}, or a part"), first.into()),
         EffectKind::Button => ("button".into(), String::new()),
         EffectKind::Flag(default) => ("on or off".into(), if default { "on" } else { "off" }.into()),
         EffectKind::Integer(default, [low, high], _) => {
@@ -26,7 +28,9 @@ fn values(kind: &EffectKind) -> (String, String) {
         }
         EffectKind::Mark => ("whole number, set by the node".into(), "0".into()),
         EffectKind::Number(default, [low, high], _) => (format!("number, {}", range(low, high)), default.to_string()),
-        EffectKind::Choice(labels) => (labels.join(", "), labels.first().unwrap_or(&"").to_string()),
+        EffectKind::Choice(labels) | EffectKind::KeyedChoice(labels) => {
+            (labels.join(", "), labels.first().unwrap_or(&"").to_string())
+        }
         EffectKind::Shared(id) => match parameters::find(id).map(|parameter| parameter.kind) {
             Some(Kind::Choice { default, choices }) => {
                 let labels: Vec<&str> = choices.iter().map(|choice| choice.label).collect();

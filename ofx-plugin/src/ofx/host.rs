@@ -21,6 +21,9 @@ use std::ffi::CStr;
 use std::sync::atomic::{AtomicPtr, Ordering};
 use std::sync::{PoisonError, RwLock};
 
+/// A property of Natron's.
+const MENUS: &CStr = c"NatronOfxParamHostPropSupportsDynamicChoices";
+
 static HOST: AtomicPtr<OfxHost> = AtomicPtr::new(std::ptr::null_mut());
 static SUITES: RwLock<Option<Suites>> = RwLock::new(None);
 
@@ -58,7 +61,9 @@ pub fn load() -> Result<(), Failure> {
     let host = HOST.load(Ordering::Acquire);
     // SAFETY: the host calls `setHost` before any action, with a host that lives as long as the plugin is loaded.
     let host = unsafe { host.as_ref() }.ok_or(Failure::Missing("host"))?;
+    // Where one function is null, as in Resolve, the other one may be anything.
     let message = suite::<OfxMessageSuiteV2>(host, kOfxMessageSuite, 2);
+    let message = message.filter(|suite| suite.setPersistentMessage.is_some());
     let v2 = suite(host, kOfxProgressSuite, 2).map(ProgressSuite::V2);
     let suites = Suites {
         property: suite(host, kOfxPropertySuite, 1).ok_or(Failure::Missing("property suite"))?,
@@ -105,6 +110,14 @@ pub fn properties() -> Result<Properties<'static>, Failure> {
 pub fn tiles() -> bool {
     let tiles = properties().and_then(|host| host.int(kOfxImageEffectPropSupportsTiles, 0));
     !tiles.is_ok_and(|tiles| tiles == 0)
+}
+
+/// Whether an effect may change the options of a choice after it is described. Natron says so. Of Nuke and Resolve it is
+/// known that a menu stays as it is described.
+pub fn changes_menus() -> bool {
+    let Ok(host) = properties() else { return false };
+    // Other hosts do not have the property.
+    host.dimension(MENUS).is_ok_and(|count| count > 0) && host.int(MENUS, 0).is_ok_and(|changes| changes != 0)
 }
 
 /// The host's name, such as `uk.co.thefoundry.nuke`.

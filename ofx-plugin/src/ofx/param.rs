@@ -36,6 +36,14 @@ impl<'a> Parameters<'a> {
         Ok(handle)
     }
 
+    /// The properties of a parameter of an instance.
+    pub fn properties(&self, id: &CStr) -> Result<Properties<'a>, Failure> {
+        let mut properties = std::ptr::null_mut();
+        call!(self.suites.parameter, paramGetPropertySet, self.handle(id)?, &mut properties)?;
+        // SAFETY: the property set of a parameter, which lives as long as the instance.
+        Ok(unsafe { Properties::new(properties, self.suites.property) })
+    }
+
     /// The value of a number at a time.
     pub fn double(&self, id: &CStr, time: f64) -> Result<f64, Failure> {
         let mut value = 0.0f64;

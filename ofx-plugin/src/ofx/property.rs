@@ -118,6 +118,11 @@ impl<'a> Properties<'a> {
         Ok(count)
     }
 
+    /// Gives a property its default: those with any number of values become empty.
+    pub fn reset(&self, name: &CStr) -> Result<(), Failure> {
+        call!(self.suite, propReset, self.handle()?, name.as_ptr())
+    }
+
     /// Sets a whole number.
     pub fn set_int(&self, name: &CStr, index: i32, value: i32) -> Result<(), Failure> {
         call!(self.suite, propSetInt, self.handle()?, name.as_ptr(), index, value)

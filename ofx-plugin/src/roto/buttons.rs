@@ -3,7 +3,7 @@
 //! Only changes by the user are handled. Each value that the plugin sets itself is reported as a change too.
 
 use super::instance::ORIGIN;
-use super::{edits, fresh, instance, marks, page, stored, taking_out, track, visits};
+use super::{edits, fresh, instance, listing, marks, page, stored, taking_out, track, visits};
 use crate::description::SOURCE;
 use crate::ofx::entry::Action;
 use crate::ofx::{Effect, Failure};
@@ -30,6 +30,10 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
     if is(kOfxTypeClip, &kind) && is(SOURCE, &name) {
         instance(effect)?.keep_film(None);
     }
+    if ["document", "part", "project"].contains(&name.as_str()) {
+        // Undo changes these too, and hosts differ in whom they name as the one who did it.
+        listing::refresh(effect);
+    }
     if !is(kOfxChangeUserEdited, &reason) {
         return Err(Failure::Default);
     }
@@ -46,10 +50,15 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
         "save" => save(effect),
         "track" => track::track(effect, time),
         "newPart" | "newKey" | "deleteKey" | "insertPoints" | "deletePoints" | "smoothPoints" | "deletePart"
-        | "featherPoints" | "hideHere" | "hideStretch" | "nearer" | "farther" => edits::press(effect, &name, time),
+        | "featherPoints" | "hideHere" | "hideStretch" | "nearer" | "farther" | "moveToPlace" => {
+            edits::press(effect, &name, time)
+        }
+        "rename" => edits::rename(effect, time),
         "previousLost" | "nextLost" | "weakest" => visits::go(effect, &name, time),
         "frameOffset" => marks::moved(effect),
         "part" => edits::select(effect, effect.parameters()?.text(c"part")?.trim()),
+        "partList" => listing::chosen(effect),
+        "previousPart" | "nextPart" => listing::step(effect, name == "nextPart"),
         "live" => {
             instance(effect)?.keep_film(None);
             Ok(())

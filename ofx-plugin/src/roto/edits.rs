@@ -1,15 +1,19 @@
 //! Stores edits and selections in the host's parameters, each as one step of the host's undo.
 
-use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change, order};
+use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change, naming, order};
 use super::parts::selected;
 use super::settings::Settings;
 use super::state::State;
-use super::{fresh, instance, marks, page, stored, track};
+use super::{fresh, instance, listing, marks, page, stored, track};
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::geometry::Point;
 use rototoon::project::Document;
 use rototoon::scene::FrameNumber;
+use std::ffi::CStr;
 use std::sync::Arc;
+
+/// The parameters that name parts in lists.
+const LISTS: [&CStr; 5] = [c"parts", c"redParts", c"greenParts", c"blueParts", c"alphaParts"];
 
 /// Whether the pen must not change a part.
 pub fn is_locked(parameters: &Parameters, state: &State, name: &str) -> bool {
@@ -38,7 +42,7 @@ pub fn store(effect: &Effect, label: &str, mut document: Document, live: Option<
         state.note_tracked(tracked.iter().map(|&part| &followed.scene.parts[part]));
         document = followed;
     }
-    write(&parameters, label, Some(&document), state, &page)
+    write(effect, label, &document, state, &page)
 }
 
 /// Stores a tracked document.
@@ -47,7 +51,7 @@ pub fn store_tracked(effect: &Effect, document: &Document, tracked: &[usize]) ->
     let mut state = State::clone(&*instance.state(&parameters)?);
     state.note_tracked(tracked.iter().map(|&part| &document.scene.parts[part]));
     let page = state.page.clone();
-    write(&parameters, "Track", Some(document), state, &page)
+    write(effect, "Track", document, state, &page)
 }
 
 /// Stores a document that replaces the composition's, with its parts' settings where the names are the same.
@@ -57,28 +61,27 @@ pub fn store_loaded(effect: &Effect, document: &Document) -> Result<(), Failure>
     let page = state.page.clone();
     state.tracked.clear();
     state.keep_only(&document.scene.parts);
-    write(&parameters, "Load project", Some(document), state, &page)
+    write(effect, "Load project", document, state, &page)
 }
 
-fn write(
-    parameters: &Parameters,
-    label: &str,
-    document: Option<&Document>,
-    state: State,
-    page: &str,
-) -> Result<(), Failure> {
-    parameters.edit(label, || {
-        if let Some(document) = document {
-            parameters.set_text(c"document", &stored::encode(&document.to_json()))?;
-            marks::set(parameters, document);
-        }
-        if state.page != page {
-            // The part of the page is gone.
-            page::show(parameters, &state.parts.get(&state.page).cloned().unwrap_or_default())?;
-            parameters.set_text(c"part", &state.page)?;
-        }
-        parameters.set_text(c"state", &if state == State::default() { String::new() } else { state.to_text() })
-    })
+fn write(effect: &Effect, label: &str, document: &Document, state: State, page: &str) -> Result<(), Failure> {
+    let parameters = effect.parameters()?;
+    parameters.edit(label, || put(&parameters, document, state, page))?;
+    listing::refresh(effect);
+    Ok(())
+}
+
+/// Puts a document and a state into the parameters, within an edit. `page` is the part that the page shows.
+fn put(parameters: &Parameters, document: &Document, state: State, page: &str) -> Result<(), Failure> {
+    parameters.set_text(c"document", &stored::encode(&document.to_json()))?;
+    parameters.set_text(c"partNames", &listing::text(document))?;
+    marks::set(parameters, document);
+    if state.page != page {
+        // The part of the page is gone, or has another name.
+        page::show(parameters, &state.parts.get(&state.page).cloned().unwrap_or_default())?;
+        parameters.set_text(c"part", &state.page)?;
+    }
+    parameters.set_text(c"state", &if state == State::default() { String::new() } else { state.to_text() })
 }
 
 /// Selects a part by name: the page shows its settings, and what is drawn becomes its key. An empty name selects none.
@@ -93,7 +96,9 @@ pub fn select(effect: &Effect, name: &str) -> Result<(), Failure> {
         page::turn(&parameters, &mut state, if known { name } else { "" })?;
         parameters.set_text(c"part", name)?;
         parameters.set_text(c"state", &if state == State::default() { String::new() } else { state.to_text() })
-    })
+    })?;
+    listing::refresh(effect);
+    Ok(())
 }
 
 /// A parameter of the page has been changed by the user.
@@ -115,6 +120,8 @@ struct Bench {
     parts: Vec<usize>,
     /// Index of the part that is named in Part.
     chosen: Option<usize>,
+    /// The number in Place.
+    place: usize,
 }
 
 impl Bench {
@@ -140,7 +147,8 @@ impl Bench {
             let name = &document.scene.parts[part].name;
             return Err(Failure::Told(format!("{name:?} is locked or not among Parts")));
         }
-        Ok(Self { document, frame, parts, chosen })
+        let place = usize::try_from(parameters.int(c"place", time)?).unwrap_or(1);
+        Ok(Self { document, frame, parts, chosen, place })
     }
 
     fn work(&self) -> Work<'_> {
@@ -192,6 +200,34 @@ pub fn press(effect: &Effect, name: &str, time: f64) -> Result<(), Failure> {
     }
 }
 
+/// Gives the selected part the name in New name: in the document, in its settings, and in the lists of parts.
+pub fn rename(effect: &Effect, time: f64) -> Result<(), Failure> {
+    let (instance, parameters) = (instance(effect)?, effect.parameters()?);
+    let new = parameters.text(c"newName")?;
+    let new = new.trim();
+    let bench = Bench::of(effect, time)?;
+    let mut document = Document::clone(&bench.document);
+    let old = bench.chosen().and_then(|part| {
+        let old = document.scene.parts[part].name.clone();
+        naming::rename(&mut document, part, new).map(|()| old)
+    });
+    let old = old.map_err(|refused| Failure::Told(refused.0))?;
+    let mut state = State::clone(&*instance.state(&parameters)?);
+    // Keys that the user has moved in the host's own editor are on the page only.
+    page::stored(&parameters, &mut state)?;
+    let page = state.page.clone();
+    state.rename(&old, new);
+    parameters.edit("Rename part", || {
+        for list in LISTS {
+            parameters.set_text(list, &naming::in_list(&parameters.text(list)?, &old, new))?;
+        }
+        parameters.set_text(c"part", new)?;
+        put(&parameters, &document, state, &page)
+    })?;
+    listing::refresh(effect);
+    Ok(())
+}
+
 fn refused(text: &str) -> Outcome {
     Outcome::Refused(Refused(text.into()))
 }
@@ -217,6 +253,11 @@ fn on_parts(bench: &Bench, name: &str) -> Outcome {
                 .chosen()
                 .and_then(|part| absence::toggle(&mut document, part, bench.frame, name == "hideStretch"))
                 .map(|()| true),
+        ),
+        "moveToPlace" => (
+            "Order of parts",
+            "the part is at this place already",
+            bench.chosen().and_then(|part| order::move_to(&mut document, part, bench.place)),
         ),
         "nearer" | "farther" => (
             "Order of parts",

@@ -29,6 +29,7 @@ pub struct Instance {
     editor: Mutex<Editor>,
     film: Mutex<Option<Arc<Film>>>,
     following: AtomicBool,
+    menu: Mutex<Vec<String>>,
 }
 
 /// A document, or why it could not be read.
@@ -135,6 +136,21 @@ impl Instance {
     /// Whether an edit is being followed. A host may send events of the pen while it shows the progress.
     pub fn is_following(&self) -> bool {
         self.following.load(Ordering::Acquire)
+    }
+
+    /// Notes the names in the menu of the parts. Returns whether they are others than before.
+    pub fn replace_menu(&self, names: &[&str]) -> bool {
+        let mut menu = lock(&self.menu);
+        let same = menu[..] == *names;
+        if !same {
+            *menu = names.iter().map(|name| (*name).to_owned()).collect();
+        }
+        !same
+    }
+
+    /// A name in the menu of the parts.
+    pub fn menu(&self, index: usize) -> Option<String> {
+        lock(&self.menu).get(index).cloned()
     }
 
     /// Removes the messages, because the user has changed something and they may no longer be true.

@@ -18,6 +18,7 @@
 //! - [`edit`]: what the pen does to a selection and a document, without a host
 //! - [`edits`]: stores edits and selections in the host's parameters; [`fresh`]: the document of a new composition
 //! - [`state`]: the settings of parts, and what tracks were made from; [`page`]: the settings of one part as parameters
+//! - [`listing`]: the list of the parts
 //! - [`buttons`]: the buttons
 //! - [`standing`]: whether a part is lost, doubtful or hidden on a frame; [`marks`]: shows it in the host's timeline;
 //!   [`visits`]: goes to such frames
@@ -33,6 +34,7 @@ pub mod edits;
 pub mod fresh;
 pub mod id_files;
 pub mod instance;
+pub mod listing;
 pub mod marks;
 pub mod measured;
 pub mod mixing;
@@ -106,7 +108,9 @@ fn instance<'a>(effect: &Effect<'a>) -> Result<&'a Instance, Failure> {
 }
 
 fn create(action: &Action) -> Result<(), Failure> {
-    action.effect.set_data(Box::new(Instance::default()))
+    action.effect.set_data(Box::new(Instance::default()))?;
+    listing::refresh(&action.effect);
+    Ok(())
 }
 
 #[allow(unsafe_code, reason = "the data of an instance is a pointer that the host keeps")]

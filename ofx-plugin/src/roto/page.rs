@@ -15,13 +15,15 @@ pub const IDS: [&CStr; 7] =
 pub fn read(parameters: &Parameters) -> Result<PartSettings, Failure> {
     let flag = |id| curve(parameters, id, &|time| parameters.int(id, time).map(f64::from));
     let number = |id| curve(parameters, id, &|time| parameters.double(id, time));
+    let modes = flag(c"partMode")?;
     Ok(PartSettings {
         on: flag(c"partOn")?,
         invert: flag(c"partInvert")?,
         opacity: number(c"partOpacity")?,
         grow: number(c"partGrow")?,
         feather: number(c"partFeather")?,
-        mode: parameters.int(c"partMode", 0.0)?.max(0) as usize,
+        mode: modes.at(f64::NEG_INFINITY).max(0.0) as usize,
+        modes: (!modes.keys.is_empty()).then_some(modes),
         lock: parameters.int(c"partLock", 0.0)? != 0,
     })
 }
@@ -55,7 +57,11 @@ pub fn show(parameters: &Parameters, settings: &PartSettings) -> Result<(), Fail
             parameters.set_double_at(id, time, value)
         })?;
     }
-    parameters.set_int(c"partMode", i32::try_from(settings.mode).unwrap_or(0))?;
+    let whole = |value: f64| value.max(0.0) as i32;
+    let modes = settings.modes.clone().unwrap_or_else(|| Curve::still(settings.mode as f64));
+    set(parameters, c"partMode", &modes, &|value| parameters.set_int(c"partMode", whole(value)), &|time, value| {
+        parameters.set_int_at(c"partMode", time, whole(value))
+    })?;
     parameters.set_int(c"partLock", settings.lock.into())
 }
 

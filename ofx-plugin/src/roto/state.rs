@@ -48,16 +48,25 @@ impl Curve {
 
     /// The value at a time: that of the frame, linear between frames, constant beyond the first and last one.
     pub fn at(&self, time: f64) -> f64 {
-        let Some(last) = self.frames.len().checked_sub(1) else {
-            return self.keys.first().map_or(self.value, |key| key[1]);
-        };
-        let place = (time - f64::from(self.first)).clamp(0.0, last as f64);
-        if place.is_nan() {
-            return self.value;
-        }
-        let (before, share) = (place.floor() as usize, place.fract());
-        let after = self.frames[(before + 1).min(last)];
+        let Some((before, share)) = self.place(time) else { return self.without_frames(time) };
+        let after = self.frames[(before + 1).min(self.frames.len() - 1)];
         self.frames[before] + share * (after - self.frames[before])
+    }
+
+    /// The value at a time, held from frame to frame.
+    pub fn held(&self, time: f64) -> f64 {
+        self.place(time).map_or_else(|| self.without_frames(time), |(before, _)| self.frames[before])
+    }
+
+    /// Index of the frame at or before a time, and the share of the way to the next one.
+    fn place(&self, time: f64) -> Option<(usize, f64)> {
+        let last = self.frames.len().checked_sub(1)?;
+        let place = (time - f64::from(self.first)).clamp(0.0, last as f64);
+        (!place.is_nan()).then(|| (place.floor() as usize, place.fract()))
+    }
+
+    fn without_frames(&self, time: f64) -> f64 {
+        self.keys.first().filter(|_| !time.is_nan()).map_or(self.value, |key| key[1])
     }
 }
 
@@ -75,8 +84,11 @@ pub struct PartSettings {
     pub grow: Curve,
     /// Pixels over which the border fades.
     pub feather: Curve,
-    /// Index of the blend mode in [`Blend::ALL`].
+    /// Index of the blend mode in [`Blend::ALL`], where it has no keys.
     pub mode: usize,
+    /// The index at each time, if it has keys. Earlier versions keep to the mode without keys.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub modes: Option<Curve>,
     /// Whether the pen cannot change the part.
     pub lock: bool,
 }
@@ -90,6 +102,7 @@ impl Default for PartSettings {
             grow: Curve::still(0.0),
             feather: Curve::still(0.0),
             mode: 0,
+            modes: None,
             lock: false,
         }
     }
@@ -134,7 +147,7 @@ impl PartSettings {
             opacity: self.opacity.at(time).clamp(0.0, 1.0),
             grow: self.grow.at(time),
             feather: self.feather.at(time).max(0.0),
-            blend: blend(self.mode),
+            blend: blend(self.modes.as_ref().map_or(self.mode, |modes| modes.held(time).max(0.0) as usize)),
         }
     }
 }
@@ -233,6 +246,19 @@ impl State {
         }
     }
 
+    /// Gives what belongs to a part to its new name.
+    pub fn rename(&mut self, old: &str, new: &str) {
+        if let Some(settings) = self.parts.remove(old) {
+            self.parts.insert(new.to_owned(), settings);
+        }
+        if let Some(sum) = self.tracked.remove(old) {
+            self.tracked.insert(new.to_owned(), sum);
+        }
+        if self.page == old {
+            new.clone_into(&mut self.page);
+        }
+    }
+
     /// Drops what belongs to parts that are gone.
     pub fn keep_only(&mut self, parts: &[Part]) {
         let known = |name: &String| parts.iter().any(|part| part.name == *name);
@@ -291,6 +317,7 @@ mod tests {
             assert!((curve.at(time) - value).abs() < 1e-12, "{time}");
         }
         assert_eq!(Curve::still(0.25).at(7.0), 0.25);
+        assert_eq!([-5.0, 3.0, 3.9, 4.0].map(|time| curve.held(time)), [0.0, 0.3, 0.3, 1.0]);
     }
 
     #[test]

@@ -24,6 +24,9 @@ impl Default for ffi::Settings {
             real_scale: 1.0,
             cpus: 1,
             temporal: true,
+            menus: false,
+            choice_keys: true,
+            null_messages: false,
         }
     }
 }
@@ -95,6 +98,12 @@ pub mod ffi {
         cpus: u32,
         /// Whether plugins may ask for images at other times.
         temporal: bool,
+        /// Whether plugins may change the options of a choice, as in Natron.
+        menus: bool,
+        /// Whether choices may have keys.
+        choice_keys: bool,
+        /// Whether the persistent messages are a null and an address of nothing, as in Resolve.
+        null_messages: bool,
     }
 
     /// The images that a clip is connected to.

@@ -107,7 +107,7 @@ struct Controls {
   std::vector<std::string> log, messages;
   std::vector<std::string> missing_suites;
   std::atomic<int> aborts_left{-1}, cancels_left{-1}, live_images{0};
-  std::atomic<bool> no_images{false};
+  std::atomic<bool> no_images{false}, temporal{true}, menus{false}, null_messages{false};
   std::atomic<double> real_scale{1};
   std::atomic<unsigned> cpus{1};
   std::atomic<double> progress{0};
@@ -117,6 +117,8 @@ Controls &controls() {
   static Controls instance;
   return instance;
 }
+
+bool changes_menus() { return controls().menus; }
 
 // Records the library's output to std::cout line by line. Lines of different threads are not mixed.
 class LineLog : public std::streambuf {
@@ -240,6 +242,7 @@ public:
 
 protected:
   void remember() {
+    if (!this->getCanUndo()) return;
     Track before = track;
     history().add([this, before] { track = before; });
   }
@@ -268,7 +271,23 @@ public:
 };
 
 using IntegerParam = WholeParam<ofx::Param::IntegerInstance, int>;
-using ChoiceParam = WholeParam<ofx::Param::ChoiceInstance, int>;
+
+// As in Natron, options are taken away all at once and added one by one at the end, and there is no value without an option.
+class ChoiceParam : public WholeParam<ofx::Param::ChoiceInstance, int> {
+public:
+  using WholeParam::WholeParam;
+  using WholeParam::set;
+  void setOption(int index) override {
+    int count = getProperties().getDimension(kOfxParamPropChoiceOption);
+    bool allowed = changes_menus() && (count == 0 || index == count - 1);
+    if (!allowed) std::cout << "options of a choice: kOfxStatErrUnsupported" << std::endl;
+  }
+  OfxStatus set(int v) override {
+    if (v < 0 || v >= getProperties().getDimension(kOfxParamPropChoiceOption)) return kOfxStatErrBadIndex;
+    return put({double(v)});
+  }
+};
+
 using BooleanParam = WholeParam<ofx::Param::BooleanInstance, bool>;
 
 class DoubleParam : public Keyed<ofx::Param::DoubleInstance> {
@@ -494,6 +513,8 @@ public:
       : Recording(plugin, descriptor, context, false) {}
 
   std::atomic<double> scale{1};
+  // The time of the action.
+  std::atomic<double> now{0};
   double gone_to = NAN;
 
   TestClip *clip(const std::string &name) const { return dynamic_cast<TestClip *>(getClip(name)); }
@@ -573,6 +594,7 @@ const std::string &TestClip::getPremult() const {
 
 fx::Image *TestClip::getImage(OfxTime time, const OfxRectD *region) {
   if (controls().no_images || !settings.connected) return nullptr;
+  if (!controls().temporal && time != effect_->now) return nullptr;
   // A host may give pixels at another scale than it says.
   double scale = effect_->scale * controls().real_scale;
   if (isOutput()) return target ? new FetchedImage(*this, scale, target, pixels(scale)) : nullptr;
@@ -637,6 +659,13 @@ OfxStatus draw_text(OfxDrawContextHandle, const char *text, const OfxPointD *, i
 OfxDrawSuiteV1 draw_suite_v1 = {draw_get_colour, draw_set_colour, draw_set_width,
                                 draw_set_stipple, draw_primitive, draw_text};
 
+// Natron's developers report of Resolve 14 that one function is null, and the other one an address of nothing.
+const OfxMessageSuiteV2 *null_messages() {
+  static OfxMessageSuiteV2 suite = {};
+  suite.clearPersistentMessage = reinterpret_cast<OfxStatus (*)(void *)>(uintptr_t(8));
+  return &suite;
+}
+
 class TestOverlay : public fx::OverlayInteract {
 public:
   explicit TestOverlay(fx::Instance &effect) : OverlayInteract(effect) {}
@@ -670,11 +699,19 @@ public:
     _properties.setIntProperty(kOfxImageEffectPropSupportsMultiResolution, settings.multi_resolution);
     _properties.setIntProperty(kOfxImageEffectPropSupportsTiles, settings.tiles);
     _properties.setIntProperty(kOfxImageEffectPropTemporalClipAccess, settings.temporal);
+    _properties.setIntProperty(kOfxParamHostPropSupportsChoiceAnimation, settings.choice_keys);
+    static const ofx::Property::PropSpec menus[] = {
+        {"NatronOfxParamHostPropSupportsDynamicChoices", ofx::Property::eInt, 1, false, "0"},
+        ofx::Property::propSpecEnd};
+    // Hosts that do not know the property have none.
+    if (settings.menus && !menus_known_) _properties.addProperties(menus), menus_known_ = true;
+    if (menus_known_) _properties.setIntProperty(menus[0].name, settings.menus);
   }
   const void *fetchSuite(const char *name, int version) override {
     for (const std::string &missing : controls().missing_suites)
       if (missing == name || missing == std::string(name) + "/" + std::to_string(version)) return nullptr;
     if (strcmp(name, kOfxDrawSuite) == 0) return version == 1 ? &draw_suite_v1 : nullptr;
+    if (strcmp(name, kOfxMessageSuite) == 0 && version == 2 && controls().null_messages) return null_messages();
     return fx::Host::fetchSuite(name, version);
   }
   fx::Instance *newInstance(void *, fx::ImageEffectPlugin *plugin, fx::Descriptor &descriptor,
@@ -721,6 +758,7 @@ public:
   OfxStatus mutexTryLock(const OfxMutexHandle m) override { return held(m)->try_lock() ? kOfxStatOK : kOfxStatFailed; }
 
 private:
+  bool menus_known_ = false;
   static std::recursive_mutex *held(OfxMutexHandle m) { return reinterpret_cast<std::recursive_mutex *>(m); }
   static thread_local bool spawned_;
   static thread_local unsigned index_;
@@ -795,6 +833,9 @@ void configure(const Settings &settings) {
   controls().no_images = settings.no_images;
   controls().real_scale = settings.real_scale;
   controls().cpus = settings.cpus;
+  controls().menus = settings.menus;
+  controls().temporal = settings.temporal;
+  controls().null_messages = settings.null_messages;
   controls().progress = 0;
 }
 
@@ -852,7 +893,7 @@ rust::String Effect::preferences() {
 rust::String Effect::render(double time, const Bounds &bounds, double scale, int threads, int tile_rows) {
   TestEffect *effect = impl->effect.get();
   TestClip *out = effect->clip("Output");
-  effect->scale = scale;
+  effect->scale = scale, effect->now = time;
   OfxPointD scales = {scale, scale};
   OfxRectI window = rect(bounds), larger = window;
   int margin = out->settings.margin;
@@ -1007,6 +1048,7 @@ rust::String Effect::text(rust::Str name) const {
 
 rust::String Effect::changed(rust::Str name, rust::Str reason, double time) {
   std::string why = text_of(reason);
+  impl->effect->now = time;
   impl->effect->beginInstanceChangedAction(why);
   OfxStatus status = impl->effect->paramInstanceChangedAction(text_of(name), why, time, {1, 1});
   impl->effect->endInstanceChangedAction(why);

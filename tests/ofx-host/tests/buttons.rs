@@ -207,6 +207,20 @@ fn tracking_errors_are_reported() {
     assert_eq!(host.live_images(), 0);
 }
 
+#[test]
+fn a_host_that_gives_no_other_frames_is_told_so_and_nothing_changes() {
+    let host = host();
+    host.configure(&Settings { temporal: false, ..Settings::default() });
+    let mut effect = tracked(&host, false);
+    let before = (effect.text("document"), effect.text("state"), effect.history().len());
+    assert_eq!(effect.press_at("track", 102.0), "kOfxStatFailed");
+    let told = host.messages().join("");
+    assert!(told.contains("Source") && told.contains("no image"), "{told}");
+    assert!((effect.text("document"), effect.text("state"), effect.history().len()) == before);
+    assert_eq!(host.live_images(), 0);
+    host.configure(&Settings::default());
+}
+
 fn effect_without_source(host: &Host) -> Effect<'_> {
     effect(host, crate::common::GENERAL, &ClipSettings { connected: false, ..ClipSettings::default() })
 }

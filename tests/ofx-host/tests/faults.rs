@@ -1,8 +1,8 @@
 //! Faults that were seen in real hosts.
 
 use crate::common::{
-    CUTOUT, FILTER, HEIGHT, IDS, MATTE, OK, ROTO, WHOLE, WIDTH, clean, document, effect, footage, host, p, part,
-    pattern, rendered, scene,
+    CUTOUT, FILTER, HEIGHT, IDS, MATTE, OK, ROTO, WHOLE, WIDTH, bundles, clean, document, effect, footage, host, p,
+    part, pattern, rendered, scene,
 };
 use rototoon::project::Document;
 use rototoon::render;
@@ -179,4 +179,27 @@ fn a_smaller_source_in_a_host_of_one_size_fills_the_picture() {
     let whole: f32 = render::matte(&scene(), 2, None).data().iter().sum();
     assert!((one - whole).abs() < 0.01 * whole, "all of the figure, at half the size, in four channels: {one} {whole}");
     assert!(many != one);
+}
+
+#[test]
+fn persistent_messages_that_are_null_are_not_called() {
+    let mut host = host();
+    for name in ["DaVinciResolveLite", "a host of the future"] {
+        host.configure(&Settings { name: name.into(), null_messages: true, ..Settings::default() });
+        host.reload(bundles());
+        let mut effect = effect(&host, FILTER, &ClipSettings::default());
+        let wanted = rendered(&host, &mut effect, 2.0, WHOLE);
+        // A message about the picture, which the next change would clear.
+        effect.set_text("document", "nonsense");
+        assert_eq!(effect.render(2.0, WHOLE, 1.0, 1, 0), "kOfxStatFailed", "{name}");
+        effect.set_text("document", &document());
+        let _ = host.errors();
+        assert!(rendered(&host, &mut effect, 2.0, WHOLE) == wanted, "{name}");
+        // Buttons have the first version of the suite.
+        assert_eq!(effect.press("save"), "kOfxStatFailed", "{name}");
+        assert!(host.messages().join("").contains("choose a project file"), "{name}");
+        let _ = host.errors();
+    }
+    host.configure(&Settings::default());
+    host.reload(bundles());
 }

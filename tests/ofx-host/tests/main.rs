@@ -11,6 +11,7 @@
 //! - `node`: settings of parts, channels, masks, regions, motion and export
 //! - `feather`: the feather of control points
 //! - `order`: parts nearer and farther
+//! - `listing`: the menu of the parts, buttons that go from part to part, and their names
 //! - `matrix`: what hosts do, with each output
 //! - `lives`: instances on several threads, at other places and of other versions
 //! - `page`: the documentation lists the matrix's tests
@@ -25,6 +26,7 @@ mod describing;
 mod faults;
 mod feather;
 mod lines;
+mod listing;
 mod lives;
 mod matrix;
 mod node;

@@ -218,7 +218,7 @@ fn documents_cut_short_or_huge_are_told() {
         assert_eq!(effect.text("document"), text[..length]);
     }
     let _ = host.log();
-    let many = 1500;
+    let many = 1900;
     let dense = |k: usize| {
         move |f: f64| {
             (0..400)
@@ -233,7 +233,7 @@ fn documents_cut_short_or_huge_are_told() {
     };
     let parts = (0..many).map(|k| part(&format!("größe {k} 顔"), k as f64, true, dense(k))).collect();
     let large = Document::new(Scene { footage: footage(), parts }).to_json();
-    assert!(large.len() > 40_000_000, "{}", large.len());
+    assert!(large.len() > 50_000_000, "{}", large.len());
     let mut effect = chosen(&host, FILTER, &ClipSettings::default(), MATTE);
     effect.set_text("document", &large);
     let window = Bounds { x1: 0, y1: 0, x2: WIDTH as i32, y2: HEIGHT as i32 };

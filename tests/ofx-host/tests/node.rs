@@ -1,8 +1,8 @@
 //! Tests of what a roto node has: settings of parts, channels, masks, regions, motion and export.
 
 use crate::common::{
-    CUTOUT, FILTER, GENERAL, HEIGHT, MATTE, MATTES, OK, WHOLE, WIDTH, clean, effect, footage, host, kept, p, part,
-    pattern, rendered,
+    CUTOUT, FILTER, GENERAL, HEIGHT, MATTE, MATTES, OK, WHOLE, WIDTH, bundles, clean, effect, footage, host, kept, p,
+    part, pattern, rendered,
 };
 use rototoon::geometry::Point;
 use rototoon::project::Document;
@@ -88,6 +88,36 @@ fn settings_of_parts_are_animated_by_the_hosts_keys() {
     effect.undo();
     assert_eq!((effect.text("state").len() > 20, effect.get("partOpacity", 2.0)), (true, vec![0.25]));
     assert_eq!(faded(&host, &mut effect), [0.0, 0.25, 0.5, 1.0]);
+}
+
+#[test]
+fn the_mode_of_a_part_has_keys_where_the_host_has_them_for_choices() {
+    let mut host = host();
+    for (choice_keys, said) in [(true, "1"), (false, "0")] {
+        host.configure(&Settings { choice_keys, ..Settings::default() });
+        host.reload(bundles());
+        let effect = node(&host, FILTER);
+        assert_eq!(effect.parameter_property("partMode", "OfxParamPropAnimates", 0), said);
+        assert_eq!(effect.parameter_property("output", "OfxParamPropAnimates", 0), "0");
+    }
+    let mut effect = node(&host, FILTER);
+    effect.set_text("part", "right");
+    // Added, and subtracted from frame 2 on.
+    effect.set_at("partMode", 1.0, &[0.0]);
+    effect.set_at("partMode", 2.0, &[1.0]);
+    let cut = |host: &Host, effect: &mut Effect| [0.0, 1.0, 2.0, 4.0].map(|time| shown(host, effect, time)[34]);
+    assert_eq!(cut(&host, &mut effect), [1.0, 1.0, 0.0, 0.0]);
+    // The keys stay with the part, and come back.
+    effect.set_text("part", "left");
+    assert_eq!(effect.keys("partMode"), []);
+    assert_eq!(cut(&host, &mut effect), [1.0, 1.0, 0.0, 0.0]);
+    effect.set_text("part", "right");
+    assert_eq!(effect.keys("partMode"), [(1.0, vec![0.0]), (2.0, vec![1.0])]);
+    assert_eq!(cut(&host, &mut effect), [1.0, 1.0, 0.0, 0.0]);
+    clean(&host);
+    drop(effect);
+    host.configure(&Settings::default());
+    host.reload(bundles());
 }
 
 #[test]

@@ -13,6 +13,7 @@ const KEY: &str = "OfxInteractActionKeyDown";
 const NOT_OURS: &str = "kOfxStatReplyDefault";
 /// Indices of the parameter Tool.
 const CONTOUR: f64 = 1.0;
+const FREEHAND: f64 = 2.0;
 const OFF: f64 = 3.0;
 const DELETE: i32 = 0xffff;
 const ENTER: i32 = 0xff0d;
@@ -184,6 +185,69 @@ fn a_composition_without_a_document_is_drawn_on() {
     effect.undo();
     effect.undo();
     assert_eq!(effect.text("document"), "");
+}
+
+/// Places of the handles around the selection: first that which rotates, then from the upper left corner clockwise.
+fn handles(effect: &mut Effect, time: f64) -> Vec<Point> {
+    assert_eq!(effect.overlay(DRAW, true, time, [0.0; 2], 0.1), OK);
+    let yellow = |colour: &[f32; 5]| colour[..3] == [1.0, 0.85, 0.2];
+    let lines = effect.drawn().into_iter().zip(effect.drawn_colours());
+    let squares =
+        lines.filter(|((closed, points), colour)| *closed && yellow(colour) && points[1][0] - points[0][0] < 1.0);
+    let middle = |points: Vec<[f64; 2]>| {
+        let [x, y] = [0, 1].map(|axis| points.iter().map(|p| p[axis]).sum::<f64>() / 4.0);
+        Point::new(x, HEIGHT as f64 - y)
+    };
+    squares.map(|((_, points), _)| middle(points)).collect()
+}
+
+fn reach(points: &[Point]) -> [Point; 2] {
+    [points.iter().copied().fold(Point::MAX, Point::min), points.iter().copied().fold(Point::MIN, Point::max)]
+}
+
+#[test]
+fn a_freehand_stroke_is_a_contour_and_handles_scale_and_rotate_it() {
+    let host = host();
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    effect.set("tool", &[FREEHAND]);
+    effect.set_text("part", "egg");
+    let on = |k: i32| {
+        Point::new(30.0, 24.0) + Point::from_angle(std::f64::consts::TAU * f64::from(k) / 90.0) * Point::new(12.0, 8.0)
+    };
+    assert_eq!(effect.overlay(DOWN, true, 3.0, shown(on(0)), 0.1), OK);
+    for k in 1..90 {
+        assert_eq!(effect.overlay(MOVE, true, 3.0, shown(on(k)), 0.1), OK);
+    }
+    assert_eq!(effect.overlay(UP, true, 3.0, shown(on(90)), 0.1), OK, "{:?}", host.messages());
+    let egg = |effect: &Effect| kept(effect).scene.parts[3].keys[&3].clone();
+    let drawn = egg(&effect);
+    assert!((6..60).contains(&drawn.len()), "{}", drawn.len());
+    let off = |p: &Point| (((*p - Point::new(30.0, 24.0)) / Point::new(12.0, 8.0)).length() - 1.0).abs();
+    assert!(drawn.iter().map(off).fold(0.0, f64::max) < 0.05);
+    // The upper right corner scales about the lower left one.
+    effect.set("tool", &[0.0]);
+    let places = handles(&mut effect, 3.0);
+    assert_eq!(places.len(), 9);
+    assert_eq!(drag(&mut effect, 3.0, places[3], places[3] + Point::new(6.0, -4.0)), [OK; 3]);
+    let ([least, most], [low, high]) = (reach(&egg(&effect)), reach(&drawn));
+    let kept_corner = (least.x - low.x).abs() + (most.y - high.y).abs();
+    assert!(
+        kept_corner < 1e-3 && (most.x - high.x - 6.0).abs() < 0.8 && (low.y - least.y - 4.0).abs() < 0.8,
+        "{least} {most}"
+    );
+    // A quarter of a turn with the handle above: width and height change places.
+    let (before, places) = (egg(&effect), handles(&mut effect, 3.0));
+    let middle = (places[1] + places[5]) * 0.5;
+    let arm = middle.y - places[0].y;
+    assert_eq!(drag(&mut effect, 3.0, places[0], middle + Point::new(arm, 0.0)), [OK; 3]);
+    let size = |points: &[Point]| reach(points)[1] - reach(points)[0];
+    let (was, now) = (size(&before), size(&egg(&effect)));
+    assert!((was.x - now.y).abs() + (was.y - now.x).abs() < 1e-2, "{was} {now}");
+    let labels = effect.history();
+    assert_eq!(labels.iter().filter(|label| *label == "Transform points").count(), 2, "{labels:?}");
+    effect.undo();
+    assert_eq!(egg(&effect), before);
+    clean(&host);
 }
 
 #[test]

@@ -140,18 +140,23 @@ pub fn delete_key(document: &mut Document, frame: FrameNumber, parts: &[usize]) 
 pub fn delete_part(document: &mut Document, part: usize) -> Result<(), Refused> {
     let name = document.scene.parts.get(part).map(|part| part.name.clone());
     let name = name.ok_or_else(|| Refused::new("the part is gone"))?;
+    if has_limbs(document, &name)? {
+        return Err(Refused::new(format!("limbs of the project are bound to {name:?}: delete them in Blender first")));
+    }
+    document.scene.parts.remove(part);
+    Ok(())
+}
+
+/// Whether limbs of the project name a part.
+pub fn has_limbs(document: &Document, name: &str) -> Result<bool, Refused> {
     let limbs = document.limbs().map_err(|error| Refused::new(error.to_string()))?;
     let bound = |limb: &Limb| {
         limb.carries.iter().any(|carried| carried.part == name)
             || [&limb.start, &limb.end].iter().any(|end| end.points.iter().any(|point| point.part == name))
     };
     let follows = limbs.marks.iter().any(|mark| mark.front == name || mark.behind == name)
-        || limbs.follows.iter().any(|(part, what)| *part == name || *what == Follow::Part(name.clone()));
-    if limbs.limbs.iter().any(bound) || follows {
-        return Err(Refused::new(format!("limbs of the project are bound to {name:?}: delete them in Blender first")));
-    }
-    document.scene.parts.remove(part);
-    Ok(())
+        || limbs.follows.iter().any(|(part, what)| *part == name || *what == Follow::Part(name.to_owned()));
+    Ok(limbs.limbs.iter().any(bound) || follows)
 }
 
 /// Moves points on a frame halfway towards the middle of their neighbours. Ends of open contours stay.

@@ -7,6 +7,7 @@
 //! - [`change`]: moves points, makes and deletes keys
 //! - [`absence`]: marks parts as hidden
 //! - [`feather`]: gives points a feather
+//! - [`naming`]: gives a part another name
 //! - [`order`]: brings parts nearer or farther away
 //! - [`points`]: inserts and deletes points
 //! - [`contour`]: makes keys of drawn contours
@@ -25,6 +26,7 @@ pub mod feather;
 pub mod handles;
 mod hit;
 mod lens;
+pub mod naming;
 pub mod order;
 pub mod points;
 mod selection;

@@ -52,6 +52,18 @@ pub fn shift(document: &mut Document, part: usize, nearer: bool) -> Result<(), R
     Ok(())
 }
 
+/// Moves a part to a place in the picture's order, counted from the nearest part, which has place 1. Returns whether it moved.
+pub fn move_to(document: &mut Document, part: usize, place: usize) -> Result<bool, Refused> {
+    let count = document.scene.parts.len();
+    let wanted = count.saturating_sub(place.clamp(1, count.max(1)));
+    let now = farthest_first(&document.scene).iter().position(|&k| k == part);
+    let now = now.ok_or_else(|| Refused::new("the part is gone"))?;
+    for _ in 0..now.abs_diff(wanted) {
+        shift(document, part, wanted > now)?;
+    }
+    Ok(now != wanted)
+}
+
 /// A depth between two: a whole number if there is one.
 fn between(a: f64, b: f64) -> f64 {
     let middle = 0.5 * (a + b);
@@ -122,6 +134,22 @@ mod tests {
         assert_eq!(document.scene.parts[0].depths, [(3, -7.0), (4, 0.0), (5, 3.0)].into());
         shift(&mut document, 1, false).unwrap();
         assert_eq!(farthest_first(&document.scene), [0, 1, 2, 3]);
+    }
+
+    #[test]
+    fn a_part_moves_to_a_place_counted_from_the_nearest() {
+        let mut document = document(&[0.0, 0.0, 2.0, 5.0]);
+        for (part, place, moved, order) in [
+            (0, 1, true, [1, 2, 3, 0]),
+            (0, 1, false, [1, 2, 3, 0]),
+            (3, 4, true, [3, 1, 2, 0]),
+            (1, 2, true, [3, 2, 1, 0]),
+            (1, 99, true, [1, 3, 2, 0]),
+        ] {
+            assert_eq!(move_to(&mut document, part, place).unwrap(), moved);
+            assert_eq!(farthest_first(&document.scene), order, "{part} to {place}");
+        }
+        assert!(move_to(&mut document, 9, 1).is_err());
     }
 
     #[test]

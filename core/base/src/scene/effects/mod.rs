@@ -18,6 +18,8 @@ pub enum EffectKind {
     Text,
     /// Text that the user does not see.
     Hidden,
+    /// A line of text that the effect sets and the user reads. The picture does not depend on it.
+    Shown,
     /// A button.
     Button,
     /// On or off.
@@ -31,6 +33,10 @@ pub enum EffectKind {
     Number(f64, [f64; 2], [f64; 2]),
     /// One of several, by index: labels.
     Choice(&'static [&'static str]),
+    /// The same, with keys in hosts that have them for choices.
+    KeyedChoice(&'static [&'static str]),
+    /// A choice whose options the effect sets: the first option. The picture does not depend on it, and it is not stored.
+    Menu(&'static str),
     /// One of the choices of a parameter in [`super::parameters`], by its id.
     Shared(&'static str),
     /// A colour with opacity.

@@ -14,7 +14,7 @@ const FRAMES: [i32; 2] = [-1_000_000, 1_000_000];
 const PLANE: [f64; 2] = [-1_000_000.0, 1_000_000.0];
 
 /// Rototoon Roto: every parameter in order.
-pub const ROTO: [EffectParameter; 84] = [
+pub const ROTO: [EffectParameter; 92] = [
     parameter("shapes", "Shapes", EffectKind::Group(true), None, "Where the shapes come from."),
     parameter(
         "project",
@@ -88,6 +88,36 @@ pub const ROTO: [EffectParameter; 84] = [
         EffectKind::Button,
         DRAW,
         "Selects no part, so that the next contour that is drawn becomes a new part.",
+    ),
+    parameter(
+        "partList",
+        "Select part",
+        EffectKind::Menu("No part"),
+        DRAW,
+        "Selects a part. The nearest one is first. Only hosts that let a node change a menu show this.",
+    ),
+    parameter(
+        "previousPart",
+        "Previous part",
+        EffectKind::Button,
+        DRAW,
+        "Selects the next nearer part; after the nearest one comes the farthest.",
+    ),
+    parameter(
+        "nextPart",
+        "Next part",
+        EffectKind::Button,
+        DRAW,
+        "Selects the next farther part; after the farthest one comes the nearest.",
+    ),
+    parameter("partNames", "All parts", EffectKind::Shown, DRAW, "Names of all parts, the nearest first."),
+    parameter("newName", "New name", EffectKind::Text, DRAW, "The name that Rename gives."),
+    parameter(
+        "rename",
+        "Rename",
+        EffectKind::Button,
+        DRAW,
+        "Gives the selected part the new name. Its settings stay, and lists of parts that name it name it so.",
     ),
     parameter(
         "newKey",
@@ -174,6 +204,20 @@ pub const ROTO: [EffectParameter; 84] = [
         "Puts the selected part behind the next farther part, on all frames.",
     ),
     parameter(
+        "place",
+        "Place",
+        EffectKind::Integer(1, [1, 1_000_000], [1, 50]),
+        DRAW,
+        "The place that Move to place gives, counted from the nearest part, which has place 1.",
+    ),
+    parameter(
+        "moveToPlace",
+        "Move to place",
+        EffectKind::Button,
+        DRAW,
+        "Puts the selected part at this place in the order of all parts, on all frames.",
+    ),
+    parameter(
         "selectedPart",
         "Selected part",
         EffectKind::Group(false),
@@ -184,7 +228,7 @@ pub const ROTO: [EffectParameter; 84] = [
     parameter(
         "partMode",
         "Mode",
-        EffectKind::Choice(&["Add", "Subtract", "Intersect"]),
+        EffectKind::KeyedChoice(&["Add", "Subtract", "Intersect"]),
         PART,
         "How the part changes the matte of the parts behind it.",
     ),

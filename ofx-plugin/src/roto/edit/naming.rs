@@ -1,0 +1,55 @@
+//! Gives a part another name.
+
+use super::Refused;
+use super::change::has_limbs;
+use rototoon::project::Document;
+
+/// Renames a part. The name must be free.
+pub fn rename(document: &mut Document, part: usize, name: &str) -> Result<(), Refused> {
+    let old = document.scene.parts.get(part).map(|part| part.name.clone());
+    let old = old.ok_or_else(|| Refused::new("the part is gone"))?;
+    if name.is_empty() {
+        return Err(Refused::new("write the new name in New name first"));
+    }
+    if document.scene.parts.iter().any(|part| part.name == name) {
+        return Err(Refused::new(format!("a part has the name {name:?} already")));
+    }
+    if has_limbs(document, &old)? {
+        return Err(Refused::new(format!("limbs of the project are bound to {old:?}: rename it in Blender")));
+    }
+    document.scene.parts[part].name = name.to_owned();
+    Ok(())
+}
+
+/// A list of names with commas, with another name for a part. Patterns with `*` stay.
+pub fn in_list(list: &str, old: &str, new: &str) -> String {
+    let renamed = |entry: &str| {
+        if entry.trim() == old { entry.replacen(old, new, 1) } else { entry.to_owned() }
+    };
+    list.split(',').map(renamed).collect::<Vec<_>>().join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon::scene::{Footage, Part, Scene};
+
+    #[test]
+    fn a_name_is_free_and_not_empty() {
+        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8 };
+        let parts = ["a", "b"].map(|name| Part { name: name.into(), ..Part::default() }).into();
+        let mut document = Document::new(Scene { footage, parts });
+        for (name, why) in [("", "New name"), ("b", "already"), ("a", "already")] {
+            assert!(rename(&mut document, 0, name).unwrap_err().0.contains(why), "{name:?}");
+        }
+        rename(&mut document, 0, "größe").unwrap();
+        assert_eq!(document.scene.parts.iter().map(|part| part.name.as_str()).collect::<Vec<_>>(), ["größe", "b"]);
+        assert!(rename(&mut document, 7, "c").is_err());
+    }
+
+    #[test]
+    fn lists_name_the_part_by_its_new_name() {
+        assert_eq!(in_list("arm, far arm,arm *", "arm", "hand"), "hand, far arm,arm *");
+        assert_eq!(in_list("", "arm", "hand"), "");
+    }
+}
