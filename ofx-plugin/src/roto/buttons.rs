@@ -3,7 +3,7 @@
 //! Only changes by the user are handled. Each value that the plugin sets itself is reported as a change too.
 
 use super::instance::ORIGIN;
-use super::{edits, fresh, instance, listing, marks, page, stored, taking_out, track, visits};
+use super::{choosing, edits, fresh, instance, listing, marks, page, stored, taking_out, track, visits};
 use crate::description::SOURCE;
 use crate::ofx::entry::Action;
 use crate::ofx::{Effect, Failure};
@@ -57,8 +57,8 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
         "previousLost" | "nextLost" | "weakest" => visits::go(effect, &name, time),
         "frameOffset" => marks::moved(effect),
         "part" => edits::select(effect, effect.parameters()?.text(c"part")?.trim()),
-        "partList" => listing::chosen(effect),
-        "previousPart" | "nextPart" => listing::step(effect, name == "nextPart"),
+        "partList" => choosing::chosen(effect),
+        "previousPart" | "nextPart" => choosing::step(effect, name == "nextPart"),
         "live" => {
             instance(effect)?.keep_film(None);
             Ok(())

@@ -1,29 +1,29 @@
-//! The list of the parts: a menu that selects one, buttons that go from one to the next, and their names as text.
+//! The list of the parts: a menu that selects one, and their names as text. [`super::choosing`] selects.
 //!
 //! OpenFX has no list of things that a user can choose from, only a choice between options. Natron lets an effect change
-//! them; Nuke and Resolve do not. So the choice is only for hosts of the first kind, and the buttons and the text serve in
-//! all of them.
+//! them; Nuke and Resolve do not. So the choice is only for hosts of the first kind. The text, and buttons that go from part
+//! to part, serve in all of them.
 //!
 //! The menu holds nothing of its own: the parameter Part has the selection, and the document has the names. The menu is
 //! made anew where they have changed, also after the host's undo. Natron takes new options only after a reset, and one by
 //! one at the end.
 
-use super::edit::{Selection, order};
-use super::{edits, instance};
-use crate::ofx::{Effect, Failure, Parameters, host};
+use super::edit::order;
+use super::instance;
+use crate::ofx::{Effect, Failure, host};
 use openfx::sys::image_effect_v1::param::kOfxParamPropChoiceOption;
 use rototoon::project::Document;
 use std::ffi::CStr;
 
 /// The choice.
-const MENU: &CStr = c"partList";
+pub const MENU: &CStr = c"partList";
 /// Its first option.
 const NONE: &str = "No part";
 /// Most letters of the names as text.
 const MOST_LETTERS: usize = 4000;
 
 /// The names of the parts, the nearest first.
-fn names(document: &Document) -> Vec<&str> {
+pub fn names(document: &Document) -> Vec<&str> {
     let nearest_first = order::farthest_first(&document.scene).into_iter().rev();
     nearest_first.map(|part| document.scene.parts[part].name.as_str()).collect()
 }
@@ -79,50 +79,6 @@ fn menu(effect: &Effect) -> Result<(), Failure> {
     let part = parameters.text(c"part")?;
     let index = names.iter().position(|name| *name == part.trim()).map_or(0, |index| index as i32 + 1);
     if parameters.int(MENU, 0.0)? == index { Ok(()) } else { parameters.set_int(MENU, index) }
-}
-
-/// An option of the menu has been chosen.
-pub fn chosen(effect: &Effect) -> Result<(), Failure> {
-    let (instance, parameters) = (instance(effect)?, effect.parameters()?);
-    let index = usize::try_from(parameters.int(MENU, 0.0)?).unwrap_or(0);
-    // The name is that of the menu that the user saw.
-    let name = index.checked_sub(1).and_then(|index| instance.menu(index)).unwrap_or_default();
-    let document = instance.document(&parameters)?;
-    if !name.is_empty() && !document.is_some_and(|all| all.scene.parts.iter().any(|part| part.name == name)) {
-        // A host may undo a step without saying so.
-        refresh(effect);
-        return Err(Failure::Told(format!("{name:?} is gone, the menu is made anew")));
-    }
-    select(effect, &parameters, &name)
-}
-
-/// Selects the part before or after the selected one.
-pub fn step(effect: &Effect, forward: bool) -> Result<(), Failure> {
-    let parameters = effect.parameters()?;
-    let document = instance(effect)?.document(&parameters)?;
-    let names = document.as_deref().map(names).unwrap_or_default();
-    let part = parameters.text(c"part")?;
-    let place = names.iter().position(|name| *name == part.trim());
-    let next = match (place, forward) {
-        (Some(place), true) => names.get(place + 1).or(names.first()),
-        (Some(place), false) => place.checked_sub(1).and_then(|before| names.get(before)).or(names.last()),
-        (None, true) => names.first(),
-        (None, false) => names.last(),
-    };
-    let next = next.ok_or_else(|| Failure::Told("found no parts: draw one, or load a project first".into()))?;
-    select(effect, &parameters, next)
-}
-
-/// Selects a part and its points.
-fn select(effect: &Effect, parameters: &Parameters, name: &str) -> Result<(), Failure> {
-    let instance = instance(effect)?;
-    let document = instance.document(parameters)?;
-    let part = document.as_ref().and_then(|all| all.scene.parts.iter().position(|part| part.name == name));
-    instance.editor().selection = match (part, &document) {
-        (Some(part), Some(document)) => Selection::part(part, &document.scene),
-        _ => Selection::default(),
-    };
-    edits::select(effect, name)
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@
 //! - [`edit`]: what the pen does to a selection and a document, without a host
 //! - [`edits`]: stores edits and selections in the host's parameters; [`fresh`]: the document of a new composition
 //! - [`state`]: the settings of parts, and what tracks were made from; [`page`]: the settings of one part as parameters
-//! - [`listing`]: the list of the parts
+//! - [`listing`]: the list of the parts; [`choosing`]: selects a part from it
 //! - [`buttons`]: the buttons
 //! - [`standing`]: whether a part is lost, doubtful or hidden on a frame; [`marks`]: shows it in the host's timeline;
 //!   [`visits`]: goes to such frames
@@ -28,6 +28,7 @@
 
 pub mod buttons;
 pub mod canvas;
+pub mod choosing;
 pub mod describe;
 pub mod edit;
 pub mod edits;

@@ -1,6 +1,7 @@
 //! Tests of contexts, parameters and loading again.
 
 use crate::common::{FILTER, GENERAL, OK, ROTO, WHOLE, bundles, clean, effect, host, rendered};
+use rototoon::scene::effects::EffectKind;
 use rototoon_ofx_host::{ClipSettings, Host, Settings};
 
 /// The parameters of the first version.
@@ -54,12 +55,24 @@ fn the_effect_is_described_in_each_of_its_contexts() {
 fn numbers_have_ranges_and_choices_their_order() {
     let host = host();
     let effect = host.effect(ROTO, FILTER);
-    for id in ["grow", "feather", "motionBlur", "lineWidth", "opacity", "motionBlurSamples", "frameOffset"] {
+    // A number without a range is limited to -1 to 1 in Resolve, and one without the ends of a slider too.
+    let mut numbers = 0;
+    for parameter in &rototoon::scene::effects::ROTO {
+        let dimensions = match parameter.kind {
+            EffectKind::Integer(..) | EffectKind::Number(..) | EffectKind::Mark => 1,
+            EffectKind::Pair(_) => 2,
+            _ => continue,
+        };
         for property in ["OfxParamPropMin", "OfxParamPropMax", "OfxParamPropDisplayMin", "OfxParamPropDisplayMax"] {
-            let value: f64 = effect.parameter_property(id, property, 0).parse().unwrap();
-            assert!(value.abs() <= 1e6, "{id} {property}");
+            for index in 0..dimensions {
+                let id = parameter.id;
+                let value: f64 = effect.parameter_property(id, property, index).parse().unwrap();
+                assert!(value.abs() <= 1e6, "{id} {property}");
+                numbers += 1;
+            }
         }
     }
+    assert!(numbers > 100, "{numbers}");
     let options = |id| (0..4).map(|k| effect.parameter_property(id, "OfxParamPropChoiceOption", k)).collect::<Vec<_>>();
     assert_eq!(options("output"), ["Cutout", "Matte", "Overlay", "Ids"]);
     assert_eq!(options("preset")[..2], ["Rototoon", "Zhou & Xiao 2011"]);

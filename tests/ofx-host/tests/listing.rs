@@ -1,6 +1,6 @@
 //! Tests of the list of the parts: the menu, the buttons that go from part to part, and the names.
 
-use crate::common::{FILTER, MATTE, OK, WHOLE, bundles, clean, effect, host, kept, rendered, scene};
+use crate::common::{FILTER, MATTE, OK, ROTO, WHOLE, bundles, clean, document, effect, host, kept, rendered, scene};
 use rototoon_ofx_host::{ClipSettings, Effect, Host, Picture, Settings};
 
 const OPTION: &str = "OfxParamPropChoiceOption";
@@ -60,6 +60,24 @@ fn a_menu_has_the_parts_and_selects_them() {
         effect.changed_by_plugin("document");
         assert_eq!((menu(&effect).len(), effect.get("partList", 0.0)), (4, vec![1.0]));
         assert_eq!(effect.text("partNames"), "ground line, star, drop");
+    }
+    leave(host);
+}
+
+#[test]
+fn a_composition_that_is_opened_has_its_menu() {
+    let host = host_with(true);
+    {
+        // A host gives the stored values before it makes the instance, also when it clones one.
+        let mut effect = host.effect(ROTO, FILTER);
+        effect.set_text_silently("document", &document());
+        effect.set_text_silently("part", "drop");
+        assert_eq!(effect.create(), OK);
+        assert_eq!((menu(&effect).len(), effect.get("partList", 0.0)), (4, vec![2.0]));
+        // A document that cannot be read is no reason to refuse an instance.
+        let mut broken = host.effect(ROTO, FILTER);
+        broken.set_text_silently("document", "nonsense");
+        assert_eq!((broken.create().as_str(), menu(&broken).len()), (OK, 1));
     }
     leave(host);
 }

@@ -125,6 +125,36 @@ fn instances_come_and_go_and_share_one_document() {
 }
 
 #[test]
+fn instances_of_one_document_parse_it_once() {
+    let host = host();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.json");
+    std::fs::write(&file, document()).unwrap();
+    let written = std::fs::metadata(&file).unwrap().modified().unwrap();
+    let node = || {
+        let mut effect = effect(&host, FILTER, &ClipSettings::default());
+        effect.set_text_silently("document", "");
+        effect.set_text_silently("project", file.to_str().unwrap());
+        effect.set("output", &[MATTE]);
+        effect
+    };
+    let mut first = node();
+    let wanted = rendered(&host, &mut first, 2.0, WHOLE);
+    // What no one can see: another text of the same length and time. Only who parses it again has other shapes.
+    let text = document();
+    let mut other = Document::parse(&text, "a").unwrap();
+    other.scene.parts.retain(|part| part.name == "star");
+    let short = other.to_json();
+    std::fs::write(&file, short.clone() + &" ".repeat(text.len() - short.len())).unwrap();
+    std::fs::File::options().write(true).open(&file).unwrap().set_modified(written).unwrap();
+    let mut second = node();
+    assert!(rendered(&host, &mut second, 2.0, WHOLE) == wanted, "it was parsed again");
+    // The document goes with the last instance that has it.
+    assert_eq!([first.destroy(), second.destroy()], [OK, OK]);
+    assert!(rendered(&host, &mut node(), 2.0, WHOLE) != wanted);
+}
+
+#[test]
 fn actions_in_odd_orders() {
     let host = host();
     let mut effect = chosen(&host, GENERAL, &ClipSettings::default(), MATTE);

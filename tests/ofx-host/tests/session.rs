@@ -1,14 +1,17 @@
 //! The sample cartoon in the host alone: drawn with the pen on two frames, tracked, corrected, tracked again, rendered.
 //!
-//! The result is that of the core's own tracker on the same keys and corrections, to the last bit.
+//! The result is that of the core's own tracker on the same keys and corrections, to the last bit. It is also that of the
+//! session that C and Python have, which gets the drawn keys, tracks, sets the pin, and tracks again.
 
 use crate::common::{FILTER, MATTE, OK, ROTO, clean, host, kept, lay_lines, rendered};
 use rototoon::geometry::Point;
 use rototoon::pipeline;
 use rototoon::project::Document;
 use rototoon::render;
-use rototoon::scene::{Colour, FrameError, FrameNumber, FrameSource, Raster, Scene, Silent};
+use rototoon::scene::{Colour, FrameError, FrameNumber, FrameSource, Part, Raster, Scene, Silent};
 use rototoon::track::{TrackOptions, Tracker};
+use rototoon_capi::edit;
+use rototoon_capi::session::Session;
 use rototoon_ofx_host::{Bounds, ClipSettings, Effect, Host};
 use rototoon_tests::sample::character::PARTS;
 use rototoon_tests::sample::{self, Drawn, HOLD};
@@ -122,6 +125,26 @@ fn followed(document: &Document, film: &[Arc<Raster<Colour>>]) -> Scene {
     Document::parse(&Document::new(scene).to_json(), "the reference").unwrap().scene
 }
 
+/// The scene of a session of C and Python, in the document's digits.
+fn scene_of(session: &Session) -> Scene {
+    Document::parse(&session.document(), "the session").unwrap().scene
+}
+
+/// A session of C and Python with the drawn keys. Its film is files in a folder.
+fn session(drawn: &Document, film: &[Arc<Raster<Colour>>], folder: &Path) -> Session {
+    for frame in 0..=KEYS[1] {
+        let picture = &film[frame as usize / HOLD];
+        let file = folder.join(format!("f_{:04}.png", FIRST as i32 + frame));
+        let byte = |x: u32, y: u32, c: usize| (picture.get(x as usize, y as usize)[c] * 255.0).round() as u8;
+        let image =
+            image::RgbImage::from_fn(WIDTH as u32, HEIGHT as u32, |x, y| image::Rgb([0, 1, 2].map(|c| byte(x, y, c))));
+        image.save(file).unwrap();
+    }
+    let mut document = drawn.clone();
+    document.scene.footage.pattern = "f_%04d.png".into();
+    Session::new(&document.to_json(), folder).unwrap()
+}
+
 /// The share of points within two pixels of the truth, on the frames between the keys.
 fn good(scene: &Scene, drawings: &[Drawn]) -> f64 {
     let (mut good, mut all) = (0, 0);
@@ -185,6 +208,12 @@ fn same_matte(host: &Host, effect: &mut Effect, scene: &Scene, frame: FrameNumbe
     assert!(most < 1e-5, "{most}");
 }
 
+/// Whether the parts have the same tracks and confidence.
+fn same_tracks(a: &Scene, b: &Scene) -> bool {
+    let same = |(a, b): (&Part, &Part)| a.name == b.name && a.tracks == b.tracks && a.confidence == b.confidence;
+    a.parts.len() == b.parts.len() && a.parts.iter().zip(&b.parts).all(same)
+}
+
 /// Undoes the host's steps until after the latest one with this label.
 fn undo(effect: &mut Effect, label: &str) {
     while effect.history().last().is_some_and(|own| own != label) {
@@ -218,6 +247,21 @@ fn a_cartoon_is_drawn_tracked_corrected_and_rendered_in_the_host() {
     let second = good(&again.scene, &drawings);
     println!("good: {first:.4}, after a correction {second:.4}");
     assert!(first > 0.8 && second >= first - 0.01, "{first} {second}");
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = session(&drawn, &film, folder.path());
+    session.track("{}", None).unwrap();
+    assert_eq!(good(&scene_of(&session), &drawings), first, "the session of Python");
+    assert!(same_tracks(&scene_of(&session), &tracked.scene), "the session of Python");
+    for part in &corrected.scene.parts {
+        for (&number, pins) in &part.pins {
+            for (&point, &to) in pins {
+                edit::pin(session.scene_mut(), &part.name, number, point as i64, to).unwrap();
+            }
+        }
+    }
+    session.track("{}", None).unwrap();
+    assert_eq!(good(&scene_of(&session), &drawings), second, "the session of Python after the correction");
+    assert!(same_tracks(&scene_of(&session), &again.scene), "the session of Python after the correction");
     same_matte(&host, &mut effect, &again.scene, frame);
 
     // Each step of the host's undo gives back the bytes.
