@@ -27,6 +27,7 @@ impl Default for ffi::Settings {
             menus: false,
             choice_keys: true,
             null_messages: false,
+            viewer_draws: false,
         }
     }
 }
@@ -104,6 +105,8 @@ pub mod ffi {
         choice_keys: bool,
         /// Whether the persistent messages are a null and an address of nothing, as in Resolve.
         null_messages: bool,
+        /// Whether the viewer draws the overlay of an instance all the time while it renders.
+        viewer_draws: bool,
     }
 
     /// The images that a clip is connected to.
@@ -140,6 +143,8 @@ pub mod ffi {
         pixel: f64,
         /// Symbol of the key that goes down or up.
         key: i32,
+        /// Render scale of the viewer's picture, as for proxies.
+        scale: f64,
     }
 
     /// A rendered picture.
@@ -194,6 +199,7 @@ pub mod ffi {
         fn region_of_definition(self: Pin<&mut Effect>, time: f64, scale: f64) -> Region;
         fn region_of_interest(self: Pin<&mut Effect>, clip: &str, time: f64, scale: f64, wanted: &Region) -> Region;
         fn identity(self: Pin<&mut Effect>, time: f64, window: &Bounds, scale: f64) -> String;
+        fn varies(self: &Effect) -> bool;
         fn frames_needed(self: Pin<&mut Effect>, clip: &str, time: f64) -> Vec<f64>;
         fn preferences(self: Pin<&mut Effect>) -> String;
         fn parameters(self: &Effect) -> Vec<String>;

@@ -107,7 +107,7 @@ struct Controls {
   std::vector<std::string> log, messages;
   std::vector<std::string> missing_suites;
   std::atomic<int> aborts_left{-1}, cancels_left{-1}, live_images{0};
-  std::atomic<bool> no_images{false}, temporal{true}, menus{false}, null_messages{false};
+  std::atomic<bool> no_images{false}, temporal{true}, menus{false}, null_messages{false}, viewer_draws{false};
   std::atomic<double> real_scale{1};
   std::atomic<unsigned> cpus{1};
   std::atomic<double> progress{0};
@@ -836,6 +836,7 @@ void configure(const Settings &settings) {
   controls().menus = settings.menus;
   controls().temporal = settings.temporal;
   controls().null_messages = settings.null_messages;
+  controls().viewer_draws = settings.viewer_draws;
   controls().progress = 0;
 }
 
@@ -924,10 +925,18 @@ rust::String Effect::render(double time, const Bounds &bounds, double scale, int
       if (status != kOfxStatOK) worst = status;
     }
   };
+  // Hosts draw the overlay on their own thread, also before and after the tiles.
+  std::atomic<bool> done{false};
+  std::thread viewer([&] {
+    while (controls().viewer_draws && !done)
+      if (text_of(overlay("OfxInteractActionDraw", true, time, Pen{0, 0, 1, 0, 1})) != "kOfxStatOK") worst = kOfxStatFailed;
+  });
   std::vector<std::thread> pool;
   for (int i = 1; i < threads; ++i) pool.emplace_back(work);
   work();
   for (std::thread &thread : pool) thread.join();
+  done = true;
+  viewer.join();
   effect->endRenderAction(time, time, 1, false, scales, true, false);
   out->target.reset();
   for (auto &entry : interests) dynamic_cast<TestClip *>(entry.first)->has_interest = false;
@@ -979,6 +988,8 @@ rust::String Effect::identity(double time, const Bounds &window, double scale) {
   OfxStatus status = impl->effect->isIdentityAction(at, kOfxImageFieldNone, rect(window), {scale, scale}, clip);
   return status == kOfxStatOK ? clip : "";
 }
+
+bool Effect::varies() const { return impl->effect->isFrameVarying(); }
 
 rust::Vec<double> Effect::frames_needed(rust::Str name, double time) {
   fx::RangeMap ranges;
@@ -1113,11 +1124,12 @@ rust::String Effect::overlay(rust::Str name, bool draw_suite, double time, const
       {kOfxPropKeySym, ofx::Property::eInt, 1, true, "0"},
       ofx::Property::propSpecEnd};
   ofx::Property::Set arguments(specs);
-  double scale[2] = {pen.pixel, pen.pixel}, place[2] = {pen.x, pen.y};
+  double scale[2] = {pen.pixel, pen.pixel}, place[2] = {pen.x, pen.y}, proxy[2] = {pen.scale, pen.scale};
   arguments.setPointerProperty(kOfxPropEffectInstance, impl->effect->getHandle());
   arguments.setPointerProperty(kOfxInteractPropDrawContext, &arguments);
   arguments.setDoubleProperty(kOfxPropTime, time);
   arguments.setDoublePropertyN(kOfxInteractPropPixelScale, scale, 2);
+  arguments.setDoublePropertyN(kOfxImageEffectPropRenderScale, proxy, 2);
   arguments.setDoublePropertyN(kOfxInteractPropPenPosition, place, 2);
   arguments.setIntProperty(kOfxPropKeySym, pen.key);
   return status_name(entry(text_of(name).c_str(), interact.getHandle(), arguments.getHandle(), nullptr));

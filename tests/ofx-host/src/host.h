@@ -31,6 +31,7 @@ public:
   rust::String identity(double time, const Bounds &window, double scale);
   rust::Vec<double> frames_needed(rust::Str clip, double time);
   rust::String preferences();
+  bool varies() const;
   rust::Vec<rust::String> parameters() const;
   rust::String parameter_property(rust::Str name, rust::Str property, int index) const;
   void set_numbers(rust::Str name, rust::Slice<const double> values);

@@ -176,6 +176,11 @@ impl Effect<'_> {
         self.pin().preferences()
     }
 
+    /// Whether the output says that frames differ although no parameter is animated.
+    pub fn varies(&self) -> bool {
+        self.inner.varies()
+    }
+
     /// Names of the parameters, in order.
     pub fn parameters(&self) -> Vec<String> {
         self.inner.parameters()
@@ -196,6 +201,11 @@ impl Effect<'_> {
     pub fn set_at(&mut self, name: &str, time: f64, values: &[f64]) {
         self.pin().set_numbers_at(name, time, values);
         self.changed(name);
+    }
+
+    /// Sets a key as in the host's curve editor, without telling the plugin.
+    pub fn set_at_silently(&mut self, name: &str, time: f64, values: &[f64]) {
+        self.pin().set_numbers_at(name, time, values);
     }
 
     /// The values of a number, flag, choice or colour at a time.
@@ -256,12 +266,24 @@ impl Effect<'_> {
     /// Sends an event to the overlay and returns the status. It goes to the entry point for the DrawSuite or to that for
     /// OpenGL. `pen` is the pen's position and `pixel` the size of a screen pixel, both in canonical coordinates.
     pub fn overlay(&mut self, action: &str, draw_suite: bool, time: f64, pen: [f64; 2], pixel: f64) -> String {
-        self.pin().overlay(action, draw_suite, time, &Pen { x: pen[0], y: pen[1], pixel, key: 0 })
+        self.overlay_at_scale(action, (draw_suite, time), pen, pixel, 1.0)
+    }
+
+    /// The same in a viewer whose picture has a render scale, as for proxies.
+    pub fn overlay_at_scale(
+        &mut self,
+        action: &str,
+        (draw_suite, time): (bool, f64),
+        pen: [f64; 2],
+        pixel: f64,
+        scale: f64,
+    ) -> String {
+        self.pin().overlay(action, draw_suite, time, &Pen { x: pen[0], y: pen[1], pixel, key: 0, scale })
     }
 
     /// Sends a key of the keyboard to the overlay, and returns the status. `action` is a key going down or up.
     pub fn overlay_key(&mut self, action: &str, time: f64, key: i32) -> String {
-        self.pin().overlay(action, true, time, &Pen { x: 0.0, y: 0.0, pixel: 1.0, key })
+        self.pin().overlay(action, true, time, &Pen { x: 0.0, y: 0.0, pixel: 1.0, key, scale: 1.0 })
     }
 
     /// The labels of the steps that the host can undo, the latest last.

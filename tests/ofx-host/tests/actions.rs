@@ -52,6 +52,18 @@ fn regions_are_as_small_as_possible() {
 }
 
 #[test]
+fn frames_differ_although_no_parameter_is_animated() {
+    let host = host();
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    // A host that reads otherwise keeps the first frame's picture for the whole shot.
+    for output in [CUTOUT, MATTE, IDS, OVERLAY] {
+        effect.set("output", &[output]);
+        effect.preferences();
+        assert!(effect.varies(), "{output}");
+    }
+}
+
+#[test]
 fn where_nothing_is_drawn_the_source_is_passed_on() {
     let host = host();
     let mut effect = effect(&host, FILTER, &ClipSettings::default());

@@ -4,7 +4,7 @@ use crate::common::{
     CUTOUT, FILTER, HEIGHT, IDS, MATTE, MATTES, OK, OVERLAY, ROTO, WHOLE, WIDTH, bundles, document, effect, host, kept,
     pattern, rendered,
 };
-use rototoon_ofx_host::{ClipSettings, Effect, Host, Picture};
+use rototoon_ofx_host::{ClipSettings, Effect, Host, Picture, Settings};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -43,6 +43,23 @@ fn instances_are_made_and_deleted_while_others_render() {
             assert_eq!(other.destroy(), OK);
         }
     });
+    assert_eq!(host.live_images(), 0);
+}
+
+#[test]
+fn the_viewer_draws_an_instance_while_it_renders() {
+    let host = host();
+    for output in OUTPUTS {
+        host.configure(&Settings::default());
+        let wanted = picture(&mut chosen(&host, output), 2.0);
+        let mut effect = chosen(&host, output);
+        host.configure(&Settings { viewer_draws: true, cpus: 3, ..Settings::default() });
+        for _ in 0..10 {
+            assert!(picture(&mut effect, 2.0) == wanted, "{output}");
+        }
+        assert!(!effect.drawn().is_empty(), "{output}");
+    }
+    host.configure(&Settings::default());
     assert_eq!(host.live_images(), 0);
 }
 

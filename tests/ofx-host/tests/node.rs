@@ -82,7 +82,15 @@ fn settings_of_parts_are_animated_by_the_hosts_keys() {
     effect.set_text("part", "right");
     assert_eq!([0.0, 1.0, 4.0].map(|time| effect.get("partOpacity", time)[0]), [0.0, 0.25, 1.0]);
     assert_eq!(faded(&host, &mut effect), [0.0, 0.25, 0.5, 1.0]);
+    // A key that the host's curve editor moves without telling the plugin stays with its part too.
+    effect.set_at_silently("partOpacity", 4.0, &[0.5]);
+    effect.set_text("part", "left");
+    assert_eq!(faded(&host, &mut effect), [0.0, 0.125, 0.25, 0.5]);
+    effect.set_text("part", "right");
+    effect.set_at("partOpacity", 4.0, &[1.0]);
     // Undo takes the page and the selection back together.
+    effect.set_text("part", "left");
+    effect.set_text("part", "right");
     let steps = effect.history();
     assert_eq!(steps.last().map(String::as_str), Some("Select part"));
     effect.undo();
@@ -187,6 +195,13 @@ fn a_mask_limits_matte_and_cutout() {
     assert_eq!(cut[0], 0.0);
     assert_eq!(effect.identity(1.0, WHOLE, 1.0), "");
     assert_eq!(effect.frames_needed("Mask", 1.0), [1.0, 1.0]);
+    // All of the mask is needed where the picture is asked for.
+    let wanted = Region { status: String::new(), x1: 3.0, y1: 5.0, x2: 60.0, y2: 40.0 };
+    let needed = effect.region_of_interest("Mask", 1.0, 1.0, &wanted);
+    assert_eq!([needed.x1, needed.y1, needed.x2, needed.y2], [3.0, 5.0, 60.0, 40.0]);
+    effect.set("useMask", &[0.0]);
+    let needed = effect.region_of_interest("Mask", 1.0, 1.0, &wanted);
+    assert_ne!(needed.x2 - needed.x1, 0.0, "the host's own choice");
     clean(&host);
 }
 

@@ -95,6 +95,13 @@ fn a_drag_moves_a_key_or_makes_a_pin_or_a_centre_and_undo_gives_back_the_bytes()
     let moved = kept(&effect).scene;
     let middle = line.iter().sum::<Point>() / 3.0 + Point::new(-2.0, -3.0);
     assert!(moved.parts[2].centers[&1].distance(middle) < 1e-4 && moved.parts[2].pins.is_empty());
+    // A pin of the frame goes along with a part that is moved as a whole.
+    let drop = &kept(&effect).scene.parts[1].tracks[&2];
+    let (from, by) = ((drop[2] + drop[3]) * 0.5, Point::new(2.0, 1.0));
+    assert_eq!(drag(&mut effect, 2.0, from, from + by), [OK; 3]);
+    let moved = kept(&effect).scene.parts[1].clone();
+    assert!(moved.pins[&2][&1].distance(to + by) < 1e-4 && moved.centers.contains_key(&2), "{:?}", moved.pins);
+    effect.undo();
     // The overlay says that the tracks are old.
     assert_eq!(effect.overlay(DRAW, true, 1.0, [0.0; 2], 0.1), OK);
     let old = effect.texts().iter().filter(|text| text.contains("track again")).count();
@@ -308,18 +315,21 @@ fn picking_is_in_screen_pixels() {
         (2.0, 0.1, 0.55, false),
         (1.0, 0.5, 3.5, true),
     ] {
-        let source = ClipSettings { aspect, ..ClipSettings::default() };
-        let mut effect = effect(&host, FILTER, &source);
-        let p = scene().parts[0].tracks[&2][0];
-        // Canonical coordinates have square pixels; the footage's pixels are `aspect` wide.
-        let at = [(p.x + off) * aspect, HEIGHT as f64 - p.y];
-        let to = [at[0] + 8.0 * pixel, at[1]];
-        effect.overlay(DOWN, true, 2.0, at, pixel);
-        effect.overlay(UP, true, 2.0, to, pixel);
-        let text = effect.text("document");
-        let json = rototoon_ofx::roto::stored::decode(&text).unwrap();
-        let pins = &Document::parse(&json, "kept").unwrap().scene.parts[0].pins;
-        assert_eq!(pins.contains_key(&2), picked, "{aspect} {pixel} {off}: {pins:?}");
+        // The render scale of a proxy changes nothing: places are in canonical coordinates.
+        for proxy in [1.0, 0.5] {
+            let source = ClipSettings { aspect, ..ClipSettings::default() };
+            let mut effect = effect(&host, FILTER, &source);
+            let p = scene().parts[0].tracks[&2][0];
+            // Canonical coordinates have square pixels; the footage's pixels are `aspect` wide.
+            let at = [(p.x + off) * aspect, HEIGHT as f64 - p.y];
+            let to = [at[0] + 8.0 * pixel, at[1]];
+            effect.overlay_at_scale(DOWN, (true, 2.0), at, pixel, proxy);
+            effect.overlay_at_scale(UP, (true, 2.0), to, pixel, proxy);
+            let text = effect.text("document");
+            let json = rototoon_ofx::roto::stored::decode(&text).unwrap();
+            let pins = &Document::parse(&json, "kept").unwrap().scene.parts[0].pins;
+            assert_eq!(pins.contains_key(&2), picked, "{aspect} {pixel} {off} {proxy}: {pins:?}");
+        }
     }
 }
 
