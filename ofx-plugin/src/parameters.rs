@@ -143,8 +143,11 @@ fn text(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
     match kind {
         EffectKind::Hidden => properties.set_int(kOfxParamPropSecret, 0, 1),
         EffectKind::Shown => {
-            let _ = properties.set_int(kOfxParamPropEvaluateOnChange, 0, 0);
-            properties.set_int(kOfxParamPropEnabled, 0, 0)
+            // Nothing is read from it, so a host in which the user can change it is no worse.
+            for name in [kOfxParamPropEvaluateOnChange, kOfxParamPropEnabled] {
+                let _ = properties.set_int(name, 0, 0);
+            }
+            Ok(())
         }
         _ => Ok(()),
     }

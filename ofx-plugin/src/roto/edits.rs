@@ -87,12 +87,14 @@ fn put(parameters: &Parameters, document: &Document, state: State, page: &str) -
 /// Selects a part by name: the page shows its settings, and what is drawn becomes its key. An empty name selects none.
 pub fn select(effect: &Effect, name: &str) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
-    let known = match instance.document(&parameters)? {
-        Some(document) => document.scene.parts.iter().any(|part| part.name == name),
-        None => false,
-    };
+    let document = instance.document(&parameters)?;
+    let known = document.as_ref().is_some_and(|all| all.scene.parts.iter().any(|part| part.name == name));
     let mut state = State::clone(&*instance.state(&parameters)?);
     parameters.edit("Select part", || {
+        if let Some(document) = &document {
+            // Compositions of earlier versions, and projects that are not loaded, have no names yet.
+            parameters.set_text(c"partNames", &listing::text(document))?;
+        }
         page::turn(&parameters, &mut state, if known { name } else { "" })?;
         parameters.set_text(c"part", name)?;
         parameters.set_text(c"state", &if state == State::default() { String::new() } else { state.to_text() })

@@ -114,11 +114,14 @@ fn buttons_go_from_part_to_part_in_any_host() {
         // A menu that cannot change is not shown, and is left alone.
         assert_eq!(effect.parameter_property("partList", "OfxParamPropSecret", 0), "1");
         assert_eq!(menu(&effect), ["No part"]);
+        // A composition of an earlier version gets the names with the first selection.
+        assert_eq!(effect.text("partNames"), "");
         let mut names = Vec::new();
         for button in ["nextPart", "nextPart", "nextPart", "nextPart", "previousPart", "previousPart"] {
             assert_eq!(effect.press(button), OK);
             names.push(effect.text("part"));
         }
+        assert_eq!(effect.text("partNames"), "star, drop, ground line");
         assert_eq!(names, ["star", "drop", "ground line", "star", "ground line", "drop"]);
         assert_eq!(menu(&effect), ["No part"]);
         // Its points are selected, as after a click: the box around them has a corner that scales.
