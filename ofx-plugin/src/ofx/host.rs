@@ -21,7 +21,8 @@ use std::ffi::CStr;
 use std::sync::atomic::{AtomicPtr, Ordering};
 use std::sync::{PoisonError, RwLock};
 
-/// A property of Natron's.
+/// Properties of Natron's.
+const NATRON: &CStr = c"NatronOfxHostIsNatron";
 const MENUS: &CStr = c"NatronOfxParamHostPropSupportsDynamicChoices";
 
 static HOST: AtomicPtr<OfxHost> = AtomicPtr::new(std::ptr::null_mut());
@@ -115,14 +116,19 @@ pub fn tiles() -> bool {
 /// Whether an effect may change the options of a choice after it is described. Natron says so. Of Nuke and Resolve it is
 /// known that a menu stays as it is described.
 pub fn changes_menus() -> bool {
-    let Ok(host) = properties() else { return false };
-    // Other hosts do not have the property.
-    host.dimension(MENUS).is_ok_and(|count| count > 0) && host.int(MENUS, 0).is_ok_and(|changes| changes != 0)
+    properties().is_ok_and(|host| says(&host, MENUS))
 }
 
-/// The host's name, such as `uk.co.thefoundry.nuke`.
+/// Whether the host has one of Natron's properties, and it is set. Other hosts do not have them.
+fn says(host: &Properties, name: &CStr) -> bool {
+    host.dimension(name).is_ok_and(|count| count > 0) && host.int(name, 0).is_ok_and(|value| value != 0)
+}
+
+/// The host's name, such as `uk.co.thefoundry.nuke`. A user of Natron may let it appear under the name of another host; what
+/// it does with pictures and messages stays the same.
 pub fn name() -> Option<String> {
-    properties().ok()?.text(kOfxPropName, 0).ok()
+    let host = properties().ok()?;
+    if says(&host, NATRON) { Some("fr.inria.Natron".into()) } else { host.text(kOfxPropName, 0).ok() }
 }
 
 fn suite<T>(host: &OfxHost, name: &CStr, version: i32) -> Option<&'static T> {

@@ -25,6 +25,7 @@ impl Default for ffi::Settings {
             cpus: 1,
             temporal: true,
             menus: false,
+            natron: false,
             choice_keys: true,
             null_messages: false,
             viewer_draws: false,
@@ -101,6 +102,8 @@ pub mod ffi {
         temporal: bool,
         /// Whether plugins may change the options of a choice, as in Natron.
         menus: bool,
+        /// Whether the host says that it is Natron, whatever its name.
+        natron: bool,
         /// Whether choices may have keys.
         choice_keys: bool,
         /// Whether the persistent messages are a null and an address of nothing, as in Resolve.

@@ -700,12 +700,8 @@ public:
     _properties.setIntProperty(kOfxImageEffectPropSupportsTiles, settings.tiles);
     _properties.setIntProperty(kOfxImageEffectPropTemporalClipAccess, settings.temporal);
     _properties.setIntProperty(kOfxParamHostPropSupportsChoiceAnimation, settings.choice_keys);
-    static const ofx::Property::PropSpec menus[] = {
-        {"NatronOfxParamHostPropSupportsDynamicChoices", ofx::Property::eInt, 1, false, "0"},
-        ofx::Property::propSpecEnd};
-    // Hosts that do not know the property have none.
-    if (settings.menus && !menus_known_) _properties.addProperties(menus), menus_known_ = true;
-    if (menus_known_) _properties.setIntProperty(menus[0].name, settings.menus);
+    natron("NatronOfxParamHostPropSupportsDynamicChoices", settings.menus);
+    natron("NatronOfxHostIsNatron", settings.natron);
   }
   const void *fetchSuite(const char *name, int version) override {
     for (const std::string &missing : controls().missing_suites)
@@ -758,7 +754,12 @@ public:
   OfxStatus mutexTryLock(const OfxMutexHandle m) override { return held(m)->try_lock() ? kOfxStatOK : kOfxStatFailed; }
 
 private:
-  bool menus_known_ = false;
+  // Sets one of Natron's properties. Other hosts have none of them.
+  void natron(const char *name, bool value) {
+    const ofx::Property::PropSpec specs[] = {{name, ofx::Property::eInt, 1, false, "0"}, ofx::Property::propSpecEnd};
+    if (value && !_properties.fetchProperty(name)) _properties.addProperties(specs);
+    if (_properties.fetchProperty(name)) _properties.setIntProperty(name, value);
+  }
   static std::recursive_mutex *held(OfxMutexHandle m) { return reinterpret_cast<std::recursive_mutex *>(m); }
   static thread_local bool spawned_;
   static thread_local unsigned index_;

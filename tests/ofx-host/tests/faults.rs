@@ -84,6 +84,29 @@ fn ids_blurred_by_motion_share_pixels_and_are_light_in_linear_hosts() {
 }
 
 #[test]
+fn natron_is_known_under_another_hosts_name() {
+    let mut host = host();
+    // Natron's preference "Appear to plug-ins as": its floats are linear light all the same, and it shows messages.
+    for (natron, linear) in [(true, true), (false, false)] {
+        host.configure(&Settings { name: "DaVinciResolve".into(), natron, ..Settings::default() });
+        host.reload(bundles());
+        let mut effect = effect(&host, FILTER, &ClipSettings::default());
+        effect.set("output", &[IDS]);
+        let ids = rendered(&host, &mut effect, 2.0, WHOLE);
+        let shown = rototoon::scene::palette::distinct(0);
+        let wanted = if linear { shown.map(rototoon::image::colour::decode) } else { shown };
+        let inside = [0, 1, 2].map(|channel| at(&ids, 30, 22, channel));
+        assert!(inside.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5), "{natron}: {inside:?} {wanted:?}");
+        effect.set_text("document", "nonsense");
+        assert_eq!(effect.render(2.0, WHOLE, 1.0, 1, 0), "kOfxStatFailed");
+        assert_eq!(host.messages().len(), usize::from(natron));
+        let _ = host.errors();
+    }
+    host.configure(&Settings::default());
+    host.reload(bundles());
+}
+
+#[test]
 fn a_matte_is_coverage_in_all_channels_of_a_straight_image() {
     let host = host();
     for depth in ["OfxBitDepthByte", "OfxBitDepthShort", "OfxBitDepthHalf", "OfxBitDepthFloat"] {
