@@ -46,7 +46,7 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
     let time = action.input.double(kOfxPropTime, 0).unwrap_or(0.0);
     let done = match name.as_str() {
         "load" => load(effect),
-        "project" if path(effect)?.is_file() => load(effect),
+        "project" if is_new_file(effect)? => load(effect),
         "save" => save(effect),
         "track" => track::track(effect, time),
         "newPart" | "newKey" | "deleteKey" | "insertPoints" | "deletePoints" | "smoothPoints" | "deletePart"
@@ -69,7 +69,7 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
         }
         "writeMotion" => taking_out::write_motion(effect, time),
         "export" => taking_out::export(effect),
-        page if page::IDS.iter().any(|id| id.to_bytes() == page.as_bytes()) => edits::page_changed(effect),
+        page if page::IDS.iter().any(|id| id.to_bytes() == page.as_bytes()) => edits::page_changed(effect, page),
         _ => Err(Failure::Default),
     };
     match done {
@@ -85,6 +85,14 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
 
 fn path(effect: &Effect) -> Result<PathBuf, Failure> {
     Ok(PathBuf::from(effect.parameters()?.text(c"project")?.trim()))
+}
+
+/// Whether Project names a file other than the one whose shapes the composition has.
+fn is_new_file(effect: &Effect) -> Result<bool, Failure> {
+    let (path, parameters) = (path(effect)?, effect.parameters()?);
+    let empty = parameters.text(c"document")?.trim().is_empty();
+    let loaded = instance(effect)?.state(&parameters).is_ok_and(|state| Path::new(&state.loaded) == path);
+    Ok(path.is_file() && (empty || !loaded))
 }
 
 fn chosen(effect: &Effect) -> Result<PathBuf, Failure> {
@@ -112,7 +120,7 @@ fn load(effect: &Effect) -> Result<(), Failure> {
     {
         *pattern = slashed(&Path::new(&folder.replace('%', "%%")).join(&*pattern));
     }
-    edits::store_loaded(effect, &document)
+    edits::store_loaded(effect, &document, &path.to_string_lossy())
 }
 
 /// The extension of a file of shapes of another program.
@@ -136,7 +144,7 @@ fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> 
     };
     let text = file::text(path).map_err(|error| told(&error))?;
     let warnings = pipeline::import(&mut document, &text, format).map_err(|error| told(&error))?;
-    edits::store(effect, "Import shapes", document, None)?;
+    edits::store_imported(effect, document, &path.to_string_lossy())?;
     for warning in warnings.iter().take(MOST_WARNINGS) {
         instance(effect)?.note(effect, warning, false);
     }

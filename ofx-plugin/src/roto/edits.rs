@@ -24,13 +24,31 @@ pub fn is_locked(parameters: &Parameters, state: &State, name: &str) -> bool {
 }
 
 /// Stores an edited document. An edit at a time of the host is followed at once where *Live* can, in the same step of undo.
-pub fn store(effect: &Effect, label: &str, mut document: Document, live: Option<f64>) -> Result<(), Failure> {
+pub fn store(effect: &Effect, label: &str, document: Document, live: Option<f64>) -> Result<(), Failure> {
+    store_from(effect, label, document, live, None)
+}
+
+/// Stores a document with the shapes of a file of another program.
+pub fn store_imported(effect: &Effect, document: Document, path: &str) -> Result<(), Failure> {
+    store_from(effect, "Import shapes", document, None, Some(path))
+}
+
+fn store_from(
+    effect: &Effect,
+    label: &str,
+    mut document: Document,
+    live: Option<f64>,
+    path: Option<&str>,
+) -> Result<(), Failure> {
     let problems = document.problems();
     if problems.error_count() > 0 {
         return Err(Failure::Told(problems.to_string()));
     }
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let mut state = State::clone(&*instance.state(&parameters)?);
+    if let Some(path) = path {
+        path.clone_into(&mut state.loaded);
+    }
     if let Some(before) = instance.document_of_text(&parameters)? {
         state.note_known(&before.scene.parts);
         state.note_order(&before.scene.parts, &document.scene.parts);
@@ -55,11 +73,12 @@ pub fn store_tracked(effect: &Effect, document: &Document, tracked: &[usize]) ->
 }
 
 /// Stores a document that replaces the composition's, with its parts' settings where the names are the same.
-pub fn store_loaded(effect: &Effect, document: &Document) -> Result<(), Failure> {
+pub fn store_loaded(effect: &Effect, document: &Document, path: &str) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let mut state = State::clone(&*instance.state(&parameters)?);
     let page = state.page.clone();
     state.tracked.clear();
+    path.clone_into(&mut state.loaded);
     state.keep_only(&document.scene.parts);
     write(effect, "Load project", document, state, &page)
 }
@@ -72,16 +91,19 @@ fn write(effect: &Effect, label: &str, document: &Document, state: State, page: 
 }
 
 /// Puts a document and a state into the parameters, within an edit. `page` is the part that the page shows.
+///
+/// Undo goes the other way, and a host may report each value that comes back as the user's change. So the document is last
+/// here: it is back first, then the state, and a selection that comes back finds its part.
 fn put(parameters: &Parameters, document: &Document, state: State, page: &str) -> Result<(), Failure> {
-    parameters.set_text(c"document", &stored::encode(&document.to_json()))?;
-    parameters.set_text(c"partNames", &listing::text(document))?;
-    marks::set(parameters, document);
     if state.page != page {
         // The part of the page is gone, or has another name.
         page::show(parameters, &state.parts.get(&state.page).cloned().unwrap_or_default())?;
         parameters.set_text(c"part", &state.page)?;
     }
-    parameters.set_text(c"state", &if state == State::default() { String::new() } else { state.to_text() })
+    parameters.set_text(c"state", &if state == State::default() { String::new() } else { state.to_text() })?;
+    parameters.set_text(c"partNames", &listing::text(document))?;
+    marks::set(parameters, document);
+    parameters.set_text(c"document", &stored::encode(&document.to_json()))
 }
 
 /// Selects a part by name: the page shows its settings, and what is drawn becomes its key. An empty name selects none.
@@ -91,8 +113,9 @@ pub fn select(effect: &Effect, name: &str) -> Result<(), Failure> {
     let known = document.as_ref().is_some_and(|all| all.scene.parts.iter().any(|part| part.name == name));
     let mut state = State::clone(&*instance.state(&parameters)?);
     parameters.edit("Select part", || {
-        if let Some(document) = &document {
-            // Compositions of earlier versions, and projects that are not loaded, have no names yet.
+        if let Some(document) = document.as_ref().filter(|_| known && state.page != name) {
+            // Compositions of earlier versions, and projects that are not loaded, have no names yet. A selection that
+            // changes nothing changes nothing here either: the host's undo comes here too.
             parameters.set_text(c"partNames", &listing::text(document))?;
         }
         page::turn(&parameters, &mut state, if known { name } else { "" })?;
@@ -103,15 +126,14 @@ pub fn select(effect: &Effect, name: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A parameter of the page has been changed by the user.
-pub fn page_changed(effect: &Effect) -> Result<(), Failure> {
+/// A parameter of the page has been changed by the user, or by the host's undo. The part that the page shows has its values
+/// from the parameters; they are stored when the page turns. So nothing is written here, and an undo stays one.
+pub fn page_changed(effect: &Effect, id: &str) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
-    let mut state = State::clone(&*instance.state(&parameters)?);
-    if state.page.is_empty() {
+    if instance.state(&parameters)?.page.is_empty() && !page::is_default(&parameters, id)? {
         return Err(Failure::Told("select a part first: its name is in Part".into()));
     }
-    page::stored(&parameters, &mut state)?;
-    parameters.set("Settings of part", &[(c"state", &state.to_text())])
+    Ok(())
 }
 
 /// What the edit buttons work on.

@@ -28,6 +28,20 @@ pub fn read(parameters: &Parameters) -> Result<PartSettings, Failure> {
     })
 }
 
+/// Whether a parameter of the page has its default.
+pub fn is_default(parameters: &Parameters, id: &str) -> Result<bool, Failure> {
+    let (found, default) = (read(parameters)?, PartSettings::default());
+    Ok(match id {
+        "partOn" => found.on == default.on,
+        "partInvert" => found.invert == default.invert,
+        "partOpacity" => found.opacity == default.opacity,
+        "partGrow" => found.grow == default.grow,
+        "partFeather" => found.feather == default.feather,
+        "partMode" => (found.mode, found.modes) == (default.mode, default.modes),
+        _ => found.lock == default.lock,
+    })
+}
+
 fn curve(parameters: &Parameters, id: &CStr, at: &dyn Fn(f64) -> Result<f64, Failure>) -> Result<Curve, Failure> {
     let times = parameters.keys(id)?;
     let mut curve = Curve::still(at(times.first().copied().unwrap_or(0.0))?);
@@ -46,39 +60,46 @@ fn curve(parameters: &Parameters, id: &CStr, at: &dyn Fn(f64) -> Result<f64, Fai
 /// Shows settings.
 pub fn show(parameters: &Parameters, settings: &PartSettings) -> Result<(), Failure> {
     for (id, curve) in [(c"partOn", &settings.on), (c"partInvert", &settings.invert)] {
-        set(parameters, id, curve, &|value| parameters.set_int(id, (value > 0.5).into()), &|time, value| {
-            parameters.set_int_at(id, time, (value > 0.5).into())
-        })?;
+        whole(parameters, id, curve, &|value| (value > 0.5).into())?;
     }
     for (id, curve) in
         [(c"partOpacity", &settings.opacity), (c"partGrow", &settings.grow), (c"partFeather", &settings.feather)]
     {
-        set(parameters, id, curve, &|value| parameters.set_double(id, value), &|time, value| {
-            parameters.set_double_at(id, time, value)
+        set(parameters, id, curve, &|value| Ok(parameters.double(id, 0.0)? == value), &|time, value| match time {
+            Some(time) => parameters.set_double_at(id, time, value),
+            None => parameters.set_double(id, value),
         })?;
     }
-    let whole = |value: f64| value.max(0.0) as i32;
     let modes = settings.modes.clone().unwrap_or_else(|| Curve::still(settings.mode as f64));
-    set(parameters, c"partMode", &modes, &|value| parameters.set_int(c"partMode", whole(value)), &|time, value| {
-        parameters.set_int_at(c"partMode", time, whole(value))
-    })?;
-    parameters.set_int(c"partLock", settings.lock.into())
+    whole(parameters, c"partMode", &modes, &|value| value.max(0.0) as i32)?;
+    whole(parameters, c"partLock", &Curve::still(settings.lock.into()), &|value| (value > 0.5).into())
 }
 
+/// Sets a whole number or a flag.
+fn whole(parameters: &Parameters, id: &CStr, curve: &Curve, of: &dyn Fn(f64) -> i32) -> Result<(), Failure> {
+    set(parameters, id, curve, &|value| Ok(parameters.int(id, 0.0)? == of(value)), &|time, value| match time {
+        Some(time) => parameters.set_int_at(id, time, of(value)),
+        None => parameters.set_int(id, of(value)),
+    })
+}
+
+/// Sets a parameter to a curve. A value that is there already is left, so that undo does not report it. `put` sets a value
+/// at a time, or for all times.
 fn set(
     parameters: &Parameters,
     id: &CStr,
     curve: &Curve,
-    still: &dyn Fn(f64) -> Result<(), Failure>,
-    at: &dyn Fn(f64, f64) -> Result<(), Failure>,
+    is: &dyn Fn(f64) -> Result<bool, Failure>,
+    put: &dyn Fn(Option<f64>, f64) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    if !parameters.keys(id)?.is_empty() {
+    let keyed = !parameters.keys(id)?.is_empty();
+    if keyed {
         parameters.delete_keys(id)?;
     }
-    if curve.keys.is_empty() {
-        return still(curve.value);
+    if !curve.keys.is_empty() {
+        return curve.keys.iter().try_for_each(|&[time, value]| put(Some(time), value));
     }
-    curve.keys.iter().try_for_each(|&[time, value]| at(time, value))
+    if !keyed && is(curve.value)? { Ok(()) } else { put(None, curve.value) }
 }
 
 /// Stores the page's settings for the part that it shows.

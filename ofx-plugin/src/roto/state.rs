@@ -164,6 +164,10 @@ pub struct State {
     /// The part whose settings the page shows; empty if it shows none.
     #[serde(default)]
     pub page: String,
+    /// The file whose shapes are in the document. The host's undo reports a change of Project like a choice of the user; a
+    /// file that is loaded already must not replace what was made since.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub loaded: String,
     /// Settings by part name. Parts without an entry have the defaults.
     #[serde(default)]
     pub parts: BTreeMap<String, PartSettings>,
@@ -174,7 +178,13 @@ pub struct State {
 
 impl Default for State {
     fn default() -> Self {
-        Self { version: VERSION, page: String::new(), parts: BTreeMap::new(), tracked: BTreeMap::new() }
+        Self {
+            version: VERSION,
+            page: String::new(),
+            loaded: String::new(),
+            parts: BTreeMap::new(),
+            tracked: BTreeMap::new(),
+        }
     }
 }
 

@@ -213,12 +213,14 @@ pub mod ffi {
         fn gone_to(self: &Effect) -> f64;
         fn numbers(self: &Effect, name: &str, time: f64) -> Vec<f64>;
         fn set_text(self: Pin<&mut Effect>, name: &str, value: &str);
+        fn set_numbers_in_history(self: Pin<&mut Effect>, name: &str, values: &[f64]);
+        fn set_text_in_history(self: Pin<&mut Effect>, name: &str, value: &str);
         fn text(self: &Effect, name: &str) -> String;
         fn changed(self: Pin<&mut Effect>, name: &str, reason: &str, time: f64) -> String;
         fn action(self: Pin<&mut Effect>, name: &str) -> String;
         fn overlay(self: Pin<&mut Effect>, action: &str, draw_suite: bool, time: f64, pen: &Pen) -> String;
         fn history(self: &Effect) -> Vec<String>;
-        fn undo(self: Pin<&mut Effect>);
+        fn undo(self: Pin<&mut Effect>, told: bool, between: bool);
         fn drawn_colours(self: &Effect) -> Vec<f32>;
         fn texts(self: &Effect) -> Vec<String>;
         fn drawn(self: &Effect) -> Vec<f64>;

@@ -158,10 +158,10 @@ void say(const char *type, const char *format, va_list args) {
 
 // ---------------------------------------------------------------- undo
 
-// One change of a parameter, and how to take it back.
+// Changes of parameters by name, and how to take them back.
 struct Step {
   std::string label;
-  std::vector<std::function<void()>> back;
+  std::vector<std::pair<std::string, std::function<void()>>> back;
 };
 
 // The host's own history: one step for each edit block, or for each value that is set outside of one.
@@ -175,10 +175,10 @@ struct History {
     if (depth++ == 0) label = name, open = false;
   }
   void end() { if (depth > 0) --depth; }
-  void add(std::function<void()> back) {
+  void add(const std::string &name, std::function<void()> back) {
     if (depth == 0 || !open) steps.push_back({depth == 0 ? "set" : label, {}});
     open = depth > 0;
-    steps.back().back.push_back(back);
+    steps.back().back.push_back({name, back});
   }
 };
 
@@ -210,6 +210,7 @@ struct Track {
 class Numbers {
 public:
   virtual ~Numbers() {}
+  virtual void remember() = 0;
   Track track;
 };
 
@@ -240,12 +241,13 @@ public:
     return kOfxStatOK;
   }
 
-protected:
-  void remember() {
+  void remember() override {
     if (!this->getCanUndo()) return;
     Track before = track;
-    history().add([this, before] { track = before; });
+    history().add(this->getName(), [this, before] { track = before; });
   }
+
+protected:
   OfxStatus put(std::vector<double> value) {
     remember();
     track.value = value;
@@ -346,7 +348,7 @@ public:
   OfxStatus get(OfxTime, std::string &v) override { v = value; return kOfxStatOK; }
   OfxStatus set(const char *v) override {
     std::string before = value;
-    history().add([this, before] { value = before; });
+    history().add(getName(), [this, before] { value = before; });
     value = v;
     return kOfxStatOK;
   }
@@ -1095,12 +1097,28 @@ rust::Vec<rust::String> Effect::history() const {
   return labels;
 }
 
-void Effect::undo() {
+void Effect::undo(bool told, bool between) {
   std::vector<Step> &steps = rototoon_host::history().steps;
   if (steps.empty()) return;
   Step last = steps.back();
-  for (auto back = last.back.rbegin(); back != last.back.rend(); ++back) (*back)();
   steps.pop_back();
+  std::vector<std::string> names;
+  for (auto back = last.back.rbegin(); back != last.back.rend(); ++back) {
+    back->second();
+    if (told && between) changed(back->first, "OfxChangeUserEdited", 0);
+    if (std::find(names.begin(), names.end(), back->first) == names.end()) names.push_back(back->first);
+  }
+  for (const std::string &name : names)
+    if (told && !between) changed(name, "OfxChangeUserEdited", 0);
+}
+
+void Effect::set_numbers_in_history(rust::Str name, rust::Slice<const double> values) {
+  if (Numbers *param = numbers_of(*impl, name)) param->remember();
+  set_numbers(name, values);
+}
+
+void Effect::set_text_in_history(rust::Str name, rust::Str value) {
+  if (TextParam *param = dynamic_cast<TextParam *>(impl->effect->getParam(text_of(name)))) param->set(text_of(value).c_str());
 }
 
 rust::String Effect::overlay(rust::Str name, bool draw_suite, double time, const Pen &pen) {

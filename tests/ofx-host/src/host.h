@@ -40,12 +40,14 @@ public:
   double gone_to() const;
   rust::Vec<double> numbers(rust::Str name, double time) const;
   void set_text(rust::Str name, rust::Str value);
+  void set_numbers_in_history(rust::Str name, rust::Slice<const double> values);
+  void set_text_in_history(rust::Str name, rust::Str value);
   rust::String text(rust::Str name) const;
   rust::String changed(rust::Str name, rust::Str reason, double time);
   rust::String action(rust::Str name);
   rust::String overlay(rust::Str action, bool draw_suite, double time, const Pen &pen);
   rust::Vec<rust::String> history() const;
-  void undo();
+  void undo(bool told, bool between);
   rust::Vec<float> drawn_colours() const;
   rust::Vec<rust::String> texts() const;
   rust::Vec<double> drawn() const;

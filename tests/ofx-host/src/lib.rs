@@ -223,6 +223,18 @@ impl Effect<'_> {
         Some(self.inner.gone_to()).filter(|time| !time.is_nan())
     }
 
+    /// Sets a number, flag, choice or colour for all times as a step of undo, as a user does.
+    pub fn set_in_history(&mut self, name: &str, values: &[f64]) {
+        self.pin().set_numbers_in_history(name, values);
+        self.changed(name);
+    }
+
+    /// Sets a text as a step of undo, as a user does.
+    pub fn set_text_in_history(&mut self, name: &str, value: &str) {
+        self.pin().set_text_in_history(name, value);
+        self.changed(name);
+    }
+
     /// Sets a text, as a user does.
     pub fn set_text(&mut self, name: &str, value: &str) {
         self.pin().set_text(name, value);
@@ -294,7 +306,13 @@ impl Effect<'_> {
     /// Undoes the latest step of the host's history, as a user does: values and keys are as before, and the plugin is not
     /// told which.
     pub fn undo(&mut self) {
-        self.pin().undo();
+        self.pin().undo(false, false);
+    }
+
+    /// The same in a host that reports each parameter that comes back, as a change by the user, as OpenFX says: after all of
+    /// them, or `between` them.
+    pub fn undo_told(&mut self, between: bool) {
+        self.pin().undo(true, between);
     }
 
     /// Red, green, blue, opacity and width of each line drawn by the last event.

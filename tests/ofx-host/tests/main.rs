@@ -17,6 +17,7 @@
 //! - `page`: the documentation lists the matrix's tests
 //! - `standing`: lost, doubtful and hidden parts in the viewer and in the timeline
 //! - `session`: the sample cartoon drawn, tracked and corrected in the host
+//! - `undo`: undo that the host reports as changes by the user
 //! - `lines`: the effect that shows the images that a tracker of edges uses
 
 mod actions;
@@ -37,3 +38,4 @@ mod pixels;
 mod session;
 mod shapes;
 mod standing;
+mod undo;
