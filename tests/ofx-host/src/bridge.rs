@@ -221,6 +221,7 @@ pub mod ffi {
         fn overlay(self: Pin<&mut Effect>, action: &str, draw_suite: bool, time: f64, pen: &Pen) -> String;
         fn history(self: &Effect) -> Vec<String>;
         fn undo(self: Pin<&mut Effect>, told: bool, between: bool);
+        fn redo(self: Pin<&mut Effect>);
         fn drawn_colours(self: &Effect) -> Vec<f32>;
         fn texts(self: &Effect) -> Vec<String>;
         fn drawn(self: &Effect) -> Vec<f64>;

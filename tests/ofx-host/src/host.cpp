@@ -158,15 +158,22 @@ void say(const char *type, const char *format, va_list args) {
 
 // ---------------------------------------------------------------- undo
 
-// Changes of parameters by name, and how to take them back.
+// A change of a parameter by name: how to take it back, which says how to make it again.
+struct Change;
+using Turn = std::function<Change()>;
+struct Change {
+  std::string name;
+  Turn turn;
+};
+
 struct Step {
   std::string label;
-  std::vector<std::pair<std::string, std::function<void()>>> back;
+  std::vector<Change> back;
 };
 
 // The host's own history: one step for each edit block, or for each value that is set outside of one.
 struct History {
-  std::vector<Step> steps;
+  std::vector<Step> steps, undone;
   int depth = 0;
   std::string label;
   bool open = false;
@@ -175,10 +182,10 @@ struct History {
     if (depth++ == 0) label = name, open = false;
   }
   void end() { if (depth > 0) --depth; }
-  void add(const std::string &name, std::function<void()> back) {
+  void add(const Change &back) {
     if (depth == 0 || !open) steps.push_back({depth == 0 ? "set" : label, {}});
     open = depth > 0;
-    steps.back().back.push_back({name, back});
+    steps.back().back.push_back(back);
   }
 };
 
@@ -244,10 +251,17 @@ public:
   void remember() override {
     if (!this->getCanUndo()) return;
     Track before = track;
-    history().add(this->getName(), [this, before] { track = before; });
+    history().add(change(before));
   }
 
 protected:
+  Change change(const Track &before) {
+    return {this->getName(), [this, before] {
+              Track now = track;
+              track = before;
+              return change(now);
+            }};
+  }
   OfxStatus put(std::vector<double> value) {
     remember();
     track.value = value;
@@ -339,6 +353,14 @@ public:
 };
 
 class TextParam : public ofx::Param::StringInstance {
+  Change change(const std::string &before) {
+    return {getName(), [this, before] {
+              std::string now = value;
+              value = before;
+              return change(now);
+            }};
+  }
+
 public:
   std::string value;
   TextParam(ofx::Param::Descriptor &d, ofx::Param::SetInstance *s) : StringInstance(d, s) {
@@ -348,7 +370,7 @@ public:
   OfxStatus get(OfxTime, std::string &v) override { v = value; return kOfxStatOK; }
   OfxStatus set(const char *v) override {
     std::string before = value;
-    history().add(getName(), [this, before] { value = before; });
+    history().add(change(before));
     value = v;
     return kOfxStatOK;
   }
@@ -1097,20 +1119,27 @@ rust::Vec<rust::String> Effect::history() const {
   return labels;
 }
 
-void Effect::undo(bool told, bool between) {
-  std::vector<Step> &steps = rototoon_host::history().steps;
-  if (steps.empty()) return;
-  Step last = steps.back();
-  steps.pop_back();
+// Takes the last step of one list back, and puts its opposite into the other list.
+static void turn(Effect &effect, std::vector<Step> &from, std::vector<Step> &to, bool told, bool between) {
+  if (from.empty()) return;
+  Step last = from.back(), opposite = {last.label, {}};
+  from.pop_back();
   std::vector<std::string> names;
   for (auto back = last.back.rbegin(); back != last.back.rend(); ++back) {
-    back->second();
-    if (told && between) changed(back->first, "OfxChangeUserEdited", 0);
-    if (std::find(names.begin(), names.end(), back->first) == names.end()) names.push_back(back->first);
+    opposite.back.push_back(back->turn());
+    if (told && between) effect.changed(back->name, "OfxChangeUserEdited", 0);
+    if (std::find(names.begin(), names.end(), back->name) == names.end()) names.push_back(back->name);
   }
+  to.push_back(opposite);
   for (const std::string &name : names)
-    if (told && !between) changed(name, "OfxChangeUserEdited", 0);
+    if (told && !between) effect.changed(name, "OfxChangeUserEdited", 0);
 }
+
+void Effect::undo(bool told, bool between) {
+  turn(*this, rototoon_host::history().steps, rototoon_host::history().undone, told, between);
+}
+
+void Effect::redo() { turn(*this, rototoon_host::history().undone, rototoon_host::history().steps, true, false); }
 
 void Effect::set_numbers_in_history(rust::Str name, rust::Slice<const double> values) {
   if (Numbers *param = numbers_of(*impl, name)) param->remember();

@@ -48,6 +48,7 @@ public:
   rust::String overlay(rust::Str action, bool draw_suite, double time, const Pen &pen);
   rust::Vec<rust::String> history() const;
   void undo(bool told, bool between);
+  void redo();
   rust::Vec<float> drawn_colours() const;
   rust::Vec<rust::String> texts() const;
   rust::Vec<double> drawn() const;

@@ -309,7 +309,12 @@ impl Effect<'_> {
         self.pin().undo(false, false);
     }
 
-    /// The same in a host that reports each parameter that comes back, as a change by the user, as OpenFX says: after all of
+    /// Makes the latest step again that was undone, and reports each parameter after all of them, as a change by the user.
+    pub fn redo_told(&mut self) {
+        self.pin().redo();
+    }
+
+    /// Undo in a host that reports each parameter that comes back, as a change by the user, as OpenFX says: after all of
     /// them, or `between` them.
     pub fn undo_told(&mut self, between: bool) {
         self.pin().undo(true, between);

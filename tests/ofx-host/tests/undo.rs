@@ -69,17 +69,50 @@ fn undo_that_is_reported_as_the_users_own_change_gives_back_everything() {
         drag(&mut effect, 1, Point::new(1.0, -1.0));
         note(&effect);
         let _ = host.messages();
-        while let Some((steps, wanted)) = states.pop() {
-            while effect.history().len() > steps {
+        for (steps, wanted) in states.iter().rev() {
+            while effect.history().len() > *steps {
                 let before = effect.history().len();
                 effect.undo_told(between);
                 assert_eq!(effect.history().len(), before - 1, "{between}: undo made a step: {:?}", effect.history());
             }
-            assert!(all(&effect) == wanted, "{between}: {steps} steps: {:?} {wanted:?}", all(&effect));
+            assert!(all(&effect) == *wanted, "{between}: {steps} steps: {:?} {wanted:?}", all(&effect));
         }
         assert_eq!(host.messages(), [""; 0], "{between}: undo complained");
         clean(&host);
     }
+}
+
+#[test]
+fn redo_makes_the_nodes_own_steps_again_and_no_others() {
+    let host = host();
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    let mut states = Vec::new();
+    let mut note = |effect: &Effect| states.push((effect.history().len(), all(effect)));
+    note(&effect);
+    for button in ["nextPart", "farther", "nextPart", "newKey", "nextPart", "hideHere"] {
+        assert_eq!(effect.press_at(button, 2.0), OK, "{button} {:?}", host.messages());
+        note(&effect);
+    }
+    drag(&mut effect, 0, Point::new(2.0, 1.0));
+    note(&effect);
+    effect.set_text("newName", "sun");
+    for button in ["rename", "deletePart", "previousPart"] {
+        assert_eq!(effect.press_at(button, 2.0), OK, "{button} {:?}", host.messages());
+        note(&effect);
+    }
+    let all_steps = effect.history();
+    while !effect.history().is_empty() {
+        effect.undo_told(false);
+    }
+    assert!(all(&effect) == states[0].1);
+    for (steps, wanted) in &states {
+        while effect.history().len() < *steps {
+            effect.redo_told();
+        }
+        assert!(all(&effect) == *wanted && effect.history() == all_steps[..*steps], "{steps}: {:?}", effect.history());
+    }
+    assert_eq!(host.messages(), [""; 0]);
+    clean(&host);
 }
 
 #[test]
