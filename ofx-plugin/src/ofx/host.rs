@@ -80,11 +80,16 @@ pub fn load() -> Result<(), Failure> {
     };
     *SUITES.write().unwrap_or_else(PoisonError::into_inner) = Some(suites);
     let name = name().unwrap_or_default();
-    // The persistent messages of these hosts fail or show nothing.
-    if ["DaVinciResolve", "com.blackmagicdesign", "com.eyeonline"].iter().any(|known| name.starts_with(known))
-        && let Some(suites) = SUITES.write().unwrap_or_else(PoisonError::into_inner).as_mut()
-    {
-        suites.persistent = None;
+    let is = |known: &[&str]| known.iter().any(|known| name.starts_with(known));
+    if let Some(suites) = SUITES.write().unwrap_or_else(PoisonError::into_inner).as_mut() {
+        // The persistent messages of these hosts fail or show nothing.
+        if is(&["DaVinciResolve", "com.blackmagicdesign", "com.eyeonline", "MLT"]) {
+            suites.persistent = None;
+        }
+        // MLT takes messages and drops them. Without the suite they go to the log.
+        if is(&["MLT"]) {
+            suites.message = None;
+        }
     }
     Ok(())
 }
@@ -129,6 +134,11 @@ fn says(host: &Properties, name: &CStr) -> bool {
 pub fn name() -> Option<String> {
     let host = properties().ok()?;
     if says(&host, NATRON) { Some("fr.inria.Natron".into()) } else { host.text(kOfxPropName, 0).ok() }
+}
+
+/// Whether the host may have several views of a picture, such as those of two eyes.
+pub fn views() -> bool {
+    name().is_some_and(|name| ["uk.co.thefoundry", "fr.inria.Natron"].iter().any(|known| name.starts_with(known)))
 }
 
 fn suite<T>(host: &OfxHost, name: &CStr, version: i32) -> Option<&'static T> {

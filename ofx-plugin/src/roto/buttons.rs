@@ -3,6 +3,7 @@
 //! Only changes by the user are handled. Each value that the plugin sets itself is reported as a change too.
 
 use super::instance::ORIGIN;
+use super::track::BUSY;
 use super::{choosing, edits, fresh, instance, listing, marks, page, stored, taking_out, track, visits};
 use crate::description::SOURCE;
 use crate::ofx::entry::Action;
@@ -21,6 +22,23 @@ use std::path::{Path, PathBuf};
 /// Most warnings of an import that are shown.
 const MOST_WARNINGS: usize = 5;
 
+/// The buttons that edit the shapes.
+const EDITS: [&str; 13] = [
+    "newPart",
+    "newKey",
+    "deleteKey",
+    "insertPoints",
+    "deletePoints",
+    "smoothPoints",
+    "deletePart",
+    "featherPoints",
+    "hideHere",
+    "hideStretch",
+    "nearer",
+    "farther",
+    "moveToPlace",
+];
+
 /// Handles a change of a parameter or a clip.
 pub fn changed(action: &Action) -> Result<(), Failure> {
     let is = |name: &std::ffi::CStr, text: &str| text.as_bytes() == name.to_bytes();
@@ -28,7 +46,7 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
     let reason = action.input.text(kOfxPropChangeReason, 0)?;
     let (effect, name) = (&action.effect, action.input.text(kOfxPropName, 0)?);
     if is(kOfxTypeClip, &kind) && is(SOURCE, &name) {
-        instance(effect)?.keep_film(None);
+        instance(effect)?.drop_frames();
     }
     if ["document", "part", "project"].contains(&name.as_str()) {
         // Undo changes these too, and hosts differ in whom they name as the one who did it.
@@ -45,14 +63,14 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
     }
     let time = action.input.double(kOfxPropTime, 0).unwrap_or(0.0);
     let done = match name.as_str() {
+        // What is tracked is stored afterwards, and would replace the other shapes.
+        "load" | "project" | "track" | "rename" if instance(effect)?.is_tracking() => Err(Failure::Told(BUSY.into())),
+        edit if EDITS.contains(&edit) && instance(effect)?.is_tracking() => Err(Failure::Told(BUSY.into())),
         "load" => load(effect),
         "project" if is_new_file(effect)? => load(effect),
         "save" => save(effect),
         "track" => track::track(effect, time),
-        "newPart" | "newKey" | "deleteKey" | "insertPoints" | "deletePoints" | "smoothPoints" | "deletePart"
-        | "featherPoints" | "hideHere" | "hideStretch" | "nearer" | "farther" | "moveToPlace" => {
-            edits::press(effect, &name, time)
-        }
+        edit if EDITS.contains(&edit) => edits::press(effect, edit, time),
         "rename" => edits::rename(effect, time),
         "previousLost" | "nextLost" | "weakest" => visits::go(effect, &name, time),
         "frameOffset" => marks::moved(effect),
@@ -60,7 +78,7 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
         "partList" => choosing::chosen(effect),
         "previousPart" | "nextPart" => choosing::step(effect, name == "nextPart"),
         "live" => {
-            instance(effect)?.keep_film(None);
+            instance(effect)?.drop_frames();
             Ok(())
         }
         "tool" => {

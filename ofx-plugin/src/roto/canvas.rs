@@ -3,7 +3,7 @@
 //!
 //! - A lost contour is a black line with red in it, which shows on any background, and says so beside its name. A doubtful
 //!   one has an amber border.
-//! - A contour whose track is older than its keys and corrections is dashed.
+//! - A contour whose track is older than its keys and corrections, or than the source, is dashed.
 //! - A part without a shape on the frame shows its nearest key: thin and pale, dashed if the part is hidden there, and
 //!   black and red dashes if it is lost.
 //! - The outer edge of a border with a feather of its points is a thin pale line.
@@ -115,7 +115,7 @@ fn contour(sheet: &Sheet, part: &Part, line: &[Point], colour: [f32; 4], standin
         }
         Standing::Fine | Standing::Hidden => (colour, 1.5),
     };
-    if sheet.shown.state.is_old(part) {
+    if sheet.shown.is_old(part) {
         sheet.pen.dashes(line, part.closed, colour, width);
     } else {
         sheet.pen.line(line, part.closed, colour, width);
@@ -167,7 +167,7 @@ fn name(sheet: &Sheet, part: &Part, points: &[Point], colour: [f32; 4], standing
         Standing::Hidden => (Some("hidden"), GREY),
         Standing::Fine => (None, colour),
     };
-    let again = sheet.shown.state.is_old(part).then_some("track again");
+    let again = sheet.shown.is_old(part).then_some("track again");
     let notes: Vec<&str> = word.into_iter().chain(again).collect();
     let notes = if notes.is_empty() { String::new() } else { format!(" ({})", notes.join(", ")) };
     sheet.pen.text(&format!("{}{notes}", part.name), top, [0.0, 6.0], colour);

@@ -4,7 +4,7 @@ use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change, nami
 use super::parts::selected;
 use super::settings::Settings;
 use super::state::State;
-use super::{fresh, instance, listing, marks, page, stored, track};
+use super::{follow, fresh, instance, listing, marks, page, stored};
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::geometry::Point;
 use rototoon::project::Document;
@@ -45,18 +45,28 @@ fn store_from(
         return Err(Failure::Told(problems.to_string()));
     }
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
+    let before = instance.document_of_text(&parameters)?;
+    let edited = |state: &mut State, document: &Document| {
+        if let Some(path) = path {
+            path.clone_into(&mut state.loaded);
+        }
+        if let Some(before) = &before {
+            state.note_known(&before.scene.parts);
+            state.note_order(&before.scene.parts, &document.scene.parts);
+            let stale = instance.stale();
+            state.note_stale(before.scene.parts.iter().filter(|part| stale.has(part)));
+        }
+        state.keep_only(&document.scene.parts);
+    };
     let mut state = State::clone(&*instance.state(&parameters)?);
-    if let Some(path) = path {
-        path.clone_into(&mut state.loaded);
-    }
-    if let Some(before) = instance.document_of_text(&parameters)? {
-        state.note_known(&before.scene.parts);
-        state.note_order(&before.scene.parts, &document.scene.parts);
-    }
-    let page = state.page.clone();
-    state.keep_only(&document.scene.parts);
+    edited(&mut state, &document);
     let old = document.scene.parts.iter().any(|part| state.is_old(part));
-    if let Some((followed, tracked)) = live.filter(|_| old).and_then(|time| track::follow(effect, &document, time)) {
+    let followed = live.filter(|_| old).and_then(|time| follow::follow(effect, &document, time));
+    // The settings are read again, because the host may have changed them while the progress was shown.
+    let mut state = State::clone(&*instance.state(&parameters)?);
+    let page = state.page.clone();
+    edited(&mut state, &document);
+    if let Some((followed, tracked)) = followed {
         state.note_tracked(tracked.iter().map(|&part| &followed.scene.parts[part]));
         document = followed;
     }

@@ -1,14 +1,16 @@
 //! The data of an instance: its document, which is read once, and the messages that the user has seen.
 
 use super::edit::Editor;
+use super::film::Film;
+use super::stale::Stale;
 use super::state::State;
-use super::track::Film;
 use super::{shared, stored};
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::project::Document;
+use rototoon::scene::Part;
 use std::collections::BTreeSet;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
@@ -28,7 +30,9 @@ pub struct Instance {
     state: Mutex<Option<ReadState>>,
     editor: Mutex<Editor>,
     film: Mutex<Option<Arc<Film>>>,
-    following: AtomicBool,
+    drops: AtomicU64,
+    stale: Mutex<Stale>,
+    tracking: AtomicBool,
     menu: Mutex<Vec<String>>,
 }
 
@@ -86,7 +90,7 @@ impl Instance {
 
     /// Drops the document, which can be read again, and the frames.
     pub fn forget(&self) {
-        self.keep_film(None);
+        self.drop_frames();
         *lock(&self.read) = None;
     }
 
@@ -123,19 +127,49 @@ impl Instance {
         lock(&self.film).clone()
     }
 
-    /// Keeps frames in memory, or drops them.
-    pub fn keep_film(&self, film: Option<Arc<Film>>) {
-        *lock(&self.film) = film;
+    /// Drops the frames in memory. Returns the number of times that this was done.
+    pub fn drop_frames(&self) -> u64 {
+        *lock(&self.film) = None;
+        self.drops.fetch_add(1, Ordering::AcqRel) + 1
     }
 
-    /// Begins to follow an edit. `None` if an edit is being followed.
-    pub fn begin_following(&self) -> Option<Following<'_>> {
-        (!self.following.swap(true, Ordering::AcqRel)).then_some(Following(&self.following))
+    /// Keeps frames in memory, unless frames were dropped since that many times: then they may be old already.
+    pub fn keep_frames(&self, film: Film, drops: u64) {
+        if self.drops.load(Ordering::Acquire) == drops {
+            *lock(&self.film) = Some(Arc::new(film));
+        }
     }
 
-    /// Whether an edit is being followed. A host may send events of the pen while it shows the progress.
-    pub fn is_following(&self) -> bool {
-        self.following.load(Ordering::Acquire)
+    /// Drops a film whose source has changed, unless it was dropped before, and notes that the tracks of these parts are old.
+    /// Returns whether it was dropped now.
+    pub fn drop_film(&self, film: &Arc<Film>, parts: &[Part]) -> bool {
+        let mut kept = lock(&self.film);
+        let ours = kept.as_ref().is_some_and(|kept| Arc::ptr_eq(kept, film));
+        if ours {
+            *kept = None;
+            lock(&self.stale).add(parts);
+        }
+        ours
+    }
+
+    /// The tracks that were made from a source that has changed since.
+    pub fn stale(&self) -> Stale {
+        lock(&self.stale).clone()
+    }
+
+    /// Notes that the tracks of these parts are made from the source as it is now.
+    pub fn forget_stale<'a>(&self, parts: impl IntoIterator<Item = &'a Part>) {
+        lock(&self.stale).remove(parts);
+    }
+
+    /// Begins to track, or to follow an edit. `None` if the tracker is at work already.
+    pub fn begin_tracking(&self) -> Option<Busy<'_>> {
+        (!self.tracking.swap(true, Ordering::AcqRel)).then_some(Busy(&self.tracking))
+    }
+
+    /// Whether the tracker is at work. A host may send events while it shows the progress.
+    pub fn is_tracking(&self) -> bool {
+        self.tracking.load(Ordering::Acquire)
     }
 
     /// Notes the names in the menu of the parts. Returns whether they are others than before.
@@ -162,10 +196,10 @@ impl Instance {
     }
 }
 
-/// An edit is being followed until this is dropped.
-pub struct Following<'a>(&'a AtomicBool);
+/// The tracker is at work until this is dropped.
+pub struct Busy<'a>(&'a AtomicBool);
 
-impl Drop for Following<'_> {
+impl Drop for Busy<'_> {
     fn drop(&mut self) {
         self.0.store(false, Ordering::Release);
     }

@@ -24,7 +24,9 @@
 //!   [`visits`]: goes to such frames
 //! - [`motion`]: the motion of a part; [`taking_out`]: takes motions and shapes out;
 //!   [`id_files`]: writes ids as files for keyers
-//! - [`track`]: runs the core's tracker on the source's frames
+//! - [`track`]: the button Track; [`job`]: runs the core's tracker on the source's frames, which [`fetching`] gets from the host
+//! - [`follow`]: tracks an edit at once, on the [`film`] that stays in memory; [`watch`]: compares rendered frames with it, by
+//!   their [`sums`]; [`stale`]: tracks of a source that has changed
 
 pub mod buttons;
 pub mod canvas;
@@ -32,9 +34,13 @@ pub mod choosing;
 pub mod describe;
 pub mod edit;
 pub mod edits;
+pub mod fetching;
+pub mod film;
+pub mod follow;
 pub mod fresh;
 pub mod id_files;
 pub mod instance;
+pub mod job;
 pub mod listing;
 pub mod marks;
 pub mod measured;
@@ -52,12 +58,15 @@ pub mod regions;
 pub mod render;
 pub mod settings;
 pub mod shared;
+pub mod stale;
 pub mod standing;
 pub mod state;
 pub mod stored;
+pub mod sums;
 pub mod taking_out;
 pub mod track;
 pub mod visits;
+pub mod watch;
 
 use crate::ofx::entry::{Action, Perform};
 use crate::ofx::{Effect, Failure};

@@ -8,6 +8,7 @@ use super::edit::{Edit, Editor, Key, Lens, Outcome, Tool, Work};
 use super::parts::selected;
 use super::placement::Placement;
 use super::settings::Settings;
+use super::stale::Stale;
 use super::state::State;
 use super::{canvas, edits, fresh, instance};
 use crate::ofx::Failure;
@@ -15,7 +16,7 @@ use crate::ofx::interact::{Event, View};
 use openfx::sys::image_effect_v1::key_syms;
 use rototoon::geometry::Point;
 use rototoon::project::Document;
-use rototoon::scene::FrameNumber;
+use rototoon::scene::{FrameNumber, Part};
 use std::sync::Arc;
 
 /// What the viewer shows.
@@ -29,7 +30,8 @@ pub struct Shown {
     /// The parameters' values.
     pub settings: Settings,
     /// The settings of parts, and what their tracks were made from.
-    pub state: Arc<State>,
+    state: Arc<State>,
+    stale: Stale,
     /// The placement of the footage.
     pub placement: Placement,
     /// Distances on the screen.
@@ -61,7 +63,13 @@ impl Shown {
             Lens::new(Point::new((size(Point::X) - size(Point::ZERO)).x, (size(Point::Y) - size(Point::ZERO)).y));
         let tool = tool(parameters.int(c"tool", view.time)?);
         let (closed, name) = (parameters.int(c"drawClosed", view.time)? != 0, parameters.text(c"part")?);
-        Ok(Self { document, parts, unlocked, settings, state, placement, lens, tool, closed, name: name.trim().into() })
+        let (name, stale) = (name.trim().into(), instance.stale());
+        Ok(Self { document, parts, unlocked, settings, state, stale, placement, lens, tool, closed, name })
+    }
+
+    /// Whether the tracks of a part are older than its keys and corrections, or than the source.
+    pub fn is_old(&self, part: &Part) -> bool {
+        self.state.is_old(part) || self.stale.has(part)
     }
 
     /// The document's frame at the viewer's time; `None` between frames.
@@ -108,10 +116,16 @@ pub fn perform(view: &View) -> Result<(), Failure> {
         canvas::draw(view, &shown, &editor);
         return Ok(());
     }
-    if instance.is_following() {
+    let frame = shown.frame().ok_or(Failure::Default)?;
+    if instance.is_tracking() {
+        // The shapes stay as they are, but keys that are held down or released count afterwards.
+        if let Some(key @ (Key::Shift(_) | Key::Control(_))) = key(view.key, view.event == Event::KeyDown)
+            && matches!(view.event, Event::KeyDown | Event::KeyUp)
+        {
+            instance.editor().key(&shown.work(frame), key);
+        }
         return Ok(());
     }
-    let frame = shown.frame().ok_or(Failure::Default)?;
     // The editor is free again before the host is called.
     let outcome = {
         let mut editor = instance.editor();

@@ -8,6 +8,7 @@ use super::measured;
 use super::mixing::Mixing;
 use super::placement::window;
 use super::regions::{Drawn, drawn, passes_source};
+use super::watch::Watch;
 use crate::description::{MASK, OUTPUT, SOURCE};
 use crate::ofx::entry::Action;
 use crate::ofx::image::Rows;
@@ -43,10 +44,11 @@ pub fn render(action: &Action) -> Result<(), Failure> {
             Failure::Told("the host has no image for the output".into())
         });
     };
-    let fetched = Sources::fetch(effect, time)?;
+    let mut fetched = Sources::fetch(effect, time)?;
     let clips = (effect.clip(OUTPUT)?, effect.clip(SOURCE)?);
     let source = fetched.source.as_ref().map(|image| (&clips.1, image));
     let scale = measured::of_render((&clips.0, &output), source, asked, time, scale);
+    fetched.watch = Watch::of(action, source.map(|(_, image)| image), time, scale);
     let drawn = drawn(effect, time, scale)?;
     let rows = band(drawn.as_ref(), asked, threads::count(effect));
     let bands: Vec<Mutex<Rows>> = output.bands(asked, rows).into_iter().map(Mutex::new).collect();
@@ -57,6 +59,9 @@ pub fn render(action: &Action) -> Result<(), Failure> {
             aborted.store(true, Ordering::Relaxed);
         }
     });
+    if let Some(watch) = fetched.watch {
+        watch.end(effect, time);
+    }
     if aborted.into_inner() { Err(Failure::Aborted) } else { Ok(()) }
 }
 
@@ -77,6 +82,8 @@ fn band(drawn: Option<&Drawn>, asked: Bounds, threads: usize) -> i32 {
 struct Sources<'a> {
     source: Option<Image<'a>>,
     mask: Option<Image<'a>>,
+    /// Whether the source is still what the last Track saw.
+    watch: Option<Watch>,
 }
 
 impl<'a> Sources<'a> {
@@ -90,7 +97,11 @@ impl<'a> Sources<'a> {
             Ok(clip) if clip.connected() => clip.image(time),
             _ => Ok(None),
         };
-        Ok(Self { source: if shown { image(SOURCE)? } else { None }, mask: if masked { image(MASK)? } else { None } })
+        Ok(Self {
+            source: if shown { image(SOURCE)? } else { None },
+            mask: if masked { image(MASK)? } else { None },
+            watch: None,
+        })
     }
 }
 
@@ -126,6 +137,9 @@ fn draw(
             return None;
         }
         source(y, &mut pixels);
+        if let (Some(watch), Some(image)) = (&sources.watch, &sources.source) {
+            watch.look(image, &bounds, y);
+        }
         if let (Some(painting), Some(mixing)) = (&mut painting, &mixing) {
             let below = mixing.needs_source().then(|| {
                 below.copy_from_slice(&pixels);

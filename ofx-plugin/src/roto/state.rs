@@ -19,6 +19,8 @@ pub const MOST_FRAMES: i32 = 100_000;
 
 /// What stands for the sum of a part's input where its tracks were made with another order of the parts.
 const OTHER_ORDER: &str = "other order";
+/// What stands for it where they were made from a source that has changed since.
+const OTHER_SOURCE: &str = "other source";
 
 /// A number that may have keys.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -171,7 +173,7 @@ pub struct State {
     /// Settings by part name. Parts without an entry have the defaults.
     #[serde(default)]
     pub parts: BTreeMap<String, PartSettings>,
-    /// For each tracked part a sum of the keys and corrections that its tracks were made from, or [`OTHER_ORDER`].
+    /// For each tracked part a sum of the keys and corrections that its tracks were made from, [`OTHER_ORDER`] or [`OTHER_SOURCE`].
     #[serde(default)]
     pub tracked: BTreeMap<String, String>,
 }
@@ -267,6 +269,11 @@ impl State {
         if self.page == old {
             new.clone_into(&mut self.page);
         }
+    }
+
+    /// Makes the tracks of parts old because the source has changed since.
+    pub fn note_stale<'a>(&mut self, parts: impl IntoIterator<Item = &'a Part>) {
+        self.tracked.extend(parts.into_iter().map(|part| (part.name.clone(), OTHER_SOURCE.into())));
     }
 
     /// Drops what belongs to parts that are gone.

@@ -217,6 +217,9 @@ pub mod ffi {
         fn set_text_in_history(self: Pin<&mut Effect>, name: &str, value: &str);
         fn text(self: &Effect, name: &str) -> String;
         fn changed(self: Pin<&mut Effect>, name: &str, reason: &str, time: f64) -> String;
+        fn clip_changed(self: Pin<&mut Effect>, name: &str) -> String;
+        fn meanwhile(self: Pin<&mut Effect>, kind: &str, name: &str, text: &str, numbers: &[f64]);
+        fn meanwhile_statuses(self: Pin<&mut Effect>) -> Vec<String>;
         fn action(self: Pin<&mut Effect>, name: &str) -> String;
         fn overlay(self: Pin<&mut Effect>, action: &str, draw_suite: bool, time: f64, pen: &Pen) -> String;
         fn history(self: &Effect) -> Vec<String>;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <deque>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -540,6 +541,9 @@ public:
   // The time of the action.
   std::atomic<double> now{0};
   double gone_to = NAN;
+  // What happens at the next update of a progress display, and the statuses of what has happened.
+  std::deque<std::function<std::string()>> meanwhile;
+  std::vector<std::string> meanwhile_statuses;
 
   TestClip *clip(const std::string &name) const { return dynamic_cast<TestClip *>(getClip(name)); }
   const std::string &getDefaultOutputFielding() const override {
@@ -588,6 +592,11 @@ public:
   void progressEnd() override {}
   bool progressUpdate(double t) override {
     controls().progress = std::max(controls().progress.load(), t);
+    while (!meanwhile.empty()) {
+      std::function<std::string()> event = meanwhile.front();
+      meanwhile.pop_front();
+      meanwhile_statuses.push_back(event());
+    }
     int left = controls().cancels_left;
     if (left < 0) return true;
     return controls().cancels_left.fetch_sub(left > 0 ? 1 : 0) > 0;
@@ -1089,6 +1098,41 @@ rust::String Effect::changed(rust::Str name, rust::Str reason, double time) {
   OfxStatus status = impl->effect->paramInstanceChangedAction(text_of(name), why, time, {1, 1});
   impl->effect->endInstanceChangedAction(why);
   return status_name(status);
+}
+
+rust::String Effect::clip_changed(rust::Str name) {
+  std::string why = kOfxChangeUserEdited;
+  impl->effect->beginInstanceChangedAction(why);
+  OfxStatus status = impl->effect->clipInstanceChangedAction(text_of(name), why, 0, {1, 1});
+  impl->effect->endInstanceChangedAction(why);
+  return status_name(status);
+}
+
+void Effect::meanwhile(rust::Str kind, rust::Str name, rust::Str text, rust::Slice<const double> numbers) {
+  std::string k = text_of(kind), n = text_of(name), words = text_of(text);
+  std::vector<double> v(numbers.begin(), numbers.end());
+  impl->effect->meanwhile.push_back([this, k, n, words, v]() -> std::string {
+    if (k == "set") set_numbers(n, {v.data(), v.size()});
+    if (k == "text") set_text(n, words);
+    if (k == "frame") {
+      std::vector<float> pixels(v.begin() + 2, v.end());
+      set_frame(n, v[0], int(v[1]), int(pixels.size() / 4 / v[1]), {pixels.data(), pixels.size()});
+      return "";
+    }
+    if (k == "undo") return undo(false, false), "";
+    if (k == "action") return std::string(action(n));
+    if (k == "clip") return std::string(clip_changed(n));
+    if (k == "pen") return std::string(overlay(n, true, v[0], Pen{v[1], v[2], v[3], int(v[4])}));
+    if (k == "render") return std::string(render(v[0], Bounds{int(v[1]), int(v[2]), int(v[3]), int(v[4])}, 1, 1, 0));
+    return std::string(changed(n, kOfxChangeUserEdited, 0));
+  });
+}
+
+rust::Vec<rust::String> Effect::meanwhile_statuses() {
+  rust::Vec<rust::String> statuses;
+  for (const std::string &status : impl->effect->meanwhile_statuses) statuses.push_back(status);
+  impl->effect->meanwhile_statuses.clear();
+  return statuses;
 }
 
 rust::String Effect::action(rust::Str name) {

@@ -44,6 +44,9 @@ public:
   void set_text_in_history(rust::Str name, rust::Str value);
   rust::String text(rust::Str name) const;
   rust::String changed(rust::Str name, rust::Str reason, double time);
+  rust::String clip_changed(rust::Str name);
+  void meanwhile(rust::Str kind, rust::Str name, rust::Str text, rust::Slice<const double> numbers);
+  rust::Vec<rust::String> meanwhile_statuses();
   rust::String action(rust::Str name);
   rust::String overlay(rust::Str action, bool draw_suite, double time, const Pen &pen);
   rust::Vec<rust::String> history() const;

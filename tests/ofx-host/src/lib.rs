@@ -102,6 +102,30 @@ impl Valid for cxx::UniquePtr<bridge::ffi::Effect> {
     }
 }
 
+/// What a host does while a plugin shows its progress.
+pub enum Meanwhile<'a> {
+    /// The user sets a number, flag, choice or colour.
+    Set(&'a str, &'a [f64]),
+    /// The user sets a text.
+    Text(&'a str, &'a str),
+    /// The user presses a button.
+    Press(&'a str),
+    /// An event of the pen in the viewer: action, time, position and size of a screen pixel.
+    Pen(&'a str, f64, [f64; 2], f64),
+    /// A key goes down or up: action, time and symbol.
+    Key(&'a str, f64, i32),
+    /// An action without arguments.
+    Action(&'a str),
+    /// A clip is reported to have changed.
+    Clip(&'a str),
+    /// A clip's picture at a time becomes another one, and nobody tells the plugin: clip, time, width, RGBA.
+    Frame(&'a str, f64, usize, &'a [f32]),
+    /// The host renders a window at a time.
+    Render(f64, Bounds),
+    /// The user undoes the latest step.
+    Undo,
+}
+
 /// An instance of an effect.
 pub struct Effect<'a> {
     inner: cxx::UniquePtr<bridge::ffi::Effect>,
@@ -268,6 +292,42 @@ impl Effect<'_> {
     /// Reports a change that the plugin made itself. Returns the status.
     pub fn changed_by_plugin(&mut self, name: &str) -> String {
         self.pin().changed(name, "OfxChangePluginEdited", 0.0)
+    }
+
+    /// Reports that the user has changed a clip. Returns the status.
+    pub fn clip_changed(&mut self, name: &str) -> String {
+        self.pin().clip_changed(name)
+    }
+
+    /// Lets something happen at the next update of a progress display, after what else happens there.
+    pub fn meanwhile(&mut self, event: Meanwhile) {
+        let mut tell =
+            |kind: &str, name: &str, text: &str, numbers: &[f64]| self.pin().meanwhile(kind, name, text, numbers);
+        match event {
+            Meanwhile::Set(name, values) => tell("set", name, "", values),
+            Meanwhile::Text(name, text) => tell("text", name, text, &[]),
+            Meanwhile::Press(name) => tell("press", name, "", &[]),
+            Meanwhile::Pen(action, time, [x, y], pixel) => tell("pen", action, "", &[time, x, y, pixel, 0.0]),
+            Meanwhile::Key(action, time, key) => tell("pen", action, "", &[time, 0.0, 0.0, 1.0, f64::from(key)]),
+            Meanwhile::Action(name) => tell("action", name, "", &[]),
+            Meanwhile::Clip(name) => tell("clip", name, "", &[]),
+            Meanwhile::Frame(clip, time, width, rgba) => {
+                let pixels = rgba.iter().map(|value| f64::from(*value));
+                tell("frame", clip, "", &[time, width as f64].into_iter().chain(pixels).collect::<Vec<_>>());
+            }
+            Meanwhile::Render(time, b) => tell(
+                "render",
+                "",
+                "",
+                &[time].into_iter().chain([b.x1, b.y1, b.x2, b.y2].map(f64::from)).collect::<Vec<_>>(),
+            ),
+            Meanwhile::Undo => tell("undo", "", "", &[]),
+        }
+    }
+
+    /// Takes the statuses of what has happened meanwhile since the last call.
+    pub fn meanwhile_statuses(&mut self) -> Vec<String> {
+        self.pin().meanwhile_statuses()
     }
 
     /// Runs any action without arguments. Returns the status.

@@ -6,9 +6,12 @@ use rototoon::project::Document;
 use rototoon::scene::{Footage, Part, Scene};
 use rototoon_ofx_host::{ClipSettings, Effect, Host, Settings};
 
-const WIDTH: usize = 160;
-const HEIGHT: usize = 120;
-const LAST: i32 = 5;
+/// Width of the drawings.
+pub const WIDTH: usize = 160;
+/// Height of the drawings.
+pub const HEIGHT: usize = 120;
+/// The last frame of the document.
+pub const LAST: i32 = 5;
 
 fn blob(frame: i32) -> Vec<Point> {
     let turn = Point::from_angle(0.12 * f64::from(frame));
@@ -18,7 +21,7 @@ fn blob(frame: i32) -> Vec<Point> {
 }
 
 /// A filled shape with an ink outline on paper. Rows are from the bottom.
-fn drawing(frame: i32) -> Vec<f32> {
+pub fn drawing(frame: i32) -> Vec<f32> {
     let contour = blob(frame);
     let mut pixels = Vec::new();
     for row in (0..HEIGHT).rev() {
@@ -41,7 +44,8 @@ fn drawing(frame: i32) -> Vec<f32> {
     pixels
 }
 
-fn keyed() -> Document {
+/// A document with a shape that has a key on the first and the last frame.
+pub fn keyed() -> Document {
     let keys = [0, LAST].map(|frame| (frame, blob(frame))).into();
     let part = Part { name: "blob".into(), closed: true, keys, ..Part::default() };
     let footage = Footage { pattern: "%d.png".into(), first: 0, last: LAST, fps: 24.0, width: WIDTH, height: HEIGHT };
@@ -49,7 +53,7 @@ fn keyed() -> Document {
 }
 
 /// An instance whose source begins on frame 101.
-fn tracked<'a>(host: &'a Host, top_down: bool) -> Effect<'a> {
+pub fn tracked<'a>(host: &'a Host, top_down: bool) -> Effect<'a> {
     let mut effect = host.effect(ROTO, FILTER);
     let source = ClipSettings {
         x2: WIDTH as i32,
@@ -95,62 +99,6 @@ fn track_follows_the_drawing_and_keeps_the_result() {
         results.push(after);
     }
     assert!(results[0] == results[1], "the order of rows changes nothing");
-}
-
-/// Drags the second point of frame 2 by a few pixels.
-fn correct(effect: &mut Effect) {
-    let from = kept(effect).scene.parts[0].tracks[&2][1];
-    let place = |p: Point| [p.x, HEIGHT as f64 - p.y];
-    for (action, at) in [("PenDown", from), ("PenMotion", from + p(3.0, 2.0)), ("PenUp", from + p(3.0, 2.0))] {
-        assert_eq!(effect.overlay(&format!("OfxInteractAction{action}"), true, 103.0, place(at), 0.1), OK);
-    }
-}
-
-/// Whether the overlay says that tracks are old.
-fn is_old(effect: &mut Effect) -> bool {
-    assert_eq!(effect.overlay("OfxInteractActionDraw", true, 103.0, [0.0; 2], 0.1), OK);
-    effect.texts().iter().any(|text| text.contains("track again"))
-}
-
-#[test]
-fn an_edit_is_followed_at_once_without_asking_for_images() {
-    let host = host();
-    let mut results = Vec::new();
-    for live in [false, true] {
-        let mut effect = tracked(&host, false);
-        effect.set("live", &[f64::from(u8::from(live))]);
-        assert_eq!(effect.press("track"), OK, "{:?}", host.messages());
-        let (before, steps) = ((effect.text("document"), effect.text("state")), effect.history().len());
-        host.configure(&Settings { no_images: true, ..Settings::default() });
-        correct(&mut effect);
-        assert_eq!(is_old(&mut effect), !live);
-        host.configure(&Settings::default());
-        if live {
-            // The drag is one step, or two with the choice of the part.
-            let labels = effect.history();
-            assert_eq!(labels[steps..].iter().filter(|label| *label == "Move points").count(), 1, "{labels:?}");
-            assert!(!labels[steps..].iter().any(|label| label == "Track"), "{labels:?}");
-            results.push(effect.text("document"));
-            while effect.history().len() > steps {
-                effect.undo();
-            }
-            assert!((effect.text("document"), effect.text("state")) == before);
-            // A cancelled one keeps the edit, and says that the tracks are old.
-            host.configure(&Settings { cancel_after: 0, ..Settings::default() });
-            correct(&mut effect);
-            assert!(kept(&effect).scene.parts[0].pins.contains_key(&2) && is_old(&mut effect));
-            host.configure(&Settings::default());
-            // Without frames in memory nothing is followed.
-            assert_eq!((effect.press("track").as_str(), effect.action("OfxActionPurgeCaches").as_str()), (OK, OK));
-            correct(&mut effect);
-            assert!(is_old(&mut effect));
-        } else {
-            assert_eq!(effect.press("track"), OK);
-            results.push(effect.text("document"));
-        }
-        clean(&host);
-    }
-    assert!(results[0] == results[1], "the tracks are those of Track");
 }
 
 #[test]

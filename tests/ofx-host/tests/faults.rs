@@ -226,3 +226,16 @@ fn persistent_messages_that_are_null_are_not_called() {
     host.configure(&Settings::default());
     host.reload(bundles());
 }
+
+#[test]
+fn messages_that_a_host_drops_go_to_the_log() {
+    for (name, messages) in [("RototoonTestHost", 1), ("MLT", 0)] {
+        let mut host = host();
+        host.configure(&Settings { name: name.into(), ..Settings::default() });
+        host.reload(crate::common::bundles());
+        let mut effect = effect(&host, FILTER, &ClipSettings::default());
+        effect.set_text_silently("document", "no document");
+        assert_eq!(effect.render(1.0, WHOLE, 1.0, 1, 0), "kOfxStatFailed");
+        assert_eq!(host.messages().len(), messages, "{name}");
+    }
+}

@@ -6,6 +6,7 @@
 //! - `shapes`: the matte is the same as that of the command line, and near the truth
 //! - `actions`: regions, identity, abort, keys, wrong documents
 //! - `buttons`: load, save, track
+//! - `live`: edits that are tracked at once, on frames in memory
 //! - `overlay`: the pen in the viewer: drawing, selecting, correcting, undo
 //! - `faults`: faults that were seen in real hosts
 //! - `node`: settings of parts, channels, masks, regions, motion and export
@@ -28,6 +29,7 @@ mod faults;
 mod feather;
 mod lines;
 mod listing;
+mod live;
 mod lives;
 mod matrix;
 mod node;

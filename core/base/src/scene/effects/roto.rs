@@ -14,7 +14,7 @@ const FRAMES: [i32; 2] = [-1_000_000, 1_000_000];
 const PLANE: [f64; 2] = [-1_000_000.0, 1_000_000.0];
 
 /// Rototoon Roto: every parameter in order.
-pub const ROTO: [EffectParameter; 92] = [
+pub const ROTO: [EffectParameter; 93] = [
     parameter("shapes", "Shapes", EffectKind::Group(true), None, "Where the shapes come from."),
     parameter(
         "project",
@@ -404,6 +404,13 @@ pub const ROTO: [EffectParameter; 92] = [
         EffectKind::Flag(false),
         TRACKING,
         "Whether each edit is tracked at once, on the frames that the last Track has left in memory.",
+    ),
+    parameter(
+        "liveMemory",
+        "Live memory",
+        EffectKind::Number(1.0, [0.0, 1024.0], [0.0, 16.0]),
+        TRACKING,
+        "Most memory for the frames of Live, in GB. A frame takes 12 bytes for each pixel.",
     ),
     parameter(
         "previousLost",
