@@ -267,7 +267,7 @@ mod tests {
             let sheet = Sheet { keys: vec![key(0, first.to_vec()), key(8, second)], ..Sheet::default() };
             draw(&sheet, &[0]).remove(0)
         };
-        let (first, second) = (bars(17, 6), bars(517, 6));
+        let (first, second) = (bars(17, 18), bars(77, 18));
         let held = drawn(&first, second);
         assert_eq!(held.shares, [0.0; 7]);
         assert!(held.drawings.iter().all(|drawing| drawing.iter().map(|d| &d.stroke).eq(&first)));

@@ -13,8 +13,13 @@ pub(super) type Line<'a> = (&'a [Point], bool);
 
 /// The distance of places along the lines of a drawing.
 pub(super) fn step<'a>(points: impl Iterator<Item = &'a Point>) -> f64 {
+    (STEP * size(points)).max(1e-6)
+}
+
+/// The size of a drawing: the diagonal of the box around its points, 0 without points.
+pub(super) fn size<'a>(points: impl Iterator<Item = &'a Point>) -> f64 {
     let (low, high) = points.fold((Point::INFINITY, Point::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
-    (STEP * low.distance(high)).max(1e-6)
+    if low.x <= high.x { low.distance(high) } else { 0.0 }
 }
 
 /// Places along lines, `step` apart.

@@ -9,6 +9,7 @@
 //! - [`between`]: the drawings between
 //! - [`breakdown`]: the frame on which one more drawing helps most
 //! - [`hidden`]: which parts of lines a filled shape in front covers
+//! - `flow`: the movement of ink that is not matched stroke by stroke
 //! - `grid`: nearest places among many, `ink`: places along lines, `line`: strokes by shares of their length, `chain`:
 //!   strokes end to end
 //!
@@ -43,6 +44,7 @@
 pub mod between;
 pub mod breakdown;
 mod chain;
+mod flow;
 mod grid;
 pub mod hidden;
 mod ink;

@@ -10,8 +10,9 @@
 //!    group's frame, as rigid as possible.
 //! 4. `join` makes movements and changes of shape run through several keys with one velocity.
 //! 5. `contacts` keeps strokes together that touch on both keys.
-//! 6. `credible` looks at the drawing half way. Where strokes are matched unsurely and it is farther from both keys than they
-//!    are from each other, the earlier key is held: its own strokes are drawn (`present`).
+//! 6. `credible` looks at the drawing half way. Where strokes are matched unsurely and the flow of the ink ([`crate::flow`])
+//!    brings it nearer to both keys, the ink flows instead (`flowing`). Where it stays hardly nearer to the keys than they are to
+//!    each other, the earlier key is held: its own strokes are drawn (`present`).
 //!
 //! Where the movement between the keys was captured from footage, strokes follow it instead: `captured`,
 //! [`Sequence::following`].
@@ -29,6 +30,7 @@ mod corners;
 mod correspond;
 mod credible;
 mod deform;
+mod flowing;
 mod join;
 mod leaving;
 mod motion;
@@ -49,6 +51,7 @@ use super::peg::{PegTree, Timing};
 use super::stroke::Stroke;
 use captured::Following;
 use deform::Deform;
+use flowing::Way;
 use join::{Asked, Ends, Run};
 use motion::{Hung, Motion};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -165,8 +168,14 @@ pub struct Sequence {
     captured: Arc<[Captured]>,
     /// By track and span: how it follows a captured part, if it does.
     followed: Vec<Vec<Option<Following>>>,
-    /// By span: whether the earlier key is held, because the movement cannot be believed.
-    held: Vec<bool>,
+    /// By span.
+    ways: Vec<Way>,
+    /// By span: the progress of a flow.
+    progress: Vec<Run>,
+    /// The same with strokes carried to their counterparts where this one flows.
+    matched: Option<Box<Self>>,
+    /// By span: the pairs that are carried out.
+    matchings: Vec<Matching>,
     /// By span: the strokes of its two keys that are exchanged half way, because their pairs are not carried out.
     exchanged: Vec<[Vec<usize>; 2]>,
     options: Options,
@@ -214,17 +223,27 @@ impl Sequence {
         base: Option<usize>,
     ) -> Result<Self, BetweenError> {
         check::check(&keys, matchings, pegs, options)?;
-        let sureness: Vec<f64> =
-            keys.windows(2).zip(matchings).map(|(two, m)| m.sureness(&two[0].strokes, &two[1].strokes)).collect();
         let pairs = keys.windows(2).zip(matchings);
-        let (matchings, exchanged): (Vec<Matching>, Vec<[Vec<usize>; 2]>) = pairs
+        let (carried, exchanged): (Vec<Matching>, Vec<[Vec<usize>; 2]>) = pairs
             .map(|(two, matching)| sure::carried_out(&two[0].strokes, &two[1].strokes, matching))
             .map(|found| (found.matching, found.exchanged))
             .unzip();
-        let matchings = &matchings[..];
+        let matched = Self::carried(keys, carried, exchanged, pegs, options, base);
+        Ok(matched.by_their_ways(matchings, pegs, base))
+    }
+
+    /// Carries strokes to their counterparts, in every span.
+    fn carried(
+        keys: Vec<Key>,
+        matchings: Vec<Matching>,
+        exchanged: Vec<[Vec<usize>; 2]>,
+        pegs: &GivenPegs,
+        options: &Options,
+        base: Option<usize>,
+    ) -> Self {
         let tracks = match base {
-            Some(base) => tracks::around(&keys, matchings, base.min(matchings.len())),
-            None => tracks::chained(&keys, matchings),
+            Some(base) => tracks::around(&keys, &matchings, base.min(matchings.len())),
+            None => tracks::chained(&keys, &matchings),
         };
         let places = motion::by_key(&tracks, keys.len());
         let moving: Vec<Moving> =
@@ -247,43 +266,42 @@ impl Sequence {
             .collect();
         let followed = vec![vec![None; spans]; tracks.len()];
         let (contacts, captured) = (vec![Vec::new(); spans], Arc::default());
-        let held = vec![false; spans];
+        let (ways, progress) = (vec![Way::Matched; spans], flowing::progress(&asked));
         let options = *options;
-        let mut sequence =
-            Self { keys, tracks, motion, changes, local, contacts, captured, followed, held, exchanged, options };
+        let mut sequence = Self {
+            keys,
+            tracks,
+            motion,
+            changes,
+            local,
+            contacts,
+            captured,
+            followed,
+            ways,
+            progress,
+            matched: None,
+            matchings,
+            exchanged,
+            options,
+        };
         if options.contacts {
             let wanted = |k: &usize| base.is_none_or(|base| base == *k);
             let touching = |k: usize| if wanted(&k) { sequence.touching(k) } else { Vec::new() };
             sequence.contacts = (0..spans).into_par_iter().map(touching).collect();
         }
-        let wanted = (0..spans).filter(|k| base.is_none_or(|base| base == *k));
-        for k in wanted.filter(|&k| sureness[k] < 1.0).collect::<Vec<_>>() {
-            sequence.held[k] = !sequence.is_believed(k, sureness[k]);
-        }
-        Ok(sequence)
-    }
-
-    /// Whether the movement in a span can be believed.
-    fn is_believed(&self, k: usize, sureness: f64) -> bool {
-        let (from, to) = (&self.keys[k], &self.keys[k + 1]);
-        let half = || -> credible::Lines {
-            let maps = self.motion.maps(k, 0.5, 0.5 * (f64::from(from.frame) + f64::from(to.frame)));
-            // What vanishes or appears shows no movement.
-            let moves = |t: usize| {
-                let stands = [self.tracks[t].at(k), self.tracks[t].at(k + 1)];
-                stands.iter().all(Option::is_some) || self.is_exchanged(t, k)
-            };
-            let there = |t: usize| {
-                let (points, opacity) = self.moved(t, k, 0.5, &self.motion.of_track(t, &maps));
-                (opacity > 0.0).then_some((points, self.tracks[t].closed))
-            };
-            self.present(k).into_iter().filter(|&t| moves(t)).filter_map(there).collect()
-        };
-        credible::is_believed(sureness, &from.strokes, &to.strokes, half)
+        sequence
     }
 
     /// Lets strokes without a given peg follow the captured part on which they are drawn, where there is one.
     pub fn following(mut self, captured: Arc<[Captured]>) -> Self {
+        // Footage shows the movement: a flow need not guess it.
+        if let Some(matched) = self.matched.take() {
+            let followed = matched.following(captured.clone());
+            let shown = |k: usize| followed.followed.iter().any(|spans| spans[k].is_some());
+            if (0..self.ways.len()).any(|k| matches!(self.ways[k], Way::Flows(..)) && shown(k)) {
+                return followed;
+            }
+        }
         let spans: Vec<[FrameNumber; 2]> = self.keys.windows(2).map(|pair| [pair[0].frame, pair[1].frame]).collect();
         let of = |(t, track): (usize, &Track)| -> Vec<Option<Following>> {
             let free = !self.motion.on_given_peg(t);
@@ -292,9 +310,10 @@ impl Sequence {
         };
         self.followed = self.tracks.par_iter().enumerate().map(of).collect();
         self.captured = captured;
-        // Footage shows the movement.
-        for k in 0..self.held.len() {
-            self.held[k] &= self.followed.iter().all(|spans| spans[k].is_none());
+        for (k, way) in self.ways.iter_mut().enumerate() {
+            if *way == Way::Held && self.followed.iter().any(|spans| spans[k].is_some()) {
+                *way = Way::Matched;
+            }
         }
         self
     }
@@ -334,14 +353,17 @@ impl Sequence {
         let (from, to) = (&self.keys[k], &self.keys[k + 1]);
         let u = (f64::from(frame) - f64::from(from.frame)) / (f64::from(to.frame) - f64::from(from.frame));
         let present = self.present(k);
-        if self.held[k] {
+        if self.is_held(k) {
             return present.into_iter().filter_map(|t| self.held_at(t, k)).collect();
         }
         let maps = self.motion.maps(k, u, f64::from(frame));
         let mut points = vec![Vec::new(); self.tracks.len()];
         let mut opacity = vec![1.0; self.tracks.len()];
         for &t in &present {
-            let moved = || self.moved(t, k, u, &self.motion.of_track(t, &maps));
+            let moved = || match &self.ways[k] {
+                Way::Flows(flow, run) if !self.motion.on_given_peg(t) => self.flowed(t, k, flow, run.share(u)),
+                _ => self.moved(t, k, u, &self.motion.of_track(t, &maps)),
+            };
             (points[t], opacity[t]) = self.followed_at(t, k, frame).map_or_else(moved, |points| (points, 1.0));
         }
         let closed: Vec<bool> = self.tracks.iter().map(|track| track.closed).collect();

@@ -4,6 +4,7 @@
 //! strokes are drawn: a piece has its points on the whole stroke by shares of length, so a drawing of pieces would be up to
 //! 0.2 px off the artist's.
 
+use super::flowing::Way;
 use super::{InBetween, Sequence, Track};
 use crate::stroke::Stroke;
 use std::collections::BTreeSet;
@@ -11,7 +12,7 @@ use std::collections::BTreeSet;
 impl Sequence {
     /// Whether the earlier key is held between key `k` and the next one, because no movement between them can be believed.
     pub fn is_held(&self, k: usize) -> bool {
-        self.held.get(k).copied().unwrap_or(false)
+        self.ways.get(k) == Some(&Way::Held)
     }
 
     /// The tracks that are drawn between key `k` and the next one, from back to front. For a stroke in pieces these are

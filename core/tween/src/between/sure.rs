@@ -14,6 +14,7 @@
 //! that swings is sure, because it looks like itself.
 
 use super::super::grid::Grid;
+use super::super::ink;
 use super::super::line::Line;
 use super::super::matching::{Matching, Pair};
 use super::super::stroke::Stroke;
@@ -68,7 +69,7 @@ pub(super) struct CarriedOut {
 /// The pairs that should be carried out.
 pub(super) fn carried_out(first: &[Stroke], second: &[Stroke], matching: &Matching) -> CarriedOut {
     let known: Vec<Known> = matching.pairs.iter().map(|pair| known(first, second, pair)).collect();
-    let size = size(first.iter().chain(second));
+    let size = ink::size(first.iter().chain(second).flat_map(|s| &s.points));
     let keeps = |k: &usize| {
         let pair = &matching.pairs[*k];
         let around = around(&known, *k);
@@ -89,13 +90,6 @@ pub(super) fn carried_out(first: &[Stroke], second: &[Stroke], matching: &Matchi
     result.vanished.sort_unstable();
     result.appeared.sort_unstable();
     CarriedOut { matching: result, exchanged }
-}
-
-/// The diagonal of the box around strokes.
-fn size<'a>(strokes: impl Iterator<Item = &'a Stroke>) -> f64 {
-    let points = strokes.flat_map(|s| &s.points);
-    let (low, high) = points.fold((Point::INFINITY, Point::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
-    if low.x <= high.x { low.distance(high) } else { 0.0 }
 }
 
 /// Whether many places lie on the counterpart once they have moved, but far from their own counterparts. The movement is

@@ -273,7 +273,7 @@ fn a_held_key_is_drawn_by_its_own_strokes() {
     // The last stroke of the first key vanishes, and the whole line of the second one falls into pieces.
     let keys = vec![key(0, first.clone()), key(4, vec![whole.clone()]), key(8, pieces)];
     let mut held = Sequence::new(keys, &[joined, split], &GivenPegs::default(), &Options::default()).unwrap();
-    held.held = vec![true; 2];
+    held.ways = vec![Way::Held; 2];
     for (frame, own) in [(2, &first), (6, &vec![whole])] {
         let drawn = held.at(frame);
         let strokes: Vec<&Stroke> = drawn.iter().map(|d| &d.stroke).collect();
