@@ -11,6 +11,8 @@ use rototoon_base::geometry::{Point, polygon};
 const SPACING: f64 = 0.5;
 /// Largest change of scale, either way.
 const SCALE: f64 = 1.5;
+/// Length along a line by which its direction is carried, as a share of the distance of the nodes.
+const ALONG: f64 = 0.05;
 /// Weight of the pairs around a node below which it says nothing.
 const LEAST: f64 = 1e-9;
 
@@ -111,7 +113,7 @@ impl Field {
 
     /// A place with its direction, at the end of the way.
     pub fn carry(&self, place: &Place) -> Place {
-        let half = 0.5 * 0.05 * self.spacing;
+        let half = 0.5 * ALONG * self.spacing;
         let [before, after] = [-half, half].map(|by| self.at(place.at + place.along * by, 1.0));
         Place { at: self.at(place.at, 1.0), along: (after - before).normalize_or(place.along) }
     }

@@ -38,6 +38,8 @@ const REACH: (f64, f64) = (0.6, 0.08);
 const TRUST: (f64, f64) = (0.12, 0.02);
 /// Ink meets within this share of the drawing's size.
 const MEETS: f64 = 0.01;
+/// Squared sine of the angle between two lines below which they have the same direction: 45°.
+const SAME: f64 = 0.5;
 
 /// A flow, with its way back.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,7 +110,7 @@ fn meeting(from: &[Place], to: &[Place], field: &Field, size: f64) -> f64 {
     let meets = |place: &&Place| {
         let moved = field.carry(place);
         let near = grid.nearest(moved.at, partners::TRIED);
-        near.into_iter().any(|j| to[j].at.distance(moved.at) <= MEETS * size && to[j].turned(&moved) < 0.5)
+        near.into_iter().any(|j| to[j].at.distance(moved.at) <= MEETS * size && to[j].turned(&moved) < SAME)
     };
     from.iter().filter(meets).count() as f64 / from.len() as f64
 }
