@@ -29,6 +29,30 @@ KEY_POINTS = (
 """Names of the key points, in the order of clips."""
 PARENTS = (0, 0, 1, 2, 3, 2, 5, 6, 2, 8, 9, 0, 11, 12, 0, 14, 15)
 """The parent of each key point by index. The pelvis is its own parent."""
+BODIES = ("human", "quadruped", "bird")
+"""The bodies that need no definition."""
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A run of key points with a name: a leg, a wing, a tail."""
+
+    name: str
+    points: tuple[str, ...]
+    role: str
+    """How it moves: ``"torso"``, ``"head"``, ``"leg"``, ``"limb"`` or ``"other"``."""
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """A body: its key points, and how they hang together."""
+
+    name: str
+    points: tuple[str, ...]
+    """Names of the key points, in the order of clips. The first is the root."""
+    parents: tuple[int, ...]
+    """The parent of each key point by index. The root is its own parent."""
+    chains: tuple[Chain, ...]
 
 
 @dataclass(frozen=True)
@@ -75,6 +99,15 @@ def skeleton_of(clips: Mapping[str, Any], clip: Mapping[str, Any]) -> str | dict
     """The body of a clip of a file: the name of a built-in one, or a definition."""
     found: str | dict[str, Any] = clip.get("skeleton", clips.get("skeleton", "human"))
     return found
+
+
+def skeleton(body: str | Mapping[str, Any]) -> Skeleton:
+    """The body of a name, or of a definition. A definition that does not fit together is an error that names the field."""
+    whole = json.loads(handles.take(handles.Text, "rototoon_skeleton", *text(json.dumps(body))))
+    points = tuple(point["name"] for point in whole["points"])
+    parents = tuple(points.index(point.get("parent", points[0])) for point in whole["points"])
+    chains = tuple(Chain(chain["name"], tuple(chain["points"]), chain["role"]) for chain in whole["chains"])
+    return Skeleton(whole["name"], points, parents, chains)
 
 
 def capture_clip(

@@ -91,16 +91,16 @@ def fits(item, character: str, motion: str) -> bool:
     return character.lower() in item.character.lower() and motion.lower() in item.motion.lower()
 
 
-def characters(motion: str = "") -> list[str]:
-    """Characters of the listed library."""
+def characters(motion: str = "", human: bool = False) -> list[str]:
+    """Characters of the listed library; with `human` humans only."""
     found = shelf()
-    return found.characters(motion) if found is not None else []
+    return found.characters(motion, human) if found is not None else []
 
 
-def motions(character: str = "") -> list[str]:
-    """Motions of the listed library."""
+def motions(character: str = "", human: bool = False) -> list[str]:
+    """Motions of the listed library; with `human` those of humans only."""
     found = shelf()
-    return found.motions(character) if found is not None else []
+    return found.motions(character, human) if found is not None else []
 
 
 def offered(names: list[str], text: str) -> list[str]:

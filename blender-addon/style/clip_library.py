@@ -8,10 +8,11 @@ from typing import Any
 
 import bpy
 import numpy as np
-from rototoon.style import read_library, skeleton_of
+from rototoon.style import KEY_POINTS, Skeleton, read_library, skeleton_of
 
 from ..blender.errors import Problem
 from ..blender.preferences import preferences
+from . import bodies
 
 ENDING = ".clip.json"
 """Ending of the names of clip files."""
@@ -30,7 +31,14 @@ class Row:
     trouble: str = ""
     """Why the clip cannot be used; empty if it can."""
     postures: np.ndarray = field(default_factory=lambda: np.zeros((0, 17, 2)))
-    """Key points (frames, 17, 2)."""
+    """Key points (frames, key points of the body, 2)."""
+    body: Skeleton | None = None
+    """The body of the clip; `None` if the clip cannot be used."""
+
+    @property
+    def human(self) -> bool:
+        """Whether the clip is of a human, from whom styles are learned and whom bones follow."""
+        return self.body is not None and self.body.points == KEY_POINTS
 
 
 @dataclass
@@ -47,13 +55,16 @@ class Shelf:
         good = (row for row in self.rows if not row.trouble)
         return next((row for row in good if (row.character, row.motion) == (character, motion)), None)
 
-    def motions(self, character: str = "") -> list[str]:
-        """The motions, or those of one character."""
-        return sorted({row.motion for row in self.rows if not row.trouble and character in ("", row.character)})
+    def motions(self, character: str = "", human: bool = False) -> list[str]:
+        """The motions, or those of one character; with `human` those of humans only."""
+        return sorted({row.motion for row in self._usable(human) if character in ("", row.character)})
 
-    def characters(self, motion: str = "") -> list[str]:
-        """The characters, or those with one motion."""
-        return sorted({row.character for row in self.rows if not row.trouble and motion in ("", row.motion)})
+    def characters(self, motion: str = "", human: bool = False) -> list[str]:
+        """The characters, or those with one motion; with `human` humans only."""
+        return sorted({row.character for row in self._usable(human) if motion in ("", row.motion)})
+
+    def _usable(self, human: bool) -> list[Row]:
+        return [row for row in self.rows if not row.trouble and (row.human or not human)]
 
 
 def folder_of(ob, chosen: str = "") -> str:
@@ -87,12 +98,8 @@ def read(folder: str) -> Shelf:
 def _row(entry: dict[str, Any], clips: dict[tuple[str, str], Any], troubles: list[str]) -> Row:
     row = Row(**{name: entry[name] for name in ("character", "motion", "frames", "fps", "source", "file")})
     clip = clips.get((row.character, row.motion))
-    if clip is not None and clip["skeleton"] == "human":
-        row.postures = np.array(clip["points"], np.float64)
-        return row
     if clip is not None:
-        body = clip["skeleton"] if isinstance(clip["skeleton"], str) else clip["skeleton"]["name"]
-        row.trouble = f"{row.file}: the skeleton is {body!r}; Blender's panel uses human clips"
+        row.postures, row.body = np.array(clip["points"], np.float64), bodies.named(clip["skeleton"])
         return row
     mine = [trouble for trouble in troubles if row.file in trouble]
     row.trouble = mine[0] if mine else f"{row.file}: cannot be read"

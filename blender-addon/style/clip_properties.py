@@ -18,8 +18,8 @@ PRESETS = (
 )
 
 
-def _any_character(_self):
-    return clip_browser.characters()
+def _any_human(_self):
+    return clip_browser.characters(human=True)
 
 
 def _who_shows_it(self):
@@ -44,7 +44,7 @@ _SHARED = {
         {
             "name": "Style",
             "description": "The character whose style the clip gets. If empty, the clip as it is",
-            "names": _any_character,
+            "names": _any_human,
         },
     ),
     "preset": (

@@ -14,24 +14,16 @@ import json
 from typing import Any
 
 import numpy as np
-from rototoon.style import KEY_POINTS, PARENTS
+from rototoon.style import BODIES, Skeleton
 
 from ..blender import grease_pencil as gp
 from ..blender import placement
 from ..blender.errors import Problem
 from ..capture import document
+from . import bodies
 
 LAYER = "Limbs"
 """Name of the layer with the lines."""
-JOINTS = {"l_shoulder", "r_shoulder", "l_hip", "r_hip"}
-"""Key points at the end of limbs that carry only the body. Arms and legs hang on these limbs and do not bend with them."""
-
-
-POINTS = tuple(
-    (name, name.replace("_", " ").title().replace("L ", "Left ").replace("R ", "Right "), f"The line marks the {name}")
-    for name in KEY_POINTS
-)
-"""Key points as items of a menu: name, label, tooltip."""
 
 
 def name_lines(ob, frame: int, point: str) -> int:
@@ -47,7 +39,7 @@ def name_lines(ob, frame: int, point: str) -> int:
         raise Problem(f'Draw a short line across the limb on the layer "{LAYER}" first, or select one')
     if len(chosen) > 1:
         raise Problem(f"{len(chosen)} lines are selected, but a key point has one line: select one of them")
-    number = KEY_POINTS.index(point) + 1
+    number = bodies.of(ob).points.index(point) + 1
     # The new line replaces an older line of the key point.
     numbers[numbers == number] = 0
     numbers[chosen] = number
@@ -70,23 +62,68 @@ def define(ob, reading: document.Reading) -> list[dict[str, Any]]:
     lines = _lines(ob)
     if not lines:
         raise Problem(f'No line on the layer "{LAYER}" has a key point yet: choose one in Define Limbs')
-    ends = {point: _end(point, drawn, reading.document) for point, drawn in lines.items()}
-    made = []
-    for child in range(1, len(PARENTS)):
-        parent = _ancestor(child, ends)
+    body = bodies.of(ob)
+    ends = {point: _end(body.points[point], drawn, reading.document) for point, drawn in lines.items()}
+    joints, made = bodies.joints(body), []
+    for child in range(1, len(body.points)):
+        parent = _ancestor(body, child, ends)
         if child in ends and parent is not None:
-            made.append(_limb(KEY_POINTS[parent], KEY_POINTS[child], ends[parent], ends[child]))
+            limb = {"from": body.points[parent], "to": body.points[child], "start": ends[parent], "end": ends[child]}
+            if body.points[child] in joints:
+                limb["carries"] = [ends[parent]["points"][0]["part"]]
+            made.append(limb)
     keep(ob, made)
     return made
 
 
-def _ancestor(child: int, ends) -> int | None:
+def _ancestor(body: Skeleton, child: int, ends) -> int | None:
     """The nearest ancestor of a key point that has a line; `None` if there is none."""
     while child:
-        child = PARENTS[child]
+        child = body.parents[child]
         if child in ends:
             return child
     return None
+
+
+def change_body(ob, given: str | dict[str, Any]) -> list[str]:
+    """Gives an object a body by its name or definition. Lines and limbs stay where both bodies have their key points.
+
+    Returns the key points whose lines mark nothing any more.
+    """
+    before, after = bodies.of(ob), bodies.named(given)
+    lost = _renumber(ob, before, after)
+    extra = _extra(ob)
+    extra["skeleton"] = given
+    if given == bodies.HUMAN:
+        del extra["skeleton"]
+    if "limbs" in extra:
+        extra["limbs"] = [limb for limb in extra["limbs"] if _fits(after, limb)]
+    ob.rototoon.extra = json.dumps(extra)
+    return lost
+
+
+def _renumber(ob, before: Skeleton, after: Skeleton) -> list[str]:
+    layer = gp.find_layer(ob, LAYER)
+    if layer is None:
+        return []
+    number_of = {name: number for number, name in enumerate(after.points, 1)}
+    table = np.array([0, *(number_of.get(name, 0) for name in before.points)])
+    lost: set[str] = set()
+    for handle, _ in gp.drawings(layer).values():
+        numbers = np.clip(gp.value(handle, gp.KEY_POINT, len(gp.offsets(handle)) - 1), 0, len(before.points))
+        lost |= {before.points[number - 1] for number in numbers if number and not table[number]}
+        gp.put(handle, gp.KEY_POINT, table[numbers])
+    return sorted(lost)
+
+
+def _fits(body: Skeleton, limb: dict[str, Any]) -> bool:
+    """Whether a body has both key points of a limb, the first above the second."""
+    if limb["from"] not in body.points or limb["to"] not in body.points:
+        return False
+    above = body.points.index(limb["to"])
+    while above and body.points[above] != limb["from"]:
+        above = body.parents[above]
+    return body.points[above] == limb["from"]
 
 
 def count_lines(ob) -> int:
@@ -124,6 +161,13 @@ def defined(ob) -> list[dict[str, Any]]:
     return _extra(ob).get("limbs", [])
 
 
+def body_name(ob) -> str:
+    """The name of the object's body, for a panel."""
+    given = _extra(ob).get("skeleton", bodies.HUMAN)
+    name = given if isinstance(given, str) else given.get("name", "?")
+    return name.title() if name in BODIES else name
+
+
 def needed(ob) -> None:
     """Raises a `Problem` if an object has no limbs."""
     if not defined(ob):
@@ -140,9 +184,11 @@ def _lines(ob) -> dict[int, dict[int, np.ndarray]]:
     points = {0: np.concatenate(drawn)} if drawn else {}
     mapper = placement.Mapper(ob, drawings, points, [LAYER])
     lines: dict[int, dict[int, np.ndarray]] = {}
+    known = len(bodies.of(ob).points)
     for frame, (handle, _) in sorted(drawings.items()):
         starts = gp.offsets(handle)
         numbers = gp.value(handle, gp.KEY_POINT, len(starts) - 1)
+        numbers[numbers > known] = 0
         every = gp.positions(handle, int(starts[-1]))
         for number, a, b in zip(numbers, starts, starts[1:]):
             if number and b - a > 1:
@@ -151,9 +197,9 @@ def _lines(ob) -> dict[int, dict[int, np.ndarray]]:
     return lines
 
 
-def _end(point: int, drawn: dict[int, np.ndarray], project: dict[str, Any]) -> dict[str, Any]:
+def _end(point: str, drawn: dict[int, np.ndarray], project: dict[str, Any]) -> dict[str, Any]:
     """A limb's end in the form of documents."""
-    part = _part_of(KEY_POINTS[point], drawn, project)
+    part = _part_of(point, drawn, project)
     ends = ({str(frame): line[side].tolist() for frame, line in drawn.items()} for side in (0, 1))
     return {"points": [{"part": part, "drawn": points} for points in ends], "share": 0.5}
 
@@ -180,10 +226,3 @@ def _distance(point: np.ndarray, contour: np.ndarray, closed: bool) -> float:
     share = ((point - starts) * along).sum(1) / np.maximum((along**2).sum(1), 1e-12)
     nearest = starts + np.clip(share, 0, 1)[:, None] * along
     return float(np.linalg.norm(nearest - point, axis=1).min())
-
-
-def _limb(start: str, end: str, first: dict[str, Any], last: dict[str, Any]) -> dict[str, Any]:
-    limb = {"from": start, "to": end, "start": first, "end": last}
-    if end in JOINTS:
-        limb["carries"] = [first["points"][0]["part"]]
-    return limb

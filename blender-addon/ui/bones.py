@@ -2,13 +2,9 @@
 
 import bpy
 
-from ..style import clip_browser
-from ..style.limbs import POINTS
+from ..style import bodies, clip_browser
 from .clips import draw_browser
 from .panel import Panel
-
-NAMES = {name: label for name, label, _ in POINTS}
-"""Labels of the key points."""
 
 
 class ROTOTOON_PT_bones(Panel, bpy.types.Panel):
@@ -44,7 +40,7 @@ class ROTOTOON_PT_bones(Panel, bpy.types.Panel):
         for item in settings.bones:
             split = column.split(factor=0.36, align=True)
             split.alert = item.bone not in context.object.data.bones
-            split.label(text=NAMES[item.name])
+            split.label(text=bodies.label(item.name))
             split = split.split(factor=0.7, align=True)
             split.prop_search(item, "bone", context.object.data, "bones", text="")
             split.prop(item, "along", text="")

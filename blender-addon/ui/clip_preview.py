@@ -52,7 +52,7 @@ def posture_of(row: Row, scene) -> int:
 
 def pixels(row: Row, index: int, size: int) -> np.ndarray:
     """The picture of a posture (size, size, 4), the bottom row first."""
-    return stick_figure.picture(stick_figure.fitted(row.postures, stick_figure.box(size))[index], size)
+    return stick_figure.picture(row.body, stick_figure.fitted(row.postures, stick_figure.box(size))[index], size)
 
 
 def _name(row: Row) -> str:
@@ -105,9 +105,9 @@ def gather(ob, row: Row, scene) -> list[Marks]:
     matrix = cameras.layer_to_world(ob, layer)
     posture = stick_figure.fitted(row.postures, _box(ob, layer, mapping, scene))[posture_of(row, scene)]
     marks = []
-    for point, line in stick_figure.lines(posture):
+    for point, line in stick_figure.lines(row.body, posture):
         world = mapping.to_layer(line) @ matrix[:3, :3].T + matrix[:3, 3]
-        marks.append(Marks(world, np.tile([*stick_figure.colour(point), 1.0], (len(line), 1)), 3.0))
+        marks.append(Marks(world, np.tile([*stick_figure.colour(row.body, point), 1.0], (len(line), 1)), 3.0))
     return marks
 
 

@@ -24,7 +24,7 @@ class ROTOTOON_UL_clips(bpy.types.UIList):
         split = layout.split(factor=0.5)
         split.label(text=item.character, icon_value=clip_preview.icon(row) if row is not None else 0)
         split = split.split(factor=0.7)
-        split.label(text=item.motion)
+        split.label(text=item.motion if row is None or row.human else f"{item.motion} ({row.body.name})")
         split.label(text=str(item.frames))
 
     def draw_filter(self, _context, _layout):
@@ -55,7 +55,8 @@ def draw_browser(layout, context) -> None:
         layout.template_icon(clip_preview.figure(chosen, context.scene), scale=7.0)
         moment = clip_preview.posture_of(chosen, context.scene) + 1
         row = layout.row()
-        row.label(text=f"Frame {moment} of {len(chosen.postures)}, {chosen.fps:g} fps")
+        body = "" if chosen.human else f", {chosen.body.name}"
+        row.label(text=f"Frame {moment} of {len(chosen.postures)}, {chosen.fps:g} fps{body}")
         if gp.is_drawing(context.object):
             row.prop(listed, "in_view", text="", icon="OVERLAY")
         if chosen.source:

@@ -52,6 +52,7 @@ class ROTOTOON_MT_style(_Menu):
 
     def draw(self, _context):
         self.layout.operator_context = "INVOKE_DEFAULT"
+        self.layout.operator_menu_enum("rototoon.choose_body", "body")
         self.layout.operator_menu_enum("rototoon.define_limbs", "point")
         _entries(self.layout, *self.names)
 

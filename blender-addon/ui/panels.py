@@ -274,6 +274,7 @@ class ROTOTOON_PT_style(DrawingPanel, bpy.types.Panel):
     def draw(self, context):
         layout, settings = self.layout, settings_of(context)
         layout.use_property_decorate = False
+        layout.operator_menu_enum("rototoon.choose_body", "body", text=f"Body: {limbs.body_name(context.object)}", icon="ARMATURE_DATA")
         layout.operator_menu_enum("rototoon.define_limbs", "point", text="Define Limbs", icon="BONE_DATA")
         count = len(limbs.defined(context.object))
         lines = [f"{count} limbs"] if count else ["Draw a line across a limb", f'on the layer "{limbs.LAYER}"']
@@ -288,7 +289,9 @@ class ROTOTOON_PT_style(DrawingPanel, bpy.types.Panel):
         column = layout.column(align=True)
         reshape = column.operator("rototoon.reshape_drawing", icon="MOD_ARMATURE")
         picture = column.operator("rototoon.reshape_picture", icon="MESH_GRID")
-        apply = column.operator("rototoon.apply_motion", icon="ARMATURE_DATA")
+        row = column.row(align=True)
+        row.enabled = chosen is None or chosen.human
+        apply = row.operator("rototoon.apply_motion", icon="ARMATURE_DATA")
         if chosen is not None:
             reshape.character, reshape.motion = chosen.character, chosen.motion
             picture.character, picture.motion = chosen.character, chosen.motion

@@ -253,6 +253,7 @@ _STYLED = {"motion": "walk", "content": "plain", "style": "old"}
 OPERATORS = {
     "apply_motion": Call(_C, _C, options=_STYLED),
     "carry_strokes": Call(frozenset({INK}), prepare=_ink_active),
+    "choose_body": Call(frozenset({LIMBS}), options={"body": "quadruped"}),
     "clear_generated": Call(_C | {SNAPPED}, options={"corrected": True}),
     "clear_in_betweens": Call(_I, prepare=_in_between),
     "clear_lines": Call(_L, prepare=_traced),

@@ -187,19 +187,19 @@ def test_stopped_and_wrong_use_change_nothing(addon, tmp_path):
     assert shots.snapshot(ob) == before
 
 
-def test_clips_of_other_bodies_are_listed_as_such(addon, tmp_path):
+def test_clips_of_other_bodies_are_used_where_they_can_be(addon, tmp_path):
     performer(addon, tmp_path)
     shelf = tmp_path / "clips"
     assert bpy.ops.rototoon.save_clip(character="plain", motion="walk", folder=str(shelf)) == {"FINISHED"}
     clips = {"rototoon_clips": 2, "skeleton": "bird", "clips": [{"character": "tit", "motion": "fly", "points": [[[0, 0]] * 23]}]}
     (shelf / "tit-fly.clip.json").write_text(json.dumps(clips))
     found = addon("style.clip_library").read(str(shelf))
-    assert [(row.character, bool(row.trouble), len(row.postures) > 0) for row in found.rows] == [
-        ("plain", False, True),
-        ("tit", True, False),
+    assert [(row.character, row.body.name, row.human, row.trouble) for row in found.rows] == [
+        ("plain", "human", True, ""),
+        ("tit", "bird", False, ""),
     ]
-    assert "the skeleton is 'bird'" in found.rows[1].trouble
-    assert found.characters() == ["plain"] and found.troubles == []
+    assert found.characters() == ["plain", "tit"] and found.troubles == []
+    assert found.characters(human=True) == ["plain"] and found.motions(human=True) == ["walk"]
 
 
 def test_marks_are_kept_with_the_document(addon, tmp_path):

@@ -73,6 +73,23 @@ def test_contours_become_clips():
     assert "l_elbow" in made.guessed and "r_elbow" not in made.guessed
 
 
+def test_bodies_are_told_with_their_key_points_and_chains():
+    human = style.skeleton("human")
+    assert (human.name, human.points, human.parents) == ("human", style.KEY_POINTS, style.PARENTS)
+    assert {chain.name: chain.role for chain in human.chains}["l_leg"] == "leg"
+    dog = style.skeleton("quadruped")
+    assert style.Chain("tail", ("tail_base", "tail_middle", "tail_tip"), "other") in dog.chains
+    assert all(dog.parents[dog.points.index(b)] == dog.points.index(a) for chain in dog.chains for a, b in zip(chain.points, chain.points[1:]))
+    points = [{"name": "foot", "at": [0, 0]}, {"name": "neck", "parent": "foot", "at": [1, 0]}]
+    snail = {"name": "snail", "points": points, "chains": [{"name": "torso", "points": ["foot", "neck"], "role": "torso"}]}
+    assert style.skeleton(snail) == style.Skeleton("snail", ("foot", "neck"), (0, 0), (style.Chain("torso", ("foot", "neck"), "torso"),))
+    with pytest.raises(RototoonError, match='skeleton: found "fish", expected one of human, quadruped, bird'):
+        style.skeleton("fish")
+    snail["chains"][0]["role"] = "shell"
+    with pytest.raises(RototoonError, match=r'skeleton\.chains\[0\]\.role: found "shell"'):
+        style.skeleton(snail)
+
+
 def test_a_library_is_searched(shelf):
     found = style.read_library(shelf, motion="wave", read=False)
     assert [entry["character"] for entry in found.entries] == ["plain", "old"]

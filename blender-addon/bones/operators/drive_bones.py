@@ -2,6 +2,7 @@
 
 import bpy
 import numpy as np
+from rototoon.style import skeleton_of
 
 from ...blender import actions, armatures, preferences
 from ...blender.errors import Problem
@@ -70,6 +71,9 @@ class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Oper
 
 def _only(clips, character: str, motion: str):
     found = [c for c in clips["clips"] if c["motion"] == motion and character in ("", c["character"])]
+    if len(found) == 1 and (body := skeleton_of(clips, found[0])) != "human":
+        name = body if isinstance(body, str) else body["name"]
+        raise Problem(f'"{motion}" by "{character}" is a clip of the body "{name}": bones follow human clips')
     if len(found) != 1:
         names = ", ".join(f"{c['character']} {c['motion']}" for c in clips["clips"])
         raise Problem(f'Found {len(found)} clips "{motion}" by "{character}", expected one; the library has {names}')

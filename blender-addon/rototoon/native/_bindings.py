@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0x02d9bcaf7e0936c5
+HEADER_HASH = 0xdcaabfb4780f82b5
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -111,6 +111,9 @@ INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
     "rototoon_capture_clip": (
         (1, "document_length", ctypes.c_size_t),
         (3, "options_length", ctypes.c_size_t),
+    ),
+    "rototoon_skeleton": (
+        (1, "skeleton_length", ctypes.c_size_t),
     ),
     "rototoon_import_motion": (
         (1, "motion_length", ctypes.c_size_t),
@@ -477,6 +480,13 @@ def declare(library: ctypes.CDLL) -> None:
     library.rototoon_capture_clip.argtypes = [
         ctypes.c_void_p,
         ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_skeleton.restype = ctypes.c_int32
+    library.rototoon_skeleton.argtypes = [
         ctypes.c_void_p,
         ctypes.c_size_t,
         ctypes.c_void_p,

@@ -2,6 +2,7 @@
 
 from . import (
     apply_motion,
+    choose_body,
     define_limbs,
     depth_mark,
     import_motion,
@@ -12,6 +13,7 @@ from . import (
 )
 
 _MODULES = (
+    choose_body,
     define_limbs,
     refresh_clips,
     save_clip,

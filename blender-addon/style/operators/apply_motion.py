@@ -2,6 +2,7 @@
 
 import bpy
 
+from .. import clip_browser
 from ..clip_library import folder_of
 from ..clip_properties import Manner, shared
 from .reshaping_base import Reshaping
@@ -10,8 +11,13 @@ from .reshaping_base import Reshaping
 class _Content:
     """The clip to re-make. It is a class of its own, so that the dialog lists it before the style."""
 
-    motion: shared("motion")
-    content: shared("character", name="Content", description="The character whose motion it is")
+    motion: shared("motion", names=lambda _self: clip_browser.motions(human=True))
+    content: shared(
+        "character",
+        name="Content",
+        description="The character whose motion it is",
+        names=lambda self: clip_browser.characters(self.motion, human=True),
+    )
 
 
 class ROTOTOON_OT_apply_motion(Manner, _Content, Reshaping, bpy.types.Operator):
@@ -29,7 +35,7 @@ class ROTOTOON_OT_apply_motion(Manner, _Content, Reshaping, bpy.types.Operator):
         """Called by Blender for the dialog and the redo panel: what is asked for first comes first."""
         layout = self.layout
         layout.use_property_split = True
-        for name in ("content", "motion", "style", "preset", "strength", "sub_keys"):
+        for name in ("content", "motion", "style", "preset", "strength", "sub_keys", "chains"):
             layout.prop(self, name)
 
     def begin(self, context):

@@ -1,12 +1,30 @@
 """Define Limbs: makes limbs from lines across contours."""
 
+import functools
+
 import bpy
+from rototoon import RototoonError
+from rototoon.style import KEY_POINTS
 
 from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...capture import document, identity
 from ...common.operators import Guarded, OnContours
-from .. import limbs
+from .. import bodies, limbs
+
+
+@functools.cache
+def _items(points: tuple[str, ...]) -> list[tuple[str, str, str]]:
+    """Items of a menu. Blender needs the same texts as long as it shows them."""
+    return [(point, bodies.label(point), f"The line marks the {point}") for point in points]
+
+
+def _points(_self, context) -> list[tuple[str, str, str]]:
+    ob = context.object if context is not None else None
+    try:
+        return _items(bodies.of(ob).points if gp.is_drawing(ob) else KEY_POINTS)
+    except RototoonError:
+        return _items(KEY_POINTS)
 
 
 class ROTOTOON_OT_define_limbs(Guarded, OnContours, bpy.types.Operator):
@@ -18,7 +36,7 @@ class ROTOTOON_OT_define_limbs(Guarded, OnContours, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    point: bpy.props.EnumProperty(name="Key Point", description="The key point that the line marks", items=limbs.POINTS)
+    point: bpy.props.EnumProperty(name="Key Point", description="The key point that the line marks", items=_points)
 
     def run(self, context) -> str:
         ob = context.object

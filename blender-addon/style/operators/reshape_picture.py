@@ -7,7 +7,7 @@ from ...blender.errors import Problem
 from .. import picture_pieces
 from ..clip_library import clips_of, folder_of
 from ..clip_properties import Manner, shared
-from .reshaping_base import Reshaping
+from .reshaping_base import Reshaping, unmoved
 
 
 class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
@@ -38,7 +38,7 @@ class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
         layout = self.layout
         layout.use_property_split = True
         layout.prop_search(self, "picture", context.scene, "objects")
-        for name in ("character", "motion", "style", "preset", "strength", "border", "sub_keys", "hide"):
+        for name in ("character", "motion", "style", "preset", "strength", "border", "sub_keys", "chains", "hide"):
             layout.prop(self, name)
 
     def begin(self, context):
@@ -64,6 +64,7 @@ class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
         """Makes the mesh."""
         name = f"{self._ob.name} {self.motion}"
         made = picture_mesh.write(self._ob, self._source, self._pieces, work.result, self._drawing.frame, name)
+        self.warn(unmoved(work.result.still))
         if self.hide and self._source.ob is not None:
             self._source.ob.hide_render = self._source.ob.hide_viewport = True
         shapes = len(made.data.shape_keys.key_blocks) - 1

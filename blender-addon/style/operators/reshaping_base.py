@@ -4,6 +4,7 @@ import bpy
 from rototoon.style import reshape
 
 from ...blender import guard, preferences
+from ...blender.errors import Problem
 from ...capture import tracking
 from ...common import jobs
 from ...common.operators import Long, OnContours
@@ -22,6 +23,11 @@ class Reshaping(OnContours, Long):
         min=0,
         max=100,
     )
+    chains: bpy.props.StringProperty(
+        name="Chains",
+        description="Which chain of the clip's body moves which chain of the drawing's, where their names differ: "
+        "l_arm = l_foreleg, r_arm = r_foreleg",
+    )
     folder: shared("folder")
 
     def invoke(self, context, _event):
@@ -37,13 +43,13 @@ class Reshaping(OnContours, Long):
         if self.changes == guard.DRAWINGS:
             guard.need_some(tracking.contour_layers(self._ob), hidden=True)
         self._drawing = drawing = reshaping.begin(self._ob, context.scene.frame_current)
-        threads, sub_keys = preferences.threads(), self.sub_keys
+        threads, how = preferences.threads(), {"sub_keys": self.sub_keys, "chains": _pairs(self.chains)}
         further = more(drawing) if more is not None else {}
 
         def run(progress):
             chosen, options = clips(lambda done, step: progress(before * done, step), threads)
             rest = lambda done, step: progress(before + (1 - before) * done, step)  # noqa: E731 - the rest of the bar
-            return reshape(drawing.project, chosen, rest, sub_keys=sub_keys, threads=threads, **options, **further)
+            return reshape(drawing.project, chosen, rest, threads=threads, **how, **options, **further)
 
         return jobs.Worker(run)
 
@@ -53,5 +59,20 @@ class Reshaping(OnContours, Long):
         guard.need_some(layers, hidden=True)
         frames = reshaping.finish(self._ob, self._drawing, work.result)
         self.warn(guard.left_out(layers, hidden=True))
+        self.warn(unmoved(work.result.still))
         given = ", ".join(f"{entry['part']}: {entry['follows']}" for entry in work.result.given)
         return f"{frames} frames after frame {self._drawing.frame}" + (f"; no limb carries {given}" if given else "")
+
+
+def _pairs(text: str) -> list[list[str]]:
+    """Pairs of chains from a text such as "l_arm = l_foreleg, r_arm = r_foreleg"."""
+    pairs = [[name.strip() for name in pair.split("=")] for pair in text.split(",") if pair.strip()]
+    for pair in pairs:
+        if len(pair) != 2 or not all(pair):
+            raise Problem(f'Chains: found {"=".join(pair)!r}, expected pairs such as "l_arm = l_foreleg"')
+    return pairs
+
+
+def unmoved(chains: list[str]) -> str:
+    """The warning about chains of the drawing's body that keep their shape; empty if there are none."""
+    return f"no chain of the clip moves {', '.join(chains)}: see Chains" if chains else ""

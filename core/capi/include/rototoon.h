@@ -513,6 +513,17 @@ RototoonStatus rototoon_capture_clip(const uint8_t *document,
                                      struct RototoonText **made,
                                      struct RototoonText **error);
 
+// The definition of a body, so that a program can show its key points and chains.
+//
+// `skeleton` is JSON: the name of a built-in body ("human", "quadruped", "bird") as a string, or a definition.
+//
+// `made` is JSON: the complete definition, `{"name", "points": [{"name", "parent", "at"}], "mirror", "chains": [{"name",
+// "points", "role"}]}`. A definition that does not fit together is an error that names the field.
+RototoonStatus rototoon_skeleton(const uint8_t *skeleton,
+                                 size_t skeleton_length,
+                                 struct RototoonText **made,
+                                 struct RototoonText **error);
+
 // Makes a skeleton clip from motion capture, seen from one direction.
 //
 // `motion` is the text of a BVH file. `options` is a JSON object with the names `character` and `motion`. It may also

@@ -9,6 +9,7 @@ use rototoon::pipeline::{self, ClipJob, PipelineError, ReshapeJob};
 use rototoon::project::Document;
 use rototoon::project::clips::{Clips, parse_key_poses};
 use rototoon::project::library::{Entry, Library};
+use rototoon::project::skeleton as bodies;
 use rototoon::reshape::puppet;
 use rototoon::scene::{Clip, FrameNumber};
 use rototoon::style::{KeyPose, Options, Pace, Preset, Request};
@@ -53,6 +54,13 @@ pub fn capture(document: &str, json: &str) -> Result<String, Failure> {
         made.guessed.iter().map(|(name, count)| ((*name).to_owned(), json!(count))).collect();
     let guessed = Value::Object(guessed);
     Ok(format!(r#"{{"clips": {}, "first": {}, "guessed": {guessed}}}"#, made.clips.text().trim_end(), made.first))
+}
+
+/// The complete definition of a body that is named or defined.
+pub fn skeleton(json: &str) -> Result<String, Failure> {
+    let given: Value = serde_json::from_str(json).map_err(|error| Failure::Error(format!("skeleton: {error}")))?;
+    let template = bodies::read(Some(&given)).map_err(Failure::error)?;
+    Ok(bodies::whole(&template).to_string())
 }
 
 #[derive(Deserialize)]

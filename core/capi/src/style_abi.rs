@@ -37,6 +37,30 @@ pub unsafe extern "C" fn rototoon_capture_clip(
     }
 }
 
+/// The definition of a body, so that a program can show its key points and chains.
+///
+/// `skeleton` is JSON: the name of a built-in body ("human", "quadruped", "bird") as a string, or a definition.
+///
+/// `made` is JSON: the complete definition, `{"name", "points": [{"name", "parent", "at"}], "mirror", "chains": [{"name",
+/// "points", "role"}]}`. A definition that does not fit together is an error that names the field.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_skeleton(
+    skeleton: *const u8,
+    skeleton_length: usize,
+    made: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(made, null_mut(), "made")?;
+            let skeleton = text(skeleton, skeleton_length, "skeleton")?;
+            give(made, RototoonText::new(style::skeleton(skeleton)?));
+            Ok(())
+        })
+    }
+}
+
 /// Makes a skeleton clip from motion capture, seen from one direction.
 ///
 /// `motion` is the text of a BVH file. `options` is a JSON object with the names `character` and `motion`. It may also

@@ -15,7 +15,7 @@
 
 use super::fields::{FieldError, array, described, object, point, wrong};
 use rototoon_base::scene::Template;
-use rototoon_base::scene::template::{BUILT_IN, GivenChain, GivenPoint, Role, TemplateError};
+use rototoon_base::scene::template::{BUILT_IN, Chain, GivenChain, GivenPoint, KeyPoint, Role, TemplateError};
 use serde_json::{Map, Value, json};
 use std::sync::Arc;
 
@@ -108,8 +108,13 @@ pub fn written(template: &Template) -> Option<Value> {
     if Template::built_in(template.name()).is_some_and(|known| *known == *template) {
         return Some(template.name().into());
     }
+    Some(whole(template))
+}
+
+/// The definition of a template, built in or not.
+pub fn whole(template: &Template) -> Value {
     let name = |k: &usize| template.point_name(*k);
-    let point = |(k, point): (usize, &rototoon_base::scene::template::KeyPoint)| {
+    let point = |(k, point): (usize, &KeyPoint)| {
         let mut fields = Map::from_iter([("name".to_owned(), json!(point.name))]);
         if k > 0 {
             fields.insert("parent".into(), name(&point.parent).into());
@@ -119,13 +124,13 @@ pub fn written(template: &Template) -> Option<Value> {
     };
     let pairs =
         (0..template.len()).filter(|&k| template.mirror(k) > k).map(|k| json!([name(&k), name(&template.mirror(k))]));
-    let chain = |chain: &rototoon_base::scene::template::Chain| json!({"name": chain.name, "points": chain.points.iter().map(name).collect::<Vec<_>>(), "role": chain.role.id()});
-    Some(json!({
+    let chain = |chain: &Chain| json!({"name": chain.name, "points": chain.points.iter().map(name).collect::<Vec<_>>(), "role": chain.role.id()});
+    json!({
         "name": template.name(),
         "points": template.points().iter().enumerate().map(point).collect::<Vec<_>>(),
         "mirror": pairs.collect::<Vec<_>>(),
         "chains": template.chains().iter().map(chain).collect::<Vec<_>>(),
-    }))
+    })
 }
 
 #[cfg(test)]
@@ -147,6 +152,10 @@ mod tests {
         assert_eq!(read(Some(&json!("human"))).unwrap(), Template::human());
         for name in ["quadruped", "bird"] {
             assert_eq!(written(&read(Some(&json!(name))).unwrap()), Some(json!(name)));
+        }
+        for name in BUILT_IN {
+            let template = Template::built_in(name).unwrap();
+            assert_eq!(read(Some(&whole(&template))).unwrap(), template);
         }
         let template = read(Some(&snail())).unwrap();
         assert_eq!((template.len(), template.mirror(2), template.name()), (4, 3, "snail"));
