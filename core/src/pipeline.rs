@@ -328,6 +328,11 @@ pub fn export_natron(document: &Document, spacing: f64) -> String {
     export::natron(&document.scene, spacing)
 }
 
+/// Exports the document as a project of Natron with a Roto node. Points of snapped paths are about `spacing` pixels apart.
+pub fn export_natron_project(document: &Document, spacing: f64) -> String {
+    export::natron_project(&document.scene, spacing)
+}
+
 /// Exports the document as a script that makes masks in After Effects. Points of snapped paths are about `spacing` pixels
 /// apart.
 pub fn export_after_effects(document: &Document, spacing: f64) -> String {

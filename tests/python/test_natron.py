@@ -1,6 +1,10 @@
-"""The script for Natron, run with a stand-in for Natron that takes only the calls, and the kinds of arguments, that Natron takes."""
+"""What goes to Natron: the script, run with a stand-in that takes only the calls, and the kinds of arguments, that Natron takes; and
+the project, read with Boost as Natron reads it.
+"""
 
 import json
+import os
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -23,6 +27,22 @@ class Parameter:
         self.keys[time] = value
 
 
+class Choice:
+    """The life time of a curve. Only with the last choice the keys of its activity count."""
+
+    OPTIONS = ["All", "Single", "From start", "To end", "Custom"]
+
+    def __init__(self):
+        self.value = 0
+
+    def getNumOptions(self):
+        return len(self.OPTIONS)
+
+    def set(self, value):
+        assert isinstance(value, int)
+        self.value = value
+
+
 class Curve:
     """A Bézier curve. Natron makes a key where a point is set."""
 
@@ -30,7 +50,7 @@ class Curve:
         assert isinstance(time, int)
         self.points, self.feather = [{time: (x, y)}], [{time: (x, y)}]
         self.label, self.closed = None, False
-        self.feather_distance, self.activated = Parameter(), Parameter()
+        self.feather_distance, self.activated, self.life = Parameter(), Parameter(), Choice()
 
     def setLabel(self, label):
         assert isinstance(label, str)
@@ -56,6 +76,9 @@ class Curve:
 
     def getActivatedParam(self):
         return self.activated
+
+    def getParam(self, name):
+        return {"lifeTime": self.life}.get(name)
 
 
 class Natron:
@@ -89,8 +112,9 @@ def points(frame):
     return [[4.25 + frame, 3.5], [20.0, 5.0 + frame], [11.5, 17.75]]
 
 
-@pytest.mark.parametrize("name", ["app", "app1"])
-def test_the_script_makes_the_parts(tmp_path: Path, name: str):
+@pytest.fixture(scope="module")
+def document(tmp_path_factory) -> Path:
+    """Two parts: the near one is there on the first and the last frame, the far one on frames 2 to 6."""
     keys = {str(frame): points(frame) for frame in range(2, 7)}
     still = {"0": [[1.0, 40.0], [30.5, 44.0]], "8": [[3.0, 41.0], [33.5, 40.0]]}
     parts = [
@@ -98,10 +122,20 @@ def test_the_script_makes_the_parts(tmp_path: Path, name: str):
         {"name": "Größe 🦊", "closed": True, "depth": 1, "keys": keys},
     ]
     footage = {"pattern": "f_%d.png", "first": 0, "last": 8, "fps": 12.5, "width": 64, "height": HEIGHT}
-    document = tmp_path / "a.json"
+    document = tmp_path_factory.mktemp("natron") / "a.json"
     document.write_text(json.dumps({"rototoon": 1, "footage": footage, "parts": parts}))
-    script = tmp_path / "a.py"
-    subprocess.run([program(), "export", document, "-o", script], check=True, timeout=60)
+    return document
+
+
+def export(document: Path, ending: str) -> Path:
+    out = document.with_suffix(ending)
+    subprocess.run([program(), "export", document, "-o", out], check=True, timeout=60)
+    return out
+
+
+@pytest.mark.parametrize("name", ["app", "app1"])
+def test_the_script_makes_the_parts(document: Path, name: str):
+    script = export(document, ".py")
 
     app = Natron()
     exec(compile(script.read_text(encoding="ascii"), "a.py", "exec"), {name: app})  # noqa: S102: the script is ours
@@ -113,4 +147,66 @@ def test_the_script_makes_the_parts(tmp_path: Path, name: str):
     for k, keyed in enumerate(far.points):
         assert keyed == {f: (points(f)[k][0], HEIGHT - points(f)[k][1]) for f in range(2, 7)}
     assert far.activated.keys == {0: False, 2: True, 7: False}
+    assert [Choice.OPTIONS[curve.life.value] for curve in app.items] == ["Custom", "All"]
     assert near.activated.keys == {} and set(near.points[0]) == {0, 8}
+
+
+@pytest.fixture(scope="module")
+def reader(tmp_path_factory) -> Path:
+    """The program that reads a project with Boost."""
+    compiler = shutil.which("c++")
+    header = ["-x", "c++", "-fsyntax-only", "-include", "boost/archive/xml_iarchive.hpp", os.devnull]
+    if not compiler or subprocess.run([compiler, *header], capture_output=True, check=False, timeout=60).returncode:
+        pytest.skip("no Boost.Serialization; install it: apt-get install g++ libboost-serialization-dev")
+    built = tmp_path_factory.mktemp("reader") / "read"
+    source = Path(__file__).with_name("natron_project.cpp")
+    subprocess.run([compiler, "-std=c++14", source, "-o", built, "-lboost_serialization"], check=True, timeout=120)
+    return built
+
+
+def told(reader: Path, project: Path) -> list[str]:
+    run = subprocess.run([reader, project], capture_output=True, text=True, encoding="utf-8", check=False, timeout=60)
+    assert run.returncode == 0, run.stderr
+    return run.stdout.splitlines()
+
+
+def test_boost_reads_the_project(document: Path, reader: Path):
+    lines = told(reader, export(document, ".ntp"))
+    assert lines[:6] == [
+        "background 1 now 0",
+        "setting outputFormat 64x48 20",
+        "setting frameRange  0 8",
+        "setting frameRate  12.500000",
+        "format 64x48 1",
+        "node fr.inria.built-in.Roto Layer1 Roto1",
+    ]
+    near = lines.index('curve 0 Bezier2 near "line"')
+    assert lines[6:10] == [
+        "curve 1 Bezier1 Größe 🦊",
+        "parameter feather  0.000000",
+        "parameter lifeTime Custom 4",
+        "parameter activated  0 @0=0/0 @2=1/0 @7=0/0",
+    ]
+    assert lines[near + 1] == "parameter feather  0.000000" and lines[near + 2].startswith("point")
+    for at, kind in ((10, "point"), (13, "feather")):
+        for k in range(3):
+            x, y = ([f"{f}={value}" for f in range(2, 7) for value in [number(f, k)]] for number in (across, up))
+            keys = " ".join(x), " ".join(y)
+            assert lines[at + k] == kind + "".join(f" | {keys[axis]}" for axis in (0, 1) * 3)
+
+
+def across(frame: int, k: int) -> str:
+    return f"{points(frame)[k][0]:g}"
+
+
+def up(frame: int, k: int) -> str:
+    return f"{HEIGHT - points(frame)[k][1]:g}"
+
+
+def test_boost_refuses_a_project_with_an_element_out_of_order(document: Path, reader: Path):
+    project = export(document, ".ntp")
+    text = project.read_text(encoding="utf-8")
+    for old, new in (("Closed>", "Open>"), ('version="15"', 'version="16"'), ("<count>5</count>", "<count>4</count>")):
+        assert old in text
+        project.write_text(text.replace(old, new), encoding="utf-8")
+        assert subprocess.run([reader, project], capture_output=True, check=False, timeout=60).returncode == 1, old

@@ -15,7 +15,7 @@ pub fn command() -> Command {
         .arg(arguments::project())
         .arg(arguments::output(
             "FILE",
-            "FILE.svg, FILE.nk (Nuke RotoPaint), FILE.py (script for Natron), FILE.jsx (script for After Effects), FILE.fxs (Silhouette) or FILE.json",
+            "FILE.svg, FILE.nk (Nuke RotoPaint), FILE.ntp (project of Natron), FILE.py (script for Natron), FILE.jsx (script for After Effects), FILE.fxs (Silhouette) or FILE.json",
         ))
         .args(arguments::of_stage(Stage::Export))
 }
@@ -24,9 +24,9 @@ pub fn command() -> Command {
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let extension = to.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
-    if !["svg", "nk", "py", "jsx", "fxs", "json"].contains(&extension.as_str()) {
+    if !["svg", "nk", "ntp", "py", "jsx", "fxs", "json"].contains(&extension.as_str()) {
         return Err(Failure::Use(format!(
-            "{}: expected a name that ends in .svg, .nk, .py, .jsx, .fxs or .json",
+            "{}: expected a name that ends in .svg, .nk, .ntp, .py, .jsx, .fxs or .json",
             to.display()
         )));
     }
@@ -42,6 +42,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let spacing = arguments::number(given, "spacing");
     let text = match extension.as_str() {
         "nk" => pipeline::export_nuke(&document, spacing),
+        "ntp" => pipeline::export_natron_project(&document, spacing),
         "py" => pipeline::export_natron(&document, spacing),
         "jsx" => pipeline::export_after_effects(&document, spacing),
         "fxs" => pipeline::export_silhouette(&document, spacing),

@@ -89,7 +89,9 @@ fn commands(document: &str) -> Vec<Vec<&str>> {
         vec!["style", "reshape", document, "clips.json", "-o", "out.json"],
         vec!["import", document, "deep.svg", "-o", "out.json"],
     ];
-    list.extend(["out.svg", "out.nk", "out.py", "out.fxs", "out.json"].map(|to| vec!["export", document, "-o", to]));
+    list.extend(
+        ["out.svg", "out.nk", "out.ntp", "out.py", "out.fxs", "out.json"].map(|to| vec!["export", document, "-o", to]),
+    );
     for what in ["overlay", "matte", "cutout", "ids"] {
         list.extend(["r_%d.png", "r_%d.exr"].map(|to| vec!["render", document, "-o", to, "--what", what]));
     }

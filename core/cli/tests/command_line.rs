@@ -379,7 +379,7 @@ fn a_full_disk_leaves_the_file_as_it_was() {
 fn a_full_device_is_an_error() {
     let cartoon = Cartoon::new();
     let error = bad(&["export", text(&cartoon.keyed()), "-o", "/dev/full"], 2);
-    assert!(error.contains("expected a name that ends in .svg, .nk, .py, .jsx, .fxs or .json"), "{error}");
+    assert!(error.contains("expected a name that ends in .svg, .nk, .ntp, .py, .jsx, .fxs or .json"), "{error}");
     let error = bad(&["track", text(&cartoon.keyed()), "-o", "/dev/full"], 1);
     assert!(error.starts_with("error: /dev/full: cannot write: "), "{error}");
 }

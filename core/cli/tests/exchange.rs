@@ -100,10 +100,10 @@ fn same(found: &Keys, expected: &Keys, tolerance: f64) {
 }
 
 #[test]
-fn shapes_of_silhouette_and_nuke_are_the_same_after_export_and_import() {
+fn shapes_of_silhouette_nuke_and_natron_are_the_same_after_export_and_import() {
     let folder = Folder::new();
     let (empty, out) = (folder.document("empty.json", json!([])), folder.path("o.json"));
-    for name in ["a.fxs", "a.nk"] {
+    for name in ["a.fxs", "a.nk", "a.ntp"] {
         let shapes = folder.path(name);
         run(&["export", text(&folder.captured()), "-o", text(&shapes)], 0);
         assert_eq!(run(&["import", text(&empty), text(&shapes), "-o", text(&out)], 0), "");

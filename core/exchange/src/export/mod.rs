@@ -2,14 +2,18 @@
 //!
 //! - [`svg`](mod@svg): one animated path for each part and each stroke
 //! - [`after_effects`](mod@after_effects): a script that makes masks in After Effects
+//! - [`archive`]: writes the XML archives of Boost
 //! - [`natron`](mod@natron): a script that makes a Roto node in Natron
+//! - [`natron_project`](mod@natron_project): a project of Natron with a Roto node
 //! - [`nuke`](mod@nuke): a RotoPaint node for Nuke
 //! - [`silhouette`](mod@silhouette): Silhouette shapes
 //! - [`outlines`]: contours with the same number of points on every frame
 //! - [`xml`]: escaping of text for XML
 
 pub mod after_effects;
+pub mod archive;
 pub mod natron;
+pub mod natron_project;
 pub mod nuke;
 pub mod outlines;
 pub mod silhouette;
@@ -18,6 +22,7 @@ pub mod xml;
 
 pub use after_effects::after_effects;
 pub use natron::natron;
+pub use natron_project::natron_project;
 pub use nuke::nuke;
 pub use silhouette::silhouette;
 pub use svg::{Motion, SvgOptions, SvgStroke, svg, svg_with_strokes};

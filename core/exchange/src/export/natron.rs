@@ -1,13 +1,15 @@
 //! Shapes for Natron: a Python script (`.py`) that makes a Roto node.
 //!
-//! A project of Natron is an archive of the whole program's state, so a file with shapes alone would not load. The script
+//! The script adds a node to an open project; [`natron_project`](super::natron_project) makes a project of its own. The script
 //! uses what Natron offers to scripts, and makes the same calls as the scripts that Natron itself writes for a group with a
 //! Roto node. Each part is a Bézier curve in the base layer; the farthest comes first, since the node draws in this
 //! order. A curve has a key on every frame on which the part has a contour. Both handles and the feather's point are at
 //! the point, so the sides are straight like those of the part, and the feather, which Natron begins with 1.5 pixels, is
-//! none. Coordinates are pixels with x right and y up. Before its first and after its last contour a curve is not active.
+//! none. Coordinates are pixels with x right and y up. Before its first and after its last contour a curve is not active. For
+//! that its life time is *Custom*, the last of the choices: others ignore the parameter that says whether it is active.
 //!
-//! Source: Natron 2, Python reference (`Roto`, `BezierCurve`) and the public source of its export of groups.
+//! Source: Natron 2, Python reference (`Roto`, `BezierCurve`), and the public sources of its export of groups, of `PyRoto.cpp`
+//! and of `RotoDrawableItem.cpp`.
 //!
 //! Limits: a part that vanishes between its frames is interpolated there. Natron offers scripts no open curves; an
 //! open part becomes a curve that is not closed yet, and has no matte.
@@ -50,6 +52,10 @@ def rototoon_shape(roto, layer, label, closed, frames):
         bezier.setCurveFinished(True)
     bezier.getFeatherDistanceParam().setValue(0, 0)
     begin, end = frames[0][0], frames[-1][0]
+    # Keys of Activated count in the last life time only, Custom. Newer versions of Natron begin with All.
+    life = bezier.getParam(\"lifeTime\")
+    if (begin > FIRST or end < LAST) and hasattr(life, \"getNumOptions\"):
+        life.set(life.getNumOptions() - 1)
     active = bezier.getActivatedParam()
     if begin > FIRST:
         active.setValueAtTime(False, FIRST)
