@@ -21,6 +21,7 @@ mod platform;
 mod release;
 mod steps;
 mod test;
+mod valgrind;
 mod wheel;
 mod window;
 mod windows;

