@@ -143,7 +143,8 @@ fn valgrind_tests() -> Result<Option<String>> {
         Ok(valgrind) => valgrind,
         Err(reason) => return Ok(Some(reason)),
     };
-    let options = "--quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite";
+    let options =
+        "--quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite --show-leak-kinds=definite";
     let runner = format!("{} {options}", valgrind.program.display());
     run(valgrind.prepare(
         cargo()

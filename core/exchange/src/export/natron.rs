@@ -1,6 +1,6 @@
 //! Shapes for Natron: a Python script (`.py`) that makes a Roto node.
 //!
-//! The script adds a node to an open project; [`natron_project`](super::natron_project) makes a project of its own. The script
+//! The script adds a node to an open project; [`natron_project`](mod@super::natron_project) makes a project of its own. The script
 //! uses what Natron offers to scripts, and makes the same calls as the scripts that Natron itself writes for a group with a
 //! Roto node. Each part is a Bézier curve in the base layer; the farthest comes first, since the node draws in this
 //! order. A curve has a key on every frame on which the part has a contour. Both handles and the feather's point are at
