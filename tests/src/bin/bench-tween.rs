@@ -6,9 +6,9 @@ use anyhow::{Context, Result};
 use clap::Parser;
 use rototoon::tween::between::Options;
 use rototoon_tests::tweening::between::{
-    BreakdownErrors, Errors, PlaceErrors, measure as measure_between, measure_breakdowns, measure_captured,
-    measure_one_way, measure_places, rows_of_keys,
+    Errors, PlaceErrors, measure as measure_between, measure_captured, measure_one_way, measure_places, rows_of_keys,
 };
+use rototoon_tests::tweening::breakdowns::{BreakdownErrors, measure_breakdowns};
 use rototoon_tests::tweening::drawings::{Film, measure as measure_drawings};
 use rototoon_tests::tweening::fragments::measure as measure_fragments;
 use rototoon_tests::tweening::ink::InkErrors;
@@ -72,24 +72,20 @@ fn breakdowns(sets: &[Set]) -> Result<()> {
         "breakdowns: two keys 12 frames apart and true drawings between; error divided by that of linear without them"
     );
     println!(
-        "{:22}{:>8}{:>8}{:>8}{:>8}{:>10}{:>10}{:>8}",
-        "", "none", "one", "two", "best 1", "best 2", "hold", "spans"
+        "{:22}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}",
+        "", "none", "one", "two", "sugg 1", "sugg 2", "best 1", "best 2", "hold", "spans"
     );
     for set in sets {
         let mut all = BreakdownErrors::default();
         let spans = spans_of_twelve(set);
         for &span in &spans {
-            let found = measure_breakdowns(set, span, &Options::default())?;
-            all.linear += found.linear;
-            all.held += found.held;
-            all.even = std::array::from_fn(|k| all.even[k] + found.even[k]);
-            all.best = std::array::from_fn(|k| all.best[k] + found.best[k]);
+            all.add(measure_breakdowns(set, span, &Options::default())?);
         }
         let of = |sum: f64| sum / all.linear.max(f64::MIN_POSITIVE);
         let ([none, one, two], [best_one, best_two]) = (all.even.map(of), all.best.map(of));
-        let held = of(all.held);
+        let ([first, second], held) = (all.suggested.map(of), of(all.held));
         println!(
-            "{:22}{none:8.2}{one:8.2}{two:8.2}{best_one:8.2}{best_two:10.2}{held:10.2}{:8}",
+            "{:22}{none:8.2}{one:8.2}{two:8.2}{first:8.2}{second:8.2}{best_one:8.2}{best_two:8.2}{held:8.2}{:8}",
             set.name,
             spans.len()
         );

@@ -47,7 +47,7 @@ fn shares() -> impl Iterator<Item = f64> {
 }
 
 /// The keys of a set as drawings, with only the parts that every key has.
-fn drawings(set: &Set, frames: &[i32]) -> (Vec<usize>, Vec<Key>) {
+pub(super) fn drawings(set: &Set, frames: &[i32]) -> (Vec<usize>, Vec<Key>) {
     let there = |i: &usize| frames.iter().all(|f| set.parts[*i].points.contains_key(f));
     let parts: Vec<usize> = (0..set.parts.len()).filter(there).collect();
     let stroke = |i: usize, f: i32| Stroke::new(set.parts[i].points[&f].clone(), set.parts[i].closed);
@@ -62,7 +62,7 @@ fn paired(count: usize, spans: usize) -> Vec<Matching> {
     vec![Matching { pairs: (0..count).map(pair).collect(), ..Matching::default() }; spans]
 }
 
-fn off(drawn: &[Vec<Point>], truth: &[&Vec<Point>]) -> f64 {
+pub(super) fn off(drawn: &[Vec<Point>], truth: &[&Vec<Point>]) -> f64 {
     let stroke = |(a, b): (&Vec<Point>, &&Vec<Point>)| a.iter().zip(b.iter()).map(|(p, q)| p.distance(*q)).sum::<f64>();
     drawn.iter().zip(truth).map(stroke).sum()
 }
@@ -237,65 +237,8 @@ pub fn measure(set: &Set, frames: &[i32], options: &Options) -> Result<Errors> {
     Ok(errors)
 }
 
-/// Sums of distances in pixels of in-betweens with breakdowns.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BreakdownErrors {
-    /// Of linear interpolation of the two keys.
-    pub linear: f64,
-    /// Of the earlier key, held.
-    pub held: f64,
-    /// Of Rototoon with no breakdown, with one, and with two, at even distances.
-    pub even: [f64; 3],
-    /// Of Rototoon with one and with two breakdowns on the frames that turn out best.
-    pub best: [f64; 2],
-    /// Number of points.
-    pub count: usize,
-}
-
-/// The errors of the frames between two keys when the true drawings of one or two frames between are keys too.
-pub fn measure_breakdowns(set: &Set, (from, to): (i32, i32), options: &Options) -> Result<BreakdownErrors> {
-    let mut errors = BreakdownErrors::default();
-    let (parts, keys) = drawings(set, &[from, to]);
-    let inner: Vec<i32> =
-        (from + 1..to).filter(|f| parts.iter().all(|&i| set.parts[i].points.contains_key(f))).collect();
-    let truth = |frame: i32| -> Vec<&Vec<Point>> { parts.iter().map(|&i| &set.parts[i].points[&frame]).collect() };
-    let of = |frames: &[i32]| -> Result<f64> {
-        let row: Vec<i32> = [&[from][..], frames, &[to]].concat();
-        let (_, ours) = sequence(set, &row, options)?;
-        let wrong = inner.iter().filter(|f| !frames.contains(f)).map(|&f| off(&points(ours.at(f)), &truth(f)));
-        Ok(wrong.sum())
-    };
-    for &frame in &inner {
-        let u = f64::from(frame - from) / f64::from(to - from);
-        let strokes = keys[0].strokes.iter().zip(&keys[1].strokes);
-        let linear: Vec<Vec<Point>> =
-            strokes.map(|(a, b)| a.points.iter().zip(&b.points).map(|(p, q)| p.lerp(*q, u)).collect()).collect();
-        let held: Vec<Vec<Point>> = keys[0].strokes.iter().map(|s| s.points.clone()).collect();
-        errors.linear += off(&linear, &truth(frame));
-        errors.held += off(&held, &truth(frame));
-        errors.count += truth(frame).iter().map(|p| p.len()).sum::<usize>();
-    }
-    let at = |k: usize, of: usize| inner[(inner.len() * k / of).min(inner.len() - 1)];
-    errors.even = [of(&[])?, of(&[at(1, 2)])?, of(&[at(1, 3), at(2, 3)])?];
-    let mut one = (f64::INFINITY, inner[0]);
-    for &frame in &inner {
-        let error = of(&[frame])?;
-        if error < one.0 {
-            one = (error, frame);
-        }
-    }
-    let mut two = f64::INFINITY;
-    for (k, &first) in inner.iter().enumerate() {
-        for &second in &inner[k + 1..] {
-            two = two.min(of(&[first, second])?);
-        }
-    }
-    errors.best = [one.0, two];
-    Ok(errors)
-}
-
 /// The points of in-betweens, ordered by track.
-fn points(drawn: Vec<InBetween>) -> Vec<Vec<Point>> {
+pub(super) fn points(drawn: Vec<InBetween>) -> Vec<Vec<Point>> {
     let mut drawn = drawn;
     drawn.sort_by_key(|d| d.track);
     drawn.into_iter().map(|d| d.stroke.points).collect()

@@ -1,6 +1,7 @@
 //! Measures matching and in-betweens on sets with known truth.
 //!
 //! - [`between`]: compares in-betweens with the true frames
+//! - [`breakdowns`]: what true drawings between the keys gain
 //! - [`drawings`]: in-betweens of whole line drawings, each traced for itself
 //! - [`fragments`]: in-betweens of contours that are cut into pieces in other places on each key
 //! - [`ink`]: distances between drawn and true ink
@@ -8,6 +9,7 @@
 //! - [`sheet`]: draws in-betweens over the truth
 
 pub mod between;
+pub mod breakdowns;
 pub mod drawings;
 pub mod fragments;
 pub mod ink;
@@ -18,11 +20,11 @@ use crate::truth::{TruePart, Truth};
 use anyhow::{Context, Result};
 use rototoon::geometry::{Point, polygon};
 use rototoon::pipeline;
-use rototoon::scene::Silent;
+use rototoon::scene::{Footage, Silent};
 use rototoon::track::TrackOptions;
 use rototoon::tween::between::Captured;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Distances between two keys that are measured, in frames.
@@ -41,8 +43,10 @@ pub struct Set {
     pub parts: Vec<Contours>,
     /// First and last frame.
     pub frames: (i32, i32),
-    /// Pattern of the pictures.
-    pub pattern: String,
+    /// Its folder.
+    pub folder: PathBuf,
+    /// Its pictures.
+    pub footage: Footage,
     /// Frames on which the project has keys.
     pub keys: Vec<i32>,
     /// The parts as tracked from the project's keys; empty before [`Set::capture`].
@@ -83,11 +87,11 @@ impl Set {
         let frames = parts.iter().flat_map(|part| part.points.keys().copied());
         let frames = (frames.clone().min().context("found no frames")?, frames.max().context("found no frames")?);
         let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        let pattern = folder.join(&project.scene.footage.pattern).to_string_lossy().into_owned();
+        let (folder, footage) = (folder.to_owned(), project.scene.footage.clone());
         let mut keys: Vec<i32> = project.scene.parts.iter().flat_map(|part| part.keys.keys().copied()).collect();
         keys.sort_unstable();
         keys.dedup();
-        Ok(Self { name, parts, frames, pattern, keys, captured: Arc::default() })
+        Ok(Self { name, parts, frames, folder, footage, keys, captured: Arc::default() })
     }
 
     /// Tracks the parts of the project in `folder`, for in-betweens that follow them.
@@ -103,8 +107,8 @@ impl Set {
     pub fn paints(&self) -> Result<Vec<Option<[f32; 3]>>> {
         let mut seen = vec![Vec::new(); self.parts.len()];
         for frame in self.frames.0..=self.frames.1 {
-            let path = crate::sheet::frame_path(&self.pattern, frame);
-            let picture = image::open(&path).with_context(|| format!("cannot read {path}"))?.into_rgb8();
+            let path = self.folder.join(crate::sheet::frame_path(&self.footage.pattern, frame));
+            let picture = image::open(&path).with_context(|| format!("cannot read {path:?}"))?.into_rgb8();
             for (part, seen) in self.parts.iter().zip(&mut seen) {
                 seen.extend(self.paint(part, frame, &picture));
             }
