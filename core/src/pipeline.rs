@@ -345,12 +345,19 @@ pub fn export_silhouette(document: &Document, spacing: f64) -> String {
 }
 
 /// What shapes for other programs leave out, as a message for the user; `None` if they have everything. Other programs let a
-/// border fade outward from the contour, or alike all around. Neither is the feather of control points.
-pub fn left_out_of_shapes(document: &Document) -> Option<String> {
+/// border fade outward from the contour, or alike all around. Neither is the feather of control points. Some have a falloff for
+/// such a feather: `extension`, in small letters, names the form.
+pub fn left_out_of_shapes(document: &Document, extension: &str) -> Option<String> {
     let soft = document.scene.parts.iter().filter(|part| part.soft_widths().is_some());
     let names: Vec<String> = soft.map(|part| format!("{:?}", part.name)).collect();
-    (!names.is_empty())
-        .then(|| format!("the shapes are sharp: the file has no feather of the points of {}", names.join(", ")))
+    let feather = (!names.is_empty())
+        .then(|| format!("the shapes are sharp: the file has no feather of the points of {}", names.join(", ")));
+    let other = document.scene.parts.iter().filter(|part| !export::has_falloff(extension, part.falloff));
+    let names: Vec<String> = other.map(|part| format!("{:?}", part.name)).collect();
+    let falloff = (!names.is_empty())
+        .then(|| format!("the file has no such falloff, or only its rate, as that of {}", names.join(", ")));
+    let told: Vec<String> = feather.into_iter().chain(falloff).collect();
+    (!told.is_empty()).then(|| told.join("; "))
 }
 
 /// A format of a file with shapes.

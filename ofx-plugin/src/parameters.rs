@@ -9,7 +9,7 @@ use openfx::sys::image_effect_v1::param::{
     kOfxParamPropParent, kOfxParamPropPersistant, kOfxParamPropSecret, kOfxParamPropStringFilePathExists,
     kOfxParamPropStringMode, kOfxParamStringIsFilePath, kOfxParamStringIsSingleLine, kOfxParamTypeBoolean,
     kOfxParamTypeChoice, kOfxParamTypeDouble, kOfxParamTypeDouble2D, kOfxParamTypeGroup, kOfxParamTypeInteger,
-    kOfxParamTypePushButton, kOfxParamTypeRGBA, kOfxParamTypeString,
+    kOfxParamTypePushButton, kOfxParamTypeRGB, kOfxParamTypeRGBA, kOfxParamTypeString,
 };
 use rototoon::scene::effects::{EffectKind, EffectParameter};
 use rototoon::scene::parameters::{self, Kind};
@@ -73,6 +73,7 @@ fn type_of(kind: &EffectKind) -> &'static CStr {
             kOfxParamTypeChoice
         }
         EffectKind::Colour(_) => kOfxParamTypeRGBA,
+        EffectKind::Shade(_) => kOfxParamTypeRGB,
         EffectKind::Pair(_) => kOfxParamTypeDouble2D,
         EffectKind::Group(_) => kOfxParamTypeGroup,
     }
@@ -118,6 +119,10 @@ fn values(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
             properties.set_int(kOfxParamPropDigits, 0, 2)
         }
         EffectKind::Colour(default) => properties.set_doubles(kOfxParamPropDefault, &default),
+        EffectKind::Shade(default) => {
+            properties.set_int(kOfxParamPropAnimates, 0, 0)?;
+            properties.set_doubles(kOfxParamPropDefault, &default)
+        }
     }
 }
 

@@ -50,7 +50,8 @@ class Curve:
         assert isinstance(time, int)
         self.points, self.feather = [{time: (x, y)}], [{time: (x, y)}]
         self.label, self.closed = None, False
-        self.feather_distance, self.activated, self.life = Parameter(), Parameter(), Choice()
+        self.feather_distance, self.falloff = Parameter(), Parameter()
+        self.activated, self.life, self.colour = Parameter(), Choice(), None
 
     def setLabel(self, label):
         assert isinstance(label, str)
@@ -73,6 +74,12 @@ class Curve:
 
     def getFeatherDistanceParam(self):
         return self.feather_distance
+
+    def getFeatherFallOffParam(self):
+        return self.falloff
+
+    def setOverlayColor(self, red, green, blue):
+        self.colour = (red, green, blue)
 
     def getActivatedParam(self):
         return self.activated

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use rototoon::geometry::Point;
 use rototoon::project::{Document, LoadError};
-use rototoon::scene::Part;
+use rototoon::scene::{Falloff, FalloffCurve, Part};
 use std::collections::BTreeMap;
 use std::fs;
 
@@ -192,6 +192,40 @@ fn a_feather_is_read_written_and_checked() {
 }
 
 #[test]
+fn a_falloff_and_a_colour_are_read_written_and_checked() {
+    let with = |more: &str| with_part(&format!(r#""keys": {{"0": {TRIANGLE}}}{more}"#));
+    let said = r#", "falloff": 2.5, "falloff_curve": "ease_in", "color": [1, 0.25, 0]"#;
+    let mut document = parse(&with(said)).unwrap();
+    let part = &document.scene.parts[0];
+    assert_eq!(part.falloff, Falloff { rate: 2.5, curve: Some(FalloffCurve::EaseIn) });
+    assert_eq!(part.colour, Some([1.0, 0.25, 0.0]));
+    assert_eq!(parse(&document.to_json()).unwrap().scene, document.scene);
+    // Where they are taken away, what is written can be read.
+    (document.scene.parts[0].falloff, document.scene.parts[0].colour) = (Falloff::default(), None);
+    assert_eq!(parse(&document.to_json()).unwrap().scene, document.scene);
+    let old = parse(&with("")).unwrap().to_json();
+    assert!(!old.contains("falloff") && !old.contains("color"), "old documents stay as they are");
+    for (more, wrong) in [
+        (r#", "falloff": 0"#, r#"p.json: parts[0] "arm".falloff: found 0, expected a rate from 0.1 to 10"#),
+        (
+            r#", "falloff_curve": "bent""#,
+            r#"p.json: parts[0] "arm".falloff_curve: found the text "bent", expected "smooth", "linear", "ease_in" or "ease_out""#,
+        ),
+        (
+            r#", "color": [1, 2, 0]"#,
+            r#"p.json: parts[0] "arm".color: found [1, 2, 0], expected a colour [red, green, blue], each from 0 to 1"#,
+        ),
+        (
+            r#", "color": [1, 0]"#,
+            r#"p.json: parts[0] "arm".color: found [1, 0], expected a colour [red, green, blue], each from 0 to 1"#,
+        ),
+    ] {
+        assert_eq!(errors(&with(more)), [wrong]);
+    }
+    assert!(errors(&with(r#", "color": "red", "falloff": null"#)).len() == 2);
+}
+
+#[test]
 fn odd_contours_are_valid_with_a_warning() {
     for (points, warning) in [
         ("[]", "the part has no points"),
@@ -324,6 +358,8 @@ fn part() -> impl Strategy<Value = Part> {
                     depths,
                     absent,
                     feather,
+                    falloff: Falloff { rate: 0.1 + 0.01 * count as f64, curve: closed.then_some(FalloffCurve::Linear) },
+                    colour: closed.then_some([0.25, 0.1, depth.abs().fract()]),
                 }
             },
         )

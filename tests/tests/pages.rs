@@ -39,6 +39,7 @@ fn values(kind: &EffectKind) -> (String, String) {
             }
             other => panic!("{id}: {other:?}, expected a choice"),
         },
+        EffectKind::Shade([r, g, b]) => ("colour, without keys".into(), format!("{r}, {g}, {b}")),
         EffectKind::Colour([r, g, b, a]) => ("colour".into(), format!("{r}, {g}, {b}, {a}")),
         EffectKind::Pair([x, y]) => ("two numbers".into(), format!("{x}, {y}")),
         EffectKind::Group(_) => (String::new(), String::new()),

@@ -49,7 +49,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         _ => pipeline::export_svg(&document, &SvgOptions { motion, spacing })?,
     };
     write_whole(to, text.as_bytes())?;
-    if let Some(warning) = pipeline::left_out_of_shapes(&document) {
+    if let Some(warning) = pipeline::left_out_of_shapes(&document, &extension) {
         line("warning", &format!("{}: {warning}", to.display()));
     }
     Ok(())

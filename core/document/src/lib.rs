@@ -57,6 +57,7 @@ pub mod inputs;
 pub mod library;
 pub mod limbs;
 pub mod load;
+mod looks;
 pub mod output;
 pub mod path;
 mod plain_clips;

@@ -4,12 +4,13 @@
 //! limit for each kind. Only text that is not JSON ends the reading early.
 
 use super::Document;
+use super::looks::{Curve, Shade};
 use super::problem::Problems;
 use super::schema::{Field, Layout, VERSION};
 use super::shape::{Context, Entries, Flag, Frame, FrameRange, List, Number, Pair, Seed, Shape, Step, Text, Whole};
 use super::validate;
 use rototoon_base::file;
-use rototoon_base::scene::{Footage, FrameNumber, Part, Scene};
+use rototoon_base::scene::{Falloff, Footage, FrameNumber, Part, Scene};
 use serde::de::{DeserializeSeed, Error, IgnoredAny, MapAccess, SeqAccess};
 use serde_json::error::Category;
 use serde_json::value::RawValue;
@@ -322,6 +323,7 @@ impl<'de> Shape<'de> for PartShape {
         let (mut keys, mut pins, mut centers) = (None, None, None);
         let (mut tracks, mut confidence, mut curves) = (None, None, None);
         let (mut wants_key, mut depths, mut absent, mut feather) = (None, None, None, None);
+        let (mut falloff, mut falloff_curve, mut color) = (None, None, None);
         let mut fields = Vec::new();
         let points = Entries::<FrameNumber, _>::new(List(Pair));
         while let Some(key) = entries.next_key::<String>()? {
@@ -347,6 +349,9 @@ impl<'de> Shape<'de> for PartShape {
                 "depths" => field(context, source, "depths", Entries::<FrameNumber, _>::new(Number), &mut depths)?,
                 "absent" => field(context, source, "absent", List(FrameRange), &mut absent)?,
                 "feather" => field(context, source, "feather", List(Number), &mut feather)?,
+                "falloff" => field(context, source, "falloff", Number, &mut falloff)?,
+                "falloff_curve" => field(context, source, "falloff_curve", Curve, &mut falloff_curve)?,
+                "color" => field(context, source, "color", Shade, &mut color)?,
                 _ => unknown(source, key)?,
             });
         }
@@ -365,6 +370,8 @@ impl<'de> Shape<'de> for PartShape {
             depths: depths.unwrap_or_default(),
             absent: absent.unwrap_or_default(),
             feather: feather.unwrap_or_default(),
+            falloff: Falloff { rate: falloff.unwrap_or(1.0), curve: falloff_curve },
+            colour: color,
         };
         Ok(Some((part, fields)))
     }

@@ -88,7 +88,8 @@ impl Document {
             *out += "{";
             let mut count = 0;
             for field in completed(own, &PART) {
-                if own.iter().any(|known| known.name() == field.name()) || !is_default(part, field.name()) {
+                let said = own.iter().any(|known| known.name() == field.name()) && !is_unsaid(part, field.name());
+                if said || !is_default(part, field.name()) {
                     begin(out, count, "\n      ", field.name());
                     part_field(out, part, &field);
                     count += 1;
@@ -111,6 +112,18 @@ fn is_default(part: &Part, name: &str) -> bool {
         "depths" => part.depths.is_empty(),
         "absent" => part.absent.is_empty(),
         "feather" => part.feather.is_empty(),
+        "falloff" => part.falloff.rate == 1.0,
+        "falloff_curve" => part.falloff.curve.is_none(),
+        "color" => part.colour.is_none(),
+        _ => false,
+    }
+}
+
+/// Whether a field has no value that could be written.
+fn is_unsaid(part: &Part, name: &str) -> bool {
+    match name {
+        "falloff_curve" => part.falloff.curve.is_none(),
+        "color" => part.colour.is_none(),
         _ => false,
     }
 }
@@ -144,6 +157,11 @@ fn part_field(out: &mut String, part: &Part, field: &Field) {
             list(out, range, "", "", |out, frame| number(out, f64::from(*frame)));
         }),
         Field::Known("feather") => list(out, &part.feather, "", "", |out, width| number(out, *width)),
+        Field::Known("falloff") => number(out, part.falloff.rate),
+        Field::Known("falloff_curve") => text(out, part.falloff.curve.unwrap_or_default().id()),
+        Field::Known("color") => {
+            list(out, &part.colour.unwrap_or_default(), "", "", |out, value| number(out, *value));
+        }
         Field::Known("depths") => frames(out, &part.depths, |out, _, depth| number(out, *depth)),
         Field::Known(_) => frames(out, &part.curves, |out, _, paths| {
             list(out, paths, "", "", |out, path| list(out, path, "", "", |out, p| pair(out, rounded_point(*p))))

@@ -43,8 +43,9 @@ pub(super) const FOOTAGE: [&str; 6] = ["pattern", "first", "last", "fps", "width
 /// `absent` is the artist's and left out if empty. It contains the first and the last frame of each time in which the part
 /// is not there.
 ///
-/// `feather` is the artist's and left out if empty. It has a width for each control point.
-pub(super) const PART: [&str; 13] = [
+/// `feather` is the artist's and left out if empty. It has a width for each control point. `falloff` and `falloff_curve` are left out
+/// if they are those of the blur, `color` if it is that of the part's index.
+pub(super) const PART: [&str; 16] = [
     "name",
     "closed",
     "depth",
@@ -58,6 +59,9 @@ pub(super) const PART: [&str; 13] = [
     "depths",
     "absent",
     "feather",
+    "falloff",
+    "falloff_curve",
+    "color",
 ];
 
 /// A field of an object, as read from the document.

@@ -8,7 +8,7 @@ use super::problem::Problems;
 use super::schema::{MAX_COORDINATE, MAX_FEATHER, MAX_FPS, MAX_FRAME_NUMBER, MAX_FRAMES, MAX_SIZE, MIN_FPS};
 use super::shape::part_place;
 use rototoon_base::geometry::{Point, polygon};
-use rototoon_base::scene::{Footage, FrameNumber, FramePattern, Part, Scene};
+use rototoon_base::scene::{Falloff, Footage, FrameNumber, FramePattern, Part, Scene};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// All problems of a scene.
@@ -266,6 +266,11 @@ impl PartCheck<'_> {
         let part = self.part;
         for (index, width) in part.feather.iter().enumerate().filter(|(_, w)| !(0.0..=MAX_FEATHER).contains(*w)) {
             self.error(format!("feather[{index}]"), format!("found {width}, expected a width from 0 to {MAX_FEATHER}"));
+        }
+        let rate = part.falloff.rate;
+        if !(Falloff::LEAST..=Falloff::MOST).contains(&rate) {
+            let (least, most) = (Falloff::LEAST, Falloff::MOST);
+            self.error("falloff", format!("found {rate}, expected a rate from {least} to {most}"));
         }
         let (found, count) = (part.feather.len(), part.point_count());
         if found > 0 && found != count {

@@ -1,16 +1,20 @@
 //! Contours as a mask: the mean over some instants of the union of polygons, grown or shrunk, then feathered. The feather
-//! may have other widths along the contours.
+//! may have other widths along the contours, and another falloff than that of the blur.
+//!
+//! Such a falloff belongs to the border of each instant: the mean of the instants is taken behind it. So a mask that moves is
+//! blurred once for each instant that differs from the one before.
 //!
 //! The value of a pixel does not depend on the window. A picture may therefore be computed in tiles and by several
 //! threads.
 
 use super::coverage::{Shape, Window};
-use super::feather::Feather;
+use super::feather::{Feather, Ramp};
 use super::rows::{MaskRows, Source};
 use super::widths::{Piece, Widths};
 use super::{feather, grow};
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::Raster;
+use rototoon_base::scene::{Falloff, Raster};
+use std::sync::Arc;
 
 /// Largest number of pixels by which a mask is grown, shrunk or feathered. A picture in a window needs the pixels within
 /// this distance of it, so memory would have no limit without this one.
@@ -27,6 +31,8 @@ pub struct Mask {
     feather: f64,
     /// What is added to the feather along the contours, if it is not the same everywhere.
     widths: Option<Widths>,
+    /// The falloff, if it is not that of the blur.
+    ramp: Option<Arc<Ramp>>,
 }
 
 /// A rectangle that contains the mask.
@@ -84,7 +90,7 @@ impl Mask {
         let tight = points.map(|&p| Bounds { least: p, most: p }).reduce(Bounds::united);
         let number = |value: f64| if value.is_nan() { 0.0 } else { value };
         let (grow, feather) = (number(grow).clamp(-MOST_REACH, MOST_REACH), number(feather).clamp(0.0, MOST_REACH));
-        Self { instants, shape, tight, grow, feather, widths: None }
+        Self { instants, shape, tight, grow, feather, widths: None, ramp: None }
     }
 
     /// The mask with widths along its contours, in pixels, that are added to its feather. The sum of both counts as
@@ -99,6 +105,22 @@ impl Mask {
             self.widths = None;
         }
         self
+    }
+
+    /// The mask with a falloff of its soft border.
+    pub fn with_falloff(mut self, falloff: Falloff) -> Self {
+        self.ramp = Ramp::new(falloff).map(Arc::new);
+        self
+    }
+
+    /// The falloff if it changes anything: the border is soft.
+    fn falloff(&self) -> Option<&Ramp> {
+        self.ramp.as_deref().filter(|_| self.radii()[1] > 0.0)
+    }
+
+    /// Whether each instant needs a blur of its own.
+    fn is_blurred_by_instants(&self) -> bool {
+        self.falloff().is_some() && self.instants.windows(2).any(|pair| pair[0] != pair[1])
     }
 
     /// The least and the greatest radius of the feather.
@@ -125,9 +147,10 @@ impl Mask {
         feather::reach(self.radii()[1])
     }
 
-    /// Whether the mask is drawn as a whole, not row by row: it is grown or shrunk, or its feather has several widths.
+    /// Whether the mask is drawn as a whole, not row by row: it is grown or shrunk, its feather has several widths, or its
+    /// instants are blurred one by one.
     pub fn is_drawn_whole(&self) -> bool {
-        self.grow != 0.0 || self.widths.is_some()
+        self.grow != 0.0 || self.widths.is_some() || self.is_blurred_by_instants()
     }
 
     /// Number of values that the rows of a window keep, because of the feather.
@@ -156,9 +179,13 @@ impl Mask {
         let Some(own) = self.bounds().and_then(|bounds| bounds.pixels(window)) else {
             return Some(MaskRows::new(window, None));
         };
+        if self.is_blurred_by_instants() {
+            return Some(MaskRows::new(window, Some((own, Source::Picture(self.by_instants(own, go_on)?)))));
+        }
         let wide = own.grown(self.reach() as i64);
         if let Some(widths) = &self.widths {
-            return Some(MaskRows::new(window, Some((own, Source::Picture(self.varied(widths, own, wide, go_on)?)))));
+            let source = Source::Picture(self.varied(widths, own, wide, go_on)?);
+            return Some(MaskRows::new(window, Some((own, source))).with_ramp(self.falloff()));
         }
         let source = match (self.grow == 0.0, self.feather == 0.0) {
             (true, true) => Source::Sides(self.shape.rows(own)),
@@ -166,7 +193,30 @@ impl Mask {
             (false, true) => Source::Picture(self.grown(own, go_on)?),
             (false, false) => Source::Picture(feather::feathered(&self.hard(wide, go_on)?, self.feather, go_on)?),
         };
-        Some(MaskRows::new(window, Some((own, source))))
+        Some(MaskRows::new(window, Some((own, source))).with_ramp(self.falloff()))
+    }
+
+    /// Draws each instant with the falloff, and takes the mean.
+    fn by_instants(&self, window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<f32>> {
+        let mut sum = Raster::new(window.width(), window.height(), 0.0f32);
+        for same in self.instants.chunk_by(|a, b| a == b) {
+            let one = Self {
+                widths: self.widths.clone(),
+                ramp: self.ramp.clone(),
+                ..Self::new(vec![same[0].clone()], self.grow, self.feather)
+            };
+            let mut rows = one.rows(window, go_on)?;
+            for y in 0..window.height() {
+                rows.next(go_on)?;
+                let drawn = rows.drawn();
+                for (sum, value) in sum.row_mut(y)[drawn.clone()].iter_mut().zip(&rows.latest()[drawn]) {
+                    *sum += same.len() as f32 * value;
+                }
+            }
+        }
+        // A quotient, since a number of ones times its inverse may not be 1.
+        sum.data_mut().iter_mut().for_each(|sum| *sum /= self.instants.len() as f32);
+        Some(sum)
     }
 
     /// Draws a mask whose feather has several widths.
@@ -209,6 +259,9 @@ impl Mask {
         Some(sum)
     }
 }
+
+#[cfg(test)]
+mod falloff;
 
 #[cfg(test)]
 mod tests {

@@ -48,7 +48,8 @@ fn soft(scene: &Scene, frame: FrameNumber, wanted: &dyn Fn(usize) -> bool) -> Ra
     let layer = |parts: &[&Part]| {
         let outlines: Vec<Vec<Point>> = parts.iter().filter_map(|part| part.outline(frame)).collect();
         let pieces = feather_pieces(parts[0], f64::from(frame), true, &|p| p, 1.0);
-        Layer::new(Mask::new(vec![outlines], 0.0, 0.0).with_widths(&pieces))
+        // Parts without a feather are hard, so the falloff of the first one changes nothing where there are several.
+        Layer::new(Mask::new(vec![outlines], 0.0, 0.0).with_widths(&pieces).with_falloff(parts[0].falloff))
     };
     let groups = order.chunk_by(|a, b| a.soft_widths().is_none() && b.soft_widths().is_none());
     let window = Window { left: 0, top: 0, right: width as i64, bottom: height as i64 };

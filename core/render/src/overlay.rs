@@ -9,7 +9,6 @@
 //! lines keep their exact colour.
 
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::palette;
 use rototoon_base::scene::{Colour, FrameNumber, Part, Raster, Scene, Verdict};
 use tiny_skia::{Color, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
 
@@ -59,7 +58,7 @@ pub fn overlay(
         let part = &scene.parts[index];
         let Some(points) = part.points_at(frame) else { continue };
         let lost = options.confidence && Verdict::on(part, frame) == Some(Verdict::Lost);
-        let (colour, width) = if lost { (LOST, LOST_WIDTH * width) } else { (palette::distinct(index), width) };
+        let (colour, width) = if lost { (LOST, LOST_WIDTH * width) } else { (part.shown_colour(index), width) };
         let pen = Pen { part, frame, points, colour, lost, width, options };
         pen.segments(&mut layer);
         if options.points {

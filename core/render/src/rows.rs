@@ -1,7 +1,7 @@
 //! A mask row by row, from top to bottom. So a picture that is made of rows needs no second picture for the mask.
 
 use super::coverage::{Rows, Window};
-use super::feather::Feather;
+use super::feather::{Feather, Ramp};
 use rototoon_base::scene::Raster;
 use std::ops::Range;
 
@@ -20,6 +20,8 @@ pub struct MaskRows<'a> {
     window: Window,
     /// What the mask covers of the window, and its values there.
     own: Option<(Window, Source<'a>)>,
+    /// The falloff, if it is not that of the blur.
+    ramp: Option<&'a Ramp>,
     next: i64,
     row: Vec<f32>,
     drawn: Range<usize>,
@@ -28,7 +30,13 @@ pub struct MaskRows<'a> {
 impl<'a> MaskRows<'a> {
     /// The rows of a window of which a mask covers a part.
     pub(super) fn new(window: Window, own: Option<(Window, Source<'a>)>) -> Self {
-        Self { window, own, next: window.top, row: vec![0.0; window.width()], drawn: 0..0 }
+        Self { window, own, ramp: None, next: window.top, row: vec![0.0; window.width()], drawn: 0..0 }
+    }
+
+    /// The same with a falloff.
+    pub(super) fn with_ramp(mut self, ramp: Option<&'a Ramp>) -> Self {
+        self.ramp = ramp;
+        self
     }
 
     /// Coverage, 0 to 1, of the pixels of the next row. `None` if `go_on` returns false.
@@ -53,7 +61,12 @@ impl<'a> MaskRows<'a> {
             return Some(());
         }
         self.drawn = (own.left - self.window.left) as usize..(own.right - self.window.left) as usize;
-        fill(source, (y - own.top) as usize, &mut row[self.drawn.clone()], go_on)
+        let row = &mut row[self.drawn.clone()];
+        fill(source, (y - own.top) as usize, row, go_on)?;
+        if let Some(ramp) = self.ramp {
+            ramp.apply(row);
+        }
+        Some(())
     }
 
     /// The latest row of [`Self::next`].

@@ -69,6 +69,20 @@ impl<'a> Parameters<'a> {
         Ok(value)
     }
 
+    /// The value of a colour without opacity and without keys.
+    pub fn shade(&self, id: &CStr) -> Result<[f64; 3], Failure> {
+        let mut value = [0.0f64; 3];
+        let [r, g, b] = &mut value;
+        let (r, g, b): (*mut f64, *mut f64, *mut f64) = (r, g, b);
+        call!(self.suites.parameter, paramGetValue, self.handle(id)?, r, g, b)?;
+        Ok(value)
+    }
+
+    /// Sets a colour without opacity.
+    pub fn set_shade(&self, id: &CStr, [r, g, b]: [f64; 3]) -> Result<(), Failure> {
+        call!(self.suites.parameter, paramSetValue, self.handle(id)?, r, g, b)
+    }
+
     /// The value of a text.
     pub fn text(&self, id: &CStr) -> Result<String, Failure> {
         let mut value: *const c_char = std::ptr::null();

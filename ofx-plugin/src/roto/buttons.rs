@@ -86,7 +86,7 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
             Ok(())
         }
         "writeMotion" => taking_out::write_motion(effect, time),
-        "export" => taking_out::export(effect),
+        "export" => taking_out::export(effect, time),
         page if page::IDS.iter().any(|id| id.to_bytes() == page.as_bytes()) => edits::page_changed(effect, page),
         _ => Err(Failure::Default),
     };

@@ -19,7 +19,7 @@ use crate::ofx::interact::View;
 use rototoon::geometry::{Point, polygon, polyline};
 use rototoon::render::motion::{outline_at, segments_at};
 use rototoon::render::widths;
-use rototoon::scene::{FrameNumber, Part, palette};
+use rototoon::scene::{FrameNumber, Part};
 
 /// Half the side of a control point's square, in screen pixels.
 const HANDLE: f64 = 3.0;
@@ -78,7 +78,7 @@ pub fn draw(view: &View, shown: &Shown, editor: &Editor) {
 
 fn part(sheet: &Sheet, index: usize, frame: Option<FrameNumber>, editor: &Editor) {
     let (shown, part) = (sheet.shown, &sheet.shown.document.scene.parts[index]);
-    let [r, g, b] = palette::distinct(index);
+    let [r, g, b] = shown.colour(index);
     let colour = [r, g, b, 1.0];
     let Some(frame) = frame else {
         if let Some(points) = outline_at(part, shown.settings.document_time, shown.settings.curves) {

@@ -7,7 +7,7 @@
 use super::edit::{Edit, Editor, Key, Lens, Outcome, Tool, Work};
 use super::parts::selected;
 use super::placement::Placement;
-use super::settings::Settings;
+use super::settings::{self, Settings};
 use super::stale::Stale;
 use super::state::State;
 use super::{canvas, edits, fresh, instance};
@@ -16,7 +16,8 @@ use crate::ofx::interact::{Event, View};
 use openfx::sys::image_effect_v1::key_syms;
 use rototoon::geometry::Point;
 use rototoon::project::Document;
-use rototoon::scene::{FrameNumber, Part};
+use rototoon::scene::{Colour, FrameNumber, Part};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// What the viewer shows.
@@ -32,6 +33,8 @@ pub struct Shown {
     /// The settings of parts, and what their tracks were made from.
     state: Arc<State>,
     stale: Stale,
+    /// The colours that the user has chosen.
+    colours: BTreeMap<String, [f64; 3]>,
     /// The placement of the footage.
     pub placement: Placement,
     /// Distances on the screen.
@@ -64,7 +67,15 @@ impl Shown {
         let tool = tool(parameters.int(c"tool", view.time)?);
         let (closed, name) = (parameters.int(c"drawClosed", view.time)? != 0, parameters.text(c"part")?);
         let (name, stale) = (name.trim().into(), instance.stale());
-        Ok(Self { document, parts, unlocked, settings, state, stale, placement, lens, tool, closed, name })
+        let colours = settings::colours(&parameters, &state)?;
+        Ok(Self { document, parts, unlocked, settings, state, stale, colours, placement, lens, tool, closed, name })
+    }
+
+    /// The colour of a part.
+    pub fn colour(&self, index: usize) -> Colour {
+        let part = &self.document.scene.parts[index];
+        let chosen = self.colours.get(&part.name).map(|colour| colour.map(|value| value as f32));
+        chosen.unwrap_or_else(|| part.shown_colour(index))
     }
 
     /// Whether the tracks of a part are older than its keys and corrections, or than the source.

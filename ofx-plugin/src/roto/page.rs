@@ -8,8 +8,20 @@ use crate::ofx::{Failure, Parameters};
 use std::ffi::CStr;
 
 /// The parameters of the page.
-pub const IDS: [&CStr; 7] =
-    [c"partOn", c"partInvert", c"partOpacity", c"partGrow", c"partFeather", c"partMode", c"partLock"];
+pub const IDS: [&CStr; 10] = [
+    c"partOn",
+    c"partInvert",
+    c"partOpacity",
+    c"partGrow",
+    c"partFeather",
+    c"partFalloff",
+    c"partFalloffCurve",
+    c"partMode",
+    c"partLock",
+    COLOUR,
+];
+/// The colour of the part. Black stands for none.
+const COLOUR: &CStr = c"partColor";
 
 /// The settings that the page shows.
 pub fn read(parameters: &Parameters) -> Result<PartSettings, Failure> {
@@ -25,7 +37,16 @@ pub fn read(parameters: &Parameters) -> Result<PartSettings, Failure> {
         mode: modes.at(f64::NEG_INFINITY).max(0.0) as usize,
         modes: (!modes.keys.is_empty()).then_some(modes),
         lock: parameters.int(c"partLock", 0.0)? != 0,
+        falloff: number(c"partFalloff")?,
+        falloff_curve: flag(c"partFalloffCurve")?,
+        colour: colour(parameters)?,
     })
+}
+
+/// The colour that the user has chosen.
+pub fn colour(parameters: &Parameters) -> Result<Option<[f64; 3]>, Failure> {
+    let found = parameters.shade(COLOUR)?.map(|value| if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 });
+    Ok((found != [0.0; 3]).then_some(found))
 }
 
 /// Whether a parameter of the page has its default.
@@ -37,6 +58,9 @@ pub fn is_default(parameters: &Parameters, id: &str) -> Result<bool, Failure> {
         "partOpacity" => found.opacity == default.opacity,
         "partGrow" => found.grow == default.grow,
         "partFeather" => found.feather == default.feather,
+        "partFalloff" => found.falloff == default.falloff,
+        "partFalloffCurve" => found.falloff_curve == default.falloff_curve,
+        "partColor" => found.colour == default.colour,
         "partMode" => (found.mode, found.modes) == (default.mode, default.modes),
         _ => found.lock == default.lock,
     })
@@ -62,16 +86,25 @@ pub fn show(parameters: &Parameters, settings: &PartSettings) -> Result<(), Fail
     for (id, curve) in [(c"partOn", &settings.on), (c"partInvert", &settings.invert)] {
         whole(parameters, id, curve, &|value| (value > 0.5).into())?;
     }
-    for (id, curve) in
-        [(c"partOpacity", &settings.opacity), (c"partGrow", &settings.grow), (c"partFeather", &settings.feather)]
-    {
+    for (id, curve) in [
+        (c"partOpacity", &settings.opacity),
+        (c"partGrow", &settings.grow),
+        (c"partFeather", &settings.feather),
+        (c"partFalloff", &settings.falloff),
+    ] {
         set(parameters, id, curve, &|value| Ok(parameters.double(id, 0.0)? == value), &|time, value| match time {
             Some(time) => parameters.set_double_at(id, time, value),
             None => parameters.set_double(id, value),
         })?;
     }
     let modes = settings.modes.clone().unwrap_or_else(|| Curve::still(settings.mode as f64));
-    whole(parameters, c"partMode", &modes, &|value| value.max(0.0) as i32)?;
+    for (id, curve) in [(c"partMode", &modes), (c"partFalloffCurve", &settings.falloff_curve)] {
+        whole(parameters, id, curve, &|value| value.max(0.0) as i32)?;
+    }
+    // Hosts may keep colours as floats. One that is there already is left, so that undo does not report it.
+    if colour(parameters)?.map(|c| c.map(|v| v as f32)) != settings.colour.map(|c| c.map(|v| v as f32)) {
+        parameters.set_shade(COLOUR, settings.colour.unwrap_or_default())?;
+    }
     whole(parameters, c"partLock", &Curve::still(settings.lock.into()), &|value| (value > 0.5).into())
 }
 

@@ -17,7 +17,7 @@ use rototoon::render::matte::feather_pieces;
 use rototoon::render::motion::{outline_at, shutter_from};
 use rototoon::render::visible::Stack;
 use rototoon::render::widths::Piece;
-use rototoon::scene::{Part, Raster, Scene, palette};
+use rototoon::scene::{Falloff, Part, Raster, Scene, palette};
 
 /// Something to draw.
 #[derive(Clone, Debug)]
@@ -237,23 +237,33 @@ impl Drawing<'_> {
     fn layers(&self, order: &[usize]) -> Layers {
         let mut layers = Vec::new();
         let closed: Vec<usize> = order.iter().copied().filter(|&part| self.scene.parts[part].closed).collect();
-        let plain = |part: usize| self.look(part).is_plain() && self.scene.parts[part].soft_widths().is_none();
-        for parts in closed.chunk_by(|&a, &b| plain(a) && plain(b)) {
-            let look = self.look(parts[0]);
-            let mask = self.mask(parts, look.grow, look.feather);
+        for parts in closed.chunk_by(|&a, &b| self.is_plain(a) && self.is_plain(b)) {
+            let (look, mask) = (self.look(parts[0]), self.mask(parts));
             layers.push(Layer { mask, opacity: look.opacity as f32, invert: look.invert, blend: look.blend });
         }
         Layers(layers)
     }
 
-    fn mask(&self, parts: &[usize], grow: f64, feather: f64) -> Mask {
+    /// Whether a part is drawn like one without settings. Without a feather its falloff does not count.
+    fn is_plain(&self, part: usize) -> bool {
+        let (look, part) = (self.look(part), &self.scene.parts[part]);
+        let soft = self.settings.feather + look.feather > 0.0;
+        let falloff = if soft { look.falloff.within(part.falloff) } else { Falloff::default() };
+        part.soft_widths().is_none() && PartLook { falloff, ..look }.is_plain()
+    }
+
+    /// The mask of parts that are drawn alike.
+    fn mask(&self, parts: &[usize]) -> Mask {
+        let PartLook { grow, feather, falloff, .. } = self.look(parts[0]);
+        let falloff = falloff.within(self.scene.parts[parts[0]].falloff).within(self.settings.falloff);
         let length = |pixels| self.placement.length(pixels);
         let parts: Vec<&Part> = parts.iter().map(|&part| &self.scene.parts[part]).collect();
         let mask = Mask::new(
             self.instants(&parts),
             length(self.settings.grow + grow),
             length(self.settings.feather + feather),
-        );
+        )
+        .with_falloff(falloff);
         match parts[..] {
             [part] if part.soft_widths().is_some() => mask.with_widths(&self.feather_pieces(part)),
             _ => mask,
@@ -273,8 +283,7 @@ impl Drawing<'_> {
             look(part).grow != 0.0 || look(part).feather != 0.0 || self.scene.parts[part].soft_widths().is_some()
         };
         if self.settings.grow != 0.0 || self.settings.feather != 0.0 || closed.iter().any(|&part| soft(part)) {
-            let mask =
-                |&part: &usize| (self.mask(&[part], look(part).grow, look(part).feather), palette::distinct(part));
+            let mask = |&part: &usize| (self.mask(&[part]), palette::distinct(part));
             return Picture::SoftIds(closed.iter().map(mask).collect());
         }
         let time = self.settings.document_time;

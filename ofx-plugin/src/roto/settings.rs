@@ -1,9 +1,12 @@
 //! The parameters' values at a time.
 
-use super::state::{PartLook, State, blend};
+use super::page;
+use super::state::{PartLook, PartSettings, State, blend, falloff};
 use crate::ofx::{Failure, Parameters};
 use rototoon::render::coverage::MOST_INSTANTS;
+use rototoon::scene::Falloff;
 use std::collections::BTreeMap;
+use std::ffi::CStr;
 
 /// The kind of picture that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,6 +100,8 @@ pub struct Settings {
     pub grow: f64,
     /// Pixels at full size over which the mask fades, on each side of its edge.
     pub feather: f64,
+    /// How the border of all parts falls off.
+    pub falloff: Falloff,
     /// How long the shutter is open, in frames.
     pub shutter: f64,
     /// When it opens, in shares of its opening before or after the frame.
@@ -142,6 +147,7 @@ impl Settings {
             invert: flag(c"invert")?,
             grow: number(c"grow")?,
             feather: number(c"feather")?.max(0.0),
+            falloff: falloff(number(c"falloff")?, curve(parameters, c"falloffCurve", time)? + 1),
             shutter: number(c"motionBlur")?.max(0.0),
             phase: number(c"shutterPhase")? / 360.0,
             samples: parameters.int(c"motionBlurSamples", time)?.clamp(1, MOST_INSTANTS as i32) as usize,
@@ -173,6 +179,22 @@ fn channels(index: i32) -> Channels {
     }
 }
 
+/// The index of a curve of the falloff.
+fn curve(parameters: &Parameters, id: &CStr, time: f64) -> Result<usize, Failure> {
+    Ok(parameters.int(id, time)?.max(0) as usize)
+}
+
+/// The colours that the user has chosen, by the names of parts.
+pub fn colours(parameters: &Parameters, state: &State) -> Result<BTreeMap<String, [f64; 3]>, Failure> {
+    let own = |(name, settings): (&String, &PartSettings)| Some((name.clone(), settings.colour?));
+    let mut colours: BTreeMap<String, [f64; 3]> = state.parts.iter().filter_map(own).collect();
+    if !state.page.is_empty() {
+        colours.remove(&state.page);
+        colours.extend(page::colour(parameters)?.map(|colour| (state.page.clone(), colour)));
+    }
+    Ok(colours)
+}
+
 /// The settings of all parts that have some. The page's own parameters have those of its part, with the host's own
 /// interpolation.
 fn looks(parameters: &Parameters, time: f64, state: &State) -> Result<BTreeMap<String, PartLook>, Failure> {
@@ -187,6 +209,7 @@ fn looks(parameters: &Parameters, time: f64, state: &State) -> Result<BTreeMap<S
             grow: number(c"partGrow")?,
             feather: number(c"partFeather")?.max(0.0),
             blend: blend(parameters.int(c"partMode", time)?.max(0) as usize),
+            falloff: falloff(number(c"partFalloff")?, curve(parameters, c"partFalloffCurve", time)?),
         };
         looks.insert(state.page.clone(), look);
     }

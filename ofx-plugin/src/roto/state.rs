@@ -8,7 +8,7 @@
 
 use super::stored;
 use rototoon::render::composite::Blend;
-use rototoon::scene::Part;
+use rototoon::scene::{Falloff, FalloffCurve, Part};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -93,6 +93,23 @@ pub struct PartSettings {
     pub modes: Option<Curve>,
     /// Whether the pen cannot change the part.
     pub lock: bool,
+    /// The rate at which the border falls off.
+    #[serde(skip_serializing_if = "is_one")]
+    pub falloff: Curve,
+    /// The curve of the border: 0 is that of all parts, others are one more than their index in [`FalloffCurve::ALL`].
+    #[serde(skip_serializing_if = "is_none")]
+    pub falloff_curve: Curve,
+    /// The colour in the viewer and in files, if the user has chosen one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub colour: Option<[f64; 3]>,
+}
+
+fn is_one(curve: &Curve) -> bool {
+    *curve == Curve::still(1.0)
+}
+
+fn is_none(curve: &Curve) -> bool {
+    *curve == Curve::still(0.0)
 }
 
 impl Default for PartSettings {
@@ -106,6 +123,9 @@ impl Default for PartSettings {
             mode: 0,
             modes: None,
             lock: false,
+            falloff: Curve::still(1.0),
+            falloff_curve: Curve::still(0.0),
+            colour: None,
         }
     }
 }
@@ -125,11 +145,14 @@ pub struct PartLook {
     pub feather: f64,
     /// How the part changes those behind it.
     pub blend: Blend,
+    /// How the border falls off.
+    pub falloff: Falloff,
 }
 
 impl Default for PartLook {
     fn default() -> Self {
-        Self { on: true, invert: false, opacity: 1.0, grow: 0.0, feather: 0.0, blend: Blend::Add }
+        let falloff = Falloff::default();
+        Self { on: true, invert: false, opacity: 1.0, grow: 0.0, feather: 0.0, blend: Blend::Add, falloff }
     }
 }
 
@@ -150,6 +173,7 @@ impl PartSettings {
             grow: self.grow.at(time),
             feather: self.feather.at(time).max(0.0),
             blend: blend(self.modes.as_ref().map_or(self.mode, |modes| modes.held(time).max(0.0) as usize)),
+            falloff: falloff(self.falloff.at(time), self.falloff_curve.held(time).max(0.0) as usize),
         }
     }
 }
@@ -157,6 +181,13 @@ impl PartSettings {
 /// The blend mode of an index.
 pub fn blend(index: usize) -> Blend {
     Blend::ALL.get(index).map_or(Blend::Add, |(blend, _)| *blend)
+}
+
+/// The falloff of a rate and of an index of a curve, in which 0 is that of all parts.
+pub fn falloff(rate: f64, index: usize) -> Falloff {
+    let rate = if rate.is_finite() { rate.clamp(Falloff::LEAST, Falloff::MOST) } else { 1.0 };
+    let curve = index.checked_sub(1).and_then(|index| FalloffCurve::ALL.get(index));
+    Falloff { rate, curve: curve.map(|(curve, ..)| *curve) }
 }
 
 /// What an instance stores beside its document.

@@ -2,7 +2,7 @@
 
 use super::motion::Motion;
 use super::placement::Placement;
-use super::settings::Settings;
+use super::settings::{self, Settings};
 use super::state::State;
 use super::{id_files, instance, motion};
 use crate::ofx::{Effect, Failure};
@@ -68,9 +68,21 @@ pub fn write_motion(effect: &Effect, time: f64) -> Result<(), Failure> {
     })
 }
 
+/// The document with the falloffs and colours that the node's parameters give its parts at a time.
+fn dressed(effect: &Effect, document: &Document, time: f64) -> Result<Document, Failure> {
+    let (parameters, mut document) = (effect.parameters()?, document.clone());
+    let state = instance(effect)?.state(&parameters)?;
+    let (settings, colours) = (Settings::read(&parameters, time, &state)?, settings::colours(&parameters, &state)?);
+    for part in &mut document.scene.parts {
+        part.falloff = settings.look(&part.name).falloff.within(part.falloff).within(settings.falloff);
+        part.colour = colours.get(&part.name).copied().or(part.colour);
+    }
+    Ok(document)
+}
+
 /// Writes the shapes to the export file. Its extension names the format.
-pub fn export(effect: &Effect) -> Result<(), Failure> {
-    let document = document(effect)?;
+pub fn export(effect: &Effect, time: f64) -> Result<(), Failure> {
+    let document = dressed(effect, &*document(effect)?, time)?;
     let path = effect.parameters()?.text(c"exportFile")?;
     let path = Path::new(path.trim());
     if path.as_os_str().is_empty() {
@@ -96,7 +108,7 @@ pub fn export(effect: &Effect) -> Result<(), Failure> {
         }
     };
     write_whole(path, text.as_bytes()).map_err(|error| Failure::Told(error.to_string()))?;
-    if let Some(warning) = pipeline::left_out_of_shapes(&document) {
+    if let Some(warning) = pipeline::left_out_of_shapes(&document, &extension) {
         instance(effect)?.note(effect, &warning, false);
     }
     Ok(())

@@ -353,6 +353,22 @@ public:
   }
 };
 
+// A colour without opacity.
+class ShadeParam : public Keyed<ofx::Param::RGBInstance> {
+public:
+  ShadeParam(ofx::Param::Descriptor &d, ofx::Param::SetInstance *s) : Keyed(d, s) {
+    for (int i = 0; i < 3; ++i) track.value.push_back(d.getProperties().getDoubleProperty(kOfxParamPropDefault, i));
+  }
+  OfxStatus get(double &r, double &g, double &b) override { return get(0, r, g, b); }
+  OfxStatus get(OfxTime t, double &r, double &g, double &b) override {
+    std::vector<double> v = track.at(t);
+    r = v[0], g = v[1], b = v[2];
+    return kOfxStatOK;
+  }
+  OfxStatus set(double r, double g, double b) override { return put({r, g, b}); }
+  OfxStatus set(OfxTime t, double r, double g, double b) override { return put(t, {r, g, b}); }
+};
+
 class TextParam : public ofx::Param::StringInstance {
   Change change(const std::string &before) {
     return {getName(), [this, before] {
@@ -579,6 +595,7 @@ public:
     if (type == kOfxParamTypeBoolean) return new BooleanParam(d, this);
     if (type == kOfxParamTypeChoice) return new ChoiceParam(d, this);
     if (type == kOfxParamTypeDouble2D) return new PairParam(d, this);
+    if (type == kOfxParamTypeRGB) return new ShadeParam(d, this);
     if (type == kOfxParamTypeRGBA) return new ColourParam(d, this);
     if (type == kOfxParamTypeString) return new TextParam(d, this);
     if (type == kOfxParamTypePushButton) return new ofx::Param::PushbuttonInstance(d, this);

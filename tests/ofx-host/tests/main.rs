@@ -14,6 +14,7 @@
 //! - `order`: parts nearer and farther
 //! - `listing`: the menu of the parts, buttons that go from part to part, and their names
 //! - `matrix`: what hosts do, with each output
+//! - `looks`: the falloff of soft borders, and the colours of parts
 //! - `lives`: instances on several threads, at other places and of other versions
 //! - `page`: the documentation lists the matrix's tests
 //! - `standing`: lost, doubtful and hidden parts in the viewer and in the timeline
@@ -31,6 +32,7 @@ mod lines;
 mod listing;
 mod live;
 mod lives;
+mod looks;
 mod matrix;
 mod node;
 mod order;

@@ -9,8 +9,19 @@ use rototoon_ofx_host::{ClipSettings, Effect};
 /// What must come back: the document, the settings, the selection, and the page.
 fn all(effect: &Effect) -> (Vec<String>, Vec<Vec<f64>>) {
     let texts = ["document", "state", "part", "project", "partNames", "parts"].map(|id| effect.text(id));
-    let numbers =
-        ["partOn", "partInvert", "partOpacity", "partGrow", "partFeather", "partMode", "partLock", "frameOffset"];
+    let numbers = [
+        "partOn",
+        "partInvert",
+        "partOpacity",
+        "partGrow",
+        "partFeather",
+        "partFalloff",
+        "partFalloffCurve",
+        "partColor",
+        "partMode",
+        "partLock",
+        "frameOffset",
+    ];
     (texts.into(), numbers.iter().flat_map(|id| [0.0, 2.0, 4.0].map(|time| effect.get(id, time))).collect())
 }
 
@@ -41,6 +52,10 @@ fn undo_that_is_reported_as_the_users_own_change_gives_back_everything() {
         effect.set_in_history("partOpacity", &[0.5]);
         note(&effect);
         effect.set_in_history("partMode", &[1.0]);
+        note(&effect);
+        effect.set_in_history("partColor", &[0.2, 0.4, 0.6]);
+        effect.set_in_history("partFalloff", &[2.5]);
+        effect.set_in_history("partFalloffCurve", &[2.0]);
         note(&effect);
         drag(&mut effect, 0, Point::new(2.0, 1.0));
         note(&effect);

@@ -3,6 +3,7 @@
 //! - [`clip`]: a character's motion as key points over time
 //! - [`correspondence`]: matching of freshly drawn contours to the parts
 //! - [`effects`]: the parameters of the effects for compositing hosts
+//! - [`falloff`]: how soft borders fall off
 //! - [`footage`]: the range of frames and the source of their pictures
 //! - [`limbs`]: the points of contours that determine key points
 //! - [`outcome`]: what became of a part on each frame: sure, doubtful or lost
@@ -19,6 +20,7 @@
 pub mod clip;
 pub mod correspondence;
 pub mod effects;
+pub mod falloff;
 pub mod footage;
 pub mod limbs;
 pub mod outcome;
@@ -33,6 +35,7 @@ pub mod skeleton;
 pub mod template;
 
 pub use clip::Clip;
+pub use falloff::{Falloff, FalloffCurve};
 pub use footage::{Footage, FrameError, FrameNumber, FrameSource};
 pub use outcome::{Outcome, Verdict};
 pub use part::{Part, Span};

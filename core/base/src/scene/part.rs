@@ -1,9 +1,9 @@
 //! A part: one contour of a character, followed through the frames.
 //!
-//! A part contains the artist's input (keys, pins, corrected centres, depths, absence, feather) and the results of tracking and snapping.
+//! A part contains the artist's input (keys, pins, corrected centres, depths, absence, feather, colour) and the results of tracking and snapping.
 //! Points are in pixels of the footage, x right and y down.
 
-use super::FrameNumber;
+use super::{Colour, Falloff, FrameNumber, palette};
 use crate::geometry::Point;
 use std::collections::BTreeMap;
 
@@ -38,6 +38,11 @@ pub struct Part {
     /// Widths in pixels, one for each control point, over which the border fades on each side of the contour, on all frames.
     /// Between control points the width changes evenly along the contour. Empty if the border is sharp.
     pub feather: Vec<f64>,
+    /// How the border falls off where it is soft.
+    pub falloff: Falloff,
+    /// The colour that distinguishes the part: red, green, blue, sRGB-encoded, 0 to 1. `None` takes that of its index
+    /// ([`super::palette::distinct`]).
+    pub colour: Option<[f64; 3]>,
 }
 
 /// The frames between two neighbouring keys of a part, keys included.
@@ -161,6 +166,11 @@ impl Part {
     pub fn soft_widths(&self) -> Option<&[f64]> {
         let soft = self.feather.iter().any(|width| *width > 0.0) && self.feather.len() == self.point_count();
         soft.then_some(&self.feather)
+    }
+
+    /// The colour that distinguishes the part, which has an index in its scene.
+    pub fn shown_colour(&self, index: usize) -> Colour {
+        self.colour.map_or_else(|| palette::distinct(index), |own| own.map(|value| value as f32))
     }
 
     /// Number of control points; 0 without a key.

@@ -8,7 +8,7 @@
 //! A mask has a key of its path on every frame on which the part has a contour. The tangents are left out, so the sides
 //! are straight like those of the part. Coordinates are those of the layer: pixels with x right and y down from the upper
 //! left corner, as in the footage. Times are seconds from the layer's start. The nearest part is the uppermost mask.
-//! Where a part has no contour, the opacity of its mask is 0; its keys hold.
+//! A feather is smooth in After Effects, or linear where the part's falloff is. Where a part has no contour, the opacity of its mask is 0; its keys hold.
 //!
 //! Source: After Effects scripting guide (`Shape`, `MaskPropertyGroup`, `Property.setValuesAtTimes`).
 //!
@@ -17,7 +17,7 @@
 
 use super::coordinate;
 use super::outlines::Outlines;
-use rototoon_base::scene::{FrameNumber, Part, Scene, palette};
+use rototoon_base::scene::{FalloffCurve, FrameNumber, Part, Scene};
 use std::fmt::Write;
 
 /// What comes before the shapes. They are JSON, so that other programs can read them too.
@@ -90,6 +90,9 @@ function rototoonMask(layer, part) {
     }
     mask.name = part.name;
     mask.color = part.color;
+    if (part.falloff === "linear") {
+        mask.maskFeatherFalloff = MaskFeatherFalloff.FFO_LINEAR;
+    }
     mask.maskMode = part.closed ? MaskMode.ADD : MaskMode.NONE;
     path.setValuesAtTimes(times, shapes);
     if (shown.length > 1) {
@@ -143,9 +146,14 @@ pub fn after_effects(scene: &Scene, spacing: f64) -> String {
 type Keys = [(FrameNumber, Vec<rototoon_base::geometry::Point>)];
 
 fn part(out: &mut String, part: &Part, index: usize, first: FrameNumber, keys: &Keys) {
-    let [r, g, b] = palette::distinct(index);
+    let [r, g, b] = part.shown_colour(index);
     let (name, closed) = (literal(&part.name), part.closed);
-    let _ = write!(out, "{{\"name\": {name}, \"closed\": {closed}, \"color\": [{r:.3}, {g:.3}, {b:.3}], \"frames\": [");
+    let linear = part.falloff.curve == Some(FalloffCurve::Linear);
+    let falloff = if linear { "\"falloff\": \"linear\", " } else { "" };
+    let _ = write!(
+        out,
+        "{{\"name\": {name}, \"closed\": {closed}, \"color\": [{r:.3}, {g:.3}, {b:.3}], {falloff}\"frames\": ["
+    );
     for (k, (frame, points)) in keys.iter().enumerate() {
         let frame = i64::from(*frame) - i64::from(first);
         *out += if k > 0 { ",\n  " } else { "\n  " };

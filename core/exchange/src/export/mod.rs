@@ -27,7 +27,7 @@ pub use nuke::nuke;
 pub use silhouette::silhouette;
 pub use svg::{Motion, SvgOptions, SvgStroke, svg, svg_with_strokes};
 
-use rototoon_base::scene::Scene;
+use rototoon_base::scene::{Falloff, FalloffCurve, Scene};
 
 /// Indices of the parts in the order of shape lists: nearest first; of equal depths the later part first.
 fn nearest_first(scene: &Scene) -> Vec<usize> {
@@ -36,8 +36,46 @@ fn nearest_first(scene: &Scene) -> Vec<usize> {
     order
 }
 
+/// Whether a file with this extension has all of a falloff.
+pub fn has_falloff(extension: &str, falloff: Falloff) -> bool {
+    let curve = falloff.curve.unwrap_or_default();
+    match extension {
+        "nk" => curve == FalloffCurve::Smooth,
+        "py" => curve == FalloffCurve::Smooth && falloff.rate <= natron::MOST_FALLOFF,
+        "jsx" => falloff.rate == 1.0 && matches!(curve, FalloffCurve::Smooth | FalloffCurve::Linear),
+        _ => falloff.is_plain(),
+    }
+}
+
 /// A coordinate to a ten-thousandth of a pixel, as scripts take it. A whole number has no point, and −0 is 0.
 fn coordinate(value: f64) -> String {
     let rounded = (value * 1e4).round() / 1e4;
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_form_has_what_it_can_of_a_falloff() {
+        let plain = Falloff::default();
+        let rate = Falloff { rate: 3.0, curve: None };
+        let fast = Falloff { rate: 8.0, curve: None };
+        let even = Falloff { rate: 1.0, curve: Some(FalloffCurve::Linear) };
+        let eased = Falloff { rate: 1.0, curve: Some(FalloffCurve::EaseIn) };
+        for (extension, has) in [
+            ("nk", [true, true, true, false, false]),
+            ("py", [true, true, false, false, false]),
+            ("jsx", [true, false, false, true, false]),
+            ("fxs", [true, false, false, false, false]),
+            ("svg", [true, false, false, false, false]),
+        ] {
+            assert_eq!(
+                [plain, rate, fast, even, eased].map(|falloff| has_falloff(extension, falloff)),
+                has,
+                "{extension}"
+            );
+        }
+    }
 }

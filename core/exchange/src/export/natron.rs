@@ -5,7 +5,8 @@
 //! Roto node. Each part is a Bézier curve in the base layer; the farthest comes first, since the node draws in this
 //! order. A curve has a key on every frame on which the part has a contour. Both handles and the feather's point are at
 //! the point, so the sides are straight like those of the part, and the feather, which Natron begins with 1.5 pixels, is
-//! none. Coordinates are pixels with x right and y up. Before its first and after its last contour a curve is not active. For
+//! none. Of the falloff of a soft border it has the rate: Natron too raises its ramp to it. Scripts cannot choose the ramp.
+//! Coordinates are pixels with x right and y up. Before its first and after its last contour a curve is not active. For
 //! that its life time is *Custom*, the last of the choices: others ignore the parameter that says whether it is active.
 //!
 //! Source: Natron 2, Python reference (`Roto`, `BezierCurve`), and the public sources of its export of groups, of `PyRoto.cpp`
@@ -25,7 +26,8 @@ const HEAD: &str = "# -*- coding: utf-8 -*-
 # Shapes of Rototoon for Natron 2. Run this script in Natron's Script Editor, or open it: Natron FILE.py
 # It makes one Roto node.
 
-# Label, whether the shape is closed, and for each frame x and y of each point, in pixels with y up.
+# Label, whether the shape is closed, its colour in the viewer, the falloff of its feather, and for each frame x and y of each
+# point, in pixels with y up.
 SHAPES = [
 ";
 
@@ -36,7 +38,7 @@ FIRST, LAST = ";
 
 const CODE: &str = "
 
-def rototoon_shape(roto, layer, label, closed, frames):
+def rototoon_shape(roto, layer, label, closed, colour, falloff, frames):
     bezier = roto.createBezier(0, 0, frames[0][0])
     bezier.setLabel(label)
     layer.addItem(bezier)
@@ -51,6 +53,8 @@ def rototoon_shape(roto, layer, label, closed, frames):
     if closed:
         bezier.setCurveFinished(True)
     bezier.getFeatherDistanceParam().setValue(0, 0)
+    bezier.getFeatherFallOffParam().setValue(falloff, 0)
+    bezier.setOverlayColor(*colour)
     begin, end = frames[0][0], frames[-1][0]
     # Keys of Activated count in the last life time only, Custom. Newer versions of Natron begin with All.
     life = bezier.getParam(\"lifeTime\")
@@ -70,8 +74,8 @@ def rototoon_shapes(app):
     node.setLabel(\"Rototoon\")
     roto = node.getRotoContext()
     layer = roto.getBaseLayer()
-    for label, closed, frames in SHAPES:
-        rototoon_shape(roto, layer, label, closed, frames)
+    for label, closed, colour, falloff, frames in SHAPES:
+        rototoon_shape(roto, layer, label, closed, colour, falloff, frames)
 
 
 try:
@@ -80,6 +84,9 @@ except NameError:
     app = app1
 rototoon_shapes(app)
 ";
+
+/// Natron's greatest falloff.
+pub(super) const MOST_FALLOFF: f64 = 5.0;
 
 /// The scene's parts as a script for Natron. Points of snapped paths are about `spacing` pixels apart.
 pub fn natron(scene: &Scene, spacing: f64) -> String {
@@ -92,7 +99,9 @@ pub fn natron(scene: &Scene, spacing: f64) -> String {
             continue;
         }
         let closed = if part.closed { "True" } else { "False" };
-        let _ = writeln!(out, "    ({}, {closed}, [", literal(&part.name));
+        let [r, g, b] = part.shown_colour(index).map(|value| coordinate(value.into()));
+        let rate = coordinate(part.falloff.rate.min(MOST_FALLOFF));
+        let _ = writeln!(out, "    ({}, {closed}, ({r}, {g}, {b}), {rate}, [", literal(&part.name));
         for (frame, points) in keys {
             let _ = write!(out, "        ({frame}, [");
             for (k, p) in points.iter().enumerate() {
@@ -129,7 +138,7 @@ fn literal(text: &str) -> String {
 mod tests {
     use super::*;
     use rototoon_base::geometry::Point;
-    use rototoon_base::scene::{Footage, Part};
+    use rototoon_base::scene::{Falloff, Footage, Part};
     use std::collections::BTreeMap;
 
     #[test]
@@ -143,14 +152,16 @@ mod tests {
             ..Part::default()
         };
         let footage = Footage { pattern: "%d".into(), first: 0, last: 5, fps: 12.5, width: 40, height: 30 };
-        let parts = vec![part("near", 2.0, false), part("far", 0.0, true), Part::default()];
+        let falloff = Falloff { rate: 2.5, curve: None };
+        let far = Part { falloff, ..part("far", 0.0, true) };
+        let parts = vec![part("near", 2.0, false), far, Part::default()];
         let text = natron(&Scene { footage, parts }, 1.0);
         let wanted = "SHAPES = [
-    (u\"far\", True, [
+    (u\"far\", True, (0.0425, 0.1328, 0.85), 2.5, [
         (1, [0.5, 28, 8, 28, 8.125, 0]),
         (3, [0.3333, 28, 8, 28, 8.125, 0]),
     ]),
-    (u\"near\", False, [
+    (u\"near\", False, (1, 0.303, 0.15), 1, [
 ";
         assert!(text.contains(wanted), "{text}");
         assert!(text.contains("FIRST, LAST = 0, 5\n"));

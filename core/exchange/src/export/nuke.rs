@@ -4,7 +4,8 @@
 //! three pairs of numbers: the handle before it, its position, and the handle after it. Handles are relative to their
 //! point. They are zero, so the sides are straight like those of the part. If a part has several frames, each number
 //! that changes is a curve of keys `{{frame value} …}`. Coordinates are pixels with x right, y up and the origin at the
-//! lower left. The lifetime of a shape is the range of its frames.
+//! lower left. The lifetime of a shape is the range of its frames. Of the falloff of a soft border it has the rate (`ff`). The numbers of its
+//! curves (`ft`) are not public.
 //!
 //! Source: Foundry, Nuke Developer Kit, "Roto serialisation format" (version 1.2 of the curves, since Nuke 7). As in
 //! Nuke, a number is an `x` and the hexadecimal digits of a 32-bit float.
@@ -13,7 +14,7 @@
 
 use super::outlines::Outlines;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{FrameNumber, Scene, palette};
+use rototoon_base::scene::{FrameNumber, Scene};
 use std::fmt::Write;
 
 /// Flag: handles are relative to their point.
@@ -59,10 +60,13 @@ fn shape(out: &mut String, scene: &Scene, index: usize, spacing: f64) {
         );
     }
     let middle = start.iter().sum::<Point>() / start.len() as f64;
-    let [r, g, b] = palette::distinct(index).map(|c| number(c.into()));
+    let [r, g, b] = part.shown_colour(index).map(|c| number(c.into()));
+    // Nuke's own value is 1.
+    let rate = part.falloff.rate;
+    let falloff = if rate == 1.0 { String::new() } else { format!(" ff {}", number(rate)) };
     let _ = write!(
         out,
-        "}}}}     idem}}\n     {{tx {} {} {}}}\n     {{a ro {r} go {g} bo {b} ao 1 ltn {} ltm {} ltt {}}}}}",
+        "}}}}     idem}}\n     {{tx {} {} {}}}\n     {{a ro {r} go {g} bo {b} ao 1{falloff} ltn {} ltm {} ltt {}}}}}",
         number((*first).into()),
         number(middle.x),
         number(height - middle.y),

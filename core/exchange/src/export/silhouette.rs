@@ -14,7 +14,7 @@
 use super::outlines::Outlines;
 use super::xml::escaped;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Part, Scene, palette};
+use rototoon_base::scene::{Part, Scene};
 use std::fmt::Write;
 
 /// Decimals of a coordinate: a hundredth of a pixel at 10 000 lines.
@@ -45,7 +45,7 @@ fn shape(out: &mut String, scene: &Scene, part: &Part, index: usize, spacing: f6
     if keys.is_empty() {
         return;
     }
-    let [r, g, b] = palette::distinct(index);
+    let [r, g, b] = part.shown_colour(index);
     let _ = writeln!(
         out,
         "    <Object type=\"Shape\" label=\"{}\" shape_type=\"Bezier\" hidden=\"False\" locked=\"False\">\n     <Properties>",

@@ -103,7 +103,7 @@ fn part(out: &mut String, scene: &Scene, index: usize, options: &SvgOptions) {
     let part = &scene.parts[index];
     let outlines = Outlines::new(part, options.spacing);
     let shape = |frame: FrameNumber| Some(data(&outlines.at(frame)?, part.closed));
-    let colour = palette::hex(palette::distinct(index));
+    let colour = palette::hex(part.shown_colour(index));
     let fill = if part.closed { colour.as_str() } else { "none" };
     let style = format!("id=\"part-{index}\" fill=\"{fill}\" fill-opacity=\"{FILL_OPACITY}\" stroke=\"{colour}\"");
     path(out, scene, &style, &escaped(&part.name), options.motion, shape);

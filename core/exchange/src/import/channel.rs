@@ -1,5 +1,7 @@
 //! Numbers that may be animated.
 
+use rototoon_base::scene::Falloff;
+
 /// A number with its keys in the order of time: frames and values.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Channel {
@@ -34,6 +36,11 @@ impl Channel {
         /// A difference that comes from 32-bit floats.
         const ROUNDING: f64 = 1e-6;
         self.keys.iter().all(|key| (key.1 - value).abs() <= ROUNDING)
+    }
+
+    /// The rate of a falloff: the value of the first key.
+    pub(super) fn rate(&self) -> f64 {
+        self.keys.first().map_or(1.0, |key| key.1).clamp(Falloff::LEAST, Falloff::MOST)
     }
 
     /// The value on a frame: linear between keys.

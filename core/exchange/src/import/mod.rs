@@ -29,7 +29,7 @@ mod svg_animation;
 pub use problem::{ImportError, Place};
 
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{FrameNumber, Part, Scene};
+use rototoon_base::scene::{Falloff, FrameNumber, Part, Scene};
 use std::collections::BTreeMap;
 
 /// A shape as the contour of a part. Every key has the same number of points.
@@ -41,6 +41,8 @@ pub struct Shape {
     pub closed: bool,
     /// Points by frame, in pixels of the footage.
     pub keys: BTreeMap<FrameNumber, Vec<Point>>,
+    /// How its border falls off where it is soft.
+    pub falloff: Falloff,
 }
 
 /// The shapes of a file.
@@ -52,7 +54,7 @@ pub struct Shapes {
     pub warnings: Vec<String>,
 }
 
-/// Puts shapes into the scene. A shape replaces the part of its name: the depth stays; the keys, corrections and
+/// Puts shapes into the scene. A shape replaces the part of its name: the depth and the colour stay; the keys, corrections and
 /// results of the part are removed. Other shapes become new parts in their order, nearer than all present parts.
 pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) {
     let nearest = scene.parts.iter().map(|part| part.depth).fold(f64::NEG_INFINITY, f64::max);
@@ -61,13 +63,13 @@ pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) {
     for (place, part) in scene.parts.iter().enumerate() {
         places.entry(part.name.clone()).or_insert(place);
     }
-    for Shape { name, closed, keys } in shapes {
+    for Shape { name, closed, keys, falloff } in shapes {
         if let Some(&place) = places.get(&name) {
             let part = &mut scene.parts[place];
-            *part = Part { name, closed, keys, depth: part.depth, ..Part::default() };
+            *part = Part { name, closed, keys, falloff, depth: part.depth, colour: part.colour, ..Part::default() };
         } else {
             places.insert(name.clone(), scene.parts.len());
-            scene.parts.push(Part { name, closed, keys, depth, ..Part::default() });
+            scene.parts.push(Part { name, closed, keys, falloff, depth, ..Part::default() });
             depth += 1.0;
         }
     }
@@ -84,6 +86,7 @@ mod tests {
             name: name.into(),
             closed: true,
             keys: BTreeMap::from([(2, vec![Point::ONE, Point::X, Point::Y])]),
+            falloff: Falloff::default(),
         };
         let old = Part {
             name: "arm".into(),

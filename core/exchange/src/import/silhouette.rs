@@ -18,7 +18,7 @@ use super::path::{NoContours, Path, contours};
 use super::problem::{LeftOut, number, parsed, quoted};
 use super::{ImportError, Shape, Shapes};
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Footage, FrameNumber};
+use rototoon_base::scene::{Falloff, Footage, FrameNumber};
 use roxmltree::Node;
 use std::collections::BTreeMap;
 
@@ -111,7 +111,7 @@ fn shape(node: Node, name: String, first: f64, footage: &Footage, points: &mut P
         NoContours::Refused(error) => error,
     })?;
     let keys: BTreeMap<_, _> = keys.iter().map(|key| key.frame).zip(contours).collect();
-    Ok(Shape { name, closed, keys })
+    Ok(Shape { name, closed, keys, falloff: Falloff::default() })
 }
 
 /// The first two keys that differ in their number of points, or the first two keys.

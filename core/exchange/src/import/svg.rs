@@ -17,7 +17,7 @@ use super::problem::{LeftOut, number, parsed, quoted};
 use super::svg_animation::{Keyed, keyed};
 use super::{ImportError, Shape, Shapes};
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Footage, FrameNumber};
+use rototoon_base::scene::{Falloff, Footage, FrameNumber};
 use roxmltree::Node;
 use std::str::FromStr;
 use svgtypes::{PathParser, PathSegment, PointsParser, SimplePathSegment, SimplifyingPathParser, Transform, ViewBox};
@@ -153,7 +153,7 @@ impl Reader<'_> {
             })?;
             let name = self.names.free(&name(node));
             let keys = frames.iter().map(|(frame, _)| *frame).zip(contours).collect();
-            self.shapes.push(Shape { name, closed: start[number].closed, keys });
+            self.shapes.push(Shape { name, closed: start[number].closed, keys, falloff: Falloff::default() });
         }
         Ok(())
     }

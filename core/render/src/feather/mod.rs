@@ -14,7 +14,7 @@
 //! values are integer multiples of 2⁻²⁰. P is small enough that every sum is an integer below 2⁵³, which a 64-bit float
 //! represents exactly. The fraction differs from the radius by less than 1/200 of it.
 //!
-//! [`varied()`] has a radius of its own for each pixel.
+//! [`varied()`] has a radius of its own for each pixel. [`Ramp`] makes other courses of the border from this one.
 //!
 //! Limits: for radii above about 800 pixels sums may round.
 //!
@@ -22,11 +22,13 @@
 
 mod bell;
 mod columns;
+mod ramp;
 mod rows;
 mod varied;
 
 use bell::Bell;
 use columns::Columns;
+pub use ramp::Ramp;
 use rototoon_base::scene::Raster;
 use rows::Line;
 pub use varied::varied;

@@ -41,6 +41,8 @@ pub enum EffectKind {
     Shared(&'static str),
     /// A colour with opacity.
     Colour([f64; 4]),
+    /// A colour without opacity, and without keys.
+    Shade([f64; 3]),
     /// Two numbers, x and y.
     Pair([f64; 2]),
     /// A group, open or not.

@@ -11,7 +11,7 @@
 //!   as linear, as Natron does for control points.
 //! - A curve is open if it is not closed yet or was drawn as an open one.
 //! - Left out with a warning: paint strokes, and curves whose transformation is linked, an expression or a perspective.
-//! - Feather, opacity and activity are ignored.
+//! - The falloff of a feather is read. Feather, opacity and activity are ignored.
 //!
 //! Source: the classes `RotoContext`, `RotoLayer`, `RotoDrawableItem`, `Bezier`, `BezierCP`, `Curve` and `Knob` with their
 //! serialisations in the public sources of Natron 2. Natron 3, which was never released, writes YAML instead.
@@ -27,10 +27,10 @@ use super::problem::{Fault, LeftOut, parsed};
 use super::{ImportError, Shape, Shapes};
 use number::{child, curve, named, text_of};
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Footage, FrameNumber};
+use rototoon_base::scene::{Falloff, FalloffCurve, Footage, FrameNumber};
 use roxmltree::Node;
 use std::collections::BTreeSet;
-use transform::Transform;
+use transform::{Transform, parameter};
 
 /// Reads the shapes of a project for footage. Shapes that are not animated get their key on frame `still`.
 ///
@@ -113,7 +113,31 @@ impl Reader<'_> {
             NoContours::Unequal => ImportError::at(item, "found no control point, expected at least two"),
         })?;
         let name = self.names.free(&name(item));
-        Ok(Shape { name, closed, keys: frames.into_iter().zip(made).collect() })
+        let falloff = self.falloff(item);
+        Ok(Shape { name, closed, keys: frames.into_iter().zip(made).collect(), falloff })
+    }
+
+    /// The falloff of a curve. One that cannot be read is that of a curve without one: its outline counts.
+    fn falloff(&mut self, item: Node) -> Falloff {
+        let single = |id, fallback: f64| {
+            let own = child(item, "RotoDrawableItemSerialization")?;
+            parameter(own, id, &[fallback]).ok()?.pop()
+        };
+        let Some(rate) = single("featherFallOff", 1.0) else { return Falloff::default() };
+        if rate.turns().next().is_some() {
+            let name = name(item);
+            self.left_out.push(item, format!("the falloff of {name:?} has keys: its first value is taken"));
+        }
+        // The first ramp is that of all curves at first. The second one is its third power.
+        let ramp = single("fallOffType", 0.0).map_or(0.0, |ramp| ramp.at(0.0));
+        let (power, curve) = match ramp as i32 {
+            1 => (3.0, Some(FalloffCurve::Linear)),
+            2 => (1.0, Some(FalloffCurve::EaseIn)),
+            3 => (1.0, Some(FalloffCurve::EaseOut)),
+            4 => (1.0, Some(FalloffCurve::Smooth)),
+            _ => (1.0, None),
+        };
+        Falloff { rate: (power * rate.rate()).min(Falloff::MOST), curve }
     }
 
     /// The frames on which any number has a key; `still` if none has. Keys of the transformation that lie beyond the footage

@@ -171,3 +171,23 @@ fn what_would_be_wrong_is_left_out_or_told() {
     let yaml = natron("Nodes:\n  - A", &footage(), 1).unwrap_err().to_string();
     assert!(yaml.contains("not XML"), "{yaml}");
 }
+
+#[test]
+fn a_falloff_is_read_with_its_ramp() {
+    let points: Vec<String> =
+        [(10.0, 10.0), (60.0, 10.0), (60.0, 50.0)].map(|at| point("CP", at, (0.0, 0.0), &[])).into();
+    let keyed = "<Curve><KeyFrameSet><item><Time>2</Time><Value>3</Value></item><item><Time>6</Time><Value>1</Value></item></KeyFrameSet></Curve>";
+    for (rate, ramp, falloff) in [
+        ("2.5", "0", Falloff { rate: 2.5, curve: None }),
+        ("2", "1", Falloff { rate: 6.0, curve: Some(FalloffCurve::Linear) }),
+        ("0.001", "2", Falloff { rate: Falloff::LEAST, curve: Some(FalloffCurve::EaseIn) }),
+        ("1", "4", Falloff { rate: 1.0, curve: Some(FalloffCurve::Smooth) }),
+        (keyed, "3", Falloff { rate: 3.0, curve: Some(FalloffCurve::EaseOut) }),
+    ] {
+        let parameters = parameter("featherFallOff", &[rate]) + &parameter("fallOffType", &[ramp]);
+        let text = project(&bezier("soft", &parameters, &points, true));
+        let found = natron(&text, &footage(), 1).unwrap();
+        assert_eq!(found.shapes[0].falloff, falloff, "{rate} {ramp}");
+        assert_eq!(found.warnings.len(), usize::from(rate == keyed), "{:?}", found.warnings);
+    }
+}

@@ -85,7 +85,7 @@ impl Transform {
 }
 
 /// The values of a parameter of a curve; those of `fallback` where it is not saved.
-fn parameter(own: Node, name: &str, fallback: &[f64]) -> Result<Vec<Channel>, Fault> {
+pub(super) fn parameter(own: Node, name: &str, fallback: &[f64]) -> Result<Vec<Channel>, Fault> {
     let same = |node: &Node| {
         named(*node, "Item") && child(*node, "Name").is_some_and(|own| text_of(own).eq_ignore_ascii_case(name))
     };

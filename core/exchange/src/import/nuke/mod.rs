@@ -12,7 +12,7 @@
 //! - Layers and shapes may have a `transform`, applied here; a shape then also has keys where its transformation has.
 //! - Left out with a warning that names the shape, since its place or form would be wrong: open B-splines (how they end is not
 //!   public), weights other than 1, expressions, and what `transform` leaves out.
-//! - Feather, opacity and brush strokes are ignored.
+//! - The rate at which a feather falls off is read. Feather, opacity and brush strokes are ignored.
 //!
 //! Source: Foundry, Nuke Developer Kit, "Roto serialisation format"; scripts of Nuke 7 to 13 in public repositories.
 
@@ -29,7 +29,7 @@ use super::{ImportError, Shape, Shapes};
 use glam::DAffine2;
 use number::{channel, number};
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Footage, FrameNumber};
+use rototoon_base::scene::{Falloff, Footage, FrameNumber};
 use std::collections::{BTreeMap, BTreeSet};
 use transform::Transform;
 use words::{Item, items, place, wrong};
@@ -150,8 +150,23 @@ impl Reader<'_> {
         let made = made.map_err(|_| full())?;
         self.left = left;
         let keys: BTreeMap<_, _> = frames.into_iter().zip(made).collect();
-        self.found.shapes.push(Shape { name: self.names.free(name), closed: outline.closed, keys });
+        let falloff = self.falloff(item, name);
+        self.found.shapes.push(Shape { name: self.names.free(name), closed: outline.closed, keys, falloff });
         Ok(())
+    }
+
+    /// The falloff among the attributes of a shape. One that cannot be read is that of a shape without one: its outline counts.
+    fn falloff(&mut self, item: &Item, name: &str) -> Falloff {
+        let attributes = item.items().iter().filter(|list| list.name() == Some("a")).flat_map(Item::items);
+        let Some(value) = attributes.skip_while(|word| word.word() != Some("ff")).nth(1) else {
+            return Falloff::default();
+        };
+        let Ok(rate) = channel(self.text, value, "a") else { return Falloff::default() };
+        if rate.turns().next().is_some() {
+            let place = place(self.text, value.start);
+            self.found.warnings.push(format!("{place}: the falloff of {name:?} has keys: its first value is taken"));
+        }
+        Falloff { rate: rate.rate(), curve: None }
     }
 
     /// The outline of a curve, the frame of its points if they have one, and their list.

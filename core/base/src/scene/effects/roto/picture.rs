@@ -11,7 +11,7 @@ const MOTION: Option<&str> = Some("motion");
 const PLANE: [f64; 2] = [-1_000_000.0, 1_000_000.0];
 
 /// These parameters in order.
-pub const PICTURE_PARAMETERS: [EffectParameter; 51] = [
+pub const PICTURE_PARAMETERS: [EffectParameter; 53] = [
     parameter("picture", "Picture", EffectKind::Group(true), None, "The picture made from the shapes."),
     parameter(
         "output",
@@ -71,6 +71,20 @@ pub const PICTURE_PARAMETERS: [EffectParameter; 51] = [
         EffectKind::Number(0.0, [0.0, 500.0], [0.0, 50.0]),
         PICTURE,
         "Width in pixels over which the border fades, on each side of the outline.",
+    ),
+    parameter(
+        "falloff",
+        "Falloff",
+        EffectKind::Number(1.0, [0.1, 10.0], [0.2, 5.0]),
+        PICTURE,
+        "How fast the border falls off: above 1 less of it shows, below 1 it reaches further.",
+    ),
+    parameter(
+        "falloffCurve",
+        "Falloff curve",
+        EffectKind::KeyedChoice(&["Smooth", "Linear", "Ease in", "Ease out"]),
+        PICTURE,
+        "The course of the border from outside to inside: smooth at both ends, even, or smooth outside or inside only.",
     ),
     parameter(
         "motionBlur",

@@ -8,7 +8,7 @@ const DRAW: Option<&str> = Some("draw");
 const PART: Option<&str> = Some("selectedPart");
 
 /// These parameters in order.
-pub const SHAPE_PARAMETERS: [EffectParameter; 42] = [
+pub const SHAPE_PARAMETERS: [EffectParameter; 45] = [
     parameter("shapes", "Shapes", EffectKind::Group(true), None, "Where the shapes come from."),
     parameter(
         "project",
@@ -255,10 +255,31 @@ pub const SHAPE_PARAMETERS: [EffectParameter; 42] = [
         "Width in pixels over which the part's border fades, beside that of all parts.",
     ),
     parameter(
+        "partFalloff",
+        "Falloff",
+        EffectKind::Number(1.0, [0.1, 10.0], [0.2, 5.0]),
+        PART,
+        "How fast the part's border falls off, times that of all parts: above 1 less of it shows, below 1 it reaches further.",
+    ),
+    parameter(
+        "partFalloffCurve",
+        "Falloff curve",
+        EffectKind::KeyedChoice(&["As all parts", "Smooth", "Linear", "Ease in", "Ease out"]),
+        PART,
+        "The course of the part's border from outside to inside.",
+    ),
+    parameter(
         "partLock",
         "Lock",
         EffectKind::Flag(false),
         PART,
         "Whether the part can be neither selected nor changed with the pen.",
+    ),
+    parameter(
+        "partColor",
+        "Colour",
+        EffectKind::Shade([0.0; 3]),
+        PART,
+        "Colour of the part in the viewer and in exported shapes. Black takes one that differs from those of the other parts.",
     ),
 ];
