@@ -4,6 +4,7 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Falloff, FalloffCurve};
 use rototoon_render::coverage::Window;
 use rototoon_render::mask::Mask;
 use rototoon_render::widths;
@@ -46,6 +47,16 @@ fn mattes(bench: &mut Criterion) {
             bench.iter(|| {
                 let (mask, window) = mask(1920, 1080, points, samples, grow, feather);
                 black_box(mask.draw(window, &mut || true))
+            });
+        });
+    }
+    for (name, samples) in [("feathered by 10, linear", 1), ("motion blur of 16 samples, feathered by 10, linear", 16)]
+    {
+        let linear = Falloff { rate: 1.0, curve: Some(FalloffCurve::Linear) };
+        group.bench_function(name, |bench| {
+            bench.iter(|| {
+                let (mask, window) = mask(1920, 1080, 24, samples, 0.0, 10.0);
+                black_box(mask.with_falloff(linear).draw(window, &mut || true))
             });
         });
     }

@@ -48,6 +48,8 @@ pub mod composite;
 pub mod coverage;
 pub mod cryptomatte;
 pub mod encode;
+#[cfg(test)]
+mod falloff;
 pub mod feather;
 pub mod grow;
 pub mod ids;

@@ -261,9 +261,6 @@ impl Mask {
 }
 
 #[cfg(test)]
-mod falloff;
-
-#[cfg(test)]
 mod tests {
     use super::super::widths;
     use super::*;

@@ -148,13 +148,20 @@ fn growing_and_feathering_are_bounded_and_heard() {
     values.iter().for_each(|(id, value)| effect.set(id, &[*value]));
     // A strip of it: the first ten rows of a fourth of the picture.
     let strip = Bounds { x1: 0, y1: 200, x2: 240, y2: 210 };
-    let picture = rendered(&host, &mut effect, 2.0, strip);
-    assert!(picture.values.iter().any(|value| *value > 0.5));
-    // An abort is heard in each phase.
-    for after in [0, 3, 40, 200, 700] {
-        host.configure(&Settings { abort_after: after, ..Settings::default() });
-        assert_eq!(effect.render(2.0, strip, 1.0, 1, 0), "kOfxStatFailed", "{after}");
-        assert_eq!(host.live_images(), 0);
+    // With a falloff each instant is blurred.
+    for falloff in [1.0, 2.0] {
+        host.configure(&Settings::default());
+        effect.set("falloff", &[falloff]);
+        let picture = rendered(&host, &mut effect, 2.0, strip);
+        assert!(picture.values.iter().any(|value| *value > 0.5));
+        // An abort is heard in each phase.
+        for after in [0, 3, 40, 200, 700] {
+            host.configure(&Settings { abort_after: after, ..Settings::default() });
+            assert_eq!(effect.render(2.0, strip, 1.0, 1, 0), "kOfxStatFailed", "{falloff} {after}");
+            assert_eq!(host.live_images(), 0);
+        }
+        // These were meant.
+        let _ = host.errors();
     }
 }
 

@@ -235,14 +235,14 @@ fn exports_have_the_colours_and_what_they_can_of_the_falloffs() {
     let (svg, _) = exported(&host, &mut effect, "shapes.svg");
     assert!(svg.contains("#4080bf"), "{svg}");
     // The rate comes back with the shapes; nothing else of the document has changed.
-    let kept: Vec<Part> = kept(&effect).scene.parts;
-    assert!(kept.iter().all(|part| part.falloff == Falloff::default() && part.colour.is_none()));
+    let stays: Vec<Part> = Document::parse(&effect.text("document"), "kept").unwrap().scene.parts;
+    assert!(stays.iter().all(|part| part.falloff == Falloff::default() && part.colour.is_none()));
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("back.nk");
     std::fs::write(&file, nuke).unwrap();
     effect.set_text("project", file.to_str().unwrap());
     assert_eq!(effect.press("load"), OK, "{:?}", host.messages());
-    let back: Vec<f64> = crate::common::kept(&effect).scene.parts.iter().map(|part| part.falloff.rate).collect();
+    let back: Vec<f64> = kept(&effect).scene.parts.iter().map(|part| part.falloff.rate).collect();
     assert_eq!(back, [3.0, 1.5]);
     // A linear border is all that After Effects has beside its own.
     effect.set("falloff", &[1.0]);

@@ -46,7 +46,7 @@ fn a_falloff_is_read_and_one_with_keys_is_told() {
         assert_eq!(found.shapes[0].falloff, Falloff { rate, curve: None }, "{value}");
         assert_eq!(found.warnings, [""; 0]);
     }
-    let moving = read("{{{1 2} {9 4}}}");
+    let moving = read("{{1 2} {9 4}}");
     assert_eq!(moving.shapes[0].falloff.rate, 2.0);
     assert!(
         moving.warnings[0].contains("the falloff of \"Bezier1\" has keys: its first value is taken"),
@@ -54,7 +54,7 @@ fn a_falloff_is_read_and_one_with_keys_is_told() {
         moving.warnings
     );
     // A shape whose falloff cannot be read is there all the same.
-    assert_eq!(read("{{=parent.size}}").shapes[0].falloff, Falloff::default());
+    assert_eq!(read("{=parent.size}").shapes[0].falloff, Falloff::default());
 }
 
 #[test]

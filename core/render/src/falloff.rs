@@ -1,9 +1,11 @@
 //! Tests of masks with a falloff, against a mask that is drawn point by point.
 
-use super::*;
-use crate::widths;
+use super::coverage::Window;
+use super::mask::Mask;
+use super::widths;
 use proptest::prelude::*;
-use rototoon_base::scene::FalloffCurve;
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Falloff, FalloffCurve};
 
 fn rectangle(x0: f64, y0: f64, x1: f64, y1: f64) -> Vec<Point> {
     [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| Point::new(x, y)).into()
