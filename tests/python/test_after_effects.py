@@ -67,7 +67,8 @@ const app = {
     endUndoGroup: () => { depth -= 1; },
 };
 const world = {app, Shape, CompItem, alert: (text) => said.push(text),
-    MaskMode: {ADD: "add", NONE: "none"}, KeyframeInterpolationType: {HOLD: "hold"}};
+    MaskMode: {ADD: "add", NONE: "none"}, MaskFeatherFalloff: {FFO_LINEAR: "linear"},
+    KeyframeInterpolationType: {HOLD: "hold"}};
 vm.runInNewContext(fs.readFileSync(script, "latin1"), world);
 check(depth === 0, "the undo group ends");
 console.log(JSON.stringify({said, made}));
@@ -86,7 +87,7 @@ def run(tmp_path: Path):
     keys = {str(frame): points(frame) for frame in [12, 13, 15]}
     still = {"10": [[1.0, 40.0], [30.5, 44.0]], "18": [[3.0, 41.0], [33.5, 40.0]]}
     parts = [
-        {"name": "Größe 🦊", "closed": True, "depth": 1, "keys": keys},
+        {"name": "Größe 🦊", "closed": True, "depth": 1, "keys": keys, "falloff_curve": "linear", "color": [0.25, 1, 0.5]},
         {"name": 'near "line"', "closed": False, "depth": 2, "keys": still},
     ]
     document = tmp_path / "a.json"
@@ -113,6 +114,7 @@ def test_the_script_makes_a_mask_for_each_part_on_the_selected_layer(run):
     assert said == [] and "solid" not in layer
     near, far = layer["masks"]
     assert (near["name"], near["maskMode"], far["name"], far["maskMode"]) == ('near "line"', "none", "Größe 🦊", "add")
+    assert (far["maskFeatherFalloff"], far["color"]) == ("linear", [0.25, 1, 0.5]) and "maskFeatherFalloff" not in near
     # Frames count from the layer's start, which is 25 frames after that of the composition.
     assert [frame for frame, _ in keys_of(far["path"])] == [27, 28, 30]
     for frame, shape in keys_of(far["path"]):

@@ -126,7 +126,7 @@ def document(tmp_path_factory) -> Path:
     still = {"0": [[1.0, 40.0], [30.5, 44.0]], "8": [[3.0, 41.0], [33.5, 40.0]]}
     parts = [
         {"name": 'near "line"', "closed": False, "depth": 2, "keys": still},
-        {"name": "Größe 🦊", "closed": True, "depth": 1, "keys": keys},
+        {"name": "Größe 🦊", "closed": True, "depth": 1, "keys": keys, "falloff": 3.5, "color": [0.25, 1, 0.5]},
     ]
     footage = {"pattern": "f_%d.png", "first": 0, "last": 8, "fps": 12.5, "width": 64, "height": HEIGHT}
     document = tmp_path_factory.mktemp("natron") / "a.json"
@@ -151,6 +151,8 @@ def test_the_script_makes_the_parts(document: Path, name: str):
     assert (far.label, far.closed, near.label, near.closed) == ("Größe 🦊", True, 'near "line"', False)
     for curve in app.items:
         assert curve.points == curve.feather and curve.feather_distance.value == 0
+    assert (far.falloff.value, near.falloff.value) == (3.5, 1)
+    assert far.colour == (0.25, 1, 0.5) and len(near.colour) == 3 and near.colour != far.colour
     for k, keyed in enumerate(far.points):
         assert keyed == {f: (points(f)[k][0], HEIGHT - points(f)[k][1]) for f in range(2, 7)}
     assert far.activated.keys == {0: False, 2: True, 7: False}
