@@ -92,6 +92,7 @@ mod tests {
             told("drawing", "drawings"),
             told(&part("center"), "centers"),
             told(&part("wantsKey"), "wants_key"),
+            told(&part("colour"), "color"),
             told(&part("pin"), "pins"),
         ];
         assert_eq!(found, expected);

@@ -101,8 +101,9 @@ proptest! {
         prop_assert!(row.windows(2).all(|pair| pair[0] <= pair[1]), "{:?}", row);
         for (x, value) in row.iter().enumerate() {
             let t = (x as f64 + 0.5 - at + feather) / (2.0 * feather);
-            // A pixel has the mean of the blur over its width, and courses are steep at their ends.
-            let pixel = 0.5 / (2.0 * feather);
+            // Pixels are blurred, and a blurred pixel is a mean over its width: a border is softer by a pixel on each side, and
+            // courses are steep at their ends.
+            let pixel = 1.0 / (2.0 * feather);
             let (least, most) = (course(curve, rate, t - pixel), course(curve, rate, t + pixel));
             prop_assert!((least - 0.02..=most + 0.02).contains(&f64::from(*value)), "{} {}: {} to {}", x, value, least, most);
         }
