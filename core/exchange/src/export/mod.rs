@@ -41,7 +41,7 @@ pub fn has_falloff(extension: &str, falloff: Falloff) -> bool {
     let curve = falloff.curve.unwrap_or_default();
     match extension {
         "nk" => curve == FalloffCurve::Smooth,
-        "py" => curve == FalloffCurve::Smooth && falloff.rate <= natron::MOST_FALLOFF,
+        "py" | "ntp" => curve == FalloffCurve::Smooth && falloff.rate <= natron::MOST_FALLOFF,
         "jsx" => falloff.rate == 1.0 && matches!(curve, FalloffCurve::Smooth | FalloffCurve::Linear),
         _ => falloff.is_plain(),
     }
@@ -67,6 +67,7 @@ mod tests {
         for (extension, has) in [
             ("nk", [true, true, true, false, false]),
             ("py", [true, true, false, false, false]),
+            ("ntp", [true, true, false, false, false]),
             ("jsx", [true, false, false, true, false]),
             ("fxs", [true, false, false, false, false]),
             ("svg", [true, false, false, false, false]),

@@ -7,7 +7,8 @@
 //!
 //! The parts are Bézier curves of the base layer, the farthest first, since the node draws in this order. A curve has a key on
 //! every frame on which the part has a contour, and goes evenly between keys. Handles and the feather's points are at the
-//! points, so sides are straight like those of the part, and the feather, which Natron begins with 1.5 pixels, is none.
+//! points, so sides are straight like those of the part, and the feather, which Natron begins with 1.5 pixels, is none. Of the falloff
+//! of a soft border it has the rate.
 //! Coordinates are pixels with x right and y up. Before its first and after its last contour a curve is not active: a
 //! parameter with keys says so, and the curve's life time is *Custom*, since other life times ignore that parameter.
 //!
@@ -24,9 +25,10 @@
 
 use super::archive::{Archive, Class};
 use super::coordinate;
+use super::natron::MOST_FALLOFF;
 use super::outlines::Outlines;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Footage, FrameNumber, Part, Scene, palette};
+use rototoon_base::scene::{Footage, FrameNumber, Part, Scene};
 
 /// The version of Boost's library that Natron 2.3.12 was built with.
 const BOOST: u32 = 16;
@@ -145,7 +147,7 @@ fn context(out: &mut Archive, scene: &Scene, spacing: f64) {
         for (number, (index, keys)) in shapes.iter().enumerate() {
             // A closed curve, as opposed to a paint stroke or a layer.
             out.value("Type", 0);
-            let colour = palette::distinct(*index).map(f64::from);
+            let colour = scene.parts[*index].shown_colour(*index).map(f64::from);
             let script_name = format!("Bezier{}", number + 1);
             out.object("Item", BEZIER, |out| {
                 out.object("RotoDrawableItemSerialization", DRAWABLE, |out| {
@@ -185,8 +187,13 @@ fn drawable(
 ) {
     item(out, name, &part.name, "Layer1");
     let active = activity(keys[0].0, keys[keys.len() - 1].0, footage);
-    out.value("NbItems", if active.is_empty() { 1 } else { 3 });
+    let rate = part.falloff.rate.min(MOST_FALLOFF);
+    let count = if active.is_empty() { 1 } else { 3 };
+    out.value("NbItems", if rate == 1.0 { count } else { count + 1 });
     parameter(out, "Item", "feather", "Double", &[Value::still(0, 1.5)], None);
+    if rate != 1.0 {
+        parameter(out, "Item", "featherFallOff", "Double", &[Value::still(rate, 1)], None);
+    }
     if !active.is_empty() {
         parameter(out, "Item", "lifeTime", "Choice", &[Value::still(CUSTOM, 0)], Some("Custom"));
         let value = Value { keys: &active, ..Value::still(active[0].1, 1) };
