@@ -95,6 +95,7 @@ pub fn export(effect: &Effect, time: f64) -> Result<(), Failure> {
     }
     let text = match extension.as_str() {
         "nk" => pipeline::export_nuke(&document, SPACING),
+        "ntp" => pipeline::export_natron_project(&document, SPACING),
         "py" => pipeline::export_natron(&document, SPACING),
         "jsx" => pipeline::export_after_effects(&document, SPACING),
         "fxs" => pipeline::export_silhouette(&document, SPACING),
@@ -103,7 +104,7 @@ pub fn export(effect: &Effect, time: f64) -> Result<(), Failure> {
         _ => {
             let shown = path.display();
             return Err(Failure::Told(format!(
-                "export file: found {shown}, expected a name that ends in .nk, .py, .jsx, .fxs, .svg or .exr"
+                "export file: found {shown}, expected a name that ends in .nk, .ntp, .py, .jsx, .fxs, .svg or .exr"
             )));
         }
     };

@@ -270,6 +270,7 @@ fn motion_becomes_keys_and_shapes_become_files() {
     let folder = tempfile::tempdir().unwrap();
     for (name, said) in [
         ("a größe.nk", "RotoPaint"),
+        ("a.ntp", "fr.inria.built-in.Roto"),
         ("a.py", "createBezier"),
         ("a.jsx", "ADBE Mask"),
         ("a.fxs", "<Silhouette"),
@@ -282,7 +283,7 @@ fn motion_becomes_keys_and_shapes_become_files() {
         assert!(text.contains(said) && text.contains("star"), "{name}");
     }
     // They are read by another node, each in the footage's pixels.
-    for name in ["a größe.nk", "a.fxs", "b.SVG"] {
+    for name in ["a größe.nk", "a.ntp", "a.fxs", "b.SVG"] {
         let mut other = node(&host, FILTER);
         other.set_text("document", "");
         other.set("frameOffset", &[100.0]);
@@ -306,7 +307,7 @@ fn motion_becomes_keys_and_shapes_become_files() {
     let _ = (host.log(), host.messages());
     effect.set_text("exportFile", folder.path().join("a.txt").to_str().unwrap());
     assert_eq!(effect.press("export"), "kOfxStatFailed");
-    assert!(host.messages().last().unwrap().contains(".nk, .py, .jsx, .fxs, .svg or .exr"));
+    assert!(host.messages().last().unwrap().contains(".nk, .ntp, .py, .jsx, .fxs, .svg or .exr"));
 }
 
 /// The stored document, in either form.
