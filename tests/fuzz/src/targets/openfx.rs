@@ -4,7 +4,7 @@ use crate::given::{self, name, number};
 use arbitrary::{Result, Unstructured};
 use rototoon::project::Document;
 use rototoon::render::composite::Blend;
-use rototoon::scene::Raster;
+use rototoon::scene::{Falloff, FalloffCurve, Raster};
 use rototoon_ofx::ofx::Bounds;
 use rototoon_ofx::ofx::effect::Region;
 use rototoon_ofx::pixels::{CLEAR, Depth, Format, Layout, Premultiplication};
@@ -72,6 +72,13 @@ fn finite(u: &mut Unstructured) -> Result<f64> {
     number(u).map(|v| if v.is_finite() { v } else { 0.0 })
 }
 
+/// How a border falls off, with a rate as the plugin limits it.
+fn falloff(u: &mut Unstructured) -> Result<Falloff> {
+    let curves = FalloffCurve::ALL.map(|(curve, ..)| Some(curve));
+    let rate = if u.ratio(1u8, 2)? { finite(u)?.clamp(Falloff::LEAST, Falloff::MOST) } else { 1.0 };
+    Ok(Falloff { rate, curve: *u.choose(&[&curves[..], &[None]].concat())? })
+}
+
 fn settings(u: &mut Unstructured) -> Result<Settings> {
     let output = *u.choose(&[Output::Cutout, Output::Matte, Output::Overlay, Output::Ids, Output::Mattes])?;
     let parts = if u.ratio(1u8, 4)? { name(u)? } else { String::new() };
@@ -97,6 +104,7 @@ fn settings(u: &mut Unstructured) -> Result<Settings> {
         invert: u.arbitrary()?,
         grow: if u.arbitrary()? { -grow } else { grow },
         feather: feather.max(0.0),
+        falloff: falloff(u)?,
         shutter: shutter.max(0.0),
         phase: f64::from(u.int_in_range(-4..=4i8)?) / 4.0,
         samples: u.int_in_range(1..=4)?,
@@ -121,6 +129,7 @@ fn looks(document: &Document, u: &mut Unstructured) -> Result<BTreeMap<String, P
             grow,
             feather: feather.max(0.0),
             blend: mode,
+            falloff: falloff(u)?,
         };
         looks.insert(part.name.clone(), look);
     }
