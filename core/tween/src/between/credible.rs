@@ -11,7 +11,7 @@
 //!
 //! Where the drawing half way does not pass, drawing nothing new is better, and the earlier key is held.
 //!
-//! Only spans whose matching is not certain are judged. A sure movement may leave the ink of both keys: a bar that turns by
+//! Only spans whose matching is not sure are judged. A sure movement may leave the ink of both keys: a bar that turns by
 //! half a turn lies on itself on both.
 
 use super::super::grid::Grid;
@@ -37,9 +37,8 @@ impl From<Lines> for Half {
     }
 }
 
-/// A matching with this share of its ink matched surely is believed.
-pub(super) const CERTAIN: f64 = 0.97;
-/// A matching with this share of its ink matched surely is believed if its drawing half way is.
+/// A matching with this share of its ink matched surely is believed. Strokes that a person drew slide along themselves and lie on
+/// each other's places by chance, so the drawing half way says nothing against such pairs.
 pub(super) const SURE: f64 = 0.9;
 
 /// A drawing half way that passes by this much or less can be believed. A true movement passes by about a half.

@@ -50,10 +50,6 @@ pub(super) enum Way {
 /// The way of a span of unsurely matched drawings. `half` is the drawing half way by the matched strokes.
 pub(super) fn chosen(first: &[Stroke], second: &[Stroke], matching: &Matching, half: &Half, run: Run) -> Way {
     let matched = Passing::of(first, second, half);
-    let sure = matching.sureness(first, second) >= credible::SURE;
-    if sure && matched.is_none_or(|matched| matched.is_believed(credible::BARED)) {
-        return Way::Matched;
-    }
     let flow = Flow::find(first, second, &known(first, second, matching));
     let strangers = flow.as_ref().is_some_and(|flow| flow.meets < MEETS);
     let nearly_all = flow.as_ref().is_some_and(|flow| flow.meets >= NEARLY_ALL);
@@ -133,7 +129,7 @@ impl Sequence {
         let mut ways = vec![Way::Matched; given.len()];
         for k in (0..given.len()).filter(|k| base.is_none_or(|base| base == *k)) {
             let (first, second) = (&self.keys[k].strokes, &self.keys[k + 1].strokes);
-            if given[k].sureness(first, second) < credible::CERTAIN {
+            if given[k].sureness(first, second) < credible::SURE {
                 ways[k] = chosen(first, second, &given[k], &self.half_way(k), self.progress[k].clone());
             }
         }
