@@ -190,14 +190,15 @@ def test_boost_reads_the_project(document: Path, reader: Path):
         "node fr.inria.built-in.Roto Layer1 Roto1",
     ]
     near = lines.index('curve 0 Bezier2 near "line"')
-    assert lines[6:10] == [
+    assert lines[6:11] == [
         "curve 1 Bezier1 Größe 🦊",
         "parameter feather  0.000000",
+        "parameter featherFallOff  3.500000",
         "parameter lifeTime Custom 4",
         "parameter activated  0 @0=0/0 @2=1/0 @7=0/0",
     ]
     assert lines[near + 1] == "parameter feather  0.000000" and lines[near + 2].startswith("point")
-    for at, kind in ((10, "point"), (13, "feather")):
+    for at, kind in ((11, "point"), (14, "feather")):
         for k in range(3):
             x, y = ([f"{f}={value}" for f in range(2, 7) for value in [number(f, k)]] for number in (across, up))
             keys = " ".join(x), " ".join(y)
