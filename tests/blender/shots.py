@@ -121,6 +121,39 @@ def move(addon, ob, frame, part, shift, which=None):
     handle.tag_positions_changed()
 
 
+def limb_line(addon, ob, contours, place, point=None):
+    """A line on the limb layer on frame 1, for a key point of the body if one is given.
+
+    `place` is a part's number and the two places along its contour that the line joins.
+    """
+    gp, limbs, placement = addon("blender.grease_pencil"), addon("style.limbs"), addon("blender.placement")
+    layer = ob.data.layers.get(limbs.LAYER) or ob.data.layers.new(limbs.LAYER)
+    if 1 not in gp.drawings(layer):
+        layer.frames.new(1)
+    handle = gp.drawings(layer)[1][0]
+    part, *ends = place
+    total = int(gp.offsets(handle)[-1])
+    handle.add_strokes([2])
+    every = gp.positions(handle, total + 2)
+    line = np.array([_along(contours[part], end) for end in ends])
+    every[total:] = placement.Mapper(ob, [1], {}, [limbs.LAYER]).at(0, 1).to_layer(line)
+    gp.put(handle, "position", every.astype(np.float32))
+    if point is not None:
+        assert bpy.ops.rototoon.define_limbs(point=point) == {"FINISHED"}
+
+
+def limb_lines(addon, ob, contours, places):
+    """Lines for key points of the body, by their names."""
+    for point, place in places.items():
+        limb_line(addon, ob, contours, place, point)
+
+
+def _along(contour, place):
+    """The point at a place along a contour: 1.5 is halfway from point 1 to point 2."""
+    low = int(place)
+    return contour[low] + (place - low) * (contour[(low + 1) % len(contour)] - contour[low])
+
+
 def two_keys(addon, folder):
     """The scene with square and diamond keyed on frames 1 and 9."""
     ob = set_up(folder)

@@ -27,8 +27,7 @@ def build(addon, folder) -> str:
     ob = shots.set_up(folder)
     shots.draw(addon, ob, 1, test_style.figure())
     bpy.ops.rototoon.match_contours()
-    for name in test_style.LINES:
-        test_style.limb_line(addon, ob, 1, name, test_style.figure())
+    shots.limb_lines(addon, ob, test_style.figure(), test_style.LINES)
     bpy.ops.rototoon.track()
     shots.move(addon, ob, 2, 1, (3.0, 1.0), which=[0])
     bpy.ops.rototoon.track()

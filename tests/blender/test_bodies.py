@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 import shots
-from test_style import at, ring, turned
+from test_style import ring, turned
 
 SNAIL = {
     "name": "snail",
@@ -59,24 +59,6 @@ LINES = {
 """Key points with their part and the two places of its contour that the line joins."""
 
 
-def limb_line(addon, ob, name, contours, place, choose=True):
-    """Draws a line on the limb layer on frame 1, and says which key point it marks."""
-    gp, limbs, placement = addon("blender.grease_pencil"), addon("style.limbs"), addon("blender.placement")
-    layer = ob.data.layers.get(limbs.LAYER) or ob.data.layers.new(limbs.LAYER)
-    if 1 not in gp.drawings(layer):
-        layer.frames.new(1)
-    handle = gp.drawings(layer)[1][0]
-    part, first, second = place
-    line = np.array([at(contours[part], first), at(contours[part], second)])
-    total = int(gp.offsets(handle)[-1])
-    handle.add_strokes([2])
-    every = gp.positions(handle, total + 2)
-    every[total:] = placement.Mapper(ob, [1], {}, [limbs.LAYER]).at(0, 1).to_layer(line)
-    gp.put(handle, "position", every.astype(np.float32))
-    if choose:
-        assert bpy.ops.rototoon.define_limbs(point=name) == {"FINISHED"}
-
-
 def animal(addon, folder, count=shots.COUNT, wag=0.5):
     """A dog that wags its tail on `count` pictures, with limbs."""
     folder.mkdir(exist_ok=True)
@@ -88,8 +70,7 @@ def animal(addon, folder, count=shots.COUNT, wag=0.5):
         bpy.ops.rototoon.match_contours()
     bpy.context.scene.frame_set(1)
     assert bpy.ops.rototoon.choose_body(body="quadruped") == {"FINISHED"}
-    for name, place in LINES.items():
-        limb_line(addon, ob, name, dog(), place)
+    shots.limb_lines(addon, ob, dog(), LINES)
     return ob
 
 
@@ -101,7 +82,7 @@ def said(addon):
 def test_the_menu_has_the_key_points_of_the_body(addon, tmp_path):
     ob = shots.set_up(tmp_path)
     shots.draw(addon, ob, 1, dog())
-    limb_line(addon, ob, "", dog(), LINES["r_hock"], choose=False)
+    shots.limb_line(addon, ob, dog(), LINES["r_hock"])
     with pytest.raises(TypeError, match="r_hock"):
         bpy.ops.rototoon.define_limbs(point="r_hock")
     assert bpy.ops.rototoon.choose_body(body="quadruped") == {"FINISHED"}
@@ -213,9 +194,7 @@ def test_a_body_of_ones_own(addon, tmp_path, wrapped):
     ob = shots.set_up(tmp_path)
     shots.draw(addon, ob, 1, dog())
     assert bpy.ops.rototoon.choose_body(body="file", filepath=str(path)) == {"FINISHED"}
-    limb_line(addon, ob, "foot", dog(), (1, 0.0, 7.0))
-    limb_line(addon, ob, "neck", dog(), (1, 3.0, 4.0))
-    limb_line(addon, ob, "r_eye", dog(), (2, 0.0, 7.0))
+    shots.limb_lines(addon, ob, dog(), {"foot": (1, 0.0, 7.0), "neck": (1, 3.0, 4.0), "r_eye": (2, 0.0, 7.0)})
     limbs = addon("style.limbs")
     assert [(limb["from"], limb["to"]) for limb in limbs.defined(ob)] == [("foot", "neck"), ("neck", "r_eye")]
     assert limbs.body_name(ob) == "snail"

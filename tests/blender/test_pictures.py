@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import shots
 from mathutils import Matrix
-from test_style import LINES, figure, limb_line, performer
+from test_style import LINES, figure, performer
 
 
 @pytest.fixture(autouse=True)
@@ -27,8 +27,7 @@ def doll(addon, tmp_path):
     folder.mkdir()
     ob = shots.set_up(folder)
     shots.draw(addon, ob, 1, figure())
-    for name in LINES:
-        limb_line(addon, ob, 1, name, figure())
+    shots.limb_lines(addon, ob, figure(), LINES)
     ob.rototoon.clips_folder = shelf
     names = [part.name for part in ob.rototoon.parts]
     bpy.ops.rototoon.depth_mark(front=names[2], behind=names[1])

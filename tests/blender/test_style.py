@@ -49,28 +49,6 @@ LINES = {
 """Key points with their part and the two places of its contour that the line joins."""
 
 
-def at(contour, place):
-    low = int(place)
-    return contour[low] + (place - low) * (contour[(low + 1) % len(contour)] - contour[low])
-
-
-def limb_line(addon, ob, frame, name, contours):
-    """Draws a key point's line on the limb layer and says what it tells."""
-    gp, limbs, placement = addon("blender.grease_pencil"), addon("style.limbs"), addon("blender.placement")
-    layer = ob.data.layers.get(limbs.LAYER) or ob.data.layers.new(limbs.LAYER)
-    if frame not in gp.drawings(layer):
-        layer.frames.new(frame)
-    handle = gp.drawings(layer)[frame][0]
-    part, first, second = LINES[name]
-    line = np.array([at(contours[part], first), at(contours[part], second)])
-    total = int(gp.offsets(handle)[-1])
-    handle.add_strokes([2])
-    every = gp.positions(handle, total + 2)
-    every[total:] = placement.Mapper(ob, [frame], {}, [limbs.LAYER]).at(0, frame).to_layer(line)
-    gp.put(handle, "position", every.astype(np.float32))
-    assert bpy.ops.rototoon.define_limbs(point=name) == {"FINISHED"}
-
-
 def performer(addon, folder, swing=0.6, lean=0.0):
     """A figure keyed on every other picture; its contours swing and lean."""
     ob = shots.set_up(folder)
@@ -80,8 +58,7 @@ def performer(addon, folder, swing=0.6, lean=0.0):
         bpy.context.scene.frame_set(frame)
         bpy.ops.rototoon.match_contours()
     bpy.context.scene.frame_set(1)
-    for name in LINES:
-        limb_line(addon, ob, 1, name, figure(0.0, lean))
+    shots.limb_lines(addon, ob, figure(0.0, lean), LINES)
     return ob
 
 
@@ -121,8 +98,7 @@ def test_capture_clip_style_reshape(addon, tmp_path):
     ob = shots.set_up(folder)
     doll = [(contour - (60, 80)) * 1.05 + (80, 82) for contour in figure()]
     shots.draw(addon, ob, 1, doll)
-    for name in LINES:
-        limb_line(addon, ob, 1, name, doll)
+    shots.limb_lines(addon, ob, doll, LINES)
     ob.rototoon.clips_folder = shelf
     before = dict(shots.pixels(addon, ob, 1))
     names = [part.name for part in ob.rototoon.parts]
@@ -170,8 +146,7 @@ def test_stopped_and_wrong_use_change_nothing(addon, tmp_path):
     shots.draw(addon, ob, 1, figure())
     with pytest.raises(RuntimeError, match="has no limbs"):
         bpy.ops.rototoon.reshape_drawing(character="plain", motion="walk", folder=shelf)
-    for name in LINES:
-        limb_line(addon, ob, 1, name, figure())
+    shots.limb_lines(addon, ob, figure(), LINES)
     before = shots.snapshot(ob)
     with pytest.raises(RuntimeError, match="has no clips"):
         bpy.ops.rototoon.apply_motion(motion="walk", content="plain", style="old", folder=str(tmp_path / "none"))
@@ -205,7 +180,7 @@ def test_clips_of_other_bodies_are_used_where_they_can_be(addon, tmp_path):
 def test_marks_are_kept_with_the_document(addon, tmp_path):
     ob = shots.set_up(tmp_path)
     shots.draw(addon, ob, 1, figure())
-    limb_line(addon, ob, 1, "pelvis", figure())
+    shots.limb_line(addon, ob, figure(), LINES["pelvis"], "pelvis")
     names = [part.name for part in ob.rototoon.parts]
     assert bpy.ops.rototoon.depth_mark(front=names[2], behind=names[1]) == {"FINISHED"}
     assert bpy.ops.rototoon.depth_mark(front=names[1], behind=names[2]) == {"FINISHED"}
