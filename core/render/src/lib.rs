@@ -48,8 +48,6 @@ pub mod composite;
 pub mod coverage;
 pub mod cryptomatte;
 pub mod encode;
-#[cfg(test)]
-mod falloff;
 pub mod feather;
 pub mod grow;
 pub mod ids;

@@ -1,8 +1,8 @@
 //! Tests of masks with a falloff, against a mask that is drawn point by point.
 
-use super::coverage::Window;
-use super::mask::Mask;
-use super::widths;
+use crate::coverage::Window;
+use crate::mask::Mask;
+use crate::widths;
 use proptest::prelude::*;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Falloff, FalloffCurve};
