@@ -3,8 +3,9 @@
 //! `cargo xtask generate` generates the header `include/rototoon.h` from this crate, and the Python bindings from the
 //! header.
 //!
-//! The crate has two layers. The outer one is the exported functions: [`session_abi`], [`traced_abi`], [`strokes_abi`],
-//! [`tween_abi`], [`style_abi`], [`functions`], [`handles`]. They read their arguments through [`entry`] and report progress through
+//! The crate has two layers. The outer one is the exported functions: [`session_abi`],
+//! [`session_edit_abi`], [`session_track_abi`], [`traced_abi`], [`strokes_abi`], [`tween_abi`], [`breakdown_abi`],
+//! [`style_abi`], [`functions`], [`handles`]. They read their arguments through [`entry`] and report progress through
 //! [`callback`]. The inner one is safe Rust: [`session`], [`traced`], [`edit`], [`options`], [`matching`], [`strokes`],
 //! [`sheet`], [`style`], [`work`].
 //!
@@ -53,6 +54,8 @@ pub mod outcomes;
 mod pool;
 pub mod session;
 pub mod session_abi;
+pub mod session_edit_abi;
+pub mod session_track_abi;
 pub mod sheet;
 pub mod status;
 pub mod strokes;

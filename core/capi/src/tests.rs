@@ -9,11 +9,13 @@ use crate::handles::{
     rototoon_track_read,
 };
 use crate::session_abi::{
-    RototoonSession, rototoon_session_add_part, rototoon_session_curves_of, rototoon_session_document,
-    rototoon_session_free, rototoon_session_new, rototoon_session_parts, rototoon_session_pin,
-    rototoon_session_remove_part, rototoon_session_set_document, rototoon_session_set_key, rototoon_session_track,
-    rototoon_session_track_of,
+    RototoonSession, rototoon_session_document, rototoon_session_free, rototoon_session_new, rototoon_session_parts,
+    rototoon_session_set_document,
 };
+use crate::session_edit_abi::{
+    rototoon_session_add_part, rototoon_session_pin, rototoon_session_remove_part, rototoon_session_set_key,
+};
+use crate::session_track_abi::{rototoon_session_curves_of, rototoon_session_track, rototoon_session_track_of};
 use crate::status::RototoonStatus::{self, BadArgument, Busy, Cancelled, Error, Ok as Fine, Panic};
 use crate::text::RototoonText;
 use std::ffi::c_void;

@@ -10,10 +10,11 @@ use rototoon_capi::handles::{
     RototoonCurves, RototoonTrack, rototoon_curves_free, rototoon_curves_read, rototoon_text_free, rototoon_text_read,
     rototoon_track_free, rototoon_track_read,
 };
-use rototoon_capi::session_abi::{
-    RototoonSession, rototoon_session_curves_of, rototoon_session_free, rototoon_session_new, rototoon_session_pin,
-    rototoon_session_set_center, rototoon_session_set_key, rototoon_session_track_of, rototoon_session_unpin,
+use rototoon_capi::session_abi::{RototoonSession, rototoon_session_free, rototoon_session_new};
+use rototoon_capi::session_edit_abi::{
+    rototoon_session_pin, rototoon_session_set_center, rototoon_session_set_key, rototoon_session_unpin,
 };
+use rototoon_capi::session_track_abi::{rototoon_session_curves_of, rototoon_session_track_of};
 use rototoon_capi::status::RototoonStatus;
 use rototoon_capi::strokes_abi::{
     rototoon_fit_strokes, rototoon_guides_free, rototoon_hidden_lines, rototoon_pieces_free,

@@ -7,6 +7,8 @@ use arbitrary::{Result, Unstructured};
 use image::{ImageBuffer, Rgb};
 use rototoon_capi::functions::rototoon_match_contours;
 use rototoon_capi::session_abi as call;
+use rototoon_capi::session_edit_abi as edit;
+use rototoon_capi::session_track_abi as results;
 use rototoon_capi::style_abi::{rototoon_capture_clip, rototoon_import_motion};
 use std::sync::OnceLock;
 
@@ -67,20 +69,20 @@ fn one_call(session: &Session, u: &mut Unstructured, slow: &mut usize) -> Result
             let odd = usize::from(!values.is_empty() && u.ratio(1u8, 16)?);
             session.set_key(&part, frame(u)?, &values[odd..])
         }
-        1 => session.frame(call::rototoon_session_remove_key, &part, frame(u)?),
+        1 => session.frame(edit::rototoon_session_remove_key, &part, frame(u)?),
         2 => session.pin(&part, frame(u)?, index(u)?, [number(u)?, number(u)?]),
         3 => session.unpin(&part, frame(u)?, index(u)?),
         4 => session.set_center(&part, frame(u)?, [number(u)?, number(u)?]),
-        5 => session.frame(call::rototoon_session_clear_center, &part, frame(u)?),
-        6 => session.text(call::rototoon_session_remove_part, &part),
-        7 => session.text(call::rototoon_session_add_part, &given::document::part(u, 3)?),
+        5 => session.frame(edit::rototoon_session_clear_center, &part, frame(u)?),
+        6 => session.text(edit::rototoon_session_remove_part, &part),
+        7 => session.text(edit::rototoon_session_add_part, &given::document::part(u, 3)?),
         8 => session.text(call::rototoon_session_set_footage, &given::document::footage(u)?),
         9 => session.text(call::rototoon_session_set_document, &document(u)?),
         10 => session.track_of(&part),
         11 => session.curves_of(&part, frame(u)?),
         12 => {
             session.out(call::rototoon_session_parts).is_some()
-                && session.out(call::rototoon_session_weakest_frame).is_some()
+                && session.out(results::rototoon_session_weakest_frame).is_some()
         }
         13 if *slow < MOST_CALLS[1] && u.ratio(1u8, 2)? && short(session) => {
             *slow += 1;
@@ -122,7 +124,7 @@ fn worked(session: &Session, u: &mut Unstructured) -> Result<bool> {
         (false, true) => format!("{{\"threads\": 1, \"preset\": {share}}}"),
         (false, false) => format!("{{\"threads\": 1, \"preset\": \"{preset}\"}}"),
     };
-    let work = if snap { call::rototoon_session_snap } else { call::rototoon_session_track };
+    let work = if snap { results::rototoon_session_snap } else { results::rototoon_session_track };
     Ok(session.work(work, &options, cancel).is_some())
 }
 
