@@ -1,0 +1,99 @@
+//! Tests of what stays of files when the program cannot write or is interrupted.
+
+#![cfg(unix)]
+
+mod cartoon;
+
+use cartoon::{Cartoon, FRAMES, bad, command, said, text};
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// Checks that a command which could not write has left the old file, and no temporary file.
+fn unharmed(cartoon: &Cartoon, out: &Path, before: &[u8]) {
+    assert_eq!(fs::read(out).unwrap(), before);
+    assert!(cartoon.names().iter().all(|name| !name.starts_with(".rototoon")), "{:?}", cartoon.names());
+}
+
+#[test]
+fn a_full_disk_leaves_the_file_as_it_was() {
+    let cartoon = Cartoon::new();
+    let (project, out) = (cartoon.keyed(), cartoon.path("out.json"));
+    fs::write(&out, "before").unwrap();
+    // The limit on the file size makes writing fail half-way, as on a full disk.
+    let script = "trap '' XFSZ; ulimit -f 1; exec \"$@\"";
+    let output = Command::new("sh")
+        .args(["-c", script, "sh", env!("CARGO_BIN_EXE_rototoon"), "track", text(&project), "-o", text(&out)])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    assert!(said(&output).contains("out.json: cannot write: "), "{}", said(&output));
+    unharmed(&cartoon, &out, b"before");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_device_is_an_error() {
+    let cartoon = Cartoon::new();
+    let error = bad(&["export", text(&cartoon.keyed()), "-o", "/dev/full"], 2);
+    assert!(error.contains("expected a name that ends in .svg, .nk, .ntp, .py, .jsx, .fxs or .json"), "{error}");
+    let error = bad(&["track", text(&cartoon.keyed()), "-o", "/dev/full"], 1);
+    assert!(error.starts_with("error: /dev/full: cannot write: "), "{error}");
+}
+
+#[test]
+fn a_read_only_folder_is_reported_before_the_work() {
+    let cartoon = Cartoon::new();
+    let project = cartoon.keyed();
+    let folder = cartoon.path("locked");
+    fs::create_dir(&folder).unwrap();
+    let out = folder.join("out.json");
+    fs::write(&out, "before").unwrap();
+    fs::set_permissions(&folder, fs::Permissions::from_mode(0o555)).unwrap();
+    if fs::write(folder.join("probe"), "").is_ok() {
+        eprintln!("SKIPPED the test of a read-only folder: this user may write everywhere");
+    } else {
+        assert!(bad(&["track", text(&project), "-o", text(&out)], 1).contains("out.json: cannot write: "));
+        unharmed(&cartoon, &out, b"before");
+    }
+    fs::set_permissions(&folder, fs::Permissions::from_mode(0o755)).unwrap();
+    fs::set_permissions(&out, fs::Permissions::from_mode(0o444)).unwrap();
+    assert!(
+        bad(&["track", text(&project), "-o", text(&out)], 1).contains("out.json: cannot write: the file is read-only")
+    );
+    let none = cartoon.path("none/out.json");
+    // The frames are missing too, but the folder is reported, because it is checked first.
+    fs::remove_dir_all(cartoon.path("frames")).unwrap();
+    assert!(bad(&["track", text(&project), "-o", text(&none)], 1).contains("none/out.json: cannot write: "));
+}
+
+#[test]
+fn an_interrupt_leaves_no_incomplete_files() {
+    let cartoon = Cartoon::new();
+    const COUNT: i32 = 500;
+    for frame in FRAMES..COUNT {
+        fs::hard_link(cartoon.frame(0), cartoon.frame(frame)).unwrap();
+    }
+    let project = cartoon.keyed();
+    let long = fs::read_to_string(&project).unwrap().replace("\"last\":6", &format!("\"last\":{}", COUNT - 1));
+    fs::write(&project, long).unwrap();
+    let out = cartoon.path("out");
+    fs::create_dir(&out).unwrap();
+    let pattern = out.join("o_%03d.png");
+    let mut child = command(&["render", text(&project), "-o", text(&pattern), "--threads", "1"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    while !out.join("o_001.png").exists() && child.try_wait().unwrap().is_none() {
+        std::thread::yield_now();
+    }
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), said(&output).as_str()), (Some(1), "error: cancelled\n"));
+    let files: Vec<_> = fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().path()).collect();
+    assert!(!files.is_empty() && files.len() < COUNT as usize);
+    for file in files {
+        assert_eq!(image::open(&file).unwrap().width(), 64, "{file:?}");
+    }
+}
