@@ -53,9 +53,15 @@ pub fn demo(project: Option<PathBuf>, blender: Option<PathBuf>) -> Result<()> {
         .arg("--out")
         .arg(&out))?;
     steps.begin("the report");
-    let tracked = out.join("tracked.json");
-    export(&bundle, &tracked, &out.join("tracks.svg"))?;
+    export(&bundle, &out.join("tracked.json"), &out.join("tracks.svg"))?;
     run(command(&bundle.measure).arg("report").arg(&project).arg(&out))?;
+    list(&out)?;
+    steps.end();
+    Ok(())
+}
+
+/// Names the results in a folder. It is an error if one is missing.
+fn list(out: &Path) -> Result<()> {
     for (file, what) in [
         ("demo.blend", "the Blender file"),
         ("contact.png", "rendered strokes over the footage"),
@@ -67,7 +73,6 @@ pub fn demo(project: Option<PathBuf>, blender: Option<PathBuf>) -> Result<()> {
         ensure!(path.exists(), "{path:?} was not written");
         println!("{:<32} {what}", shown(&path));
     }
-    steps.end();
     Ok(())
 }
 

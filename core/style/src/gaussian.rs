@@ -33,7 +33,7 @@ use super::cells::Cells;
 use super::grid::{Grid, Row, WIDTH, mean};
 use super::kernels::{Kernels, Weights};
 use super::key_pose::{Errors, condition, deviation};
-use super::{Prediction, STEP, episodes, stance};
+use super::{Prediction, STEP, Sure, episodes, stance};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::numeric::dense::DenseCholesky;
 use rototoon_base::numeric::vector::dot;
@@ -281,6 +281,41 @@ fn averaged(cells: &Cells, found: &[Vec<Vec<f64>>], target: (usize, usize)) -> (
     (coefficients, errors)
 }
 
+/// The rows of all clips without the mean of their motion.
+fn residuals(grid: &Grid, means: &[Vec<Row>]) -> Vec<Row> {
+    let mut residuals: Vec<Row> = Vec::new();
+    for (m, mean) in means.iter().enumerate() {
+        for rows in (0..grid.characters.len()).filter_map(|s| grid.rows(s, m, MODEL_FRAMES)) {
+            residuals.extend(rows.iter().zip(mean).map(|(a, b)| -> Row { std::array::from_fn(|d| a[d] - b[d]) }));
+        }
+    }
+    residuals
+}
+
+/// Puts the predicted stance into the coefficients, if it can be predicted. Where an episode of it is judged sure, the rest
+/// moves towards the content's clip. Returns that judgement.
+fn with_stance(
+    grid: &Grid,
+    cells: &Cells,
+    kernels: &Kernels,
+    axes: &Axes,
+    errors: &Errors,
+    coefficients: &mut [f64],
+) -> Option<Sure> {
+    let (style, motion) = (grid.style, grid.motion);
+    let mut stance = stance::predict(cells, kernels, axes.even, (style, motion))?;
+    let sure = episodes::judge(cells, kernels, axes.even, (style, motion, grid.content), &mut stance);
+    coefficients[..stance.len()].copy_from_slice(&stance);
+    if sure.is_some() {
+        let share = episodes::moving_share(cells, grid.content, &errors.by_clip());
+        let content = cells.block(grid.content, motion);
+        for (c, v) in coefficients.iter_mut().zip(content).skip(axes.len()) {
+            *c += share * (v - *c);
+        }
+    }
+    sure
+}
+
 /// Predicts the requested clip.
 pub(super) fn predict(
     grid: &Grid,
@@ -294,13 +329,7 @@ pub(super) fn predict(
                 .unwrap_or_else(|| vec![[0.0; WIDTH]; MODEL_FRAMES])
         })
         .collect();
-    let mut residuals: Vec<Row> = Vec::new();
-    for (m, mean) in means.iter().enumerate() {
-        for rows in (0..grid.characters.len()).filter_map(|s| grid.rows(s, m, MODEL_FRAMES)) {
-            residuals.extend(rows.iter().zip(mean).map(|(a, b)| -> Row { std::array::from_fn(|d| a[d] - b[d]) }));
-        }
-    }
-    let axes = Axes::of(residuals.iter());
+    let axes = Axes::of(residuals(grid, &means).iter());
     let target = (grid.style, grid.motion);
     let kernels = Kernels::new(&means);
     let mut cells = Cells::new(grid, &axes);
@@ -319,19 +348,7 @@ pub(super) fn predict(
     let found: Vec<Vec<LeftOut>> = found.collect::<Result<_, Cancelled>>()?;
     let found: Vec<Vec<Vec<f64>>> = found.into_iter().flatten().flatten().collect();
     let (mut coefficients, errors) = averaged(&cells, &found, target);
-    let mut sure = None;
-    if let Some(mut stance) = stance::predict(&cells, &kernels, axes.even, target) {
-        let asked = (target.0, target.1, grid.content);
-        sure = episodes::judge(&cells, &kernels, axes.even, asked, &mut stance);
-        coefficients[..stance.len()].copy_from_slice(&stance);
-    }
-    if sure.is_some() {
-        let share = episodes::moving_share(&cells, grid.content, &errors.by_clip());
-        let content = cells.block(grid.content, grid.motion);
-        for (c, v) in coefficients.iter_mut().zip(content).skip(axes.len()) {
-            *c += share * (v - *c);
-        }
-    }
+    let sure = with_stance(grid, &cells, &kernels, &axes, &errors, &mut coefficients);
     let mean = cells.mean_of(grid.motion, grid.style);
     for (c, mean) in coefficients.iter_mut().zip(&mean) {
         *c = strength * (*c - mean);

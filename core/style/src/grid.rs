@@ -162,18 +162,24 @@ fn torso_of(clips: &[Clip], name: &str) -> Result<f64, StyleError> {
 }
 
 fn check(clips: &[Clip], request: &Request) -> Result<(), StyleError> {
-    let names = |of: &dyn Fn(&Clip) -> String| {
-        let mut names: Vec<String> = clips.iter().map(of).collect();
-        names.sort();
-        names.dedup();
-        names.join(", ")
-    };
     for clip in clips {
         let broken = clip.postures.iter().position(|posture| posture.iter().any(|p| !p.is_finite()));
         if let Some(frame) = broken.or(clip.postures.is_empty().then_some(0)) {
             return Err(StyleError::Broken { character: clip.character.clone(), motion: clip.motion.clone(), frame });
         }
     }
+    let content = check_names(clips, request)?;
+    check_keys(request, content.postures.len())
+}
+
+/// Checks that the clips have the characters and the motion of the request. Returns the clip of its content.
+fn check_names<'a>(clips: &'a [Clip], request: &Request) -> Result<&'a Clip, StyleError> {
+    let names = |of: &dyn Fn(&Clip) -> String| {
+        let mut names: Vec<String> = clips.iter().map(of).collect();
+        names.sort();
+        names.dedup();
+        names.join(", ")
+    };
     let has = |character: &str| clips.iter().any(|c| c.character == character);
     if request.style == request.content {
         return Err(StyleError::SameCharacter { character: request.style.to_owned() });
@@ -198,7 +204,11 @@ fn check(clips: &[Clip], request: &Request) -> Result<(), StyleError> {
             motion: request.motion.to_owned(),
         });
     }
-    let frames = content.postures.len();
+    Ok(content)
+}
+
+/// Checks that the key poses of the request are on frames of the content and have a torso.
+fn check_keys(request: &Request, frames: usize) -> Result<(), StyleError> {
     for key in request.keys {
         if key.frame >= frames {
             return Err(StyleError::KeyFrame { found: key.frame, frames });

@@ -69,18 +69,20 @@ pub unsafe fn entry(
         Ok(Ok(())) => kOfxStatOK,
         Ok(Err(failure)) => failure.status(),
         Err(panic) => {
-            let text = format!("internal error in {}: {}", name.to_string_lossy(), said(panic.as_ref()));
-            // A panic in showing the message must not reach the host.
-            let _ = catch_unwind(AssertUnwindSafe(|| {
-                // Hosts show messages of instances only, and a description is not an instance.
-                let described = [kOfxActionDescribe, kOfxImageEffectActionDescribeInContext].contains(&name);
-                if handle.is_null() || described { log(&text) } else { action.effect.complain(&text) }
-            }));
-            // Dropping the panic's payload may panic too.
-            let _ = catch_unwind(AssertUnwindSafe(|| drop(panic)));
+            // Hosts show messages of instances only, and a description is not an instance.
+            let described = [kOfxActionDescribe, kOfxImageEffectActionDescribeInContext].contains(&name);
+            tell(panic, &action, !handle.is_null() && !described);
             kOfxStatFailed
         }
     }
+}
+
+/// Tells of a panic: with the effect if it is an `instance`, otherwise in the log. Nothing here may panic into the host.
+fn tell(panic: Box<dyn Any + Send>, action: &Action, instance: bool) {
+    let text = format!("internal error in {}: {}", action.name.to_string_lossy(), said(panic.as_ref()));
+    let _ = catch_unwind(AssertUnwindSafe(|| if instance { action.effect.complain(&text) } else { log(&text) }));
+    // Dropping the panic's payload may panic too.
+    let _ = catch_unwind(AssertUnwindSafe(|| drop(panic)));
 }
 
 fn said(panic: &(dyn Any + Send)) -> &str {

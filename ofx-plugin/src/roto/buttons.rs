@@ -62,7 +62,20 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
         return Err(Failure::Default);
     }
     let time = action.input.double(kOfxPropTime, 0).unwrap_or(0.0);
-    let done = match name.as_str() {
+    match used(effect, &name, time) {
+        Err(Failure::Told(text)) => {
+            effect.complain(&text);
+            Err(Failure::Told(text))
+        }
+        // The user has cancelled it and needs no message.
+        Err(Failure::Aborted) => Ok(()),
+        other => other,
+    }
+}
+
+/// Does what a button or a parameter is for, after the user has pressed or changed it.
+fn used(effect: &Effect, name: &str, time: f64) -> Result<(), Failure> {
+    match name {
         // What is tracked is stored afterwards, and would replace the other shapes.
         "load" | "project" | "track" | "rename" if instance(effect)?.is_tracking() => Err(Failure::Told(BUSY.into())),
         edit if EDITS.contains(&edit) && instance(effect)?.is_tracking() => Err(Failure::Told(BUSY.into())),
@@ -72,7 +85,7 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
         "track" => track::track(effect, time),
         edit if EDITS.contains(&edit) => edits::press(effect, edit, time),
         "rename" => edits::rename(effect, time),
-        "previousLost" | "nextLost" | "weakest" => visits::go(effect, &name, time),
+        "previousLost" | "nextLost" | "weakest" => visits::go(effect, name, time),
         "frameOffset" => marks::moved(effect),
         "part" => edits::select(effect, effect.parameters()?.text(c"part")?.trim()),
         "partList" => choosing::chosen(effect),
@@ -89,15 +102,6 @@ pub fn changed(action: &Action) -> Result<(), Failure> {
         "export" => taking_out::export(effect, time),
         page if page::IDS.iter().any(|id| id.to_bytes() == page.as_bytes()) => edits::page_changed(effect, page),
         _ => Err(Failure::Default),
-    };
-    match done {
-        Err(Failure::Told(text)) => {
-            effect.complain(&text);
-            Err(Failure::Told(text))
-        }
-        // The user has cancelled it and needs no message.
-        Err(Failure::Aborted) => Ok(()),
-        other => other,
     }
 }
 

@@ -245,14 +245,21 @@ fn the_shutter_opens_when_its_phase_says() {
     }
 }
 
+/// A node with the tests' document, whose frame 0 is the composition's frame 100, and which shows the part "star".
+fn star_of_frame_100(host: &Host) -> Effect<'_> {
+    let mut effect = effect(host, FILTER, &ClipSettings::default());
+    effect.set("frameOffset", &[100.0]);
+    effect.set_text("part", "star");
+    effect
+}
+
 #[test]
-fn motion_becomes_keys_and_shapes_become_files() {
+fn the_motion_of_a_part_becomes_keys() {
     let host = host();
     let mut effect = effect(&host, FILTER, &ClipSettings::default());
     assert_eq!(effect.press("writeMotion"), "kOfxStatFailed");
     assert!(host.messages()[0].contains("select a part"));
-    effect.set("frameOffset", &[100.0]);
-    effect.set_text("part", "star");
+    let mut effect = star_of_frame_100(&host);
     assert_eq!(effect.press_at("writeMotion", 100.0), OK, "{:?}", host.messages());
     let star = kept_or_plain(&effect).scene.parts[0].clone();
     for frame in 0..=4 {
@@ -267,6 +274,12 @@ fn motion_becomes_keys_and_shapes_become_files() {
         assert!((effect.get("scale", time)[0] - 1.0).abs() < 1e-3);
         assert!((effect.get("translate", time)[0] - 2.0 * f64::from(frame)).abs() < 1e-3);
     }
+}
+
+#[test]
+fn shapes_become_files_of_other_programs() {
+    let host = host();
+    let mut effect = star_of_frame_100(&host);
     let folder = tempfile::tempdir().unwrap();
     for (name, said) in [
         ("a größe.nk", "RotoPaint"),
@@ -282,13 +295,27 @@ fn motion_becomes_keys_and_shapes_become_files() {
         let text = std::fs::read_to_string(file).unwrap();
         assert!(text.contains(said) && text.contains("star"), "{name}");
     }
-    // They are read by another node, each in the footage's pixels.
+    let _ = (host.log(), host.messages());
+    effect.set_text("exportFile", folder.path().join("a.txt").to_str().unwrap());
+    assert_eq!(effect.press("export"), "kOfxStatFailed");
+    assert!(host.messages().last().unwrap().contains(".nk, .ntp, .py, .jsx, .fxs, .svg or .exr"));
+}
+
+#[test]
+fn another_node_reads_the_files_in_the_pixels_of_the_footage() {
+    let host = host();
+    let mut effect = star_of_frame_100(&host);
+    let was = kept_or_plain(&effect).scene.parts[0].tracks[&4].clone();
+    let folder = tempfile::tempdir().unwrap();
     for name in ["a größe.nk", "a.ntp", "a.fxs", "b.SVG"] {
+        let file = folder.path().join(name);
+        effect.set_text("exportFile", file.to_str().unwrap());
+        assert_eq!(effect.press("export"), OK, "{:?}", host.messages());
         let mut other = node(&host, FILTER);
         other.set_text("document", "");
         other.set("frameOffset", &[100.0]);
         let _ = (host.log(), host.messages());
-        other.set_text("project", folder.path().join(name).to_str().unwrap());
+        other.set_text("project", file.to_str().unwrap());
         if name.ends_with("nk") {
             // The source of this node has the composition's frames 0 to 10, so the project's are -100 to -90.
             assert!(host.messages()[0].contains("expected a frame of the footage"));
@@ -297,17 +324,13 @@ fn motion_becomes_keys_and_shapes_become_files() {
         assert_eq!(other.press("load"), OK, "{name} {:?}", host.messages());
         let read = kept(&other).scene;
         assert_eq!(read.parts.len(), 3, "{name}");
-        let found = read.parts.iter().find(|part| part.name == "star").unwrap();
-        let (now, was) = (found.keys.values().next_back().unwrap(), &star.tracks[&4]);
+        let now = read.parts.iter().find(|part| part.name == "star").unwrap().keys.values().next_back().unwrap();
         let reach = |points: &[Point]| points.iter().fold((Point::MAX, Point::MIN), |(a, b), &p| (a.min(p), b.max(p)));
-        assert!((reach(now).0 - reach(was).0).length() < 0.1 && (reach(now).1 - reach(was).1).length() < 0.1, "{name}");
+        let ((low, high), wanted) = (reach(now), reach(&was));
+        assert!((low - wanted.0).length() < 0.1 && (high - wanted.1).length() < 0.1, "{name}");
         // The file of the other program is not replaced by a document.
         assert_eq!(other.press("save"), "kOfxStatFailed");
     }
-    let _ = (host.log(), host.messages());
-    effect.set_text("exportFile", folder.path().join("a.txt").to_str().unwrap());
-    assert_eq!(effect.press("export"), "kOfxStatFailed");
-    assert!(host.messages().last().unwrap().contains(".nk, .ntp, .py, .jsx, .fxs, .svg or .exr"));
 }
 
 /// The stored document, in either form.

@@ -4,7 +4,8 @@
 use crate::common::{FILTER, HEIGHT, OK, clean, document, effect, host, kept, scene};
 use rototoon::geometry::Point;
 use rototoon::project::Document;
-use rototoon_ofx_host::{ClipSettings, Effect};
+use rototoon_ofx_host::{ClipSettings, Effect, Host};
+use std::path::Path;
 
 /// What must come back: the document, the settings, the selection, and the page.
 fn all(effect: &Effect) -> (Vec<String>, Vec<Vec<f64>>) {
@@ -36,6 +37,53 @@ fn drag(effect: &mut Effect, part: usize, by: Point) {
     }
 }
 
+/// The number of undo steps, and what they must give back.
+type State = (usize, (Vec<String>, Vec<Vec<f64>>));
+
+/// Does what an artist does to a node. `file` is a document to load. Returns the state after each action.
+fn work(host: &Host, effect: &mut Effect, file: &Path) -> Vec<State> {
+    let mut states = Vec::new();
+    let mut note = |effect: &Effect| states.push((effect.history().len(), all(effect)));
+    note(effect);
+    effect.set_text_in_history("part", "star");
+    note(effect);
+    effect.set_in_history("partOpacity", &[0.5]);
+    note(effect);
+    effect.set_in_history("partMode", &[1.0]);
+    note(effect);
+    effect.set_in_history("partColor", &[0.2, 0.4, 0.6]);
+    effect.set_in_history("partFalloff", &[2.5]);
+    effect.set_in_history("partFalloffCurve", &[2.0]);
+    note(effect);
+    drag(effect, 0, Point::new(2.0, 1.0));
+    note(effect);
+    effect.set_text_in_history("part", "drop");
+    effect.set_in_history("partFeather", &[3.0]);
+    effect.set_in_history("partOpacity", &[0.75]);
+    note(effect);
+    // A page that shows no part, and one with two settings again.
+    assert_eq!((effect.press("newPart"), effect.press("previousPart")), (OK.into(), OK.into()));
+    effect.set_text_in_history("part", "drop");
+    note(effect);
+    effect.set_text_in_history("part", "star");
+    note(effect);
+    effect.set_text_in_history("newName", "sun");
+    assert_eq!((effect.press("rename"), effect.press("farther")), (OK.into(), OK.into()), "{:?}", host.messages());
+    note(effect);
+    effect.set_in_history("frameOffset", &[10.0]);
+    effect.set_in_history("frameOffset", &[0.0]);
+    note(effect);
+    assert_eq!(effect.press("deletePart"), OK);
+    note(effect);
+    // Choosing a file loads it. What was made before, and what is made after, comes back.
+    effect.set_text_in_history("project", file.to_str().unwrap());
+    note(effect);
+    assert_eq!(kept(effect).scene.parts.len(), scene().parts.len());
+    drag(effect, 1, Point::new(1.0, -1.0));
+    note(effect);
+    states
+}
+
 #[test]
 fn undo_that_is_reported_as_the_users_own_change_gives_back_everything() {
     for between in [false, true] {
@@ -44,45 +92,7 @@ fn undo_that_is_reported_as_the_users_own_change_gives_back_everything() {
         let file = folder.path().join("other.json");
         std::fs::write(&file, document()).unwrap();
         let mut effect = effect(&host, FILTER, &ClipSettings::default());
-        let mut states = Vec::new();
-        let mut note = |effect: &Effect| states.push((effect.history().len(), all(effect)));
-        note(&effect);
-        effect.set_text_in_history("part", "star");
-        note(&effect);
-        effect.set_in_history("partOpacity", &[0.5]);
-        note(&effect);
-        effect.set_in_history("partMode", &[1.0]);
-        note(&effect);
-        effect.set_in_history("partColor", &[0.2, 0.4, 0.6]);
-        effect.set_in_history("partFalloff", &[2.5]);
-        effect.set_in_history("partFalloffCurve", &[2.0]);
-        note(&effect);
-        drag(&mut effect, 0, Point::new(2.0, 1.0));
-        note(&effect);
-        effect.set_text_in_history("part", "drop");
-        effect.set_in_history("partFeather", &[3.0]);
-        effect.set_in_history("partOpacity", &[0.75]);
-        note(&effect);
-        // A page that shows no part, and one with two settings again.
-        assert_eq!((effect.press("newPart"), effect.press("previousPart")), (OK.into(), OK.into()));
-        effect.set_text_in_history("part", "drop");
-        note(&effect);
-        effect.set_text_in_history("part", "star");
-        note(&effect);
-        effect.set_text_in_history("newName", "sun");
-        assert_eq!((effect.press("rename"), effect.press("farther")), (OK.into(), OK.into()), "{:?}", host.messages());
-        note(&effect);
-        effect.set_in_history("frameOffset", &[10.0]);
-        effect.set_in_history("frameOffset", &[0.0]);
-        note(&effect);
-        assert_eq!(effect.press("deletePart"), OK);
-        note(&effect);
-        // Choosing a file loads it. What was made before, and what is made after, comes back.
-        effect.set_text_in_history("project", file.to_str().unwrap());
-        note(&effect);
-        assert_eq!(kept(&effect).scene.parts.len(), scene().parts.len());
-        drag(&mut effect, 1, Point::new(1.0, -1.0));
-        note(&effect);
+        let states = work(&host, &mut effect, &file);
         let _ = host.messages();
         for (steps, wanted) in states.iter().rev() {
             while effect.history().len() > *steps {

@@ -38,81 +38,68 @@ struct Brush {
     blur: usize,
 }
 
+const FAR_HILLS: Brush = Brush {
+    colour: [0.66, 0.80, 0.82],
+    dabs: [[0.72, 0.85, 0.84], [0.58, 0.74, 0.80]],
+    count: 900,
+    size: [34.0, 4.0],
+    turn: [-8.0, 18.0],
+    blur: 3,
+};
+const HILLS: Brush = Brush {
+    colour: [0.63, 0.79, 0.59],
+    dabs: [[0.73, 0.85, 0.60], [0.51, 0.71, 0.58]],
+    count: 1500,
+    size: [30.0, 4.0],
+    turn: [14.0, 26.0],
+    blur: 2,
+};
+const MEADOW: Brush = Brush {
+    colour: [0.67, 0.80, 0.46],
+    dabs: [[0.78, 0.87, 0.50], [0.53, 0.71, 0.42]],
+    count: 1800,
+    size: [22.0, 3.4],
+    turn: [-16.0, 34.0],
+    blur: 1,
+};
+const PATH: Brush = Brush {
+    colour: [0.90, 0.80, 0.61],
+    dabs: [[0.96, 0.88, 0.70], [0.80, 0.68, 0.50]],
+    count: 1500,
+    size: [46.0, 2.6],
+    turn: [0.0, 5.0],
+    blur: 1,
+};
+const VERGE: Brush = Brush {
+    colour: [0.57, 0.73, 0.38],
+    dabs: [[0.69, 0.82, 0.43], [0.43, 0.62, 0.35]],
+    count: 1400,
+    size: [15.0, 2.2],
+    turn: [-72.0, 30.0],
+    blur: 1,
+};
+
 /// Paints the background.
 pub fn paint(width: u32, height: u32) -> Option<Pixmap> {
     let mut canvas = Pixmap::new(width, height)?;
-    let (w, h) = (f64::from(width), f64::from(height));
     let mut dice = Dice(20);
     sky(&mut canvas, &mut dice)?;
     for (x, y, size) in [(150.0, 92.0, 1.0), (520.0, 58.0, 0.72), (815.0, 118.0, 1.15)] {
         cloud(&mut canvas, &mut dice, x, y, size)?;
     }
-    let ridge = |base: f64, waves: &[(f64, f64, f64)]| -> Vec<Point> {
-        let mut line: Vec<Point> = (0..=60)
-            .map(|i| {
-                let x = w * f64::from(i) / 60.0;
-                Point::new(
-                    x,
-                    base + waves.iter().map(|&(a, period, phase)| a * (x / period + phase).sin()).sum::<f64>(),
-                )
-            })
-            .collect();
-        line.extend([Point::new(w, h), Point::new(0.0, h)]);
-        line
-    };
-    let far = Brush {
-        colour: [0.66, 0.80, 0.82],
-        dabs: [[0.72, 0.85, 0.84], [0.58, 0.74, 0.80]],
-        count: 900,
-        size: [34.0, 4.0],
-        turn: [-8.0, 18.0],
-        blur: 3,
-    };
-    layer(&mut canvas, &mut dice, &ridge(272.0, &[(26.0, 118.0, 0.6), (9.0, 41.0, 1.0)]), &far)?;
-    let middle = Brush {
-        colour: [0.63, 0.79, 0.59],
-        dabs: [[0.73, 0.85, 0.60], [0.51, 0.71, 0.58]],
-        count: 1500,
-        size: [30.0, 4.0],
-        turn: [14.0, 26.0],
-        blur: 2,
-    };
-    layer(&mut canvas, &mut dice, &ridge(330.0, &[(30.0, 160.0, 2.6), (7.0, 52.0, 0.3)]), &middle)?;
+    ridge(&mut canvas, &mut dice, 272.0, &[(26.0, 118.0, 0.6), (9.0, 41.0, 1.0)], &FAR_HILLS)?;
+    ridge(&mut canvas, &mut dice, 330.0, &[(30.0, 160.0, 2.6), (7.0, 52.0, 0.3)], &HILLS)?;
     for (x, y, size) in
         [(62.0, 352.0, 0.62), (128.0, 340.0, 0.5), (560.0, 330.0, 0.46), (604.0, 338.0, 0.6), (905.0, 350.0, 0.7)]
     {
         tree(&mut canvas, &mut dice, x, y, size, 2)?;
     }
-    let near = Brush {
-        colour: [0.67, 0.80, 0.46],
-        dabs: [[0.78, 0.87, 0.50], [0.53, 0.71, 0.42]],
-        count: 1800,
-        size: [22.0, 3.4],
-        turn: [-16.0, 34.0],
-        blur: 1,
-    };
-    layer(&mut canvas, &mut dice, &ridge(402.0, &[(13.0, 210.0, 0.9), (4.0, 60.0, 2.0)]), &near)?;
+    ridge(&mut canvas, &mut dice, 402.0, &[(13.0, 210.0, 0.9), (4.0, 60.0, 2.0)], &MEADOW)?;
     for (x, y, size) in [(786.0, 420.0, 1.35), (20.0, 424.0, 1.2)] {
         tree(&mut canvas, &mut dice, x, y, size, 1)?;
     }
-    let earth = Brush {
-        colour: [0.90, 0.80, 0.61],
-        dabs: [[0.96, 0.88, 0.70], [0.80, 0.68, 0.50]],
-        count: 1500,
-        size: [46.0, 2.6],
-        turn: [0.0, 5.0],
-        blur: 1,
-    };
-    layer(&mut canvas, &mut dice, &ridge(446.0, &[(3.0, 90.0, 0.0), (2.0, 33.0, 1.0)]), &earth)?;
-    let verge = Brush {
-        colour: [0.57, 0.73, 0.38],
-        dabs: [[0.69, 0.82, 0.43], [0.43, 0.62, 0.35]],
-        count: 1400,
-        size: [15.0, 2.2],
-        turn: [-72.0, 30.0],
-        blur: 1,
-    };
-    layer(&mut canvas, &mut dice, &ridge(512.0, &[(4.0, 70.0, 0.0), (3.0, 19.0, 1.0)]), &verge)?;
+    ridge(&mut canvas, &mut dice, 446.0, &[(3.0, 90.0, 0.0), (2.0, 33.0, 1.0)], &PATH)?;
+    ridge(&mut canvas, &mut dice, 512.0, &[(4.0, 70.0, 0.0), (3.0, 19.0, 1.0)], &VERGE)?;
     flowers(&mut canvas, &mut dice);
     Some(canvas)
 }
@@ -211,6 +198,17 @@ fn flowers(canvas: &mut Pixmap, dice: &mut Dice) {
             );
         }
     }
+}
+
+/// Paints everything below a wavy line. `waves` has the amplitude of each wave in pixels, the pixels in which its phase grows
+/// by 1 radian, and its phase at the left in radians.
+fn ridge(canvas: &mut Pixmap, dice: &mut Dice, base: f64, waves: &[(f64, f64, f64)], brush: &Brush) -> Option<()> {
+    let (w, h) = (f64::from(canvas.width()), f64::from(canvas.height()));
+    let top = |x: f64| base + waves.iter().map(|&(a, period, phase)| a * (x / period + phase).sin()).sum::<f64>();
+    let xs = (0..=60).map(|i| w * f64::from(i) / 60.0);
+    let mut shape: Vec<Point> = xs.map(|x| Point::new(x, top(x))).collect();
+    shape.extend([Point::new(w, h), Point::new(0.0, h)]);
+    layer(canvas, dice, &shape, brush)
 }
 
 /// Paints a shape with its dabs, blurs it and draws it over the canvas.

@@ -46,43 +46,65 @@ pub fn assign(costs: &[f64], rows: usize, columns: usize) -> Result<Vec<Option<u
     Ok(result)
 }
 
+/// No row, or no column.
+const FREE: usize = usize::MAX;
+
+/// The shortest path over reduced costs from a row to a free column.
+struct Path {
+    /// The free column.
+    end: usize,
+    /// How far away each column is.
+    distance: Vec<f64>,
+    /// The column before each column.
+    previous: Vec<usize>,
+    /// The columns whose distance is final.
+    done: Vec<bool>,
+}
+
+/// Finds the path from a row. `row_of` is the row that has each column. `farther(distance, row, column)` adds the reduced
+/// cost of a row in a column to a distance.
+fn path(entering: usize, row_of: &[usize], farther: impl Fn(f64, usize, usize) -> f64) -> Path {
+    let columns = row_of.len();
+    let (mut distance, mut previous) = (vec![f64::INFINITY; columns], vec![FREE; columns]);
+    let mut done = vec![false; columns];
+    let (mut row, mut reached, mut last) = (entering, 0.0, FREE);
+    loop {
+        let mut nearest = FREE;
+        for c in (0..columns).filter(|&c| !done[c]) {
+            let through = farther(reached, row, c);
+            if through < distance[c] {
+                distance[c] = through;
+                previous[c] = last;
+            }
+            if nearest == FREE || distance[c] < distance[nearest] {
+                nearest = c;
+            }
+        }
+        done[nearest] = true;
+        reached = distance[nearest];
+        last = nearest;
+        match row_of[nearest] {
+            FREE => return Path { end: last, distance, previous, done },
+            taken => row = taken,
+        }
+    }
+}
+
 /// The column of each row, for `rows` ≤ `columns`.
 fn solve(rows: usize, columns: usize, cost: impl Fn(usize, usize) -> f64) -> Vec<usize> {
-    const FREE: usize = usize::MAX;
     let mut row_of = vec![FREE; columns];
     let (mut row_price, mut column_price) = (vec![0.0; rows], vec![0.0; columns]);
     for entering in 0..rows {
-        // Shortest path over reduced costs from the entering row to a free column.
-        let mut distance = vec![f64::INFINITY; columns];
-        let mut previous = vec![FREE; columns];
-        let mut done = vec![false; columns];
-        let (mut row, mut reached, mut last) = (entering, 0.0, FREE);
-        loop {
-            let mut nearest = FREE;
-            for c in (0..columns).filter(|&c| !done[c]) {
-                let through = reached + cost(row, c) - row_price[row] - column_price[c];
-                if through < distance[c] {
-                    distance[c] = through;
-                    previous[c] = last;
-                }
-                if nearest == FREE || distance[c] < distance[nearest] {
-                    nearest = c;
-                }
-            }
-            done[nearest] = true;
-            reached = distance[nearest];
-            last = nearest;
-            match row_of[nearest] {
-                FREE => break,
-                taken => row = taken,
-            }
-        }
+        let farther = |reached: f64, row: usize, c: usize| reached + cost(row, c) - row_price[row] - column_price[c];
+        let Path { end, distance, previous, done } = path(entering, &row_of, farther);
+        let reached = distance[end];
         // The new prices keep all reduced costs non-negative and make those on the path zero.
         row_price[entering] += reached;
-        for c in (0..columns).filter(|&c| done[c] && c != last) {
+        for c in (0..columns).filter(|&c| done[c] && c != end) {
             row_price[row_of[c]] += reached - distance[c];
             column_price[c] -= reached - distance[c];
         }
+        let mut last = end;
         while previous[last] != FREE {
             row_of[last] = row_of[previous[last]];
             last = previous[last];

@@ -5,6 +5,8 @@
 //! cost. Neighbours on one stroke form chains, on which this is exact; between strokes it is approximate, and good where
 //! neighbours agree. The order is fixed, so the result is too.
 
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+
 /// Neighbours and the strength of their tie.
 #[derive(Clone, Copy, Debug)]
 pub struct Tie {
@@ -24,57 +26,84 @@ pub fn choose(
     pair: &(impl Fn(usize, usize, usize) -> f32 + Sync),
     rounds: usize,
 ) -> Vec<usize> {
-    let mut around: Vec<Vec<(usize, bool)>> = vec![Vec::new(); own.len()];
-    for (t, tie) in ties.iter().enumerate() {
-        around[tie.a].push((t, false));
-        around[tie.b].push((t, true));
-    }
-    let tables: Vec<Vec<f32>> = {
-        use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
-        let table = |(t, tie): (usize, &Tie)| {
-            let (m, n) = (own[tie.a].len(), own[tie.b].len());
-            (0..m * n).map(|k| tie.weight * pair(t, k / n, k % n)).collect()
-        };
-        ties.par_iter().enumerate().map(table).collect()
-    };
-    // Messages to the first and to the second point of each tie.
-    let zeros = |i: usize| vec![0.0f32; own[i].len()];
-    let mut messages: Vec<[Vec<f32>; 2]> = ties.iter().map(|tie| [zeros(tie.a), zeros(tie.b)]).collect();
-    let belief = |messages: &[[Vec<f32>; 2]], i: usize| {
-        let mut sum = own[i].clone();
-        for &(t, second) in &around[i] {
-            sum.iter_mut().zip(&messages[t][usize::from(second)]).for_each(|(s, m)| *s += m);
-        }
-        sum
-    };
+    let net = Net::new(own, ties, pair);
+    let mut messages = net.no_messages();
     for round in 0..2 * rounds {
+        let forth = round % 2 == 0;
         for k in 0..own.len() {
-            let i = if round % 2 == 0 { k } else { own.len() - 1 - k };
-            let sum = belief(&messages, i);
-            for &(t, second) in &around[i] {
-                let tie = ties[t];
-                let other = if second { tie.a } else { tie.b };
+            let i = if forth { k } else { own.len() - 1 - k };
+            let sum = net.belief(&messages, i);
+            for &(t, second) in &net.around[i] {
+                let other = if second { ties[t].a } else { ties[t].b };
                 // Forth, points tell those behind them; back, those before them.
-                if (other > i) != (round % 2 == 0) {
-                    continue;
+                if (other > i) == forth {
+                    net.tell(&sum, (t, second), &mut messages[t]);
                 }
-                let [first, last] = &mut messages[t];
-                let (mine, theirs) = if second { (last, first) } else { (first, last) };
-                let without: Vec<f32> = sum.iter().zip(mine.iter()).map(|(s, m)| s - m).collect();
-                let columns = own[tie.b].len();
-                for (d, out) in theirs.iter_mut().enumerate() {
-                    let cost =
-                        |(c, w): (usize, &f32)| w + tables[t][if second { d * columns + c } else { c * columns + d }];
-                    *out = without.iter().enumerate().map(cost).fold(f32::INFINITY, f32::min);
-                }
-                let least = theirs.iter().copied().fold(f32::INFINITY, f32::min);
-                theirs.iter_mut().for_each(|m| *m -= least);
             }
         }
     }
     let least = |i: usize| {
-        let sum = belief(&messages, i);
+        let sum = net.belief(&messages, i);
         (0..sum.len()).min_by(|&a, &b| sum[a].total_cmp(&sum[b])).unwrap_or(0)
     };
     (0..own.len()).map(least).collect()
+}
+
+/// Messages along a tie: to its first and to its second point, one value for each candidate there.
+type Messages = [Vec<f32>; 2];
+
+/// Points and their ties.
+struct Net<'a> {
+    own: &'a [Vec<f32>],
+    ties: &'a [Tie],
+    /// The ties of each point, and whether it is the tie's second point.
+    around: Vec<Vec<(usize, bool)>>,
+    /// The weighted costs of each tie: a row for each candidate of its first point.
+    tables: Vec<Vec<f32>>,
+}
+
+impl<'a> Net<'a> {
+    fn new(own: &'a [Vec<f32>], ties: &'a [Tie], pair: &(impl Fn(usize, usize, usize) -> f32 + Sync)) -> Self {
+        let mut around: Vec<Vec<(usize, bool)>> = vec![Vec::new(); own.len()];
+        for (t, tie) in ties.iter().enumerate() {
+            around[tie.a].push((t, false));
+            around[tie.b].push((t, true));
+        }
+        let table = |(t, tie): (usize, &Tie)| {
+            let (m, n) = (own[tie.a].len(), own[tie.b].len());
+            (0..m * n).map(|k| tie.weight * pair(t, k / n, k % n)).collect()
+        };
+        let tables = ties.par_iter().enumerate().map(table).collect();
+        Self { own, ties, around, tables }
+    }
+
+    fn no_messages(&self) -> Vec<Messages> {
+        let zeros = |i: usize| vec![0.0f32; self.own[i].len()];
+        self.ties.iter().map(|tie| [zeros(tie.a), zeros(tie.b)]).collect()
+    }
+
+    /// What each candidate of a point costs, with all that its neighbours tell it.
+    fn belief(&self, messages: &[Messages], i: usize) -> Vec<f32> {
+        let mut sum = self.own[i].clone();
+        for &(t, second) in &self.around[i] {
+            sum.iter_mut().zip(&messages[t][usize::from(second)]).for_each(|(s, m)| *s += m);
+        }
+        sum
+    }
+
+    /// Tells the other point of a tie what each choice of it would cost. `sum` is the belief of the point that tells, which
+    /// is the tie's second one if `second`. What the other point told before is taken out of it.
+    fn tell(&self, sum: &[f32], (t, second): (usize, bool), messages: &mut Messages) {
+        let [first, last] = messages;
+        let (mine, theirs) = if second { (last, first) } else { (first, last) };
+        let without: Vec<f32> = sum.iter().zip(mine.iter()).map(|(s, m)| s - m).collect();
+        let columns = self.own[self.ties[t].b].len();
+        for (d, out) in theirs.iter_mut().enumerate() {
+            let cost =
+                |(c, w): (usize, &f32)| w + self.tables[t][if second { d * columns + c } else { c * columns + d }];
+            *out = without.iter().enumerate().map(cost).fold(f32::INFINITY, f32::min);
+        }
+        let least = theirs.iter().copied().fold(f32::INFINITY, f32::min);
+        theirs.iter_mut().for_each(|m| *m -= least);
+    }
 }

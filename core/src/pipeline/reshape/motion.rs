@@ -86,41 +86,23 @@ pub(super) fn of(
         fit(&known, &moves).ok_or_else(|| wrong("clip: found a torso of length 0, expected a positive length"))?;
     let poses = Poses::new(set, bindings, rest)?;
     let limbs = poses.at_rest();
-    let feet = feet(set, parts, rest, &limbs, &posture);
-    let legs = template.legs();
-    let swing = |foot: &Foot, posture: &[Point]| foot.swing(legs[foot.leg], posture);
-    let ground = ground(parts, &feet, &shown).unwrap_or(posture[0].y);
-    let mut postures = fitted.postures;
-    let plain: Vec<Foot> = feet.iter().map(|f| f.foot.clone()).collect();
-    let turns = match fitted.own {
-        true => plain.iter().map(|foot| postures.iter().map(|p| swing(foot, p)).collect()).collect(),
-        false => stand(template, &mut postures, (&moves, fitted.size), &plain, ground),
-    };
-    if let Some(frame) = postures.iter().position(|p| p.iter().any(|q| !q.is_finite())) {
-        return Err(wrong(format!(
-            "clip, frame {frame}: found coordinates too large to compute with, expected smaller ones"
-        )));
-    }
     let size = template.torso_length(&posture);
-    let with_feet = |mut limbs: Vec<LimbPose>, posture: &[Point], turn: &dyn Fn(usize) -> f64| {
-        for (k, foot) in feet.iter().enumerate() {
-            let ankle = posture[end_of(legs[foot.foot.leg])];
-            limbs.push(LimbPose {
-                ends: (ankle, ankle + Point::from_angle(turn(k)) * (FOOT * size)),
-                bend: Bend::STRAIGHT,
-            });
-        }
-        limbs
+    let feet = Feet { legs: template.legs(), size, feet: feet(set, parts, rest, &limbs, &posture) };
+    let ground = ground(parts, &feet.feet, &shown).unwrap_or(posture[0].y);
+    let mut postures = fitted.postures;
+    let turns = match fitted.own {
+        true => feet.swings(&postures),
+        false => stand(template, &mut postures, (&moves, fitted.size), &feet.plain(), ground),
     };
+    computable(&postures)?;
     let frame_limbs = |(t, posture): (usize, &Vec<Point>)| {
-        with_feet(poses.of(posture, first + t as FrameNumber), posture, &|k| turns[k][t])
+        feet.added(poses.of(posture, first + t as FrameNumber), posture, |k| turns[k][t])
     };
     let example = |(frame, posture): &(FrameNumber, Vec<Point>)| {
-        let limbs = with_feet(poses.drawn(*frame)?, posture, &|k| swing(&feet[k].foot, posture));
-        Some((*frame, limbs, posture[0]))
+        Some((*frame, feet.added(poses.drawn(*frame)?, posture, |k| feet.swing(k, posture)), posture[0]))
     };
     Ok(Motion {
-        rest: with_feet(limbs, &posture, &|_| 0.0),
+        rest: feet.added(limbs, &posture, |_| 0.0),
         root: posture[0],
         frames: postures.iter().enumerate().map(frame_limbs).collect(),
         way: postures.iter().map(|p| p[0]).collect(),
@@ -128,9 +110,54 @@ pub(super) fn of(
         size,
         ground,
         own: fitted.own,
-        feet,
+        feet: feet.feet,
         still,
     })
+}
+
+/// The feet, and what their limbs are made of.
+struct Feet<'a> {
+    feet: Vec<FootLimb>,
+    legs: Vec<&'a [usize]>,
+    /// Length of the torso in pixels.
+    size: f64,
+}
+
+impl Feet<'_> {
+    fn plain(&self) -> Vec<Foot> {
+        self.feet.iter().map(|f| f.foot.clone()).collect()
+    }
+
+    /// The turn of a foot in the air, in radians from rest.
+    fn swing(&self, k: usize, posture: &[Point]) -> f64 {
+        let foot = &self.feet[k].foot;
+        foot.swing(self.legs[foot.leg], posture)
+    }
+
+    /// The turns of all feet on every frame.
+    fn swings(&self, postures: &[Vec<Point>]) -> Vec<Vec<f64>> {
+        (0..self.feet.len()).map(|k| postures.iter().map(|p| self.swing(k, p)).collect()).collect()
+    }
+
+    /// The limbs of a posture and those of the feet, each turned by the radians of `turn`.
+    fn added(&self, mut limbs: Vec<LimbPose>, posture: &[Point], turn: impl Fn(usize) -> f64) -> Vec<LimbPose> {
+        limbs.extend(self.feet.iter().enumerate().map(|(k, foot)| {
+            let ankle = posture[end_of(self.legs[foot.foot.leg])];
+            let toe = ankle + Point::from_angle(turn(k)) * (FOOT * self.size);
+            LimbPose { ends: (ankle, toe), bend: Bend::STRAIGHT }
+        }));
+        limbs
+    }
+}
+
+/// Refuses postures that are too far away to compute with.
+fn computable(postures: &[Vec<Point>]) -> Result<(), PipelineError> {
+    match postures.iter().position(|p| p.iter().any(|q| !q.is_finite())) {
+        None => Ok(()),
+        Some(frame) => Err(wrong(format!(
+            "clip, frame {frame}: found coordinates too large to compute with, expected smaller ones"
+        ))),
+    }
 }
 
 /// The clip's postures as those of the drawing's body: retargeted if the clip is of another body, and mirrored if it looks

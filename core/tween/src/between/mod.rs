@@ -246,9 +246,6 @@ impl Sequence {
             None => tracks::chained(&keys, &matchings),
         };
         let places = motion::by_key(&tracks, keys.len());
-        let moving: Vec<Moving> =
-            tracks.iter().zip(&places).map(|(t, places)| Moving { places, closed: t.closed }).collect();
-        let groups = propose::groups(&moving);
         let duration = |pair: &[Key]| f64::from(pair[1].frame) - f64::from(pair[0].frame);
         let durations: Vec<f64> = keys.windows(2).map(duration).collect();
         let spacings: Vec<Spacing> = keys.iter().map(|key| key.spacing.clone()).collect();
@@ -256,8 +253,7 @@ impl Sequence {
         let spans = durations.len();
         let asked =
             Asked { durations: &durations, spacings: &spacings[..spans], corners: &corners, rest: options.rest };
-        let hung = Hung { tree: pegs.tree.clone(), pegs: tracks.iter().map(|track| peg_of(track, pegs)).collect() };
-        let motion = Motion::new(&tracks, &places, &groups, &hung, &asked, options.arcs);
+        let motion = moved(&tracks, &places, pegs, &asked, options);
         let local = local(&keys, &places, &motion);
         let changes = local
             .par_iter()
@@ -285,11 +281,16 @@ impl Sequence {
             options,
         };
         if options.contacts {
-            let wanted = |k: &usize| base.is_none_or(|base| base == *k);
-            let touching = |k: usize| if wanted(&k) { sequence.touching(k) } else { Vec::new() };
-            sequence.contacts = (0..spans).into_par_iter().map(touching).collect();
+            sequence.contacts = sequence.all_touching(base);
         }
         sequence
+    }
+
+    /// The touches of every span, or only of the span `base`.
+    fn all_touching(&self, base: Option<usize>) -> Vec<Vec<contacts::Contact>> {
+        let wanted = |k: usize| base.is_none_or(|base| base == k);
+        let touching = |k: usize| if wanted(k) { self.touching(k) } else { Vec::new() };
+        (0..self.ways.len()).into_par_iter().map(touching).collect()
     }
 
     /// Lets strokes without a given peg follow the captured part on which they are drawn, where there is one.
@@ -441,6 +442,20 @@ impl Sequence {
         }
         contacts::find(&strokes)
     }
+}
+
+/// How strokes move that are carried to their counterparts.
+fn moved(
+    tracks: &[Track],
+    places: &[Vec<Option<Vec<Point>>>],
+    pegs: &GivenPegs,
+    asked: &Asked,
+    options: &Options,
+) -> Motion {
+    let moving: Vec<Moving> =
+        tracks.iter().zip(places).map(|(t, places)| Moving { places, closed: t.closed }).collect();
+    let hung = Hung { tree: pegs.tree.clone(), pegs: tracks.iter().map(|track| peg_of(track, pegs)).collect() };
+    Motion::new(tracks, places, &propose::groups(&moving), &hung, asked, options.arcs)
 }
 
 /// The peg of the first of a track's strokes that has one.

@@ -25,35 +25,13 @@ pub fn insert(document: &mut Document, index: usize, places: &BTreeMap<usize, f6
         .map(|(k, share)| (*k, share.clamp(0.0, 1.0)))
         .collect();
     let count = part.point_count();
-    each_shape(part, |points| {
-        let mut shape = Vec::with_capacity(points.len() + places.len());
-        for (k, &p) in points.iter().enumerate() {
-            shape.push(p);
-            if let Some(share) = places.get(&k) {
-                shape.push(p.lerp(points[(k + 1) % points.len()], *share));
-            }
-        }
-        *points = shape;
-    });
+    each_shape(part, |points| inserted(points, &places, |a, b, share| a.lerp(b, share)));
     for values in part.confidence.values_mut().filter(|values| values.len() == count) {
-        let mut all = Vec::with_capacity(values.len() + places.len());
-        for (k, &value) in values.iter().enumerate() {
-            all.push(value);
-            if places.contains_key(&k) {
-                // A point between two is as sure as the less sure one.
-                all.push(value.min(values[(k + 1) % values.len()]));
-            }
-        }
-        *values = all;
+        // A point between two is as sure as the less sure one.
+        inserted(values, &places, |a, b, _| a.min(b));
     }
     if part.feather.len() == count {
-        let widths = std::mem::take(&mut part.feather);
-        for (k, &width) in widths.iter().enumerate() {
-            part.feather.push(width);
-            if let Some(share) = places.get(&k) {
-                part.feather.push(width + share * (widths[(k + 1) % count] - width));
-            }
-        }
+        inserted(&mut part.feather, &places, |a, b, share| a + share * (b - a));
     }
     let moved = |k: usize| k + places.range(..k).count();
     for pins in part.pins.values_mut() {
@@ -71,6 +49,19 @@ pub fn insert(document: &mut Document, index: usize, places: &BTreeMap<usize, f6
         }
     })?;
     Ok(places.keys().map(|&segment| moved(segment) + 1).collect())
+}
+
+/// Inserts a value into each of these segments. `between` makes it of the values at the segment's ends and of its share of
+/// the way.
+fn inserted<T: Copy>(values: &mut Vec<T>, places: &BTreeMap<usize, f64>, between: impl Fn(T, T, f64) -> T) {
+    let mut all = Vec::with_capacity(values.len() + places.len());
+    for (k, &value) in values.iter().enumerate() {
+        all.push(value);
+        if let Some(&share) = places.get(&k) {
+            all.push(between(value, values[(k + 1) % values.len()], share));
+        }
+    }
+    *values = all;
 }
 
 /// Deletes points of a part.

@@ -119,88 +119,69 @@ fn the_margin_is_what_another_place_would_cost_more() {
     assert!((found[0][1] - expected).abs() < 1e-6, "{} and {expected}", found[0][1]);
 }
 
+/// The pivot of the limb and the body below.
+const PIVOT: Point = Point::new(250.0, 150.0);
+
+/// A body about the pivot, and a limb that hangs on it.
+fn body_and_limb() -> [Vec<Point>; 2] {
+    let body = [(-60.0, -80.0), (60.0, -80.0), (60.0, 25.0), (-60.0, 25.0)].map(|(x, y)| Point::new(x, y) + PIVOT);
+    [body.to_vec(), turned(&bar(), 0.0, PIVOT - Point::new(0.0, 8.0))]
+}
+
+/// A turn about the pivot by degrees, as a model's movement.
+fn about(degrees: f64) -> (f64, Point) {
+    (degrees, PIVOT - Point::from_angle(degrees.to_radians()).rotate(PIVOT))
+}
+
+/// A shape turned about the pivot by degrees.
+fn swung(shape: &[Point], degrees: f64) -> Vec<Point> {
+    let swing = Point::from_angle(degrees.to_radians());
+    shape.iter().map(|&p| swing.rotate(p - PIVOT) + PIVOT).collect()
+}
+
+/// One hypothesis on each of `count` drawings: the first model's on all but the last, the second one's there.
+fn still_pools(models: &[Model; 2], count: usize) -> Arc<Pools> {
+    let still = |m: usize| vec![hypothesis(&models[m], 0.0, Point::ZERO, 0.0)];
+    Arc::new((0..count).map(|d| still(usize::from(d + 1 == count))).collect())
+}
+
 #[test]
 fn the_hinge_of_a_swinging_limb_is_its_pivot() {
-    let pivot = Point::new(250.0, 150.0);
-    let body: Vec<Point> =
-        [(-60.0, -80.0), (60.0, -80.0), (60.0, 25.0), (-60.0, 25.0)].map(|(x, y)| Point::new(x, y) + pivot).to_vec();
-    let limb = turned(&bar(), 0.0, pivot - Point::new(0.0, 8.0));
+    let [body, limb] = body_and_limb();
     // The limb swings by 50° about the pivot, the body stays.
-    let swing = Point::from_angle(f64::to_radians(50.0));
-    let swung = |shape: &[Point]| -> Vec<Point> { shape.iter().map(|&p| swing.rotate(p - pivot) + pivot).collect() };
-    let to = pivot - swing.rotate(pivot);
-    let limb_models = [
-        model(&limb, (50.0, to)),
-        model(&swung(&limb), (-50.0, pivot - Point::from_angle(f64::to_radians(-50.0)).rotate(pivot))),
-    ];
+    let limb_models = [model(&limb, about(50.0)), model(&swung(&limb, 50.0), about(-50.0))];
     let body_models = [model(&body, (0.0, Point::ZERO)), model(&body, (0.0, Point::ZERO))];
     let drawings = three_drawings();
-    let pools = |models: &[Model; 2]| -> Arc<Pools> {
-        let still = |m: usize| vec![hypothesis(&models[m], 0.0, Point::ZERO, 0.0)];
-        Arc::new(vec![still(0), still(0), still(1)])
+    let (limb_pools, body_pools) = (still_pools(&limb_models, 3), still_pools(&body_models, 3));
+    let contender = |part: usize, pools, models| Contender {
+        part,
+        span: Span { first: 0, last: 2 },
+        depth: part as f64,
+        hides: true,
+        drawings: &drawings,
+        pools,
+        models,
     };
-    let (limb_pools, body_pools) = (pools(&limb_models), pools(&body_models));
-    let span = Span { first: 0, last: 2 };
-    let contenders = [
-        Contender {
-            part: 0,
-            span,
-            depth: 0.0,
-            hides: true,
-            drawings: &drawings,
-            pools: &limb_pools,
-            models: &limb_models,
-        },
-        Contender {
-            part: 1,
-            span,
-            depth: 1.0,
-            hides: true,
-            drawings: &drawings,
-            pools: &body_pools,
-            models: &body_models,
-        },
-    ];
-    let ties = tie::find(&contenders);
+    let ties = tie::find(&[contender(0, &limb_pools, &limb_models), contender(1, &body_pools, &body_models)]);
     assert_eq!(ties.len(), 1);
     let place = ties[0].place(0, 0, &limb_models[0].texture.mesh.rest).unwrap();
-    assert!(place.distance(pivot) < 8.0, "{place}");
+    assert!(place.distance(PIVOT) < 8.0, "{place}");
 }
 
 #[test]
 fn a_further_key_of_a_part_keeps_its_joints() {
-    let pivot = Point::new(250.0, 150.0);
-    let body: Vec<Point> =
-        [(-60.0, -80.0), (60.0, -80.0), (60.0, 25.0), (-60.0, 25.0)].map(|(x, y)| Point::new(x, y) + pivot).to_vec();
-    let limb = turned(&bar(), 0.0, pivot - Point::new(0.0, 8.0));
+    let [body, limb] = body_and_limb();
     // The limb swings by 25° to its further key, and by as much again to the last one.
-    let about = |degrees: f64| {
-        let swing = Point::from_angle(degrees.to_radians());
-        (degrees, pivot - swing.rotate(pivot))
-    };
-    let at = |degrees: f64| -> Vec<Point> {
-        let swing = Point::from_angle(degrees.to_radians());
-        limb.iter().map(|&p| swing.rotate(p - pivot) + pivot).collect()
-    };
-    let spans = [Span { first: 0, last: 2 }, Span { first: 2, last: 4 }];
-    let limb_models: Vec<[Model; 2]> = [0.0, 25.0]
-        .map(|from| [model(&at(from), about(25.0)), model(&at(from + 25.0), about(-25.0))])
-        .into_iter()
-        .collect();
+    let limb_models = [0.0, 25.0]
+        .map(|from| [model(&swung(&limb, from), about(25.0)), model(&swung(&limb, from + 25.0), about(-25.0))]);
     let body_models = [model(&body, (0.0, Point::ZERO)), model(&body, (0.0, Point::ZERO))];
-    let pools = |models: &[Model; 2], count: usize| -> Arc<Pools> {
-        let still = |m: usize| vec![hypothesis(&models[m], 0.0, Point::ZERO, 0.0)];
-        Arc::new((0..count).map(|d| still(usize::from(d + 1 == count))).collect())
-    };
-    let (three, five): (Vec<Drawing>, Vec<Drawing>) = (
-        (0..3).map(|i| Drawing { first: i, last: i }).collect(),
-        (0..5).map(|i| Drawing { first: i, last: i }).collect(),
-    );
-    let limb_pools = [pools(&limb_models[0], 3), pools(&limb_models[1], 3)];
-    let body_pools = pools(&body_models, 5);
+    let [three, five] =
+        [3, 5].map(|count| -> Vec<Drawing> { (0..count).map(|i| Drawing { first: i, last: i }).collect() });
+    let limb_pools = [0, 1].map(|k| still_pools(&limb_models[k], 3));
+    let body_pools = still_pools(&body_models, 5);
     let span_of = |k: usize| Contender {
         part: 0,
-        span: spans[k],
+        span: Span { first: 2 * k as i32, last: 2 * k as i32 + 2 },
         depth: 0.0,
         hides: true,
         drawings: &three,
@@ -216,14 +197,13 @@ fn a_further_key_of_a_part_keeps_its_joints() {
         pools: &body_pools,
         models: &body_models,
     };
-    let contenders = [span_of(0), span_of(1), whole];
-    let ties = tie::find(&contenders);
+    let ties = tie::find(&[span_of(0), span_of(1), whole]);
     let mut joined: Vec<[usize; 2]> = ties.iter().map(|tie| tie.parts).collect();
     joined.sort_unstable();
     assert_eq!(joined, [[0, 2], [1, 2]]);
     for tie in &ties {
         let place = tie.place(tie.parts[0], 0, &limb_models[tie.parts[0]][0].texture.mesh.rest).unwrap();
-        assert!(place.distance(pivot) < 8.0, "{place}");
+        assert!(place.distance(PIVOT) < 8.0, "{place}");
     }
 }
 
