@@ -55,7 +55,7 @@ pub use path::{Path, PathError};
 
 use against::{Widths, against};
 use cover::Shape;
-use rayon::prelude::*;
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use tree::Tree;
 
 /// A line that may be hidden.
