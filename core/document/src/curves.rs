@@ -7,6 +7,7 @@
 //! two for each corner. `max_error` is the largest distance between line and curve, in pixels. Other fields keep their
 //! places.
 
+use super::fields::described;
 use rototoon_base::file;
 use rototoon_base::geometry::Point;
 use serde_json::{Map, Value, json};
@@ -182,19 +183,6 @@ impl Reader<'_> {
         };
         let points = list.iter().enumerate().map(point).collect::<Result<_, _>>()?;
         Ok(CurvePoints { closed, points, rest })
-    }
-}
-
-/// A short description of a value.
-fn described(value: Option<&Value>) -> String {
-    match value {
-        None => "nothing".into(),
-        Some(Value::Object(_)) => "an object".into(),
-        Some(Value::Array(list)) if list.len() > 3 => format!("a list of {}", list.len()),
-        Some(other) => {
-            let text = other.to_string();
-            if text.chars().count() > 40 { text.chars().take(40).chain(['…']).collect() } else { text }
-        }
     }
 }
 

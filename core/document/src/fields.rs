@@ -22,13 +22,16 @@ pub(super) fn wrong(place: &str, found: &str, expected: &str) -> FieldError {
     FieldError { place: place.into(), found: found.into(), expected: expected.into() }
 }
 
-/// A short description of a value.
-pub(super) fn described(value: Option<&Value>) -> String {
+/// A short description of a value, for messages.
+pub fn described(value: Option<&Value>) -> String {
     match value {
         None => "nothing".into(),
         Some(Value::Object(_)) => "an object".into(),
         Some(Value::Array(list)) if list.len() > 3 => format!("a list of {}", list.len()),
-        Some(other) => other.to_string().chars().take(40).collect(),
+        Some(other) => {
+            let text = other.to_string();
+            if text.chars().count() > 40 { text.chars().take(40).chain(['…']).collect() } else { text }
+        }
     }
 }
 

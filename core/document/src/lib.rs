@@ -71,7 +71,7 @@ pub mod unfinished;
 mod unknown;
 pub mod validate;
 
-pub use fields::FieldError;
+pub use fields::{FieldError, described};
 pub use inputs::{Inputs, OverwritesInput};
 pub use load::LoadError;
 pub use output::{WriteError, write_whole};
