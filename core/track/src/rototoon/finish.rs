@@ -260,6 +260,9 @@ fn refiner(stage: &Stage) -> Option<Refiner> {
     if !stage.kit.mechanisms.has(Mechanism::FigureAndGround) {
         refiner.forget_figure();
     }
+    if !stage.kit.mechanisms.has(Mechanism::WideTemplates) {
+        refiner.forget_wide();
+    }
     if !stage.kit.mechanisms.has(Mechanism::Noise) {
         refiner.forget_noise();
     }

@@ -33,6 +33,8 @@ pub enum Mechanism {
     Blending,
     /// Contours are refined by their own colour templates.
     Refinement,
+    /// Contours are also refined from templates twice as large.
+    WideTemplates,
     /// Pulls of the refinement count less where they are wrong between the keys.
     Noise,
     /// Parts that moved as one body between the keys stay together.
@@ -47,7 +49,7 @@ pub enum Mechanism {
 
 impl Mechanism {
     /// Every mechanism with its id on the command line of the benchmark.
-    pub const ALL: [(Self, &str); 17] = [
+    pub const ALL: [(Self, &str); 18] = [
         (Self::Looks, "looks"),
         (Self::Flow, "flow"),
         (Self::Search, "search"),
@@ -60,6 +62,7 @@ impl Mechanism {
         (Self::FigureAndGround, "figure-and-ground"),
         (Self::Blending, "blending"),
         (Self::Refinement, "refinement"),
+        (Self::WideTemplates, "wide-templates"),
         (Self::Noise, "noise"),
         (Self::Companions, "companions"),
         (Self::Steadying, "steadying"),

@@ -15,10 +15,14 @@
 //!
 //! Steps 3 to 5 are repeated for a few rounds. Then the maps are computed again over a smaller window.
 //!
+//! **Wide.** A limb that is drawn longer than at the keys has its tips beyond the window, and all of its points have slid along
+//! it. So the same is done a second time from the same start, with a first pass over templates and a window twice as large, on
+//! the picture of half the size. The result is taken if its templates, the small ones, fit clearly better.
+//!
 //! The method is a constrained local model (Cristinacce & Cootes 2006; regularised mean shift: Saragih, Lucey & Cohn
 //! 2011). Its shape model comes from the two keys.
 //!
-//! Limits: it converges nearly everywhere from within about 10 px. It cannot correct a contour at a wrong place, and it
+//! Limits: it converges nearly everywhere from within about 10 px, and by the wide templates tips of limbs come back from 13 px. It cannot correct a contour at a wrong place, and it
 //! may pull along a part that slides under others. So the result is kept only if the templates fit better than before
 //! ([`Refiner::cost`]).
 
@@ -50,8 +54,12 @@ const PASSES: [Pass; 2] = [
     (Window { reach: [5, 6] }, [(6.0, 0.5), (4.0, 0.3), (3.0, 0.2)]),
     (Window { reach: [2, 3] }, [(3.0, 0.2), (2.0, 0.15), (2.0, 0.1)]),
 ];
+/// The first pass over the wide templates. Its window counts in their steps.
+const WIDE: Pass = (Window { reach: [5, 6] }, [(12.0, 0.5), (8.0, 0.3), (6.0, 0.3)]);
 /// Least decrease of the templates' cost for which a refined contour is used.
 const WORTH: f64 = 0.01;
+/// By how much less the contour from the wide templates has to cost than the other one.
+const CLEARLY: f64 = 0.01;
 /// How far a point is moved along its contour to see whether it could slide, in working pixels.
 const SLID: i32 = 5;
 /// Upper limit of the cost of a sample.
@@ -62,6 +70,7 @@ pub struct Refiner {
     samples: Samples,
     keys: [Vec<Point>; 2],
     templates: Templates,
+    wide: Option<Templates>,
     links: Links,
     noise: Vec<noise::Variance>,
 }
@@ -74,17 +83,24 @@ impl Refiner {
             return None;
         }
         let samples = Samples::new(count, closed);
-        let templates = Templates::new(&keys, &samples, closed);
+        let templates = Templates::new(&keys, &samples, closed, template::FINE);
+        let wide = Some(Templates::new(&keys, &samples, closed, template::COARSE));
         let noise = noise::measured(&keys, &samples, &templates);
         let points = keys.map(|key| key.points.to_vec());
         let links = Links::new(&points, closed);
-        Some(Self { samples, keys: points, templates, links, noise })
+        Some(Self { samples, keys: points, templates, wide, links, noise })
     }
 
     /// Forgets the difference between part and background, for measurements without it: offsets outside have the same
     /// cost function as offsets inside.
     pub fn forget_figure(&mut self) {
         self.templates.forget_figure();
+        self.wide.iter_mut().for_each(Templates::forget_figure);
+    }
+
+    /// Forgets the wide templates, for measurements without them.
+    pub fn forget_wide(&mut self) {
+        self.wide = None;
     }
 
     /// Takes every pull for right, for measurements without the noise of the pulls.
@@ -95,28 +111,33 @@ impl Refiner {
     /// Refined control points, or the rough ones if refinement does not lower the cost enough. All places are in
     /// working pixels.
     pub fn improved(&self, frame: &Frame, rough: Vec<Point>) -> Vec<Point> {
-        self.refined(frame, rough, &PASSES, WORTH)
+        let (fine, before) = self.refine(frame, &rough, &PASSES, &self.templates);
+        let cost = self.cost(frame, &fine);
+        if let Some(wide) = &self.wide {
+            let (nearer, _) = self.refine(frame, &rough, &[WIDE], wide);
+            let (far, _) = self.refine(frame, &nearer, &PASSES, &self.templates);
+            if self.cost(frame, &far) < cost.min(before) - CLEARLY {
+                return far;
+            }
+        }
+        if cost < before - WORTH { fine } else { rough }
     }
 
     /// Control points that are near already, refined over the small window, or as they are if that does not lower the cost.
     pub fn polished(&self, frame: &Frame, near: Vec<Point>) -> Vec<Point> {
-        self.refined(frame, near, &PASSES[1..], 0.0)
+        let (fine, before) = self.refine(frame, &near, &PASSES[1..], &self.templates);
+        if self.cost(frame, &fine) < before { fine } else { near }
     }
 
-    fn refined(&self, frame: &Frame, start: Vec<Point>, passes: &[Pass], worth: f64) -> Vec<Point> {
-        let (fine, before) = self.refine(frame, &start, passes);
-        if self.cost(frame, &fine) < before - worth { fine } else { start }
-    }
-
-    /// Refined control points from rough ones, and the cost of the rough ones as in [`Refiner::cost`].
-    fn refine(&self, frame: &Frame, start: &[Point], passes: &[Pass]) -> (Vec<Point>, f64) {
+    /// Refined control points from rough ones, and the cost of the rough ones by these templates, as in [`Refiner::cost`].
+    fn refine(&self, frame: &Frame, start: &[Point], passes: &[Pass], templates: &Templates) -> (Vec<Point>, f64) {
         let mut before = None;
         let mut points = start.to_vec();
         for (window, rounds) in passes {
             let (places, angles) = self.samples.frames(&points);
             let maps: Vec<response::Map> = (0..places.len())
                 .into_par_iter()
-                .map(|s| response::map(frame, window, (places[s], angles[s]), self.templates.of(s)))
+                .map(|s| response::map(frame, window, (places[s], angles[s]), (templates.of(s), templates.grain)))
                 .collect();
             before.get_or_insert_with(|| mean_cost(&maps));
             for &(reach, weight) in rounds {
@@ -161,7 +182,8 @@ impl Refiner {
     ) -> Vec<f64> {
         let (places, angles) = self.samples.frames(points);
         let control: Vec<usize> = (0..places.len()).filter(|&s| self.samples.terms(s).len() == 1).collect();
-        let of_sample = |s: usize| of_map(&response::map(frame, window, (places[s], angles[s]), self.templates.of(s)));
+        let templates = |s: usize| (self.templates.of(s), self.templates.grain);
+        let of_sample = |s: usize| of_map(&response::map(frame, window, (places[s], angles[s]), templates(s)));
         control.into_par_iter().map(of_sample).collect()
     }
 
@@ -172,7 +194,9 @@ impl Refiner {
         let (places, angles) = self.samples.frames(points);
         let maps: Vec<response::Map> = (0..places.len())
             .into_par_iter()
-            .map(|s| response::map(frame, &window, (places[s], angles[s]), self.templates.of(s)))
+            .map(|s| {
+                response::map(frame, &window, (places[s], angles[s]), (self.templates.of(s), self.templates.grain))
+            })
             .collect();
         mean_cost(&maps)
     }

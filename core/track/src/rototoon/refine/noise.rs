@@ -65,7 +65,7 @@ fn errors(key: usize, other: &Key, samples: &Samples, templates: &Templates) -> 
     let of_sample = |s: usize| {
         let (place, tangent) = (places[s], tangents[s]);
         let own = templates.of(s)[key];
-        let map = map(&frame, &WINDOW, (place, tangent), [own, own]);
+        let map = map(&frame, &WINDOW, (place, tangent), ([own, own], templates.grain));
         error(&pull(&map, (place, tangent), place, (REACH, 1.0), [0.0; 2]), (place, tangent))
     };
     (0..samples.count()).map(of_sample).collect()

@@ -43,7 +43,8 @@ pub fn pull(
     noise: Variance,
 ) -> Pull {
     let back = Point::new(tangent.x, -tangent.y);
-    let u = back.rotate(now - place);
+    let (step, reach) = (map.step, reach / map.step);
+    let u = back.rotate(now - place) / step;
     let (mean, [xx, xy, yy], least) = moments(map, u, reach);
     let s = SPREAD * SPREAD;
     let spread = Matrix2::new(xx + s, xy, xy, yy + s);
@@ -59,7 +60,7 @@ pub fn pull(
         let to = from + (axes[k].dot(eta) / value - from).clamp(-2.0 * reach, 2.0 * reach);
         let axis = tangent.rotate(axes[k]);
         let noise = noise[0] * axes[k].x * axes[k].x + noise[1] * axes[k].y * axes[k].y;
-        (axis, sure / (1.0 / value + noise), to + axis.dot(place))
+        (axis, sure / (step * step / value + noise), to * step + axis.dot(place))
     };
     let (a, b) = (along(0), along(1));
     Pull { axes: [a.0, b.0], weights: [a.1, b.1], targets: [a.2, b.2] }
@@ -120,7 +121,7 @@ mod tests {
             .flat_map(|u| (-6..=6).map(move |v| (f64::from(u), f64::from(v))))
             .map(|(u, v)| cost(u, v) as f32)
             .collect();
-        Map { reach: [5, 6], costs, shown: 1.0 }
+        Map { reach: [5, 6], step: 1.0, costs, shown: 1.0 }
     }
 
     #[test]

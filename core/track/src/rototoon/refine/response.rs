@@ -8,7 +8,7 @@
 //! colour costs more the more similar it is (1 − c of the difference from that colour), because it appears there if the
 //! contour has slipped inwards.
 
-use super::template::{Cell, HALF, LEVEL, Template, offsets};
+use super::template::{Cell, Grain, HALF, Template, offsets};
 use super::view::Frame;
 use rototoon_base::geometry::Point;
 use rototoon_base::numeric::lanes::{LANES, Lanes};
@@ -24,7 +24,7 @@ const OTHER_GROUND: f32 = 0.15;
 /// Share of a sample's inside that a key must show to be used.
 const SHOWN: f64 = 0.35;
 
-/// A window of displacements, in working pixels along tangent and normal.
+/// A window of displacements along tangent and normal, in steps of the templates.
 pub struct Window {
     /// Largest displacement along tangent and normal.
     pub reach: [i32; 2],
@@ -32,9 +32,11 @@ pub struct Window {
 
 /// Costs over a window of displacements.
 pub struct Map {
-    /// Largest displacement along tangent and normal, in working pixels.
+    /// Largest displacement along tangent and normal, in steps.
     pub reach: [i32; 2],
-    /// Costs at steps of one working pixel. The displacement along the normal is the inner index.
+    /// Working pixels per step.
+    pub step: f64,
+    /// Costs at each step. The displacement along the normal is the inner index.
     pub costs: Vec<f32>,
     /// How much of the sample the keys show, 0 to 1: twice the larger visible share, at most 1.
     pub shown: f64,
@@ -50,12 +52,17 @@ struct Seen {
 }
 
 /// The costs of a sample at a place with a unit tangent. If no key shows enough of the sample, both keys are used.
-pub fn map(frame: &Frame, window: &Window, (place, tangent): (Point, Point), templates: [&Template; 2]) -> Map {
+pub fn map(
+    frame: &Frame,
+    window: &Window,
+    (place, tangent): (Point, Point),
+    (templates, grain): ([&Template; 2], Grain),
+) -> Map {
     let [rows, columns] = window.reach.map(|reach| 2 * reach as usize + 1);
     let padded = columns.next_multiple_of(LANES);
     let seen = vectorised(
         #[inline(always)]
-        || seen(frame, window, (place, tangent), padded - columns),
+        || seen(frame, (window, grain), (place, tangent), padded - columns),
     );
     let serves = templates.map(|t| t.shown > SHOWN && t.weight > 0.0);
     let used = (0..2).filter(|&k| serves[k] || serves == [false, false]).map(|k| templates[k]);
@@ -77,20 +84,21 @@ pub fn map(frame: &Frame, window: &Window, (place, tangent): (Point, Point), tem
         }
     }
     let shown = templates.iter().map(|t| t.shown).fold(0.0, f64::max);
-    Map { reach: window.reach, costs, shown: (2.0 * shown).min(1.0) }
+    Map { reach: window.reach, step: grain.step, costs, shown: (2.0 * shown).min(1.0) }
 }
 
 /// Reads the picture at every place that an offset of a template can reach, and `padding` places beyond.
 #[inline(always)]
-fn seen(frame: &Frame, window: &Window, (place, tangent): (Point, Point), padding: usize) -> Seen {
+fn seen(frame: &Frame, (window, grain): (&Window, Grain), (place, tangent): (Point, Point), padding: usize) -> Seen {
     let size = [0, 1].map(|axis: usize| 2 * (window.reach[axis] + HALF[axis]) as usize + 1);
     let stride = size[1] + padding;
-    let level = frame.picture.level(LEVEL);
+    let level = frame.picture.level(grain.level);
     let empty = || vec![0.0f32; size[0] * stride];
     let mut planes = [empty(), empty(), empty(), empty()];
     let [red, green, blue, hidden] = &mut planes;
     let mut any_hidden = false;
     let corner = [0, 1].map(|axis: usize| -f64::from(window.reach[axis] + HALF[axis]));
+    let tangent = tangent * grain.step;
     let normal = tangent.perp();
     for a in 0..size[0] {
         let first = place + tangent * (corner[0] + a as f64) + normal * corner[1];

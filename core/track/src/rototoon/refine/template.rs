@@ -2,6 +2,8 @@
 //!
 //! A cell outside the part shows the background, which may be different on other frames. So it has less weight, and it
 //! also stores the part's own colour at the mirror place inside, which shows a contour that slipped inwards.
+//!
+//! A template has a [`Grain`]. A coarse one is the same on a reduced picture, so it looks twice as far.
 
 use super::samples::Samples;
 use super::view::Key;
@@ -20,8 +22,20 @@ const OUTSIDE: f32 = 0.5;
 const OUTSIDE_HIDDEN: f32 = 0.1;
 /// An offset this near to the contour still counts as inside, in working pixels.
 const REACH: f64 = 2.0;
-/// Level (index in `LEVELS`) from which the colours are read.
-pub const LEVEL: usize = 2;
+
+/// How large a template is. All lengths of this module are multiplied by its step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grain {
+    /// Level (index in `LEVELS`) from which the colours are read.
+    pub level: usize,
+    /// Working pixels per step.
+    pub step: f64,
+}
+
+/// Templates on the finest level.
+pub const FINE: Grain = Grain { level: 2, step: 1.0 };
+/// Templates on the next level, twice as large.
+pub const COARSE: Grain = Grain { level: 1, step: 2.0 };
 
 /// One offset of a template.
 #[derive(Clone)]
@@ -49,6 +63,8 @@ pub struct Template {
 /// The templates of both keys.
 pub struct Templates {
     of_key: [Vec<Template>; 2],
+    /// How large they are.
+    pub grain: Grain,
 }
 
 /// Offsets of a template along one axis.
@@ -58,8 +74,8 @@ pub fn offsets(axis: usize) -> impl Iterator<Item = i32> + Clone {
 
 impl Templates {
     /// Reads the templates of all samples.
-    pub fn new(keys: &[Key; 2], samples: &Samples, closed: bool) -> Self {
-        Self { of_key: [0, 1].map(|k: usize| of_key(&keys[k], samples, closed)) }
+    pub fn new(keys: &[Key; 2], samples: &Samples, closed: bool, grain: Grain) -> Self {
+        Self { of_key: [0, 1].map(|k: usize| of_key(&keys[k], samples, closed, grain)), grain }
     }
 
     /// Forgets the difference between part and background, for measurements without it: offsets outside have the same
@@ -79,17 +95,17 @@ fn bare(colour: Padded) -> Colour {
     colour.truncate().to_array()
 }
 
-fn of_key(key: &Key, samples: &Samples, closed: bool) -> Vec<Template> {
+fn of_key(key: &Key, samples: &Samples, closed: bool, grain: Grain) -> Vec<Template> {
     let (places, tangents) = samples.frames(key.points);
-    let level = key.picture.level(LEVEL);
+    let level = key.picture.level(grain.level);
     let within = |p: Point| polygon::contains(key.points, p);
-    let inside = |p: Point| !closed || within(p) || polyline::distance(p, key.points, true) <= REACH;
+    let inside = |p: Point| !closed || within(p) || polyline::distance(p, key.points, true) <= REACH * grain.step;
     let cut = |(place, tangent): (&Point, &Point)| {
         let mut template = Template { cells: Vec::new(), weight: 0.0, shown: 0.0 };
         let (mut own_cells, mut seen) = (0.0, 0.0);
         for u in offsets(0) {
             for v in offsets(1) {
-                let at = |v: i32| *place + tangent.rotate(Point::new(f64::from(u), f64::from(v)));
+                let at = |v: i32| *place + tangent.rotate(Point::new(f64::from(u), f64::from(v)) * grain.step);
                 let (p, across) = (at(v), at(-v));
                 let (inside, hidden) = (inside(p), key.cover.hides(p));
                 let colour = level.colour(p);

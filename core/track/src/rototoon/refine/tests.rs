@@ -65,14 +65,14 @@ fn a_rough_contour_comes_back_to_the_ink() {
     let off = |points: &[Point]| points.iter().map(|&p| polyline::distance(p, &middle, true)).fold(0.0, f64::max);
     let mean =
         |points: &[Point]| points.iter().zip(&middle).map(|(p, q)| p.distance(*q)).sum::<f64>() / points.len() as f64;
-    let (fine, before) = refiner.refine(&frame(BTreeMap::new()), &rough, &PASSES);
+    let (fine, before) = refiner.refine(&frame(BTreeMap::new()), &rough, &PASSES, &refiner.templates);
     assert!(off(&rough) > 5.0 && off(&fine) < 1.0, "{} from {}", off(&fine), off(&rough));
     assert!(mean(&rough) > 5.0 && mean(&fine) < 2.0, "{} from {}", mean(&fine), mean(&rough));
     let free = frame(BTreeMap::new());
     assert!((before - refiner.cost(&free, &rough)).abs() < 1e-6);
     assert!(refiner.cost(&free, &fine) < 0.5 * before);
     let pin = middle[5] + Point::new(9.0, -4.0);
-    let (pinned, _) = refiner.refine(&frame(BTreeMap::from([(5, pin)])), &rough, &PASSES);
+    let (pinned, _) = refiner.refine(&frame(BTreeMap::from([(5, pin)])), &rough, &PASSES, &refiner.templates);
     assert!(pinned[5].distance(pin) < 0.05);
 }
 
@@ -127,14 +127,34 @@ fn a_line_that_is_drawn_anew_has_noisy_pulls_and_points_slide_less() {
         let picture = marked(&middle, shifts[2]);
         let frame = Frame { picture: &picture, cover: &cover, share: 0.5, pins: BTreeMap::new() };
         let off = |points: Vec<Point>| points.iter().zip(&middle).map(|(p, q)| p.distance(*q)).sum::<f64>() / 12.0;
-        let with = off(refiner.refine(&frame, &middle, &PASSES).0);
+        let with = off(refiner.refine(&frame, &middle, &PASSES, &refiner.templates).0);
         refiner.forget_noise();
-        (along, with, off(refiner.refine(&frame, &middle, &PASSES).0))
+        (along, with, off(refiner.refine(&frame, &middle, &PASSES, &refiner.templates).0))
     };
     let (clean, ..) = slid([0.0; 3]);
     let (noisy, with, without) = slid([0.0, 5.0, 9.0]);
     assert!(clean < 0.1 && noisy > 20.0 * clean.max(0.02), "{clean} {noisy}");
     assert!(with < 0.7 * without, "{with} {without}");
+}
+
+#[test]
+fn a_limb_that_is_drawn_longer_is_reached_by_the_wide_templates() {
+    let limb = |length: f64, at: Point| -> Vec<Point> {
+        let edge = |y: f64| [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| Point::new((share - 0.5) * length, y) + at);
+        edge(0.0).into_iter().chain(edge(16.0).into_iter().rev()).collect()
+    };
+    let keys = [limb(120.0, Point::new(150.0, 200.0)), limb(120.0, Point::new(330.0, 260.0))];
+    let (rough, truth) = (limb(120.0, Point::new(240.0, 230.0)), limb(146.0, Point::new(240.0, 230.0)));
+    let (pictures, cover) = (keys.each_ref().map(|key| drawn(key, WALL)), Cover::none(LINES as f64));
+    let picture = drawn(&truth, WALL);
+    let frame = Frame { picture: &picture, cover: &cover, share: 0.5, pins: BTreeMap::new() };
+    let key = |k: usize| Key { points: &keys[k], picture: &pictures[k], cover: &cover };
+    let mut refiner = Refiner::new([key(0), key(1)], true).unwrap();
+    let worst = |points: Vec<Point>| points.iter().zip(&truth).map(|(p, q)| p.distance(*q)).fold(0.0, f64::max);
+    let with = worst(refiner.improved(&frame, rough.clone()));
+    refiner.forget_wide();
+    let without = worst(refiner.improved(&frame, rough));
+    assert!(with < 3.0 && without > 8.0, "{with} {without}");
 }
 
 /// The place at a length along a closed contour.
